@@ -26,17 +26,19 @@ void ViewLimits::validate() const {
   require(stand_off >= 0.0 && std::isfinite(stand_off),
           "stand_off is " + std::to_string(stand_off) + "; it must be zero or more metres");
   require(!least_height || !most_height || *least_height < *most_height,
-          "least_height is not below most_height; nothing is left to fly in");
+          "least_height must be less than most_height; no airspace is left");
   require(
       least_pitch < most_pitch && std::abs(least_pitch) < 1.5708 && std::abs(most_pitch) < 1.5708,
       "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
-  require(geofence.empty() || geofence.size() >= 3,
-          "geofence has " + std::to_string(geofence.size()) + " corners; it needs three or more");
+  require(
+      geofence.empty() || geofence.size() >= 3,
+      "geofence has " + std::to_string(geofence.size()) + " corners; at least three are required");
   for (const geometry::Prism& prism : no_fly) {
     require(prism.footprint.size() >= 3, "no_fly has a volume of " +
                                              std::to_string(prism.footprint.size()) +
-                                             " corners; it needs three or more");
-    require(prism.floor < prism.ceiling, "no_fly has a volume whose bottom is not below its top");
+                                             " corners; at least three are required");
+    require(prism.floor < prism.ceiling,
+            "no_fly has a volume whose floor is not below its ceiling");
   }
 }
 

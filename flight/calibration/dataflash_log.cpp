@@ -205,7 +205,7 @@ class LogBuilder {
     if (name == "MISE") add_command(message, log_.commands);
     if (readings_.size() + log_.parameters.size() + log_.commands.size() + listed_.size() >
         most_entries_) {
-      throw Error(ErrorKind::bad_file, "holds more than " + std::to_string(most_entries_) +
+      throw Error(ErrorKind::bad_file, "contains more than " + std::to_string(most_entries_) +
                                            " samples, parameters and commands");
     }
   }
@@ -217,18 +217,17 @@ class LogBuilder {
     add_samples();
     if (!has_velocity_) {
       throw Error(ErrorKind::bad_file,
-                  "holds no velocity (XKF1); log the estimator's state" + damage);
+                  "contains no velocity (XKF1); log the estimator's state" + damage);
     }
     if (log_.samples.empty() && has_voltage_ && !has_current_) {
-      throw Error(
-          ErrorKind::bad_file,
-          "measures no current (BAT.Curr); the vehicle needs a current sensor (BATT_MONITOR "
-          "4 or higher)" +
-              damage);
+      throw Error(ErrorKind::bad_file,
+                  "contains no current (BAT.Curr); a current sensor is required (BATT_MONITOR 4 or "
+                  "higher)" +
+                      damage);
     }
     if (log_.samples.empty()) {
       throw Error(ErrorKind::bad_file,
-                  "holds no battery (BAT); the vehicle needs a power monitor" + damage);
+                  "contains no battery data (BAT); a power monitor is required" + damage);
     }
     // Since October 2024 CMD lists the mission at its upload alone.
     if (log_.commands.empty()) log_.commands = std::move(listed_);
@@ -373,8 +372,8 @@ FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
   if (!has_format) {
     const std::string kind = foreign_kind(bytes);
     throw Error(ErrorKind::bad_file, kind.empty()
-                                         ? "is no dataflash log: it describes no message"
-                                         : "is no dataflash log of ArduPilot: it is " + kind);
+                                         ? "is not a dataflash log: it defines no message"
+                                         : "is not an ArduPilot dataflash log: it is " + kind);
   }
   return builder.finish(skipped);
 }

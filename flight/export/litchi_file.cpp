@@ -44,9 +44,10 @@ std::string actions_of(const Waypoint& waypoint) {
   for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
   if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));
   if (used > actions_per_line) {
-    throw Error(ErrorKind::bad_config, "a station with " + std::to_string(waypoint.shots) +
-                                           " shots cannot be written for Litchi, which takes " +
-                                           std::to_string(actions_per_line - 3));
+    throw Error(ErrorKind::bad_config,
+                "a waypoint with " + std::to_string(waypoint.shots) +
+                    " shots cannot be written for Litchi, whose maximum is " +
+                    std::to_string(actions_per_line - 3));
   }
   for (; used < actions_per_line; ++used) text += ",-1,0";
   return text;
@@ -66,11 +67,11 @@ struct Reading {
       if (!geometry::trimmed(lines[i]).empty()) read_line(lines[i], i + 1);
     }
     if (problems.empty() && route.points.size() < 2) {
-      problems.emplace_back("there are fewer than two waypoints");
+      problems.emplace_back("fewer than two waypoints");
     }
     if (route.points.size() > most_waypoints) {
-      problems.push_back("there are " + std::to_string(route.points.size()) +
-                         " waypoints; old firmware takes 99");
+      problems.push_back("too many waypoints: " + std::to_string(route.points.size()) +
+                         "; the limit of old firmware is 99");
     }
   }
 
@@ -120,9 +121,10 @@ struct Reading {
 
 std::string write_litchi(const FlightPlan& plan) {
   if (plan.waypoints.size() > most_waypoints) {
-    throw Error(ErrorKind::bad_config,
-                "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
-                    " waypoints; Litchi takes 99: plan with a vehicle of fewer max_waypoints");
+    throw Error(
+        ErrorKind::bad_config,
+        "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
+            " waypoints; the limit of Litchi is 99: use a vehicle with fewer max_waypoints");
   }
   const LocalFrame frame(plan.site.origin);
   const double pad_height = frame.to_geodetic(plan.pad).height;
@@ -144,7 +146,7 @@ Problems validate_litchi(const std::string& text) { return Reading(text).problem
 
 RouteFile read_litchi(const std::string& text) {
   const Reading reading(text);
-  throw_first(reading.problems, "not a good Litchi file");
+  throw_first(reading.problems, "invalid Litchi file");
   return reading.route;
 }
 

@@ -52,9 +52,9 @@ struct Reading {
     // Files of APM Planner 2 say 120 and have the same columns.
     if (!is_strict && is_wpl && (words[2] == "110" || words[2] == "120")) return true;
     if (is_wpl && (words[2] == "100" || words[2] == "101")) {
-      problems.push_back(who + "has version " + words[2] +
-                         ", whose columns have another order; save the mission again as QGC WPL "
-                         "110");
+      problems.push_back(
+          who + "has version " + words[2] +
+          ", whose columns have another order; save the mission again as QGC WPL 110");
     } else {
       problems.push_back(who + "must be \"QGC WPL 110\"");
     }
@@ -91,7 +91,7 @@ struct Reading {
     }
     for (const std::size_t whole : {2U, 3U, 11U}) {
       if (values[whole] != std::floor(values[whole]) || std::abs(values[whole]) > 1e5) {
-        problems.push_back(who + "has \"" + fields[whole] + "\" where an integer belongs");
+        problems.push_back(who + "has \"" + fields[whole] + "\"; it must be an integer");
         return;
       }
     }
@@ -108,7 +108,7 @@ Problems problems_of(Reading& reading, std::optional<Dialect> dialect) {
     reading.problems.emplace_back("line 2 must be home: frame 0, command 16");
   }
   if (dialect == Dialect::px4 && reading.home) {
-    reading.problems.emplace_back("line 2 is a home, which PX4's files do not have");
+    reading.problems.emplace_back("line 2 is a home position, which PX4's files do not have");
   }
   for (const std::string& problem : check_items(reading.items, dialect)) {
     reading.problems.push_back(problem);
@@ -150,7 +150,7 @@ Problems validate_waypoints(const std::string& text, std::optional<Dialect> dial
 
 MissionFile read_waypoints(const std::string& text) {
   Reading reading(text, false);
-  throw_first(problems_of(reading, {}), "not a good .waypoints file");
+  throw_first(problems_of(reading, {}), "invalid .waypoints file");
   MissionFile file{.items = reading.items,
                    .dialect = reading.home ? Dialect::ardupilot : Dialect::px4};
   if (reading.home && has_coordinates(*reading.home)) {

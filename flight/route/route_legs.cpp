@@ -47,10 +47,10 @@ std::vector<Station> RouteLegs::allowed(std::vector<Station> stations) {
 std::string RouteLegs::why_not_allowed(const Station& station) const {
   const Vehicle& vehicle = motion_.vehicle();
   if (!can_look(vehicle, station.view)) {
-    return "the gimbal of \"" + vehicle.name + "\" cannot look that way";
+    return "the gimbal of \"" + vehicle.name + "the gimbal of \"";
   }
   const Segment place{station.view.position, station.view.position};
-  if (space_.is_free(place, clearance_)) return "";
+  if (space_.is_free(place, clearance_)) return "\" cannot look in that direction";
   const Closest closest = space_.closest(place, clearance_ + 1.0);
   return "it is " + length_text(closest.distance) + " from " + space_.name(closest);
 }
@@ -62,7 +62,7 @@ void RouteLegs::keep_with_return(std::vector<Station>& stations) {
   ways_home_.emplace(space_, planning_law(options_, top), home_, clearance_);
   std::erase_if(stations, [&](const Station& station) {
     const std::string why = ways_home_->why_none(station.view.position);
-    if (!why.empty()) refuse(station, "there is no certified way home: " + why);
+    if (!why.empty()) refuse(station, "no safe return: " + why);
     return !why.empty();
   });
 }
@@ -73,14 +73,14 @@ void RouteLegs::admit(const std::vector<Station>& allowed) {
   for (const Station& station : allowed) {
     ways.push_back(ways_.from_home(station));
     if (!ways.back().empty()) continue;
-    refuse(station, "there is no way to it at a clearance of " + length_text(clearance_));
+    refuse(station, "no path to it with a clearance of " + length_text(clearance_));
   }
   for (std::size_t i = 0; i < allowed.size(); ++i) {
     if (ways[i].empty()) continue;
     std::optional<Ends> ends = ends_along(std::move(ways[i]));
     const std::string why =
         ends ? why_out_of_range(allowed[i], *ends)
-             : "the way to it cannot be proven at a clearance of " + length_text(clearance_);
+             : "the path to it cannot be verified with a clearance of " + length_text(clearance_);
     if (!why.empty()) {
       refuse(allowed[i], why);
       continue;
@@ -105,10 +105,10 @@ std::string RouteLegs::why_out_of_range(const Station& station, const Ends& ends
   const double needed = std::max(total.energy, total.emergency);
   const double held = plannable_energy(motion_), longest = options_.conditions.longest_flight;
   if (needed <= held) return "";
-  return "getting there and back takes " + std::to_string(needed / 3600) + " Wh; the battery has " +
-         std::to_string(held / 3600) + " Wh above its reserve" +
+  return "the flight there and back needs " + std::to_string(needed / 3600) +
+         " Wh; the battery has " + std::to_string(held / 3600) + " Wh above its reserve" +
          (longest > 1.0 ? " for a flight that may take " + std::to_string(longest) +
-                              " times as long as predicted"
+                              " times the estimated time"
                         : "");
 }
 

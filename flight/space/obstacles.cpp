@@ -37,7 +37,7 @@ void validate(const Prism& prism, const std::string& role) {
     throw Error(ErrorKind::bad_config, who + " " + what);
   };
   if (corners.size() < 3) {
-    fail("has " + std::to_string(corners.size()) + " corners; a footprint needs at least 3");
+    fail("has " + std::to_string(corners.size()) + " corners; a footprint requires at least 3");
   }
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!corners[i].allFinite()) fail("has a corner that is not a finite number");
@@ -82,10 +82,11 @@ void validate(const Obstacles& obstacles) {
   if (!obstacles.fence) return;
   validate(*obstacles.fence, "fence");
   if (obstacles.ground_height && obstacles.fence->ceiling <= *obstacles.ground_height) {
-    throw Error(ErrorKind::bad_config,
-                "fence \"" + obstacles.fence->name + "\" has its ceiling at " +
-                    std::to_string(obstacles.fence->ceiling) + " m, not above the ground at " +
-                    std::to_string(*obstacles.ground_height) + " m: nothing can fly in it");
+    throw Error(ErrorKind::bad_config, "fence \"" + obstacles.fence->name +
+                                           "\" has its ceiling at " +
+                                           std::to_string(obstacles.fence->ceiling) +
+                                           " m, which must be above the ground at " +
+                                           std::to_string(*obstacles.ground_height) + " m");
   }
 }
 

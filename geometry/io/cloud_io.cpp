@@ -69,7 +69,7 @@ std::uint32_t view_of(const fs::path& path, std::size_t point, double value) {
     return static_cast<std::uint32_t>(value);
   }
   fail_cloud(path, "point " + std::to_string(point) + " has the view " + std::to_string(value) +
-                       "; it must be a whole number from 0 to 4294967295");
+                       "; it must be an integer from 0 to 4294967295");
 }
 
 /// Without colours if one of them is in no known scale: nothing is told from them.
@@ -207,14 +207,13 @@ void add_positions(const fs::path& path, std::size_t first,
 
 void require_few_points(const fs::path& path, std::size_t points) {
   if (points <= most_whole_points) return;
-  fail_cloud(path, "holds more than " + std::to_string(most_whole_points) +
-                       " points; thin it, or evaluate it as LAS or E57, which is read piece by "
-                       "piece");
+  fail_cloud(path, "contains more than " + std::to_string(most_whole_points) +
+                       " points; downsample it, or use LAS or E57, which are read in parts");
 }
 
 void fail_without_points(const fs::path& path, std::size_t skipped) {
-  fail_cloud(path, skipped == 0 ? std::string("holds no points")
-                                : "holds no points but " + std::to_string(skipped) +
+  fail_cloud(path, skipped == 0 ? std::string("contains no points")
+                                : "contains no points but " + std::to_string(skipped) +
                                       " that are NaN or infinite");
 }
 

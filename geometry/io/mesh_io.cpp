@@ -38,7 +38,7 @@ PolygonSoup parse(const fs::path& path) {
   if (format == ".drc") {
     const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
     const Mesh mesh = decode_draco(path.string(), bytes);
-    if (mesh.triangles.size() > most_unpacked) fail(path, "holds more than 1e7 triangles");
+    if (mesh.triangles.size() > most_unpacked) fail(path, "contains more than 1e7 triangles");
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
@@ -110,8 +110,8 @@ void require_faces(const fs::path& path, const PolygonSoup& soup) {
   for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
     if (is_polygon(i)) return;
   }
-  fail(path, soup.vertices.empty() ? "holds neither vertices nor faces; a mesh is wanted"
-                                   : "holds no faces; a mesh is wanted, not a point cloud");
+  fail(path, soup.vertices.empty() ? "contains neither vertices nor faces; expected a mesh"
+                                   : "contains no faces; expected a mesh, not a point cloud");
 }
 
 template <typename Number>
@@ -208,10 +208,10 @@ Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
   const std::size_t skipped = options.note ? drop_infinite_polygons(soup) : 0;
   if (skipped > 0) {
     options.note(std::to_string(skipped) +
-                 " faces skipped, since a corner is NaN or infinite: nothing is known there");
+                 " faces skipped (a corner is NaN or infinite); their area is unknown");
   }
   Mesh mesh = clean_mesh(path, std::move(soup));
-  if (mesh.triangles.empty()) fail(path, "holds no triangle with an area");
+  if (mesh.triangles.empty()) fail(path, "contains no triangle with an area");
   if (options.orient_outward) orient_outward(mesh);
   return mesh;
 }
@@ -227,7 +227,7 @@ std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
     if (mesh.triangles.empty()) continue;
     parts.push_back({materials.empty() ? "" : materials[i], std::move(mesh)});
   }
-  if (parts.empty()) fail(path, "holds no triangle with an area");
+  if (parts.empty()) fail(path, "contains no triangle with an area");
   return parts;
 }
 

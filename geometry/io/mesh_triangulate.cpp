@@ -125,7 +125,7 @@ Mesh triangulate(std::string_view name, PolygonSoup soup) {
       }
     } else {
       fail(i, "is not convex and has " + std::to_string(polygon.size()) +
-                  " corners; at most 1000 are read, triangulate it first");
+                  " corners; the maximum is 1000; triangulate it first");
     }
   }
   return mesh;

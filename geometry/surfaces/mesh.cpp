@@ -60,7 +60,7 @@ void validate(const Mesh& mesh, unsigned threads) {
     const auto& corners = mesh.triangles[triangle];
     const auto missing =
         std::ranges::find_if(corners, [&](std::uint32_t corner) { return corner >= vertices; });
-    throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(triangle) + " names vertex " +
+    throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(triangle) + " has vertex " +
                                              std::to_string(*missing) + ", but there are only " +
                                              std::to_string(vertices));
   }

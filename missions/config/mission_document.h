@@ -155,7 +155,7 @@ struct MissionDocument {
 
   bool gives(std::string_view key) const;
 
-  /// Throws Error{bad_config}, one line: "FILE:LINE: key KEY: WHAT". A key that is not given stands
+  /// Throws Error{bad_config}, one line: "FILE:LINE: key KEY WHAT". A key that is not given stands
   /// in the first line.
   [[noreturn]] void refuse(std::string_view key, const std::string& what) const;
 };

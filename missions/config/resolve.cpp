@@ -65,7 +65,7 @@ sim::LidarConfig read_scanner(const MissionDocument& document) {
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,
-                description.name + " is a camera; give its values as the other keys of sensor");
+                description.name + " is a camera; set its values with the other keys of sensor");
   }
   return *lidar;
 }
@@ -86,22 +86,21 @@ void mount_scanner(MissionDocument& document) {
   constexpr double level = 0.02;
   if (spins && std::abs(mount.linear()(2, 2)) > level) {
     document.refuse("scan.mount.rotation_deg",
-                    "does not lay the scanner's axis level, as planned flights need it; leave it "
-                    "out, or give [0, 90, 0]: along the way");
+                    "the scanner's axis must be level for planned flights; remove the key, or "
+                    "set [0, 90, 0] (along the flight direction)");
   }
   constexpr double steepest = 75.0 * std::numbers::pi / 180.0;
   if (!spins && std::abs(mount.linear()(2, 0)) > std::sin(steepest)) {
     document.refuse("scan.mount.rotation_deg",
-                    "has the scanner look up or down by more than 75 degrees, so that planned "
-                    "flights could not turn it to what they want to see; leave it out, or give "
-                    "[0, 30, 90]: to the left, 30 degrees down");
+                    "the scanner must not look up or down by more than 75 degrees in planned "
+                    "flights; remove the key, or set [0, 30, 90] (to the left, 30 degrees down)");
   }
   sensor.mount = scanner_mount(lidar, mount);
   if (kind_of(lidar) == ScannerKind::line && document.gives("sensor.capture") &&
       !sensor.is_moving()) {
     document.refuse("sensor.capture",
-                    "is stops, at which a scanner that measures a line sees next to nothing; leave "
-                    "it out");
+                    "stops conflicts with a single-line LiDAR, which measures next to nothing at "
+                    "a stop; remove it");
   }
   if (!document.gives("sensor.capture")) sensor.capture = sim::Capture::moving;
   if (!document.gives("sensor.frame_period")) sensor.frame_period = sim::scanner_period;
@@ -378,7 +377,7 @@ Profiles read_profiles(const MissionDocument& document) {
   for (const auto& [path, place] : document.places) {
     if (path.starts_with("sensor.") && path != "sensor.lidar" && path != "sensor.capture" &&
         path != "sensor.frame_period") {
-      document.refuse(path, "does not go with sensor.lidar; leave one of the two out");
+      document.refuse(path, "conflicts with sensor.lidar; remove one of the two");
     }
   }
   try {
@@ -453,11 +452,11 @@ MissionSetup read_mission(const std::filesystem::path& file,
   if (document.scene.model.empty() && !truth_role(document)) {
     document.refuse(
         "scene.model",
-        std::string("is missing; give a text, such as builtin:teapot") +
+        std::string("is missing; set a model, for example builtin:teapot") +
             (has_target(document)
-                 ? ", or plan with --dry-run prior, where the targets stand in for it"
+                 ? ", or plan with --dry-run prior, which uses the targets as ground truth"
                  : "") +
-            ". Without a scene a mission is for live surveys: skycap next, serve and finish");
+            ". A mission without a scene is a live survey: skycap next, serve and finish");
   }
   return resolve(std::move(document), report);
 }

@@ -142,7 +142,8 @@ class VehicleReader {
   void read_codes() {
     std::optional<support::YamlSection> section = part("wpml");
     if (!section) {
-      if (vehicle_.wpml.drone <= 0) root_.fail_at("wpml", "is missing; DJI's vehicles have codes");
+      if (vehicle_.wpml.drone <= 0)
+        root_.fail_at("wpml", "is missing; vehicles of DJI require their codes");
       return;
     }
     flight::WpmlCodes& codes = vehicle_.wpml;
@@ -151,7 +152,7 @@ class VehicleReader {
     codes.drone_variant = section->integer("drone_variant", codes.drone_variant);
     codes.payload = section->integer("payload", codes.payload);
     section->finish();
-    if (codes.drone <= 0) root_.fail_at("wpml", "must give DJI's number of the drone");
+    if (codes.drone <= 0) root_.fail_at("wpml", "must contain DJI's number of the drone");
   }
 
   support::YamlSection& root_;
@@ -178,7 +179,7 @@ flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
   VehicleReader(root, vehicle, is_like_another).read();
   root.finish();
   if (vehicle.gimbal_min >= vehicle.gimbal_max) {
-    root.fail_at("gimbal_max_deg", "is not above gimbal_min_deg");
+    root.fail_at("gimbal_max_deg", "must be greater than gimbal_min_deg");
   }
   try {
     const flight::Motion motion(vehicle, {.cruise_speed = vehicle.max_speed});

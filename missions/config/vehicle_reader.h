@@ -10,7 +10,7 @@ namespace skycap::missions::config {
 
 /// Reads the text of a description; `file` is what messages call it. A description with the key
 /// `like` starts from that preset and says what is different; any other says everything. Throws
-/// Error{bad_config} in the form "FILE:LINE: key KEY: what is wrong", for unknown, missing and
+/// Error{bad_config} in the form "FILE:LINE: key KEY WHAT IS WRONG", for unknown, missing and
 /// mistyped keys and values out of range.
 flight::Vehicle read_vehicle(const std::string& text, const std::string& file);
 

@@ -178,9 +178,9 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   if (const auto& start = begins.view) {
     if (!reachable().is_empty()) return *start;
     throw Error(ErrorKind::bad_config,
-                "start.position is inside the model, or so enclosed by it that a ball of " +
+                "start.position is inside the model, or enclosed by it: a sphere of radius " +
                     metres_text(radius_ + reachable().cell()) +
-                    " m does not fit; move it, or make evaluation.radius less");
+                    " m does not fit through any opening; move it, or lower evaluation.radius");
   }
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;
@@ -194,10 +194,11 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
       return view;
     }
   }
-  throw Error(ErrorKind::bad_config,
-              "limits.ground_clearance, the gimbal's pitch, evaluation.radius, the site and "
-              "flight.unknown_box leave no place for a random start at the view distance of " +
-                  metres_text(view_distance_) + " m; loosen them or give start.position");
+  throw Error(
+      ErrorKind::bad_config,
+      "no random start at the view distance of " + metres_text(view_distance_) +
+          " m satisfies limits.ground_clearance, the gimbal's pitch limits, evaluation.radius, the "
+          "site and flight.unknown_box; relax them or set start.position");
 }
 
 Admissible SurveyScene::admissible() const {

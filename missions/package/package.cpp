@@ -49,7 +49,7 @@ Json json_of_summary(const std::string& text, const std::string& name) {
   Json summary = geometry::parse_json<Json>(text);
   if (summary.is_object()) return summary;
   fail(name,
-       "is not a package's summary, but no JSON or nested too deep; name the folder of a mission "
+       "is not a package's summary: not JSON, or nested too deep; give the folder of a mission "
        "package");
 }
 
@@ -102,7 +102,7 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
                              flown.pad, views_of(record), ways_of(flown), flown.grounds, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
     const flight::Unreached& first = flight.route.unreached.front();
-    throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
+    throw Error(ErrorKind::bad_config, "no view can be part of the flight; view " +
                                            std::to_string(first.station.view_index) + ": " +
                                            first.reason);
   }
@@ -127,7 +127,7 @@ void attempt(SurveyMission& flight, Work work) {
   try {
     work();
   } catch (const Interrupted&) {
-    flight.failure = "interrupted; skycap export makes it";
+    flight.failure = "interrupted; skycap export creates it";
   } catch (const Error& error) {
     flight.failure = error.what();
   }
@@ -156,10 +156,11 @@ void stage_mission(const std::string& name, const flight::FlightOptions& options
   folder.write(free_space_name, free_space.str());
   attempt(flight, [&] {
     const flight::MeasuredSpace& measured = *record.flown->measured;
-    flight.files = stage_flight(name, options, flight.route, measured, package_formats(), folder);
+    flight.files = stage_flight(name, options, flight.route, measured,
+                                package_formats(options.flown().dialect), folder);
     if (!options.is_fleet()) return;
-    flight.fleet = staged_fleet(name, options, measured, flight.route, record.flown->grounds,
-                                package_formats(), folder, threads, stop);
+    flight.fleet = staged_fleet(name, options, measured, flight.route, record.flown->grounds, {},
+                                folder, threads, stop);
   });
 }
 
@@ -354,11 +355,11 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<config::KeyOverride>& overrides) {
   PackageSummary summary = read_package_summary(folder, overrides);
   if (!summary.pad) {
-    fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
+    fail(folder / summary_name, "is a survey without a vehicle; plan it with flight.vehicle");
   }
   if (summary.mission.flight().views == flight::MissionViews::anew && !summary.has_choice) {
     fail(folder / summary_name,
-         "has no views chosen anew; plan the mission again, or say flight.views=survey");
+         "contains no replanned views; plan the mission again, or set flight.views=survey");
   }
   const std::filesystem::path space_file = folder / free_space_name;
   std::ifstream space;

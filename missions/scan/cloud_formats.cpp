@@ -161,7 +161,7 @@ const CloudFormatInfo& cloud_format_named(const std::string& name) {
     if (format.name == name) return format;
   }
   throw Error(ErrorKind::bad_usage,
-              "there is no point format '" + name + "'; the formats are " + cloud_format_names());
+              "unknown point format '" + name + "'; expected one of: " + cloud_format_names());
 }
 
 std::string cloud_format_names() {

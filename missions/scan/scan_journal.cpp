@@ -48,7 +48,7 @@ Json ScanJournal::open(const support::Identity& run, const Json& more, bool resu
   }
   const std::vector<std::string>& records = log_->records();
   support::require_same_survey(file_.string(), records.front(), identity,
-                               "begin anew without --resume");
+                               "start again without --resume");
   return records.size() > 1 ? geometry::parse_json<Json>(records.back()) : Json();
 }
 

@@ -132,14 +132,14 @@ SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry:
     const std::string why = closest.distance < clearance
                                 ? "is " + support::short_text(closest.distance) + " m from " +
                                       impl_->space.name(closest)
-                                : "cannot be reached through space that is known to be free";
+                                : "cannot be reached through free space";
     throw Error(ErrorKind::bad_config,
                 place + " at (" + support::short_text(at.x()) + ", " + support::short_text(at.y()) +
-                    ", " + support::short_text(at.z()) + ") " + why + ", at a clearance of " +
+                    ", " + support::short_text(at.z()) + ") " + why + ", with a clearance of " +
                     support::short_text(clearance) + " m; " + cure);
   };
   if (!impl_->space.is_free({home, home}, impl_->finder.clearance())) {
-    refuse("the place above the take-off pad", home,
+    refuse("the point above the take-off point", home,
            "move flight.takeoff, raise flight.takeoff_climb, or shrink flight.unknown_box");
   }
   flight::check_grounds(options.grounds(impl_->survey.pad, {}), options.ground_limits());
@@ -148,7 +148,7 @@ SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry:
   }
   if (!can_reach(home, first_view)) {
     refuse("the first view", first_view.position,
-           "give another start.position (or seed), within the gimbal's limits and outside of "
+           "set another start.position (or seed), within the gimbal's limits and outside "
            "flight.unknown_box");
   }
 }

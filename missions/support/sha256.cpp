@@ -18,7 +18,7 @@ namespace skycap::missions::support {
 namespace {
 
 void require(int result) {
-  if (result != 1) throw std::runtime_error("the cryptography library cannot compute SHA-256");
+  if (result != 1) throw std::runtime_error("the cryptography library does not support SHA-256");
 }
 
 /// The algorithm, from a library context of its own: where memory is short, OpenSSL 3.0 goes on

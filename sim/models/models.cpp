@@ -128,8 +128,8 @@ Mesh builtin_model(std::string_view name, const ModelOptions& options) {
   for (const std::string_view each : builtin_models()) {
     known += (known.empty() ? "" : ", ") + std::string(each);
   }
-  throw Error(ErrorKind::bad_config, "there is no built-in model named '" + std::string(name) +
-                                         "'; it must be one of: " + known);
+  throw Error(ErrorKind::bad_config,
+              "unknown builtin model '" + std::string(name) + "'; expected one of: " + known);
 }
 
 }  // namespace skycap::sim

@@ -54,7 +54,7 @@ std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double
     if (attempt == most_attempts) {
       std::ostringstream message;
       message << "the candidates' sphere reaches up to " << centre.z() + radius
-              << " m, of which less than a thousandth is above the least height of "
+              << " m, of which less than a thousandth is above the minimum height of "
               << least_height.value_or(0.0) << " m; lower limits.ground_clearance";
       throw Error(ErrorKind::bad_config, message.str());
     }
@@ -137,8 +137,8 @@ std::optional<View> VolumetricPlanner::next_view(const ScanSpan& scan) {
   stopwatch.lap("insert");
   if (impl_->cloud.positions.empty()) {
     throw Error(ErrorKind::bad_geometry,
-                "the first scan holds no point of the scene; start where the sensor sees it, or "
-                "widen the scene's box");
+                "the first scan contains no point of the scene; start from a view that sees it, or "
+                "enlarge planner.scene_box");
   }
   impl_->score();
   stopwatch.lap("score");

@@ -43,7 +43,7 @@ Number number_of(string_view text, const std::string& what) {
   const char* const end = text.data() + text.size();
   const auto [stop, failure] = std::from_chars(text.data(), end, number);
   if (failure != std::errc() || stop != end) {
-    refuse("has the " + what + " " + quoted(text) + ", which is no usable number");
+    refuse("has the " + what + " " + quoted(text) + ", which is not a valid number");
   }
   return number;
 }

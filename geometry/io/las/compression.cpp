@@ -53,7 +53,7 @@ Compression parse_compression(std::string_view record, int format, std::size_t p
   if (compressor != wanted || number(coder_place) != 0) {
     refuse("is compressed by method " + std::to_string(compressor) + " of LAZ; points of format " +
            std::to_string(format) + " can be read if compressed by method " +
-           std::to_string(wanted) + ": compress it anew, as with laszip");
+           std::to_string(wanted) + ": compress it again, for example with laszip");
   }
   std::vector<Item> items;
   int version = is_layered ? 3 : 2;
@@ -66,11 +66,11 @@ Compression parse_compression(std::string_view record, int format, std::size_t p
     refuse("is compressed by version " + std::to_string(found) +
            " of LAZ's items; points of format " + std::to_string(format) +
            " can be read in version " + (is_layered ? "3 or 4" : "2") +
-           ", all alike: compress it anew, as with laszip");
+           ", all alike: compress it again, for example with laszip");
   }
   if (items != items_of(format, point_size)) {
-    refuse(std::string(damaged) + "its items are not those of points of format " +
-           std::to_string(format) + " and " + std::to_string(point_size) + " bytes");
+    refuse(std::string(damaged) + "LAZ items do not match point format " + std::to_string(format) +
+           " and " + std::to_string(point_size) + " bytes");
   }
   const auto chunk_size = value_at<std::uint32_t>(record.data(), chunk_size_place);
   if (chunk_size == 0) refuse(std::string(damaged) + "its chunks have no points");

@@ -26,12 +26,13 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
   const int format = is_compressed ? kind - compressed_bit : kind;
   const bool has_waveforms = format == 4 || format == 5 || format == 9 || format == 10;
   if (major != 1 || minor > 4 || format > 10 || (is_compressed && has_waveforms)) {
-    fail_cloud(path, "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
-                         " with points of format " + std::to_string(format) +
-                         (is_compressed ? ", compressed (LAZ)" : "") +
-                         "; only LAS 1.0 to 1.4 with points of format 0 to 10 can be read, and "
-                         "compressed ones of format 0 to 3 and 6 to 8: convert it, as with "
-                         "`pdal translate` or laszip");
+    fail_cloud(
+        path,
+        "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
+            " with points of format " + std::to_string(format) +
+            (is_compressed ? ", compressed (LAZ)" : "") +
+            "; only LAS 1.0 to 1.4 with points of format 0 to 10 can be read, and compressed ones "
+            "of format 0 to 3 and 6 to 8: convert it, for example with `pdal translate` or laszip");
   }
   const std::size_t size = minor == 4 ? las::header::end : las::header::old_end;
   if (beginning.size() < size) fail_cloud(path, "ends within the header");
@@ -77,7 +78,7 @@ LasHeader parse_header(const std::filesystem::path& path, std::string_view begin
   }
   if (!header.scale.allFinite() || !(header.scale.array() > 0.0).all() ||
       !header.offset.allFinite()) {
-    fail_cloud(path, "has a scale or an offset of coordinates that is not a usable number");
+    fail_cloud(path, "has a scale or an offset of coordinates that is not a valid number");
   }
   const std::size_t header_end = header.minor == 4 ? las::header::end : las::header::old_end;
   if (header.first_point < header_end) {
@@ -211,7 +212,7 @@ std::string LasReader::compression_record() {
     if (id == las::compression_id && user.starts_with(las::compression_user)) record = content;
     return !record;
   });
-  if (!record) fail_cloud(file_->path(), "is compressed (LAZ), but has no record that says how");
+  if (!record) fail_cloud(file_->path(), "is compressed (LAZ), but the record of its compression is missing");
   return *record;
 }
 

@@ -50,7 +50,7 @@ geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
   }
   for (const double pixel : pixels) {
     if (!(pixel >= 0.0 && pixel <= std::numeric_limits<std::uint32_t>::max())) {
-      fail("has a pixel that is no number of one");
+      fail("has an invalid pixel number");
     }
     scan.pixels.push_back(static_cast<std::uint32_t>(pixel));
   }
@@ -67,8 +67,7 @@ geometry::Scan read_kept_scan(const std::filesystem::path& file, const std::stri
   if (digest_of(bytes) != sha256) {
     throw Error(ErrorKind::bad_file,
                 file.string() +
-                    ": is damaged (its digest is not the one that the journal has); restore it "
-                    "from a copy");
+                    ": is damaged (checksum differs from the journal); restore it from a backup");
   }
   return parse_kept_scan(file.string(), bytes);
 }

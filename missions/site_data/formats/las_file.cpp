@@ -24,7 +24,8 @@ void name_reference_system(const geometry::LasReferenceSystem& stated, FileConte
     if (is_system) contents.crs += "+" + std::to_string(stated.vertical);
   }
   if (stated.wkt.empty() && horizontal == 0 && stated.is_user_defined) {
-    contents.notes.push_back("its reference system is given by parameters, which are not read");
+    contents.notes.push_back(
+        "its reference system is given by GeoTIFF parameters, which are not supported");
   }
   contents.height_unit = metres_of_unit(stated.vertical_unit);
 }

@@ -122,7 +122,7 @@ TEST(Parameters, SaysWhichSettingsChangeTheWayHome) {
               ElementsAre("RTL_CONE_SLOPE is 3; it must be 0"));
   EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_ALT_M", 4700}, {"RTL_CONE_SLOPE", 0}},
                               Dialect::ardupilot),
-              ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be the same height"));
+              ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be equal"));
   EXPECT_THAT(return_problems({{"RTL_RETURN_ALT", 47}, {"RTL_CONE_ANG", 0}}, Dialect::px4),
               ElementsAre("NAV_ACC_RAD is 10; it must be in [0.05, 1]"));
 }

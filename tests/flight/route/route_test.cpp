@@ -105,7 +105,8 @@ TEST(Route, LeavesOutLegsThatAreNotProven) {
   ASSERT_EQ(route.stations.size(), 2U);
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_EQ(route.unreached[0].station.view_index, 2U);
-  EXPECT_EQ(route.unreached[0].reason, "the way to it cannot be proven at a clearance of 2.000 m");
+  EXPECT_EQ(route.unreached[0].reason,
+            "the path to it cannot be verified with a clearance of 2.000 m");
   for (const Sortie& sortie : route.sorties) {
     EXPECT_THAT(check_route(sortie_points(route, sortie), space, 2.0), testing::IsEmpty());
   }
@@ -334,7 +335,7 @@ TEST(Route, ABlockedPadIsRefusedWithAReason) {
     plan(ring(3, 18, 8), with_roof);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad"));
+    EXPECT_THAT(error.what(), HasSubstr("the climb from the take-off point"));
   }
 }
 
@@ -352,7 +353,8 @@ TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
     plan_beside(1.5);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad comes within 1.500 m of triangle"));
+    EXPECT_THAT(error.what(),
+                HasSubstr("the climb from the take-off point comes within 1.500 m of triangle"));
   }
 }
 

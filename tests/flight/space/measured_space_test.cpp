@@ -65,7 +65,7 @@ TEST(MeasuredSpace, NothingIsFreeBeforeItIsMeasured) {
   const Closest closest = space.closest({{0, 0, 0}, {1, 0, 0}}, 5.0);
   EXPECT_EQ(closest.kind, ObstacleKind::unknown_space);
   EXPECT_EQ(closest.distance, 0.0);
-  EXPECT_THAT(space.name(closest), HasSubstr("never seen"));
+  EXPECT_THAT(space.name(closest), HasSubstr("unobserved"));
   EXPECT_TRUE(space.extent().isEmpty());
 }
 

@@ -42,7 +42,7 @@ TEST(Obstacles, ValidateNamesThePartThatIsWrong) {
   Obstacles buried;
   buried.fence = Prism{"site", square, 0, 20};
   buried.ground_height = 30.0;
-  EXPECT_THAT(complaint(buried), HasSubstr("nothing can fly in it"));
+  EXPECT_THAT(complaint(buried), HasSubstr("must be above the ground"));
   Obstacles bad_point;
   bad_point.cloud.points = {{0, 0, std::numeric_limits<float>::quiet_NaN()}};
   EXPECT_THAT(complaint(bad_point), HasSubstr("obstacle point 0"));

@@ -140,7 +140,7 @@ TEST_F(ForeignCloud, SkipsAndCountsWhatIsNotFinite) {
       "property float z\nend_header\n";
   expect_corners("a.ply", ply + "nan 0 0\n" + lines(" "), 1);
   EXPECT_THAT(complaint("a.xyz", "nan nan nan\n"),
-              HasSubstr("holds no points but 1 that are NaN or infinite"));
+              HasSubstr("contains no points but 1 that are NaN or infinite"));
 }
 
 TEST_F(ForeignCloud, ReadsPcdOfOldVersionsAndOtherSystems) {

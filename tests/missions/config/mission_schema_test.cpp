@@ -82,7 +82,7 @@ TEST(MissionSchema, HasTheReadersTypesAndRanges) {
         config::parse_mission("seed: 1", "m", {{"--set", key.path, text}});
       } catch (const Error& error) {
         return std::string(error.what()).find("; give ") != std::string::npos &&
-               std::string(error.what()).starts_with("--set: key " + key.path + ":");
+               std::string(error.what()).starts_with("--set: key " + key.path + " ");
       }
       return false;
     };

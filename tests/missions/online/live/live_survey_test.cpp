@@ -241,7 +241,7 @@ TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
   EXPECT_TRUE(survey.frames().empty());
   const geometry::Scan scan = rehearsal.scan(survey);
   EXPECT_THAT(complaint_of([&] { survey.add_on_way(scan, "a"); }),
-              HasSubstr("measures at its views only; give it sensor.capture: moving"));
+              HasSubstr("en-route scans require sensor.capture: moving"));
 }
 
 // Of houses, whose walls and roofs show every way to move and are large beside the patches that are
@@ -319,7 +319,7 @@ TEST(LiveSurvey, RefusesAJournalOfAnotherFormatNamingItsVersion) {
   write_records(journal, records);
   EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
               HasSubstr("was written by version 0.1.0, whose journals this version cannot "
-                        "continue; name another folder"));
+                        "continue; use another folder"));
 }
 
 /// Writes the one scan of a survey's folder anew, and its digest in the journal.
@@ -370,7 +370,7 @@ TEST(LiveSurvey, NoticesProposalsThatComeOutOtherwise) {
   records.back().insert(records.back().find(field) + field.size(), "1");
   write_records(journal, records);
   EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
-              HasSubstr("comes out otherwise"));
+              HasSubstr("differs from the one recorded"));
 }
 
 }  // namespace
