@@ -122,9 +122,11 @@ std::vector<Key> safety_keys() {
                  "Minimum distance between the vehicle's centre and anything not known to be free, "
                  "verified for every leg. Includes the vehicle radius and the position, tracking "
                  "and map errors; the remainder is margin."),
-      number_key("flight.position_error", "m", between(0, 100),
-                 flight(&flight::FlightOptions::position_error),
-                 "Maximum navigation error. Typical: 0.05 m with RTK, 1.5 to 3 m without."),
+      otherwise("the vehicle's",
+                number_key("flight.position_error", "m", between(0, 100),
+                           flight(&flight::FlightOptions::position_error),
+                           "Maximum navigation error. Typical: 0.05 m with RTK, 1.5 to 3 m "
+                           "without.")),
       number_key("flight.tracking_error", "m", between(0, 100),
                  flight(&flight::FlightOptions::tracking_error),
                  "Maximum cross-track error on a straight leg between stops."),

@@ -44,6 +44,8 @@ struct SensorSection {
   /// In place of the camera: a laser scanner's preset, or the path of a description.
   std::optional<std::string> lidar;
   sim::SurveySensorOptions options;
+  /// Field of a flown rosette scanner; resolve() computes it once.
+  std::optional<sim::RosetteField> rosette;
 };
 
 enum class PlannerPreset {

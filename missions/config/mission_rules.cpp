@@ -240,6 +240,9 @@ void lead_fleet(MissionDocument& given) {
   if (fleet.names.empty()) {
     // A fleet of one is a vehicle once it is resolved.
     if (given.gives("flight.vehicles") && given.flight.is_flown()) {
+      if (!fleet.pads.empty()) {
+        given.refuse("flight.pads", "is for several vehicles; give flight.vehicles");
+      }
       if (!flight.vehicle && !fleet.vehicles.empty()) flight.vehicle = fleet.vehicles.front();
       fleet = {};
       return;

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/record_log.h"
 #include "geometry/place/camera.h"
 #include "missions/config/derived_values.h"
 #include "missions/config/key_texts.h"
@@ -45,6 +47,15 @@ flight::Vehicle read_vehicle_of(const MissionDocument& document, const std::stri
   } catch (const Error& error) {
     document.refuse(key, error.what());
   }
+}
+
+/// CRC-32 of the description of a vehicle that is given as a file; nothing for a preset.
+std::optional<std::uint32_t> checksum_of_vehicle(const MissionDocument& document,
+                                                 const std::string& given) {
+  constexpr std::size_t max_bytes = 1 << 20;
+  const std::string file = vehicle_name(document, given);
+  if (!file.ends_with(".yaml")) return std::nullopt;
+  return geometry::crc32_of(geometry::read_file(file, max_bytes));
 }
 
 /// The scanner that `sensor.lidar` names.
@@ -101,7 +112,9 @@ void complete_scanner(MissionDocument& document, const Profiles& profiles) {
   document.sensor.options.scanner = profiles.scanner;
   if (document.flight.is_flown()) mount_scanner(document);
   try {
-    document.sensor.options.camera = planning_camera(document.sensor.options);
+    document.sensor.rosette = flown_rosette(document.sensor.options);
+    document.sensor.options.camera =
+        planning_camera(document.sensor.options, document.sensor.rosette);
   } catch (const Error& error) {
     document.refuse("sensor.lidar", error.what());
   }
@@ -249,6 +262,12 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   for (std::string& name : flight.fleet.names) name = vehicle_name(document, name);
   flight.fleet.vehicles = profiles.fleet;
   lead_fleet(document);
+  if (document.flight.is_flown() && !document.gives("flight.position_error")) {
+    flight.position_error = flight.flown().position_error;
+    for (const flight::Vehicle& vehicle : flight.fleet.vehicles) {
+      flight.position_error = std::max(flight.position_error, vehicle.position_error);
+    }
+  }
   // What flies is there to be done soon: the paper's planners are for comparison.
   if (document.flight.is_flown() && !document.gives("planner.name")) {
     document.planner.name = survey::PlannerName::skycap;
@@ -300,7 +319,8 @@ scan::FlownScanOptions scan_options(const MissionDocument& document) {
 }
 
 /// The options of all libraries from a document that is complete.
-MissionSetup setup_of(const MissionDocument& document) {
+MissionSetup setup_of(const MissionDocument& document,
+                      const std::optional<std::uint32_t>& vehicle_checksum) {
   MissionSetup setup{.name = document.name};
   evaluation::SimulationOptions& simulation = setup.simulation;
   simulation.scene = document.scene;
@@ -320,7 +340,7 @@ MissionSetup setup_of(const MissionDocument& document) {
   setup.reference = {document.paper.views, document.paper.coverage, document.paper.planning_time,
                      document.paper.distance};
   setup.run = {document.seed, document.threads};
-  setup.settings = survey_settings(document);
+  setup.settings = survey_settings(document, vehicle_checksum);
   return setup;
 }
 
@@ -339,9 +359,13 @@ Profiles read_profiles(const MissionDocument& document) {
   const flight::FlightOptions& flight = document.flight.options;
   if (document.flight.is_flown()) {
     profiles.vehicle = read_vehicle_of(document, flight.vehicle_name, "flight.vehicle");
+    profiles.vehicle_checksum = checksum_of_vehicle(document, flight.vehicle_name);
   }
   for (const std::string& name : flight.fleet.names) {
     profiles.fleet.push_back(read_vehicle_of(document, name, "flight.vehicles"));
+  }
+  if (!flight.fleet.names.empty()) {
+    profiles.vehicle_checksum = checksum_of_vehicle(document, flight.fleet.names.front());
   }
   for (const char* name : {"generic", "generic_ardupilot", "m350_rtk"}) {  // one of each dialect
     profiles.stand_ins.push_back(find_vehicle(name));
@@ -386,7 +410,7 @@ MissionSetup resolve(MissionDocument document, const Profiles& profiles,
   std::optional<double>& undulation = document.georeference.geoid_undulation;
   if (!undulation) undulation = geoid;
   complete_with_priors(document, std::move(priors));
-  MissionSetup setup = setup_of(document);
+  MissionSetup setup = setup_of(document, profiles.vehicle_checksum);
   setup.source = std::move(source);
   setup.document = std::make_shared<const MissionDocument>(std::move(document));
   return setup;
@@ -394,7 +418,11 @@ MissionSetup resolve(MissionDocument document, const Profiles& profiles,
 
 MissionSetup resolve(MissionDocument document, const Report& report) {
   const Profiles profiles = read_profiles(document);
-  MissionDocument checked = document;  // what is wrong with its keys is said before files are read
+  if (document.prior.empty()) {
+    const std::optional<double> geoid = geoid_undulation(document);
+    return resolve(std::move(document), profiles, nullptr, geoid);
+  }
+  MissionDocument checked = document;  // errors in its keys are reported before files are read
   complete_own_keys(checked, profiles);
   const std::optional<double> geoid = geoid_undulation(checked);
   auto priors = read_priors(checked, site_frame(checked, geoid), report);

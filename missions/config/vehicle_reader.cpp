@@ -46,6 +46,8 @@ constexpr std::array vehicle_numbers{
     NumberKey<Vehicle>{"energy_error", &Vehicle::energy_error, 0, 0.9},
 };
 
+constexpr NumberKey<Vehicle> position_error{"position_error", &Vehicle::position_error, 0, 100};
+
 constexpr std::array mode_numbers{
     NumberKey<MissionMode>{"max_ascent", &MissionMode::max_ascent, 0.1, 50},
     NumberKey<MissionMode>{"max_descent", &MissionMode::max_descent, 0.1, 50},
@@ -79,6 +81,9 @@ class VehicleReader {
     }
     if (vehicle_.dialect == Dialect::dji || root_.has("wpml")) read_codes();
     read_numbers<Vehicle>(root_, vehicle_, vehicle_numbers);
+    if (root_.has(position_error.key)) {  // optional: descriptions of version 0.1 do not have it
+      read_numbers<Vehicle>(root_, vehicle_, std::span(&position_error, 1));
+    }
     if (wants(root_, "rotors")) vehicle_.rotors = whole_number("rotors", 1, 100);
     if (wants(root_, "max_waypoints")) {
       vehicle_.max_waypoints = whole_number("max_waypoints", 20, 65535);

@@ -100,6 +100,7 @@ TEST(VehicleReader, ReadsFiles) {
   const std::string path = (folder.path() / "mine.yaml").string();
   std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";
   EXPECT_EQ(config::find_vehicle(path).max_speed, 12.0);
+  EXPECT_EQ(config::find_vehicle(path).position_error, 1.5);
   EXPECT_THROW(config::find_vehicle((folder.path() / "none.yaml").string()), Error);
 }
 

@@ -209,6 +209,23 @@ TEST(Fleet, OfOneIsTheVehicleItself) {
   }
 }
 
+TEST(Fleet, PlansWithTheLargestPositionErrorOfItsVehicles) {
+  const auto position_error = [](const std::string& flight) {
+    return config::parse_mission(fleet_mission(flight), "m.yaml").flight().position_error;
+  };
+  EXPECT_EQ(position_error("vehicle: m350_rtk"), 0.1);
+  EXPECT_EQ(position_error("vehicle: mavic_3e, clearance: 3"), 1.5);
+  EXPECT_EQ(position_error("vehicle: mavic_3e, position_error: 0.2"), 0.2);
+  EXPECT_EQ(position_error("vehicles: [m350_rtk, mavic_3e], clearance: 3"), 1.5);
+}
+
+// 0.32 + 1.5 + 0.3 + 0.1 m: without RTK the default clearance of 2 m is too small.
+TEST(Fleet, RefusesAClearanceBelowTheErrorsOfAVehicleWithoutRtk) {
+  EXPECT_THAT(
+      complaint_of([] { config::parse_mission(fleet_mission("vehicle: mavic_3e"), "m.yaml"); }),
+      HasSubstr("key flight.clearance"));
+}
+
 TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
   const auto complaint = [](const std::string& flight) {
     return complaint_of([&] { config::parse_mission(fleet_mission(flight), "m.yaml"); });
@@ -222,6 +239,8 @@ TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
               HasSubstr("key flight.takeoff must be the first of flight.pads"));
   EXPECT_THAT(complaint("vehicle: generic, separation: 8"),
               HasSubstr("key flight.separation requires flight.vehicles"));
+  EXPECT_THAT(complaint("vehicle: generic, vehicles: [], pads: [[-75, 0, 0]]"),
+              HasSubstr("key flight.pads requires flight.vehicles"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], separation: 1"),
               HasSubstr("key flight.separation must be at least the sum of"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], style: pass"),
