@@ -238,7 +238,7 @@ TEST_P(BothAutopilots, FenceAndRallyPointsAreTheMissions) {
   EXPECT_THAT(after([](MissionFile& f) {
                 f.rally = {{51.75, -1.25, 0}};
               }),
-              Contains(HasSubstr("rallyPoints.points[0] is none of the mission's")));
+              Contains(HasSubstr("rallyPoints.points[0] is not in the mission's")));
 }
 
 // Returns go to the nearest place to land, so the file must hold those that are proven.
