@@ -300,7 +300,7 @@ TEST(FlownPackage, PrintsStepsForTheVehicleAndNoOther) {
   };
   expect_only(steps_for("generic_ardupilot", "waypoints"), ardupilot, {px4, dji});
   expect_only(steps_for("generic", "plan"), px4, {ardupilot, dji});
-  expect_only(steps_for("m30t", "kmz"), dji, {ardupilot, px4});
+  expect_only(steps_for("mavic_3e", "kmz"), dji, {ardupilot, px4});
 }
 
 TEST(FlownPackage, ReadsBackAsItWasPlanned) {
