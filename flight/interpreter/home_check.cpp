@@ -43,18 +43,19 @@ Problems check_rally(const MissionFile& file, const FlightFacts& facts) {
     });
     if (known == missing.end()) {
       problems.push_back(name +
-                         " is none of the mission's flight.rally: returns to it are not proven");
+                         " is not in the mission's flight.rally: returns to it are not verified");
       continue;
     }
     missing.erase(known);
     if (std::abs(file.rally[i].height) <= pad_height_tolerance) continue;
-    problems.push_back(name + " is " + fixed(file.rally[i].height, 1) +
-                       " m above home, and PX4 returns by as much higher; it must be 0");
+    problems.push_back(
+        name + " is " + fixed(file.rally[i].height, 1) +
+        " m above home, which raises PX4's returns by the same height; it must be 0");
   }
   if (missing.empty()) return problems;
-  problems.push_back("the file lacks " + std::to_string(missing.size()) + " of the mission's " +
-                     std::to_string(facts.rally.size()) +
-                     " rally points, which returns are proven to");
+  problems.push_back("the file does not contain " + std::to_string(missing.size()) +
+                     " of the mission's " + std::to_string(facts.rally.size()) +
+                     " rally points, to which returns are verified");
   return problems;
 }
 

@@ -219,7 +219,7 @@ std::optional<KeyValue> value_for(const Key& key, const support::YamlNode& node)
 }
 
 [[noreturn]] void refuse_value(const Given& given, const Key& key, const std::string& of) {
-  fail(given.place, of + key.path, described(given.node) + "; give " + expected_value(key));
+  fail(given.place, of + key.path, described(given.node) + "; it must be " + expected_value(key));
 }
 
 void apply(const Given& given, const Key& key, MissionDocument& mission,
@@ -247,7 +247,7 @@ site_data::Source source_in(const support::YamlNode& node, const KnownKeys& know
   }
   for (const Key& key : known.keys) {
     if (!key.is_required || values.contains(key.path)) continue;
-    fail(place, known.of + key.path, "is missing; give " + expected_value(key));
+    fail(place, known.of + key.path, "is missing; it must be " + expected_value(key));
   }
   return mission.prior.back();
 }
@@ -322,7 +322,7 @@ MissionDocument mission_from(const std::string& text, const std::string& name,
   }
   for (const Key& key : mission_keys()) {
     if (!key.is_required || given.contains(key.path)) continue;
-    result.refuse(key.path, "is missing; give " + expected_value(key));
+    result.refuse(key.path, "is missing; it must be " + expected_value(key));
   }
   return result;
 }

@@ -91,7 +91,7 @@ Key up_axis_key() {
   key.path = "up_axis";
   key.type = KeyType::choice;
   key.choices = {"z", "y"};
-  key.meaning = "Axis of scene models that points up, whatever the file states.";
+  key.meaning = "Axis of scene models that points up; overrides the file.";
   key.set = [](MissionDocument& mission, const KeyValue& value) {
     mission.prior.back().is_y_up = std::get<std::string>(value) == "y";
   };

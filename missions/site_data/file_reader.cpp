@@ -190,7 +190,7 @@ Opened open_file(const fs::path& file, Role role) {
   }
   if (!format) format = format_by_ending(ending, role);
   if (!format && text.starts_with("PK\3\4")) {
-    fail_file(file, "is a zip archive; unpack it and give the file in it");
+    fail_file(file, "is a zip archive; unpack it and use the file in it");
   }
   if (!format) {
     fail_file(file,

@@ -136,7 +136,7 @@ int split_evaluation(const EvaluateOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage, "--pieces requires --cloud and --out");
   }
   if (!fs::is_regular_file(options.cloud)) {
-    throw Error(ErrorKind::bad_file, options.cloud.string() + ": there is no such file");
+    throw Error(ErrorKind::bad_file, options.cloud.string() + ": does not exist");
   }
   const SplitWork work{.pieces = options.pieces,
                        .out = *options.out,

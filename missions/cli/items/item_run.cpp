@@ -190,7 +190,7 @@ void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& w
                   "Number of parallel runs, 0: all processors (default: 0; with --index: 1)")
       ->check(CLI::Range(0, 1024));
   auto* lists = verb.add_flag("--list", options.lists, "Print the runs and exit");
-  for (CLI::Option* other : add_task_options(verb, options.task, "item")) lists->excludes(other);
+  for (CLI::Option* other : add_task_options(verb, options.task, "run")) lists->excludes(other);
   verb.add_flag("!--no-report", options.has_report, "Do not write the HTML reports");
   verb.add_flag("--quiet", options.is_quiet, "Print warnings and errors only");
 }

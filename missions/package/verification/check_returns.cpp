@@ -48,7 +48,7 @@ ReturnCheck check_returns(const std::filesystem::path& file,
     law.level = ground + stated->height;
     const flight::ReturnSearch proof = prove_returns(space, legs, law, clearance);
     if (proof.found) {
-      return {true, "verified: all returns at " + metres(stated->height) + " (" + stated->by +
+      return {true, "all returns verified at " + metres(stated->height) + " (" + stated->by +
                         "), minimum clearance " + metres(proof.found->clearance)};
     }
     fault = "not safe, at " + metres(stated->height) + " (" + stated->by + ") " + proof.why + "; ";

@@ -165,7 +165,7 @@ TEST(Export, SaysWhatAFormatCannotHold) {
   const KnownSpace space(sample_site());
   const ExportResult plan = export_flight(sample_plan(vehicle_profile("generic")), Format::plan,
                                           space, scratch / "mission.plan");
-  EXPECT_THAT(plan.notes, testing::ElementsAre(HasSubstr("\"shed\" is passed over")));
+  EXPECT_THAT(plan.notes, testing::ElementsAre(HasSubstr("\"shed\" is left out")));
 }
 
 TEST(Export, UnknownFormatsAndFilesAreNamed) {

@@ -222,11 +222,12 @@ TEST_P(BothAutopilots, FenceAndRallyPointsAreTheMissions) {
     EXPECT_FALSE(good().holds_fence);
     return;
   }
-  EXPECT_THAT(after([](MissionFile& f) { f.fence.clear(); }),
-              AllOf(Contains(HasSubstr("lacks the mission's fence \"site\"")),
-                    Contains(HasSubstr("lacks the mission's no-fly volume \"heliport\""))));
+  EXPECT_THAT(
+      after([](MissionFile& f) { f.fence.clear(); }),
+      AllOf(Contains(HasSubstr("does not contain the mission's fence \"site\"")),
+            Contains(HasSubstr("does not contain the mission's no-fly volume \"heliport\""))));
   EXPECT_THAT(after([](MissionFile& f) { f.fence[0].corners[1].latitude_deg += 1e-5; }),
-              Contains(HasSubstr("lacks the mission's fence")));
+              Contains(HasSubstr("does not contain the mission's fence")));
   EXPECT_THAT(after([](MissionFile& f) {
                 std::reverse(f.fence[0].corners.begin(), f.fence[0].corners.end());
                 std::rotate(f.fence[0].corners.begin(), f.fence[0].corners.begin() + 1,
@@ -241,7 +242,7 @@ TEST_P(BothAutopilots, FenceAndRallyPointsAreTheMissions) {
   EXPECT_THAT(after([](MissionFile& f) {
                 f.rally = {{51.75, -1.25, 0}};
               }),
-              Contains(HasSubstr("rallyPoints.points[0] is none of the mission's")));
+              Contains(HasSubstr("rallyPoints.points[0] is not in the mission's")));
 }
 
 // Returns go to the nearest place to land, so the file must hold those that are proven.

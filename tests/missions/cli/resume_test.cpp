@@ -131,9 +131,9 @@ TEST_F(ResumedPlan, OfAnotherSurveyIsRefused) {
     EXPECT_EQ(content_of(journal_), journal);
     return run.err;
   };
-  EXPECT_THAT(refusal({"--resume", "--seed", "2"}), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(refusal({"--resume", "--seed", "2"}), HasSubstr("seed changed from 1 to 2"));
   EXPECT_THAT(refusal({"--resume", "--set", "planner.density=5300"}),
-              HasSubstr("planner.density was \"5200\" and is \"5300\""));
+              HasSubstr("planner.density changed from \"5200\" to \"5300\""));
   EXPECT_THAT(refusal({"--resume", "--set", "scene.longest_side=1.01"}), HasSubstr("surface"));
 }
 

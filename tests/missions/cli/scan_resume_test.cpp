@@ -139,7 +139,7 @@ TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
     EXPECT_TRUE(tests::scan_results_in(folder_ / "part") == before);
     return run.err;
   };
-  EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed changed from 1 to 2"));
   EXPECT_THAT(refusal({"--format", "las"}), HasSubstr("formats was "));
   EXPECT_THAT(refusal(with(clouds_, {"--set", "scan.orbit.speed=21"})),
               HasSubstr("cannot resume: "));

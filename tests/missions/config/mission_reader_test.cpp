@@ -277,7 +277,7 @@ TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
   const config::MissionDocument mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
   EXPECT_EQ(mission.seed, 8U);
   EXPECT_EQ(complaint(smallest, {{"--seed", "seed", "many"}}),
-            "--seed: key seed is many; give an integer from 0 to 1e+15");
+            "--seed: key seed is many; it must be an integer from 0 to 1e+15");
   EXPECT_THAT(complaint(smallest, {{"--set", "planner.densty", "1"}}),
               HasSubstr("did you mean planner.density?"));
 }

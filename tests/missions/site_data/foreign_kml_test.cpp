@@ -145,7 +145,7 @@ TEST_F(ForeignKml, IsReadFromKmz) {
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_NEAR(prior.box.max().z(), 20.0, 0.1);
   EXPECT_THAT(testing_support::complaint_of([&] { read("hall.zip", zip_of("doc.kml", text)); }),
-              HasSubstr("is a zip archive; unpack it and give the file in it"));
+              HasSubstr("is a zip archive; unpack it and use the file in it"));
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ TEST(Campaign, ChangesKnowTheirLine) {
     config::parse_mission_document(mission, "m.yaml", file.variants.at(0).changes);
     FAIL() << "was taken";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("c.yaml:4: key planner.density is much; give"));
+    EXPECT_THAT(error.what(), HasSubstr("c.yaml:4: key planner.density is much; it must be"));
   }
 }
 

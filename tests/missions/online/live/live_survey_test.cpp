@@ -291,7 +291,8 @@ TEST(LiveSurvey, RefusesWhatItCannotTrust) {
     rehearsal.add_one(survey);
     EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("another skycap"));
   }
-  EXPECT_THAT(complaint_of([&] { other.open(folder.path()); }), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(complaint_of([&] { other.open(folder.path()); }),
+              HasSubstr("seed changed from 1 to 2"));
 
   const fs::path scan = fs::directory_iterator(folder.path() / "scans")->path();
   std::string bytes = content_of(scan);
