@@ -12,9 +12,6 @@
 namespace skycap::missions::scan {
 namespace {
 
-/// Beyond this, neighbouring single-precision numbers are 2 mm apart.
-constexpr double farthest_coordinate = 16384.0;
-
 CloudTotals totals_of(const sim::LidarReturns& returns) {
   CloudTotals totals;  // what these formats' headers need
   totals.points = returns.size();

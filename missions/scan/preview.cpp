@@ -13,9 +13,6 @@ namespace {
 
 constexpr double wanted_shots = 1.5e6;
 
-/// Beyond this, neighbouring single-precision numbers are 2 mm apart.
-constexpr double farthest_coordinate = 16384.0;
-
 class PreviewFormat final : public CloudFormat {
  public:
   PreviewFormat(const PreviewPieces& pieces, double share) : pieces_(pieces), share_(share) {}
