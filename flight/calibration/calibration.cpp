@@ -45,11 +45,6 @@ constexpr std::array needed{
 /// none.
 constexpr double most_scatter = 0.2, most_unseen_error = 0.3;
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 double time_of(const std::vector<LogWindow>& windows, const Needed& kind) {
   double time = 0.0;
   for (const LogWindow& window : windows) {

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// MAV_AUTOPILOT and MAV_TYPE.
-constexpr int px4 = 12, ardupilot = 3, quadrotor = 2;
+constexpr int px4_firmware = 12, ardupilot_firmware = 3, quadrotor = 2;
 
 /// Corners of the polygon that stands for a circle.
 constexpr int circle_corners = 64;
@@ -116,9 +116,9 @@ class PlanChecker {
       if (is_strict_ || mission.contains("firmwareType")) {
         complain("mission.firmwareType must be an integer");
       }
-    } else if (mission["firmwareType"] == px4) {
+    } else if (mission["firmwareType"] == px4_firmware) {
       file_.dialect = Dialect::px4;
-    } else if (mission["firmwareType"] == ardupilot) {
+    } else if (mission["firmwareType"] == ardupilot_firmware) {
       file_.dialect = Dialect::ardupilot;
     }
     if (!mission.contains("items") || !mission["items"].is_array() || mission["items"].empty()) {
@@ -346,7 +346,7 @@ std::string write_plan(const FlightPlan& plan) {
       {"geoFence", {{"circles", Json::array()}, {"polygons", polygons}, {"version", 2}}},
       {"mission",
        {{"cruiseSpeed", plan.conditions.cruise_speed},
-        {"firmwareType", plan.vehicle.dialect == Dialect::px4 ? px4 : ardupilot},
+        {"firmwareType", plan.vehicle.dialect == Dialect::px4 ? px4_firmware : ardupilot_firmware},
         {"globalPlanAltitudeMode", 1},
         {"hoverSpeed", plan.conditions.cruise_speed},
         {"items", items},

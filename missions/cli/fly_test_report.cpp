@@ -75,7 +75,7 @@ double time_of(const TestFlight& flight) { return flight.flown.time; }
 double energy_wh_of(const TestFlight& flight) { return flight.flown.energy / joules_per_wh; }
 double off_line_of(const TestFlight& flight) { return flight.flown.off_line; }
 
-Json json_of(const TestFlight& flight) {
+Json json_of_flight(const TestFlight& flight) {
   Json json{{"flight", flight.draw.number},
             {"wind_m_s", {flight.draw.wind.x(), flight.draw.wind.y()}},
             {"called_home_s", nullptr},
@@ -185,7 +185,8 @@ Json json_of(const TestedFile& file) {
     }
     json["clearance"].push_back(std::move(clearances));
   }
-  for (const TestFlight& flight : file.test.flights) json["flights"].push_back(json_of(flight));
+  for (const TestFlight& flight : file.test.flights)
+    json["flights"].push_back(json_of_flight(flight));
   return json;
 }
 

@@ -17,7 +17,7 @@ namespace {
 using flight::MissionMode;
 using flight::Vehicle;
 
-constexpr double degree = geometry::radians_per_degree;
+using geometry::radians_per_degree;
 
 /// A number of a description, what it may be in the file's unit, and that unit in ours.
 template <typename Owner>
@@ -32,11 +32,11 @@ constexpr std::array vehicle_numbers{
     NumberKey<Vehicle>{"radius", &Vehicle::radius, 0.01, 20},
     NumberKey<Vehicle>{"max_speed", &Vehicle::max_speed, 0.1, 100},
     NumberKey<Vehicle>{"max_wind", &Vehicle::max_wind, 0, 50},
-    NumberKey<Vehicle>{"gimbal_rate_deg", &Vehicle::gimbal_rate, 1, 1000, degree},
-    NumberKey<Vehicle>{"gimbal_min_deg", &Vehicle::gimbal_min, -180, 90, degree},
-    NumberKey<Vehicle>{"gimbal_max_deg", &Vehicle::gimbal_max, -90, 180, degree},
+    NumberKey<Vehicle>{"gimbal_rate_deg", &Vehicle::gimbal_rate, 1, 1000, radians_per_degree},
+    NumberKey<Vehicle>{"gimbal_min_deg", &Vehicle::gimbal_min, -180, 90, radians_per_degree},
+    NumberKey<Vehicle>{"gimbal_max_deg", &Vehicle::gimbal_max, -90, 180, radians_per_degree},
     NumberKey<Vehicle>{"sway_speed", &Vehicle::sway_speed, 0, 10},
-    NumberKey<Vehicle>{"sway_rate_deg", &Vehicle::sway_rate, 0, 100, degree},
+    NumberKey<Vehicle>{"sway_rate_deg", &Vehicle::sway_rate, 0, 100, radians_per_degree},
     NumberKey<Vehicle>{"mass", &Vehicle::mass, 0.01, 1000},
     NumberKey<Vehicle>{"rotor_diameter", &Vehicle::rotor_diameter, 0.01, 10},
     NumberKey<Vehicle>{"battery_wh", &Vehicle::battery_wh, 0.1, 1e5},
@@ -56,8 +56,9 @@ constexpr std::array mode_numbers{
     NumberKey<MissionMode>{"jerk", &MissionMode::jerk, 0.1, 500},
     NumberKey<MissionMode>{"jerk_rise", &MissionMode::jerk_rise, 0, 5},
     NumberKey<MissionMode>{"settle_time", &MissionMode::settle_time, 0, 60},
-    NumberKey<MissionMode>{"yaw_rate_deg", &MissionMode::yaw_rate, 1, 1000, degree},
-    NumberKey<MissionMode>{"yaw_acceleration_deg", &MissionMode::yaw_acceleration, 1, 1e4, degree},
+    NumberKey<MissionMode>{"yaw_rate_deg", &MissionMode::yaw_rate, 1, 1000, radians_per_degree},
+    NumberKey<MissionMode>{"yaw_acceleration_deg", &MissionMode::yaw_acceleration, 1, 1e4,
+                           radians_per_degree},
     NumberKey<MissionMode>{"takeoff_speed", &MissionMode::takeoff_speed, 0.1, 50},
     NumberKey<MissionMode>{"takeoff_ramp", &MissionMode::takeoff_ramp, 0, 60},
     NumberKey<MissionMode>{"landing_speed", &MissionMode::landing_speed, 0.05, 20},

@@ -18,6 +18,9 @@
 
 namespace skycap::missions::scan {
 
+/// Beyond this, neighbouring single-precision numbers are 2 mm apart [m].
+inline constexpr double farthest_coordinate = 16384.0;
+
 /// What a file's header says of its points.
 struct CloudTotals {
   std::uint64_t points = 0;

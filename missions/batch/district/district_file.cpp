@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using support::YamlSection;
 
-constexpr std::size_t largest_file = std::size_t{16} << 20;  // [byte]; 100,000 names
-constexpr double farthest = 50e3;                            // of anything from the site [m]
+constexpr std::size_t largest_district_file = std::size_t{16} << 20;  // [byte]; 100,000 names
+constexpr double farthest = 50e3;  // of anything from the site [m]
 
 /// Reads the keys of a district in the order of the manual.
 class DistrictReader {
@@ -163,7 +163,7 @@ DistrictFile parse_district(const std::string& text, const std::string& name) {
 }
 
 DistrictFile read_district(const fs::path& file) {
-  return parse_district(geometry::read_file(file, largest_file), file.string());
+  return parse_district(geometry::read_file(file, largest_district_file), file.string());
 }
 
 }  // namespace skycap::missions::batch

@@ -42,8 +42,6 @@ std::string place_text(const Vector3d& place) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f})", place.x(), place.y(), place.z());
 }
 
-Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }
-
 /// A trouble, and what has come up while the vehicle came to rest: the later one decides what may
 /// be done.
 Trouble joined(const Trouble& first, const MaybeTrouble& later) {

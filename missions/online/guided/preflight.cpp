@@ -20,7 +20,7 @@ namespace mavlink = flight::mavlink;
 constexpr std::uint16_t set_message_interval = 511;                               ///< MAV_CMD
 constexpr std::uint8_t ardupilot = 3;                                             ///< MAV_AUTOPILOT
 constexpr std::array<std::uint8_t, 8> multicopters{2, 3, 4, 13, 14, 15, 29, 35};  ///< MAV_TYPE
-constexpr double period = 0.1;                                                    ///< [s]
+constexpr double listening_period = 0.1;                                          ///< [s]
 
 /// A message and how often it is wanted [1/s].
 struct Wish {
@@ -33,8 +33,6 @@ constexpr std::array<Wish, 5> wishes{{{mavlink::GlobalPosition::id, 10.0},
                                       {mavlink::SystemStatus::id, 1.0},
                                       {mavlink::EstimatorStatus::id, 2.0}}};
 
-Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }
-
 /// Listens until it is so; `late` says what is missing.
 template <class IsSo, class Late>
 MaybeTrouble wait_until(mavlink::AutopilotLink& link, double patience, const std::stop_token& stop,
@@ -43,7 +41,7 @@ MaybeTrouble wait_until(mavlink::AutopilotLink& link, double patience, const std
   while (!is_so(link.state())) {
     if (stop.stop_requested()) return Trouble{TroubleKind::interrupted, "interrupted"};
     if (link.now() > end) return late(link.state());
-    link.spin(period);
+    link.spin(listening_period);
   }
   return std::nullopt;
 }

@@ -339,7 +339,7 @@ bool is_by_authority(Name crs) { return crs.starts_with("urn:") || crs.starts_wi
 
 /// Bytes that the text, its tree and its corners take: 64 for a node of pugixml, 40 for an
 /// attribute; what is kept of a text besides; 24 for a corner, twice while the list of them grows.
-std::size_t tree_bytes(std::string_view xml) {
+std::size_t xml_tree_bytes(std::string_view xml) {
   std::size_t bytes = xml.size();
   const auto is_gap = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };
   for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
@@ -356,7 +356,7 @@ std::size_t tree_bytes(std::string_view xml) {
 
 FileContents parse_citygml(const std::filesystem::path& file, std::string bytes,
                            std::size_t most_objects) {
-  require_tree_fits(file, tree_bytes(bytes));
+  require_tree_fits(file, xml_tree_bytes(bytes));
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer_inplace(
       bytes.data(), bytes.size(), pugi::parse_escapes | pugi::parse_cdata);

@@ -277,7 +277,7 @@ void Reader::finish() {
 
 /// Bytes that the text and its tree take: values of 16 bytes in lists that grow by doubling, lists,
 /// maps and strings with what the heap adds to each.
-std::size_t tree_bytes(std::string_view json) {
+std::size_t json_tree_bytes(std::string_view json) {
   std::size_t bytes = json.size();
   for (const char c : json) {
     if (c == ',') bytes += 32;
@@ -309,7 +309,7 @@ std::vector<Json> texts_of(const std::filesystem::path& file, std::string_view b
 }  // namespace
 
 FileContents parse_cityjson(const std::filesystem::path& file, std::string_view bytes) {
-  require_tree_fits(file, tree_bytes(bytes));
+  require_tree_fits(file, json_tree_bytes(bytes));
   const std::vector<Json> texts = texts_of(file, bytes);
   FileContents contents;
   try {
