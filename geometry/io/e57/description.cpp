@@ -77,7 +77,7 @@ Coding coding_of(const pugi::xml_node& node) {
   if (type == "Float" && (precision.empty() || precision == "double")) {
     return Coding::double_precision;
   }
-  refuse("has records with a field " + in_quotes(node.name()) + " of type " + quoted(type) +
+  refuse("has records with a field " + in_quotes(node.name()) + " of type " + in_quotes(type) +
          "; it must be Integer, ScaledInteger, Float (single or double) or String");
 }
 

@@ -14,6 +14,8 @@
 #include "flight/interpreter/interpret.h"
 #include "geometry/error.h"
 #include "tests/flight/export/sample_plan.h"
+#include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::flight {
 namespace {
@@ -98,7 +100,9 @@ TEST_P(EveryFormat, GetsItsNameOnlyOnceProvedAgain) {
       {(0.5 * (plan.waypoints[1].position + plan.waypoints[2].position)).cast<float>()}, 0.1};
   FlightPlan renamed = plan;
   renamed.name = "another";
-  EXPECT_THROW(export_flight(renamed, format, KnownSpace(changed), scratch / name), Error);
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { export_flight(renamed, format, KnownSpace(changed), scratch / name); }),
+              testing::HasSubstr(" is not written: "));
   EXPECT_EQ(content_of(scratch / name), write(plan, format));
   EXPECT_FALSE(scratch.has(name + ".part"));
 
@@ -134,7 +138,7 @@ TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
     EXPECT_LT(stop_times(plan).back().departure, stop_times(stops).back().departure - 1.0);
     const Scratch scratch;
     const KnownSpace space(sample_site());
-    for (const FormatInfo& info : formats()) {
+    for (const FormatInfo& info : testing_support::not_empty(formats())) {
       if (!holds_curves(info.format)) continue;
       const std::string name = std::string("mission") + info.ending;
       EXPECT_GE(export_flight(plan, info.format, space, scratch / name).min_clearance,
@@ -146,7 +150,7 @@ TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
 }
 
 TEST(Export, MeanSeaLevelIsRefusedWithoutTheUndulation) {
-  for (const FormatInfo& info : formats()) {
+  for (const FormatInfo& info : testing_support::not_empty(formats())) {
     FlightPlan plan = sample_plan(vehicle_for(info.format));
     plan.site.geoid_undulation.reset();
     const bool needs_it = info.format == Format::plan || info.format == Format::kml;
@@ -170,9 +174,13 @@ TEST(Export, SaysWhatAFormatCannotHold) {
 
 TEST(Export, UnknownFormatsAndFilesAreNamed) {
   EXPECT_EQ(format_named("kmz"), Format::kmz);
-  EXPECT_THROW(format_named("gpx"), Error);
-  EXPECT_THROW(read_route("/nowhere/mission.plan", {}, Vector3d::Zero()), Error);
-  EXPECT_THROW(format_of_file("a.gpx", ""), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { format_named("gpx"); }),
+              testing::HasSubstr("format \"gpx\" is not known"));
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { read_route("/nowhere/mission.plan", {}, Vector3d::Zero()); }),
+              testing::HasSubstr("/nowhere/mission.plan: "));
+  EXPECT_THAT(testing_support::complaint_of([&] { format_of_file("a.gpx", ""); }),
+              testing::HasSubstr("a.gpx is no route file"));
   EXPECT_EQ(format_of_file("a.csv", "latitude,longitude"), Format::litchi);
   EXPECT_EQ(format_of_file("a.csv", "# frame: NED"), Format::csv);
 }
@@ -199,6 +207,7 @@ TEST_P(TrajectoryOf, VelocitiesAndAccelerationsAreTheDerivatives) {
   const FlightPlan plan = corner_plan(GetParam());
   constexpr double dt = 0.001;
   const std::vector<TimedState> states = trajectory(plan, dt);
+  ASSERT_GT(states.size(), 2U);
   for (std::size_t i = 1; i + 1 < states.size(); ++i) {
     const TimedState &before = states[i - 1], &now = states[i], &after = states[i + 1];
     const double span = after.time - before.time;
@@ -285,7 +294,9 @@ TEST(Trajectory, BadFilesAreRefusedByLine) {
   EXPECT_THAT(validate_tum("0 0 x 0 0 0 0 1\n"), testing::Contains(HasSubstr("\"x\"")));
   EXPECT_THAT(validate_tum("# only a comment\n"), testing::Contains(HasSubstr("no row")));
   EXPECT_THAT(validate_trajectory_csv("t,x\n0,0\n"), testing::Contains(HasSubstr("frame")));
-  EXPECT_THROW(trajectory(sample_plan(vehicle_profile("generic")), 0.0), Error);
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { trajectory(sample_plan(vehicle_profile("generic")), 0.0); }),
+              testing::HasSubstr("interval is 0.0"));
 }
 
 // ---- geodesy ---------------------------------------------------------------------------------
@@ -314,10 +325,22 @@ TEST(Geodesy, RoundTripsEverywhere) {
 }
 
 TEST(Geodesy, AbsurdSitesAreNamed) {
-  EXPECT_THROW((Site{{91, 0, 0}, {}}.validate()), Error);
-  EXPECT_THROW((Site{{0, 181, 0}, {}}.validate()), Error);
-  EXPECT_THROW((Site{{0, 0, std::nan("")}, {}}.validate()), Error);
-  EXPECT_THROW((Site{{0, 0, 0}, 500.0}.validate()), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                Site{{91, 0, 0}, {}}.validate();
+              }),
+              testing::HasSubstr("latitude is 91.0"));
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                Site{{0, 181, 0}, {}}.validate();
+              }),
+              testing::HasSubstr("longitude is 181.0"));
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                Site{{0, 0, std::nan("")}, {}}.validate();
+              }),
+              testing::HasSubstr("ellipsoid height is nan"));
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                Site{{0, 0, 0}, 500.0}.validate();
+              }),
+              testing::HasSubstr("geoid undulation is 500.0"));
 }
 
 }  // namespace

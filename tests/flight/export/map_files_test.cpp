@@ -12,6 +12,7 @@
 #include "flight/export/wpml_file.h"
 #include "geometry/error.h"
 #include "tests/flight/export/sample_plan.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -126,7 +127,9 @@ TEST(Kmz, HoldsWhatThePilotExpects) {
     EXPECT_EQ(route.points[i].shots, 2);
     EXPECT_EQ(route.points[i].hold, plan.waypoints[i].hold + plan.waypoints[i].hold_after);
   }
-  EXPECT_THROW(write_kmz(sample_plan(vehicle_profile("generic"))), Error);
+  EXPECT_THAT(
+      testing_support::complaint_of([&] { write_kmz(sample_plan(vehicle_profile("generic"))); }),
+      testing::HasSubstr("does not fly DJI's missions"));
 }
 
 // ---- KML -------------------------------------------------------------------------------------
@@ -221,6 +224,7 @@ TEST(Litchi, Rules) {
   EXPECT_THAT(with(",0,4.00,", ",1,4.00,"), Contains(HasSubstr("altitudemode")));
   EXPECT_THAT(with(",0,4.00,", ",0,40.00,"), Contains(HasSubstr("speed 40")));
   const RouteFile route = read_litchi(good);
+  ASSERT_FALSE(route.points.empty());
   for (std::size_t i = 0; i < route.points.size(); ++i) {
     if (!plan.waypoints[i].is_station) continue;
     EXPECT_NEAR(route.points[i].yaw_deg, plan.waypoints[i].yaw * 180 / M_PI, 1e-4);
@@ -233,10 +237,12 @@ TEST(Litchi, Rules) {
 TEST(Litchi, WhatItCannotHoldIsSaid) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints[1].shots = 20;
-  EXPECT_THROW(write_litchi(plan), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
+              testing::HasSubstr("a station with 20 shots cannot be written for Litchi"));
   plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints.resize(120, plan.waypoints[0]);
-  EXPECT_THROW(write_litchi(plan), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
+              testing::HasSubstr("has 120 waypoints; Litchi takes 99"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "flight/export/wpml_file.h"
 #include "geometry/error.h"
 #include "tests/flight/export/sample_plan.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -139,8 +140,10 @@ TEST(Parameters, NamesTheLineThatIsNone) {
 TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
   FlightPlan plan = plan_of("generic");
   plan.returns.reset();
-  EXPECT_THROW(write_parameters(plan), Error);
-  EXPECT_THROW(write_parameters(plan_of("m350_rtk")), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan); }),
+              testing::HasSubstr("has no certified way home"));
+  EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan_of("m350_rtk")); }),
+              testing::HasSubstr("takes no parameter files"));
 }
 
 // A ceiling leaves heights that are not whole metres: files and summaries state the same.

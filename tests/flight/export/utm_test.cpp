@@ -10,6 +10,7 @@
 #include <proj.h>
 
 #include "geometry/error.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -115,7 +116,10 @@ TEST(Utm, RefusesThePoles) {
         UtmProjection({{85.5, 0.0, 0.0}, {}});
       },
       testing::ThrowsMessage<Error>(HasSubstr("UTM is from 80 degrees south to 84")));
-  EXPECT_THROW(UtmProjection({{95.0, 0.0, 0.0}, {}}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                UtmProjection({{95.0, 0.0, 0.0}, {}});
+              }),
+              testing::HasSubstr("latitude is 95.0"));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "tests/flight/fleet/lemon_tours.h"
 #include "tests/flight/scenes.h"
 #include "tests/flight/vehicles.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::flight {
 namespace {
@@ -267,7 +268,7 @@ FleetMember member_of(const Vehicle& vehicle, const Eigen::Vector2d& wind = {0.0
 TEST(FleetCosts, NoWayRoundACornerIsFasterThanTheLeast) {
   std::mt19937_64 random(4);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(60, 60, 40));
-  for (const Vehicle& vehicle : vehicle_profiles()) {
+  for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const FleetMember member = member_of(vehicle, {3.0, 1.0});
     const Motion motion(vehicle, member.options.conditions);
     for (int i = 0; i < 2000; ++i) {
@@ -293,7 +294,7 @@ TEST(FleetCosts, NoWayRoundABallIsFasterThanTheLeast) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(40, 40, 20));
   int compared = 0;
-  for (const Vehicle& vehicle : vehicle_profiles()) {
+  for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const FleetMember member = member_of(vehicle);
     const Motion motion(vehicle, {});
     for (int i = 0; i < 4000; ++i) {

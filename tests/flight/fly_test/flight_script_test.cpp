@@ -11,6 +11,7 @@
 #include "tests/flight/export/sample_plan.h"
 #include "tests/flight/interpreter/spoiled.h"
 #include "tests/flight/vehicles.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::flight {
 namespace {
@@ -43,10 +44,11 @@ TEST_P(AScript, LeadsFromThePadThroughAllStationsAndBack) {
   const Sample sample(GetParam());
   EXPECT_LT((sample.script.front().from - sample.plan.pad).norm(), rounding_bound);
   EXPECT_LT((sample.script.back().to - sample.plan.pad).norm(), 2.0 * rounding_bound);
+  ASSERT_GT(sample.script.size(), 1U);
   for (std::size_t i = 1; i < sample.script.size(); ++i) {
     EXPECT_EQ(sample.script[i].from, sample.script[i - 1].to) << i;
   }
-  for (const Waypoint& waypoint : sample.plan.waypoints) {
+  for (const Waypoint& waypoint : testing_support::not_empty(sample.plan.waypoints)) {
     double nearest = 1e9, wait = 0.0;
     for (const ScriptedLeg& leg : sample.script) {
       if ((leg.to - waypoint.position).norm() >= nearest) continue;
@@ -67,7 +69,7 @@ TEST_P(AScript, TakesThePlansTime) {
 
 TEST_P(AScript, MovesAlongItsLegsWithinTheirLimits) {
   const Sample sample(GetParam());
-  for (const ScriptedLeg& leg : sample.script) {
+  for (const ScriptedLeg& leg : testing_support::not_empty(sample.script)) {
     EXPECT_LT((set_point(leg, sample.jerk(), 0.0).position - leg.from).norm(), 1e-9);
     EXPECT_LT((set_point(leg, sample.jerk(), leg.duration()).position - leg.to).norm(), 1e-9);
     for (double t = 0.0; t < leg.moving; t += 0.05) {
@@ -81,7 +83,7 @@ TEST_P(AScript, MovesAlongItsLegsWithinTheirLimits) {
 // Property: wherever a leg is given up, the vehicle comes to rest on it.
 TEST_P(AScript, IsGivenUpWithoutLeavingItsLeg) {
   const Sample sample(GetParam());
-  for (const ScriptedLeg& leg : sample.script) {
+  for (const ScriptedLeg& leg : testing_support::not_empty(sample.script)) {
     const Vector3d way = leg.to - leg.from;
     for (double t = 0.0; t < leg.duration(); t += 0.21) {
       const double braking = braking_time(leg, sample.jerk(), t);
@@ -104,13 +106,18 @@ TEST(FlightScript, FliesAtTheSpeedOfTheFile) {
   const Motion motion(plan.vehicle, plan.conditions);
   Conditions slow = plan.conditions;
   slow.cruise_speed *= 0.5;
-  for (const ScriptedLeg& leg : script_of(interpret(file, facts_of(plan)), motion)) {
+  const FlightScript script = script_of(interpret(file, facts_of(plan)), motion);
+  std::size_t legs = 0;
+  for (const ScriptedLeg& leg : script) {
     if (leg.is_over_pad || leg.to.z() == plan.pad.z()) continue;
     const Vector3d way = leg.to - leg.from;
     if (way.norm() == 0.0 || way.head<2>().norm() < 0.1) continue;
     EXPECT_NEAR(leg.moving + plan.vehicle.mode.settle_time,
                 Motion(plan.vehicle, slow).leg_time(way), 1e-9);
+    ++legs;
   }
+  EXPECT_GE(legs, 5U) << "to four stations and back";
+  EXPECT_GT(duration(script), 1.2 * flight_time(plan));
 }
 
 }  // namespace

@@ -75,6 +75,7 @@ TEST_P(FlownSample, KeepsItsClearanceInALightWind) {
 TEST_P(FlownSample, IsTheSameForAnyNumberOfThreads) {
   const FlyTest one = fly_test(mission(), judges_, {.flights = 6, .returns = 50, .threads = 1});
   const FlyTest four = fly_test(mission(), judges_, {.flights = 6, .returns = 50, .threads = 4});
+  ASSERT_FALSE(one.flights.empty());
   for (std::size_t i = 0; i < one.flights.size(); ++i) {
     EXPECT_EQ(one.flights[i].flown.time, four.flights[i].flown.time);
     EXPECT_EQ(one.flights[i].flown.energy, four.flights[i].flown.energy);

@@ -45,6 +45,7 @@ TEST_P(AReturn, StaysWithinWhatIsProven) {
     const std::vector<Vector3d> way = return_way(law(), place, draws);
     ASSERT_EQ(way.front(), place);
     ASSERT_LE(way.back().z(), 1.0);
+    ASSERT_GT(way.size(), 1U);
     for (std::size_t k = 1; k < way.size(); ++k) {
       const Segment line{way[k - 1], way[k]};
       for (double share = 0.0; share <= 1.0; share += 0.02) {

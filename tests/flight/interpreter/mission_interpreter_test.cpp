@@ -14,6 +14,8 @@
 #include "flight/interpreter/item_order.h"
 #include "geometry/error.h"
 #include "tests/flight/interpreter/spoiled.h"
+#include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::flight {
 namespace {
@@ -27,7 +29,7 @@ using testing::Not;
 
 class BothAutopilots : public testing::TestWithParam<Dialect> {
  protected:
-  MissionFile good() const { return sample_file(GetParam()); }
+  MissionFile good() const { return sample_file(GetParam()); }  // namespace
   Problems after(const std::function<void(MissionFile&)>& change) const {
     MissionFile file = good();
     change(file);
@@ -37,7 +39,7 @@ class BothAutopilots : public testing::TestWithParam<Dialect> {
   static auto names(const MissionFile& file, std::size_t index, const std::string& what) {
     return Contains(AllOf(testing::StartsWith(name_of(file.items[index]) + " "), HasSubstr(what)));
   }
-};
+};  // namespace skycap::flight
 
 INSTANTIATE_TEST_SUITE_P(Interpreter, BothAutopilots,
                          testing::Values(Dialect::px4, Dialect::ardupilot),
@@ -189,7 +191,8 @@ TEST_P(BothAutopilots, HeightsCountItemByItem) {
   file.items[i].frame = frame::global;
   FlightFacts facts = sample_facts(GetParam());
   facts.site.geoid_undulation.reset();
-  EXPECT_THROW(interpret(file, facts), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { interpret(file, facts); }),
+              testing::HasSubstr(", above sea level, needs"));
 }
 
 TEST_P(BothAutopilots, PlacesThatMeanAsBeforeAreRefused) {

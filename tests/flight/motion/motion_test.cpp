@@ -8,6 +8,7 @@
 #include "geometry/error.h"
 #include "tests/flight/vehicles.h"
 #include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::flight {
 namespace {
@@ -89,7 +90,7 @@ TEST(Motion, AccelerationsAreLimitedByTheSlowerAxis) {
 
 // The trajectories that are written are the seven phases, which must end before the autopilot does.
 TEST(Motion, NoLawIsFasterThanTheSevenPhases) {
-  for (const Vehicle& vehicle : vehicle_profiles()) {
+  for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});
     for (const Vector3d& way : {Vector3d(0.05, 0, 0), Vector3d(0, 0.7, 0.1), Vector3d(3, 0, -2),
                                 Vector3d(0, 0, 12), Vector3d(40, 30, 5)}) {
@@ -133,7 +134,7 @@ TEST(Motion, HeadwindLimitsTheGroundSpeed) {
 
 // The model's calibration: a full battery, to the last drop, hovers as long as the data sheet says.
 TEST(Motion, HoversAsLongAsTheDataSheetSays) {
-  for (const Vehicle& vehicle : vehicle_profiles()) {
+  for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {.reserve = 0.0});
     const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
     const double minutes = battery / motion.hover_power() / 60.0;
@@ -144,7 +145,7 @@ TEST(Motion, HoversAsLongAsTheDataSheetSays) {
 // Momentum theory: power has its least at some speed, a little below hover, and rises steeply
 // after.
 TEST(Motion, ForwardFlightSavesALittleAndThenCosts) {
-  for (const Vehicle& vehicle : vehicle_profiles()) {
+  for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});
     double least = motion.hover_power();
     for (double speed = 0; speed <= 15; speed += 0.5) {

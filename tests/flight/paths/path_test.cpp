@@ -9,6 +9,7 @@
 
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -165,11 +166,14 @@ TEST(Path, PullingTightKeepsTheEndsAndNeverLengthens) {
 
 TEST(Path, AbsurdOptionsAreNamed) {
   const KnownSpace space = space_of(scenes::box({0, 0, 0}, {1, 1, 1}));
-  EXPECT_THROW(PathFinder(space, -1.0), Error);
-  EXPECT_THROW(PathFinder(space, std::nan("")), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { PathFinder(space, -1.0); }),
+              testing::HasSubstr("the clearance is -1.0"));
+  EXPECT_THAT(testing_support::complaint_of([&] { PathFinder(space, std::nan("")); }),
+              testing::HasSubstr("the clearance is nan"));
   PathOptions options;
   options.max_expansions = 0;
-  EXPECT_THROW(PathFinder(space, 1.0, options), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { PathFinder(space, 1.0, options); }),
+              testing::HasSubstr("path.max_expansions is 0"));
 }
 
 }  // namespace

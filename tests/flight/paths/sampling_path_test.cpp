@@ -1,10 +1,12 @@
 #include "flight/paths/sampling_path.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "tests/flight/scenes.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -67,7 +69,10 @@ TEST(SamplingPath, IsTheSameWhateverWasAskedBefore) {
   const std::vector<Vector3d> first = find();
   find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, brief);
   EXPECT_EQ(find(), first);
-  EXPECT_THROW(find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, {.seed = 0}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, {.seed = 0});
+              }),
+              testing::HasSubstr("the seed of a search by sampling is 0"));
 }
 
 TEST(SamplingPath, NoWayIsANormalAnswer) {

@@ -11,6 +11,7 @@
 #include "flight/space/prior_obstacle.h"
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -82,7 +83,7 @@ class UnprovableGate : public KnownSpace {
     Closest closest = KnownSpace::closest(leg, up_to);
     if (crosses(leg)) closest.distance = std::min(closest.distance, 1.5);
     return closest;
-  }
+  }  // namespace
 
   static bool crosses(const Segment& leg) {
     const double from = leg.from.x(), to = leg.to.x();
@@ -90,7 +91,7 @@ class UnprovableGate : public KnownSpace {
     const double share = from / (from - to);
     return leg.from.y() + share * (leg.to.y() - leg.from.y()) > 0.0;
   }
-};
+};  // namespace skycap::flight
 
 TEST(Route, LeavesOutLegsThatAreNotProven) {
   const UnprovableGate space;
@@ -328,7 +329,8 @@ TEST(Route, AFreeOrderIsShorterAndItsBoundHolds) {
 TEST(Route, ABlockedPadIsRefusedWithAReason) {
   RouteOptions inside = options();
   inside.takeoff = {0, 0, 0};
-  EXPECT_THROW(plan(ring(3, 18, 8), site(), inside), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { plan(ring(3, 18, 8), site(), inside); }),
+              testing::HasSubstr("is 0.000 m from"));
   Obstacles with_roof = site();
   geometry::append(with_roof.mesh, scenes::box({-33, -33, 2}, {-31.5, -27, 2.5}));
   try {
@@ -361,10 +363,12 @@ TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
 TEST(Route, AbsurdOptionsAreNamed) {
   RouteOptions negative = options();
   negative.clearance.margin = -1;
-  EXPECT_THROW(plan({}, site(), negative), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { plan({}, site(), negative); }),
+              testing::HasSubstr("clearance.margin is -1"));
   RouteOptions nowhere = options();
   nowhere.takeoff.x() = std::nan("");
-  EXPECT_THROW(plan({}, site(), nowhere), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { plan({}, site(), nowhere); }),
+              testing::HasSubstr("the take-off place is not a finite position"));
   EXPECT_TRUE(plan({}, site()).sorties.empty());  // nothing to do is fine
 }
 
@@ -377,7 +381,10 @@ TEST(CheckRoute, ListsLegPlaceAndDistance) {
   EXPECT_THAT(describe(violations[0]), HasSubstr("leg 2: 0.000 m from triangle"));
   EXPECT_EQ(check_route({{0, 0, 5}}, space, 1.0).size(), 1U);
   EXPECT_TRUE(check_route({}, space, 1.0).empty());
-  EXPECT_THROW(check_route({{0, 0, std::nan("")}}, space, 1.0), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                check_route({{0, 0, std::nan("")}}, space, 1.0);
+              }),
+              testing::HasSubstr("point 0 of the route is not a finite position"));
 }
 
 TEST(Station, YawIsClockwiseFromNorthAndPitchFromTheHorizon) {

@@ -384,15 +384,21 @@ TEST(MeasuredSpace, BadScansAndConfigurationsAreNamed) {
   MeasuredSpace space;
   geometry::Scan scan;
   scan.points = {{1, 0, 0}};
-  EXPECT_THROW(space.insert(scan, small_camera), Error);  // no pixels
+  EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, small_camera); }),
+              testing::HasSubstr("1 points but 0 pixels"));  // no pixels
   scan.pixels = {96 * 64};
-  EXPECT_THROW(space.insert(scan, small_camera), Error);  // one too far
-  EXPECT_THROW(space.insert(scan, 0.0), Error);
-  EXPECT_THROW(MeasuredSpace({.voxel = 0.0}), Error);
-  EXPECT_THROW(MeasuredSpace({.max_depth = std::nan("")}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, small_camera); }),
+              testing::HasSubstr("a scan names pixel 6144"));  // one too far
+  EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, 0.0); }),
+              testing::HasSubstr("the ray spacing is 0.0"));
+  EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace({.voxel = 0.0}); }),
+              testing::HasSubstr("measured_space.voxel is 0"));
+  EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace({.max_depth = std::nan("")}); }),
+              testing::HasSubstr("measured_space.max_depth is nan"));
   for (const double coordinate : {std::nan(""), -1e9}) {
     const Eigen::AlignedBox3d region(Eigen::Vector3d(-1, -1, coordinate), Eigen::Vector3d(1, 1, 1));
-    EXPECT_THROW(MeasuredSpace({.region = region}), Error);
+    EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace({.region = region}); }),
+                testing::HasSubstr("measured_space.region is "));
   }
 }
 

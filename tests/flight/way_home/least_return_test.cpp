@@ -201,6 +201,7 @@ TEST(WaysHome, LegsLeadWhereEveryPointHasAWayHome) {
   ASSERT_TRUE(route.returns);
   EXPECT_TRUE(check_route(sortie_points(route, route.sorties[0]), space, route.clearance).empty());
   const std::vector<Vector3d>& points = route.legs[0].points;
+  ASSERT_GT(points.size(), 1U);
   for (std::size_t i = 1; i < points.size(); ++i) {
     EXPECT_TRUE(prove_returns(space, {points[i - 1], points[i]}, route.returns->law,
                               route.clearance - return_slack)

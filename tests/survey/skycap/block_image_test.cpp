@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/not_empty.h"
 #include "tests/support/sphere_sensor.h"
 
 namespace skycap::survey {
@@ -27,6 +28,7 @@ TEST(BlockImage, ABlockCountsItsReturnsAndKnowsTheirMean) {
     sums[row * 53 + column] += scan.points[i];
     ++counts[row * 53 + column];
   }
+  ASSERT_FALSE(image.blocks.empty());
   for (std::size_t b = 0; b < image.blocks.size(); ++b) {
     ASSERT_EQ(image.blocks[b].returns, counts[b]);
     if (counts[b] == 0) continue;
@@ -43,7 +45,7 @@ TEST(BlockImage, NormalsOfASphereAreRadial) {
   const skycap::BlockImage image =
       skycap::make_block_image(scan, camera, {.block_px = 4, .jump = 0.2F});
   int tested = 0;
-  for (const skycap::Block& block : image.blocks) {
+  for (const skycap::Block& block : testing_support::not_empty(image.blocks)) {
     const Vector3f radial = block.mean.normalized();
     if (block.returns < 16 || radial.x() < 0.5F)
       continue;                                  // beyond 60 degrees windows are lopsided
@@ -60,7 +62,7 @@ TEST(BlockImage, ABlockOnAnEdgeKeepsTheNearerSurface) {
   const skycap::BlockImage image =
       skycap::make_block_image(scan, camera, {.block_px = 4, .jump = 1.0F});
   int edges = 0;
-  for (const skycap::Block& block : image.blocks) {
+  for (const skycap::Block& block : testing_support::not_empty(image.blocks)) {
     if (!block.is_edge) continue;
     ++edges;
     EXPECT_LT((block.mean - Vector3f(0.5F, 0, 0)).norm(), 0.21F);
@@ -134,6 +136,7 @@ TEST(BlockImage, DoesNotDependOnTheNumberOfThreads) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, front, 0.01);
   const skycap::BlockImage one = skycap::make_block_image(scan, camera, {.threads = 1});
   const skycap::BlockImage three = skycap::make_block_image(scan, camera, {.threads = 3});
+  ASSERT_FALSE(one.blocks.empty());
   for (std::size_t b = 0; b < one.blocks.size(); ++b) {
     ASSERT_EQ(one.blocks[b].mean, three.blocks[b].mean);
     ASSERT_EQ(one.blocks[b].normal, three.blocks[b].normal);

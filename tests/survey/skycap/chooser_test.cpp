@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/not_empty.h"
 #include "tests/support/sphere_sensor.h"
 
 namespace skycap::survey {
@@ -172,7 +173,8 @@ TEST(GainField, NearSurfacesHideFarOnes) {
   const skycap::GainField field(map, {}, camera, dose, {.view_distance = 2.0});
   const Vector3d eye(3, 0, 0);
   int seen = 0;
-  for (const skycap::Sight& sight : field.sights(geometry::look_at(eye, {0, 0, 0}))) {
+  for (const skycap::Sight& sight :
+       testing_support::not_empty(field.sights(geometry::look_at(eye, {0, 0, 0})))) {
     const Vector3d p = field.targets()[sight.target].position.cast<double>();
     if (p.x() > 0.8) continue;  // the small ball itself
     ++seen;

@@ -68,6 +68,7 @@ TEST(PriorGuesses, AreFoundWhereTheyAreMeasured) {
   known.look_from({2, 0, 0});
   skycap::PriorGuesses guesses(sphere_at({0, 0, 0}, 0.01F), spacing);
   guesses.update(known.map, known.space);
+  ASSERT_FALSE(guesses.patches().empty());
   for (std::size_t i = 0; i < guesses.patches().size(); ++i) {
     const float x = guesses.patches()[i].position.x();
     if (x > 0.25F) {
@@ -86,6 +87,7 @@ TEST(PriorGuesses, AreRefutedWhereASensorSeesThroughThem) {
   skycap::PriorGuesses guesses(sphere_at({0.9F, 0.0F, 0.0F}, 0.01F), spacing);
   guesses.update(known.map, known.space);
   std::size_t refuted = 0;
+  ASSERT_FALSE(guesses.patches().empty());
   for (std::size_t i = 0; i < guesses.patches().size(); ++i) {
     refuted += guesses.state(i) == State::refuted ? 1 : 0;
     const Vector3f& place = guesses.patches()[i].position;

@@ -321,6 +321,7 @@ TEST(Clearness, AsksOnlyWhatIsNewWithTheSameAnswers) {
     old.update(patches, seen.space);
     skycap::Clearness anew(scale);
     anew.update(patches, seen.space);
+    ASSERT_FALSE(patches.empty());
     for (std::size_t i = 0; i < patches.size(); ++i) {
       for (const Vector3f& sensor : sensors) {
         EXPECT_EQ(old.of(i, sensor), anew.of(i, sensor));

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 #include "tests/support/sphere_sensor.h"
 #include "tests/support/stopped_planner.h"
 
@@ -79,7 +81,8 @@ TEST(MostUseful, BreaksTiesAsToldTo) {
 
 TEST(SphereViews, LookAtTheCentreFromTheSphere) {
   const Vector3d centre(1.0, -2.0, 3.0);
-  for (const View& view : volumetric::sphere_views(100, centre, 4.0, std::nullopt, 3)) {
+  for (const View& view :
+       testing_support::not_empty(volumetric::sphere_views(100, centre, 4.0, std::nullopt, 3))) {
     EXPECT_NEAR((view.position - centre).norm(), 4.0, 1e-12);
     EXPECT_LT((view.position + 4.0 * view.direction - centre).norm(), 1e-12);
   }
@@ -100,18 +103,21 @@ TEST(SphereViews, AreUniform) {
 }
 
 TEST(SphereViews, StayAboveTheLeastHeight) {
-  for (const View& view : volumetric::sphere_views(200, Vector3d::Zero(), 2.0, 0.5, 5)) {
+  for (const View& view :
+       testing_support::not_empty(volumetric::sphere_views(200, Vector3d::Zero(), 2.0, 0.5, 5))) {
     EXPECT_GE(view.position.z(), 0.5);
   }
-  EXPECT_THROW(volumetric::sphere_views(10, Vector3d::Zero(), 2.0, 3.0, 5), Error);
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { volumetric::sphere_views(10, Vector3d::Zero(), 2.0, 3.0, 5); }),
+              testing::HasSubstr("above the least height of 3 m"));
 }
 
 TEST(VolumetricPlanner, VisitsEveryCandidateOnce) {
   const volumetric::VolumetricConfig config = config_for(proximity_count);
   const std::vector<View> views = surveyed(config);
   ASSERT_EQ(views.size(), 1 + config.candidates);
-  for (const View& candidate : volumetric::sphere_views(config.candidates, Vector3d::Zero(), 2.0,
-                                                        std::nullopt, config.seed)) {
+  for (const View& candidate : testing_support::not_empty(volumetric::sphere_views(
+           config.candidates, Vector3d::Zero(), 2.0, std::nullopt, config.seed))) {
     EXPECT_EQ(std::ranges::count(views, candidate.position, &View::position), 1);
   }
 }
@@ -225,7 +231,8 @@ TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {
 
 TEST(VolumetricPlanner, RefusesAFirstScanWithoutTheScene) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
-  EXPECT_THROW(planner.next_view(geometry::Scan{}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { planner.next_view(geometry::Scan{}); }),
+              testing::HasSubstr("the first scan holds no point of the scene"));
 }
 
 TEST(VolumetricConfig, NamesTheFieldThatIsWrong) {
