@@ -21,7 +21,7 @@ constexpr double front_depth = 40.0;  // of the lots on the street
 constexpr double lane = 9.0;          // between the rows of lots
 constexpr double gap = 5.0;           // between neighbours
 
-using Kind = Parts (*)(const city::Lot&, Draw&, const Fineness&);
+using Kind = Parts (*)(const city::Lot&, RandomNumbers&, const Fineness&);
 
 /// A block under construction.
 class Block {
