@@ -111,7 +111,8 @@ std::map<std::string, int> counts_of(const FamilyScene& scene) {
   return counts;
 }
 
-FamilyScene drawn(FamilyScene (*make)(Draw&, const Fineness&), std::uint64_t seed) {
+FamilyScene drawn(FamilyScene (*make)(geometry::RandomNumbers&, const Fineness&),
+                  std::uint64_t seed) {
   geometry::RandomNumbers draw(seed);
   return make(draw, coarse);
 }
