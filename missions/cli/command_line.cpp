@@ -14,6 +14,7 @@
 
 #include "geometry/error.h"
 #include "geometry/instruction_set.h"
+#include "geometry/interrupted.h"
 #include "missions/cli/printable.h"
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
@@ -328,6 +329,9 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     return app.exit(wish, console.out, console.err);
   } catch (const CLI::ParseError& failure) {
     return report_failure(console, std::string(failure.what()) + "; see --help", 2);
+  } catch (const Interrupted&) {
+    console.err << "skycap: interrupted\n" << std::flush;
+    return interrupted_exit_code(console);
   } catch (const Error& failure) {
     return report_failure(console, failure.what(), 2);
   } catch (const std::filesystem::filesystem_error& failure) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
@@ -121,12 +122,14 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
 /// Does a part of the flight's work. What goes wrong becomes its failure: the survey itself shall
 /// not be lost.
 template <typename Work>
-void attempt(SurveyMission& flight, const std::stop_token& stop, Work work) {
+void attempt(SurveyMission& flight, Work work) {
   if (!flight.failure.empty()) return;
   try {
     work();
+  } catch (const Interrupted&) {
+    flight.failure = "interrupted; skycap export makes it";
   } catch (const Error& error) {
-    flight.failure = stop.stop_requested() ? "interrupted; skycap export makes it" : error.what();
+    flight.failure = error.what();
   }
 }
 
@@ -138,7 +141,7 @@ std::optional<SurveyMission> planned_mission(const evaluation::SimulationOptions
                                              const std::stop_token& stop) {
   if (!record.flown) return std::nullopt;
   SurveyMission flight;
-  attempt(flight, stop, [&] { plan_route(simulation, run, record, coverage, stop, flight); });
+  attempt(flight, [&] { plan_route(simulation, run, record, coverage, stop, flight); });
   return flight;
 }
 
@@ -151,7 +154,7 @@ void stage_mission(const std::string& name, const flight::FlightOptions& options
       std::ios::badbit);  // else text is lost without a word where memory is missing
   record.flown->measured->write(free_space);
   folder.write(free_space_name, free_space.str());
-  attempt(flight, stop, [&] {
+  attempt(flight, [&] {
     const flight::MeasuredSpace& measured = *record.flown->measured;
     flight.files = stage_flight(name, options, flight.route, measured, package_formats(), folder);
     if (!options.is_fleet()) return;

@@ -12,6 +12,7 @@
 #include "flight/space/interruptible_space.h"
 #include "flight/way_home/ways_home.h"
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "geometry/parallel.h"
 #include "geometry/place/camera.h"
 #include "geometry/place/platform.h"
@@ -107,7 +108,6 @@ struct SurveyFlight::Impl {
   bool is_crowded;
   double frame_period;
   unsigned threads;
-  std::stop_token stop;
   FlownLeg leg;  ///< that the next fly() takes
   Vector3d above_pad = Vector3d::Zero();
   std::vector<flight::PadScan> pads;
@@ -160,9 +160,8 @@ bool SurveyFlight::may_be_at(const Vector3d& place) const try {
     return false;
   }
   return !impl_->ways_home || impl_->ways_home->why_none(place).empty();
-} catch (const Error&) {
-  if (impl_->stop.stop_requested()) throw survey::Interrupted();
-  throw;
+} catch (const Interrupted&) {
+  throw survey::Interrupted();
 }
 
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
@@ -174,15 +173,11 @@ bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try
   }
   ++impl_->survey.refused;
   return false;
-} catch (const Error&) {
-  if (impl_->stop.stop_requested()) throw survey::Interrupted();
-  throw;
+} catch (const Interrupted&) {
+  throw survey::Interrupted();
 }
 
-void SurveyFlight::stop_on(std::stop_token stop) {
-  impl_->stop = stop;
-  impl_->space.stop_on(std::move(stop));
-}
+void SurveyFlight::stop_on(std::stop_token stop) { impl_->space.stop_on(std::move(stop)); }
 
 const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
 

@@ -11,6 +11,7 @@
 #include "flight/district/pad_sorties.h"
 #include "flight/paths/path.h"
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "missions/config/resolve.h"
 
 namespace skycap::missions::batch {
@@ -131,8 +132,9 @@ class FlightPlanner {
     try {
       routes_[pad] = package::plan_flight(flights_[pad], *measured_, prepared_.pads[pad], own,
                                           grounds_, stop_);
+    } catch (const Interrupted&) {
+      return;
     } catch (const Error& error) {
-      if (stop_.stop_requested()) return;
       for (const Station& station : own) {
         flight_.stations[station.view_index].why_not = error.what();
       }

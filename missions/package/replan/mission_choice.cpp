@@ -11,6 +11,7 @@
 #include "flight/route/leg_certifier.h"
 #include "flight/way_home/returnable_space.h"
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "geometry/parallel.h"
 #include "geometry/place/platform.h"
 #include "missions/package/replan/dose_sum.h"
@@ -284,6 +285,8 @@ class MissionProblem {
 std::optional<flight::Route> certified(const PlanRoute& plan, const std::vector<View>& views) {
   try {
     return plan({views, std::vector<std::vector<Vector3d>>(views.size())});
+  } catch (const Interrupted&) {
+    return std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
   }
