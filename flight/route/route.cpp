@@ -38,8 +38,8 @@ class RoutePlanner {
     connect();
     split();
     add_up();
-    if (legs_.ways_home() && !route_.sorties.empty()) certify_returns();
-    add_curves(route_, space_, legs_.motion(), legs_.certifier());
+    if (legs_.returns() && !route_.sorties.empty()) certify_returns();
+    add_curves(route_, space_, legs_.motion(), legs_.costs());
     return std::move(route_);
   }
 
@@ -152,7 +152,7 @@ class RoutePlanner {
       const std::vector<Vector3d> points = sortie_points(route_, sortie);
       for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
     }
-    ReturnLaw law = legs_.ways_home()->law();
+    ReturnLaw law = legs_.returns()->law();
     law.reserve = 0.0;
     ReturnSearch search =
         least_return(space_, legs, law, law.level, return_clearance(route_.clearance));

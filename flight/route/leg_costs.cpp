@@ -1,8 +1,10 @@
-#include "flight/route/leg_certifier.h"
+#include "flight/route/leg_costs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace skycap::flight {
 
@@ -28,17 +30,13 @@ LegCost in_turn(const LegCost& first, const LegCost& second) {
           std::max(first.emergency, first.energy + second.emergency)};
 }
 
-std::optional<Leg> LegCertifier::leg(const std::vector<Vector3d>& points, const Station* from,
-                                     const Station* to) const {
+Leg LegCosts::leg(VerifiedPath path, const Station* from, const Station* to) const {
   Leg leg;
-  leg.points = points;
-  leg.length = flight::length(points);
-  leg.clearance = clearance_ + reported_surplus;
+  leg.points = std::move(path.points);
+  leg.length = flight::length(leg.points);
+  leg.clearance = path.clearance;
+  const std::vector<Vector3d>& points = leg.points;
   for (std::size_t i = 1; i < points.size(); ++i) {
-    const LegProof proof =
-        prove(space_, {points[i - 1], points[i]}, clearance_, clearance_ + reported_surplus);
-    if (!proof.is_proven) return std::nullopt;
-    leg.clearance = std::min(leg.clearance, proof.clearance);
     // Autopilots begin to turn when they leave for the station, which is in the last corner.
     const bool is_last = i + 1 == points.size();
     const Vector3d way = points[i] - points[i - 1];
@@ -57,30 +55,31 @@ std::optional<Leg> LegCertifier::leg(const std::vector<Vector3d>& points, const 
   return leg;
 }
 
-double LegCertifier::aimed_time(double leg, const Station* from, const Station* to) const {
+double LegCosts::aimed_time(double leg, const Station* from, const Station* to) const {
   if (from == nullptr || to == nullptr) return leg;
   const double turn = std::remainder(yaw_of(to->view) - yaw_of(from->view), 2.0 * std::numbers::pi);
   return motion_.aimed_time(leg, turn, pitch_of(to->view) - pitch_of(from->view));
 }
 
-LegCost LegCertifier::takeoff_cost(double climb) const {
+LegCost LegCosts::takeoff_cost(double climb) const {
   return {motion_.takeoff_time(climb) + corner_hold,
           motion_.takeoff_energy(climb) + motion_.hover_energy(corner_hold)};
 }
 
-LegCost LegCertifier::landing_cost(double climb) const {
+LegCost LegCosts::landing_cost(double climb) const {
   const double time = corner_hold + motion_.landing_time(climb);
   return {time, motion_.hover_energy(time)};
 }
 
-LegCost LegCertifier::station_cost(const Station& station) const {
+LegCost LegCosts::station_cost(const Station& station) const {
   const double hold = std::max(corner_hold, station.hold) + station.hold_after;
   const double energy = motion_.hover_energy(hold);
   return {hold, energy, energy + return_cost(station.view.position)};
 }
 
-double LegCertifier::return_cost(const Vector3d& place) const {
-  return ways_home_ ? return_energy(motion_, ways_home_->law(), place) : 0.0;
+double LegCosts::return_cost(const Vector3d& place) const {
+  const bool is_required = returns_ != nullptr && returns_->has_value();
+  return is_required ? return_energy(motion_, (*returns_)->law(), place) : 0.0;
 }
 
 }  // namespace skycap::flight

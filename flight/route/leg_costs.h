@@ -1,15 +1,14 @@
-/// Proves the legs of a route, and says what they and the stops between them take.
+/// What the legs of a route and the stops between them take.
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include <Eigen/Core>
 
 #include "flight/motion/motion.h"
+#include "flight/route/leg_planner.h"
 #include "flight/route/route.h"
 #include "flight/route/sortie_split.h"
-#include "flight/space/clearance.h"
 #include "flight/way_home/ways_home.h"
 
 namespace skycap::flight {
@@ -24,17 +23,15 @@ LegCost in_turn(const LegCost& first, const LegCost& second);
 std::size_t most_stations(const Vehicle& vehicle);
 
 /// Keeps references to all that it is constructed from.
-class LegCertifier {
+class LegCosts {
  public:
-  /// With `ways_home`, which may be given later, costs count the return from the dearest point.
-  LegCertifier(const FreeSpace& space, const Motion& motion, double clearance,
-               const std::optional<WaysHome>& ways_home)
-      : space_(space), motion_(motion), clearance_(clearance), ways_home_(ways_home) {}
+  /// With `returns`, which may be required later, costs count the return from the dearest point.
+  explicit LegCosts(const Motion& motion, const std::optional<WaysHome>* returns = nullptr)
+      : motion_(motion), returns_(returns) {}
 
-  /// Along `points`, with a stop at each. From and to the pad, where there is nothing to aim at,
-  /// the station is nullptr. Nothing if one of the lines cannot be proven.
-  std::optional<Leg> leg(const std::vector<Eigen::Vector3d>& points, const Station* from,
-                         const Station* to) const;
+  /// Along a path, with a stop at each point. From and to the pad, where there is nothing to aim
+  /// at, the station is nullptr.
+  Leg leg(VerifiedPath path, const Station* from, const Station* to) const;
 
   /// A leg's time until the camera looks right.
   double aimed_time(double leg, const Station* from, const Station* to) const;
@@ -46,10 +43,8 @@ class LegCertifier {
  private:
   double return_cost(const Eigen::Vector3d& place) const;
 
-  const FreeSpace& space_;
   const Motion& motion_;
-  double clearance_;
-  const std::optional<WaysHome>& ways_home_;
+  const std::optional<WaysHome>* returns_;
 };
 
 }  // namespace skycap::flight
