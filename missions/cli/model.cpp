@@ -35,7 +35,7 @@ geometry::Mesh mesh_of(const std::string& model, const std::optional<std::string
   if (detail) {
     if (!model.starts_with("builtin:")) {
       throw Error(ErrorKind::bad_config,
-                  "--detail requires a builtin model; " + model + " is as detailed as its file");
+                  "--detail requires a builtin model; " + model + " has the detail of its file");
     }
     scene.detail = level_of_detail(*detail);
   }

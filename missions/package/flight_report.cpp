@@ -39,7 +39,7 @@ std::string passage_text(const flight::Route& route) {
   const double speed = std::min(route.options.passing.speed, route.options.conditions.cruise_speed);
   if (views == 0) {
     return fmt::format(
-        "  passing   none: fly-through at {:.1f} m/s, at which images are sharp, is not faster than "
+        "  passing   none: fly-through at {:.1f} m/s (sharp images) is not faster than "
         "stopping; shorten sensor.exposure\n",
         speed);
   }
