@@ -30,9 +30,6 @@ class CarriedSensor {
   geometry::Scan scan(const sim::Scene& scene, const session::ViewInFlight& view,
                       std::uint64_t frame, unsigned threads, geometry::Scan recycled = {});
 
-  /// The sensor itself, which stands where it believes to be.
-  const sim::SurveySensor& at_rest() const { return sensor_; }
-
  private:
   /// How it moves while it measures.
   sim::Carriage carriage(const session::ViewInFlight& view, std::uint64_t frame) const;

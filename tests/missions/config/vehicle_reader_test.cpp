@@ -9,6 +9,7 @@
 #include "flight/motion/motion.h"
 #include "geometry/error.h"
 #include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
@@ -37,7 +38,7 @@ TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
 // The energy model's calibration holds for every one: a full battery hovers as long as the sheet
 // says.
 TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
-  for (const std::string_view preset : config::vehicle_presets()) {
+  for (const std::string_view preset : testing_support::not_empty(config::vehicle_presets())) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     const flight::Motion motion(vehicle, {.reserve = 0.0});
     const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
@@ -98,7 +99,9 @@ TEST(VehicleReader, ReadsFiles) {
   const std::string path = (folder.path() / "mine.yaml").string();
   std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";
   EXPECT_EQ(config::find_vehicle(path).max_speed, 12.0);
-  EXPECT_THROW(config::find_vehicle((folder.path() / "none.yaml").string()), Error);
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { config::find_vehicle((folder.path() / "none.yaml").string()); }),
+              testing::HasSubstr("none.yaml: "));
 }
 
 }  // namespace
