@@ -55,7 +55,7 @@ class Survey {
       sockaddr_un place{};
       place.sun_family = AF_UNIX;
       if (address.size() - 5 >= sizeof place.sun_path) {
-        throw std::runtime_error("the socket's name is too long");
+        throw std::runtime_error("the path of the socket is too long");
       }
       std::strncpy(place.sun_path, address.c_str() + 5, sizeof place.sun_path - 1);
       open(AF_UNIX, place);
@@ -126,7 +126,7 @@ class Survey {
     socket_ = ::socket(family, SOCK_STREAM, 0);
     if (::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0) return;
     ::close(socket_);
-    throw std::runtime_error("nobody serves a survey there");
+    throw std::runtime_error("no server at this address");
   }
 
   /// With as many digits as it takes to read the same number back.
@@ -164,7 +164,8 @@ class Survey {
       return std::stoul(answer.substr(answer.find(':', place) + 1));
     };
     const std::size_t scans = at("scans"), on_way = at("on_way");
-    if (scans == std::string::npos) throw std::runtime_error("the answer has no number of scans");
+    if (scans == std::string::npos)
+      throw std::runtime_error("the answer contains no number of scans");
     scans_ = number(scans);
     on_way_ = on_way == std::string::npos ? 0 : number(on_way);
   }
@@ -178,12 +179,12 @@ class Survey {
     for (std::size_t sent = 0; sent < frame.size();) {
       const ssize_t count = ::send(socket_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) throw std::runtime_error("the server has closed the connection");
+      if (count <= 0) throw std::runtime_error("connection closed by the server");
       sent += static_cast<std::size_t>(count);
     }
     std::memcpy(lengths.data(), receive(sizeof lengths).data(), sizeof lengths);
     std::string answer = receive(std::size_t{lengths[0]} + lengths[1]);
-    if (crc(answer) != lengths[2]) throw std::runtime_error("the answer was damaged on its way");
+    if (crc(answer) != lengths[2]) throw std::runtime_error("the answer is damaged");
     answer.resize(lengths[0]);
     if (answer.find("\"type\":\"error\"") != std::string::npos) throw Refused(answer);
     return answer;
@@ -193,7 +194,7 @@ class Survey {
     std::string data(size, '\0');
     for (std::size_t got = 0; got < size;) {
       const ssize_t count = ::recv(socket_, &data[got], size - got, 0);
-      if (count <= 0) throw std::runtime_error("the server has closed the connection");
+      if (count <= 0) throw std::runtime_error("connection closed by the server");
       got += static_cast<std::size_t>(count);
     }
     return data;

@@ -1,12 +1,12 @@
-"""A client of `skycap serve`; docs/reference/live-protocol.md describes the messages. Needs Python
-3.8 and nothing else.
+"""Client of `skycap serve`; docs/reference/live-protocol.md describes the messages. Requires only
+Python 3.8.
 
     with Survey("unix:survey.sock") as survey:
         answer = survey.next()
         while answer["view"]:
             depth, pose = my_drone.measure(answer["view"])
             answer = survey.add_depth(depth, width, height, unit=0.001, pose=pose)
-            # where the mission measures on the way (answer["frames"]): with on_way=True, from there
+            # en-route scans (answer["frames"]) are added with on_way=True
             if answer.get("warning") == "pose":
                 my_drone.hold_position()
         print(survey.finish())
@@ -18,12 +18,12 @@ import zlib
 
 
 class Refused(Exception):
-    """The server's answer to a message that is wrong; the survey is as it was."""
+    """The server rejected a message; the survey is unchanged."""
 
 
 class Survey:
     def __init__(self, address, timeout=600.0):
-        """`address` is what the server prints: unix:PATH or tcp:127.0.0.1:PORT."""
+        """Connects to `address`, as printed by the server: unix:PATH or tcp:127.0.0.1:PORT."""
         kind, place = address.split(":", 1)
         if kind == "unix":
             self._socket = socket.socket(socket.AF_UNIX)
@@ -44,43 +44,44 @@ class Survey:
         self._socket.close()
 
     def next(self):
-        """What to do next, as `skycap next --json` prints it."""
+        """Returns the next view, as printed by `skycap next --json`."""
         return self._ask({"type": "next"})
 
     def add_points(self, xyz, pose, pixels=None, pose_sigma=None, pose_covariance=None,
                    on_way=False):
-        """Points in the mission's frame: bytes of float32 x y z, row after row; `pose` of the
-        sensor's optical frame: x y z qx qy qz qw, or 12 numbers of a matrix by rows. `pixels`:
+        """Adds a scan of points in the mission frame: bytes of float32 x y z, row by row. `pose` of the
+        sensor's optical frame: x y z qx qy qz qw, or 12 numbers of a row-major matrix. `pixels`:
         bytes of ascending uint32, row * width + column of the mission's camera, for each point.
-        How far off the pose may be: `pose_sigma`, (metres, degrees) along and about each axis, or
-        `pose_covariance`, 36 numbers by rows, or the 21 of the upper triangle, of x y z rx ry rz
-        along and about the axes of the mission's frame [m, rad], as ROS has them. `on_way`: it is
-        from the way to the view that is asked for, not from there."""
+        Uncertainty of the pose: `pose_sigma`, standard deviations (metres, degrees) along and about
+        each axis, or `pose_covariance`, 36 numbers row by row, or the 21 of the upper triangle, of
+        x y z rx ry rz along and about the axes of the mission frame [m, rad], as in ROS. `on_way`:
+        the scan was taken en route to the proposed view."""
         header = {"format": "points", "points": len(xyz) // 12, "has_pixels": pixels is not None}
         return self._add(header, pose, bytes(xyz) + bytes(pixels or b""), pose_sigma,
                          pose_covariance, on_way)
 
     def add_cloud(self, xyz, pose, pose_sigma=None, pose_covariance=None, on_way=False):
-        """Points in the sensor's optical frame: bytes of float32 x y z, in any order. The server
-        gives each the pixel of the mission's camera that it is seen in."""
+        """Adds a scan of points in the sensor's optical frame: bytes of float32 x y z, in any order.
+        The server projects each point into a pixel of the mission's camera."""
         header = {"format": "cloud", "points": len(xyz) // 12}
         return self._add(header, pose, bytes(xyz), pose_sigma, pose_covariance, on_way)
 
     def add_depth(self, depth, width, height, unit, pose, lens=None, pose_sigma=None,
                   pose_covariance=None, on_way=False):
-        """A depth image: bytes of uint16, row after row, in steps of `unit` metres; 0 and 65535 are
-        no return. `lens`: fx fy cx cy, maybe followed by k1 k2 p1 p2 k3; else the mission's."""
+        """Adds a depth image: bytes of uint16, row by row, in steps of `unit` metres; 0 and 65535 are
+        no-return pixels. `lens`: camera intrinsics fx fy cx cy, optionally followed by k1 k2 p1 p2
+        k3 (default: the mission's camera)."""
         header = {"format": "depth", "width": width, "height": height, "unit": unit}
         if lens is not None:
             header["lens"] = list(lens)
         return self._add(header, pose, bytes(depth), pose_sigma, pose_covariance, on_way)
 
     def refuse(self, answer, reason):
-        """Another view in place of the one in `answer`."""
+        """Rejects the view in `answer` and returns another."""
         return self._ask({"type": "refuse", "id": answer["id"], "reason": reason})
 
     def finish(self):
-        """Has the server write the mission package, and end."""
+        """Ends the survey; the server writes the mission package and exits."""
         return self._ask({"type": "finish"})["text"]
 
     def _count(self, answer):
@@ -106,7 +107,7 @@ class Survey:
         header_size, payload_size, checksum = struct.unpack("<III", self._receive(12))
         body = self._receive(header_size + payload_size)
         if zlib.crc32(body) != checksum:
-            raise ConnectionError("the answer was damaged on its way")
+            raise ConnectionError("the answer is damaged (checksum)")
         answer = json.loads(body[:header_size])
         if answer["type"] == "error":
             raise Refused(answer["what"])
@@ -117,6 +118,6 @@ class Survey:
         while len(data) < size:
             chunk = self._socket.recv(min(size - len(data), 1 << 20))
             if not chunk:
-                raise ConnectionError("the server has closed the connection")
+                raise ConnectionError("connection closed by the server")
             data += chunk
         return bytes(data)

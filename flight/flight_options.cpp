@@ -19,15 +19,15 @@ using Eigen::Vector3d;
 constexpr double voxels_per_clearance = 4.0;
 
 /// How far beside the unknown box places are proposed: more than the clearance and a voxel.
-double spare_of(const FlightOptions& options) { return 2.0 * options.clearance; }
+double distance_from_unknown(const FlightOptions& options) { return 2.0 * options.clearance; }
 
 /// The same for pads. Near home DJI's vehicles may land where they are instead of on the pad
 /// (ReturnLaw): those columns must not lead into the box, which grows to whole voxels.
-double pad_spare_of(const FlightOptions& options) {
+double pad_distance_from_unknown(const FlightOptions& options) {
   constexpr double voxel_spare = 1.0;
   const bool is_dji = options.is_flown() && options.flown().dialect == Dialect::dji;
   const double needed = options.clearance + dji_lands_at_once + voxel_spare;
-  return is_dji ? std::max(spare_of(options), needed) : spare_of(options);
+  return is_dji ? std::max(distance_from_unknown(options), needed) : distance_from_unknown(options);
 }
 
 /// No-fly volumes with their top above this are not flown over [m].
@@ -105,7 +105,7 @@ FlightOptions FlightOptions::with_vehicles(const std::vector<std::size_t>& kept,
 
 bool FlightOptions::is_in_known_airspace(const Vector3d& place) const {
   if (!is_flown()) return true;
-  const double spare = spare_of(*this);
+  const double spare = distance_from_unknown(*this);
   return unknown_box.exteriorDistance(place) >= spare &&
          std::ranges::all_of(
              unknown_beside,
@@ -155,7 +155,7 @@ double FlightOptions::ground_at(const Eigen::Vector2d& place) const {
 Vector3d FlightOptions::pad(const Vector3d& first_view) const {
   if (takeoff) return *takeoff;
   const AlignedBox3d box = unknown_box;
-  const Vector3d spare = Vector3d::Constant(pad_spare_of(*this));
+  const Vector3d spare = Vector3d::Constant(pad_distance_from_unknown(*this));
   const Vector3d low = box.min() - spare, high = box.max() + spare;
   Vector3d pad(first_view.x(), first_view.y(), 0.0);
   pad.z() = ground_at(pad.head<2>());

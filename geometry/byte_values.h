@@ -3,7 +3,9 @@
 
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <string>
 
 namespace skycap::geometry {
 
@@ -21,6 +23,17 @@ template <typename Value>
 void put_value(char* bytes, std::size_t place, Value value) {
   static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
   std::memcpy(bytes + place, &value, sizeof value);
+}
+template <typename Value>
+void put_value(std::uint8_t* bytes, std::size_t place, Value value) {
+  put_value(reinterpret_cast<char*>(bytes), place, value);
+}
+
+/// Appends a number, or numbers without padding between them, to bytes.
+template <typename Value>
+void append_value(std::string& bytes, const Value& value) {
+  static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 }  // namespace skycap::geometry

@@ -1,4 +1,4 @@
-# Completion for bash. It asks the program, so it knows each verb and option that there is.
+# Completion for bash. Commands and options are read from the help of the program.
 _skycap() {
   local current=${COMP_WORDS[COMP_CWORD]} verb= word
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do

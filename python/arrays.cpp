@@ -16,7 +16,7 @@ std::string shape_text(const py::array& array) {
 void require_rows_of_three(const py::array& array, const std::string& name) {
   if (array.ndim() == 2 && array.shape(1) == 3) return;
   throw py::value_error(name + " has shape " + shape_text(array) +
-                        "; give rows of x y z, shape (N, 3)");
+                        "; it must be rows of x y z, shape (N, 3)");
 }
 
 }  // namespace
@@ -39,7 +39,8 @@ std::vector<Eigen::Vector3d> places_in(const Array<double>& array, const std::st
 
 Eigen::Vector3d vector_in(const Array<double>& array, const std::string& name) {
   if (array.ndim() != 1 || array.shape(0) != 3) {
-    throw py::value_error(name + " has shape " + shape_text(array) + "; give x y z, shape (3,)");
+    throw py::value_error(name + " has shape " + shape_text(array) +
+                          "; it must be x y z, shape (3,)");
   }
   const Eigen::Vector3d vector(array.data());
   if (!vector.allFinite()) throw py::value_error(name + " is not finite");
@@ -48,7 +49,7 @@ Eigen::Vector3d vector_in(const Array<double>& array, const std::string& name) {
 
 Array<std::uint32_t> indices_in(const py::object& numbers, const std::string& name) {
   const py::array array = py::array::ensure(numbers);
-  if (!array) throw py::type_error(name + " are not an array");
+  if (!array) throw py::type_error(name + " must be an array");
   const char kind = array.dtype().kind();
   const bool is_whole = kind == 'u' || kind == 'i';
   const auto fits = [&] {
@@ -57,7 +58,7 @@ Array<std::uint32_t> indices_in(const py::object& numbers, const std::string& na
            array.attr("max")().cast<py::int_>() <= py::int_(0xFFFFFFFFU);
   };
   if (array.size() > 0 && (!is_whole || !fits())) {
-    throw py::value_error(name + " are not whole numbers that fit 32 bits");
+    throw py::value_error(name + " must be integers of 32 bits");
   }
   return Array<std::uint32_t>(array);
 }
@@ -65,7 +66,7 @@ Array<std::uint32_t> indices_in(const py::object& numbers, const std::string& na
 Eigen::Isometry3d pose_in(const Array<double>& matrix, const std::string& name) {
   if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4) {
     throw py::value_error(name + " has shape " + shape_text(matrix) +
-                          "; give a matrix of shape (4, 4)");
+                          "; it must be a matrix of shape (4, 4)");
   }
   Eigen::Isometry3d pose;
   pose.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(matrix.data());
@@ -76,8 +77,8 @@ Eigen::Isometry3d pose_in(const Array<double>& matrix, const std::string& name) 
   if (!turns || !pose.translation().allFinite() ||
       pose.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw py::value_error(name +
-                          " is not a rotation and a shift; its last row is 0 0 0 1, the part "
-                          "before a right-handed rotation");
+                          " must be a rotation and a translation: the last row 0 0 0 1, the rest a "
+                          "right-handed rotation");
   }
   return pose;
 }

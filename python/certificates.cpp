@@ -21,7 +21,7 @@ using geometry::Prism;
 Prism prism_from(const std::string& name, const Array<double>& footprint, double floor,
                  double ceiling) {
   if (footprint.ndim() != 2 || footprint.shape(1) != 2) {
-    throw py::value_error("footprint has not the shape (N, 2)");
+    throw py::value_error("footprint must have shape (N, 2)");
   }
   Prism prism{.name = name, .footprint = {}, .floor = floor, .ceiling = ceiling};
   for (py::ssize_t i = 0; i < footprint.shape(0); ++i) {
@@ -68,51 +68,52 @@ void bind_certificate(py::module_& module) {
     if (certificate.proof.closest.kind == flight::ObstacleKind::none) return py::none();
     return array_of(at);
   };
-  py::class_<Certificate>(module, "LegProof", "What is proven of a straight leg.")
+  py::class_<Certificate>(module, "LegProof", "Result of the clearance check of a straight leg.")
       .def_property_readonly(
           "is_proven", [](const Certificate& c) { return c.proof.is_proven; },
-          "No point of the leg is nearer than the clearance to anything that is not free.")
+          "Whether no point of the leg violates the clearance.")
       .def_property_readonly(
           "clearance", [](const Certificate& c) { return c.proof.clearance; },
-          "Proven lower bound of the leg's distance, in metres; at most 10 m above the clearance\n"
-          "that was asked for.")
+          "Verified lower bound of the distance over the leg, in metres; at most 10 m above "
+          "the\nrequired clearance.")
       .def_readonly("obstacle", &Certificate::obstacle,
-                    "The name of what is nearest; '' if nothing is that near.")
+                    "Name of the nearest obstacle; '' if nothing is that near.")
       .def_property_readonly(
           "on_leg", [place](const Certificate& c) { return place(c, c.proof.closest.on_leg); },
-          "Where the leg is nearest to it: float64, shape (3,); None if nothing is that near.")
+          "Point of the leg nearest to the obstacle: float64, shape (3,); None if nothing is that "
+          "near.")
       .def_property_readonly(
           "on_obstacle",
           [place](const Certificate& c) { return place(c, c.proof.closest.on_obstacle); },
-          "The nearest point of it: float64, shape (3,); None if nothing is that near.");
+          "Nearest point of the obstacle: float64, shape (3,); None if nothing is that near.");
 }
 
 }  // namespace
 
 void bind_certificates(py::module_& module) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  py::class_<Prism>(module, "Prism",
-                    "An upright volume over a simple polygon: Prism(name, footprint, floor=-inf,\n"
-                    "ceiling=inf), the footprint (N, 2) and heights in metres, world frame.")
+  py::class_<Prism>(
+      module, "Prism",
+      "An upright volume over a simple polygon: Prism(name, footprint, floor=-inf,\nceiling=inf), "
+      "the footprint (N, 2) and heights in metres, world frame.")
       .def(py::init(&prism_from), py::arg("name"), py::arg("footprint"),
            py::arg("floor") = -infinity, py::arg("ceiling") = infinity)
-      .def_readonly("name", &Prism::name, "For messages.")
-      .def_readonly("floor", &Prism::floor, "In metres.")
-      .def_readonly("ceiling", &Prism::ceiling, "In metres.");
+      .def_readonly("name", &Prism::name, "Name used in messages.")
+      .def_readonly("floor", &Prism::floor, "Lower limit, in metres.")
+      .def_readonly("ceiling", &Prism::ceiling, "Upper limit, in metres.");
   bind_certificate(module);
   module.def(
       "certify", &certify, py::arg("route"), py::arg("clearance"),
       py::arg("mesh") = static_cast<const geometry::Mesh*>(nullptr), py::arg("cloud") = py::none(),
       py::arg("cloud_radius") = 0.0, py::arg("no_fly") = std::vector<Prism>{},
       py::arg("fence") = py::none(), py::arg("ground_height") = py::none(),
-      "certify(route, clearance, mesh=None, cloud=None, cloud_radius=0.0, no_fly=(), "
-      "fence=None, ground_height=None)\n--\n\n"
-      "Proves for each straight leg of a route, (N, 3) float64 in metres, that it keeps\n"
-      "`clearance` metres from everything: a list of N - 1 LegProof, of one for a\n"
-      "single point. Distances are exact minima over all points of a leg, not samples.\n\n"
-      "mesh: a Mesh; being inside a closed one is as bad as touching it. cloud: (N, 3)\n"
-      "float32, each point a ball of `cloud_radius`. no_fly: Prisms to stay out of; fence: a\n"
-      "Prism to stay in. ground_height: z below which all is solid.");
+      "certify(route, clearance, mesh=None, cloud=None, cloud_radius=0.0, no_fly=(), fence=None, "
+      "ground_height=None)\n--\n\nVerifies for each straight leg of a route, (N, 3) float64 in "
+      "metres, that it keeps\n`clearance` metres from all obstacles. Returns a list of N - 1 "
+      "LegProof, or one for a\nsingle point. Distances are exact minima over all points of a leg, "
+      "not samples.\n\nmesh: a Mesh; the inside of a closed mesh is occupied. cloud: (N, 3) "
+      "float32, each\npoint a ball of `cloud_radius`. no_fly: Prisms to stay out of. fence: a "
+      "Prism to stay\ninside. ground_height: z below which space is occupied.");
 }
 
 }  // namespace skycap::python

@@ -34,9 +34,9 @@ void raise(const Error& error) {
 void bind_errors(py::module_& module) {
   static py::exception<Error> type(module, "Error");
   type.doc() =
-      "What cannot be done, and why, in a sentence for the user.\n\n"
-      "`kind` is 'bad_config' (a key or a setting), 'bad_file' (it cannot be read or written),\n"
-      "'bad_geometry' (a mesh, cloud or scan that cannot be worked with) or 'bad_usage'.";
+      "An operation that failed, with the reason as a sentence for the user.\n\n`kind` is "
+      "'bad_config' (a key or a setting), 'bad_file' (cannot be read or written),\n'bad_geometry' "
+      "(an unusable mesh, cloud or scan) or 'bad_usage'.";
   error_type = type.ptr();
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {

@@ -98,54 +98,54 @@ void bind_simulation(py::module_& module) {
   using without_lock = py::call_guard<py::gil_scoped_release>;
   py::class_<Simulation>(
       module, "Simulation",
-      "What stands for the world in plan(): Simulation(mission) makes the mission's scene ready\n"
-      "and measures it with the mission's sensor. For survey loops of one's own; any number of\n"
-      "threads may use it.")
+      "The simulated world of plan(): Simulation(mission) loads the mission's scene and "
+      "measures\nit with the mission's sensor. For custom survey loops. Thread-safe.")
       .def(py::init<const Mission&>(), py::arg("mission"), without_lock())
-      .def_property_readonly("first_view", &Simulation::first_view, "Where plan() begins.")
+      .def_property_readonly("first_view", &Simulation::first_view, "First view of plan().")
       .def("scan", &simulated_scan, py::arg("view"), py::arg("frame"),
-           "scan($self, view, frame)\n--\n\n"
-           "What the sensor measures from `view`, with its noise, which the mission's seed and\n"
-           "`frame`, the number of the scan from 0, decide. Gives (points, world_from_sensor,\n"
-           "pixels), as Planner.next_view takes them: planner.next_view(*simulation.scan(v, 0)).");
+           "scan($self, view, frame)\n--\n\nSimulates a scan from `view`. Its noise depends on the "
+           "mission's seed and on `frame`,\nthe 0-based number of the scan. Returns (points, "
+           "world_from_sensor, pixels), the\narguments of Planner.next_view: "
+           "planner.next_view(*simulation.scan(v, 0)).");
 }
 
 }  // namespace
 
 void bind_missions(py::module_& module) {
   py::class_<Mission>(module, "Mission",
-                      "A mission file, read, checked and completed as `skycap plan` does it.\n"
-                      "Immutable. Made by Mission.load and Mission.parse.")
+                      "A mission file, read, checked and completed as by `skycap plan`. Immutable. "
+                      "Created by\nMission.load and Mission.parse.")
       .def_static("load", &load, py::arg("file"), py::arg("set") = py::none(),
-                  "load(file, set=None)\n--\n\n"
-                  "Reads a mission file; `set` maps keys such as 'planner.name' to values that\n"
-                  "take the place of the file's: text, numbers, bools, lists. Raises Error, with\n"
-                  "file, line and key, for whatever is wrong.")
-      .def_static("parse", &parse, py::arg("text"), py::arg("name") = "mission.yaml",
-                  py::arg("set") = py::none(),
-                  "parse(text, name='mission.yaml', set=None)\n--\n\n"
-                  "The same of the text of a mission; `name` stands for the file in messages, and\n"
-                  "its folder is where relative paths start.")
-      .def_property_readonly("name", &Mission::name, "Of the mission.")
-      .def_property_readonly("seed", &Mission::seed, "Of the start view and the sensor's noise.")
-      .def_property_readonly("camera", &Mission::camera,
-                             "The camera by which planners choose views; of a laser scanner, the\n"
-                             "one that stands for it.")
+                  "load(file, set=None)\n--\n\nReads a mission file. `set` maps keys such as "
+                  "'planner.name' to values that override the\nfile: strings, numbers, bools, "
+                  "lists. Raises Error with file, line and key for an\ninvalid mission.")
+      .def_static(
+          "parse", &parse, py::arg("text"), py::arg("name") = "mission.yaml",
+          py::arg("set") = py::none(),
+          "parse(text, name='mission.yaml', set=None)\n--\n\nLike load(), but from a string. "
+          "`name` is used in messages, and its folder is the base\nof relative paths.")
+      .def_property_readonly("name", &Mission::name, "Name of the mission.")
+      .def_property_readonly("seed", &Mission::seed,
+                             "Random seed of the start view and the sensor noise.")
+      .def_property_readonly(
+          "camera", &Mission::camera,
+          "Camera used by planners to choose views; for a laser scanner, its substitute camera.")
       .def_property_readonly("coverage_distance", &Mission::coverage_distance,
-                             "A surface point with a measurement this near is covered, in metres.")
+                             "Coverage distance: a surface sample within this distance of a "
+                             "measurement is covered,\nin metres.")
       .def("model", &Mission::model, py::call_guard<py::gil_scoped_release>(),
-           "model($self)\n--\n\n"
-           "The model of the scene, placed, without ground: the truth, which no planner sees.")
+           "model($self)\n--\n\nThe model of the scene, placed, without ground: the ground truth, "
+           "which planners do not\nuse.")
       .def("__repr__",
            [](const Mission& mission) { return "<skycap.Mission " + mission.name() + ">"; });
   bind_simulation(module);
   module.def("sensors", &missions::api::sensor_names,
-             "sensors()\n--\n\nThe names of the sensors that come with Skycap.");
+             "sensors()\n--\n\nNames of the sensor presets.");
   module.def(
       "camera", [](const std::string& name) { return missions::api::depth_camera(name).camera; },
       py::arg("name"),
-      "camera(name)\n--\n\n"
-      "The depth camera of that name, or that a .yaml file describes; see sensors().");
+      "camera(name)\n--\n\nThe depth camera with that preset name, or from a .yaml sensor file; "
+      "see sensors().");
 }
 
 }  // namespace skycap::python

@@ -15,14 +15,14 @@ using geometry::View;
 View view_from(const Array<double>& position, const Array<double>& direction) {
   const Eigen::Vector3d towards = vector_in(direction, "direction");
   if (!(towards.norm() > 0.0)) {
-    throw py::value_error("direction has no length to be divided by");
+    throw py::value_error("direction must not have zero length");
   }
   return {vector_in(position, "position"), towards.normalized()};
 }
 
 View look_at(const Array<double>& position, const Array<double>& target) {
   const Eigen::Vector3d from = vector_in(position, "position"), to = vector_in(target, "target");
-  if (from == to) throw py::value_error("position and target are the same; nothing is looked at");
+  if (from == to) throw py::value_error("position and target must differ");
   return geometry::look_at(from, to);
 }
 
@@ -46,16 +46,17 @@ py::array_t<double> rays_of(const CameraConfig& config) {
 }
 
 void bind_camera(py::module_& module) {
-  py::class_<CameraConfig>(
-      module, "Camera",
-      "A pinhole depth camera. Optical frame: x right, y down, z forward, in metres; pixel (0, 0)\n"
-      "is the centre of the top-left one.")
-      .def_readonly("width", &CameraConfig::width, "Pixels in a row.")
-      .def_readonly("height", &CameraConfig::height, "Rows of pixels.")
-      .def_readonly("horizontal_fov", &CameraConfig::horizontal_fov, "Full angle, in radians.")
-      .def_readonly("vertical_fov", &CameraConfig::vertical_fov, "Full angle, in radians.")
-      .def_readonly("min_range", &CameraConfig::min_range, "Nearest depth along z, in metres.")
-      .def_readonly("max_range", &CameraConfig::max_range, "Farthest depth along z, in metres.")
+  py::class_<CameraConfig>(module, "Camera",
+                           "A pinhole depth camera. Optical frame: x right, y down, z forward, in "
+                           "metres; pixel (0, 0)\nis the centre of the top-left pixel.")
+      .def_readonly("width", &CameraConfig::width, "Image width, in pixels.")
+      .def_readonly("height", &CameraConfig::height, "Image height, in pixels.")
+      .def_readonly("horizontal_fov", &CameraConfig::horizontal_fov,
+                    "Full horizontal field of view, in radians.")
+      .def_readonly("vertical_fov", &CameraConfig::vertical_fov,
+                    "Full vertical field of view, in radians.")
+      .def_readonly("min_range", &CameraConfig::min_range, "Minimum depth along z, in metres.")
+      .def_readonly("max_range", &CameraConfig::max_range, "Maximum depth along z, in metres.")
       .def("rays", &rays_of,
            "rays($self)\n--\n\n"
            "Directions of all pixels in the optical frame, with z = 1: float64, shape\n"
@@ -66,9 +67,8 @@ void bind_camera(py::module_& module) {
 
 void bind_places(py::module_& module) {
   py::class_<View>(module, "View",
-                   "A place to measure from, and where to look: View(position, direction), arrays\n"
-                   "of shape (3,) in the world frame (x east, y north, z up), in metres. The\n"
-                   "direction is made a unit vector.")
+                   "A viewpoint: View(position, direction), arrays of shape (3,) in the world "
+                   "frame (x east,\ny north, z up), in metres. The direction is normalised.")
       .def(py::init(&view_from), py::arg("position"), py::arg("direction"))
       .def_property_readonly(
           "position", [](const View& view) { return array_of(view.position); },

@@ -60,7 +60,7 @@ class Planner {
     Array<std::uint32_t> indices;
     if (pixels) {
       indices = indices_in(*pixels, "pixels");
-      if (indices.ndim() != 1) throw py::value_error("pixels has not one axis; give shape (N,)");
+      if (indices.ndim() != 1) throw py::value_error("pixels must have shape (N,)");
       scan.pixels = {indices.data(), static_cast<std::size_t>(indices.size())};
     }
     py::gil_scoped_release others_go_on;
@@ -93,9 +93,9 @@ class Planner {
   void require_none_shown() const {
     if (guarded_->clouds_shown == 0) return;
     py::gil_scoped_acquire to_raise;
-    PyErr_SetString(PyExc_BufferError,
-                    "what cloud() gave is still in use, and its arrays would move; delete it and "
-                    "them, or keep copies");
+    PyErr_SetString(
+        PyExc_BufferError,
+        "arrays of cloud() are still in use and would move; delete them, or keep copies");
     throw py::error_already_set();
   }
 
@@ -113,23 +113,23 @@ py::dict times_of(const PlanningStep& step) {
 }
 
 void bind_step(py::module_& module) {
-  py::class_<PlanningStep>(module, "PlanningStep", "What a planner did with the last scan.")
-      .def_readonly("points_new", &PlanningStep::points_new, "Points kept of the scan.")
-      .def_readonly("frontiers", &PlanningStep::frontiers, "Places still worth looking at.")
+  py::class_<PlanningStep>(module, "PlanningStep", "Statistics of the planner's last step.")
+      .def_readonly("points_new", &PlanningStep::points_new, "Number of points kept of the scan.")
+      .def_readonly("frontiers", &PlanningStep::frontiers, "Number of frontiers.")
       .def_readonly("frontiers_resolved", &PlanningStep::frontiers_resolved,
-                    "Places that are no longer worth it because of this scan.")
+                    "Number of frontiers resolved by this scan.")
       .def_readonly("target_resolved", &PlanningStep::target_resolved,
-                    "Whether the place that the view was for is among them; None: it was for none.")
+                    "Whether the target of the view was resolved; None if the view had no target.")
       .def_property_readonly("times", &times_of,
-                             "Seconds that each part took, in order; their sum is the planning.");
+                             "Seconds of each part, in order; their sum is the planning time.");
 }
 
 void bind_clouds(py::module_& module) {
   const char* xyz = "World frame, in metres: float32, shape (N, 3); read-only, not copied.";
-  const char* views = "The scan, from 0, that each point is of: uint32, shape (N,); read-only.";
+  const char* views = "0-based number of the scan of each point: uint32, shape (N,); read-only.";
   py::class_<ShownCloud>(module, "KeptPoints",
-                         "The measurements that a planner keeps. While this or an array of it is\n"
-                         "alive, the planner takes in no scan.")
+                         "The measurements kept by a planner. While this or an array of it is "
+                         "alive, the planner\naccepts no scan.")
       .def_property_readonly(
           "xyz",
           [](const py::object& self) {
@@ -166,29 +166,29 @@ void bind_planner(py::module_& module) {
   bind_clouds(module);
   py::class_<Planner>(
       module, "Planner",
-      "Takes what a sensor measured and says where to look next: Planner(mission), the planner\n"
-      "that the mission names. It is no matter whether the sensor is real. May be used from any\n"
-      "thread, one call at a time; other threads of Python go on meanwhile.")
+      "View planner: Planner(mission) creates the planner of the mission, which accepts scans "
+      "of\na real or simulated sensor and proposes the next view. May be used from any thread, "
+      "one\ncall at a time; other Python threads continue to run.")
       .def(py::init<const Mission&>(), py::arg("mission"), py::call_guard<py::gil_scoped_release>())
-      .def("next_view", &Planner::next_view, py::arg("points"), py::arg("world_from_sensor"),
-           py::arg("pixels") = py::none(),
-           "next_view($self, points, world_from_sensor, pixels=None)\n--\n\n"
-           "Takes in a scan and proposes the next view; None when the survey is complete.\n\n"
-           "points: the returns in the world frame, in metres, shape (N, 3); a C-contiguous\n"
-           "float32 array is looked at where it lies, others are converted.\n"
-           "world_from_sensor: the pose of the optical frame (x right, y down, z forward) they\n"
-           "were measured from, shape (4, 4); it need not be the one that was proposed.\n"
-           "pixels: row * width + column in the mission's camera of each point, uint32, shape\n"
-           "(N,), strictly ascending; the others gave no return. None: the sensor has no image.\n\n"
-           "Raises Error for a scan that cannot be worked with, and BufferError while arrays of\n"
-           "cloud() are alive. Other threads must leave the arrays as they are.")
+      .def(
+          "next_view", &Planner::next_view, py::arg("points"), py::arg("world_from_sensor"),
+          py::arg("pixels") = py::none(),
+          "next_view($self, points, world_from_sensor, pixels=None)\n--\n\nAdds a scan and "
+          "proposes the next view; None when the survey is complete.\n\npoints: the returns in the "
+          "world frame, in metres, shape (N, 3); a C-contiguous\nfloat32 array is not copied, "
+          "others are converted.\nworld_from_sensor: the pose of the optical frame (x right, y "
+          "down, z forward) during\nthe measurement, shape (4, 4); it may differ from the proposed "
+          "view.\npixels: row * width + column in the mission's camera of each point, uint32, "
+          "shape\n(N,), strictly ascending; all others are no-return pixels. None: the sensor has "
+          "no\nimage.\n\nRaises Error for an unusable scan, and BufferError while arrays of "
+          "cloud() are alive.\nOther threads must not modify the arrays during the call.")
       .def("next_view_instead", &Planner::next_view_instead,
-           "next_view_instead($self)\n--\n\n"
-           "Another view in place of the last one, which cannot be reached; None when there is\n"
-           "none left.")
+           "next_view_instead($self)\n--\n\nAnother view instead of the last one, which is "
+           "unreachable; None when there is none left.")
       .def("cloud", &Planner::cloud,
-           "cloud($self)\n--\n\nThe measurements kept so far, as KeptPoints: nothing is copied.")
-      .def_property_readonly("last_step", &Planner::last_step, "What the last next_view() did.");
+           "cloud($self)\n--\n\nThe measurements kept so far, as KeptPoints, without a copy.")
+      .def_property_readonly("last_step", &Planner::last_step,
+                             "Statistics of the last next_view().");
 }
 
 }  // namespace skycap::python

@@ -23,7 +23,7 @@ using missions::api::Evaluation;
 Mesh mesh_from(const Array<double>& vertices, const py::object& corners) {
   const Array<std::uint32_t> triangles = indices_in(corners, "triangles");
   if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
-    throw py::value_error("triangles has not the shape (M, 3)");
+    throw py::value_error("triangles must have shape (M, 3)");
   }
   Mesh mesh;
   mesh.vertices = places_in(vertices, "vertices");
@@ -57,23 +57,25 @@ Evaluation evaluate(const Array<float>& points, const Mesh& model, double distan
 
 void bind_evaluation(py::module_& module) {
   py::class_<Evaluation>(module, "Evaluation",
-                         "A cloud against the true surface. Distances are those of the cloud's\n"
-                         "points from the surface, in metres.")
+                         "Evaluation of a cloud against a reference surface. Distances are those "
+                         "of the cloud's\npoints to the surface, in metres.")
       .def_readonly("coverage", &Evaluation::coverage,
-                    "Share of the surface with a point within the distance, in [0, 1].")
+                    "Fraction of the surface with a point within the coverage distance, in [0, 1].")
       .def_readonly("mean", &Evaluation::mean, "Mean distance, in metres.")
-      .def_readonly("root_mean_square", &Evaluation::root_mean_square, "In metres.")
-      .def_readonly("median", &Evaluation::median, "In metres.")
-      .def_readonly("percentile_95", &Evaluation::percentile_95, "In metres.")
-      .def_readonly("largest", &Evaluation::largest, "In metres.")
-      .def_readonly("area", &Evaluation::area, "Of the surface, in square metres.")
+      .def_readonly("root_mean_square", &Evaluation::root_mean_square,
+                    "Root mean square distance, in metres.")
+      .def_readonly("median", &Evaluation::median, "Median distance, in metres.")
+      .def_readonly("percentile_95", &Evaluation::percentile_95,
+                    "95th percentile of the distances, in metres.")
+      .def_readonly("largest", &Evaluation::largest, "Maximum distance, in metres.")
+      .def_readonly("area", &Evaluation::area, "Area of the surface, in square metres.")
       .def_readonly("density", &Evaluation::density, "Points per square metre of the surface.");
-  module.def("evaluate", &evaluate, py::arg("points"), py::arg("model"), py::arg("distance"),
-             py::arg("samples") = missions::api::EvaluationRequest{}.samples,
-             "evaluate(points, model, distance, samples=100000)\n--\n\n"
-             "Judges a cloud, (N, 3) in the frame of the mesh `model`, as `skycap evaluate` does.\n"
-             "A surface point counts as covered with a point within `distance` metres; that is\n"
-             "asked of `samples` surface points. float32 arrays are not copied.");
+  module.def(
+      "evaluate", &evaluate, py::arg("points"), py::arg("model"), py::arg("distance"),
+      py::arg("samples") = missions::api::EvaluationRequest{}.samples,
+      "evaluate(points, model, distance, samples=100000)\n--\n\nEvaluates a cloud, (N, 3) in the "
+      "frame of the mesh `model`, as `skycap evaluate`.\nA surface sample is covered if a point is "
+      "within `distance` metres; `samples` samples\nare used. float32 arrays are not copied.");
 }
 
 }  // namespace
@@ -90,17 +92,17 @@ void bind_surfaces(py::module_& module) {
           "float64, shape (N, 3), in metres; read-only, not copied.")
       .def_property_readonly("triangles", &triangles_of,
                              "uint32, shape (M, 3); read-only, not copied.")
-      .def_property_readonly("area", &geometry::surface_area, "In square metres.");
+      .def_property_readonly("area", &geometry::surface_area, "Surface area, in square metres.");
   module.def(
       "read_mesh", [](const std::filesystem::path& file) { return geometry::read_mesh(file); },
       py::arg("file"), py::call_guard<py::gil_scoped_release>(),
-      "read_mesh(file)\n--\n\n"
-      "Reads a mesh from a PLY, OBJ, STL, OFF or Draco file, as it stands there.");
-  module.def("models", &model_names, "models()\n--\n\nThe names of the scenes that model() makes.");
+      "read_mesh(file)\n--\n\nReads a mesh from a PLY, OBJ, STL, OFF or Draco file, without "
+      "changes.");
+  module.def("models", &model_names, "models()\n--\n\nNames of the scenes of model().");
   module.def(
       "model", [](const std::string& name) { return sim::builtin_model(name); }, py::arg("name"),
       py::call_guard<py::gil_scoped_release>(),
-      "model(name)\n--\n\nA scene that Skycap makes by itself, standing on z = 0, in metres.");
+      "model(name)\n--\n\nA builtin scene, standing on z = 0, in metres.");
   bind_evaluation(module);
 }
 

@@ -39,15 +39,15 @@ Survey plan(const Mission& mission, const std::optional<std::filesystem::path>& 
 
 void bind_surveyed_view(py::module_& module) {
   py::class_<SurveyedView>(module, "SurveyedView",
-                           "One view of a survey, and what the planner made of its scan.")
-      .def_readonly("view", &SurveyedView::view, "Where the sensor was, and which way it looked.")
+                           "A view of a survey, with the planner's statistics of its scan.")
+      .def_readonly("view", &SurveyedView::view, "Position and direction of the sensor.")
       .def_readonly("distance", &SurveyedView::distance,
-                    "Travelled up to and including this view, in metres.")
-      .def_readonly("points", &SurveyedView::points, "Kept so far.")
-      .def_readonly("returns", &SurveyedView::returns, "Points of the scan.")
+                    "Path length up to and including this view, in metres.")
+      .def_readonly("points", &SurveyedView::points, "Number of points kept so far.")
+      .def_readonly("returns", &SurveyedView::returns, "Number of returns of the scan.")
       .def_readonly("planning_time", &SurveyedView::planning_time,
-                    "Of the planner's update, in seconds.")
-      .def_readonly("step", &SurveyedView::step, "What the planner did with the scan.");
+                    "Time of the planner's update, in seconds.")
+      .def_readonly("step", &SurveyedView::step, "Statistics of the planner's step.");
 }
 
 }  // namespace
@@ -57,40 +57,40 @@ void bind_surveys(py::module_& module) {
   py::class_<Survey>(module, "Survey", "A survey from its first view to its last.")
       .def_property_readonly(
           "end", [](const Survey& whole) { return survey::name_of(whole.end); },
-          "Why it ended: 'complete', 'view_limit', 'distance_limit', 'time_limit' or\n"
-          "'nowhere_to_go'.")
-      .def_readonly("views", &Survey::views, "The views in the order taken.")
+          "Stop reason: 'complete', 'view_limit', 'distance_limit', 'time_limit' "
+          "or\n'nowhere_to_go'.")
+      .def_readonly("views", &Survey::views, "The views in order.")
       .def_property_readonly("coverage", &Survey::coverage,
-                             "Covered share of the surface at the end, in [0, 1].")
+                             "Covered fraction of the surface at the end, in [0, 1].")
       .def_property_readonly(
           "coverages",
           [](const py::object& self) {
             const auto& coverages = self.cast<const Survey&>().coverages;
             return view_of(coverages.data(), static_cast<py::ssize_t>(coverages.size()), 0, self);
           },
-          "The same after each view: float64, shape (number of views,); read-only.")
+          "Covered fraction after each view: float64, shape (number of views,); read-only.")
       .def_readonly("cloud", &Survey::cloud, "The measured points.")
       .def_readonly("visible_coverage", &Survey::visible_coverage,
-                    "Share of what admissible views can see; None if there is nothing to see.")
+                    "Covered fraction of the visible surface; None if no surface is visible.")
       .def_readonly("attainable_coverage", &Survey::attainable_coverage,
-                    "Share of the surface that could be covered at all; None if not asked for.")
+                    "Attainable coverage, as a fraction of the surface; None if not computed.")
       .def_property_readonly(
           "summary",
           [](const Survey& survey) {
             return py::module_::import("json").attr("loads")(survey.summary);
           },
-          "What summary.json says: every figure and the complete settings, a dict.")
-      .def_readonly("failure", &Survey::failure, "Why there is no route; '' if none is missing.");
-  module.def("plan", &plan, py::arg("mission"), py::arg("out") = py::none(),
-             py::arg("progress") = py::none(),
-             "plan(mission, out=None, progress=None)\n--\n\n"
-             "Surveys the mission's scene in simulation, as `skycap plan` does.\n\n"
-             "out: a folder for the mission package, the same bytes as the program's but for\n"
-             "times and without its report. None: nothing is written, and no route is planned.\n"
-             "progress: called with each SurveyedView and the covered share after it; what it\n"
-             "raises ends the survey.\n\n"
-             "Ctrl-C ends the survey after the view that is being planned; what was surveyed so\n"
-             "far is written, then KeyboardInterrupt is raised.");
+          "Contents of summary.json, as a dict: all values and the complete settings.")
+      .def_readonly("failure", &Survey::failure,
+                    "Reason why there is no route; '' if there is one.");
+  module.def(
+      "plan", &plan, py::arg("mission"), py::arg("out") = py::none(),
+      py::arg("progress") = py::none(),
+      "plan(mission, out=None, progress=None)\n--\n\nSurveys the mission's scene in simulation, as "
+      "`skycap plan`.\n\nout: folder for the mission package, the same bytes as the program's "
+      "except for times\nand without its report. None: nothing is written, and no route is "
+      "planned.\nprogress: called with each SurveyedView and the covered fraction after it; "
+      "an\nexception raised by it ends the survey.\n\nCtrl-C ends the survey after the view that "
+      "is being planned; the results so far are\nwritten, then KeyboardInterrupt is raised.");
 }
 
 }  // namespace skycap::python

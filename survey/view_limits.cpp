@@ -16,27 +16,29 @@ using Eigen::Vector3d;
 /// Rounding in the sine and cosine of a pitch, generously.
 constexpr double angle_tolerance = 1e-6;
 
-void require(bool holds, const std::string& what) {
+void require_limit(bool holds, const std::string& what) {
   if (!holds) throw Error(ErrorKind::bad_config, what);
 }
 
 }  // namespace
 
 void ViewLimits::validate() const {
-  require(stand_off >= 0.0 && std::isfinite(stand_off),
+  require_limit(stand_off >= 0.0 && std::isfinite(stand_off),
           "stand_off is " + std::to_string(stand_off) + "; it must be zero or more metres");
-  require(!least_height || !most_height || *least_height < *most_height,
-          "least_height is not below most_height; nothing is left to fly in");
-  require(
+  require_limit(!least_height || !most_height || *least_height < *most_height,
+          "least_height must be less than most_height; no airspace is left");
+  require_limit(
       least_pitch < most_pitch && std::abs(least_pitch) < 1.5708 && std::abs(most_pitch) < 1.5708,
       "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
-  require(geofence.empty() || geofence.size() >= 3,
-          "geofence has " + std::to_string(geofence.size()) + " corners; it needs three or more");
+  require_limit(
+      geofence.empty() || geofence.size() >= 3,
+      "geofence has " + std::to_string(geofence.size()) + " corners; at least three are required");
   for (const geometry::Prism& prism : no_fly) {
-    require(prism.footprint.size() >= 3, "no_fly has a volume of " +
+    require_limit(prism.footprint.size() >= 3, "no_fly has a volume of " +
                                              std::to_string(prism.footprint.size()) +
-                                             " corners; it needs three or more");
-    require(prism.floor < prism.ceiling, "no_fly has a volume whose bottom is not below its top");
+                                             " corners; at least three are required");
+    require_limit(prism.floor < prism.ceiling,
+            "no_fly has a volume whose floor is not below its ceiling");
   }
 }
 

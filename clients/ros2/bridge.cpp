@@ -73,7 +73,7 @@ void Bridge::guarded(const std::string& kind, double now, const std::function<vo
     complain(kind, kind + ": " + failure.what(), now);
   } catch (const skycap_live::Refused& refusal) {
     constexpr double pause = 1.0;
-    complain(kind, kind + " refused by the survey: " + text_of(refusal.what()), now);
+    complain(kind, kind + " rejected by the survey: " + text_of(refusal.what()), now);
     not_before_ = now + pause;
   }
 }
@@ -92,7 +92,7 @@ void Bridge::add_odometry(const Odometry& odometry) {
   require_same(world_frame_, text_of(odometry.header.frame_id), "its frame");
   require_same(body_frame_, text_of(odometry.child_frame_id), "its child frame");
   if (history_.add(stamp, pose) == PoseHistory::Added::contradicts) {
-    throw Error(ErrorKind::bad_geometry, "there was another pose with the same stamp");
+    throw Error(ErrorKind::bad_geometry, "another pose has the same stamp");
   }
   newest_pose_ = stamp;
   locate();
@@ -133,7 +133,7 @@ void Bridge::receive(const CameraInfo& info, double now) {
 void Bridge::receive(const Image& image, double now) {
   guarded("image", now, [&] {
     add_scan(image.header, now, [&] {
-      if (!lens_) throw Error(ErrorKind::bad_geometry, "there is no CameraInfo to it yet");
+      if (!lens_) throw Error(ErrorKind::bad_geometry, "no CameraInfo received yet");
       return scan_of(image, *lens_);
     });
   });
@@ -152,8 +152,8 @@ void Bridge::add_scan(const Header& header, double now, const std::function<Sens
   if (!wants_scan(now)) return;
   if (stamp <= last_taken_) {
     throw Error(ErrorKind::bad_geometry,
-                "its stamp is not after that of the last scan that was taken in: it came twice or "
-                "late, or the robot's clock was set back");
+                "its stamp is not after that of the last accepted scan: duplicate, late, or the "
+                "robot's clock was set back");
   }
   waiting_ = Waiting{stamp, now, scan()};
 }
@@ -211,7 +211,7 @@ bool Bridge::has_settled(Stamp stamp) const {
   }
   if (gap.empty()) return true;
   throw Error(ErrorKind::bad_geometry,
-              "passed over: where its sensor was while it settled is not known: " + gap);
+              "ignored: the sensor's position during the settling time is unknown: " + gap);
 }
 
 void Bridge::proceed(double now) {
@@ -223,7 +223,7 @@ void Bridge::proceed(double now) {
       if (found.body.state == PoseMatch::State::open && waits_more) return;
       const Waiting waiting = *std::exchange(waiting_, std::nullopt);
       if (found.body.state != PoseMatch::State::known) {
-        throw Error(ErrorKind::bad_geometry, "its pose is not known: " + found.body.why);
+        throw Error(ErrorKind::bad_geometry, "its pose is unknown: " + found.body.why);
       }
       take(waiting, found, now);
     });
@@ -265,8 +265,8 @@ void Bridge::take(const Waiting& waiting, const Whereabouts& whereabouts, double
   learn(answer, from);
   if (!holds_) return;
   complain("pose",
-           "scan: set aside, its pose does not fit what is known; hold position, and send the "
-           "command take when the pose is right",
+           "scan rejected: pose inconsistent with the map. Hold position, correct the pose, and "
+           "send the command take",
            now);
 }
 
@@ -287,7 +287,7 @@ void Bridge::obey(const std::string& command) {
                          escaped(command.substr(refuse.size()))));
   } else {
     throw Error(ErrorKind::bad_usage,
-                "'" + command + "' is none; there are take, refuse REASON and finish");
+                "'" + command + "': unknown command; expected take, refuse REASON or finish");
   }
 }
 
@@ -331,7 +331,7 @@ void Bridge::say(const std::string& doing) {
 }
 
 void Bridge::publish_status() {
-  Json status{{"doing", holds_ ? "holding: the pose is wrong" : doing_},
+  Json status{{"doing", holds_ ? "holding: pose inconsistent with the map" : doing_},
               {"hold", holds_},
               {"taken", taken_},
               {"warnings", complaints_.count()},

@@ -29,7 +29,8 @@ Qos qos(bool is_reliable, bool is_latched, int depth) {
 dds_entity_t topic(const Participant& participant, const dds_topic_descriptor_t& type,
                    const std::string& name) {
   if (name.size() < 2 || name.front() != '/') {
-    throw Error(ErrorKind::bad_usage, "the topic '" + name + "' must begin with /, as /odom does");
+    throw Error(ErrorKind::bad_usage,
+                "the topic '" + name + "' must begin with /, for example /odom");
   }
   const dds_entity_t handle =
       dds_create_topic(participant.handle(), &type, ("rt" + name).c_str(), nullptr, nullptr);

@@ -34,7 +34,7 @@ Matrix3d cross_matrix(const Vector3d& v) {
 std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
   const Covariance given =
       Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&numbers[0]);
-  if (!given.allFinite()) refuse("its covariance has numbers that are none");
+  if (!given.allFinite()) refuse("its covariance is not finite");
   if ((given.array() == 0.0).all()) return std::nullopt;
   if ((given.diagonal().array() < 0.0).any()) refuse("its covariance has a negative variance");
   const double difference = (given - given.transpose()).cwiseAbs().maxCoeff();
@@ -43,11 +43,12 @@ std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
 }
 
 BodyPose checked_pose(const Vector3d& position, const QuaternionMessage& given) {
-  if (!position.allFinite()) refuse("its position has numbers that are none");
+  if (!position.allFinite()) refuse("its position is not finite");
   constexpr double farthest = 1e7;  // as of all places that others give
-  if (position.cwiseAbs().maxCoeff() > farthest) refuse("its position is beyond 1e7 m");
+  if (position.cwiseAbs().maxCoeff() > farthest)
+    refuse("its position is more than 1e7 m from the origin");
   const Quaterniond turn(given.w, given.x, given.y, given.z);
-  if (!is_of_length_one(turn)) refuse("the length of its quaternion is not one");
+  if (!is_of_length_one(turn)) refuse("its quaternion must have length one");
   return {.position = position, .turn = turn.normalized(), .covariance = {}};
 }
 
@@ -105,9 +106,9 @@ Isometry3d parse_extrinsic(const std::string& text, const std::string& what) {
   std::vector<double> n;
   for (double number = 0.0; stream >> number;) n.push_back(number);
   if (!stream.eof() || n.size() != 7 || !is_of_length_one({n[6], n[3], n[4], n[5]})) {
-    throw Error(ErrorKind::bad_usage, what + " is '" + text +
-                                          "'; give x y z qx qy qz qw, with a quaternion of length "
-                                          "one");
+    throw Error(
+        ErrorKind::bad_usage,
+        what + " is '" + text + "'; it must be x y z qx qy qz qw, with a quaternion of length one");
   }
   return isometry(Quaterniond(n[6], n[3], n[4], n[5]).normalized().toRotationMatrix(),
                   {n[0], n[1], n[2]});

@@ -41,52 +41,62 @@ struct Options {
 
 void add_topics(CLI::App& app, Options& options) {
   NodeConfig& node = options.node;
-  app.add_option("ADDRESS", node.address, "What skycap serve prints: unix:PATH or tcp:...")
+  app.add_option("ADDRESS", node.address,
+                 "Address of the server, as printed by skycap serve: unix:PATH or tcp:...")
       ->required();
-  app.add_option("--domain", node.domain, "Of DDS")
+  app.add_option("--domain", node.domain, "DDS domain (ROS_DOMAIN_ID)")
       ->envname("ROS_DOMAIN_ID")
       ->check(CLI::Range(0, 232));
   app.add_option("--odometry", node.odometry, "nav_msgs/Odometry")->capture_default_str();
   app.add_option("--cloud", node.cloud, "sensor_msgs/PointCloud2")->capture_default_str();
-  app.add_option("--image", node.image, "sensor_msgs/Image of depths, in place of clouds");
+  app.add_option("--image", node.image,
+                 "Topic of depth images (sensor_msgs/Image), instead of point clouds");
   app.add_option("--camera-info", node.camera_info,
-                 "Of the image; without it camera_info beside the image");
+                 "Topic of the image's CameraInfo (default: camera_info beside the image)");
   app.add_option("--world", node.bridge.world,
-                 "Frame in which TF says where the body is, such as map, in place of odometry");
-  app.add_option("--body", node.bridge.body, "The body's frame, with --world")
+                 "Fixed frame of TF, for example map: poses come from TF instead of odometry");
+  app.add_option("--body", node.bridge.body, "Base frame of the robot, with --world")
       ->capture_default_str();
   app.add_option("--tf", node.transforms, "tf2_msgs/TFMessage")->capture_default_str();
-  app.add_option("--tf-static", node.static_transforms, "The same, of what never moves")
+  app.add_option("--tf-static", node.static_transforms,
+                 "Topic of static transforms (tf2_msgs/TFMessage)")
       ->capture_default_str();
-  app.add_option("--prefix", node.prefix, "Of the topics that are published")
-      ->capture_default_str();
+  app.add_option("--prefix", node.prefix, "Prefix of published topics")->capture_default_str();
 }
 
 void add_rules(CLI::App& app, Options& options) {
   auto& bridge = options.node.bridge;
   app.add_option("--sensor", options.sensor,
-                 "The sensor's frame on the body's: x y z qx qy qz qw; without it TF says that");
-  app.add_option("--axes", options.axes, "Of the sensor's frame (optical)")
+                 "Pose of the sensor in the base frame: x y z qx qy qz qw (default: from TF)");
+  app.add_option("--axes", options.axes,
+                 "Axes of the points' frame (REP 103): optical or flu (default: optical)")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Axes>{{"optical", Axes::optical}, {"flu", Axes::flu}}))
       ->option_text("optical|flu");
-  app.add_flag("--rectified", bridge.is_rectified, "The image is: P of its CameraInfo, no D");
-  app.add_option("--take", bridge.taking, "Which scans (arrived)")
+  app.add_flag("--rectified", bridge.is_rectified,
+               "The image is rectified (use P of its CameraInfo, ignore D)");
+  app.add_option("--take", bridge.taking,
+                 "Which scans are used: arrived, every or command (default: arrived)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Taking>{
           {"arrived", Taking::arrived}, {"every", Taking::every}, {"command", Taking::command}}))
       ->option_text("arrived|every|command");
-  app.add_option("--position-tolerance", bridge.position_tolerance, "Of having arrived [m]")
+  app.add_option("--position-tolerance", bridge.position_tolerance,
+                 "Position tolerance for arrival, in metres")
       ->check(CLI::Range(0.001, 100.0));
-  app.add_option("--direction-tolerance-deg", options.direction_tolerance_deg, "The same")
+  app.add_option("--direction-tolerance-deg", options.direction_tolerance_deg,
+                 "Direction tolerance for arrival, in degrees")
       ->check(CLI::Range(0.1, 180.0));
-  app.add_option("--settling", bridge.settling, "Time within both before a scan is taken in [s]")
+  app.add_option("--settling", bridge.settling,
+                 "Time within both tolerances before a scan is accepted, in seconds")
       ->check(CLI::Range(0.0, 60.0));
   app.add_option("--pose-gap", bridge.history.longest_gap,
-                 "From a scan to the odometry before and after it, at most [s]")
+                 "Maximum gap between a scan and the odometry before and after it, in seconds")
       ->check(CLI::Range(0.001, 10.0));
-  app.add_option("--patience", bridge.patience, "A scan waits for its odometry so long [s]")
+  app.add_option("--patience", bridge.patience,
+                 "Maximum time that a scan waits for its odometry, in seconds")
       ->check(CLI::Range(0.0, 60.0));
-  app.add_flag("--ignore-covariance", options.ignores_covariance, "Of the odometry");
+  app.add_flag("--ignore-covariance", options.ignores_covariance,
+               "Ignore the covariance of the odometry");
 }
 
 /// Throws Error{bad_usage} for an option that was given, and that others leave without effect.
@@ -100,7 +110,7 @@ void require_effect(const CLI::App& app, const Options& options) {
     for (const std::string name : names) {
       if (has_effect || app.get_option(name)->count() == 0) continue;
       throw skycap::Error(skycap::ErrorKind::bad_usage,
-                          name + " has no effect " + condition + "; leave it out");
+                          name + " has no effect " + condition + "; remove it");
     }
   };
   require(has_world, {"--body"}, "without --world");
@@ -129,7 +139,7 @@ NodeConfig node_of(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("A live survey for robots of ROS 2 (docs/reference/ros2-topics.md)", "skycap_ros2");
+  CLI::App app("Live survey for ROS 2 robots (docs/reference/ros2-topics.md)", "skycap_ros2");
   Options options;
   add_topics(app, options);
   add_rules(app, options);
@@ -144,7 +154,7 @@ int main(int argc, char** argv) {
     return failure.kind() == skycap::ErrorKind::bad_usage ? 2 : 1;
   } catch (const std::exception& failure) {
     std::cerr << "skycap_ros2: error: the survey at " << options.node.address << ": "
-              << failure.what() << "; what was taken in is in its folder\n";
+              << failure.what() << "; the accepted scans are in its folder\n";
     return 1;
   }
 }

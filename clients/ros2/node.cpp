@@ -192,7 +192,7 @@ void run_node(const NodeConfig& config, const std::atomic<bool>& stop) {
     }
     if (stop) bridge.say("stopped");
   } catch (const std::exception&) {
-    bridge.say("the survey's server is lost");
+    bridge.say("connection to the survey's server lost");
     throw;
   }
 }

@@ -31,7 +31,7 @@ BodyPose between(const BodyPose& a, const BodyPose& b, double share) {
 
 Stamp stamp_of(const Header& header) {
   if (header.stamp.nanosec >= 1'000'000'000U) {
-    throw Error(ErrorKind::bad_geometry, "its stamp has a second or more of nanoseconds");
+    throw Error(ErrorKind::bad_geometry, "its stamp has more than 1e9 nanoseconds");
   }
   const Stamp stamp = Stamp{header.stamp.sec} * 1'000'000'000 + header.stamp.nanosec;
   if (stamp <= 0) throw Error(ErrorKind::bad_geometry, "its stamp is not set");

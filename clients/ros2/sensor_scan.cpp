@@ -46,12 +46,12 @@ Coordinate coordinate(const PointCloud2& cloud, const std::string& name) {
   for (std::uint32_t i = 0; i < cloud.fields._length; ++i) {
     const PointField& field = cloud.fields._buffer[i];
     if (text_of(field.name) != name) continue;
-    if (found) refuse("its field " + name + " comes twice");
+    if (found) refuse("its field " + name + " is listed twice");
     if (field.datatype != float32 && field.datatype != float64) {
       refuse("its field " + name + " has the type " + std::to_string(field.datatype) +
              "; it must be FLOAT32 (7) or FLOAT64 (8)");
     }
-    if (field.count > 1) refuse("its field " + name + " has more than one number a point");
+    if (field.count > 1) refuse("its field " + name + " has more than one number per point");
     found = {field.offset, field.datatype == float64};
     const std::uint64_t end = std::uint64_t{field.offset} + (found->is_double ? 8 : 4);
     if (end > cloud.point_step) {
@@ -59,7 +59,7 @@ Coordinate coordinate(const PointCloud2& cloud, const std::string& name) {
              std::to_string(cloud.point_step));
     }
   }
-  if (!found) refuse("it has no field " + name);
+  if (!found) refuse("missing field " + name);
   return *found;
 }
 
@@ -73,11 +73,11 @@ void require_whole(const Rows& rows) {
   const auto text = [](auto number) { return std::to_string(number); };
   if (std::uint64_t{rows.width} * rows.size > rows.step) {
     refuse("its rows have " + text(rows.step) + " bytes; " + text(rows.width) + " times " +
-           text(rows.size) + " take more");
+           text(rows.size) + " require more");
   }
   if (std::uint64_t{rows.step} * rows.height != rows.data) {
     refuse("it has " + text(rows.data) + " bytes; " + text(rows.height) + " rows of " +
-           text(rows.step) + " are others");
+           text(rows.step) + " are a different number");
   }
 }
 
@@ -85,8 +85,8 @@ void require_points(std::uint64_t points) {
   // `serve` takes 256 MiB in a message.
   constexpr std::uint64_t most = (std::uint64_t{256} << 20) / (3 * sizeof(float));
   if (points > most) {
-    refuse("it has " + std::to_string(points) + " points; at most " + std::to_string(most) +
-           " go into a scan");
+    refuse("it has " + std::to_string(points) + " points; the maximum is " + std::to_string(most) +
+           " per scan");
   }
 }
 
@@ -109,12 +109,12 @@ void require_image(const Image& image, std::uint32_t pixel, const CameraLens& le
   constexpr std::uint32_t largest_side = 1 << 15;
   if (image.width < 1 || image.height < 1 || image.width > largest_side ||
       image.height > largest_side) {
-    refuse("its sides are " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-           "; they must be from 1 to 32768");
+    refuse("its size is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+           "; each side must be from 1 to 32768");
   }
   if (image.width != lens.width || image.height != lens.height) {
-    refuse("its sides are " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-           "; its CameraInfo says " + std::to_string(lens.width) + " x " +
+    refuse("its size is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+           "; its CameraInfo has " + std::to_string(lens.width) + " x " +
            std::to_string(lens.height));
   }
   require_points(std::uint64_t{image.width} * image.height);
@@ -141,7 +141,7 @@ CloudScan cloud_of(const Image& image, const CameraLens& lens) {
 std::vector<double> distortion_of(const CameraInfo& info) {
   std::vector<double> d(info.d._buffer, info.d._buffer + info.d._length);
   if (std::ranges::any_of(d, [](double value) { return !std::isfinite(value); })) {
-    refuse("its D has numbers that are none");
+    refuse("its D is not finite");
   }
   while (!d.empty() && d.back() == 0.0) d.pop_back();
   if (d.empty()) return d;
@@ -182,12 +182,13 @@ CloudScan scan_of(const PointCloud2& cloud, Axes axes) {
 }
 
 CameraLens lens_of(const CameraInfo& info, bool is_rectified) {
-  if (info.binning_x > 1 || info.binning_y > 1) refuse("it has binning; send whole images");
+  if (info.binning_x > 1 || info.binning_y > 1)
+    refuse("binning is not supported; send full images");
   const auto& roi = info.roi;
   const bool is_whole = roi.x_offset == 0 && roi.y_offset == 0 &&
                         (roi.width == 0 || roi.width == info.width) &&
                         (roi.height == 0 || roi.height == info.height);
-  if (!is_whole) refuse("it has a region of interest; send whole images");
+  if (!is_whole) refuse("regions of interest are not supported; send full images");
   CameraLens lens{.width = info.width, .height = info.height, .lens = {}};
   if (is_rectified) {
     lens.lens = {info.p[0], info.p[5], info.p[2], info.p[6]};
@@ -198,7 +199,7 @@ CameraLens lens_of(const CameraInfo& info, bool is_rectified) {
   const bool is_lens =
       std::ranges::all_of(lens.lens, [](double value) { return std::isfinite(value); }) &&
       lens.lens[0] > 0.0 && lens.lens[1] > 0.0;
-  if (!is_lens) refuse("its focal lengths and principal point are no lens");
+  if (!is_lens) refuse("invalid focal length or principal point");
   return lens;
 }
 
@@ -215,7 +216,7 @@ SensorScan scan_of(const Image& image, const CameraLens& lens) {
     refuse("its encoding is '" + encoding + "'; depth must be 16UC1 or 32FC1");
   }
   if (lens.is_distorted()) {
-    refuse("its lens has distortion; rectify the image, or send 16UC1");
+    refuse("distortion is not supported for this encoding; rectify the image, or send 16UC1");
   }
   require_image(image, sizeof(float), lens);
   return cloud_of(image, lens);

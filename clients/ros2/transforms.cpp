@@ -18,7 +18,7 @@ std::string name_of(const char* text, const std::string& what) {
   // Longer ones are cut where text_of() shortens them, and would be one another.
   constexpr std::size_t longest = 100;
   if (::strnlen(text, longest + 1) > longest) {
-    refuse("a transform whose " + what + " has a name beyond 100 bytes");
+    refuse("a transform whose " + what + " has a name longer than 100 bytes");
   }
   return text_of(text);
 }
@@ -63,11 +63,11 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
     refuse(what + " is now in '" + parent + "'; it was in '" + frame.parent +
            "' until now, and must stay");
   }
-  if (frame.fixed.has_value() != is_static) refuse(what + " is static and moves");
+  if (frame.fixed.has_value() != is_static) refuse(what + " must not be static and moving");
   if (is_static) {
     frame.fixed = pose;
   } else if (frame.history.add(stamp, pose) == PoseHistory::Added::contradicts) {
-    refuse(what + " had another pose with the same stamp");
+    refuse(what + " has another pose with the same stamp");
   }
   frame.last = pose;
   frame.last_stamp = stamp;

@@ -12,7 +12,7 @@ namespace {
 
 /// The largest value in [0, most] for which `of`, which rises, is at most `bound`.
 template <typename Function>
-double largest(double most, double bound, Function of) {
+double largest_below(double most, double bound, Function of) {
   if (of(most) <= bound) return most;
   double low = 0.0, high = most;
   for (int i = 0; i < 60; ++i) {
@@ -58,9 +58,9 @@ double s_curve_time(double distance, const LegLimits& limits, double jerk, doubl
   // Rising to the acceleration a and down again takes twice a / jerk + jerk_rise.
   const auto half_ramp = [&](double a) { return a / jerk + jerk_rise; };
   const double for_speed =
-      largest(limits.acceleration, limits.speed, [&](double a) { return a * half_ramp(a); });
-  const double acceleration =
-      largest(for_speed, distance, [&](double a) { return 2.0 * a * half_ramp(a) * half_ramp(a); });
+      largest_below(limits.acceleration, limits.speed, [&](double a) { return a * half_ramp(a); });
+  const double acceleration = largest_below(
+      for_speed, distance, [&](double a) { return 2.0 * a * half_ramp(a) * half_ramp(a); });
   if (acceleration < jerk * jerk_rise) {
     return short_s_curve_time(distance, limits, 0.5 * jerk * std::numbers::pi / jerk_rise);
   }
@@ -82,8 +82,8 @@ double braking_distance_time(double distance, const LegLimits& limits, double je
     return std::max(0.0, v * (v + b) / (2.0 * a) - left);
   };
   const double way = distance - left;
-  const double speed =
-      largest(limits.speed, way, [&](double v) { return ramp_distance(v) + braking_distance(v); });
+  const double speed = largest_below(
+      limits.speed, way, [&](double v) { return ramp_distance(v) + braking_distance(v); });
   const double cruise = std::max(0.0, way - ramp_distance(speed) - braking_distance(speed));
   double time = ramp_time(speed, a, jerk) + cruise / speed;
   if (speed > last_speed) {  // dt = -dd / v along the law of the speed

@@ -45,11 +45,6 @@ constexpr std::array needed{
 /// none.
 constexpr double most_scatter = 0.2, most_unseen_error = 0.3;
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 double time_of(const std::vector<LogWindow>& windows, const Needed& kind) {
   double time = 0.0;
   for (const LogWindow& window : windows) {
@@ -62,9 +57,9 @@ void require_enough(const std::vector<LogWindow>& windows) {
   for (const Needed& kind : needed) {
     const double time = time_of(windows, kind);
     if (time >= kind.time) continue;
-    throw Error(ErrorKind::bad_file, "holds " + fixed(time, 0) + " s of " + kind.what +
-                                         "; at least " + fixed(kind.time, 0) +
-                                         " s are needed: " + kind.remedy);
+    throw Error(ErrorKind::bad_file, "contains " + fixed(time, 0) + " s of " + kind.what +
+                                         "; required: at least " + fixed(kind.time, 0) +
+                                         " s: " + kind.remedy);
   }
 }
 
@@ -77,7 +72,7 @@ void require_power(const std::vector<LogSample>& samples) {
   throw Error(ErrorKind::bad_file,
               "measures no power: current or voltage are zero in " +
                   std::to_string(samples.size() - count) + " of " + std::to_string(samples.size()) +
-                  " readings; the vehicle needs a current sensor (BATT_MONITOR 4 or higher)");
+                  " readings; a current sensor is required (BATT_MONITOR 4 or higher)");
 }
 
 /// What hovering takes by the log, at sea level [W].
@@ -107,17 +102,17 @@ Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_powe
     vehicle.rotor_diameter *= std::sqrt(*mass / preset);  // the same disc loading
     if (is_carried()) {
       warnings.push_back("rotor_diameter is set to " + fixed(vehicle.rotor_diameter, 3) +
-                         " m: " + text_of(given) + " take at least " +
-                         fixed(min_rotor_power(given), 0) + " W to hover, and the log has " +
-                         fixed(hover_power, 0) + " W; set the diameter that flew");
+                         " m: " + text_of(given) + " need at least " +
+                         fixed(min_rotor_power(given), 0) + " W to hover, but the log has " +
+                         fixed(hover_power, 0) + " W; set the diameter of the vehicle that flew");
       return vehicle;
     }
   }
-  throw Error(ErrorKind::bad_file,
-              "hovers at " + fixed(hover_power, 1) + " W; " + text_of(given) + " take at least " +
-                  fixed(min_rotor_power(given), 1) +
-                  " W: give the mass that flew (--mass), or calibrate the current sensor "
-                  "(BATT_AMP_PERVLT)");
+  throw Error(
+      ErrorKind::bad_file,
+      "hover power of " + fixed(hover_power, 1) + " W is too low: " + text_of(given) +
+          " need at least " + fixed(min_rotor_power(given), 1) +
+          " W; set the mass that flew (--mass), or calibrate the current sensor (BATT_AMP_PERVLT)");
 }
 
 /// The energy of each fifth of the windows by a fit of the others, against what it took.
@@ -145,16 +140,16 @@ double unseen_error(const std::vector<LogWindow>& windows, const Vehicle& vehicl
 void require_fit(const Calibration& fit) {
   if (fit.scatter > most_scatter * fit.hover_power) {
     throw Error(ErrorKind::bad_file,
-                "fits no power model: its power scatters by " + fixed(fit.scatter, 0) +
-                    " W about a hover of " + fixed(fit.hover_power, 0) +
+                "fits no power model: the power scatters by " + fixed(fit.scatter, 0) +
+                    " W around a hover of " + fixed(fit.hover_power, 0) +
                     " W; check the current sensor, or calibrate with another log");
   }
   if (fit.energy_error > most_unseen_error) {
-    throw Error(ErrorKind::bad_file,
-                "fits no power model: the energy of its parts is off by " +
-                    fixed(100.0 * fit.energy_error, 0) +
-                    " % from a fit of the others; calibrate with a flight on one battery, in "
-                    "steady wind");
+    throw Error(
+        ErrorKind::bad_file,
+        "fits no power model: the energy of its parts differs by " +
+            fixed(100.0 * fit.energy_error, 0) +
+            "% from a fit of the others; calibrate with a flight on one battery, in steady wind");
   }
 }
 
@@ -162,11 +157,12 @@ std::vector<std::string> warnings_of(const PowerFit& fit, const Vehicle& vehicle
   std::vector<std::string> warnings;
   for (const std::string& name : fit.at_bound) {
     if (name == "rotors") {
-      warnings.push_back("the rotors' efficiency is at its bound of 1: " + text_of(vehicle) +
-                         " may not be what flew; give --mass, and check the current sensor");
+      warnings.push_back(
+          "the rotors' efficiency is at its limit of 1: " + text_of(vehicle) +
+          " may differ from the vehicle that flew; set --mass, and check the current sensor");
     } else {
       warnings.push_back(name +
-                         " is at its bound of 0: the log does not show it; fly level legs at "
+                         " is at its limit of 0: the log does not show it; fly level legs at "
                          "several speeds up to 8 m/s");
     }
   }

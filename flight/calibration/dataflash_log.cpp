@@ -92,7 +92,7 @@ struct Field {
 };
 
 /// What a FMT message says of the messages of one type.
-struct Format {
+struct MessageFormat {
   std::string name;
   std::size_t size = 0;  ///< header included
   std::vector<Field> fields;
@@ -103,8 +103,8 @@ struct Format {
   }
 };
 
-Format format_of(std::string_view body) {
-  Format format{text_at(body.substr(2, 4)), static_cast<unsigned char>(body[1]), {}};
+MessageFormat format_of(std::string_view body) {
+  MessageFormat format{text_at(body.substr(2, 4)), static_cast<unsigned char>(body[1]), {}};
   const std::string letters = text_at(body.substr(6, 16));
   const std::vector<std::string> labels = split(text_at(body.substr(22, 64)), ',');
   std::size_t offset = 0;
@@ -122,7 +122,7 @@ Format format_of(std::string_view body) {
 /// One message with the format that its type has.
 class Message {
  public:
-  Message(const Format& format, std::string_view body) : format_(format), body_(body) {}
+  Message(const MessageFormat& format, std::string_view body) : format_(format), body_(body) {}
 
   const std::string& name() const { return format_.name; }
 
@@ -153,7 +153,7 @@ class Message {
   }
 
  private:
-  const Format& format_;
+  const MessageFormat& format_;
   std::string_view body_;
 };
 
@@ -205,7 +205,7 @@ class LogBuilder {
     if (name == "MISE") add_command(message, log_.commands);
     if (readings_.size() + log_.parameters.size() + log_.commands.size() + listed_.size() >
         most_entries_) {
-      throw Error(ErrorKind::bad_file, "holds more than " + std::to_string(most_entries_) +
+      throw Error(ErrorKind::bad_file, "contains more than " + std::to_string(most_entries_) +
                                            " samples, parameters and commands");
     }
   }
@@ -217,18 +217,17 @@ class LogBuilder {
     add_samples();
     if (!has_velocity_) {
       throw Error(ErrorKind::bad_file,
-                  "holds no velocity (XKF1); log the estimator's state" + damage);
+                  "contains no velocity (XKF1); log the estimator's state" + damage);
     }
     if (log_.samples.empty() && has_voltage_ && !has_current_) {
-      throw Error(
-          ErrorKind::bad_file,
-          "measures no current (BAT.Curr); the vehicle needs a current sensor (BATT_MONITOR "
-          "4 or higher)" +
-              damage);
+      throw Error(ErrorKind::bad_file,
+                  "contains no current (BAT.Curr); a current sensor is required (BATT_MONITOR 4 or "
+                  "higher)" +
+                      damage);
     }
     if (log_.samples.empty()) {
       throw Error(ErrorKind::bad_file,
-                  "holds no battery (BAT); the vehicle needs a power monitor" + damage);
+                  "contains no battery data (BAT); a power monitor is required" + damage);
     }
     // Since October 2024 CMD lists the mission at its upload alone.
     if (log_.commands.empty()) log_.commands = std::move(listed_);
@@ -339,7 +338,7 @@ class LogBuilder {
 }  // namespace
 
 FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
-  std::array<std::optional<Format>, 256> formats;
+  std::array<std::optional<MessageFormat>, 256> formats;
   LogBuilder builder(most_entries);
   bool has_format = false;
   std::size_t skipped = 0;
@@ -361,8 +360,8 @@ FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
     }
     const std::string_view body = bytes.substr(i + header_size, size - header_size);
     if (is_format) {
-      Format format = format_of(body);
-      std::optional<Format>& known = formats[static_cast<unsigned char>(body[0])];
+      MessageFormat format = format_of(body);
+      std::optional<MessageFormat>& known = formats[static_cast<unsigned char>(body[0])];
       if (!known || known->fields.empty() || !format.fields.empty()) known = std::move(format);
       has_format = true;
     } else {
@@ -373,8 +372,8 @@ FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
   if (!has_format) {
     const std::string kind = foreign_kind(bytes);
     throw Error(ErrorKind::bad_file, kind.empty()
-                                         ? "is no dataflash log: it describes no message"
-                                         : "is no dataflash log of ArduPilot: it is " + kind);
+                                         ? "is not a dataflash log: it defines no message"
+                                         : "is not an ArduPilot dataflash log: it is " + kind);
   }
   return builder.finish(skipped);
 }

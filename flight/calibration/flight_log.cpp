@@ -25,7 +25,7 @@ Columns columns_of(const std::vector<std::string>& header) {
   Columns columns{};
   for (std::size_t i = 0; i < column_names.size(); ++i) {
     const auto found = std::ranges::find(header, column_names[i]);
-    if (found == header.end()) fail(1, std::string("names no column ") + column_names[i]);
+    if (found == header.end()) fail(1, std::string("has no column ") + column_names[i]);
     columns[i] = static_cast<std::size_t>(found - header.begin());
   }
   return columns;
@@ -65,7 +65,7 @@ FlightLog read_csv_log(std::string_view text, std::size_t most_samples) {
       continue;
     }
     if (log.samples.size() == most_samples) {
-      fail(number, "is of more than " + std::to_string(most_samples) + " samples");
+      fail(number, "exceeds the limit of " + std::to_string(most_samples) + " samples");
     }
     log.samples.push_back(sample_of(fields, columns, number));
     const std::size_t count = log.samples.size();
@@ -73,7 +73,7 @@ FlightLog read_csv_log(std::string_view text, std::size_t most_samples) {
       fail(number, "is not later than the line before it");
     }
   }
-  if (log.samples.empty()) fail(number, "is the last, and there is no sample");
+  if (log.samples.empty()) fail(number, "is the last line, and there is no sample");
   return log;
 }
 

@@ -13,19 +13,18 @@ std::string foreign_kind(std::string_view bytes) {
     std::string_view beginning;
     const char* what;
   };
-  constexpr const char* give_bin = "; give the vehicle's own .bin log";
+  constexpr const char* give_bin = "; use the vehicle's own .bin log";
   static const std::array kinds{
       Kind{"ULog\x01\x12\x35",
-           "a ULog of PX4; give a CSV table with time_s, east_m_s, north_m_s, "
-           "up_m_s and power_w"},
-      Kind{"FMT,", "a text log of ArduPilot; give the .bin file that it was made from"},
-      Kind{"\x1f\x8b", "compressed (gzip); unpack it first"},
+           "a PX4 ULog; use a CSV table with time_s, east_m_s, north_m_s, up_m_s and power_w"},
+      Kind{"FMT,", "an ArduPilot text log; use the .bin file that it was made from"},
+      Kind{"\x1f\x8b", "gzip-compressed; unpack it first"},
       Kind{"PK\x03\x04", "a zip archive; unpack it first"},
-      Kind{"#ROSBAG", "a ROS bag; give the vehicle's own .bin log"},
-      Kind{"MATLAB", "a MATLAB file; give the .bin file that it was made from"},
+      Kind{"#ROSBAG", "a ROS bag; use the vehicle's own .bin log"},
+      Kind{"MATLAB", "a MATLAB file; use the .bin file that it was made from"},
       Kind{"H Product:Blackbox",
-           "a Blackbox log of Betaflight or INAV; give a CSV table with "
-           "time_s, east_m_s, north_m_s, up_m_s and power_w"}};
+           "a Betaflight or INAV Blackbox log; use a CSV table with time_s, east_m_s, north_m_s, "
+           "up_m_s and power_w"}};
   for (const Kind& kind : kinds) {
     if (geometry::without_mark(bytes).starts_with(kind.beginning)) return kind.what;
   }
@@ -34,7 +33,7 @@ std::string foreign_kind(std::string_view bytes) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   const auto is_frame = [&](std::size_t i) { return byte(i) == 0xFE || byte(i) == 0xFD; };
   if (bytes.size() > frame && is_frame(frame) && byte(0) == 0) {
-    return std::string("a telemetry log of a ground station (.tlog)") + give_bin;
+    return std::string("a ground station's telemetry log (.tlog)") + give_bin;
   }
   if (bytes.size() > 1 && is_frame(0)) return std::string("a raw MAVLink stream") + give_bin;
   const std::string_view start = bytes.substr(0, 1000);

@@ -59,12 +59,6 @@ constexpr int reweightings = 3;
 /// in hover, which decides the endurance: those errors count so many times as much.
 constexpr double hover_weight = 10.0;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The means of every few velocities that follow each other: within a window they hardly change.
 std::vector<Vector3d> means_of(const std::vector<Vector3d>& velocities) {
   constexpr std::size_t together = 5;
@@ -246,6 +240,12 @@ std::vector<std::string> bounds_met(const Unknowns& x, const Vehicle& vehicle) {
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 std::vector<LogSample> without_outliers(const std::vector<LogSample>& samples) {
   std::vector<LogSample> kept;

@@ -17,6 +17,9 @@
 
 namespace skycap::flight {
 
+/// The upper median of at least one value.
+double median(std::vector<double> values);
+
 /// Samples that follow each other, of nearly steady flight.
 struct LogWindow {
   std::vector<Eigen::Vector3d> velocities;  ///< means of a few samples each [m/s]

@@ -23,8 +23,8 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
   for (const MeasuredSpace& space : spaces) {
     if (!space.config().region.isEmpty()) continue;
     throw Error(ErrorKind::bad_config,
-                "a space without a region cannot be joined with others: nothing is free in it but "
-                "what it has measured itself");
+                "a measured space without a region cannot be merged with others: only what it has "
+                "measured is free in it");
   }
   std::vector<AlignedBox3d> known;
   known.reserve(spaces.size());

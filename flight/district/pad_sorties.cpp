@@ -1,13 +1,11 @@
 #include "flight/district/pad_sorties.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "flight/motion/flight_time_range.h"
-#include "flight/route/leg_certifier.h"
+#include "flight/route/leg_costs.h"
 #include "flight/route/sortie_split.h"
 #include "flight/route/tour.h"
-#include "flight/space/obstacles.h"
 
 namespace skycap::flight {
 namespace {
@@ -77,9 +75,9 @@ Indices ordered(std::span<const Station> stations, std::span<const std::uint32_t
 class StraightCosts {
  public:
   StraightCosts(const Motion& motion, double climb)
-      : legs_(nothing_, motion, 0.0, no_ways_home_),
-        takeoff_(legs_.takeoff_cost(climb)),
-        landing_(legs_.landing_cost(climb)) {}
+      : costs_(motion),
+        takeoff_(costs_.takeoff_cost(climb)),
+        landing_(costs_.landing_cost(climb)) {}
 
   LegCost out(const Vector3d& home, const Station& to) const {
     return in_turn(takeoff_, leg(home, to.view.position, nullptr, nullptr));
@@ -90,16 +88,14 @@ class StraightCosts {
   LegCost between(const Station& from, const Station& to) const {
     return leg(from.view.position, to.view.position, &from, &to);
   }
-  LegCost at(const Station& station) const { return legs_.station_cost(station); }
+  LegCost at(const Station& station) const { return costs_.station_cost(station); }
 
  private:
   LegCost leg(const Vector3d& a, const Vector3d& b, const Station* from, const Station* to) const {
-    return cost_of(legs_.leg({a, b}, from, to).value());  // nothing is in the way
+    return cost_of(costs_.leg({{a, b}}, from, to));
   }
 
-  KnownSpace nothing_{Obstacles{}};
-  std::optional<WaysHome> no_ways_home_;
-  LegCertifier legs_;
+  LegCosts costs_;
   LegCost takeoff_, landing_;
 };
 

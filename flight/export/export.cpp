@@ -63,8 +63,9 @@ std::vector<Vector3d> tum_places(const std::string& content, const Site&, const 
 std::vector<std::string> notes_of_plan(const FlightPlan& plan) {
   std::vector<std::string> notes;
   for (const std::string& name : flat_no_fly(plan).left_out) {
-    notes.push_back("no-fly volume \"" + name +
-                    "\" is passed over or under; the format has no heights, so it is left out");
+    notes.push_back(
+        "no-fly volume \"" + name +
+        "\" is left out: the route passes over or under it, and the format has no heights");
   }
   return notes;
 }
@@ -72,7 +73,7 @@ std::vector<std::string> notes_of_plan(const FlightPlan& plan) {
 std::vector<std::string> notes_of_litchi(const FlightPlan&) {
   return {
       "Litchi's mission settings are not in the file: set heading mode \"Custom\" and path mode "
-      "\"Straight Lines\"; gimbal pitch is in whole degrees"};
+      "\"Straight Lines\"; the gimbal pitch has whole degrees"};
 }
 
 /// Everything about the formats, in the order of Format. A new one has a row here, an enumerator,
@@ -164,7 +165,7 @@ Format format_named(const std::string& name) {
     if (name == info.name) return info.format;
     names += (names.empty() ? "" : ", ") + std::string(info.name);
   }
-  throw Error(ErrorKind::bad_usage, "format \"" + name + "\" is not known; there are " + names);
+  throw Error(ErrorKind::bad_usage, "unknown format \"" + name + "\"; expected one of: " + names);
 }
 
 bool holds_curves(Format format) { return record_of(format).holds_curves; }
@@ -199,8 +200,8 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
     if (name.ends_with(info.ending)) return info.format;
   }
   throw Error(ErrorKind::bad_file, path.string() +
-                                       " is no route file: its name must end in .plan, .waypoints, "
-                                       ".txt, .kmz, .kml, .geojson, .csv or .tum");
+                                       " is not a route file: its name must end in .plan, "
+                                       ".waypoints, .txt, .kmz, .kml, .geojson, .csv or .tum");
 }
 
 std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& site,

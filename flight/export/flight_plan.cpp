@@ -74,9 +74,8 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
 
 const Returns& FlightPlan::certified_returns() const {
   if (returns) return *returns;
-  throw Error(ErrorKind::bad_config, "\"" + name +
-                                         "\" has no certified way home, and the file says how high "
-                                         "the vehicle returns");
+  throw Error(ErrorKind::bad_config,
+              "\"" + name + "\" has no verified return, but the file requires a return altitude");
 }
 
 std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan) {

@@ -24,10 +24,9 @@ void Site::validate() const {
 
 double Site::undulation_for(const std::string& who) const {
   if (geoid_undulation) return *geoid_undulation;
-  throw Error(ErrorKind::bad_config,
-              who +
-                  " needs heights above mean sea level, but the geoid undulation of the site is "
-                  "not known; state it");
+  throw Error(ErrorKind::bad_config, who +
+                                         " requires heights above mean sea level, but the geoid "
+                                         "undulation of the site is unknown; set it");
 }
 
 struct LocalFrame::Impl {

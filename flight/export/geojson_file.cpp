@@ -113,11 +113,10 @@ class GeoJsonChecker {
       problems.emplace_back("the file is not a GeoJSON FeatureCollection");
       return;
     }
-    if (file.contains("crs"))
-      problems.emplace_back("crs is not part of GeoJSON any more; leave it out");
+    if (file.contains("crs")) problems.emplace_back("crs is no longer part of GeoJSON; remove it");
     for (std::size_t i = 0; i < file["features"].size(); ++i) check_feature(file["features"][i], i);
     if (problems.empty() && route.points.empty()) {
-      problems.emplace_back("there is no LineString, so there is no flight");
+      problems.emplace_back("no LineString, and therefore no flight");
     }
   }
 
@@ -144,7 +143,7 @@ class GeoJsonChecker {
     } else if (type == "Polygon") {
       check_polygon(coordinates, who);
     } else {
-      problems.push_back(who + " has a geometry that is no Point, LineString or Polygon");
+      problems.push_back(who + " has a geometry other than Point, LineString or Polygon");
     }
   }
 
@@ -202,9 +201,9 @@ class GeoJsonChecker {
         twice_area += x(i - 1) * y(i) - x(i) * y(i - 1);
       }
       if ((twice_area > 0.0) != (r == 0)) {
-        problems.push_back(who +
-                           " has a ring that runs the wrong way round (outer ones "
-                           "counter-clockwise, holes clockwise)");
+        problems.push_back(
+            who +
+            " has a ring in the wrong direction (outer rings counter-clockwise, holes clockwise)");
       }
     }
   }
@@ -218,7 +217,7 @@ Problems validate_geojson(const std::string& text) { return GeoJsonChecker(text)
 
 RouteFile read_geojson(const std::string& text) {
   const GeoJsonChecker checker(text);
-  throw_first(checker.problems, "not a good .geojson file");
+  throw_first(checker.problems, "invalid .geojson file");
   return checker.route;
 }
 

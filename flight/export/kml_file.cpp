@@ -48,8 +48,8 @@ class KmlWriter {
     pugi::xml_node root = kml.append_child("Document");
     add(root, "name", plan_.name);
     add(root, "description",
-        "Heights above mean sea level; every leg is proven free at " + fixed(plan_.clearance, 2) +
-            " m.");
+        "Heights above mean sea level; every leg is verified with a clearance of " +
+            fixed(plan_.clearance, 2) + " m.");
     add_style(root, "path", "LineStyle", "ff00aaff");
     add_style(root, "no_fly", "PolyStyle", "600000ff");
     add_path(root);
@@ -197,7 +197,7 @@ class KmlChecker {
     }
     for (const pugi::xpath_node node : document_.select_nodes("//Placemark")) check(node.node());
     if (route.points.size() < 2) {
-      problems.emplace_back("there is no Placemark named \"path\" with a LineString of two places");
+      problems.emplace_back("no Placemark named \"path\" with a LineString of two points");
     }
   }
 
@@ -218,8 +218,7 @@ class KmlChecker {
         const std::string mode = shape.child("altitudeMode").text().get();
         // Without it heights are ignored: the path would be drawn on the ground.
         if (mode != "absolute") {
-          complain(name, "has altitudeMode", mode,
-                   "; it must be absolute for its heights to count");
+          complain(name, "has altitudeMode", mode, "; it must be absolute");
         }
         const pugi::xpath_node found = shape.select_node(".//coordinates");
         const std::vector<FilePoint> places = check_places(found.node().text().get(), name);
@@ -282,7 +281,7 @@ class KmlChecker {
       problems.push_back("\"" + name + "\" must have as many gx:angles as when, or none");
     }
     if (!std::is_sorted(moments.begin(), moments.end())) {
-      problems.push_back("\"" + name + "\" has moments that go back in time");
+      problems.push_back("\"" + name + "\" has times that go back");
     }
   }
 
@@ -297,7 +296,7 @@ Problems validate_kml(const std::string& text) { return KmlChecker(text).problem
 
 RouteFile read_kml(const std::string& text) {
   const KmlChecker checker(text);
-  throw_first(checker.problems, "not a good .kml file");
+  throw_first(checker.problems, "invalid .kml file");
   return checker.route;
 }
 

@@ -15,7 +15,7 @@ constexpr const char* template_name = "wpmz/template.kml";
 constexpr const char* waylines_name = "wpmz/waylines.wpml";
 
 [[noreturn]] void fail(const std::string& what) {
-  throw Error(ErrorKind::bad_file, "not a good .kmz file: " + what);
+  throw Error(ErrorKind::bad_file, "invalid .kmz file: " + what);
 }
 
 struct CloseSource {
@@ -60,7 +60,7 @@ std::optional<zip_uint64_t> find(zip_t* archive, const char* name) {
   for (zip_uint64_t i = 0; i < count; ++i) {
     if (last_name(name_of(archive, i)) != last_name(name)) continue;
     if (found) {
-      fail("it holds both " + name_of(archive, *found) + " and " + name_of(archive, i) +
+      fail("it contains both " + name_of(archive, *found) + " and " + name_of(archive, i) +
            "; remove one");
     }
     found = i;
@@ -104,7 +104,7 @@ KmzContent unpack_kmz(const std::string& bytes) {
   const auto flown = find(archive.get(), waylines_name);
   if (!flown) {
     fail(std::string(edited ? "" : template_name) + (edited ? "" : " is missing, and ") +
-         waylines_name + " is missing; it holds " + names_of(archive.get()));
+         waylines_name + " is missing; it contains " + names_of(archive.get()));
   }
   return {edited ? extract(archive.get(), *edited) : "", extract(archive.get(), *flown)};
 }

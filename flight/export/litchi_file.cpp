@@ -16,7 +16,7 @@ constexpr double stop_like_curve = 0.2;     // the smallest curve at a corner th
 constexpr int stay = 0, photo = 1, rotate = 4, tilt = 5;  // action types
 
 constexpr std::size_t fields_before_actions = 8, fields_after_actions = 8;
-constexpr std::size_t fields_per_line =
+constexpr std::size_t litchi_fields =
     fields_before_actions + 2 * actions_per_line + fields_after_actions;
 
 std::string header() {
@@ -44,19 +44,20 @@ std::string actions_of(const Waypoint& waypoint) {
   for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
   if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));
   if (used > actions_per_line) {
-    throw Error(ErrorKind::bad_config, "a station with " + std::to_string(waypoint.shots) +
-                                           " shots cannot be written for Litchi, which takes " +
-                                           std::to_string(actions_per_line - 3));
+    throw Error(ErrorKind::bad_config,
+                "a waypoint with " + std::to_string(waypoint.shots) +
+                    " shots cannot be written for Litchi, whose maximum is " +
+                    std::to_string(actions_per_line - 3));
   }
   for (; used < actions_per_line; ++used) text += ",-1,0";
   return text;
 }
 
-struct Reading {
+struct LitchiReading {
   Problems problems;
   RouteFile route;
 
-  explicit Reading(const std::string& text) {
+  explicit LitchiReading(const std::string& text) {
     const std::vector<std::string> lines = lines_of(text);
     if (lines.empty() || geometry::trimmed(lines[0]) != header()) {
       problems.emplace_back("line 1 is not Litchi's header");
@@ -66,20 +67,20 @@ struct Reading {
       if (!geometry::trimmed(lines[i]).empty()) read_line(lines[i], i + 1);
     }
     if (problems.empty() && route.points.size() < 2) {
-      problems.emplace_back("there are fewer than two waypoints");
+      problems.emplace_back("fewer than two waypoints");
     }
     if (route.points.size() > most_waypoints) {
-      problems.push_back("there are " + std::to_string(route.points.size()) +
-                         " waypoints; old firmware takes 99");
+      problems.push_back("too many waypoints: " + std::to_string(route.points.size()) +
+                         "; the limit of old firmware is 99");
     }
   }
 
   void read_line(const std::string& text, std::size_t number) {
     const std::string who = "line " + std::to_string(number) + " ";
     const std::vector<std::string> fields = split(text, ',');
-    if (fields.size() != fields_per_line) {
+    if (fields.size() != litchi_fields) {
       problems.push_back(who + "has " + std::to_string(fields.size()) + " fields; it must have " +
-                         std::to_string(fields_per_line) + ", all 15 actions included");
+                         std::to_string(litchi_fields) + ", all 15 actions included");
       return;
     }
     const std::optional<std::vector<double>> numbers = to_numbers(fields, who, problems);
@@ -95,8 +96,8 @@ struct Reading {
     require(fields_before_actions + 2 * actions_per_line, 0, 0, "altitudemode (above take-off)");
     require(fields_before_actions + 2 * actions_per_line + 1, 0, 15, "speed");
     require(6, 0, 0, "gimbalmode (by actions)");
-    require(fields_per_line - 2, -1, 0, "photo_timeinterval (by actions)");
-    require(fields_per_line - 1, -1, 0, "photo_distinterval (by actions)");
+    require(litchi_fields - 2, -1, 0, "photo_timeinterval (by actions)");
+    require(litchi_fields - 1, -1, 0, "photo_distinterval (by actions)");
 
     FilePoint point{values[0], values[1], values[2], values[3]};
     point.datum = HeightDatum::takeoff;
@@ -120,9 +121,10 @@ struct Reading {
 
 std::string write_litchi(const FlightPlan& plan) {
   if (plan.waypoints.size() > most_waypoints) {
-    throw Error(ErrorKind::bad_config,
-                "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
-                    " waypoints; Litchi takes 99: plan with a vehicle of fewer max_waypoints");
+    throw Error(
+        ErrorKind::bad_config,
+        "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
+            " waypoints; the limit of Litchi is 99: use a vehicle with fewer max_waypoints");
   }
   const LocalFrame frame(plan.site.origin);
   const double pad_height = frame.to_geodetic(plan.pad).height;
@@ -140,11 +142,11 @@ std::string write_litchi(const FlightPlan& plan) {
   return text;
 }
 
-Problems validate_litchi(const std::string& text) { return Reading(text).problems; }
+Problems validate_litchi(const std::string& text) { return LitchiReading(text).problems; }
 
 RouteFile read_litchi(const std::string& text) {
-  const Reading reading(text);
-  throw_first(reading.problems, "not a good Litchi file");
+  const LitchiReading reading(text);
+  throw_first(reading.problems, "invalid Litchi file");
   return reading.route;
 }
 

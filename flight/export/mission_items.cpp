@@ -145,20 +145,20 @@ class ItemChecker {
 
   void check_place(std::size_t i) {
     const MissionItem& item = items_[i];
-    if (item.frame == frame::mission) complain(i, "has a place but frame 2, which has none");
+    if (item.frame == frame::mission) complain(i, "has a position but frame 2, which has none");
     if (!(std::abs(item.params[4]) <= 90.0)) complain(i, "has a latitude outside [-90, 90]");
     if (!(std::abs(item.params[5]) <= 180.0)) complain(i, "has a longitude outside [-180, 180]");
     if (!(item.params[6] >= -500.0 && item.params[6] <= 10000.0)) {
       complain(i, "has a height outside [-500, 10000] m");
     }
     if (item.command == command::waypoint && !(item.params[0] >= 0.0)) {
-      complain(i, "has a hold time that is not zero or more");
+      complain(i, "has a hold time below zero");
     }
   }
 
   void check_for_px4(std::size_t i) {
     if (items_[i].command == command::condition_yaw) {
-      complain(i, "is a CONDITION_YAW, for which PX4 refuses the whole mission");
+      complain(i, "is a CONDITION_YAW, for which PX4 rejects the whole mission");
     }
     if (items_[i].frame == frame::terrain) complain(i, "has frame 10, which PX4 does not support");
   }
@@ -166,15 +166,16 @@ class ItemChecker {
   void check_for_ardupilot(std::size_t i) {
     const MissionItem& item = items_[i];
     if (item.command == command::waypoint && item.params[0] != std::floor(item.params[0])) {
-      complain(i, "holds " + fixed(item.params[0], 2) + " s; ArduPilot keeps whole seconds");
+      complain(i,
+               "holds for " + fixed(item.params[0], 2) + " s; ArduPilot stores whole seconds only");
     }
     for (std::size_t p = 0; p < item.params.size(); ++p) {
       if (std::isnan(item.params[p]) && !(p == 3 && has_place(item.command))) {
-        complain(i, "has no parameter " + std::to_string(p + 1) + ", which ArduPilot refuses");
+        complain(i, "has no parameter " + std::to_string(p + 1) + ", which ArduPilot rejects");
       }
     }
     if (item.command == command::gimbal_pitch_yaw && item.params[0] != std::round(item.params[0])) {
-      complain(i, "has a fraction of a degree, which ArduPilot drops; use DO_MOUNT_CONTROL");
+      complain(i, "has a fraction of a degree, which ArduPilot discards; use DO_MOUNT_CONTROL");
     }
   }
 
@@ -184,7 +185,7 @@ class ItemChecker {
       if (is_navigation(items_[i].command)) navigation.push_back(i);
     }
     if (navigation.empty()) {
-      problems_.emplace_back("there is no item that flies anywhere");
+      problems_.emplace_back("no item flies anywhere");
       return;
     }
     if (items_[navigation.front()].command != command::takeoff) {
@@ -208,7 +209,8 @@ class ItemChecker {
         place = i;
       }
       if (is_gimbal(c)) has_aimed = true;
-      if (is_shot(c) && !has_aimed) complain(i, "shoots without a gimbal command for its place");
+      if (is_shot(c) && !has_aimed)
+        complain(i, "captures without a gimbal command for its position");
     }
   }
   bool aimed_after(std::size_t from, std::size_t to) const {
@@ -241,13 +243,13 @@ bool has_coordinates(const MissionItem& item) {
 std::vector<MissionItem> mission_items(const FlightPlan& plan) {
   if (plan.vehicle.dialect == Dialect::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
-                                           "\" does not fly MAVLink missions; export kmz for it");
+                                           "\" does not fly MAVLink missions; use --format kmz");
   }
   std::vector<MissionItem> items = ItemWriter(plan).write();
   if (items.size() > static_cast<std::size_t>(plan.vehicle.max_waypoints)) {
     throw Error(ErrorKind::bad_config, "\"" + plan.name + "\" has " + std::to_string(items.size()) +
                                            " mission items; vehicle \"" + plan.vehicle.name +
-                                           "\" takes " +
+                                           "\" accepts " +
                                            std::to_string(plan.vehicle.max_waypoints));
   }
   return items;

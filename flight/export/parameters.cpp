@@ -63,14 +63,16 @@ class ParameterWriter {
   std::string write() {
     comment("Onboard parameters for Vehicle 1");
     comment("");
-    comment("Mission \"" + plan_.name + "\": the way home is proven at " + plain(returns_.height) +
-            " m above the pad, and only there.");
+    comment("Mission \"" + plan_.name + "\": return altitude " + plain(returns_.height) +
+            " m above take-off, verified at this altitude only.");
     comment(
-        "Upload in this order: these parameters; restart if the station asks for it; read back");
+        "Order: load these parameters; restart the autopilot if the station asks for it; read "
+        "back");
     comment(std::string(is_px4_ ? "RTL_RETURN_ALT and RTL_CONE_ANG"
                                 : "RTL_ALT (cm) or RTL_ALT_M (m), and RTL_CONE_SLOPE") +
-            "; fence; rally points; mission. After arming,");
-    comment("check that home is within 2 m of the planned pad: returns end at home.");
+            "; upload fence, rally points, mission.");
+    comment(
+        "After arming, check that home is within 2 m of the take-off point: returns end at home.");
     comment("");
     if (is_px4_) comment("Vehicle-Id Component-Id Name Value Type");
     is_px4_ ? write_px4() : write_ardupilot();
@@ -110,8 +112,8 @@ class ParameterWriter {
 
   void write_ardupilot() {
     comment(
-        "Return: names and centimetres up to 4.6, then names and metres since 4.7. An autopilot");
-    comment("knows one of each pair; the station may say that the other is missing.");
+        "Return: names and centimetres up to 4.6, names and metres since 4.7. The autopilot knows");
+    comment("one of each pair; the station may report that the other is missing.");
     both("RTL_ALT", "RTL_ALT_M", returns_.height);
     set("RTL_CONE_SLOPE", 0);  // else it climbs less near home
     both("RTL_CLIMB_MIN", "RTL_CLIMB_MIN_M", 0);
@@ -133,14 +135,15 @@ class ParameterWriter {
     both("LAND_ALT_LOW", "LAND_ALT_LOW_M", mode.landing_height);
     set("WP_YAW_BEHAVIOR", 0);  // headings are the mission's
     set("OA_TYPE", 0);          // no other ways than those that were proven
-    comment("Link lost, pilot's or station's: return");
+    comment("Link to the pilot or the station lost: return");
     set("FS_THR_ENABLE", 1);
     set("FS_GCS_ENABLE", 1);
     set("FS_OPTIONS", 0);
     comment(
-        "Battery low: return; critical: land where it is. Set BATT_CAPACITY to the pack's [mAh],");
+        "Battery low: return; critical: land on the spot. Set BATT_CAPACITY to the pack's [mAh],");
     comment("BATT_LOW_MAH to " + plain(std::ceil(100.0 * battery_share())) +
-            " % of it, what the dearest return needs, and BATT_CRT_MAH to what a landing needs.");
+            "% of it (energy of the most expensive return), and BATT_CRT_MAH to the need of a "
+            "landing.");
     set("BATT_FS_LOW_ACT", 2);
     set("BATT_FS_CRT_ACT", 1);
     set("RALLY_INCL_HOME", 1);
@@ -152,8 +155,8 @@ class ParameterWriter {
     if (!plan_.fence && plan_.no_fly.empty()) return;
     constexpr int altitude = 1, polygon = 4;
     comment(
-        "Fence: the polygons are in the .plan file. Out of it: return, which is proven from the");
-    comment("route only, not from outside of the fence.");
+        "Fence: the polygons are in the .plan file. On a breach: return, which is verified from");
+    comment("points of the route only, not from outside the fence.");
     set("FENCE_ENABLE", 1);
     set("FENCE_TYPE", polygon + (ceiling() > 0.0 ? altitude : 0));
     set("FENCE_ACTION", 1);
@@ -178,23 +181,25 @@ class ParameterWriter {
     real("MPC_ACC_HOR", mode.acceleration);
     real("MPC_JERK_AUTO", mode.jerk);
     real("MPC_LAND_SPEED", mode.landing_speed);
-    comment("Headings are the mission's; a view is taken within a degree of its own");
+    comment("Headings are set by the mission; views are captured within a degree of their heading");
     set("MPC_YAW_MODE", 0);
     real("MIS_YAW_ERR", 1);
     real("MIS_YAW_TMT", 10);
-    comment("Link lost, pilot's or station's: return");
+    comment("Link to the pilot or the station lost: return");
     set("NAV_RCL_ACT", 2);
     set("NAV_DLL_ACT", 2);
     set("COM_RCL_EXCEPT", 0);
-    comment("Battery critical: return, on what the dearest return needs; emergency: land");
+    comment(
+        "Battery critical: return (threshold: energy of the most expensive return). Emergency: "
+        "land.");
     set("COM_LOW_BAT_ACT", 3);
     const double share = std::ceil(100.0 * battery_share()) / 100.0;
     real("BAT_CRIT_THR", share);
     real("BAT_LOW_THR", std::min(share + 0.05, 0.5));
     if (!plan_.fence && plan_.no_fly.empty()) return;
     comment(
-        "Fence: the polygons are in the .plan file. Out of it: return, which is proven from the");
-    comment("route only, not from outside of the fence.");
+        "Fence: the polygons are in the .plan file. On a breach: return, which is verified from");
+    comment("points of the route only, not from outside the fence.");
     set("GF_ACTION", 3);
     if (ceiling() > 0.0) real("GF_MAX_VER_DIST", std::floor(ceiling()));
   }
@@ -234,7 +239,7 @@ std::string parameters_name(Dialect dialect, const std::string& stem) {
 std::string write_parameters(const FlightPlan& plan) {
   if (plan.vehicle.dialect == Dialect::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
-                                           "\" takes no parameter files; export kmz for it");
+                                           "\" does not use parameter files; use --format kmz");
   }
   return ParameterWriter(plan, plan.certified_returns()).write();
 }
@@ -283,7 +288,7 @@ Problems return_problems(const std::vector<Parameter>& parameters, Dialect diale
   if (metres != nullptr && centimetres != nullptr &&
       std::abs(100.0 * metres->value - centimetres->value) > 0.5) {
     problems.push_back("RTL_ALT is " + plain(centimetres->value) + " cm and RTL_ALT_M " +
-                       plain(metres->value) + " m; they must be the same height");
+                       plain(metres->value) + " m; they must be equal");
   }
   return problems;
 }

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// MAV_AUTOPILOT and MAV_TYPE.
-constexpr int px4 = 12, ardupilot = 3, quadrotor = 2;
+constexpr int px4_firmware = 12, ardupilot_firmware = 3, quadrotor = 2;
 
 /// Corners of the polygon that stands for a circle.
 constexpr int circle_corners = 64;
@@ -62,7 +62,7 @@ class PlanChecker {
     if (plan_.value("fileType", Json()) != Json("Plan")) complain("fileType must be \"Plan\"");
     require_version(plan_, "version", 1);
     if (is_strict_ && (!plan_.contains("groundStation") || !plan_["groundStation"].is_string())) {
-      complain("groundStation must be a text");
+      complain("groundStation must be a string");
     }
     if (const Json* mission = section("mission", 2)) check_mission(*mission);
     if (is_needed("geoFence")) {
@@ -116,9 +116,9 @@ class PlanChecker {
       if (is_strict_ || mission.contains("firmwareType")) {
         complain("mission.firmwareType must be an integer");
       }
-    } else if (mission["firmwareType"] == px4) {
+    } else if (mission["firmwareType"] == px4_firmware) {
       file_.dialect = Dialect::px4;
-    } else if (mission["firmwareType"] == ardupilot) {
+    } else if (mission["firmwareType"] == ardupilot_firmware) {
       file_.dialect = Dialect::ardupilot;
     }
     if (!mission.contains("items") || !mission["items"].is_array() || mission["items"].empty()) {
@@ -178,7 +178,7 @@ class PlanChecker {
     if (is_integer && json["doJumpId"] > Json(before) && json["doJumpId"] < Json(1'000'000)) {
       return true;
     }
-    complain(who + ".doJumpId must be an integer above that of the item before");
+    complain(who + ".doJumpId must be an integer greater than that of the item before");
     return false;
   }
 
@@ -190,9 +190,9 @@ class PlanChecker {
     const auto integer = [](const Json& value) { return value.is_number_integer(); };
     if (json.is_object() && json.value("type", Json()) == Json("ComplexItem")) {
       const Json kind = json.value("complexItemType", Json());
-      return complain(who + ".type must be \"SimpleItem\"; it is a " +
+      return complain(who + ".type must be \"SimpleItem\", but is " +
                       (kind.is_string() ? kind.get<std::string>() : "pattern") +
-                      " (ComplexItem): save it as waypoints first");
+                      " (ComplexItem); save it as waypoints first");
     }
     if (!json.is_object() || !is("type", [](const Json& v) { return v == "SimpleItem"; })) {
       return complain(who + ".type must be \"SimpleItem\"");
@@ -238,9 +238,9 @@ class PlanChecker {
     const bool agrees = (mode == 1 && item.frame == frame::relative) ||
                         ((mode == 2 || mode == 3) && item.frame == frame::global) ||
                         (mode == 4 && item.frame == frame::terrain);
-    if (!agrees) complain(who + " has an AltitudeMode that does not go with its frame");
+    if (!agrees) complain(who + " has an AltitudeMode that conflicts with its frame");
     if (mode == 1 && height != Json(item.params[6])) {
-      complain(who + ".Altitude is not the height in its params");
+      complain(who + ".Altitude must be the height in its params");
     }
   }
 
@@ -260,7 +260,7 @@ class PlanChecker {
   void check_area(const Json& area, bool is_polygon, const std::string& who) {
     require_version(area, who + ".version", 1);
     if (!area.contains("inclusion") || !area["inclusion"].is_boolean()) {
-      return complain(who + ".inclusion must be true or false; loaders assume different defaults");
+      return complain(who + ".inclusion must be true or false; programs differ in the default");
     }
     FenceArea found{who, area["inclusion"], {}};
     if (is_polygon) {
@@ -268,7 +268,8 @@ class PlanChecker {
         return complain(who + ".polygon must have at least 3 corners");
       }
       for (const Json& corner : area["polygon"]) {
-        if (!are_numbers(corner, 2)) return complain(who + ".polygon must hold pairs of numbers");
+        if (!are_numbers(corner, 2))
+          return complain(who + ".polygon must contain pairs of numbers");
         found.corners.push_back({corner[0], corner[1], 0.0});
       }
       if (area["polygon"].front() == area["polygon"].back()) {
@@ -345,7 +346,7 @@ std::string write_plan(const FlightPlan& plan) {
       {"geoFence", {{"circles", Json::array()}, {"polygons", polygons}, {"version", 2}}},
       {"mission",
        {{"cruiseSpeed", plan.conditions.cruise_speed},
-        {"firmwareType", plan.vehicle.dialect == Dialect::px4 ? px4 : ardupilot},
+        {"firmwareType", plan.vehicle.dialect == Dialect::px4 ? px4_firmware : ardupilot_firmware},
         {"globalPlanAltitudeMode", 1},
         {"hoverSpeed", plan.conditions.cruise_speed},
         {"items", items},
@@ -362,7 +363,7 @@ Problems validate_plan(const std::string& text) { return PlanChecker(text, true)
 
 MissionFile read_plan(const std::string& text) {
   PlanChecker checker(text, false);
-  throw_first(checker.check(), "not a good .plan file");
+  throw_first(checker.check(), "invalid .plan file");
   return checker.file();
 }
 

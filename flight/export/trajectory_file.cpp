@@ -184,7 +184,7 @@ std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, 
     last_time = row->front();
     rows.push_back(*row);
   }
-  if (rows.empty()) problems.emplace_back("there is no row");
+  if (rows.empty()) problems.emplace_back("no row");
   return rows;
 }
 
@@ -253,7 +253,7 @@ std::vector<TimedState> read_trajectory_csv(const std::string& text) {
   Problems problems;
   Frame frame = Frame::enu;
   const auto rows = csv_rows(text, frame, problems);
-  throw_first(problems, "not a good trajectory file");
+  throw_first(problems, "invalid trajectory file");
   const bool is_ned = frame == Frame::ned;
   std::vector<TimedState> states;
   for (const auto& row : rows) {
@@ -301,7 +301,7 @@ Problems validate_tum(const std::string& text) {
 std::vector<TimedPose> read_tum(const std::string& text) {
   Problems problems;
   const auto rows = tum_rows(text, problems);
-  throw_first(problems, "not a good TUM trajectory");
+  throw_first(problems, "invalid TUM trajectory");
   std::vector<TimedPose> poses;
   for (const auto& row : rows) {
     TimedPose pose{row[0]};

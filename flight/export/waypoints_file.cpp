@@ -7,8 +7,8 @@
 namespace skycap::flight {
 namespace {
 
-constexpr std::string_view header = "QGC WPL 110";
-constexpr std::size_t fields_per_line = 12;
+constexpr std::string_view waypoints_header = "QGC WPL 110";
+constexpr std::size_t item_fields = 12;
 
 std::string line(std::size_t index, bool is_current, const MissionItem& item) {
   std::string text = std::to_string(index) + (is_current ? "\t1\t" : "\t0\t") +
@@ -23,13 +23,13 @@ std::string line(std::size_t index, bool is_current, const MissionItem& item) {
 /// Checks and reads at once: the items are complete if there are no problems. Strict: as the
 /// strictest station asks for; otherwise as Mission Planner, MAVProxy and APM Planner read files,
 /// with blank lines, comments, columns separated by blanks and a home without a place.
-struct Reading {
+struct WaypointsReading {
   Problems problems;
   std::vector<MissionItem> items;
   std::optional<MissionItem> home;
   bool is_strict;
 
-  explicit Reading(const std::string& text, bool strict) : is_strict(strict) {
+  explicit WaypointsReading(const std::string& text, bool strict) : is_strict(strict) {
     const std::vector<std::string> lines = lines_of(text);
     const std::size_t first = is_strict ? 0 : first_line(lines);
     if (!check_header(first < lines.size() ? lines[first] : "", first + 1)) return;
@@ -46,15 +46,15 @@ struct Reading {
 
   bool check_header(const std::string& line, std::size_t number) {
     const std::string who = "line " + std::to_string(number) + " ";
-    if (line == header) return true;
+    if (line == waypoints_header) return true;
     const std::vector<std::string> words = geometry::words_of(line);
     const bool is_wpl = words.size() == 3 && words[0] == "QGC" && words[1] == "WPL";
     // Files of APM Planner 2 say 120 and have the same columns.
     if (!is_strict && is_wpl && (words[2] == "110" || words[2] == "120")) return true;
     if (is_wpl && (words[2] == "100" || words[2] == "101")) {
-      problems.push_back(who + "has version " + words[2] +
-                         ", whose columns have another order; save the mission again as QGC WPL "
-                         "110");
+      problems.push_back(
+          who + "has version " + words[2] +
+          ", whose columns have another order; save the mission again as QGC WPL 110");
     } else {
       problems.push_back(who + "must be \"QGC WPL 110\"");
     }
@@ -74,7 +74,7 @@ struct Reading {
     const std::vector<std::string> fields =
         is_strict ? split(text, '\t') : geometry::words_of(text);
     if (!is_strict && (fields.empty() || fields.front().starts_with('#'))) return;
-    if (fields.size() != fields_per_line) {
+    if (fields.size() != item_fields) {
       problems.push_back(who + "has " + std::to_string(fields.size()) + " fields separated by " +
                          (is_strict ? "tabs" : "tabs or blanks") + "; it must have 12");
       return;
@@ -91,7 +91,7 @@ struct Reading {
     }
     for (const std::size_t whole : {2U, 3U, 11U}) {
       if (values[whole] != std::floor(values[whole]) || std::abs(values[whole]) > 1e5) {
-        problems.push_back(who + "has \"" + fields[whole] + "\" where an integer belongs");
+        problems.push_back(who + "has \"" + fields[whole] + "\"; it must be an integer");
         return;
       }
     }
@@ -102,13 +102,13 @@ struct Reading {
   }
 };
 
-Problems problems_of(Reading& reading, std::optional<Dialect> dialect) {
+Problems problems_of(WaypointsReading& reading, std::optional<Dialect> dialect) {
   if (!reading.problems.empty()) return reading.problems;
   if (dialect == Dialect::ardupilot && !reading.home) {
     reading.problems.emplace_back("line 2 must be home: frame 0, command 16");
   }
   if (dialect == Dialect::px4 && reading.home) {
-    reading.problems.emplace_back("line 2 is a home, which PX4's files do not have");
+    reading.problems.emplace_back("line 2 is a home position, which PX4's files do not have");
   }
   for (const std::string& problem : check_items(reading.items, dialect)) {
     reading.problems.push_back(problem);
@@ -138,19 +138,19 @@ std::string write_waypoints(const FlightPlan& plan) {
     if (std::isnan(item.params[3])) item.params[3] = yaw;
     if (item.command == command::waypoint) yaw = item.params[3];
   }
-  std::string text = std::string(header) + "\n";
+  std::string text = std::string(waypoints_header) + "\n";
   for (std::size_t i = 0; i < items.size(); ++i) text += line(i, i == 0, items[i]);
   return text;
 }
 
 Problems validate_waypoints(const std::string& text, std::optional<Dialect> dialect) {
-  Reading reading(text, true);
+  WaypointsReading reading(text, true);
   return problems_of(reading, dialect);
 }
 
 MissionFile read_waypoints(const std::string& text) {
-  Reading reading(text, false);
-  throw_first(problems_of(reading, {}), "not a good .waypoints file");
+  WaypointsReading reading(text, false);
+  throw_first(problems_of(reading, {}), "invalid .waypoints file");
   MissionFile file{.items = reading.items,
                    .dialect = reading.home ? Dialect::ardupilot : Dialect::px4};
   if (reading.home && has_coordinates(*reading.home)) {

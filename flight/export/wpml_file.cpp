@@ -42,7 +42,7 @@ class WpmlChecker {
 
   void require_one_of(pugi::xml_node node, const char* name, const std::set<std::string>& values) {
     const std::string value = text_of(node, name);
-    if (value.empty()) return complain("lacks wpml:" + std::string(name));
+    if (value.empty()) return complain("has no wpml:" + std::string(name));
     if (!values.contains(value)) {
       complain("has wpml:" + std::string(name) + " \"" + value +
                "\", which is not one of its values");
@@ -53,7 +53,7 @@ class WpmlChecker {
     const std::string text = text_of(node, name);
     const std::optional<double> value = to_number(text);
     if (!value || *value < low || *value > high) {
-      complain((text.empty() ? "lacks wpml:" + std::string(name)
+      complain((text.empty() ? "has no wpml:" + std::string(name)
                              : "has wpml:" + std::string(name) + " " + text) +
                "; it must be a number in [" + fixed(low, 1) + ", " + fixed(high, 1) + "]");
       return 0.0;
@@ -72,9 +72,9 @@ class WpmlChecker {
     }
     version = space;
     const pugi::xml_node root = kml.child("Document"), folder = root.child("Folder");
-    if (!root.child("wpml:missionConfig")) return complain("lacks wpml:missionConfig");
+    if (!root.child("wpml:missionConfig")) return complain("has no wpml:missionConfig");
     check_config(root.child("wpml:missionConfig"));
-    if (!folder) return complain("lacks Folder");
+    if (!folder) return complain("has no Folder");
     require_number(folder, "templateId", 0, 65535);
     require_number(folder, "autoFlightSpeed", 0.01, 15);
     if (is_template_) {
@@ -168,7 +168,8 @@ class WpmlChecker {
                     "toPointAndPassWithContinuityCurvature"});
     require_number(turn, "waypointTurnDampingDist", 0, 10000);
     if (text_of(turn, "waypointTurnMode") != wpml::stop_turn) {
-      complain("has a turn that leaves the straight legs, so that no clearance can be proven");
+      complain(
+          "has a turn mode that leaves the straight legs, so that no clearance can be verified");
     }
   }
 
@@ -195,7 +196,7 @@ class WpmlChecker {
           complain("has a takePhoto without a gimbalRotate before it");
         ++point.shots;
       } else if (function != "rotateYaw") {
-        complain("has wpml:actionActuatorFunc \"" + function + "\", which is not known here");
+        complain("has wpml:actionActuatorFunc \"" + function + "\", which is not supported");
       }
     }
   }
@@ -212,12 +213,12 @@ class WpmlChecker {
 std::string write_kmz(const FlightPlan& plan) {
   if (plan.vehicle.dialect != Dialect::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
-                                           "\" does not fly DJI's missions; export plan for it");
+                                           "\" does not fly DJI missions; use --format plan");
   }
   if (plan.waypoints.size() > static_cast<std::size_t>(plan.vehicle.max_waypoints)) {
     throw Error(ErrorKind::bad_config,
                 "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
-                    " waypoints; vehicle \"" + plan.vehicle.name + "\" takes " +
+                    " waypoints; vehicle \"" + plan.vehicle.name + "\" accepts " +
                     std::to_string(plan.vehicle.max_waypoints));
   }
   return pack_kmz({template_kml(plan), waylines_wpml(plan)});
@@ -258,7 +259,7 @@ Problems problems_of(const KmzContent& content, bool is_strict) {
   problems.insert(problems.end(), flown.problems.begin(), flown.problems.end());
   // Pilot 2 may make the waylines anew from the template: the two must say the same.
   if (problems.empty() && !agree(edited, flown)) {
-    problems.emplace_back("template.kml and waylines.wpml do not agree");
+    problems.emplace_back("template.kml and waylines.wpml differ");
   }
   return problems;
 }
@@ -276,7 +277,7 @@ Problems validate_kmz(const std::string& bytes) {
 RouteFile read_kmz(const std::string& bytes) { return read_kmz(unpack_kmz(bytes)); }
 
 RouteFile read_kmz(const KmzContent& content) {
-  throw_first(problems_of(content, false), "not a good .kmz file");
+  throw_first(problems_of(content, false), "invalid .kmz file");
   return WpmlChecker(content.waylines_wpml, "waylines.wpml", false).route;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "flight/route/leg_planner.h"
 #include "flight/route/route_legs.h"
 #include "geometry/parallel.h"
 
@@ -148,13 +149,14 @@ bool CertifiedCosts::certify(std::vector<Pair> pairs) {
 /// From the lower number to the higher one; empty where there is none.
 std::vector<CertifiedCosts::Way> CertifiedCosts::found(const std::vector<Pair>& pairs) const {
   std::vector<Way> ways(pairs.size());
-  // A finder remembers what it has seen, for itself: few of them, each for neighbouring pairs.
+  // A planner remembers distances, for itself: few of them, each for neighbouring pairs.
   const std::size_t parts = std::min<std::size_t>(geometry::thread_count(threads_), pairs.size());
   geometry::parallel_for(parts, threads_, [&](std::size_t part) {
-    PathFinder finder(space_, clearance_, path_options_);
+    LegPlanner planner(space_, clearance_, path_options_);
     for (std::size_t k = part * pairs.size() / parts; k < (part + 1) * pairs.size() / parts; ++k) {
       ways[k] =
-          finder.find(stations_[pairs[k].low].view.position, stations_[pairs[k].high].view.position)
+          planner
+              .path(stations_[pairs[k].low].view.position, stations_[pairs[k].high].view.position)
               .points;
     }
   });

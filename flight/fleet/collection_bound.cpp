@@ -13,9 +13,9 @@ constexpr std::size_t coarse_steps = 400, most_fine_steps = 4000;
 constexpr double most_work = 4e9;       ///< steps of dynamic programming in the ascent
 constexpr double most_fine_work = 5e8;  ///< and in the last word
 constexpr std::size_t most_rounds = 600;
-constexpr std::size_t patience = 15;  ///< rounds without a better bound before steps are halved
-constexpr double rounding = 1e-9;     ///< of sums of prizes
-constexpr double nothing = -1.0;      ///< the prize where no tour leads
+constexpr std::size_t patience = 15;   ///< rounds without a better bound before steps are halved
+constexpr double sum_rounding = 1e-9;  ///< of sums of prizes
+constexpr double nothing = -1.0;       ///< the prize where no tour leads
 constexpr std::uint32_t pad = UINT32_MAX;  ///< as the station before the first
 
 /// The best tours that come to a station at a time: the best of all, and the best of those that
@@ -138,7 +138,7 @@ class Fleet {
     }
     const double all = std::accumulate(prizes.begin(), prizes.end(), 0.0);
     first_ = 0;
-    while (first_ < steps_ && sum[first_] < all - rounding) ++first_;
+    while (first_ < steps_ && sum[first_] < all - sum_rounding) ++first_;
     return static_cast<double>(first_) * step_;
   }
 

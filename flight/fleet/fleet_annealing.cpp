@@ -1,27 +1,25 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "flight/fleet/fleet_split.h"
-#include "flight/fly_test/random_numbers.h"
+#include "geometry/random_numbers.h"
 
 namespace skycap::flight {
 namespace {
 
 using Order = std::vector<std::uint32_t>;
 
-constexpr double never = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t seed = 1, stream_of_annealing = 6ULL << 32;
 constexpr std::size_t moves_per_station = 30'000, least_moves = 20'000;
-constexpr double most_work = 3e8;  ///< stations in the orders that are tried, in all
-constexpr std::size_t longest_chain = 4;
+constexpr double most_tried = 3e8;  ///< stations in the orders that are tried, in all
+constexpr std::size_t longest_moved_chain = 4;
 constexpr double first_temperature = 0.1, last_temperature = 0.0003;  ///< shares of the goal
 constexpr double hopeless = -40.0;  ///< exponent of a chance that no draw is below
 /// What the other figure counts: a shorter flight of one vehicle makes room for the others'.
 constexpr double share_of_other = 0.02;
 
-std::ptrdiff_t offset(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
+std::ptrdiff_t signed_index(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
 
 /// What a vehicle takes from place to place, the pad being the last, with what is done there.
 class Times {
@@ -72,7 +70,7 @@ class Annealing {
   FleetSplit run() {
     const double stations = static_cast<double>(std::max<std::size_t>(1, problem_.count()));
     const double wanted = std::max<double>(least_moves, moves_per_station * stations);
-    const double most = most_work * static_cast<double>(parts_.size()) / stations;
+    const double most = most_tried * static_cast<double>(parts_.size()) / stations;
     const auto moves = static_cast<std::size_t>(std::min(wanted, most));
     temperature_ = cost_ * first_temperature;
     const double cooling =
@@ -118,7 +116,7 @@ class Annealing {
     if (one_.size() < 2) return;
     std::size_t first = draw(one_.size()), last = draw(one_.size());
     if (first > last) std::swap(first, last);
-    std::reverse(one_.begin() + offset(first), one_.begin() + offset(last + 1));
+    std::reverse(one_.begin() + signed_index(first), one_.begin() + signed_index(last + 1));
     decide(v, v);
   }
 
@@ -126,15 +124,15 @@ class Annealing {
     one_ = parts_[v].stations;
     if (one_.empty()) return;
     const std::size_t first = draw(one_.size());
-    const std::size_t size = 1 + draw(std::min(longest_chain, one_.size() - first));
-    const auto begin = one_.begin() + offset(first);
-    chain_.assign(begin, begin + offset(size));
-    one_.erase(begin, begin + offset(size));
+    const std::size_t size = 1 + draw(std::min(longest_moved_chain, one_.size() - first));
+    const auto begin = one_.begin() + signed_index(first);
+    chain_.assign(begin, begin + signed_index(size));
+    one_.erase(begin, begin + signed_index(size));
     if (random_.uniform() < 0.5) std::ranges::reverse(chain_);
     if (v != w) other_ = parts_[w].stations;
     Order& target = v == w ? one_ : other_;
     const std::size_t place = draw(target.size() + 1);
-    target.insert(target.begin() + offset(place), chain_.begin(), chain_.end());
+    target.insert(target.begin() + signed_index(place), chain_.begin(), chain_.end());
     decide(v, w);
   }
 
@@ -148,7 +146,7 @@ class Annealing {
 
   void swap_tails(std::size_t v, std::size_t w) {
     const Order &first = parts_[v].stations, &second = parts_[w].stations;
-    const auto i = offset(draw(first.size() + 1)), j = offset(draw(second.size() + 1));
+    const auto i = signed_index(draw(first.size() + 1)), j = signed_index(draw(second.size() + 1));
     one_.assign(first.begin(), first.begin() + i);
     one_.insert(one_.end(), second.begin() + j, second.end());
     other_.assign(second.begin(), second.begin() + j);
@@ -188,7 +186,7 @@ class Annealing {
   Order one_, other_, chain_;  ///< that are tried
   std::vector<double> tried_;
   double cost_ = 0.0, best_cost_ = 0.0, temperature_ = 1.0;
-  RandomNumbers random_;
+  geometry::RandomNumbers random_;
 };
 
 }  // namespace

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "flight/motion/flight_time_range.h"
-#include "flight/route/leg_certifier.h"
-#include "flight/space/obstacles.h"
+#include "flight/route/leg_costs.h"
 
 namespace skycap::flight {
 namespace {
@@ -88,14 +86,12 @@ std::vector<double> home_shortfalls(std::span<const Station> stations, const Vec
 
 FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& member,
                          const Shortfalls& shortfalls) {
-  const KnownSpace nothing(Obstacles{});
-  const std::optional<WaysHome> no_ways_home;
   const Motion motion(member.vehicle, member.options.conditions);
-  const LegCertifier legs(nothing, motion, 0.0, no_ways_home);
+  const LegCosts costs(motion);
   const auto leg = [&](const Vector3d& way, double shortfall, const Station* from,
                        const Station* to) {
     const double moving = least_leg_time(motion, way) + least_corner_time(motion, way, shortfall);
-    const double time = legs.aimed_time(moving, from, to);
+    const double time = costs.aimed_time(moving, from, to);
     return PartCost{time, motion.leg_energy(way, time), 0.0};
   };
   const auto shortfall_in = [](const std::vector<double>& list, std::size_t i) {
@@ -109,10 +105,11 @@ FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& m
     const Vector3d& place = stations[i].view.position;
     const Vector3d way = place - member.home();
     const double shortfall = shortfall_in(shortfalls.home, i);
-    vehicle.out.push_back(in_turn(legs.takeoff_cost(climb), leg(way, shortfall, nullptr, nullptr)));
+    vehicle.out.push_back(
+        in_turn(costs.takeoff_cost(climb), leg(way, shortfall, nullptr, nullptr)));
     vehicle.back.push_back(
-        in_turn(leg(-way, shortfall, nullptr, nullptr), legs.landing_cost(climb)));
-    vehicle.station.push_back(legs.station_cost(stations[i]));
+        in_turn(leg(-way, shortfall, nullptr, nullptr), costs.landing_cost(climb)));
+    vehicle.station.push_back(costs.station_cost(stations[i]));
     for (std::uint32_t j = 0; j < stations.size(); ++j) {
       if (i == j) continue;
       const std::size_t k = i * stations.size() + j;

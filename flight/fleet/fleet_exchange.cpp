@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "flight/fleet/fleet_split.h"
@@ -9,7 +8,6 @@ namespace {
 
 using Order = std::vector<std::uint32_t>;
 
-constexpr double never = std::numeric_limits<double>::infinity();
 /// An improvement must exceed rounding, or moves could go in circles.
 constexpr double least_gain = 1e-9;
 constexpr std::size_t longest_chain = 3;  ///< of stations that are moved together

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "flight/fly_test/random_numbers.h"
 #include "geometry/parallel.h"
+#include "geometry/random_numbers.h"
 
 namespace skycap::flight {
 namespace {
@@ -25,7 +25,7 @@ struct Track {
 
 std::vector<Track> tracks_of(std::span<const FleetFlight> flights, const SeparationRule& rule,
                              const FlyTestOptions& options, std::size_t number) {
-  RandomNumbers random(options.seed, stream_of_fleets + number);
+  geometry::RandomNumbers random(options.seed, stream_of_fleets + number);
   const double from = random.between(0.0, 2.0 * std::numbers::pi);
   const Eigen::Vector2d wind =
       random.between(0.0, options.wind_speed) * Eigen::Vector2d(std::sin(from), std::cos(from));

@@ -1,7 +1,6 @@
 #include "flight/fleet/fleet_split.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -9,8 +8,6 @@
 
 namespace skycap::flight {
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 using Order = std::vector<std::uint32_t>;
 

@@ -153,18 +153,4 @@ Timetable timetable(const std::vector<FleetSortie>& sorties, std::size_t vehicle
   return Scheduler(sorties, vehicles, rule).best();
 }
 
-std::optional<SortiePair> first_conflict(const std::vector<TimedFlight>& flights,
-                                         const std::vector<std::size_t>& vehicle_of,
-                                         const SeparationRule& rule) {
-  for (std::size_t i = 0; i < flights.size(); ++i) {
-    for (std::size_t j = i + 1; j < flights.size(); ++j) {
-      if (vehicle_of[i] == vehicle_of[j]) continue;
-      if (const auto encounter = too_near(flights[i], flights[j], rule)) {
-        return SortiePair{i, j, *encounter};
-      }
-    }
-  }
-  return std::nullopt;
-}
-
 }  // namespace skycap::flight

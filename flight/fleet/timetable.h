@@ -19,12 +19,6 @@ struct FleetSortie {
       0;  ///< of all its vehicle may fly: one of them is flown, with all its sorties
 };
 
-/// Two sorties, by their places in the list, and how near they come.
-struct SortiePair {
-  std::size_t first = 0, second = 0;
-  Encounter encounter;
-};
-
 struct Timetable {
   std::vector<double> starts;         ///< by sortie [s]; of variants that are not flown 0
   std::vector<std::size_t> variants;  ///< by vehicle: which of them it flies
@@ -40,10 +34,5 @@ struct Timetable {
 /// The sequence with the least makespan wins.
 Timetable timetable(const std::vector<FleetSortie>& sorties, std::size_t vehicles,
                     const SeparationRule& rule);
-
-/// The first pair of different vehicles' flights that come too near; nothing: all are proven.
-std::optional<SortiePair> first_conflict(const std::vector<TimedFlight>& flights,
-                                         const std::vector<std::size_t>& vehicle_of,
-                                         const SeparationRule& rule);
 
 }  // namespace skycap::flight

@@ -20,7 +20,7 @@ constexpr std::uint64_t stream_of_draws = 1ULL << 32, stream_of_places = 2ULL <<
 
 FlightDraw draw_of(std::size_t number, const FlownMission& mission, const FlyTestOptions& options,
                    double planned_time) {
-  RandomNumbers random(options.seed, stream_of_draws + number);
+  geometry::RandomNumbers random(options.seed, stream_of_draws + number);
   FlightDraw draw{.seed = options.seed, .number = number};
   const double from = random.between(0.0, 2.0 * std::numbers::pi);
   draw.wind =
@@ -45,7 +45,7 @@ std::vector<Vector3d> places_of(const FlownMission& mission, const FlyTestOption
     }
     begin += leg.duration();
   }
-  RandomNumbers random(options.seed, stream_of_places);
+  geometry::RandomNumbers random(options.seed, stream_of_places);
   for (std::size_t i = 0; i < options.returns; ++i) {
     double along = random.between(0.0, length);
     for (const ScriptedLeg& leg : mission.script) {
@@ -87,7 +87,7 @@ std::vector<ReturnTest> fly_returns(const FlownMission& mission, std::span<const
     std::vector<Closest> nearest(places.size());
     geometry::parallel_for(places.size(), options.threads, [&](std::size_t i) {
       if (options.stop.stop_requested()) return;
-      RandomNumbers random(options.seed, stream_of_returns + i);
+      geometry::RandomNumbers random(options.seed, stream_of_returns + i);
       nearest[i] = nearest_return(*mission.law, return_way(*mission.law, places[i], random),
                                   judges[j], options.up_to);
     });

@@ -50,7 +50,7 @@ void climb_and_fly(const Vector3d& over, double cut, std::vector<Vector3d>& way)
 }  // namespace
 
 std::vector<Vector3d> return_way(const ReturnLaw& law, const Vector3d& place,
-                                 RandomNumbers& random) {
+                                 geometry::RandomNumbers& random) {
   const Vector3d landing = nearest_landing(law, place);
   const double top = std::max(law.level, place.z());
   const double away = distance_over_ground(place, landing);
@@ -74,7 +74,7 @@ std::vector<Vector3d> return_way(const ReturnLaw& law, const Vector3d& place,
 }
 
 FlightScript return_script(const ReturnLaw& law, const Motion& motion, const Vector3d& place,
-                           RandomNumbers& random) {
+                           geometry::RandomNumbers& random) {
   const Dialect dialect = law.dialects.front();
   const std::vector<Vector3d> way = return_way(law, place, random);
   const Vector3d over = way[way.size() - 2];

@@ -101,7 +101,7 @@ class Simulation {
 
   const FlownMission& mission_;
   const FlightDraw& draw_;
-  RandomNumbers random_;
+  geometry::RandomNumbers random_;
   Weather weather_;
   ReceiverError receiver_;
   VehicleModel vehicle_;

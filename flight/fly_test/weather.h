@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "flight/fly_test/random_numbers.h"
+#include "geometry/random_numbers.h"
 
 namespace skycap::flight {
 
@@ -15,7 +15,8 @@ namespace skycap::flight {
 class Weather {
  public:
   /// A steady wind, which gusts come on top of; `wind` is the velocity of the air.
-  Weather(const Eigen::Vector2d& wind, RandomNumbers& random) : wind_(wind), random_(random) {}
+  Weather(const Eigen::Vector2d& wind, geometry::RandomNumbers& random)
+      : wind_(wind), random_(random) {}
 
   /// The velocity of the air after `step` [s] more at a height above the ground, for a vehicle that
   /// moves through it with `airspeed`.
@@ -23,7 +24,7 @@ class Weather {
 
  private:
   Eigen::Vector2d wind_;
-  RandomNumbers& random_;
+  geometry::RandomNumbers& random_;
   Eigen::Vector3d gust_ = Eigen::Vector3d::Zero();  ///< along the wind, across, up
   bool has_begun_ = false;
 };
@@ -32,13 +33,13 @@ class Weather {
 /// whole error never greater than `bound`, which is three of its standard deviations.
 class ReceiverError {
  public:
-  ReceiverError(double bound, RandomNumbers& random) : bound_(bound), random_(random) {}
+  ReceiverError(double bound, geometry::RandomNumbers& random) : bound_(bound), random_(random) {}
 
   Eigen::Vector3d next(double step);
 
  private:
   double bound_;
-  RandomNumbers& random_;
+  geometry::RandomNumbers& random_;
   Eigen::Vector3d error_ = Eigen::Vector3d::Zero();
   bool has_begun_ = false;
 };

@@ -5,8 +5,6 @@
 /// ArduPilot skips commands that it does not know without a word; PX4 refuses the mission.
 #pragma once
 
-#include <span>
-
 namespace skycap::flight {
 
 /// What the interpreter does with a command.
@@ -38,10 +36,7 @@ struct CommandRow {
   const char* why;  ///< of those refused: what the autopilots do with it
 };
 
-/// The table, ids ascending. What is not in it is refused as unknown.
-std::span<const CommandRow> known_commands();
-
-/// The row of a command; nullptr if it is not known.
+/// The row of a command; nullptr if it is not known, and refused as such.
 const CommandRow* find_command(int id);
 
 /// Whether the command goes to a place of its own.

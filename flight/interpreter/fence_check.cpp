@@ -101,14 +101,16 @@ Problems check_fence(const MissionFile& file, const FlownRoute& route, const Fli
   const LocalFrame frame(facts.site.origin);
   for (const FenceArea& area : file.fence) check_area(area, route, frame, problems);
   if (facts.fence && !holds(file, *facts.fence, true, frame)) {
-    problems.push_back("geoFence lacks the mission's fence \"" + facts.fence->name + "\"");
+    problems.push_back("geoFence does not contain the mission's fence \"" + facts.fence->name +
+                       "\"");
   }
   for (const Prism& prism : facts.no_fly) {
     if (std::isfinite(prism.ceiling)) continue;  // a return may pass over it
     Obstacles footprint;
     footprint.no_fly = {{prism.name, prism.footprint}};  // unbounded in height
     if (holds(file, prism, false, frame) || touch(route, footprint).distance < grazing) continue;
-    problems.push_back("geoFence lacks the mission's no-fly volume \"" + prism.name + "\"");
+    problems.push_back("geoFence does not contain the mission's no-fly volume \"" + prism.name +
+                       "\"");
   }
   return problems;
 }

@@ -13,7 +13,8 @@ Problems check_home(const MissionFile& file, const std::optional<Vector3d>& pad,
   if (!file.home) return {};
   if (!facts.site.geoid_undulation) {
     return {file.home_name +
-            " is above sea level; give site.geoid_undulation to compare it with the pad"};
+            " is a height above mean sea level; set site.geoid_undulation to compare it with the "
+            "take-off point"};
   }
   Problems problems;
   GeodeticPoint home = *file.home;
@@ -21,11 +22,11 @@ Problems check_home(const MissionFile& file, const std::optional<Vector3d>& pad,
   const Vector3d away = LocalFrame(facts.site.origin).to_local(home) - pad.value_or(facts.pad);
   const double level = away.head<2>().norm();
   if (level > pad_tolerance && (pad || facts.is_pad_known)) {
-    problems.push_back(file.home_name + " is " + fixed(level, 1) + " m from the pad");
+    problems.push_back(file.home_name + " is " + fixed(level, 1) + " m from the take-off point");
   }
   if (std::abs(away.z()) > pad_height_tolerance) {
     problems.push_back(file.home_name + " is " + fixed(std::abs(away.z()), 1) + " m " +
-                       (away.z() > 0.0 ? "above" : "below") + " the pad");
+                       (away.z() > 0.0 ? "above" : "below") + " the take-off point");
   }
   return problems;
 }
@@ -42,18 +43,19 @@ Problems check_rally(const MissionFile& file, const FlightFacts& facts) {
     });
     if (known == missing.end()) {
       problems.push_back(name +
-                         " is none of the mission's flight.rally: returns to it are not proven");
+                         " is not in the mission's flight.rally: returns to it are not verified");
       continue;
     }
     missing.erase(known);
     if (std::abs(file.rally[i].height) <= pad_height_tolerance) continue;
-    problems.push_back(name + " is " + fixed(file.rally[i].height, 1) +
-                       " m above home, and PX4 returns by as much higher; it must be 0");
+    problems.push_back(
+        name + " is " + fixed(file.rally[i].height, 1) +
+        " m above home, which raises PX4's returns by the same height; it must be 0");
   }
   if (missing.empty()) return problems;
-  problems.push_back("the file lacks " + std::to_string(missing.size()) + " of the mission's " +
-                     std::to_string(facts.rally.size()) +
-                     " rally points, which returns are proven to");
+  problems.push_back("the file does not contain " + std::to_string(missing.size()) +
+                     " of the mission's " + std::to_string(facts.rally.size()) +
+                     " rally points, to which returns are verified");
   return problems;
 }
 

@@ -29,7 +29,7 @@ FlownRoute in_a_row(const std::vector<Eigen::Vector3d>& places, const Naming& na
     if (i == 0) continue;
     route.pieces.push_back({{places[i - 1], places[i - 1]}, places[i], name(i - 1), name(i)});
   }
-  if (route.pieces.empty()) route.problems.emplace_back("the file holds no legs");
+  if (route.pieces.empty()) route.problems.emplace_back("the file contains no legs");
   return route;
 }
 
@@ -44,8 +44,8 @@ FlownRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
       route.problems.push_back(name(i) + " " + what);
     };
     if (point.curve > covered_curve) {
-      complain("has a curve of " + fixed(point.curve, 1) + " m, which is not proven; it must be " +
-               "at most 0.3 m");
+      complain("has a curve of " + fixed(point.curve, 1) +
+               " m, which cannot be verified; it must be " + "at most 0.3 m");
     }
     if (!(point.speed > 0.0 && point.speed <= facts.cruise_speed + 1e-3)) {
       complain("has speed " + fixed(point.speed, 2) + " m/s; it must be above 0 and at most the " +

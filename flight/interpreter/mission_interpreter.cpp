@@ -69,13 +69,14 @@ class MissionFlight {
   void step(const MissionItem& item) {
     const CommandRow* row = find_command(item.command);
     if (row == nullptr) {
-      return complain(item, "is a command that is not known here; remove it");
+      return complain(item, "is an unsupported command; remove it");
     }
     if (has_landed_) return complain(item, "comes after the landing");
-    if (!item.auto_continue) complain(item, "does not go on to the next item (autocontinue is 0)");
+    if (!item.auto_continue)
+      complain(item, "does not continue to the next item (autocontinue is 0)");
     if (!is_flown_by(*row)) {
       return complain(
-          item, std::string("is a ") + row->name + ", which " + autopilot() + " does not fly");
+          item, std::string("is a ") + row->name + ", which " + autopilot() + " does not support");
     }
     if (row->meaning == Meaning::refused) {
       return complain(item, std::string("is a ") + row->name + ": " + row->why);
@@ -93,19 +94,19 @@ class MissionFlight {
     if (has_place(row.meaning)) {
       if (is_above_sea(item) || is_above_home(item)) return check_place(item, row);
       complain(item, "has frame " + std::to_string(item.frame) +
-                         ", whose height is not known here; use 3 (above home) or 0 (sea level)");
+                         ", which is not supported; use 3 (above home) or 0 (sea level)");
       return false;
     }
     if (dialect_ != Dialect::px4 || item.frame == frame::mission) return true;
-    complain(item, "has frame " + std::to_string(item.frame) + "; PX4 takes it in frame 2 only");
+    complain(item, "has frame " + std::to_string(item.frame) + "; PX4 accepts it in frame 2 only");
     return false;
   }
 
   bool check_place(const MissionItem& item, const CommandRow& row) {
     const bool is_nowhere = !has_coordinates(item) && !takes_present_place(row);
-    if (is_nowhere) complain(item, "has no place: 0 degrees north and east mean \"as before\"");
+    if (is_nowhere) complain(item, "has no position: latitude and longitude 0 mean \"as before\"");
     const bool is_without_height = row.meaning == Meaning::fly_to && item.params[6] == 0.0;
-    if (is_without_height) complain(item, "has height 0, which ArduPilot takes for \"as before\"");
+    if (is_without_height) complain(item, "has height 0, which ArduPilot reads as \"as before\"");
     return !is_nowhere && !is_without_height;
   }
 
@@ -141,7 +142,7 @@ class MissionFlight {
       case Meaning::trigger_photo:
         return photograph(item, row.meaning);
       case Meaning::hold_fence:
-        if (item.params[0] != 1.0) complain(item, "switches the fence off");
+        if (item.params[0] != 1.0) complain(item, "disables the fence");
         return;
       default:
         return;
@@ -179,11 +180,13 @@ class MissionFlight {
     pad_ = facts_.pad;
     if (!facts_.is_pad_known) pad_.head<2>() = place.head<2>();
     if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
-      complain(item, "takes off " + fixed(away, 1) + " m from the mission's pad");
+      complain(item, "takes off " + fixed(away, 1) + " m from the mission's take-off point");
     }
     position_ = Vector3d(pad_.x(), pad_.y(), place.z());
-    if (position_.z() <= pad_.z()) complain(item, "climbs to a height that is not above the pad");
-    append_column(route_, {pad_, position_}, {"the pad", name_of(item)}, facts_.takeoff_climb);
+    if (position_.z() <= pad_.z())
+      complain(item, "climbs to a height that is not above the take-off point");
+    append_column(route_, {pad_, position_}, {"the take-off point", name_of(item)},
+                  facts_.takeoff_climb);
     arrive(item, {position_, position_}, true);
   }
 
@@ -205,7 +208,9 @@ class MissionFlight {
       departure.from = target + std::min(1.0, radius / way) * (from - target);
     }
     if (is_early && departure.length() > 0.0) {
-      complain(item, "is passed without a stop right after another; what is flown is not proven");
+      complain(
+          item,
+          "is passed without a stop right after another; the resulting curve cannot be verified");
     }
     arrive(item, departure, stops && radius <= acceptance_radius);
   }
@@ -255,22 +260,23 @@ class MissionFlight {
     append_column(route_, {above, ground}, {name_of(item), "the ground"}, facts_.takeoff_climb);
     if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
       complain(item, "lands " + fixed(away, 1) +
-                         " m from the pad, where nobody has looked at the " + "ground");
+                         " m from the take-off point, without verification of the " + "ground");
     }
   }
 
   void wait(const MissionItem& item) {
     const double seconds = item.params[0];
     if (!(seconds > 0.0 && seconds <= longest_wait)) {
-      return complain(item, "waits for " + fixed(seconds, 1) +
-                                " s; it must be above 0 and at most 600: else it is a time of day");
+      return complain(item,
+                      "waits for " + fixed(seconds, 1) +
+                          " s; it must be above 0 and at most 600, otherwise it is a time of day");
     }
     if (departure_.length() == 0.0) hold_ += seconds;
     route_.pieces.back().hold += seconds;
   }
 
   void turn(const MissionItem& item) {
-    if (item.params[3] != 0.0) return complain(item, "turns by an angle, not to a heading");
+    if (item.params[3] != 0.0) return complain(item, "turns by an angle instead of to a heading");
     if (!(item.params[0] >= 0.0 && item.params[0] <= 360.0)) {
       return complain(item, "turns to a heading outside [0, 360] degrees");
     }
@@ -289,7 +295,7 @@ class MissionFlight {
       is_speed_set_ = true;
       speed_ = speed;
     } else {
-      return complain(item, "sets a speed of a type that is not known here; use 0, 1, 2 or 3");
+      return complain(item, "sets an unsupported speed type; use 0, 1, 2 or 3");
     }
     if (speed > 0.0 && speed <= limit + 1e-3) return;
     complain(item, "sets " + fixed(speed, 2) + " m/s; it must be above 0 and at most " + whose +
@@ -307,23 +313,23 @@ class MissionFlight {
   void aim(const MissionItem& item, Meaning meaning) {
     const auto& p = item.params;
     if (meaning == Meaning::aim_by_mount) {
-      if (p[6] != aims_by_angles) return complain(item, "does not aim by angles (mode 2)");
+      if (p[6] != aims_by_angles) return complain(item, "must aim by angles (mode 2)");
       if (p[1] != 0.0 || p[2] != 0.0) {
-        return complain(item, "rolls or turns the gimbal; only its pitch is known here");
+        return complain(item, "rolls or turns the gimbal; only pitch is supported");
       }
     } else if (p[1] != 0.0 && !std::isnan(p[1])) {
-      return complain(item, "turns the gimbal; only its pitch is known here");
+      return complain(item, "turns the gimbal; only pitch is supported");
     }
     pitch_deg_ = p[0];
   }
 
   void photograph(const MissionItem& item, Meaning meaning) {
     if (meaning == Meaning::take_photo && item.params[2] != 1.0) {
-      return complain(
-          item, "takes " + fixed(item.params[2], 0) + " images; more than one are taken under way");
+      return complain(item, "takes " + fixed(item.params[2], 0) +
+                                " images; more than one cannot be taken in motion");
     }
     if (meaning == Meaning::trigger_photo && item.params[4] != 1.0) return;  // focus or zoom
-    if (!is_exact_) return complain(item, "photographs where the vehicle does not stop");
+    if (!is_exact_) return complain(item, "captures an image where the vehicle does not stop");
     if (std::exchange(shoots_, true)) {
       ++route_.stops.back().shots;
       return;
@@ -360,13 +366,13 @@ FlownRoute interpret(const MissionFile& file, const FlightFacts& facts) {
   const Dialect dialect = file.dialect.value_or(flown_by.value_or(Dialect::px4));
   FlownRoute route = MissionFlight(file, dialect, facts).fly();
   if (!file.dialect && !flown_by) {
-    route.problems.insert(route.problems.begin(), "the file does not say which autopilot flies it");
+    route.problems.insert(route.problems.begin(), "the file does not state its autopilot");
   }
   if (flown_by && *flown_by != dialect) {
     route.problems.insert(route.problems.begin(),
                           std::string("the file is written for ") +
                               (dialect == Dialect::px4 ? "PX4" : "ArduPilot") + "; vehicle \"" +
-                              facts.vehicle->name + "\" flies another autopilot");
+                              facts.vehicle->name + "\" has another autopilot");
   }
   return route;
 }

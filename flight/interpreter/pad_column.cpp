@@ -7,7 +7,7 @@ namespace skycap::flight {
 namespace {
 
 /// Formats round heights by less than this, own climbs included [m].
-constexpr double rounding = 0.02;
+constexpr double column_rounding = 0.02;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void append_column(FlownRoute& route, const Segment& column,
                           bool is_over_pad) {
     route.pieces.push_back({{from, from}, to, items[0], items[1], is_over_pad});
   };
-  if (std::abs(column.to.z() - column.from.z()) <= vouched + rounding) {
+  if (std::abs(column.to.z() - column.from.z()) <= vouched + column_rounding) {
     return append(column.from, column.to, true);
   }
   const Eigen::Vector3d seam(column.to.x(), column.to.y(), foot + vouched);

@@ -40,11 +40,11 @@ std::string compare(const FlownStop& stop, const std::vector<geometry::View>& vi
     has_place = true;
     turned = std::min(turned, angle_between(direction_of(stop), view.direction));
   }
-  if (!has_place) return "photographs from a place that is none of the mission's views";
-  if (std::isnan(stop.yaw_deg)) return "photographs without a heading of its own";
-  if (std::isnan(stop.pitch_deg)) return "photographs without a gimbal pitch of its own";
+  if (!has_place) return "captures an image away from all views of the mission";
+  if (std::isnan(stop.yaw_deg)) return "captures an image without a heading";
+  if (std::isnan(stop.pitch_deg)) return "captures an image without a gimbal pitch";
   if (turned <= direction_tolerance) return "";
-  return "photographs " + fixed(turned / degree, 1) + " degrees beside its view";
+  return "captures an image " + fixed(turned / degree, 1) + " degrees beside its view";
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ Problems check_photographs(const std::vector<FlownStop>& stops, const FlightFact
       problems.push_back(stop.item + " " + what);
     };
     if (stop.hold < facts.hold - hold_tolerance) {
-      complain("holds " + fixed(stop.hold, 2) + " s before its photograph; the mission's hold is " +
+      complain("holds " + fixed(stop.hold, 2) + " s before its image; the mission's hold is " +
                fixed(facts.hold, 2) + " s");
     }
     if (facts.vehicle) {

@@ -30,20 +30,20 @@ struct OnlyValue {
 
 constexpr std::array mission_rules{
     OnlyValue{"flyToWaylineMode", "safely", "flies a slant to the first waypoint"},
-    OnlyValue{"exitOnRCLost", "executeLostAction", "flies on without a link"},
-    OnlyValue{"executeRCLostAction", "goBack", "stays or lands where the link is lost"}};
+    OnlyValue{"exitOnRCLost", "executeLostAction", "continues without a link"},
+    OnlyValue{"executeRCLostAction", "goBack", "hovers or lands where the link is lost"}};
 
 constexpr std::array template_rules{
     OnlyValue{"globalWaypointTurnMode", "toPointAndStopWithDiscontinuityCurvature",
               "leaves the straight legs"},
     OnlyValue{"globalUseStraightLine", "1", "leaves the straight legs"},
-    OnlyValue{"caliFlightEnable", "0", "flies a calibration that nobody has proven"},
+    OnlyValue{"caliFlightEnable", "0", "flies a calibration that is not verified"},
     OnlyValue{"gimbalPitchMode", "manual", "pitches the gimbal between waypoints"}};
 
 constexpr std::array template_waypoint_rules{
-    OnlyValue{"useGlobalHeight", "0", "takes another height"},
-    OnlyValue{"useGlobalSpeed", "1", "takes a speed of its own"},
-    OnlyValue{"useGlobalTurnParam", "1", "takes a turn of its own"},
+    OnlyValue{"useGlobalHeight", "0", "sets another height"},
+    OnlyValue{"useGlobalSpeed", "1", "sets a speed of its own"},
+    OnlyValue{"useGlobalTurnParam", "1", "sets a turn mode of its own"},
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
 
 constexpr std::array wayline_waypoint_rules{
@@ -52,7 +52,7 @@ constexpr std::array wayline_waypoint_rules{
 constexpr std::array group_rules{OnlyValue{"actionGroupMode", "sequence", "acts at any time"}};
 
 constexpr std::array gimbal_rules{
-    OnlyValue{"gimbalRotateMode", "absoluteAngle", "pitches by an angle, not to one"},
+    OnlyValue{"gimbalRotateMode", "absoluteAngle", "pitches by an angle instead of to one"},
     OnlyValue{"gimbalRollRotateEnable", "0", "rolls the gimbal"},
     OnlyValue{"gimbalYawRotateEnable", "0", "turns the gimbal away from the heading"}};
 
@@ -183,7 +183,7 @@ class WpmlFlight {
       std::string_view name = child.name();
       if (name.starts_with("wpml:")) name.remove_prefix(5);
       if (std::ranges::find(known, name) != known.end()) continue;
-      complain("has " + std::string(child.name()) + ", which is not known here; remove it", who);
+      complain("has " + std::string(child.name()) + ", which is not supported; remove it", who);
     }
   }
 
@@ -230,7 +230,8 @@ class WpmlFlight {
     for (const Vector3d& place : places) {
       highest = std::max(highest, frame_.to_geodetic(place).height - foot);
     }
-    check_height("takeOffSecurityHeight", facts_.takeoff_climb, "the climb from the pad");
+    check_height("takeOffSecurityHeight", facts_.takeoff_climb,
+                 "the climb from the take-off point");
     check_height("globalRTHHeight", highest, "the height of the highest waypoint");
     check_speed(config_, "globalTransitionalSpeed");
     check_speed(folder_, "autoFlightSpeed");
@@ -238,7 +239,7 @@ class WpmlFlight {
     for (const char* mode : {"aboveGroundLevel", "realTimeFollowSurface"}) {
       const pugi::xml_node system = folder_.child("wpml:waylineCoordinateSysParam");
       if (text_of(folder_, "executeHeightMode") == mode || text_of(system, "heightMode") == mode) {
-        complain(std::string("counts heights as ") + mode + ", from a ground that is not known");
+        complain(std::string("has heights with reference ") + mode + ", whose ground is unknown");
       }
     }
     if (!facts_.vehicle || facts_.vehicle->dialect != Dialect::dji) return;
@@ -253,10 +254,11 @@ class WpmlFlight {
     const double security = number_of(config_, "takeOffSecurityHeight");
     const double top = std::max(first.z(), pad.z() + (std::isnan(security) ? 0.0 : security));
     const Vector3d over_pad(pad.x(), pad.y(), top), over_first(first.x(), first.y(), top);
-    append_column(route_, {pad, over_pad}, {"the pad", waypoint(0)}, facts_.takeoff_climb);
+    append_column(route_, {pad, over_pad}, {"the take-off point", waypoint(0)},
+                  facts_.takeoff_climb);
     for (const Segment& leg : {Segment{over_pad, over_first}, Segment{over_first, first}}) {
       if (leg.length() < rounding) continue;
-      route_.pieces.push_back({{leg.from, leg.from}, leg.to, "the pad", waypoint(0)});
+      route_.pieces.push_back({{leg.from, leg.from}, leg.to, "the take-off point", waypoint(0)});
     }
   }
 
@@ -267,7 +269,7 @@ class WpmlFlight {
     const double away = (last - pad).head<2>().norm();
     if (away <= pad_tolerance) return;
     complain("is the last, " + fixed(away, 1) +
-                 " m from the pad: the way home is not proven, nor the ground below it",
+                 " m from the take-off point: neither the return nor the ground below is verified",
              who);
   }
 
@@ -325,7 +327,7 @@ class WpmlFlight {
     }
     const std::string trigger = text_of(group.child("wpml:actionTrigger"), "actionTriggerType");
     if (trigger != "reachPoint") {
-      complain("acts by wpml:actionTriggerType " + trigger + "; it must be reachPoint",
+      complain("has wpml:actionTriggerType " + trigger + "; it must be reachPoint",
                waypoint(index));
     }
   }
@@ -344,7 +346,7 @@ void check_pad(const Vector3d& said, const Vector3d& pad, Problems& problems) {
   const double level = (said - pad).head<2>().norm(), up = said.z() - pad.z();
   if (level <= pad_tolerance && std::abs(up) <= pad_height_tolerance) return;
   problems.push_back("template.kml has wpml:takeOffRefPoint " + fixed(level, 1) + " m from and " +
-                     fixed(up, 1) + " m above the pad");
+                     fixed(up, 1) + " m above the take-off point");
 }
 
 }  // namespace

@@ -14,6 +14,9 @@
 
 namespace skycap::flight {
 
+/// Rounding may make a curve that was slowed as needed look too fast by this share.
+inline constexpr double limit_tolerance = 1e-9;
+
 /// The shape of the curve round a corner.
 struct CornerShape {
   double reach = 0.0;   ///< from so far before the corner to as far behind it; zero: a stop in it

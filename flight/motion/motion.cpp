@@ -42,7 +42,7 @@ void Conditions::validate(const Vehicle& vehicle) const {
   const auto fail = [](const std::string& what) { throw Error(ErrorKind::bad_config, what); };
   if (!wind.allFinite() || wind.norm() > vehicle.max_wind) {
     fail("the wind is " + std::to_string(wind.norm()) + " m/s; vehicle \"" + vehicle.name +
-         "\" flies up to " + std::to_string(vehicle.max_wind) + " m/s");
+         "\" is limited to " + std::to_string(vehicle.max_wind) + " m/s");
   }
   if (!(cruise_speed > 0.0) || !(cruise_speed <= vehicle.max_speed)) {
     fail("the cruise speed is " + std::to_string(cruise_speed) + " m/s; for vehicle \"" +
@@ -53,13 +53,14 @@ void Conditions::validate(const Vehicle& vehicle) const {
   }
   if (!(longest_flight >= 1.0)) {
     fail("the longest flight is " + std::to_string(longest_flight) +
-         " times as long as predicted; it must be 1 or more");
+         " times the estimate; it must be 1 or more");
   }
   if (!(air_density > 0.3 && air_density < 2.0)) {
     fail("the air density is " + std::to_string(air_density) + " kg/m^3; it must be in (0.3, 2)");
   }
   if (!(temperature_c > -40.0 && temperature_c < 60.0)) {
-    fail("the temperature is " + std::to_string(temperature_c) + " C; it must be in (-40, 60)");
+    fail("the temperature is " + std::to_string(temperature_c) +
+         " degrees Celsius; it must be in (-40, 60)");
   }
 }
 
@@ -138,9 +139,9 @@ Motion::Motion(const Vehicle& vehicle, const Conditions& conditions)
   if (!(rotor_power > 0.0) || !(efficiency_ < 1.0)) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + vehicle.name + "\": an endurance of " +
                                            std::to_string(vehicle.endurance_min) +
-                                           " min would need " +
+                                           " min requires " +
                                            std::to_string(data_sheet_power(vehicle)) +
-                                           " W, less than its mass takes to hover");
+                                           " W, less than its mass needs to hover");
   }
   const double density_ratio = conditions.air_density / sea_level_density;
   induced_speed_ = std::sqrt(thrust / (2.0 * conditions.air_density * disc_area(vehicle)));

@@ -25,8 +25,6 @@ constexpr double near_enough = 1e-6;
 constexpr int most_bendings = 40;
 /// Nothing is flown more slowly (see Motion::leg_speed()) [m/s].
 constexpr double least_speed = 0.1;
-/// Rounding may make a curve that was slowed as needed look too fast by this share.
-constexpr double limit_tolerance = 1e-9;
 
 double turn(double from, double to) { return std::remainder(to - from, 2.0 * std::numbers::pi); }
 

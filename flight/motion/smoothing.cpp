@@ -14,8 +14,6 @@ using Eigen::Vector3d;
 /// How far outside of the clearance a refined curve is pulled, as shares of it: soft walls give way
 /// a little, so the next is tried when the proof fails.
 constexpr std::array wall_offsets{0.03, 0.1, 0.3};
-/// Rounding may make a curve that was slowed as needed look too fast by this share.
-constexpr double limit_tolerance = 1e-9;
 
 std::vector<Vector3d> without_repeats(std::vector<Vector3d> points) {
   points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -34,6 +34,7 @@ struct Vehicle {
   double max_wind = 10.0;                   ///< [m/s]
   double sway_speed = 0.1;                  ///< at which it still moves when it stands [m/s]
   double sway_rate = 0.0087;                ///< at which its camera still turns then [rad/s]
+  double position_error = 0.1;              ///< maximum navigation error, by its positioning [m]
 
   double mass = 2.0;  ///< flown, with payload [kg]
   int rotors = 4;

@@ -8,6 +8,7 @@
 
 #include "flight/space/cell_map.h"
 #include "geometry/error.h"
+#include "geometry/points/hash_grid.h"
 
 namespace skycap::flight {
 namespace {
@@ -37,7 +38,7 @@ class GridDistances {
 
   /// Distance of a vertex as far as it is known; at least enough to tell whether it is free.
   double distance(const Cell& cell) {
-    Known& known = known_.at(cell, {});
+    Known& known = known_.insert(cell_key(cell)).value;
     if (known.is_exact || known.bound >= needed_) return known.bound;
     known = {space_->surface_distance(position(cell), needed_ + 6.0 * cell_), true};
     return known.bound;
@@ -45,7 +46,7 @@ class GridDistances {
 
   /// Tells a vertex that a place `step` away is at `distance` from everything (1-Lipschitz).
   void tell(const Cell& cell, double distance, double step) {
-    Known& known = known_.at(cell, {});
+    Known& known = known_.insert(cell_key(cell)).value;
     if (!known.is_exact) known.bound = std::max(known.bound, distance - step);
   }
 
@@ -59,7 +60,7 @@ class GridDistances {
   const FreeSpace* space_;
   double cell_;
   double needed_;
-  CellMap<Known> known_;
+  geometry::HashGrid<Known> known_;
 };
 
 /// One run of Lazy Theta* on one grid. Vertex 0 is the start and vertex 1 the goal, which need not
@@ -213,7 +214,7 @@ class Search {
 
   std::uint32_t vertex_at(const Cell& cell) {
     const auto fresh = static_cast<std::uint32_t>(vertices_.size());
-    const std::uint32_t v = index_.at(cell, fresh);
+    const std::uint32_t v = index_.insert(cell_key(cell), fresh).value;
     if (v == fresh) vertices_.push_back({grid_.position(cell), cell, unreached, 0});
     return v;
   }
@@ -234,7 +235,7 @@ class Search {
   Cell start_cell_, goal_cell_;
   double limit_ = unreached;
   std::vector<Vertex> vertices_;
-  CellMap<std::uint32_t> index_;
+  geometry::HashGrid<std::uint32_t> index_;
   std::priority_queue<Entry> open_;
 };
 
@@ -246,7 +247,7 @@ void PathOptions::validate() const {
   };
   require(finest_cell >= 0.0 && std::isfinite(finest_cell),
           "path.finest_cell is " + std::to_string(finest_cell) + " m; it must be zero or more");
-  require(max_expansions > 0, "path.max_expansions is 0; at least 1 is needed to find a path");
+  require(max_expansions > 0, "path.max_expansions is 0; it must be at least 1");
   require(
       worthwhile_saving >= 0.0 && worthwhile_saving < 1.0,
       "path.worthwhile_saving is " + std::to_string(worthwhile_saving) + "; it must be in [0, 1)");

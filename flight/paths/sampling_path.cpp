@@ -150,7 +150,7 @@ Path find_path_by_sampling(const FreeSpace& space, const Vector3d& from, const V
                                            " m; it must be a finite number, zero or more");
   }
   if (options.seed == 0) {
-    throw Error(ErrorKind::bad_config, "the seed of a search by sampling is 0; it must be above");
+    throw Error(ErrorKind::bad_config, "the seed of a sampling search is 0; it must be above 0");
   }
   Path path;
   path.status = PathStatus::start_not_free;

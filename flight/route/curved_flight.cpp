@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 
 class Curves {
  public:
-  Curves(Route& route, const FreeSpace& space, const Motion& motion, const LegCertifier& legs)
-      : route_(route), space_(space), motion_(motion), legs_(legs) {}
+  Curves(Route& route, const FreeSpace& space, const Motion& motion, const LegCosts& costs)
+      : route_(route), space_(space), motion_(motion), costs_(costs) {}
 
   void smooth_legs() {
     for (Sortie& sortie : route_.sorties) {
@@ -55,7 +55,7 @@ class Curves {
                                             motion_, route_.options.style);
     if (!curve || !has_way_home(curve->curve)) return;
     const double in_place = curve->duration + motion_.vehicle().mode.settle_time;
-    const double aimed = legs_.aimed_time(in_place, from, to);
+    const double aimed = costs_.aimed_time(in_place, from, to);
     if (aimed > leg.duration) return;
     if (curve->energy + motion_.hover_energy(aimed - curve->duration) > leg.energy) return;
     leg.smooth = std::move(curve);
@@ -67,8 +67,8 @@ class Curves {
                                 route_.options.passing,
                                 [&](const Curve& piece) { return has_way_home(piece); });
     if (!passage || !has_way_home(passage->curve)) return;
-    const LegCost ends = in_turn(legs_.takeoff_cost(route_.options.takeoff_climb),
-                                 legs_.landing_cost(route_.options.takeoff_climb));
+    const LegCost ends = in_turn(costs_.takeoff_cost(route_.options.takeoff_climb),
+                                 costs_.landing_cost(route_.options.takeoff_climb));
     const double settle_time = motion_.vehicle().mode.settle_time;
     const double time = ends.time + passage->duration + settle_time;
     const double energy = ends.energy + passage->energy + motion_.hover_energy(settle_time);
@@ -80,14 +80,13 @@ class Curves {
   Route& route_;
   const FreeSpace& space_;
   const Motion& motion_;
-  const LegCertifier& legs_;
+  const LegCosts& costs_;
 };
 
 }  // namespace
 
-void add_curves(Route& route, const FreeSpace& space, const Motion& motion,
-                const LegCertifier& legs) {
-  Curves curves(route, space, motion, legs);
+void add_curves(Route& route, const FreeSpace& space, const Motion& motion, const LegCosts& costs) {
+  Curves curves(route, space, motion, costs);
   if (route.options.style == FlightStyle::pass) {
     curves.pass_views();
   } else {

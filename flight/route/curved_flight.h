@@ -3,7 +3,7 @@
 #pragma once
 
 #include "flight/motion/motion.h"
-#include "flight/route/leg_certifier.h"
+#include "flight/route/leg_costs.h"
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 
@@ -11,8 +11,7 @@ namespace skycap::flight {
 
 /// Gives the route's legs and sorties the curves of the style that its options ask for, where they
 /// are proven, have a way home from every point if the route has, and take neither more time nor
-/// more energy than what the sortie has set aside. `legs` are those of the same space.
-void add_curves(Route& route, const FreeSpace& space, const Motion& motion,
-                const LegCertifier& legs);
+/// more energy than what the sortie has set aside.
+void add_curves(Route& route, const FreeSpace& space, const Motion& motion, const LegCosts& costs);
 
 }  // namespace skycap::flight

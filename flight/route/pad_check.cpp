@@ -29,18 +29,18 @@ void check_pad(const FreeSpace& space, const FreeSpace* pad_space, const RouteOp
   const Vector3d home = pad + Vector3d(0.0, 0.0, options.takeoff_climb);
   if (!space.is_free({home, home}, clearance)) {
     const Closest closest = space.closest({home, home}, clearance + 1.0);
-    throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + place_text(home) +
-                                           ", is " + length_text(closest.distance) + " from " +
-                                           space.name(closest) + "; the clearance is " +
-                                           length_text(clearance) +
-                                           ": move the pad or climb higher");
+    throw Error(ErrorKind::bad_config,
+                "the point above the take-off point, " + place_text(home) + ", is " +
+                    length_text(closest.distance) + " from " + space.name(closest) +
+                    "; the clearance is " + length_text(clearance) +
+                    ": move the take-off point or raise flight.takeoff_climb");
   }
   check_grounds(options.grounds, options.ground_limits);
   const double least = clearance + pad_roughness + options.ground_limits.height_error;
   const Vector3d low(pad.x(), pad.y(), std::min(home.z(), pad.z() + least));
-  check_climb(space, "the pad", {home, low}, clearance);
+  check_climb(space, "the take-off point", {home, low}, clearance);
   if (pad_space == nullptr) return;
-  check_climb(*pad_space, "the pad", {home, pad}, clearance);
+  check_climb(*pad_space, "the take-off point", {home, pad}, clearance);
   if (!options.returns) return;
   for (const Vector3d& rally : options.returns->rally) {
     const Vector3d top = rally + Vector3d(0.0, 0.0, options.takeoff_climb);

@@ -88,18 +88,18 @@ std::vector<Vector2d> places_on(const Vector3d& pad, double radius) {
 std::string why_unfit(const PadGround& ground, const PadLimits& limits) {
   const std::string by = name_of(ground.source);
   if (ground.slope > limits.steepest) {
-    return "is " + degrees_text(ground.slope) + " steep " + by + "; at most " +
+    return "has a slope of " + degrees_text(ground.slope) + " " + by + "; the maximum is " +
            degrees_text(limits.steepest) + " (flight.steepest_pad_deg): move it";
   }
   if (ground.unevenness > pad_roughness) {
-    return "is uneven by " + length_text(ground.unevenness) + " " + by + "; at most " +
-           length_text(pad_roughness) + ": move it";
+    return "has an unevenness of " + length_text(ground.unevenness) + " " + by +
+           "; the maximum is " + length_text(pad_roughness) + ": move it";
   }
   const double most = pad_roughness + limits.height_error;
   if (std::abs(ground.rise) > most) {
-    return "has its ground " + length_text(std::abs(ground.rise)) +
+    return "has ground " + length_text(std::abs(ground.rise)) +
            (ground.rise > 0.0 ? " above it " : " below it ") + by + "; at most " +
-           length_text(most) + ", since heights count from where the vehicle stands: correct its z";
+           length_text(most) + ", since heights count from the standing vehicle: correct its z";
   }
   return "";
 }
@@ -109,7 +109,7 @@ void check_grounds(std::span<const PadGround> grounds, const PadLimits& limits) 
     const std::string why = why_unfit(ground, limits);
     if (why.empty()) continue;
     throw Error(ErrorKind::bad_config,
-                "the place to land at " + place_text(ground.place) + " " + why);
+                "the landing point at " + place_text(ground.place) + " " + why);
   }
 }
 

@@ -38,8 +38,8 @@ class RoutePlanner {
     connect();
     split();
     add_up();
-    if (legs_.ways_home() && !route_.sorties.empty()) certify_returns();
-    add_curves(route_, space_, legs_.motion(), legs_.certifier());
+    if (legs_.returns() && !route_.sorties.empty()) certify_returns();
+    add_curves(route_, space_, legs_.motion(), legs_.costs());
     return std::move(route_);
   }
 
@@ -81,7 +81,7 @@ class RoutePlanner {
     } while (give_returns());
     if (route_.sorties.empty() && !route_.stations.empty()) {
       throw Error(ErrorKind::bad_config,
-                  "no split of the route into flights fits the battery; lower flight.reserve");
+                  "no division of the route into sorties fits the battery; lower flight.reserve");
     }
   }
 
@@ -152,14 +152,17 @@ class RoutePlanner {
       const std::vector<Vector3d> points = sortie_points(route_, sortie);
       for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
     }
-    ReturnLaw law = legs_.ways_home()->law();
+    ReturnLaw law = legs_.returns()->law();
     law.reserve = 0.0;
     ReturnSearch search =
         least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
     if (!search.found) {
-      throw Error(ErrorKind::bad_config, "there is no certified way home: " + search.why +
-                                             "; move flight.takeoff, add a place to land to "
-                                             "flight.rally or raise site.highest_height");
+      const bool has_rally =  // DJI vehicles return to their take-off point only
+          std::ranges::find(law.dialects, Dialect::dji) == law.dialects.end();
+      throw Error(ErrorKind::bad_config,
+                  "no safe return altitude: " + search.why + "; move flight.takeoff" +
+                      (has_rally ? ", add a rally point (flight.rally)" : "") +
+                      " or raise site.highest_height");
     }
     route_.returns = std::move(search.found);
     for (const Segment& leg : legs) {
@@ -182,7 +185,7 @@ Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const Fr
     if (!station.view.position.allFinite() || !station.view.direction.allFinite() ||
         !(station.hold >= 0.0) || !(station.hold_after >= 0.0) || station.shots < 0) {
       throw Error(ErrorKind::bad_geometry,
-                  "station " + std::to_string(station.view_index) +
+                  "view " + std::to_string(station.view_index) +
                       " has a pose that is not finite, or a negative hold or number of shots");
     }
   }

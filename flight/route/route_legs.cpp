@@ -17,6 +17,11 @@ std::vector<Vector3d> reversed(const std::vector<Vector3d>& way) {
   return {way.rbegin(), way.rend()};
 }
 
+/// Whether the survey came to a station from that place.
+bool is_flown(const Vector3d& from, const Station& to) {
+  return !to.way.empty() && to.way.front() == from && to.way.back() == to.view.position;
+}
+
 }  // namespace
 
 RouteLegs::RouteLegs(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options)
@@ -25,10 +30,10 @@ RouteLegs::RouteLegs(const Vehicle& vehicle, const FreeSpace& space, const Route
       options_(options),
       clearance_(options.clearance.total()),
       home_(options.takeoff + Vector3d(0.0, 0.0, options.takeoff_climb)),
-      ways_(space, home_, options),
-      legs_(space, motion_, clearance_, ways_home_),
-      takeoff_cost_(legs_.takeoff_cost(options.takeoff_climb)),
-      landing_cost_(legs_.landing_cost(options.takeoff_climb)) {}
+      planner_(space, clearance_, options.path),
+      costs_(motion_, &planner_.returns()),
+      takeoff_cost_(costs_.takeoff_cost(options.takeoff_climb)),
+      landing_cost_(costs_.landing_cost(options.takeoff_climb)) {}
 
 void RouteLegs::refuse(const Station& station, const std::string& reason) {
   unreached_.push_back({station, reason});
@@ -47,10 +52,10 @@ std::vector<Station> RouteLegs::allowed(std::vector<Station> stations) {
 std::string RouteLegs::why_not_allowed(const Station& station) const {
   const Vehicle& vehicle = motion_.vehicle();
   if (!can_look(vehicle, station.view)) {
-    return "the gimbal of \"" + vehicle.name + "\" cannot look that way";
+    return "the gimbal of \"" + vehicle.name + "the gimbal of \"";
   }
   const Segment place{station.view.position, station.view.position};
-  if (space_.is_free(place, clearance_)) return "";
+  if (space_.is_free(place, clearance_)) return "\" cannot look in that direction";
   const Closest closest = space_.closest(place, clearance_ + 1.0);
   return "it is " + length_text(closest.distance) + " from " + space_.name(closest);
 }
@@ -59,28 +64,59 @@ std::string RouteLegs::why_not_allowed(const Station& station) const {
 void RouteLegs::keep_with_return(std::vector<Station>& stations) {
   double top = home_.z();
   for (const Station& station : stations) top = std::max(top, station.view.position.z());
-  ways_home_.emplace(space_, planning_law(options_, top), home_, clearance_);
+  planner_.require_returns(planning_law(options_, top), home_);
   std::erase_if(stations, [&](const Station& station) {
-    const std::string why = ways_home_->why_none(station.view.position);
-    if (!why.empty()) refuse(station, "there is no certified way home: " + why);
+    const std::string why = returns()->why_none(station.view.position);
+    if (!why.empty()) refuse(station, "no safe return: " + why);
     return !why.empty();
   });
+}
+
+/// From above the pad to a station: as flown where the order is the survey's and that is still
+/// free, or else the shortest found, or else along all that the survey flew before it came there.
+/// Empty if there is none.
+std::vector<Vector3d> RouteLegs::from_home(const Station& to) {
+  if (std::vector<Vector3d> way = flown(home_, to); !way.empty() && is_free(way)) return way;
+  Path path = planner_.wide_or_narrow_path(home_, to.view.position);
+  return path.status == PathStatus::found ? std::move(path.points) : all_flown(to);
+}
+
+bool RouteLegs::is_free(const std::vector<Vector3d>& way) const {
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    if (!space_.is_free({way[i - 1], way[i]}, clearance_)) return false;
+  }
+  return true;
+}
+
+/// As the survey flew; empty if it did not, or if the order is not the survey's.
+std::vector<Vector3d> RouteLegs::flown(const Vector3d& from, const Station& to) const {
+  return !options_.order_is_free && is_flown(from, to) ? to.way : std::vector<Vector3d>();
+}
+
+std::vector<Vector3d> RouteLegs::all_flown(const Station& to) const {
+  std::vector<Vector3d> way = {home_};
+  for (const Station& next : flown_) {
+    if (!is_flown(way.back(), next)) return {};
+    way.insert(way.end(), next.way.begin() + 1, next.way.end());
+    if (next.view_index == to.view_index) return planner_.pulled_tight(std::move(way));
+  }
+  return {};
 }
 
 void RouteLegs::admit(const std::vector<Station>& allowed) {
   // Those without a way are listed before those whose way cannot be flown.
   std::vector<std::vector<Vector3d>> ways;
   for (const Station& station : allowed) {
-    ways.push_back(ways_.from_home(station));
+    ways.push_back(from_home(station));
     if (!ways.back().empty()) continue;
-    refuse(station, "there is no way to it at a clearance of " + length_text(clearance_));
+    refuse(station, "no path to it with a clearance of " + length_text(clearance_));
   }
   for (std::size_t i = 0; i < allowed.size(); ++i) {
     if (ways[i].empty()) continue;
     std::optional<Ends> ends = ends_along(std::move(ways[i]));
     const std::string why =
         ends ? why_out_of_range(allowed[i], *ends)
-             : "the way to it cannot be proven at a clearance of " + length_text(clearance_);
+             : "the path to it cannot be verified with a clearance of " + length_text(clearance_);
     if (!why.empty()) {
       refuse(allowed[i], why);
       continue;
@@ -92,23 +128,24 @@ void RouteLegs::admit(const std::vector<Station>& allowed) {
 
 /// Nothing if the way cannot be proven in both directions.
 std::optional<RouteLegs::Ends> RouteLegs::ends_along(std::vector<Vector3d> way) const {
-  std::optional<Leg> out = legs_.leg(way, nullptr, nullptr);
-  std::optional<Leg> back = legs_.leg(reversed(way), nullptr, nullptr);
+  std::optional<VerifiedPath> out = planner_.verified(way);
+  std::optional<VerifiedPath> back = planner_.verified(reversed(way));
   if (!out || !back) return std::nullopt;
-  return Ends{std::move(way), *std::move(out), *std::move(back)};
+  return Ends{std::move(way), costs_.leg(*std::move(out), nullptr, nullptr),
+              costs_.leg(*std::move(back), nullptr, nullptr)};
 }
 
 std::string RouteLegs::why_out_of_range(const Station& station, const Ends& ends) const {
   const LegCost there = in_turn(takeoff_cost_, cost_of(ends.out));
   const LegCost home = in_turn(cost_of(ends.back), landing_cost_);
-  const LegCost total = in_turn(in_turn(there, legs_.station_cost(station)), home);
+  const LegCost total = in_turn(in_turn(there, costs_.station_cost(station)), home);
   const double needed = std::max(total.energy, total.emergency);
   const double held = plannable_energy(motion_), longest = options_.conditions.longest_flight;
   if (needed <= held) return "";
-  return "getting there and back takes " + std::to_string(needed / 3600) + " Wh; the battery has " +
-         std::to_string(held / 3600) + " Wh above its reserve" +
+  return "the flight there and back needs " + std::to_string(needed / 3600) +
+         " Wh; the battery has " + std::to_string(held / 3600) + " Wh above its reserve" +
          (longest > 1.0 ? " for a flight that may take " + std::to_string(longest) +
-                              " times as long as predicted"
+                              " times the estimated time"
                         : "");
 }
 
@@ -132,9 +169,9 @@ bool RouteLegs::drop_out_of_range() {
 
 bool RouteLegs::give_returns(std::size_t station) {
   Ends& ends = ends_[station];
-  if (!ways_home_ || ends.has_returns) return false;
+  if (!returns() || ends.has_returns) return false;
   ends.has_returns = true;
-  std::vector<Vector3d> way = with_returns(ends.way);
+  std::vector<Vector3d> way = planner_.with_returns(ends.way);
   if (way == ends.way) return false;
   std::optional<Ends> changed = ends_along(std::move(way));
   if (!changed) return false;  // the returns' own proof will name the place
@@ -143,31 +180,27 @@ bool RouteLegs::give_returns(std::size_t station) {
   return true;
 }
 
-std::vector<Vector3d> RouteLegs::with_returns(std::vector<Vector3d> way) const {
-  if (!ways_home_) return way;
-  return ways_home_->with_returns(std::move(way), options_.path.worthwhile_saving);
-}
-
 std::optional<Leg> RouteLegs::along(std::vector<Vector3d> way, std::size_t from,
                                     std::size_t to) const {
   if (way.empty()) return std::nullopt;
-  return legs_.leg(with_returns(std::move(way)), &stations_[from], &stations_[to]);
+  std::optional<VerifiedPath> path = planner_.verified(planner_.with_returns(std::move(way)));
+  if (!path) return std::nullopt;
+  return costs_.leg(*std::move(path), &stations_[from], &stations_[to]);
 }
 
 Leg RouteLegs::by_home(std::size_t from, std::size_t to) const {
   // Both are connected to the pad, so there is a way, though a long one.
   std::vector<Vector3d> points = reversed(ends_[from].way);
   points.insert(points.end(), ends_[to].way.begin() + 1, ends_[to].way.end());
-  const std::vector<Vector3d> tight =
-      pull_tight(space_, clearance_, points, options_.path.worthwhile_saving);
-  if (std::optional<Leg> leg = along(tight, from, to)) return *std::move(leg);
-  return legs_.leg(points, &stations_[from], &stations_[to]).value();  // its parts were proven
+  if (auto leg = along(planner_.pulled_tight(points), from, to)) return *std::move(leg);
+  VerifiedPath parts = planner_.verified(std::move(points)).value();  // each of them was verified
+  return costs_.leg(std::move(parts), &stations_[from], &stations_[to]);
 }
 
 Leg RouteLegs::between(std::size_t from, std::size_t to) {
   const Vector3d &place = stations_[from].view.position, &next = stations_[to].view.position;
-  if (auto leg = along(ways_.flown(place, stations_[to]), from, to)) return *std::move(leg);
-  if (auto leg = along(ways_.found(place, next), from, to)) return *std::move(leg);
+  if (auto leg = along(flown(place, stations_[to]), from, to)) return *std::move(leg);
+  if (auto leg = along(planner_.path(place, next).points, from, to)) return *std::move(leg);
   return by_home(from, to);
 }
 
@@ -180,7 +213,7 @@ LegCost RouteLegs::back_cost(std::size_t station) const {
 }
 
 LegCost RouteLegs::station_cost(std::size_t station) const {
-  return legs_.station_cost(stations_[station]);
+  return costs_.station_cost(stations_[station]);
 }
 
 }  // namespace skycap::flight

@@ -8,11 +8,10 @@
 #include <Eigen/Core>
 
 #include "flight/motion/motion.h"
-#include "flight/route/leg_certifier.h"
+#include "flight/route/leg_costs.h"
+#include "flight/route/leg_planner.h"
 #include "flight/route/route.h"
-#include "flight/route/station_ways.h"
 #include "flight/space/clearance.h"
-#include "flight/way_home/ways_home.h"
 
 namespace skycap::flight {
 
@@ -24,7 +23,7 @@ class RouteLegs {
   RouteLegs(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options);
 
   /// What the survey flew: its stations, in its order.
-  void take_flown(std::vector<Station> stations) { ways_.take_flown(std::move(stations)); }
+  void take_flown(std::vector<Station> stations) { flown_ = std::move(stations); }
 
   /// The stations that are free themselves, that the gimbal can look from and, if returns are asked
   /// for, that the vehicle can be called home from. The others go to unreached().
@@ -67,9 +66,9 @@ class RouteLegs {
 
   const Motion& motion() const { return motion_; }
   const Eigen::Vector3d& home() const { return home_; }  ///< above the pad
-  const LegCertifier& certifier() const { return legs_; }
+  const LegCosts& costs() const { return costs_; }
   /// Nothing if returns are not asked for, or before allowed().
-  const std::optional<WaysHome>& ways_home() const { return ways_home_; }
+  const std::optional<WaysHome>& returns() const { return planner_.returns(); }
 
  private:
   struct Ends {
@@ -83,17 +82,20 @@ class RouteLegs {
   void keep_with_return(std::vector<Station>& stations);
   std::optional<Ends> ends_along(std::vector<Eigen::Vector3d> way) const;
   std::string why_out_of_range(const Station& station, const Ends& ends) const;
-  std::vector<Eigen::Vector3d> with_returns(std::vector<Eigen::Vector3d> way) const;
+  std::vector<Eigen::Vector3d> from_home(const Station& to);
+  bool is_free(const std::vector<Eigen::Vector3d>& way) const;
+  std::vector<Eigen::Vector3d> flown(const Eigen::Vector3d& from, const Station& to) const;
+  std::vector<Eigen::Vector3d> all_flown(const Station& to) const;
 
   Motion motion_;
   const FreeSpace& space_;
   const RouteOptions& options_;
   double clearance_;
   Eigen::Vector3d home_;
-  StationWays ways_;
-  std::optional<WaysHome> ways_home_;
-  LegCertifier legs_;
+  LegPlanner planner_;
+  LegCosts costs_;
   LegCost takeoff_cost_, landing_cost_;
+  std::vector<Station> flown_;
   std::vector<Station> stations_;
   std::vector<Ends> ends_;
   std::vector<Unreached> unreached_;

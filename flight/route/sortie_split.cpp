@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace skycap::flight {
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 using Cost = SplitProblem::Cost;
 

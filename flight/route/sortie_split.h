@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace skycap::flight {
+
+/// The time of a flight that is not possible.
+inline constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Times [s] and energies [J] of the parts that sorties are made of; one entry for each station,
 /// but `leg` has one less.

@@ -249,11 +249,6 @@ std::string KnownSpace::name(const Closest& closest) const {
   }
 }
 
-double KnownSpace::winding_number(const Vector3d& point) const {
-  if (!impl_->mesh_is_solid) return 0.0;
-  return impl_->winding.at(impl_->mesh.tree, impl_->mesh.triangles, point);
-}
-
 Closest JointSpace::closest(const Segment& leg, double up_to) const {
   Closest best{up_to};
   for (const FreeSpace* space : spaces_) {

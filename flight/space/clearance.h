@@ -105,11 +105,6 @@ class KnownSpace : public FreeSpace {
   Eigen::AlignedBox3d extent() const override;
   std::string name(const Closest& closest) const override;
 
-  /// How often the mesh winds around a point: 0 outside and 1 inside a closed solid whichever way
-  /// it faces, in between near the holes of an open one (winding.h). A point counts as inside above
-  /// one half. Zero when the mesh is not solid.
-  double winding_number(const Eigen::Vector3d& point) const;
-
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

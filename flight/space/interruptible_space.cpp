@@ -1,12 +1,12 @@
 #include "flight/space/interruptible_space.h"
 
-#include "geometry/error.h"
+#include "geometry/interrupted.h"
 
 namespace skycap::flight {
 namespace {
 
 void throw_if_stopped(const std::stop_token& stop) {
-  if (stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
+  if (stop.stop_requested()) throw Interrupted();
 }
 
 }  // namespace

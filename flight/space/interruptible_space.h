@@ -11,7 +11,7 @@
 namespace skycap::flight {
 
 /// Answers as `space` does, which must outlive it, until a stop is requested; from then on every
-/// question throws Error{bad_usage} with the message "interrupted".
+/// question throws Interrupted.
 class InterruptibleSpace : public FreeSpace {
  public:
   explicit InterruptibleSpace(const FreeSpace& space, std::stop_token stop = {})

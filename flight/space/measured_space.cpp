@@ -144,7 +144,7 @@ AlignedBox3d MeasuredSpace::known_box() const {
 }
 
 std::string MeasuredSpace::name(const Closest& closest) const {
-  if (closest.kind == ObstacleKind::unknown_space) return "space that was never seen free";
+  if (closest.kind == ObstacleKind::unknown_space) return "unobserved space";
   if (closest.kind == ObstacleKind::occupied_space) return "a measured point";
   return "";
 }

@@ -67,7 +67,7 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
   FileHead head{};
   if (!read_record(stream, head) || std::memcmp(head.mark, file_mark, sizeof head.mark) != 0) {
     throw Error(ErrorKind::bad_file,
-                name + ": is not a file of measured free space; give one that skycap plan wrote");
+                name + ": is not a free-space file; use one written by skycap plan");
   }
   MeasuredSpaceFile file{.config = {.voxel = head.voxel,
                                     .depth_margin = head.depth_margin,
@@ -86,26 +86,26 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
     throw Error(ErrorKind::bad_file, name + ": " + error.what());
   }
   if (head.blocks > most_blocks) {
-    throw Error(ErrorKind::bad_file, name + ": says that it holds " + std::to_string(head.blocks) +
-                                         " blocks; at most " + std::to_string(most_blocks) +
-                                         " are read");
+    throw Error(ErrorKind::bad_file, name + ": is damaged: its header has " +
+                                         std::to_string(head.blocks) + " blocks; at most " +
+                                         std::to_string(most_blocks) + " are allowed");
   }
   FileBlock block{};
   for (std::uint64_t i = 0; i < head.blocks; ++i) {
     if (!read_record(stream, block)) {
-      throw Error(ErrorKind::bad_file, name + ": ends after " + std::to_string(i) + " of " +
+      throw Error(ErrorKind::bad_file, name + ": is truncated after " + std::to_string(i) + " of " +
                                            std::to_string(head.blocks) +
                                            " blocks; copy it again, or plan again");
     }
     const Vector3d low = cell_of(block.key).cast<double>() * 8.0 * head.voxel;
     if (!geometry::is_place(low)) {
-      throw Error(ErrorKind::bad_file, name + ": block " + std::to_string(i) +
-                                           " is farther than 1e7 m from the origin; plan again");
+      throw Error(ErrorKind::bad_file, name + ": is damaged: block " + std::to_string(i) +
+                                           " is more than 1e7 m from the origin; plan again");
     }
     file.blocks.push_back(block);
   }
   if (stream.peek() != std::istream::traits_type::eof()) {
-    throw Error(ErrorKind::bad_file, name + ": goes on after its last block; plan again");
+    throw Error(ErrorKind::bad_file, name + ": is damaged: data after the last block; plan again");
   }
   return file;
 }

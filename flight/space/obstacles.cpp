@@ -5,6 +5,7 @@
 
 #include "flight/space/prior_obstacle.h"
 #include "geometry/error.h"
+#include "geometry/surfaces/ear_clipping.h"
 
 namespace skycap::flight {
 namespace {
@@ -36,7 +37,7 @@ void validate(const Prism& prism, const std::string& role) {
     throw Error(ErrorKind::bad_config, who + " " + what);
   };
   if (corners.size() < 3) {
-    fail("has " + std::to_string(corners.size()) + " corners; a footprint needs at least 3");
+    fail("has " + std::to_string(corners.size()) + " corners; a footprint requires at least 3");
   }
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!corners[i].allFinite()) fail("has a corner that is not a finite number");
@@ -53,36 +54,6 @@ void validate(const Prism& prism, const std::string& role) {
     fail("has floor " + std::to_string(prism.floor) + " m, which must be below its ceiling " +
          std::to_string(prism.ceiling) + " m");
   }
-}
-
-/// Ear clipping: indices of triangles, counter-clockwise, that fill a counter-clockwise polygon.
-std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Vector2d>& polygon) {
-  std::vector<std::uint32_t> rest(polygon.size());
-  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = static_cast<std::uint32_t>(i);
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-
-  const auto is_ear = [&](std::size_t i) {
-    const std::uint32_t before = rest[(i + rest.size() - 1) % rest.size()];
-    const std::uint32_t after = rest[(i + 1) % rest.size()];
-    const Vector2d &a = polygon[before], &b = polygon[rest[i]], &c = polygon[after];
-    if (turn(a, b, c) <= 0.0) return false;
-    return std::none_of(rest.begin(), rest.end(), [&](std::uint32_t other) {
-      const Vector2d& p = polygon[other];
-      if (other == before || other == rest[i] || other == after) return false;
-      if (p == a || p == b || p == c) return false;
-      return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
-    });
-  };
-  while (rest.size() > 3) {
-    std::size_t ear = 0;
-    while (ear < rest.size() && !is_ear(ear)) ++ear;
-    if (ear == rest.size()) ear = 0;  // only corners on a straight line are left: any will do
-    triangles.push_back(
-        {rest[(ear + rest.size() - 1) % rest.size()], rest[ear], rest[(ear + 1) % rest.size()]});
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
-  }
-  triangles.push_back({rest[0], rest[1], rest[2]});
-  return triangles;
 }
 
 }  // namespace
@@ -111,10 +82,11 @@ void validate(const Obstacles& obstacles) {
   if (!obstacles.fence) return;
   validate(*obstacles.fence, "fence");
   if (obstacles.ground_height && obstacles.fence->ceiling <= *obstacles.ground_height) {
-    throw Error(ErrorKind::bad_config,
-                "fence \"" + obstacles.fence->name + "\" has its ceiling at " +
-                    std::to_string(obstacles.fence->ceiling) + " m, not above the ground at " +
-                    std::to_string(*obstacles.ground_height) + " m: nothing can fly in it");
+    throw Error(ErrorKind::bad_config, "fence \"" + obstacles.fence->name +
+                                           "\" has its ceiling at " +
+                                           std::to_string(obstacles.fence->ceiling) +
+                                           " m, which must be above the ground at " +
+                                           std::to_string(*obstacles.ground_height) + " m");
   }
 }
 
@@ -138,7 +110,7 @@ geometry::Mesh surface(const Prism& prism) {
       mesh.vertices.emplace_back(corner.x(), corner.y(), height);
     }
   }
-  for (const auto& [a, b, c] : triangulate(corners)) {
+  for (const auto& [a, b, c] : geometry::clip_ears(corners)) {
     mesh.triangles.push_back({a, c, b});
     mesh.triangles.push_back({a + count, b + count, c + count});
   }

@@ -50,14 +50,14 @@ RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camer
     throw Error(ErrorKind::bad_geometry,
                 "a scan has " + std::to_string(scan.points.size()) + " points but " +
                     std::to_string(scan.pixels.size()) +
-                    " pixels; free space can only be proven by an organised scan");
+                    " pixels; only an organised scan can establish free space");
   }
   const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   std::vector<float> depths(count, static_cast<float>(std::min(depth_without_return, max_depth)));
   const auto beyond =
       std::ranges::find_if(scan.pixels, [&](std::uint32_t pixel) { return pixel >= count; });
   if (beyond != scan.pixels.end()) {
-    throw Error(ErrorKind::bad_geometry, "a scan names pixel " + std::to_string(*beyond) +
+    throw Error(ErrorKind::bad_geometry, "a scan has pixel " + std::to_string(*beyond) +
                                              ", but the camera has " + std::to_string(count));
   }
   constexpr std::size_t part_size = 1 << 16;

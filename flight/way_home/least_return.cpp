@@ -90,7 +90,7 @@ ReturnSearch least_proven(LeastReturn search, const std::vector<Segment>& legs, 
                           double highest) {
   const double ground = law.landings.front().z();
   char text[96];
-  std::snprintf(text, sizeof text, "no height of return fits below %.1f m", highest);
+  std::snprintf(text, sizeof text, "no return altitude fits below %.1f m", highest);
   ReturnSearch result{.found = std::nullopt, .why = text};
   double top = ground;
   for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
@@ -100,7 +100,7 @@ ReturnSearch least_proven(LeastReturn search, const std::vector<Segment>& legs, 
     result = search.prove(law);
     if (result.found) return result;
     result.fails_by_slack = result.fails_by_slack || failed_by_slack;
-    std::snprintf(text, sizeof text, "at a height of return of %g m ", height);
+    std::snprintf(text, sizeof text, "at a return altitude of %g m ", height);
     result.why = text + result.why;
   }
   return result;

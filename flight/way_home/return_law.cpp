@@ -78,13 +78,13 @@ const char* name_of(ReturnPart part) {
     case ReturnPart::level:
       return "the level flight";
     case ReturnPart::level_as_it_is:
-      return "the level flight without a climb, as within 50 m of the pad,";
+      return "the level flight without a climb (as within 50 m of the take-off point)";
     case ReturnPart::descent:
       return "the descent";
     case ReturnPart::landing:
       break;
   }
-  return "the landing where it is";
+  return "the landing on the spot";
 }
 
 std::vector<ReturnPiece> return_pieces(const ReturnLaw& law, const Vector3d& place, double reach) {

@@ -39,7 +39,7 @@ std::string WaysHome::why_none(const Vector3d& place) const {
     const Segment leg{over[i - 1], over[i]};
     const LegProof proof = prove(space_, leg, clearance_, clearance_);
     if (!proof.is_proven) {
-      return "the way straight up and over to the pad comes within " +
+      return "the return straight up and over to the take-off point comes within " +
              length_text(proof.closest.distance) + " of " + space_.name(proof.closest) + " at " +
              place_text(proof.closest.on_leg);
     }

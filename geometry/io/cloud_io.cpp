@@ -1,7 +1,6 @@
 #include "geometry/io/cloud_io.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <functional>
@@ -10,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "geometry/byte_values.h"
 #include "geometry/error.h"
 #include "geometry/io/cloud_parsers.h"
 #include "geometry/io/file.h"
@@ -20,9 +20,6 @@ namespace skycap::geometry {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Beyond this, neighbouring single-precision numbers are 2 mm apart.
-constexpr double farthest_coordinate = 16384.0;
 
 /// Takes a piece of a cloud; with it so many points of the file are read, of all that it has.
 using TakePiece =
@@ -72,7 +69,7 @@ std::uint32_t view_of(const fs::path& path, std::size_t point, double value) {
     return static_cast<std::uint32_t>(value);
   }
   fail_cloud(path, "point " + std::to_string(point) + " has the view " + std::to_string(value) +
-                       "; it must be a whole number from 0 to 4294967295");
+                       "; it must be an integer from 0 to 4294967295");
 }
 
 /// Without colours if one of them is in no known scale: nothing is told from them.
@@ -171,12 +168,6 @@ std::string whole_file(const fs::path& path) {
   return is_text_cloud(path) ? as_utf8(std::move(bytes)) : bytes;
 }
 
-template <typename Value>
-void append_bytes(std::string& bytes, const Value& value) {
-  static_assert(std::endian::native == std::endian::little, "binary files are little-endian");
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
-}
-
 /// Readers of formats that are not read whole before they are parsed.
 struct PiecewiseReader {
   AttributedCloud (*cloud)(const fs::path& path);
@@ -198,7 +189,7 @@ void fail_cloud(const fs::path& path, const std::string& what) {
 Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x, double y,
                                double z) {
   const Eigen::Vector3d position(x, y, z);
-  if (position.cwiseAbs().maxCoeff() > farthest_coordinate) {
+  if (position.cwiseAbs().maxCoeff() > farthest_single_coordinate) {
     fail_cloud(path, "point " + std::to_string(point) + " is " +
                          std::to_string(position.cwiseAbs().maxCoeff()) +
                          " m from the origin; coordinates must be local, within 16384 m: subtract "
@@ -216,14 +207,13 @@ void add_positions(const fs::path& path, std::size_t first,
 
 void require_few_points(const fs::path& path, std::size_t points) {
   if (points <= most_whole_points) return;
-  fail_cloud(path, "holds more than " + std::to_string(most_whole_points) +
-                       " points; thin it, or evaluate it as LAS or E57, which is read piece by "
-                       "piece");
+  fail_cloud(path, "contains more than " + std::to_string(most_whole_points) +
+                       " points; downsample it, or use LAS or E57, which are read in parts");
 }
 
 void fail_without_points(const fs::path& path, std::size_t skipped) {
-  fail_cloud(path, skipped == 0 ? std::string("holds no points")
-                                : "holds no points but " + std::to_string(skipped) +
+  fail_cloud(path, skipped == 0 ? std::string("contains no points")
+                                : "contains no points but " + std::to_string(skipped) +
                                       " that are NaN or infinite");
 }
 
@@ -295,28 +285,25 @@ void write_cloud(const fs::path& path, const CloudColumns& cloud) {
   assert(cloud.views.empty() || cloud.views.size() == count);
   assert(cloud.colours.empty() || cloud.colours.size() == count);
   if (path.extension() == ".e57") return write_file(path, e57_bytes(cloud));
-  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment written by Skycap\n";
-  bytes += "element vertex " + std::to_string(count) + "\n";
-  bytes += "property float x\nproperty float y\nproperty float z\n";
-  if (!cloud.normals.empty()) bytes += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (!cloud.views.empty()) bytes += "property uint view\n";
-  if (!cloud.colours.empty()) {
-    bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  }
+  PlyElement vertex{"vertex", count, {}};
+  vertex.add(PlyType::float32, {"x", "y", "z"});
+  if (!cloud.normals.empty()) vertex.add(PlyType::float32, {"nx", "ny", "nz"});
+  if (!cloud.views.empty()) vertex.add(PlyType::uint32, {"view"});
+  if (!cloud.colours.empty()) vertex.add(PlyType::uint8, {"red", "green", "blue"});
   for (const NamedMarks& marks : cloud.marks) {
     assert(marks.values.empty() || marks.values.size() == count);
-    if (!marks.values.empty()) bytes.append("property uchar ").append(marks.name).append("\n");
+    if (!marks.values.empty()) vertex.add(PlyType::uint8, {marks.name});
   }
-  bytes += "end_header\n";
+  std::string bytes = ply_header({&vertex, 1});
   constexpr std::size_t largest_point = 31;  // [bytes]
   bytes.reserve(bytes.size() + count * (largest_point + cloud.marks.size()));
   for (std::size_t i = 0; i < count; ++i) {
-    append_bytes(bytes, cloud.positions[i]);
-    if (!cloud.normals.empty()) append_bytes(bytes, cloud.normals[i]);
-    if (!cloud.views.empty()) append_bytes(bytes, cloud.views[i]);
-    if (!cloud.colours.empty()) append_bytes(bytes, cloud.colours[i]);
+    append_value(bytes, cloud.positions[i]);
+    if (!cloud.normals.empty()) append_value(bytes, cloud.normals[i]);
+    if (!cloud.views.empty()) append_value(bytes, cloud.views[i]);
+    if (!cloud.colours.empty()) append_value(bytes, cloud.colours[i]);
     for (const NamedMarks& marks : cloud.marks) {
-      if (!marks.values.empty()) append_bytes(bytes, marks.values[i]);
+      if (!marks.values.empty()) append_value(bytes, marks.values[i]);
     }
   }
   write_file(path, bytes);

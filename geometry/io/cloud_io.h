@@ -14,6 +14,10 @@
 
 namespace skycap::geometry {
 
+/// Coordinates in single precision must be at most this far from the origin: beyond, neighbouring
+/// numbers are 2 mm apart [m].
+inline constexpr double farthest_single_coordinate = 16384.0;
+
 /// Points and what a file says of them. An attribute that is absent is an empty vector, otherwise
 /// it has one entry for each position.
 struct AttributedCloud {

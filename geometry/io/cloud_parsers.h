@@ -37,7 +37,7 @@ void require_few_points(const std::filesystem::path& path, std::size_t points);
 /// normal_z. PCL marks pixels without a measurement by NaN: they are skipped and counted.
 AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_view bytes);
 
-/// LAS 1.0 to 1.4 and LAZ (las_reader.h). Withheld points are passed over.
+/// LAS 1.0 to 1.4 and LAZ (las/las_reader.h). Withheld points are passed over.
 AttributedCloud read_las_cloud(const std::filesystem::path& path);
 
 /// E57 (e57_reader.h), all scans of it; with several `views` is the scan.

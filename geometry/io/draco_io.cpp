@@ -18,7 +18,7 @@ Mesh decode_draco(std::string_view name, std::string_view bytes) {
   buffer.Init(bytes.data(), bytes.size());
   const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
   if (!type.ok()) fail("is not Draco data: " + type.status().error_msg_string());
-  if (type.value() != draco::TRIANGULAR_MESH) fail("holds Draco points; a Draco mesh is wanted");
+  if (type.value() != draco::TRIANGULAR_MESH) fail("contains Draco points; expected a Draco mesh");
   draco::Decoder decoder;
   const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok()) {

@@ -62,7 +62,7 @@ std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size
     fail(path, "is larger than " + size_text(most_bytes) + " when decompressed");
   }
   if (status != Z_STREAM_END) {
-    fail(path, "is not a complete gzip file (damaged or cut short); obtain it again");
+    fail(path, "is not a complete gzip file (damaged or truncated); obtain it again");
   }
   return inflated;
 }
@@ -132,9 +132,9 @@ void require_regular_file(const fs::path& path) {
   if (error && status.type() == fs::file_type::none) {
     fail(path, "cannot be opened: " + error.message());
   }
-  if (!fs::exists(status)) fail(path, "there is no such file");
-  if (fs::is_directory(status)) fail(path, "is a directory; a file is wanted");
-  if (!fs::is_regular_file(status)) fail(path, "is a device or a pipe; a regular file is wanted");
+  if (!fs::exists(status)) fail(path, "does not exist");
+  if (fs::is_directory(status)) fail(path, "is a directory; expected a file");
+  if (!fs::is_regular_file(status)) fail(path, "is a device or a pipe; expected a regular file");
 }
 
 std::ifstream open_stream(const fs::path& path) {
@@ -176,11 +176,11 @@ void cut_file(const fs::path& path, std::uintmax_t bytes) {
   std::error_code failure;
   const std::uintmax_t size = fs::file_size(path, failure);
   if (!failure && size < bytes) {
-    fail(path, "holds " + std::to_string(size) + " bytes, less than the " + std::to_string(bytes) +
+    fail(path, "contains " + std::to_string(size) + " bytes, less than the " + std::to_string(bytes) +
                    " that were written");
   }
   if (!failure) fs::resize_file(path, bytes, failure);
-  if (failure) fail(path, "cannot be cut: " + failure.message());
+  if (failure) fail(path, "cannot be truncated: " + failure.message());
 }
 
 void sync_to_disk(const fs::path& path) {
@@ -189,7 +189,7 @@ void sync_to_disk(const fs::path& path) {
   const bool is_done = handle >= 0 && (::fsync(handle) == 0 || errno == EINVAL);
   const std::string why = is_done ? "" : last_error();
   if (handle >= 0) ::close(handle);
-  if (!is_done) fail(path, "cannot be brought to the disk: " + why);
+  if (!is_done) fail(path, "cannot be flushed to the disk: " + why);
 }
 
 }  // namespace skycap::geometry

@@ -12,13 +12,13 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr std::uint64_t ply_piece = 1'000'000;  // rows whose numbers are held at once
+constexpr std::uint64_t ply_piece_size = 1'000'000;  // rows whose numbers are held at once
 
 void read_ply_vertices(std::string_view name, PlyReader& reader, std::uint64_t count,
                        BoundedSoup& soup) {
   constexpr std::array<std::string_view, 3> coordinates{"x", "y", "z"};
   for (std::uint64_t read = 0; read < count;) {
-    const PlyTable table = reader.read_rows(coordinates, {}, ply_piece);
+    const PlyTable table = reader.read_rows(coordinates, {}, ply_piece_size);
     const auto& [x, y, z] = std::tie(table.columns[0], table.columns[1], table.columns[2]);
     if (x.size() != table.rows || y.size() != table.rows || z.size() != table.rows) {
       fail_mesh(name, "the element 'vertex' must have the properties x, y and z");
@@ -82,7 +82,7 @@ void read_ply_faces(std::string_view name, PlyReader& reader, const PlyElement& 
   const std::string list = corner_list_of(name, element);
   const std::array<std::string_view, 1> lists{list};
   for (std::uint64_t read = 0; read < element.count;) {
-    const PlyTable table = reader.read_rows({}, lists, ply_piece);
+    const PlyTable table = reader.read_rows({}, lists, ply_piece_size);
     for (std::size_t row = 0; row + 1 < table.list_begin.size(); ++row) {
       StripReader strip(soup);
       for (std::uint64_t i = table.list_begin[row]; i < table.list_begin[row + 1]; ++i) {

@@ -52,7 +52,7 @@ Mesh triangulate(std::string_view name, PolygonSoup soup);
 }
 
 inline std::string no_such_vertex(std::int64_t vertex, std::size_t count) {
-  return "names vertex " + std::to_string(vertex) + ", but there are " + std::to_string(count) +
+  return "has vertex " + std::to_string(vertex) + ", but there are " + std::to_string(count) +
          " vertices, counted from 0";
 }
 
@@ -92,7 +92,7 @@ class BoundedSoup {
 
  private:
   [[noreturn]] void fail_of_size() const {
-    fail_mesh(name_, "holds more than " + std::to_string(limits_.faces) + " faces, " +
+    fail_mesh(name_, "contains more than " + std::to_string(limits_.faces) + " faces, " +
                          std::to_string(limits_.corners) + " corners of faces or " +
                          std::to_string(limits_.vertices) + " vertices; simplify the mesh");
   }

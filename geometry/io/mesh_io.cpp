@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cctype>
 #include <charconv>
 #include <cstring>
@@ -12,10 +11,12 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/byte_values.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_formats.h"
 #include "geometry/io/text/plain_text.h"
+#include "geometry/io/text/ply.h"
 #include "geometry/surfaces/mesh_repair.h"
 
 namespace skycap::geometry {
@@ -37,7 +38,7 @@ PolygonSoup parse(const fs::path& path) {
   if (format == ".drc") {
     const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
     const Mesh mesh = decode_draco(path.string(), bytes);
-    if (mesh.triangles.size() > most_unpacked) fail(path, "holds more than 1e7 triangles");
+    if (mesh.triangles.size() > most_unpacked) fail(path, "contains more than 1e7 triangles");
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
@@ -109,14 +110,8 @@ void require_faces(const fs::path& path, const PolygonSoup& soup) {
   for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
     if (is_polygon(i)) return;
   }
-  fail(path, soup.vertices.empty() ? "holds neither vertices nor faces; a mesh is wanted"
-                                   : "holds no faces; a mesh is wanted, not a point cloud");
-}
-
-template <typename Value>
-void append_bytes(std::string& bytes, const Value& value) {
-  static_assert(std::endian::native == std::endian::little, "binary files are little-endian");
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  fail(path, soup.vertices.empty() ? "contains neither vertices nor faces; expected a mesh"
+                                   : "contains no faces; expected a mesh, not a point cloud");
 }
 
 template <typename Number>
@@ -135,24 +130,21 @@ bool is_single_precision(const Mesh& mesh) {
 
 std::string ply_of(const Mesh& mesh) {
   const bool is_single = is_single_precision(mesh);
-  const std::string type = is_single ? "float" : "double";
-  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment written by Skycap\n";
-  bytes += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
-  for (const char* coordinate : {"x", "y", "z"}) {
-    bytes += "property " + type + " " + coordinate + "\n";
-  }
-  bytes += "element face " + std::to_string(mesh.triangles.size()) + "\n";
-  bytes += "property list uchar int vertex_indices\nend_header\n";
+  std::array<PlyElement, 2> elements{
+      {{"vertex", mesh.vertices.size(), {}},
+       {"face", mesh.triangles.size(), {{"vertex_indices", PlyType::int32, PlyType::uint8}}}}};
+  elements[0].add(is_single ? PlyType::float32 : PlyType::float64, {"x", "y", "z"});
+  std::string bytes = ply_header(elements);
   for (const Vector3d& vertex : mesh.vertices) {
     if (is_single) {
-      append_bytes(bytes, Eigen::Vector3f(vertex.cast<float>()));
+      append_value(bytes, Eigen::Vector3f(vertex.cast<float>()));
     } else {
-      append_bytes(bytes, vertex);
+      append_value(bytes, vertex);
     }
   }
   for (const auto& triangle : mesh.triangles) {
-    append_bytes(bytes, std::uint8_t{3});
-    append_bytes(bytes, triangle);
+    append_value(bytes, std::uint8_t{3});
+    append_value(bytes, triangle);
   }
   return bytes;
 }
@@ -190,15 +182,15 @@ std::string off_of(const Mesh& mesh) {
 std::string stl_of(const Mesh& mesh) {
   std::string bytes = "written by Skycap";
   bytes.resize(80, ' ');
-  append_bytes(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  append_value(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const auto& triangle : mesh.triangles) {
     const Vector3d &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]],
                    &c = mesh.vertices[triangle[2]];
-    append_bytes(bytes, Eigen::Vector3f((b - a).cross(c - a).normalized().cast<float>()));
+    append_value(bytes, Eigen::Vector3f((b - a).cross(c - a).normalized().cast<float>()));
     for (const Vector3d* corner : {&a, &b, &c}) {
-      append_bytes(bytes, Eigen::Vector3f(corner->cast<float>()));
+      append_value(bytes, Eigen::Vector3f(corner->cast<float>()));
     }
-    append_bytes(bytes, std::uint16_t{0});
+    append_value(bytes, std::uint16_t{0});
   }
   return bytes;
 }
@@ -216,10 +208,10 @@ Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
   const std::size_t skipped = options.note ? drop_infinite_polygons(soup) : 0;
   if (skipped > 0) {
     options.note(std::to_string(skipped) +
-                 " faces skipped, since a corner is NaN or infinite: nothing is known there");
+                 " faces skipped (a corner is NaN or infinite); their area is unknown");
   }
   Mesh mesh = clean_mesh(path, std::move(soup));
-  if (mesh.triangles.empty()) fail(path, "holds no triangle with an area");
+  if (mesh.triangles.empty()) fail(path, "contains no triangle with an area");
   if (options.orient_outward) orient_outward(mesh);
   return mesh;
 }
@@ -235,7 +227,7 @@ std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
     if (mesh.triangles.empty()) continue;
     parts.push_back({materials.empty() ? "" : materials[i], std::move(mesh)});
   }
-  if (parts.empty()) fail(path, "holds no triangle with an area");
+  if (parts.empty()) fail(path, "contains no triangle with an area");
   return parts;
 }
 

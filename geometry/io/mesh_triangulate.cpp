@@ -11,7 +11,9 @@
 #include "geometry/error.h"
 #include "geometry/io/mesh_formats.h"
 #include "geometry/place/pose.h"
+#include "geometry/place/prism.h"
 #include "geometry/place/world.h"
+#include "geometry/surfaces/ear_clipping.h"
 
 namespace skycap::geometry {
 namespace {
@@ -20,10 +22,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr std::size_t most_ear_corners = 1000;  // clipping ears takes cubic time at worst
-
-double cross(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
 
 // The polygon seen along its area vector (Newell's normal), from where it is counter-clockwise.
 std::vector<Vector2d> flattened(const Mesh& mesh, std::span<const std::uint32_t> polygon) {
@@ -46,7 +44,7 @@ std::vector<Vector2d> flattened(const Mesh& mesh, std::span<const std::uint32_t>
 
 bool is_convex(const std::vector<Vector2d>& flat) {
   for (std::size_t i = 0; i < flat.size(); ++i) {
-    if (cross(flat[i], flat[(i + 1) % flat.size()], flat[(i + 2) % flat.size()]) <= 0.0)
+    if (turn(flat[i], flat[(i + 1) % flat.size()], flat[(i + 2) % flat.size()]) <= 0.0)
       return false;
   }
   return true;
@@ -56,38 +54,6 @@ void cut_into_fan(Mesh& mesh, std::span<const std::uint32_t> polygon) {
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
     mesh.triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
   }
-}
-
-// A corner is an ear if it points outward and no other corner lies in its triangle.
-bool is_ear(const std::vector<Vector2d>& flat, const std::vector<std::size_t>& left,
-            std::size_t at) {
-  const std::size_t n = left.size();
-  const Vector2d &a = flat[left[(at + n - 1) % n]], &b = flat[left[at]],
-                 &c = flat[left[(at + 1) % n]];
-  if (cross(a, b, c) <= 0.0) return false;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector2d& p = flat[left[i]];
-    if (p == a || p == b || p == c) continue;
-    if (cross(a, b, p) >= 0.0 && cross(b, c, p) >= 0.0 && cross(c, a, p) >= 0.0) return false;
-  }
-  return true;
-}
-
-void clip_ears(Mesh& mesh, std::span<const std::uint32_t> polygon,
-               const std::vector<Vector2d>& flat) {
-  std::vector<std::size_t> left(polygon.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
-  while (left.size() > 3) {
-    std::size_t ear = 0;
-    while (ear < left.size() && !is_ear(flat, left, ear)) ++ear;
-    // Only a polygon that crosses itself, or a flat remainder, has no ear: any cut is as good.
-    if (ear == left.size()) ear = 0;
-    const std::size_t n = left.size();
-    mesh.triangles.push_back(
-        {polygon[left[(ear + n - 1) % n]], polygon[left[ear]], polygon[left[(ear + 1) % n]]});
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
-  }
-  mesh.triangles.push_back({polygon[left[0]], polygon[left[1]], polygon[left[2]]});
 }
 
 }  // namespace
@@ -154,10 +120,12 @@ Mesh triangulate(std::string_view name, PolygonSoup soup) {
     if (is_convex(flat)) {
       cut_into_fan(mesh, polygon);
     } else if (polygon.size() <= most_ear_corners) {
-      clip_ears(mesh, polygon, flat);
+      for (const auto& [a, b, c] : clip_ears(flat)) {
+        mesh.triangles.push_back({polygon[a], polygon[b], polygon[c]});
+      }
     } else {
       fail(i, "is not convex and has " + std::to_string(polygon.size()) +
-                  " corners; at most 1000 are read, triangulate it first");
+                  " corners; the maximum is 1000; triangulate it first");
     }
   }
   return mesh;

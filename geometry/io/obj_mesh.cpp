@@ -44,11 +44,11 @@ class ObjReader {
     if (keyword == "f" || keyword == "F" || keyword == "fo") return read_face();
     if (keyword == "usemtl") return read_material();
     if (keyword == "surf") {
-      scanner_.fail("free-form surfaces (surf) are not read; save the model as polygons");
+      scanner_.fail("free-form surfaces (surf) are not supported; save the model as polygons");
     }
     if (keyword == "call" || keyword == "csh") {
       scanner_.fail("'" + std::string(keyword) +
-                    "' includes another file, which is not read; save the model as one file");
+                    "' includes another file, which is not supported; save the model as one file");
     }
   }
 
@@ -104,7 +104,7 @@ class ObjReader {
     const auto count = static_cast<std::int64_t>(soup_.vertices.size());
     const std::int64_t vertex = index > 0 ? index - 1 : index + count;
     if (index == 0 || vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max()) {
-      scanner_.fail("the face names vertex " + std::to_string(index) + ", but the " +
+      scanner_.fail("the face has vertex " + std::to_string(index) + ", but the " +
                     std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
                     "backwards");
     }
@@ -117,7 +117,7 @@ class ObjReader {
       for (std::size_t i = soup_.polygon_begin[polygon]; i < soup_.polygon_begin[polygon + 1];
            ++i) {
         if (soup_.corners[i] < soup_.vertices.size()) continue;
-        scanner_.fail_at(lines_[polygon], "the face names vertex " +
+        scanner_.fail_at(lines_[polygon], "the face has vertex " +
                                               std::to_string(soup_.corners[i] + std::uint64_t{1}) +
                                               ", but there are only " +
                                               std::to_string(soup_.vertices.size()));

@@ -73,14 +73,14 @@ class OffReader {
     header_ = *header;
     const auto count = header_.glued.empty() ? next() : std::optional(header_.glued);
     if (count == "BINARY") {
-      scanner_.fail("binary OFF is not read; save it as ascii OFF or as PLY");
+      scanner_.fail("binary OFF is not supported; save it as ascii OFF or as PLY");
     }
     vertices_ = scanner_.number<std::uint64_t>(count, "the number of vertices");
     faces_ = scanner_.number<std::uint64_t>(next(), "the number of faces");
     // A vertex takes 6 characters or more, a face 2.
     if (vertices_ > scanner_.remaining() / 6 + 1 || faces_ > scanner_.remaining() / 2 + 1) {
       scanner_.fail(std::to_string(vertices_) + " vertices and " + std::to_string(faces_) +
-                    " faces are promised, but the file is too short for so many");
+                    " faces are declared, but the file is too short");
     }
     skip_edges();
     soup_.require(vertices_, faces_);

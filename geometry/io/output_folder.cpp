@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view journal_name = ".commit", part_prefix = ".part-", old_prefix = ".old-";
 constexpr std::size_t largest_journal = std::size_t{64} << 20;
 
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
+[[noreturn]] void fail_at(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
 }
 
@@ -36,7 +36,7 @@ fs::path old_path(const fs::path& folder, const std::string& name) {
 void require_renamed(const fs::path& from, const fs::path& to) {
   std::error_code failure;
   fs::rename(from, to, failure);
-  if (failure) fail(to, "cannot be put in place (" + failure.message() + ")");
+  if (failure) fail_at(to, "cannot be renamed to its final name (" + failure.message() + ")");
 }
 
 bool is_there(const fs::path& path) {
@@ -119,7 +119,7 @@ void finish_journal(const fs::path& folder) {
 /// A handle that keeps others out, or -1. On file systems without locks everyone gets in.
 int locked(const fs::path& folder) {
   const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (handle < 0) fail(folder, "cannot be opened; name a folder you may write to");
+  if (handle < 0) fail_at(folder, "cannot be opened; use a folder that you can write to");
   if (::flock(handle, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return handle;
   ::close(handle);
   return -1;
@@ -130,11 +130,12 @@ int locked(const fs::path& folder) {
 OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   std::error_code failure;
   if (fs::exists(folder_, failure) && !fs::is_directory(folder_, failure)) {
-    fail(folder_, "is a file; name a folder for the results");
+    fail_at(folder_, "is a file; use another folder for the results");
   }
   is_new_ = fs::create_directories(folder_, failure);
   if (failure) {
-    fail(folder_, "cannot be made (" + failure.message() + "); name a folder you may write to");
+    fail_at(folder_,
+         "cannot be created (" + failure.message() + "); use a folder that you can write to");
   }
   lock_and_clean();
 }
@@ -142,7 +143,7 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
 void OutputFolder::lock_and_clean() {
   lock_ = locked(folder_);
   if (lock_ < 0) {
-    fail(folder_, "is being written to by another skycap; wait for it or name another folder");
+    fail_at(folder_, "is in use by another skycap; wait for it or use another folder");
   }
   try {
     finish_journal(folder_);
@@ -160,7 +161,7 @@ void OutputFolder::lock_and_clean() {
   } catch (const Error& error) {
     ::close(lock_);
     throw Error(error.kind(), folder_.string() + ": cannot be written to (" + error.what() +
-                                  "); name a folder you may write to");
+                                  "); use a folder that you can write to");
   }
 }
 
@@ -233,7 +234,7 @@ void OutputFolder::commit() {
   for (const auto& [name, is_on_disk] : staged_) {
     if (!is_on_disk) sync_to_disk(temporary(name));
     if (fs::is_directory(fs::symlink_status(folder_ / name))) {
-      fail(folder_ / name, "is a folder where a result belongs; move it away");
+      fail_at(folder_ / name, "is a folder with the name of a result file; move it");
     }
     changes.push_back({temporary(name).filename().string(), name});
   }

@@ -126,7 +126,7 @@ PcdHeader header_of(const fs::path& path, const std::string& name, std::string_v
       header.points = points ? *points : *width * *height;
       return header;
     } else if (key != "VERSION" && key != "VIEWPOINT") {
-      scanner.fail("'" + key.substr(0, 40) + "' is not a word of a PCD header");
+      scanner.fail("'" + key.substr(0, 40) + "' is not a PCD header keyword");
     }
   } while (scanner.next_line());
   fail_cloud(path, "is not a PCD file: its header has no DATA");

@@ -24,7 +24,7 @@ constexpr std::size_t digits = 8;
 constexpr std::size_t largest_log = std::size_t{1} << 30;
 
 template <typename Number>
-std::optional<Number> number_in(std::string_view text, int base) {
+std::optional<Number> whole_number_in(std::string_view text, int base) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -38,12 +38,12 @@ struct Record {
 
 /// What a line without its end holds; nothing unless it is as it was written.
 std::optional<Record> record_of(std::string_view line) {
-  const auto stated = number_in<std::uint32_t>(line.substr(0, digits), 16);
+  const auto stated = whole_number_in<std::uint32_t>(line.substr(0, digits), 16);
   if (!stated || line.size() < digits + 1 || line[digits] != ' ') return std::nullopt;
   line.remove_prefix(digits + 1);
   const std::size_t blank = line.find(' ');
   if (blank == std::string_view::npos || crc32_of(line) != *stated) return std::nullopt;
-  const auto number = number_in<std::size_t>(line.substr(0, blank), 10);
+  const auto number = whole_number_in<std::size_t>(line.substr(0, blank), 10);
   if (!number) return std::nullopt;
   return Record{*number, line.substr(blank + 1)};
 }

@@ -55,7 +55,7 @@ class AsciiStl {
   PolygonSoup read() {
     while (const auto word = scanner_.word()) read_statement(lower_case(*word), *word);
     if (soup_.soup().corners.size() != soup_.soup().polygon_begin.back()) {
-      scanner_.fail("ends within a facet; it may have been cut off");
+      scanner_.fail("ends within a facet; it may be truncated");
     }
     return std::move(soup_.soup());
   }
@@ -74,7 +74,7 @@ class AsciiStl {
     } else if (word == "facet" || word == "solid" || word == "endsolid" || word == "color") {
       scanner_.next_line();  // the normal, the name or the colour
     } else if (word != "outer" && word != "loop" && word != "endfacet") {
-      scanner_.fail("'" + std::string(as_written.substr(0, 40)) + "' is no word of an STL file");
+      scanner_.fail("'" + std::string(as_written.substr(0, 40)) + "' is not an STL keyword");
     }
   }
 
@@ -109,9 +109,9 @@ PolygonSoup parse_stl(std::string_view name, std::string_view bytes, const MeshL
   const bool is_unknown = count == 0 || count == std::numeric_limits<std::uint32_t>::max();
   if (is_unknown && room > 0) return parse_binary_stl(name, bytes, room, limits);
   if (wanted > bytes.size()) {
-    fail_mesh(name, "promises " + std::to_string(count) + " triangles in binary STL, but is " +
+    fail_mesh(name, "declares " + std::to_string(count) + " triangles in binary STL, but is " +
                         std::to_string(bytes.size()) + " bytes long instead of " +
-                        std::to_string(wanted) + "; it may have been cut off");
+                        std::to_string(wanted) + "; it may be truncated");
   }
   return parse_binary_stl(name, bytes, count, limits);
 }

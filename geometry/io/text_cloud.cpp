@@ -209,7 +209,7 @@ class TextCloud {
     const bool is_second = has_count_ && points_ + skipped_ == 0;
     if (is_second) {
       scanner_.fail(
-          "is a second number alone, as in PTX, which is not read; save it as E57 or PTS");
+          "is a second number alone, as in PTX, which is not supported; save it as E57 or PTS");
     }
     has_count_ = true;
     declared_ += std::stoull(std::string(line));

@@ -4,11 +4,6 @@ namespace skycap::geometry {
 
 using Eigen::Vector2d;
 
-double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  const Vector2d along = b - a, across = c - a;
-  return along.x() * across.y() - along.y() * across.x();
-}
-
 bool contains(std::span<const Vector2d> polygon, const Vector2d& point) {
   bool inside = false;  // parity of the crossings of a ray towards +x
   for (std::size_t i = 0; i < polygon.size(); ++i) {

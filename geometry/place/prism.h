@@ -20,7 +20,10 @@ struct Prism {
 };
 
 /// Twice the signed area of the triangle: positive if it turns left from a over b to c.
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
+inline double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  const Eigen::Vector2d along = b - a, across = c - a;
+  return along.x() * across.y() - along.y() * across.x();
+}
 
 /// Whether a point is in a simple polygon or, to the last bit of turn(), on its border.
 bool contains(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point);

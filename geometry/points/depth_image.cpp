@@ -49,7 +49,7 @@ DepthImage read_depth_png(const std::filesystem::path& path) {
   png_image png = {};
   png.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_file(&png, path.c_str()) == 0) {
-    fail(path, "is not a PNG picture", png.message);
+    fail(path, "is not a PNG image", png.message);
   }
   constexpr double most_pixels = most_depth_pixels;
   const bool is_deep = (png.format & PNG_FORMAT_FLAG_LINEAR) != 0;

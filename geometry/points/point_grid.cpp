@@ -9,46 +9,10 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr std::uint64_t no_key = ~std::uint64_t{0};
-
 bool has(const auto& cells, std::size_t place) { return (cells[place >> 6] >> (place & 63)) & 1; }
 void add(auto& cells, std::size_t place) { cells[place >> 6] |= std::uint64_t{1} << (place & 63); }
 
 }  // namespace
-
-PointGrid::BrickMap::BrickMap() : slots_(256, Slot{no_key, none}) {}
-
-inline std::size_t PointGrid::BrickMap::slot_of(Key key) const {
-  // Fibonacci hashing: the high bits of the product depend on all bits of the key.
-  const Key mixed = (key ^ (key >> 32)) * 0x9e3779b97f4a7c15U;
-  std::size_t slot = static_cast<std::size_t>(mixed >> 24) & (slots_.size() - 1);
-  while (slots_[slot].key != key && slots_[slot].key != no_key) {
-    slot = (slot + 1) & (slots_.size() - 1);
-  }
-  return slot;
-}
-
-inline std::uint32_t PointGrid::BrickMap::find(Key key) const { return slots_[slot_of(key)].value; }
-
-std::uint32_t PointGrid::BrickMap::find_or_add(Key key, std::uint32_t value) {
-  std::size_t slot = slot_of(key);
-  if (slots_[slot].key == key) return slots_[slot].value;
-  if (2 * (used_ + 1) > slots_.size()) {
-    grow();
-    slot = slot_of(key);
-  }
-  slots_[slot] = {key, value};
-  ++used_;
-  return value;
-}
-
-void PointGrid::BrickMap::grow() {
-  std::vector<Slot> old(4 * slots_.size(), Slot{no_key, none});
-  old.swap(slots_);
-  for (const Slot& slot : old) {
-    if (slot.key != no_key) slots_[slot_of(slot.key)] = slot;
-  }
-}
 
 PointGrid::PointGrid(double cell_size)
     : cell_size_(cell_size), inverse_cell_size_(static_cast<float>(1.0 / cell_size)) {
@@ -86,14 +50,14 @@ inline std::size_t PointGrid::place_in_brick(const Cell& cell) {
 
 std::uint32_t PointGrid::brick_of(const Cell& cell) {
   const auto next = static_cast<std::uint32_t>(bricks_.size());
-  const std::uint32_t index = index_of_brick_.find_or_add(brick_key(cell), next);
-  if (index == next) bricks_.emplace_back();
+  const auto [index, is_new] = index_of_brick_.insert(brick_key(cell), next);
+  if (is_new) bricks_.emplace_back();
   return index;
 }
 
 inline const PointGrid::Brick* PointGrid::find_brick(const Cell& cell) const {
-  const std::uint32_t index = index_of_brick_.find(brick_key(cell));
-  return index == none ? nullptr : &bricks_[index];
+  const std::uint32_t* const index = index_of_brick_.find(brick_key(cell));
+  return index == nullptr ? nullptr : &bricks_[*index];
 }
 
 void PointGrid::start_batch_in(Brick& brick) const {

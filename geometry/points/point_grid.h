@@ -18,6 +18,8 @@
 
 #include <Eigen/Core>
 
+#include "geometry/points/hash_grid.h"
+
 namespace skycap::geometry {
 
 /// (a - b)^2 in single precision, the sum taken from x to z.
@@ -106,24 +108,6 @@ class PointGrid {
     std::uint32_t batch = 0;
     std::uint32_t heads = none;  // where the first nodes of its cells stand in heads_
   };
-  /// From a brick's key to its index: open addressing, linear probing, at most half full.
-  class BrickMap {
-   public:
-    BrickMap();
-    std::uint32_t find(Key key) const;
-    std::uint32_t find_or_add(Key key, std::uint32_t value);  // the value now stored
-
-   private:
-    struct Slot {
-      Key key;
-      std::uint32_t value;
-    };
-    std::size_t slot_of(Key key) const;
-    void grow();
-    std::vector<Slot> slots_;
-    std::size_t used_ = 0;
-  };
-
   Cell cell_at(const Eigen::Vector3f& point) const;
   static Key brick_key(const Cell& cell);
   static std::size_t word_of(std::int32_t x);
@@ -142,7 +126,7 @@ class PointGrid {
   double cell_size_;
   float inverse_cell_size_;
   std::uint32_t batch_ = 1;
-  BrickMap index_of_brick_;
+  HashGrid<std::uint32_t> index_of_brick_{128};
   std::vector<Brick> bricks_;
   std::vector<std::uint32_t> heads_;  // cells_in_brick for each brick that holds points
   std::vector<Node> nodes_;           // by index of the point

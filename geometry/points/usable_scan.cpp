@@ -29,29 +29,29 @@ void require_points(std::span<const Eigen::Vector3f> points) {
                                                  static_cast<Eigen::Index>(3 * points.size()));
   if (numbers.abs().maxCoeff<Eigen::PropagateNaN>() <= farthest_point) return;
   const auto bad = std::ranges::find_if_not(points, is_usable) - points.begin();
-  refuse("has point " + std::to_string(bad) + " that is not finite or farther than " +
-         std::to_string(farthest) + " m from the origin; give points and pose in a local frame");
+  refuse("has point " + std::to_string(bad) + " that is not finite or more than " +
+         std::to_string(farthest) + " m from the origin; use a local frame");
 }
 
 }  // namespace
 
 void require_usable(const ScanSpan& scan, const CameraConfig& camera) {
   if (!(scan.sensor_position().array().abs() <= farthest).all()) {
-    refuse("was taken from a place that is not finite or farther than " + std::to_string(farthest) +
-           " m from the origin; give points and pose in a local frame");
+    refuse("has a position that is not finite or more than " + std::to_string(farthest) +
+           " m from the origin; use a local frame");
   }
   require_points(scan.points);
   if (scan.pixels.empty()) return;
   if (scan.pixels.size() != scan.points.size()) {
     refuse("has " + std::to_string(scan.pixels.size()) + " pixels for " +
-           std::to_string(scan.points.size()) + " points; give one for each");
+           std::to_string(scan.points.size()) + " points; each point requires one");
   }
   const auto all = static_cast<std::uint64_t>(camera.width) * static_cast<unsigned>(camera.height);
   const bool ascends =
       std::ranges::adjacent_find(scan.pixels, std::ranges::greater_equal{}) == scan.pixels.end();
   if (!ascends || scan.pixels.back() >= all) {
-    refuse("has pixels that do not ascend, or that the mission's camera of " +
-           std::to_string(camera.width) + " x " + std::to_string(camera.height) + " has not");
+    refuse("has pixels that are not ascending, or are outside the mission's camera of " +
+           std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels");
   }
 }
 

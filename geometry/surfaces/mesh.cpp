@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <string>
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
+#include "geometry/random_numbers.h"
 
 namespace skycap::geometry {
 namespace {
@@ -60,7 +60,7 @@ void validate(const Mesh& mesh, unsigned threads) {
     const auto& corners = mesh.triangles[triangle];
     const auto missing =
         std::ranges::find_if(corners, [&](std::uint32_t corner) { return corner >= vertices; });
-    throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(triangle) + " names vertex " +
+    throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(triangle) + " has vertex " +
                                              std::to_string(*missing) + ", but there are only " +
                                              std::to_string(vertices));
   }
@@ -115,22 +115,21 @@ void transform(Mesh& mesh, const Eigen::Affine3d& target_from_source) {
 
 SurfaceSamples sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
   const double share = surface_area(mesh) / static_cast<double>(count);
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  RandomNumbers random(seed);
 
   SurfaceSamples samples;
   samples.points.reserve(count);
   samples.normals.reserve(count);
   samples.triangles.reserve(count);
   double area_before = 0.0;  // of the triangles passed so far
-  double next_sample = share * uniform(random);
+  double next_sample = share * random.uniform();
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& triangle = mesh.triangles[t];
     const Vector3d normal = area_vector(mesh, triangle);
     const double area_after = area_before + normal.norm();
     while (next_sample < area_after && samples.points.size() < count) {
       // Uniform in the triangle: fold the unit square over its diagonal.
-      double u = uniform(random), v = uniform(random);
+      double u = random.uniform(), v = random.uniform();
       if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
       const Vector3d& a = mesh.vertices[triangle[0]];
       const Vector3d point =
@@ -138,7 +137,7 @@ SurfaceSamples sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t
       samples.points.push_back(point.cast<float>());
       samples.normals.push_back(normal.normalized().cast<float>());
       samples.triangles.push_back(t);
-      next_sample = share * (static_cast<double>(samples.points.size()) + uniform(random));
+      next_sample = share * (static_cast<double>(samples.points.size()) + random.uniform());
     }
     area_before = area_after;
   }

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using PlaneKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 /// A face knows the region between rings that it is in, or -1 before that is known.
 struct Region {
   int index = -1;
@@ -29,11 +29,12 @@ struct Region {
 struct MeshVertex {
   std::uint32_t index = no_vertex;
 };
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<MeshVertex, Kernel>;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<MeshVertex, PlaneKernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<
-    Kernel, CGAL::Triangulation_face_base_with_info_2<Region, Kernel>>;
+    PlaneKernel, CGAL::Triangulation_face_base_with_info_2<Region, PlaneKernel>>;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::Exact_predicates_tag>;
+    PlaneKernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+    CGAL::Exact_predicates_tag>;
 
 /// The plane of a ring and its two axes, the ring counter-clockwise in them.
 struct Plane {
@@ -99,7 +100,7 @@ bool is_inside(const Vector2d& place, const std::vector<std::vector<Vector2d>>& 
   return is_odd;
 }
 
-Vector2d to_eigen(const Kernel::Point_2& point) { return {point.x(), point.y()}; }
+Vector2d to_eigen(const PlaneKernel::Point_2& point) { return {point.x(), point.y()}; }
 
 Vector2d middle_of(const Triangulation::Face_handle& face) {
   Vector2d sum = Vector2d::Zero();

@@ -11,20 +11,20 @@ namespace {
 
 void validate(std::span<const Eigen::Vector3f> points, const EvaluationRequest& request) {
   if (!(request.distance > 0.0)) {
-    throw Error(ErrorKind::bad_config, "distance is " + std::to_string(request.distance) +
-                                           "; it must be above zero, in metres");
+    throw Error(ErrorKind::bad_config,
+                "distance is " + std::to_string(request.distance) + "; it must be above 0 m");
   }
   if (request.samples == 0) {
-    throw Error(ErrorKind::bad_config, "samples is 0; it must be above zero");
+    throw Error(ErrorKind::bad_config, "samples is 0; it must be above 0");
   }
   if (points.empty()) {
-    throw Error(ErrorKind::bad_geometry, "the cloud has no points; there is nothing to evaluate");
+    throw Error(ErrorKind::bad_geometry, "the cloud has no points");
   }
   const auto bad = std::ranges::find_if_not(
       points, [](const Eigen::Vector3f& point) { return point.allFinite(); });
   if (bad != points.end()) {
     throw Error(ErrorKind::bad_geometry, "point " + std::to_string(bad - points.begin()) +
-                                             " of the cloud is not finite; leave it out");
+                                             " of the cloud is not finite; remove it");
   }
 }
 

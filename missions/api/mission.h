@@ -24,7 +24,7 @@ struct Setting {
 class Mission {
  public:
   /// Throws Error{bad_file} if the file cannot be read, and Error{bad_config} with one line,
-  /// "FILE:LINE: key KEY: what is wrong; what would be right".
+  /// "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
   static Mission load(const std::filesystem::path& file, const std::vector<Setting>& settings = {});
 
   /// The same of a mission in memory; `name` stands for the file in messages, and its folder is

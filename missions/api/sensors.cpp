@@ -28,12 +28,12 @@ std::vector<std::string> sensor_names() {
 
 sim::DepthCameraConfig depth_camera(const std::string& name_or_file) {
   return sensor_as<sim::DepthCameraConfig>(name_or_file,
-                                           " is a laser scanner; name a depth camera");
+                                           " is a laser scanner; a depth camera is required");
 }
 
 sim::LidarConfig laser_scanner(const std::string& name_or_file) {
   return sensor_as<sim::LidarConfig>(name_or_file,
-                                     " is a camera; a scan in pieces needs a laser scanner");
+                                     " is a camera; a scan in pieces requires a laser scanner");
 }
 
 }  // namespace skycap::missions::api

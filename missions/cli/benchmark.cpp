@@ -56,7 +56,7 @@ std::vector<std::string> chosen_scenes(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (std::ranges::find(families, name) != families.end()) continue;
     throw Error(ErrorKind::bad_usage,
-                fmt::format("--scenes: there is no family '{}'; there are all, {}", name,
+                fmt::format("--scenes: unknown family '{}'; expected all or {}", name,
                             fmt::join(families, ", ")));
   }
   return names;
@@ -101,8 +101,9 @@ std::vector<Entry> entries_of(const BenchmarkOptions& options, const Console& co
         Entry entry = entry_of(file, contestant, scene, options, progress.teller());
         const auto [known, is_new] = file_of_title.emplace(entry.title, file);
         if (!is_new && known->second != file) {
-          throw Error(ErrorKind::bad_usage, file.string() + " and " + known->second.string() +
-                                                " have the same name; give one of them a name key");
+          throw Error(ErrorKind::bad_usage,
+                      file.string() + " and " + known->second.string() +
+                          " have the same name; set the key name in one of them");
         }
         entries.push_back(std::move(entry));
       }
@@ -177,7 +178,7 @@ class Benchmark {
         .unfinished = [&](const batch::Item& item) { progress_.expect(kind(item), 1); },
         .preparing =
             [&](const batch::Setup& setup) {
-              progress_.say(setup.title + ": measuring what could be covered at all");
+              progress_.say(setup.title + ": computing attainable coverage");
             },
         .done =
             [&](const batch::Item& item, const batch::TrialRecord& record) {

@@ -26,29 +26,12 @@ std::string vehicle_text(const Calibration& calibration, const std::string& pres
   const flight::MissionMode& mode = vehicle.mode;
   constexpr double degree = geometry::radians_per_degree;
   return fmt::format(
-      "# From {}: {} windows of steady flight, {:.0f} s, scatter {:.1f} W; energy of parts that\n"
-      "# the fit has not seen within {:.1f} %.\n"
-      "name: {}\n"
-      "like: {}\n"
-      "mass: {}\n"
-      "rotor_diameter: {}\n"
-      "battery_wh: {}\n"
-      "endurance_min: {}\n"
-      "avionics_power: {}\n"
-      "drag_area: {}\n"
-      "energy_error: {}\n"
-      "mode:\n"
-      "  max_ascent: {}\n"
-      "  max_descent: {}\n"
-      "  acceleration: {}\n"
-      "  vertical_acceleration: {}\n"
-      "  jerk: {}\n"
-      "  jerk_rise: {}\n"
-      "  settle_time: {}\n"
-      "  yaw_rate_deg: {}\n"
-      "  yaw_acceleration_deg: {}\n"
-      "  landing_speed: {}\n"
-      "  landing_height: {}\n",
+      "# From {}: {} windows of steady flight, {:.0f} s, scatter {:.1f} W; energy of parts that\n# "
+      "were not used in the fit: within {:.1f}%.\nname: {}\nlike: {}\nmass: {}\nrotor_diameter: "
+      "{}\nbattery_wh: {}\nendurance_min: {}\navionics_power: {}\ndrag_area: {}\nenergy_error: "
+      "{}\nmode:\n  max_ascent: {}\n  max_descent: {}\n  acceleration: {}\n  "
+      "vertical_acceleration: {}\n  jerk: {}\n  jerk_rise: {}\n  settle_time: {}\n  yaw_rate_deg: "
+      "{}\n  yaw_acceleration_deg: {}\n  landing_speed: {}\n  landing_height: {}\n",
       log, calibration.windows, calibration.flown, calibration.scatter,
       100.0 * calibration.energy_error, name, preset, figure(vehicle.mass),
       figure(vehicle.rotor_diameter), figure(vehicle.battery_wh), figure(vehicle.endurance_min),
@@ -63,28 +46,27 @@ std::string vehicle_text(const Calibration& calibration, const std::string& pres
 std::string report(const Calibration& calibration, const flight::Vehicle& before) {
   const flight::Vehicle& vehicle = calibration.vehicle;
   std::string text = fmt::format(
-      "  power     hover {:.1f} W, {:.1f} min to the last drop (preset {:.1f}); avionics {:.1f} W, "
-      "drag area {:.4f} m^2\n"
-      "  fit       {} windows, {:.0f} s, scatter {:.1f} W; unseen parts within {:.1f} %: "
-      "energy_error {:.2f}\n"
-      "  wind      {:.1f} m/s that day\n",
+      "  power     hover {:.1f} W, {:.1f} min until the battery is empty (preset {:.1f}); avionics "
+      "{:.1f} W, drag area {:.4f} m^2\n  fit       {} windows, {:.0f} s, scatter {:.1f} W; parts "
+      "not used in the fit within {:.1f}%: energy_error {:.2f}\n  wind      {:.1f} m/s during the "
+      "flight\n",
       calibration.hover_power, vehicle.endurance_min, before.endurance_min, vehicle.avionics_power,
       vehicle.drag_area, calibration.windows, calibration.flown, calibration.scatter,
       100.0 * calibration.energy_error, vehicle.energy_error, calibration.wind.norm());
   if (calibration.outliers > 0) {
-    text += fmt::format("  damage    {} readings left out\n", calibration.outliers);
+    text += fmt::format("  damage    {} readings skipped\n", calibration.outliers);
   }
-  text += fmt::format("  minutes   {} of the autopilot's parameters", calibration.parameters);
+  text += fmt::format("  times     {} of the autopilot's parameters", calibration.parameters);
   if (calibration.settling) {
-    text +=
-        fmt::format(", {:.2f} s to settle by {} legs\n", *calibration.settling, calibration.legs);
+    text += fmt::format(", settling time {:.2f} s from {} legs\n", *calibration.settling,
+                        calibration.legs);
   } else if (calibration.legs_without_time > calibration.legs) {
     text += fmt::format(
         "; settle_time unchanged: {} legs have no durations (the log lists the "
         "mission, not its execution)\n",
         calibration.legs_without_time);
   } else {
-    text += fmt::format("; {} legs with a stop are too few to say how long it settles\n",
+    text += fmt::format("; {} legs with a stop are too few to estimate the settling time\n",
                         calibration.legs);
   }
   for (const std::string& warning : calibration.warnings) text += "  Warning: " + warning + "\n";
@@ -97,7 +79,7 @@ void require_readable(const std::string& text, const std::string& name) {
     config::read_vehicle(text, name);
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file,
-                std::string("the fitted figures make no vehicle: ") + error.what());
+                std::string("the fitted values are not a valid vehicle: ") + error.what());
   }
 }
 
@@ -105,8 +87,8 @@ void require_readable(const std::string& text, const std::string& name) {
 
 int calibrate(const CalibrateOptions& options, const Console& console) {
   if (options.vehicle.ends_with(".yaml")) {
-    throw Error(ErrorKind::bad_usage, "--vehicle is " + options.vehicle +
-                                          "; it must be a preset, which the new file can be like");
+    throw Error(ErrorKind::bad_usage,
+                "--vehicle is " + options.vehicle + "; it must be a preset to inherit from");
   }
   flight::Vehicle vehicle = config::find_vehicle(options.vehicle);
   if (options.battery_wh) vehicle.battery_wh = *options.battery_wh;

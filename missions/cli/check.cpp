@@ -76,7 +76,7 @@ bool check_pads(const std::string& file, const flight::FlightOptions& flight,
     const std::string why = why_unfit(ground, flight.ground_limits());
     if (why.empty()) continue;
     are_fit = false;
-    console.out << file << ": not safe, the place to land at " << flight::place_text(ground.place)
+    console.out << file << ": not safe, the landing point at " << flight::place_text(ground.place)
                 << " " << why << "\n";
   }
   return are_fit;
@@ -86,7 +86,7 @@ bool check_pads(const std::string& file, const flight::FlightOptions& flight,
 int check_timetable(const CheckOptions& options, const flight::FlightOptions& flight,
                     const Console& console) {
   if (!flight.is_fleet()) {
-    throw Error(ErrorKind::bad_usage, "a timetable is for several vehicles; give flight.vehicles");
+    throw Error(ErrorKind::bad_usage, "a timetable requires flight.vehicles");
   }
   const std::string file = options.route->string();
   const flight::SeparationRule rule = flight.fleet.rule();
@@ -95,9 +95,9 @@ int check_timetable(const CheckOptions& options, const flight::FlightOptions& fl
   for (const std::string& problem : proof.problems) console.out << file << ": " << problem << "\n";
   console.out << file << ": "
               << fmt::format(
-                     "{}, {} sorties of {} vehicles in {:.0f} s, apart by {:.2f} m at all times, "
-                     "each up to {} s early or late; {} m is asked for\n",
-                     proof.problems.empty() ? "fine" : "not safe", proof.sorties,
+                     "{}, {} sorties of {} vehicles in {:.0f} s, separation at least {:.2f} m at "
+                     "all times, each up to {} s early or late; required {} m\n",
+                     proof.problems.empty() ? "verified" : "not safe", proof.sorties,
                      flight.fleet.vehicles.size(), proof.makespan, proof.distance,
                      support::short_text(rule.tolerance), support::short_text(rule.distance))
               << std::flush;
@@ -114,7 +114,7 @@ int check_route_file(const CheckOptions& options, const flight::FlightOptions& g
   const package::TrueSpace space = package::true_space(flight, model, facts.pad.z());
 
   ProgressLine progress(console, false);
-  progress.show(file + ": proving " + std::to_string(route.pieces.size()) + " legs");
+  progress.show(file + ": verifying " + std::to_string(route.pieces.size()) + " legs");
   const double asked_for = flight.clearance;
   const flight::FlownProof proof = prove(route, space.everywhere, space.over_pad,
                                          std::max(0.0, asked_for - flight::rounding_bound),
@@ -124,14 +124,15 @@ int check_route_file(const CheckOptions& options, const flight::FlightOptions& g
     for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }
   const bool is_fine = route.problems.empty() && proof.problems.empty();
-  console.out << file << ": " << (is_fine ? "fine" : "not safe") << ", " << proof.problems.size()
-              << " of " << route.pieces.size() << " legs come nearer than "
-              << support::short_text(asked_for) << " m, the nearest "
-              << support::short_text(proof.clearance) << " m; "
+  console.out << file << ": " << (is_fine ? "verified" : "not safe") << ", "
+              << proof.problems.size() << " of " << route.pieces.size()
+              << " legs violate the clearance of " << support::short_text(asked_for)
+              << " m, minimum " << support::short_text(proof.clearance) << " m; "
               << support::short_text(flight::length(route)) << " m long";
   if (!route.problems.empty()) console.out << "; " << route.problems.size() << " other problems";
   if (facts.views.empty() && !route.stops.empty()) {
-    console.out << "; where its photographs look is not checked: it is not in its package";
+    console.out
+        << "; the directions of its photos are not checked, because it is not in its package";
   }
   console.out << "\n";
   const package::ReturnCheck returns = package::check_returns(
@@ -185,8 +186,8 @@ std::string expectation_text(const simulation::Expectation& expected) {
           ? std::to_string(expected.most_views)
           : fmt::format("{} to {}", expected.least_views, expected.most_views);
   return fmt::format(
-      "  expected  {} views ({} for one who knows the scene), {} minutes of flight, {} MB\n"
-      "  time      {} s on this machine, as the first view took\n",
+      "  expected  {} views (oracle: {}), {} minutes of flight, {} MB\n  time      {} s on this "
+      "machine, estimated from the first view\n",
       views, expected.known_views, range_text(expected.least_minutes, expected.most_minutes),
       rough_text(1e-6 * expected.memory), range_text(expected.least_time, expected.most_time));
 }
@@ -200,14 +201,15 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
                                         setup.run.threads);
     const simulation::Feasibility found =
         simulation::feasibility(setup.simulation, scene, setup.run);
-    std::string text = file + (found.problems.empty() ? ": fine\n" : ": cannot work\n");
+    std::string text =
+        file + (found.problems.empty() ? ": no problems found\n" : ": cannot be surveyed\n");
     text +=
         scene_text(setup.survey().planner, core_threshold(package::settings_json(setup)), scene);
     if (setup.scene().priors) text += site_data::text_of(*setup.scene().priors);
     for (const std::string& problem : found.problems) text += "  problem   " + problem + "\n";
     for (const std::string& warning : found.warnings) text += "  warning   " + warning + "\n";
     if (found.problems.empty()) {
-      progress.show(setup.name + ": looking for views");
+      progress.show(setup.name + ": searching for views");
       text += expectation_text(simulation::expectation(setup.simulation, scene, setup.run));
     }
     progress.clear();
@@ -231,7 +233,7 @@ int check(const CheckOptions& options, const Console& console) {
     return check_timetable(options, setup.flight(), console);
   }
   ProgressLine progress(console, false);
-  progress.show(setup.name + ": making the scene ready");
+  progress.show(setup.name + ": loading scene");
   if (!options.route) return check_survey(options, setup, progress, console);
   const geometry::Mesh model = model_of(setup.scene(), options.mission);
   progress.clear();

@@ -14,6 +14,7 @@
 
 #include "geometry/error.h"
 #include "geometry/instruction_set.h"
+#include "geometry/interrupted.h"
 #include "missions/cli/printable.h"
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
@@ -35,119 +36,120 @@ std::string planner_list() {
 }
 
 void add_plan(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "plan", "Survey a mission's scene in simulation and write the mission package");
+  CLI::App* verb =
+      app.add_subcommand("plan", "Plan a survey in simulation and write the mission files");
   const auto options = std::make_shared<PlanOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("mission", options->mission, "Mission file (docs/reference/mission-file.md)")
       ->required();
-  verb->add_option("--out", options->out, "Folder for the results; default results/NAME");
-  verb->add_option("--planner", keys->planner, planner_list() + ", in place of the mission's");
-  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
-  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
-  verb->add_option("--max-views", keys->max_views, "End after this many views");
+  verb->add_option("--out", options->out, "Folder for the results (default: results/NAME)");
+  verb->add_option("--planner", keys->planner, planner_list() + "; overrides the mission file");
+  verb->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
+  verb->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
+  verb->add_option("--max-views", keys->max_views, "Maximum number of views");
   verb->add_option("--trials", options->trials,
-                   "Run this many seeds; write trials.csv and trials.json")
+                   "Run this many seeds and write trials.csv and trials.json")
       ->check(CLI::Range(1, 100'000));
   verb->add_flag("--resume", options->resumes,
-                 "Go on with the survey that was interrupted in that folder, if there is one");
-  verb->add_flag("!--no-report", options->has_report, "Leave out the page");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
-  verb->add_option("--dry-run", keys->dry_run,
-                   "prior: the targets among the mission's prior data stand in for the truth")
+                 "Resume an interrupted survey in the results folder");
+  verb->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
+  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
+  verb->add_option("--dry-run", keys->dry_run, "prior: use the target prior data as ground truth")
       ->check(CLI::IsMember({"prior"}));
-  verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
+  verb->add_flag("--verbose", options->is_verbose,
+                 "Print the planning time of each view by part, and lower bounds");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, plan, console, action);
 }
 
 void add_benchmark(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "benchmark", "Compare planners on missions over many seeds: the paper's tables, and curves");
+  CLI::App* verb =
+      app.add_subcommand("benchmark", "Compare planners over several missions and seeds");
   const auto options = std::make_shared<BenchmarkOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("missions", options->missions, "Mission files")->required();
   verb->add_option("--planners", options->planners,
-                   "all (those of the paper), or names such as see++,oa,skycap")
+                   "all (the planners of the paper), or names such as see++,oa,skycap")
       ->delimiter(',');
   verb->add_option("--scenes", options->scenes,
-                   "all families of scenes, or names such as garage,church: each in the place of "
-                   "the missions' own, and drawn anew for each seed")
+                   "all scene families, or names such as garage,church. Each replaces the scenes "
+                   "of the missions and is generated anew for each seed")
       ->delimiter(',');
-  verb->add_option("--trials", options->trials, "Seeds for each planner and mission; default 10")
+  verb->add_option("--trials", options->trials,
+                   "Number of seeds for each planner and mission (default: 10)")
       ->check(CLI::Range(1, 100'000));
-  verb->add_option("--out", options->out,
-                   "Folder for the results; default results/benchmark. What is finished there is "
-                   "not run again");
-  verb->add_option("--threads", options->threads, "Surveys at a time, 0 for all processors")
+  verb->add_option(
+      "--out", options->out,
+      "Folder for the results (default: results/benchmark). Finished runs are not repeated");
+  verb->add_option("--threads", options->threads, "Number of parallel surveys (0: all processors)")
       ->check(CLI::Range(0, 1024));
-  verb->add_option("--seed", keys->seed, "First seed, in place of the missions'");
-  verb->add_option("--max-views", keys->max_views, "End every survey after this many views");
-  verb->add_flag("!--no-report", options->has_report, "Leave out the page");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  verb->add_option("--seed", keys->seed, "First seed; overrides the mission files");
+  verb->add_option("--max-views", keys->max_views, "Maximum number of views of every survey");
+  verb->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
+  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, benchmark, console, action);
 }
 
 void add_scan(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "scan", "Fly a route in the simulator and record what a sensor measures on the way");
+  CLI::App* verb = app.add_subcommand("scan", "Simulate a LiDAR or depth camera along a route");
   const auto options = std::make_shared<ScanVerbOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("mission", options->mission, "Mission file (docs/howto/simulate-lidar.md)")
       ->required();
   verb->add_option("--route", options->route,
-                   "Route file, or the folder of a mission package; default: the mission's");
+                   "Route file, or folder of a mission package (default: from the mission file)");
   verb->add_option("--sensor", options->sensor,
-                   "Preset or description NAME.yaml, in place of the mission's");
-  verb->add_option("--out", options->out, "Folder for the results; default results/NAME/scan");
-  verb->add_option("--format", options->formats,
-                   "Of the points, one or more of " + scan::cloud_format_names() + "; default las")
+                   "Sensor preset or file NAME.yaml; overrides the mission file");
+  verb->add_option("--out", options->out, "Folder for the results (default: results/NAME/scan)");
+  verb->add_option(
+          "--format", options->formats,
+          "Point formats, one or more of " + scan::cloud_format_names() + " (default: las)")
       ->delimiter(',');
   verb->add_flag("--with-truth", options->with_truth,
-                 "Write a second file with the points as they really were");
-  CLI::Option* const resumes =
-      verb->add_flag("--resume", options->resumes,
-                     "Go on with the scan that was interrupted in that folder, if there is one");
-  verb->add_option("--pieces", options->pieces,
-                   "Measure the flight in so many pieces, each by itself, and join them; the same "
-                   "bytes")
+                 "Also write the points at their true positions");
+  CLI::Option* const resumes = verb->add_flag("--resume", options->resumes,
+                                              "Resume an interrupted scan in the results folder");
+  verb->add_option(
+          "--pieces", options->pieces,
+          "Split the flight into this many pieces and merge them; the result has the same bytes")
       ->check(CLI::Range(1, 1'000'000))
       ->excludes(resumes);
   add_task_options(*verb, options->task, "piece");
-  verb->add_flag("!--no-report", options->has_report, "Leave out the page");
-  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
-  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  verb->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
+  verb->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
+  verb->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
+  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, scan, console, action);
 }
 
 void add_check(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("check", "Check a mission file and its scene");
+  CLI::App* verb =
+      app.add_subcommand("check", "Check a mission file, or verify the clearance of a route file");
   const auto options = std::make_shared<CheckOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   const auto prints_schema = std::make_shared<bool>(false);
   const auto prints_keys = std::make_shared<bool>(false);
   verb->add_option("mission", options->mission, "Mission file");
   verb->add_option("--route", options->route,
-                   "Prove that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
+                   "Verify that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
                    "keeps flight.clearance from the scene");
   verb->add_option("--return-height", options->return_height,
-                   "The height of return that the vehicle is set to, above take-off [m]")
+                   "Return (RTL/RTH) altitude set on the vehicle, in metres above take-off")
       ->check(CLI::Range(0.0, 10'000.0));
   add_set_option(*verb, *keys);
-  verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files instead");
-  verb->add_flag("--keys", *prints_keys, "Print the table of all keys instead");
+  verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files");
+  verb->add_flag("--keys", *prints_keys, "Print the table of all keys");
   verb->add_flag("--setup", options->prints_setup,
-                 "Print the completed keys and the values derived from them as YAML");
+                 "Print all keys, with defaults and derived values, as YAML");
   verb->callback([=, &console, &action] {
     options->overrides = keys->overrides();
     action = [=, &console] {
       if (*prints_schema) return console.out << config::mission_json_schema(), 0;
       if (*prints_keys) return console.out << config::mission_key_table(), 0;
       if (options->mission.empty()) {
-        throw Error(ErrorKind::bad_usage, "check needs a mission file; name one");
+        throw Error(ErrorKind::bad_usage, "check: missing argument: mission file");
       }
       return check(*options, console);
     };
@@ -156,121 +158,126 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
 
 void add_fly_test(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "fly-test", "Fly a mission package's routes many times in wind, with failsafes");
+      "fly-test", "Simulate a planned flight many times with wind and failsafes");
   const auto options = std::make_shared<FlyTestVerbOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("package", options->package, "Folder that plan wrote")->required();
-  verb->add_option("--flights", options->flights, "Of each route file; default 100")
+  verb->add_option("--flights", options->flights, "Simulated flights per route file (default: 100)")
       ->check(CLI::Range(1, 1'000'000));
   verb->add_option("--returns", options->returns,
-                   "Ways home from places at random; default 1000. 0: none")
+                   "Simulated returns from random positions (default: 1000; 0: none)")
       ->check(CLI::Range(0, 100'000'000));
   verb->add_option("--wind", options->wind_speed,
-                   "Strongest steady wind, which gusts come on top of [m/s]; default the "
-                   "mission's, at least 5")
+                   "Maximum steady wind in m/s, to which gusts are added (default: the mission's, "
+                   "at least 5)")
       ->check(number_between(0.0, 100.0));
   verb->add_option("--position-error", options->position_error,
-                   "Greatest error of the receiver [m]; default the mission's")
+                   "Maximum position error of the receiver in metres (default: from the mission)")
       ->check(number_between(0.0, 1000.0));
   verb->add_option("--return-height", options->return_height,
-                   "The height of return that the vehicle is set to, above take-off [m]")
+                   "Return (RTL/RTH) altitude set on the vehicle, in metres above take-off")
       ->check(number_between(0.0, 10'000.0));
   verb->add_option("--truth", options->truth,
-                   "Mission file: judge the flights against its scene as it truly is, too");
-  verb->add_option("--out", options->out, "Folder for fly_test.json; default the package");
-  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
-  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+                   "Mission file: also check the flights against its scene (ground truth)");
+  verb->add_option("--out", options->out, "Folder for fly_test.json (default: the package)");
+  verb->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
+  verb->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
+  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, fly_test, console, action);
 }
 
 void add_calibrate(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
-      app.add_subcommand("calibrate", "Make a vehicle file from a log of the vehicle's own flight");
+  CLI::App* verb = app.add_subcommand("calibrate", "Fit a vehicle file to a flight log");
   const auto options = std::make_shared<CalibrateOptions>();
-  verb->add_option("log", options->log, "ArduPilot's dataflash log (.bin), or .csv")->required();
-  verb->add_option("--vehicle", options->vehicle, "Preset that it is like, such as m350_rtk")
+  verb->add_option("log", options->log, "ArduPilot dataflash log (.bin), or .csv")->required();
+  verb->add_option("--vehicle", options->vehicle, "Preset to inherit from, such as m350_rtk")
       ->required();
-  verb->add_option("--mass", options->mass, "Flown, with payload, in place of the preset's [kg]")
+  verb->add_option("--mass", options->mass,
+                   "Take-off mass in kg, with payload (default: from the preset)")
       ->check(number_between(0.01, 1000.0));
-  verb->add_option("--battery", options->battery_wh, "In place of the preset's [Wh]")
+  verb->add_option("--battery", options->battery_wh,
+                   "Battery capacity in Wh (default: from the preset)")
       ->check(number_between(0.1, 1e5));
-  verb->add_option("--air-density", options->air_density, "Of that day; default 1.225 kg/m^3")
+  verb->add_option("--air-density", options->air_density,
+                   "Air density during the flight in kg/m^3 (default: 1.225)")
       ->check(number_between(0.4, 1.9));
-  verb->add_option("--out", options->out, "Vehicle file; default LOG.yaml");
+  verb->add_option("--out", options->out, "Vehicle file (default: LOG.yaml)");
   run(*verb, options, calibrate, console, action);
 }
 
 void add_evaluate(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "evaluate", "Coverage, accuracy and density of a cloud or mesh against a model");
+  CLI::App* verb =
+      app.add_subcommand("evaluate", "Compare a point cloud or mesh with a reference model");
   const auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* what = verb->add_option_group("what is judged");
+  CLI::App* what = verb->add_option_group("what is evaluated");
   what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las, .laz, .e57 or .xyz");
   what->add_option("--mesh", options->mesh,
-                   "Mesh, in place of a cloud: of skycap reconstruct, say");
+                   "Mesh instead of a cloud, for example from skycap reconstruct");
   what->require_option(1);
   verb->add_option("--model", options->model,
-                   "Mesh, builtin:NAME, model:NAME, or a mission file for its scene as surveyed")
+                   "Reference: a mesh, builtin:NAME, model:NAME, or a mission file for its scene")
       ->required();
-  verb->add_option("--distance", options->distance,
-                   "A surface point with a measurement this near is covered [m]")
+  verb->add_option("--distance", options->distance, "Coverage distance in metres")
       ->check(number_between(1e-6, 1e9));
-  verb->add_option("--samples", options->samples, "Surface points; default 100000")
+  verb->add_option("--samples", options->samples, "Number of surface samples (default: 100000)")
       ->check(CLI::Range(100, 10'000'000));
   verb->add_option("--pieces", options->pieces,
-                   "Judge a cloud in so many pieces, each by itself; the same figures")
+                   "Split the cloud into this many pieces; the values are the same")
       ->check(CLI::Range(1, 1'000'000));
-  verb->add_option("--out", options->out, "Folder for pieces, and for evaluation.json of them");
+  verb->add_option("--out", options->out, "Folder for the pieces and the merged evaluation.json");
   add_task_options(*verb, options->task, "piece");
-  verb->add_option("--threads", options->threads, "Threads, 0 for all processors")
+  verb->add_option("--threads", options->threads, "Number of threads (0: all processors)")
       ->check(CLI::Range(0, 1024));
-  verb->add_flag("--json", options->is_json, "Print JSON");
-  verb->add_flag("--quiet", options->is_quiet, "Show no progress, and print nothing of pieces");
+  verb->add_flag("--json", options->is_json, "Print the result as JSON");
+  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
   run(*verb, options, evaluate, console, action);
 }
 
 void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("reconstruct", "Make a surface mesh of a point cloud");
+  CLI::App* verb =
+      app.add_subcommand("reconstruct", "Reconstruct a surface mesh from a point cloud (Poisson)");
   const auto options = std::make_shared<ReconstructOptions>();
   verb->add_option("cloud", options->cloud,
                    "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), with normals or without")
       ->required();
-  verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF; default CLOUD_mesh.ply");
-  verb->add_option("--spacing", options->spacing, "Thin the cloud to one point a cube [m]")
+  verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF file (default: CLOUD_mesh.ply)");
+  verb->add_option("--spacing", options->spacing, "Voxel size of downsampling in metres")
       ->check(number_between(0.0, 1e6));
   verb->add_option("--depth", options->depth,
-                   "Of the octree, 2^depth cells a side; default: as the points are spaced")
+                   "Octree depth, 2^depth cells a side (default: from the point spacing)")
       ->check(CLI::Range(0, 12));
   verb->add_option("--trim", options->least_density,
-                   "Drop surface with less than this share of the usual density; default 0.2")
+                   "Remove surface whose point density is below this fraction of the usual density "
+                   "(default: 0.2)")
       ->check(number_between(0.0, 0.99));
-  verb->add_option("--threads", options->threads, "Threads, 0 for all processors")
+  verb->add_option("--threads", options->threads, "Number of threads (0: all processors)")
       ->check(CLI::Range(0, 1024));
   run(*verb, options, reconstruct_cloud, console, action);
 }
 
 void add_report(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("report", "Write the pages that show a folder of results");
+  CLI::App* verb = app.add_subcommand("report", "Write the HTML report of a results folder");
   const auto options = std::make_shared<ReportOptions>();
   verb->add_option("folder", options->folder, "Folder that plan, scan or benchmark wrote")
       ->required();
-  verb->add_option("--out", options->out, "The page; default in the folder");
-  verb->add_option("--points", options->points, "Points of the cloud to show; default 1000000")
+  verb->add_option("--out", options->out, "HTML file (default: in the folder)");
+  verb->add_option("--points", options->points,
+                   "Maximum number of points in the report (default: 1000000)")
       ->check(CLI::Range(1, 100'000'000));
   run(*verb, options, report_results, console, action);
 }
 
 void add_view(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "view", "Show results, a point cloud, or a mission's scene in the browser");
+  CLI::App* verb =
+      app.add_subcommand("view", "Open results, a point cloud or a mission in the browser");
   const auto options = std::make_shared<ViewOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("what", options->what,
-                   "Folder of results, cloud (.ply, .pcd, .las, .laz, .e57, .xyz), or mission file")
+  verb->add_option(
+          "what", options->what,
+          "Results folder, point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), or mission file")
       ->required();
-  verb->add_option("--out", options->out, "The page; default beside what is shown");
+  verb->add_option("--out", options->out, "HTML file (default: beside the input)");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, view, console, action);
 }
@@ -315,19 +322,22 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     if (!arguments.empty() && !arguments[0].starts_with('-') &&
         std::ranges::find(known, arguments[0], &CLI::App::get_name) == known.end()) {
       throw Error(ErrorKind::bad_usage,
-                  "there is no verb '" + arguments[0] + "'; the verbs are " + verbs);
+                  "unknown command '" + arguments[0] + "'; expected one of: " + verbs);
     }
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
     app.parse(reversed);
     if (!action) {
       throw Error(ErrorKind::bad_usage,
-                  "says nothing to do; name one of the verbs " + verbs + ", or --help");
+                  "no command given; expected one of: " + verbs + "; see --help");
     }
     return action();
   } catch (const CLI::Success& wish) {  // --help or --version
     return app.exit(wish, console.out, console.err);
   } catch (const CLI::ParseError& failure) {
     return report_failure(console, std::string(failure.what()) + "; see --help", 2);
+  } catch (const Interrupted&) {
+    console.err << "skycap: interrupted\n" << std::flush;
+    return interrupted_exit_code(console);
   } catch (const Error& failure) {
     return report_failure(console, failure.what(), 2);
   } catch (const std::filesystem::filesystem_error& failure) {
@@ -335,9 +345,9 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     const std::string text = failure.path1().string() + ": " + failure.code().message();
     return report_failure(console, text, 2);
   } catch (const std::bad_alloc&) {
-    return report_failure(console, "there is not enough memory for this", 3);
+    return report_failure(console, "out of memory", 3);
   } catch (const std::exception& failure) {
-    return report_failure(console, std::string("internal failure: ") + failure.what(), 3);
+    return report_failure(console, std::string("internal error: ") + failure.what(), 3);
   }
 }
 
@@ -350,7 +360,7 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
       parse_and_run(arguments, {out, console.err, console.err_is_terminal, console.stop,
                                 console.results_held, console.ending_signal});
   if (out.flush()) return exit_code;
-  return report_failure(console, "the results cannot be written to the standard output", 3);
+  return report_failure(console, "cannot write to standard output", 3);
 }
 
 }  // namespace skycap::missions::cli

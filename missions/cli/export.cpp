@@ -10,6 +10,7 @@
 #include "missions/package/fleet_mission.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
+#include "missions/package/pilot_text.h"
 
 namespace skycap::missions::cli {
 namespace {
@@ -44,7 +45,7 @@ Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& s
   });
   if (task.stations.empty()) {
     throw Error(ErrorKind::bad_usage, "--lost " + std::to_string(*options.lost) +
-                                          ": it had photographed all of its views by then");
+                                          ": it had captured all of its views by then");
   }
   std::vector<std::size_t> kept;
   for (std::size_t v = 0; v < count; ++v) {
@@ -63,11 +64,12 @@ Task task_of(const ExportOptions& options, const package::PackagedSurvey& survey
 
 void check_lost(const ExportOptions& options) {
   if (options.after && !options.lost) {
-    throw Error(ErrorKind::bad_usage, "--after: says when a vehicle was lost; give --lost, too");
+    throw Error(ErrorKind::bad_usage, "--after requires --lost");
   }
   if (options.lost && !options.out) {
-    throw Error(ErrorKind::bad_usage,
-                "--lost: the others still fly by the files of the package; give --out");
+    throw Error(
+        ErrorKind::bad_usage,
+        "--lost requires --out, because the other vehicles still use the files of the package");
   }
 }
 
@@ -106,29 +108,28 @@ int export_package(const ExportOptions& options, const Console& console) {
   folder.commit();
   progress.clear();
   console.out << package::flight_text(flight) << "  results   " << folder.path().string() << "\n"
-              << std::flush;
+              << package::pilot_text(task.flight, flight) << std::flush;
   return flight.route.sorties.empty() ? 1 : 0;
 }
 
 void add_export(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
-      app.add_subcommand("export", "Write the flight of a mission package in another format");
+  CLI::App* verb = app.add_subcommand(
+      "export", "Export a planned flight in another format or for another vehicle");
   const auto options = std::make_shared<ExportOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("package", options->package, "Folder that plan wrote")->required();
-  verb->add_option("--format", options->formats,
-                   "plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; may be given "
-                   "again")
+  verb->add_option(
+          "--format", options->formats,
+          "Format: plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; repeatable")
       ->required()
       ->type_size(1)
       ->allow_extra_args(false);
-  verb->add_option("--out", options->out, "Folder for the files; default the package");
+  verb->add_option("--out", options->out, "Folder for the files (default: the package)");
   verb->add_option("--lost", options->lost,
-                   "Number of a vehicle of the package's fleet that is lost: the rest share what "
-                   "it has left")
+                   "Number of a lost vehicle of the fleet. Its remaining views are redistributed")
       ->check(CLI::Range(1, 1000));
   verb->add_option("--after", options->after,
-                   "When it was lost, by the timetable [s]; default before its start")
+                   "Time of loss in the timetable, in seconds (default: before its start)")
       ->check(number_between(0.0, 1e9));
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, export_package, console, action);

@@ -48,9 +48,9 @@ std::vector<std::filesystem::path> flown_files(const std::filesystem::path& fold
   }
   std::ranges::sort(files);
   if (!files.empty()) return files;
-  throw Error(ErrorKind::bad_file, folder.string() +
-                                       " holds no mission that an autopilot flies; give the "
-                                       "mission a vehicle and a place and plan it again");
+  throw Error(ErrorKind::bad_file,
+              folder.string() +
+                  " contains no autopilot mission; plan it with flight.vehicle and a georeference");
 }
 
 /// What the package knows to be free, and what its flights are judged against.
@@ -85,7 +85,8 @@ class TestedPackage {
     facts.vehicle = vehicle;
     const flight::FlownRoute route = flight::interpret_file(file, facts);
     if (!route.problems.empty()) {
-      throw Error(ErrorKind::bad_file, file.string() + " is not flown: " + route.problems.front());
+      throw Error(ErrorKind::bad_file,
+                  file.string() + " cannot be flown: " + route.problems.front());
     }
     const flight::Motion motion(vehicle, own.route(pad).conditions);
     return {script_of(route, motion), motion, law_of(file, dialect, pad, return_height)};
@@ -96,9 +97,9 @@ class TestedPackage {
     const double certified = flight::return_clearance(flight().clearance) - flight::rounding_bound;
     const double strayed = certified - flight().tracking_error - position_error;
     std::vector<flight::Judge> judges{
-        {"what is not measured free", space_, pad_space_, strayed, certified}};
+        {"unknown or occupied space", space_, pad_space_, strayed, certified}};
     if (truth_) {
-      judges.push_back({"the true scene", truth_->everywhere, truth_->over_pad,
+      judges.push_back({"the scene (ground truth)", truth_->everywhere, truth_->over_pad,
                         strayed - flight().map_error, certified - flight().map_error});
     }
     return judges;

@@ -75,7 +75,7 @@ double time_of(const TestFlight& flight) { return flight.flown.time; }
 double energy_wh_of(const TestFlight& flight) { return flight.flown.energy / joules_per_wh; }
 double off_line_of(const TestFlight& flight) { return flight.flown.off_line; }
 
-Json json_of(const TestFlight& flight) {
+Json json_of_flight(const TestFlight& flight) {
   Json json{{"flight", flight.draw.number},
             {"wind_m_s", {flight.draw.wind.x(), flight.draw.wind.y()}},
             {"called_home_s", nullptr},
@@ -101,22 +101,22 @@ std::string judge_text(const TestedFile& file, std::size_t j) {
   const flight::Judge& judge = file.judges[j];
   const Distribution distances = clearance(file, j);
   std::string text = fmt::format(
-      "  clearance least {:.2f} m from {}, 5 % below {:.2f}, median {:.2f}; allowed {:.2f}, {} "
-      "flights nearer\n",
+      "  clearance minimum {:.2f} m to {}, 5% below {:.2f}, median {:.2f}; required {:.2f}, {} "
+      "flights below\n",
       distances.percentile(0), judge.name, distances.percentile(5), distances.percentile(50),
       judge.limit, flights_nearer(file.test, file.judges, j));
   const TestFlight& nearest = nearest_flight(file, j);
   const flight::NearestPlace& place = nearest.flown.nearest[j];
   if (place.closest.kind != flight::ObstacleKind::none) {
-    text += fmt::format("            nearest in flight {} after {:.0f} s{}, to {}\n",
-                        nearest.draw.number, place.time,
-                        place.is_on_way_home ? ", on its way home" : "", file.obstacles[j]);
+    text += fmt::format("            minimum in flight {} after {:.0f} s{}, to {}\n",
+                        nearest.draw.number, place.time, place.is_on_way_home ? ", on return" : "",
+                        file.obstacles[j]);
   }
   if (file.test.returns.empty() || file.test.returns[j].flown == 0) return text;
   const flight::ReturnTest& returns = file.test.returns[j];
   return text + fmt::format(
-                    "  returns   {} from anywhere, least {:.3f} m from {}; allowed {:.3f}, "
-                    "{} nearer\n",
+                    "  returns   {} from random positions, minimum clearance {:.3f} m to {}; "
+                    "required {:.3f}, {} below\n",
                     returns.flown, returns.nearest.distance, judge.name, judge.return_limit,
                     returns.nearer);
 }
@@ -136,23 +136,23 @@ std::string text_of(const TestedFile& file) {
   const flight::FlyTest& test = file.test;
   const auto home =
       test.flights.size() - static_cast<std::size_t>(std::ranges::count_if(test.flights, is_whole));
-  std::string text = fmt::format("{}: {}, {} flights, {} of them called home\n", file.name,
+  std::string text = fmt::format("{}: {}, {} flights, {} of them with a return\n", file.name,
                                  file.autopilot, test.flights.size(), home);
   if (test.flights.empty()) return text;
   const Distribution times = distribution(file, time_of, is_whole);
   const Distribution energies = distribution(file, energy_wh_of, is_whole);
   if (!times.is_empty()) {
     text += fmt::format(
-        "  time      planned {:.0f} s; flown to the end {:.0f} to {:.0f}, median {:.0f}\n"
-        "  energy    {:.1f} to {:.1f} Wh, median {:.1f}\n",
+        "  time      estimated {:.0f} s; completed flights {:.0f} to {:.0f} s, median {:.0f}\n  "
+        "energy    {:.1f} to {:.1f} Wh, median {:.1f}\n",
         test.planned_time, times.percentile(0), times.percentile(100), times.percentile(50),
         energies.percentile(0), energies.percentile(100), energies.percentile(50));
   }
   const Distribution all = distribution(file, energy_wh_of, any);
   const Distribution off_line = distribution(file, off_line_of, any);
   text += fmt::format(
-      "  battery   {:.0f} % left at the least, {} flights beyond it\n"
-      "  off line  median {:.2f} m, 95 % below {:.2f}, farthest {:.2f}\n",
+      "  battery   minimum {:.0f}% left, {} flights beyond it\n  off track median {:.2f} m, 95% "
+      "below {:.2f}, maximum {:.2f}\n",
       100.0 * (1.0 - all.percentile(100) * joules_per_wh / file.battery), empty_batteries(file),
       off_line.percentile(50), off_line.percentile(95), off_line.percentile(100));
   for (std::size_t j = 0; j < file.judges.size(); ++j) text += judge_text(file, j);
@@ -185,14 +185,15 @@ Json json_of(const TestedFile& file) {
     }
     json["clearance"].push_back(std::move(clearances));
   }
-  for (const TestFlight& flight : file.test.flights) json["flights"].push_back(json_of(flight));
+  for (const TestFlight& flight : file.test.flights)
+    json["flights"].push_back(json_of_flight(flight));
   return json;
 }
 
 std::string text_of(const flight::FleetFlightTest& test) {
   return fmt::format(
-      "the fleet: {} flights of all vehicles, any two of them at least {:.2f} m apart (median of "
-      "flights {:.2f} m), {} nearer than {:.2f} m\n",
+      "fleet: {} flights of all vehicles, minimum separation {:.2f} m (median of flights {:.2f} "
+      "m), {} below {:.2f} m\n",
       test.flown, test.least, test.least_median, test.nearer, test.limit);
 }
 

@@ -23,6 +23,7 @@
 #include "missions/online/recordings/recording.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
+#include "missions/package/pilot_text.h"
 #include "missions/report/survey_report.h"
 
 namespace skycap::missions::cli {
@@ -39,7 +40,7 @@ int exit_code_of(const online::Proposal& proposal) {
 Eigen::Isometry3d pose_of(const NextOptions& options) {
   if (options.pose.empty() == !options.pose_file) {
     throw Error(ErrorKind::bad_usage,
-                "--scan needs either --pose \"x y z qx qy qz qw\" or --pose-file FILE");
+                "--scan requires either --pose \"x y z qx qy qz qw\" or --pose-file FILE");
   }
   if (!options.pose_file) return online::parse_pose_text(options.pose, "--pose");
   constexpr std::size_t largest = 1 << 16;
@@ -50,7 +51,7 @@ Eigen::Isometry3d pose_of(const NextOptions& options) {
 std::optional<online::PoseCovariance> covariance_of(const NextOptions& options) {
   if (!options.pose_sigma.empty() && !options.pose_covariance.empty()) {
     throw Error(ErrorKind::bad_usage,
-                "--pose-sigma and --pose-covariance do not go together; give one");
+                "--pose-sigma conflicts with --pose-covariance; remove one of them");
   }
   if (!options.pose_sigma.empty()) {
     return online::parse_pose_sigma(options.pose_sigma, "--pose-sigma");
@@ -76,11 +77,11 @@ std::string left_out_text(const online::ScanFound& found) {
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) text += fmt::format(", {} {}", count, what);
   };
-  add(found.without_return, "pixels without a return");
-  add(found.out_of_view, "out of the camera's view left out");
-  add(found.hidden, "behind others in their pixels left out");
-  add(found.left_out.flying, "flying pixels left out");
-  add(found.left_out.isolated, "isolated returns left out");
+  add(found.without_return, "no-return pixels");
+  add(found.out_of_view, "outside the camera's view ignored");
+  add(found.hidden, "hidden behind others in their pixels ignored");
+  add(found.left_out.flying, "flying pixels removed");
+  add(found.left_out.isolated, "isolated returns removed");
   return text;
 }
 
@@ -95,7 +96,8 @@ void add_scan(const NextOptions& options, const std::string& name, const online:
   const bool is_aside = is_new && survey.proposal().warns_of_pose();
   console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
                              is_new ? "" : "; known already, ignored",
-                             is_aside ? "; set aside, its pose is wrong" : "", left_out_text(found))
+                             is_aside ? "; rejected, pose inconsistent with the map" : "",
+                             left_out_text(found))
               << std::flush;
 }
 
@@ -108,13 +110,13 @@ void add_recording(const NextOptions& options, const flight::FlightOptions& flig
       .count = options.until,
       .image = input_of(options, {}, Eigen::Isometry3d::Identity())};
   ProgressLine progress(console, options.is_quiet);
-  progress.show(options.dataset->string() + ": looking for poses");
+  progress.show(options.dataset->string() + ": reading poses");
   const auto recording = online::open_recording(
       *options.dataset, choice, flight.capture, live,
       [&](const std::string& note) { warn(console, note); }, progress.teller());
   progress.clear();
   if (const std::string source = recording->pose_source(); !source.empty() && !options.is_quiet) {
-    console.err << options.dataset->string() << ": poses are from " << source << "\n";
+    console.err << options.dataset->string() << ": poses from " << source << "\n";
   }
   while (!console.stop.stop_requested()) {
     const std::optional<online::Frame> frame = recording->next();
@@ -159,77 +161,79 @@ Finished write_package(const LiveOptions& options, const config::MissionSetup& s
       fmt::format("{}: {} after {} scans, {} points\n", setup.name,
                   session::name_of(record.stop_reason), record.views.size(), record.cloud.size());
   if (flight) text += package::flight_text(*flight);
-  return {text + "  results   " + options.survey.string() + "\n",
-          !flight || flight->failure.empty()};
+  text += "  results   " + options.survey.string() + "\n";
+  if (flight) text += package::pilot_text(setup.flight(), *flight);
+  return {text, !flight || flight->failure.empty()};
 }
 
 void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
   verb.add_option("mission", options.mission, "Mission file (docs/howto/use-your-own-sensor.md)")
       ->required();
-  verb.add_option("--survey", options.survey, "The survey's folder")->required();
-  verb.add_flag("!--no-report", options.has_report, "Leave out the page");
-  verb.add_option("--seed", keys.seed, "Seed, in place of the mission's");
-  verb.add_option("--threads", keys.threads, "Threads, 0 for all processors");
+  verb.add_option("--survey", options.survey, "Folder of the survey")->required();
+  verb.add_flag("!--no-report", options.has_report, "Do not write the HTML report");
+  verb.add_option("--seed", keys.seed, "Random seed; overrides the mission file");
+  verb.add_option("--threads", keys.threads, "Number of threads (0: all processors)");
   add_set_option(verb, keys);
 }
 
 void add_next(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb =
-      app.add_subcommand("next", "Take in a scan of a real sensor and say where to measure next");
+      app.add_subcommand("next", "Add a scan from a real sensor and print the next view");
   const auto options = std::make_shared<NextOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);
   verb->add_option("--scan", options->scan,
-                   "Cloud (.ply, .pcd, .las, .laz, .e57, .xyz) or depth image (16-bit .png)");
-  verb->add_option("--pose", options->pose,
-                   "Of the sensor's optical frame: \"x y z qx qy qz qw\", or a matrix by rows");
-  verb->add_option("--pose-file", options->pose_file, "A file that holds the pose");
+                   "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz) or depth image (16-bit .png)");
+  verb->add_option(
+      "--pose", options->pose,
+      "Pose of the sensor's optical frame: \"x y z qx qy qz qw\" or a row-major matrix");
+  verb->add_option("--pose-file", options->pose_file, "File with the pose");
   verb->add_option("--pose-sigma", options->pose_sigma,
-                   "How far off the pose may be, one standard deviation: \"metres degrees\"; "
-                   "default: live.pose_sigma and live.pose_sigma_deg");
+                   "Standard deviations of the pose: \"metres degrees\" (default: live.pose_sigma "
+                   "and live.pose_sigma_deg)");
   verb->add_option("--pose-covariance", options->pose_covariance,
-                   "Of the pose, in its place: the 36 numbers of a covariance of x y z rx ry rz in "
-                   "the mission's frame [m, rad] by rows, or the 21 of its upper triangle");
+                   "Covariance of the pose, instead of --pose-sigma: 36 numbers, row by row, of x "
+                   "y z rx ry rz in the mission frame [m, rad], or the 21 of its upper triangle");
   verb->add_option("--lens", options->lens,
-                   "Of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\"; default: "
-                   "the mission's camera");
+                   "Camera intrinsics of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 "
+                   "p2 k3\" (default: the mission's camera)");
   verb->add_option("--depth-unit", options->depth_unit,
-                   "What a step of a depth image stands for [m]; default 0.001")
+                   "Depth of one step of a 16-bit image, in metres (default: 0.001)")
       ->check(number_between(1e-6, 1.0));
-  verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
+  verb->add_flag("--world", options->is_in_world, "The cloud is already in the mission frame");
   verb->add_flag("--on-way", options->is_on_way,
-                 "The scan is from the way to the view that was asked for, not from there");
-  verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
-  verb->add_option("--dataset", options->dataset,
-                   "A recording, whose frames are taken in one by one: a folder of TUM RGB-D "
-                   "(depth.txt, groundtruth.txt) or 7-Scenes (frame-NNNNNN.depth.png, .pose.txt), "
-                   "or a rawlog of MRPT");
-  verb->add_option("--sensor", options->sensor, "Of a rawlog with several: the one's label");
+                 "The scan was taken en route to the proposed view");
+  verb->add_option("--id", options->id,
+                   "Identifier of the scan. A scan with a known identifier is not added again");
+  verb->add_option(
+      "--dataset", options->dataset,
+      "Recording whose frames are added one by one: a TUM RGB-D folder (depth.txt, "
+      "groundtruth.txt), a 7-Scenes folder (frame-NNNNNN.depth.png, .pose.txt), or an MRPT rawlog");
+  verb->add_option("--sensor", options->sensor, "Label of the sensor in a rawlog with several");
   verb->add_option("--poses", options->poses,
-                   "Of a rawlog's sensor, in place of its own: a TUM trajectory of the optical "
-                   "frame");
-  verb->add_option("--until", options->until, "Only so many frames of the recording")
+                   "TUM trajectory of the optical frame, instead of the rawlog's poses");
+  verb->add_option("--until", options->until, "Maximum number of frames of the recording")
       ->check(CLI::Range(1, 1'000'000));
-  verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
-  verb->add_flag("--json", options->is_json, "Print JSON");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the answer and errors");
+  verb->add_option("--refuse", options->refusal,
+                   "Reject the proposed view for this reason and request another");
+  verb->add_flag("--json", options->is_json, "Print the result as JSON");
+  verb->add_flag("--quiet", options->is_quiet, "Print the result and errors only");
   run_with_keys(*verb, options, keys, next, console, action);
 }
 
 void add_serve(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "serve", "Serve a live survey on a socket (docs/reference/live-protocol.md)");
+  CLI::App* verb = app.add_subcommand("serve", "Run a live-survey server on a Unix or TCP socket");
   const auto options = std::make_shared<ServeOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);
-  verb->add_option("--socket", options->socket, "A Unix socket, which only you may open");
-  verb->add_option("--port", options->port, "Of this machine alone; 0 for any that is free");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the address and errors");
+  verb->add_option("--socket", options->socket, "Path of a Unix socket, accessible only to you");
+  verb->add_option("--port", options->port, "TCP port of this machine; 0: any free port");
+  verb->add_flag("--quiet", options->is_quiet, "Print the address and errors only");
   run_with_keys(*verb, options, keys, serve, console, action);
 }
 
 void add_finish(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("finish", "Write the mission package of a live survey");
+  CLI::App* verb = app.add_subcommand("finish", "End a live survey and write its mission files");
   const auto options = std::make_shared<LiveOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);
@@ -240,11 +244,10 @@ void add_finish(CLI::App& app, const Console& console, Action& action) {
 
 int next(const NextOptions& options, const Console& console) {
   if (options.scan.has_value() + options.dataset.has_value() + options.refusal.has_value() > 1) {
-    throw Error(ErrorKind::bad_usage,
-                "--scan, --dataset and --refuse do not go together; give one");
+    throw Error(ErrorKind::bad_usage, "--scan, --dataset and --refuse exclude each other; use one");
   }
   if (options.is_on_way && !options.scan) {
-    throw Error(ErrorKind::bad_usage, "--on-way goes with --scan; give the scan, or leave it out");
+    throw Error(ErrorKind::bad_usage, "--on-way requires --scan");
   }
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
@@ -268,8 +271,9 @@ int finish(const LiveOptions& options, const Console& console) {
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   if (survey->views().empty()) {
-    throw Error(ErrorKind::bad_usage,
-                options.survey.string() + ": has no scan yet; add some with skycap next --scan");
+    throw Error(
+        ErrorKind::bad_usage,
+        options.survey.string() + ": contains no scan yet; add scans with skycap next --scan");
   }
   const Finished finished = write_package(options, setup, *survey, console);
   console.out << finished.text << std::flush;
@@ -278,7 +282,7 @@ int finish(const LiveOptions& options, const Console& console) {
 
 int serve(const ServeOptions& options, const Console& console) {
   if (options.socket.has_value() == options.port.has_value()) {
-    throw Error(ErrorKind::bad_usage, "serve needs either --socket PATH or --port NUMBER");
+    throw Error(ErrorKind::bad_usage, "serve requires either --socket PATH or --port NUMBER");
   }
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
@@ -334,8 +338,8 @@ int fly_live(const FlyOptions& options, const Console& console) {
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   online::NetworkPort port(address);
   if (!address.is_of_this_machine()) {
-    warn(console,
-         "MAVLink has no lock: who can reach " + options.connect + " can take part in this flight");
+    warn(console, "MAVLink is not authenticated: anyone who can reach " + options.connect +
+                      " can send commands to this vehicle");
   }
   const HoldsResults results(console);
   online::FlightOptions flight;
@@ -347,9 +351,10 @@ int fly_live(const FlyOptions& options, const Console& console) {
   const online::FlightEnd end = online::fly_survey(setup.flight(), *survey, port, std::move(sensor),
                                                    std::move(flight), console.stop);
   if (end.trouble) {
-    console.err << "skycap: the flight ended: " << printable_line(end.trouble->what)
-                << (end.has_landed ? "; landed on the pad" : "") << "; the survey in "
-                << printable_line(options.survey.string()) << " goes on when it is flown again\n"
+    console.err << "skycap: flight ended: " << printable_line(end.trouble->what)
+                << (end.has_landed ? "; landed at the take-off point" : "")
+                << "; repeat the command to resume the survey in "
+                << printable_line(options.survey.string()) << "\n"
                 << std::flush;
     return 1;
   }
@@ -359,27 +364,27 @@ int fly_live(const FlyOptions& options, const Console& console) {
 }
 
 void add_fly(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("fly",
-                                      "Fly a live survey on an autopilot, one proven leg after "
-                                      "another (docs/howto/fly-live-on-arducopter.md)");
+  CLI::App* verb =
+      app.add_subcommand("fly", "Fly a live survey on ArduCopter over MAVLink (experimental)");
   const auto options = std::make_shared<FlyOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);
   verb->add_option("--connect", options->connect,
-                   "Where the autopilot's MAVLink comes to, udp:127.0.0.1:14550, or where it waits "
-                   "for us, udpout:HOST:PORT or tcp:HOST:PORT")
+                   "MAVLink connection: udp:127.0.0.1:14550 to listen, udpout:HOST:PORT or "
+                   "tcp:HOST:PORT to connect")
       ->required();
   verb->add_option("--sensor", options->sensor,
-                   "simulated (default; the mission has a scene then), or a folder that another "
-                   "program writes the scans to");
+                   "simulated (default; the mission requires a scene), or a folder to which "
+                   "another program writes scans");
   verb->add_option("--on-failure", options->on_failure,
-                   "hold (default) until a pilot takes control, or return by the proven way where "
-                   "that can be flown")
+                   "hold (default): hold position until a pilot takes control; return: return "
+                   "along the verified path where possible")
       ->check(CLI::IsMember({"hold", "return"}));
-  verb->add_option("--lens", options->lens, "Of depth images, as for next");
-  verb->add_option("--depth-unit", options->depth_unit, "Of depth images [m]; default 0.001")
+  verb->add_option("--lens", options->lens, "Camera intrinsics of depth images, as for next");
+  verb->add_option("--depth-unit", options->depth_unit,
+                   "Depth of one step of 16-bit images, in metres (default: 0.001)")
       ->check(number_between(1e-6, 1.0));
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but results and errors");
+  verb->add_flag("--quiet", options->is_quiet, "Print results and errors only");
   run_with_keys(*verb, options, keys, fly_live, console, action);
 }
 

@@ -56,7 +56,7 @@ online::Sensor simulated_sensor(const evaluation::SimulationOptions& options,
                                 const session::RunOptions& run) {
   if (options.scene.model.empty()) {
     throw Error(ErrorKind::bad_config,
-                "scene.model is missing; a simulated sensor needs a scene to measure");
+                "scene.model is missing; a simulated sensor requires a scene");
   }
   const auto scene =
       std::make_shared<evaluation::SurveyScene>(options, mission_folder, run.threads);

@@ -35,11 +35,11 @@ geometry::Mesh mesh_of(const std::string& model, const std::optional<std::string
   if (detail) {
     if (!model.starts_with("builtin:")) {
       throw Error(ErrorKind::bad_config,
-                  "--detail needs a builtin model; " + model + " is as detailed as its file");
+                  "--detail requires a builtin model; " + model + " is as detailed as its file");
     }
     scene.detail = level_of_detail(*detail);
   }
-  return scene::load_model(scene, "");
+  return scene::load_model(scene, " has the detail of its file");
 }
 
 void obtain_if_missing(const std::string& name, const Console& console) {
@@ -117,7 +117,7 @@ geometry::Mesh model_called(const ModelOptions& options, const Console& console)
 
 int model(const ModelOptions& options, const Console& console) {
   ProgressLine progress(console, false);
-  progress.show(options.name + ": making the model ready");
+  progress.show(options.name + ": loading the model");
   std::optional<Site> site;
   if (is_mission(options.name)) site = site_called(options, progress.teller());
   const ColouredMesh whole =
@@ -135,7 +135,7 @@ int model(const ModelOptions& options, const Console& console) {
     sim::RenderOptions render;
     render.colours = shown.colours;
     render.report = [&](double share) {
-      progress.show(fmt::format("{}: {:.0f} % of the picture", options.name, 100.0 * share));
+      progress.show(fmt::format("{}: {:.0f}% of the image", options.name, 100.0 * share));
     };
     sim::write_png(sim::render(shown.mesh, render), *options.render);
   }
@@ -148,15 +148,16 @@ int model(const ModelOptions& options, const Console& console) {
 }
 
 void add_model(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("model", "Obtain, write or render a scene model");
+  CLI::App* verb = app.add_subcommand("model", "Download, export or render a scene model");
   const auto options = std::make_shared<ModelOptions>();
   verb->add_option("name", options->name,
                    "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
       ->required();
   verb->add_option("--out", options->out, "Write the mesh to this PLY file");
-  verb->add_option("--detail", options->detail, "Of a builtin model: coarse, standard or fine")
+  verb->add_option("--detail", options->detail,
+                   "Level of detail of a builtin model: coarse, standard or fine")
       ->check(CLI::IsMember({"coarse", "standard", "fine"}));
-  verb->add_option("--render", options->render, "Draw the model into this PNG file");
+  verb->add_option("--render", options->render, "Render the model into this PNG file");
   run(*verb, options, model, console, action);
 }
 

@@ -17,6 +17,7 @@
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
+#include "missions/package/pilot_text.h"
 #include "missions/package/target_coverage.h"
 #include "missions/simulation/feasibility.h"
 #include "missions/simulation/survey_runner.h"
@@ -24,7 +25,7 @@
 namespace skycap::missions::cli {
 namespace {
 
-std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
+std::string percent(double share) { return fmt::format("{:.2f}%", 100.0 * share); }
 
 std::string seconds(double time) {
   return time < 1.0 ? fmt::format("{:.1f} ms", 1e3 * time) : fmt::format("{:.2f} s", time);
@@ -56,7 +57,18 @@ std::string times_row(std::size_t view, const session::JudgedView& judged) {
   return row + "\n";
 }
 
-std::string summary_text(const std::string& name, const evaluation::SimulationOptions& options,
+std::string planning_text(const session::SurveyRecord& record) {
+  std::string text = " (";
+  bool is_first = true;
+  for (const auto& [part, time] : package::planning_time_by_part(record)) {
+    text += (is_first ? "" : ", ") + part + " " + seconds(time);
+    is_first = false;
+  }
+  return text + ")";
+}
+
+std::string summary_text(const std::string& name, const PlanOptions& options,
+                         const evaluation::SimulationOptions& simulation,
                          const session::SurveyRecord& record,
                          const package::CoverageFigures& coverage,
                          const std::optional<package::SurveyMission>& flight,
@@ -65,23 +77,22 @@ std::string summary_text(const std::string& name, const evaluation::SimulationOp
       fmt::format("{}: {} after {} views, {:.2f} m\n", name, session::name_of(record.stop_reason),
                   record.views.size(), record.distance());
   text += "  coverage  " + percent(coverage.all) + " of the surface";
-  if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
+  if (coverage.visible) text += ", " + percent(*coverage.visible) + " of the visible surface";
   if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
-  text +=
-      "\n" + package::target_text(package::target_coverage(
-                 options.scene, options.evaluation.registration_distance, record.cloud.positions));
-  if (options.scene.model == "prior")
-    text += "  truth     the targets' prior data stand in for it\n";
-  text += "  planning  " + seconds(record.planning_time()) + " (";
-  bool is_first = true;
-  for (const auto& [part, time] : package::planning_time_by_part(record)) {
-    text += (is_first ? "" : ", ") + part + " " + seconds(time);
-    is_first = false;
+  text += "\n" + package::target_text(package::target_coverage(
+                     simulation.scene, simulation.evaluation.registration_distance,
+                     record.cloud.positions));
+  if (simulation.scene.model == "prior") {
+    text += "  scene     the targets' prior data, used as ground truth\n";
   }
-  text += ")\n";
-  if (record.flown) text += package::flown_text(options.survey.flight, record);
-  if (flight) text += package::flight_text(*flight);
-  return text + "  results   " + folder.string() + "\n";
+  text += "  planning  " + seconds(record.planning_time());
+  if (options.is_verbose) text += planning_text(record);
+  text += "\n";
+  if (record.flown) text += package::flown_text(simulation.survey.flight, record);
+  if (flight) text += package::flight_text(*flight, options.is_verbose);
+  text += "  results   " + folder.string() + "\n";
+  if (flight) text += package::pilot_text(simulation.survey.flight, *flight);
+  return text;
 }
 
 int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
@@ -99,13 +110,13 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
   simulation::SurveyJournal journal(folder.path() / simulation::journal_name, setup.identity(),
                                     scene, options.resumes);
   if (journal.views() > 0 && !options.is_quiet) {
-    console.err << "going on after " << journal.views() << " views of an interrupted survey\n";
+    console.err << "resuming an interrupted survey after " << journal.views() << " views\n";
   }
   const session::SurveyRecord record = simulation::run_survey(
       setup.simulation, scene, setup.run.seed, setup.run.threads, console.stop, report, &journal);
 
   const bool is_over = record.stop_reason != survey::StopReason::interrupted;
-  if (is_over) progress.show(setup.name + ": measuring what could be covered at all");
+  if (is_over) progress.show(setup.name + ": computing attainable coverage");
   const package::CoverageFigures coverage =
       package::coverage_figures(setup.simulation, record, scene, setup.run.threads, console.stop);
   progress.show(setup.name + ": writing " + folder.path().string());
@@ -115,7 +126,7 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
   package::commit_package(record, folder);
   progress.clear();
   if (!options.is_quiet) {
-    console.out << summary_text(setup.name, setup.simulation, record, coverage, flight,
+    console.out << summary_text(setup.name, options, setup.simulation, record, coverage, flight,
                                 folder.path())
                 << std::flush;
   }
@@ -143,7 +154,7 @@ std::vector<batch::Trial> run_trials(const PlanOptions& options, const batch::Se
       .unfinished = {},
       .preparing =
           [&](const batch::Setup&) {
-            progress.show(mission.name + ": measuring what could be covered at all");
+            progress.show(mission.name + ": computing attainable coverage");
           },
       .done =
           [&](const batch::Item& item, const batch::TrialRecord& done) {
@@ -191,7 +202,7 @@ int plan(const PlanOptions& options, const Console& console) {
       options.out.value_or(std::filesystem::path("results") / setup.name));
   if (options.trials > 0) return plan_trials(options, setup, folder, console);
   ProgressLine progress(console, options.is_quiet);
-  progress.show(setup.name + ": making the scene ready");
+  progress.show(setup.name + ": loading scene");
   try {
     const evaluation::SurveyScene scene(setup.simulation, options.mission.parent_path(),
                                         setup.run.threads);

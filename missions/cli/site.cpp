@@ -34,7 +34,7 @@ struct SiteOptions {
 
 [[noreturn]] void refuse(const std::string& option, const std::string& given,
                          const std::string& wanted) {
-  throw Error(ErrorKind::bad_usage, option + " is " + given + "; give " + wanted);
+  throw Error(ErrorKind::bad_usage, option + " is " + given + "; it must be " + wanted);
 }
 
 wizard::Pick pick_of(const SiteOptions& options) {
@@ -52,7 +52,7 @@ wizard::Pick pick_of(const SiteOptions& options) {
       (pick.ids.empty() ? 0 : 1) + (pick.attributes.empty() ? 0 : 1) + (pick.click ? 1 : 0);
   if (ways > 1) {
     throw Error(ErrorKind::bad_usage,
-                "--id, --at and --attribute each say what the target is; give one of them");
+                "--id, --at and --attribute exclude each other; use one of them");
   }
   return pick;
 }
@@ -94,12 +94,12 @@ int propose_site(const SiteOptions& options, const Console& console) {
   for (const fs::path& result : {file, picture}) {
     if (!fs::exists(result)) continue;
     throw Error(ErrorKind::bad_usage,
-                result.string() + " is there already; give another --out, or move it away");
+                result.string() + " exists; use another --out, or move the file");
   }
   ProgressLine progress(console, false);
   progress.show("reading " + options.map.filename().string());
   const std::string text = wizard::propose_mission(wishes_of(options), file);
-  progress.show("drawing the site");
+  progress.show("drawing the map");
   const config::MissionSetup setup = config::parse_mission(text, file.string());
   const std::string page = page_of(setup.name, setup.simulation, file);
   progress.clear();
@@ -110,7 +110,7 @@ int propose_site(const SiteOptions& options, const Console& console) {
   console.out << fmt::format("{}: a first mission for {}\n", file.string(), setup.name)
               << site_data::text_of(*setup.scene().priors)
               << fmt::format("  pad       {:g} {:g} {:g}\n", pad.x(), pad.y(), pad.z())
-              << "  picture   " << picture.string() << "\n"
+              << "  map       " << picture.string() << "\n"
               << "  next      skycap plan " << file.string() << "\n"
               << std::flush;
   return 0;
@@ -120,35 +120,35 @@ int propose_site(const SiteOptions& options, const Console& console) {
 
 void add_site(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "site", "Propose a first mission from a map, a city model, a terrain or an earlier scan");
+      "site", "Create a mission file from a map, city model, terrain model or point cloud");
   const auto options = std::make_shared<SiteOptions>();
   verb->add_option("map", options->map,
-                   "File with the target and what is around it (docs/reference/prior-formats.md)")
+                   "File with the target and its surroundings (docs/reference/prior-formats.md)")
       ->required();
-  verb->add_option("--id", options->ids, "Target by its name in the file; may be given again")
+  verb->add_option("--id", options->ids, "Target by its name in the file; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
-  verb->add_option("--at", options->at, "Target by a click on it: LATITUDE,LONGITUDE");
+  verb->add_option("--at", options->at, "Target by position: LATITUDE,LONGITUDE");
   verb->add_option("--attribute", options->attributes,
-                   "Target by KEY=VALUE, such as a part of its address; may be given again")
+                   "Target by attribute KEY=VALUE, such as a part of its address; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
-  verb->add_option("--crs", options->crs, "Reference system of the files, if they do not say it");
+  verb->add_option("--crs", options->crs,
+                   "Coordinate reference system of the files, if they do not contain it");
   verb->add_option("--vertical", options->vertical,
-                   "What their heights count from, if they do not say it: ellipsoid, geoid")
+                   "Vertical datum of the files, if they do not contain it: ellipsoid or geoid")
       ->check(CLI::IsMember({name_of(datums[0]), name_of(datums[1])}));
-  verb->add_option("--base", options->base,
-                   "Of outlines: the height that they stand at, in --vertical [m]")
+  verb->add_option("--base", options->base, "Base height of outlines, in --vertical, in metres")
       ->check(number_between(-1e4, 1e4));
   verb->add_option("--height", options->height,
-                   "Of outlines without a height of their own: how high they are [m]")
+                   "Height of outlines without a height of their own, in metres")
       ->check(number_between(0.01, 1e4));
-  verb->add_option("--terrain", options->terrain, "File of the ground; outlines stand on it");
-  verb->add_option("--obstacle", options->obstacles, "Further file of what is in the way")
+  verb->add_option("--terrain", options->terrain, "Terrain file, on which outlines stand");
+  verb->add_option("--obstacle", options->obstacles, "Further file with obstacles")
       ->type_size(1)
       ->allow_extra_args(false);
-  verb->add_option("--vehicle", options->vehicle, "Preset or description; default generic");
-  verb->add_option("--out", options->out, "Mission file; default site.yaml");
+  verb->add_option("--vehicle", options->vehicle, "Vehicle preset or file (default: generic)");
+  verb->add_option("--out", options->out, "Mission file (default: site.yaml)");
   run(*verb, options, propose_site, console, action);
 }
 

@@ -15,7 +15,7 @@ batch::ItemRange items_of(const TaskOptions& options, std::size_t items, const C
   const batch::ItemRange range =
       batch::items_of_task(task, std::max<std::size_t>(1, options.chunk), items);
   if (range.size() == 0) {
-    warn(console, fmt::format("task {} has no items; there are {}", task, items));
+    warn(console, fmt::format("task {} has no runs; there are {}", task, items));
   }
   return range;
 }
@@ -46,8 +46,8 @@ int submit_job(const TaskOptions& options, batch::JobRequest job, geometry::Outp
     return console.stop.stop_requested() ? interrupted_exit_code(console) : collect();
   }
   if (!submission.job.empty() && !is_quiet) {
-    console.out << fmt::format("job {} of Slurm: {} tasks of {} items\nresults: {}\n",
-                               submission.job, submission.tasks.tasks, submission.tasks.chunk,
+    console.out << fmt::format("Slurm job {}: {} tasks of {} runs\nresults: {}\n", submission.job,
+                               submission.tasks.tasks, submission.tasks.chunk,
                                folder.path().string())
                 << std::flush;
   }

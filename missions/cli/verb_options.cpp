@@ -18,7 +18,7 @@ std::vector<config::KeyOverride> KeyOptions::overrides() const {
     const auto equals = pair.find('=');
     if (equals == std::string::npos) {
       throw Error(ErrorKind::bad_usage,
-                  "--set " + pair + ": has no '='; give KEY=VALUE, such as seed=2");
+                  "--set " + pair + ": missing '='; use KEY=VALUE, for example seed=2");
     }
     all.push_back({"--set " + pair, pair.substr(0, equals), pair.substr(equals + 1)});
   }
@@ -26,24 +26,24 @@ std::vector<config::KeyOverride> KeyOptions::overrides() const {
 }
 
 void add_set_option(CLI::App& verb, KeyOptions& keys) {
-  verb.add_option("--set", keys.set,
-                  "KEY=VALUE: any key of the mission file, such as "
-                  "planner.density=213; may be given again")
+  verb.add_option(
+          "--set", keys.set,
+          "KEY=VALUE: set any key of the mission file, for example planner.density=213; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
 }
 
 std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
                                            const std::string& item) {
-  verb.add_option("--chunk", options.chunk, "Of a task, so many " + item + "s; default 1")
+  verb.add_option("--chunk", options.chunk, "Number of " + item + "s per task (default: 1)")
       ->check(CLI::Range(1, 1'000'000));
   std::vector<CLI::Option*> all{
       verb.add_option("--index", options.index,
-                      "Run one task: its number from 0 on, or slurm, mpi, kubernetes, parallel or "
-                      "auto for the one that the engine's environment says"),
-      verb.add_flag("--collect", options.collects, "Make the results of what is complete"),
+                      "Run one task: its 0-based index, or slurm, mpi, kubernetes, parallel or "
+                      "auto to read it from the scheduler's environment"),
+      verb.add_flag("--collect", options.collects, "Merge what is complete"),
       verb.add_option("--submit", options.engine,
-                      "Have slurm, parallel or mpi run it; writes the job's script")
+                      "Submit to slurm, parallel or mpi; writes the job script")
           ->check(CLI::IsMember({"slurm", "parallel", "mpi"}))};
   for (CLI::Option* one : all) {
     for (CLI::Option* other : all) {

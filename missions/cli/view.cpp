@@ -33,7 +33,7 @@ std::vector<report::MadePage> pages_of(const ViewOptions& options, const config:
     return report::made_pages(what, report::default_report_points, options.out);
   }
   if (!options.out && !fs::exists(what, ignored)) {
-    throw Error(ErrorKind::bad_file, what.string() + ": is not there");
+    throw Error(ErrorKind::bad_file, what.string() + ": does not exist");
   }
   const std::string ending = what.extension().string();
   if (ending == ".yaml" || ending == ".yml") return {page_of_mission(options, report)};

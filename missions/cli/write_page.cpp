@@ -9,7 +9,7 @@ void write_page(const std::string& results, bool is_wanted, geometry::OutputFold
   const bool is_made = is_wanted && !console.stop.stop_requested();
   const auto complaint = report::stage_page(results, is_made, folder);
   if (complaint) warn(console, "no report: " + *complaint);
-  if (is_wanted && !is_made) warn(console, "no report after Ctrl-C; skycap report makes it");
+  if (is_wanted && !is_made) warn(console, "no report after Ctrl-C; skycap report writes it");
 }
 
 }  // namespace skycap::missions::cli

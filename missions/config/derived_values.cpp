@@ -56,7 +56,7 @@ std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) 
       // rest, but as if at random: cells of at least four times as many rays.
       constexpr double wider = 2.0;
       const double flown = sensor.is_moving() ? speed * sensor.frame_period : 0.0;
-      return flight::SweepRays{.spacing = wider * rosette_of(sensor).gap,
+      return flight::SweepRays{.spacing = wider * document.sensor.rosette.value().gap,
                                .axis = Vector3d::UnitX(),
                                .origin_spread = lever_arm + 0.5 * flown,
                                .is_scattered = true};

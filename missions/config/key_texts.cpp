@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "geometry/io/file.h"
-#include "geometry/io/record_log.h"
 #include "missions/config/mission_keys.h"
 #include "missions/site_data/site_priors.h"
 
@@ -31,8 +29,8 @@ bool decides_what_is_attainable(std::string_view path) {
 
 }  // namespace
 
-std::vector<support::Setting> survey_settings(const MissionDocument& document) {
-  constexpr std::size_t largest = 1 << 20;  // of a description, which was read before [byte]
+std::vector<support::Setting> survey_settings(
+    const MissionDocument& document, const std::optional<std::uint32_t>& vehicle_checksum) {
   std::vector<support::Setting> settings;
   for (const Key& key : mission_keys()) {
     if (key.path == "name" || key.path == "seed" || key.path == "threads" ||
@@ -41,11 +39,9 @@ std::vector<support::Setting> survey_settings(const MissionDocument& document) {
     }
     const auto value = key.get(document);
     std::string text = value ? to_text(*value) : "-";
-    // Of a description in a file what it says, wherever it lies.
-    const std::string& vehicle = document.flight.options.vehicle_name;
-    if (key.path == "flight.vehicle" && vehicle.ends_with(".yaml")) {
-      text = fmt::format("description {:08x}",
-                         geometry::crc32_of(geometry::read_file(vehicle, largest)));
+    // A description in a file is identified by its content, not by its path.
+    if (key.path == "flight.vehicle" && vehicle_checksum) {
+      text = fmt::format("description {:08x}", *vehicle_checksum);
     }
     if (key.path == "prior") text = to_text(wherever_they_lie(document.prior));
     settings.push_back({key.path, std::move(text)});

@@ -14,19 +14,20 @@ auto live(auto member) {
 std::vector<Key> live_keys() {
   return {
       boolean_key("live.pose_check", live(&online::LiveOptions::checks_poses),
-                  "Whether a scan of a live survey that does not fit what is known at its pose is "
-                  "set aside, with a warning, and not used."),
-      number_key("live.pose_sigma", "m", between(0, 100), live(&online::LiveOptions::pose_sigma),
-                 "How far off poses are, along each axis, where the scan itself does not say: one "
-                 "standard deviation."),
-      angle_key("live.pose_sigma_deg", between(0, 90), live(&online::LiveOptions::pose_sigma_angle),
-                "How far they are turned about each axis, where the scan itself does not say."),
+                  "Reject scans of a live survey whose pose is inconsistent with the map (with a "
+                  "warning)."),
+      number_key(
+          "live.pose_sigma", "m", between(0, 100), live(&online::LiveOptions::pose_sigma),
+          "Standard deviation of the position along each axis, for scans that do not state it."),
+      angle_key(
+          "live.pose_sigma_deg", between(0, 90), live(&online::LiveOptions::pose_sigma_angle),
+          "Standard deviation of the rotation about each axis, for scans that do not state it."),
       boolean_key("live.registration", live(&online::LiveOptions::registers),
-                  "Whether each scan's pose is corrected so that it fits what is known, as far as "
-                  "its sigma allows."),
-      boolean_key("live.remove_flying_pixels", live(&online::LiveOptions::removes_flying_pixels),
-                  "Whether pixels between two surfaces and isolated returns are left out of scans "
-                  "with pixels."),
+                  "Scan-to-map registration: correct the pose of each scan to fit the map, within "
+                  "its standard deviations."),
+      boolean_key(
+          "live.remove_flying_pixels", live(&online::LiveOptions::removes_flying_pixels),
+          "Remove pixels between two surfaces and isolated returns from scans with pixels."),
   };
 }
 

@@ -44,6 +44,8 @@ struct SensorSection {
   /// In place of the camera: a laser scanner's preset, or the path of a description.
   std::optional<std::string> lidar;
   sim::SurveySensorOptions options;
+  /// Field of a flown rosette scanner; resolve() computes it once.
+  std::optional<sim::RosetteField> rosette;
 };
 
 enum class PlannerPreset {
@@ -153,7 +155,7 @@ struct MissionDocument {
 
   bool gives(std::string_view key) const;
 
-  /// Throws Error{bad_config}, one line: "FILE:LINE: key KEY: WHAT". A key that is not given stands
+  /// Throws Error{bad_config}, one line: "FILE:LINE: key KEY WHAT". A key that is not given stands
   /// in the first line.
   [[noreturn]] void refuse(std::string_view key, const std::string& what) const;
 };

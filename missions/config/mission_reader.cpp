@@ -15,6 +15,7 @@
 #include "geometry/io/file.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/unknown_key.h"
+#include "missions/support/key_text.h"
 #include "missions/support/yaml_tree.h"
 
 namespace skycap::missions::config {
@@ -49,7 +50,7 @@ struct KnownKeys {
 };
 
 [[noreturn]] void fail(const std::string& place, std::string_view key, const std::string& what) {
-  throw Error(ErrorKind::bad_config, place + ": key " + std::string(key) + ": " + what);
+  throw Error(ErrorKind::bad_config, place + ": key " + support::about_key(key, what));
 }
 
 /// Files the values of a map, and of the maps in it, under their keys.
@@ -91,7 +92,7 @@ std::string described(const support::YamlNode& node) {
       break;
   }
   const std::string text = node.text.size() <= 60 ? node.text : node.text.substr(0, 60) + "...";
-  return node.is_quoted ? "is the text '" + text + "'" : "is " + text;
+  return node.is_quoted ? "is the string '" + text + "'" : "is " + text;
 }
 
 bool contains(const KeyRange& range, double value) {
@@ -218,7 +219,7 @@ std::optional<KeyValue> value_for(const Key& key, const support::YamlNode& node)
 }
 
 [[noreturn]] void refuse_value(const Given& given, const Key& key, const std::string& of) {
-  fail(given.place, of + key.path, described(given.node) + "; give " + expected_value(key));
+  fail(given.place, of + key.path, described(given.node) + "; it must be " + expected_value(key));
 }
 
 void apply(const Given& given, const Key& key, MissionDocument& mission,
@@ -234,7 +235,7 @@ site_data::Source source_in(const support::YamlNode& node, const KnownKeys& know
   const std::string place = known.file + ":" + std::to_string(node.line);
   const std::string name = known.of.substr(0, known.of.size() - 1);
   if (node.kind != support::YamlNode::Kind::map)
-    fail(place, name, described(node) + "; give a map");
+    fail(place, name, described(node) + "; it must be a map");
   GivenValues values;
   collect(node, "", known, values);
   MissionDocument mission;
@@ -246,7 +247,7 @@ site_data::Source source_in(const support::YamlNode& node, const KnownKeys& know
   }
   for (const Key& key : known.keys) {
     if (!key.is_required || values.contains(key.path)) continue;
-    fail(place, known.of + key.path, "is missing; give " + expected_value(key));
+    fail(place, known.of + key.path, "is missing; it must be " + expected_value(key));
   }
   return mission.prior.back();
 }
@@ -283,8 +284,8 @@ GivenValues collected(const std::string& text, const std::string& name,
   const support::YamlNode root = support::parse_yaml(text, name);
   if (root.kind == support::YamlNode::Kind::null) {
     throw Error(ErrorKind::bad_config, name +
-                                           ":1: is empty; a mission needs at least scene.model and "
-                                           "evaluation.registration_distance");
+                                           ":1: is empty; a mission requires at least scene.model "
+                                           "and evaluation.registration_distance");
   }
   if (root.kind != support::YamlNode::Kind::map) {
     throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
@@ -321,7 +322,7 @@ MissionDocument mission_from(const std::string& text, const std::string& name,
   }
   for (const Key& key : mission_keys()) {
     if (!key.is_required || given.contains(key.path)) continue;
-    result.refuse(key.path, "is missing; give " + expected_value(key));
+    result.refuse(key.path, "is missing; it must be " + expected_value(key));
   }
   return result;
 }
@@ -365,7 +366,7 @@ MissionDocument read_mission_document(const std::filesystem::path& file,
     throw Error(ErrorKind::bad_file, file.string() + ": " + what);
   };
   std::error_code failure;
-  if (std::filesystem::is_directory(file, failure)) refuse("is a folder; name a mission file");
+  if (std::filesystem::is_directory(file, failure)) refuse("is a folder; expected a mission file");
   std::ifstream stream = geometry::open_stream(file);
   if (!stream)
     refuse(std::string("cannot be read (") + std::generic_category().message(errno) +
@@ -373,8 +374,8 @@ MissionDocument read_mission_document(const std::filesystem::path& file,
   std::string text(largest_file + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > largest_file) refuse("is larger than 1 MiB; that is not a mission file");
-  if (text.find('\0') != std::string::npos) refuse("is not text; name a mission file");
+  if (text.size() > largest_file) refuse("is larger than 1 MiB; this is not a mission file");
+  if (text.find('\0') != std::string::npos) refuse("is not text; expected a mission file");
   return parse_mission_document(text, file.string(), overrides);
 }
 

@@ -15,7 +15,7 @@ namespace skycap::missions::config {
 /// checked to be of its key's type and in its range.
 ///
 /// Throws Error{bad_file} if the file cannot be read, and Error{bad_config} with one line,
-/// "FILE:LINE: key PATH: what is wrong; what would be right", for the first thing that is unknown,
+/// "FILE:LINE: key PATH WHAT IS WRONG; what would be right", for the first thing that is unknown,
 /// missing, mistyped or out of range.
 MissionDocument read_mission_document(const std::filesystem::path& file,
                                       const std::vector<KeyOverride>& overrides = {});

@@ -27,22 +27,19 @@ void check_builtin(const MissionDocument& given, std::string_view name) {
   for (const std::string_view model : models) {
     known += (known.empty() ? "builtin:" : ", builtin:") + std::string(model);
   }
-  given.refuse("scene.model", "is " + given.scene.model + "; there are " + known);
+  given.refuse("scene.model", "unknown model " + given.scene.model + "; expected one of: " + known);
 }
 
 void check_views(const MissionDocument& given) {
   if (given.flight.options.views != flight::MissionViews::anew) return;
   if (given.planner.name != survey::PlannerName::skycap) {
     given.refuse("flight.views",
-                 "is anew, and the planner " +
+                 "anew requires the planner skycap; the planner " +
                      std::string(survey::title_of(given.planner.name).word) +
-                     " keeps no surface that views could be chosen by; plan with planner.name "
-                     "skycap or leave it out");
+                     " keeps no surface model. Set planner.name: skycap or remove flight.views");
   }
   if (given.flight.options.order == flight::VisitOrder::survey) {
-    given.refuse("flight.views",
-                 "is anew, and such views have no order of the survey; leave out flight.order or "
-                 "flight.views");
+    given.refuse("flight.views", "anew conflicts with flight.order: survey; remove one of the two");
   }
 }
 
@@ -50,16 +47,16 @@ void check_capture(const MissionDocument& given) {
   if (!given.sensor.options.is_moving()) {
     if (!given.gives("sensor.frame_period")) return;
     given.refuse("sensor.frame_period",
-                 "is for frames on the way, which sensor.capture moving takes; leave it out");
+                 "requires sensor.capture: moving (en-route frames); remove it");
   }
-  const char* const wants = "is moving; it needs ";
+  const char* const wants = "moving requires ";
   if (!given.flight.is_flown()) {
-    given.refuse("sensor.capture", std::string(wants) + "a vehicle, give flight.vehicle");
+    given.refuse("sensor.capture", std::string(wants) + "a vehicle; set flight.vehicle");
   }
   if (given.planner.name != survey::PlannerName::skycap) {
-    given.refuse("sensor.capture",
-                 std::string(wants) +
-                     "a planner that learns from more than its own views, planner.name skycap");
+    given.refuse(
+        "sensor.capture",
+        std::string(wants) + "a planner that uses en-route frames; set planner.name: skycap");
   }
 }
 
@@ -80,12 +77,12 @@ void check_pads_given(const MissionDocument& given) {
   const std::vector<Eigen::Vector3d>& pads = flight.fleet.pads;
   if (pads.empty()) return;
   if (pads.size() != flight.fleet.names.size()) {
-    given.refuse("flight.pads", "has " + std::to_string(pads.size()) + " pads for the " +
+    given.refuse("flight.pads", "has " + std::to_string(pads.size()) + " take-off points for " +
                                     std::to_string(flight.fleet.names.size()) +
-                                    " of flight.vehicles; give one for each");
+                                    " vehicles of flight.vehicles; list one for each");
   }
   if (flight.takeoff && *flight.takeoff != pads.front()) {
-    given.refuse("flight.takeoff", "is not the first of flight.pads; leave it out");
+    given.refuse("flight.takeoff", "must be the first of flight.pads; remove it");
   }
 }
 
@@ -95,43 +92,44 @@ void check_scene(const MissionDocument& given) {
   const scene::SceneOptions& scene = given.scene;
   if (given.name.find('/') != std::string::npos || given.name.starts_with('.')) {
     given.refuse("name",
-                 "is " + given.name + "; it names a folder, give it without '/' and leading '.'");
+                 "invalid name " + given.name +
+                     "; it is used as a folder name and must not contain '/' or begin with '.'");
   }
   constexpr std::string_view builtin = "builtin:";
   if (scene.model.starts_with(builtin)) check_builtin(given, scene.model.substr(builtin.size()));
   if (given.gives("scene.detail") && !scene.model.starts_with("builtin:")) {
     given.refuse("scene.detail",
-                 "needs a builtin model; " + scene.model + " is as detailed as its file");
+                 "requires a builtin model; " + scene.model + " has the detail of its file");
   }
   if (scene.longest_side && scene.scale) {
-    given.refuse("scene.scale", "excludes scene.longest_side; keep one of the two");
+    given.refuse("scene.scale", "conflicts with scene.longest_side; remove one of the two");
   }
   const auto& box = given.planner.sampling.scene_box;
   if (scene.ground && !box && !has_target(given)) {
-    given.refuse("scene.ground",
-                 "needs planner.scene_box, or the plan would cover the ground too; give the box's "
-                 "min and max");
+    given.refuse(
+        "scene.ground",
+        "requires planner.scene_box, which keeps the ground out of the plan; set its min and max");
   }
   if (scene.neighbours && !has_obstacle(given)) {
-    given.refuse("scene.neighbours",
-                 "needs a file of prior data whose role is obstacle, which holds them");
+    given.refuse("scene.neighbours", "requires prior data with role: obstacle");
   }
   if (box && !(box->min().array() < box->max().array()).all()) {
-    given.refuse("planner.scene_box.max",
-                 "is not above planner.scene_box.min on every axis; swap or widen the corners");
+    given.refuse(
+        "planner.scene_box.max",
+        "must be greater than planner.scene_box.min on every axis; swap or widen the corners");
   }
 }
 
 void check_live(const MissionDocument& given) {
   if (!given.planner.sampling.scene_box && !has_target(given)) {
     given.refuse("planner.scene_box.min",
-                 "is missing; without scene.model the mission is live, and has to say with "
-                 "planner.scene_box where the scene is: give the box's min and max");
+                 "is missing: without scene.model the mission is a live survey and requires "
+                 "planner.scene_box; set its min and max");
   }
   if (given.flight.is_flown() && !given.start.position) {
     given.refuse("start.position",
-                 "is missing; a live mission with a vehicle has to say where its first view is, so "
-                 "that the way there can be proven");
+                 "is missing: a live survey with a vehicle requires the position of its first "
+                 "view, to verify the path to it");
   }
 }
 
@@ -139,27 +137,28 @@ void check_start(const MissionDocument& given) {
   const StartSection& start = given.start;
   if (!start.position && (start.look_at || start.direction)) {
     given.refuse(start.look_at ? "start.look_at" : "start.direction",
-                 "needs start.position; give it, or leave both out for a random start");
+                 "requires start.position; set it, or remove both for a random start");
   }
   if (start.position && start.look_at.has_value() == start.direction.has_value()) {
-    given.refuse("start.position", "needs either start.look_at or start.direction");
+    given.refuse("start.position", "requires either start.look_at or start.direction");
   }
   if (start.direction && start.direction->norm() < 1e-6) {
-    given.refuse("start.direction", "has no length; give a vector that has");
+    given.refuse("start.direction", "must not have zero length");
   }
   if (start.look_at && (*start.look_at - *start.position).norm() < 1e-6) {
-    given.refuse("start.look_at", "is the start's position; give another point");
+    given.refuse("start.look_at", "must differ from start.position");
   }
 }
 
 void check_sensor(const MissionDocument& given) {
   const geometry::CameraConfig& camera = given.sensor.options.camera.camera;
   if (camera.max_range <= camera.min_range) {
-    given.refuse("sensor.max_range", "is not above sensor.min_range; make it larger");
+    given.refuse("sensor.max_range", "must be greater than sensor.min_range; raise it");
   }
   if (static_cast<double>(camera.width) * camera.height > 1e8) {
-    given.refuse("sensor.width",
-                 "times sensor.height is more than 1e8 pixels; make the image smaller");
+    given.refuse(
+        "sensor.width",
+        "image of more than 1e8 pixels (sensor.width times sensor.height); reduce the size");
   }
   check_capture(given);
 }
@@ -169,12 +168,12 @@ void check_boxes_beside(const MissionDocument& given) {
   if (corners.size() % 2 != 0) {
     given.refuse("flight.unknown_beside",
                  "has " + std::to_string(corners.size()) +
-                     " corners; give the lower and the upper one of each box");
+                     " corners; list the lower and the upper corner of each box");
   }
   for (std::size_t i = 0; i < corners.size(); i += 2) {
     if ((corners[i].array() < corners[i + 1].array()).all()) continue;
     given.refuse("flight.unknown_beside",
-                 "has an upper corner that is not above its lower one on every axis; swap or "
+                 "an upper corner must be greater than its lower corner on every axis; swap or "
                  "widen the corners");
   }
 }
@@ -183,54 +182,55 @@ void check_flight(const MissionDocument& given) {
   const Georeference& place = given.georeference;
   if (place.latitude_deg.has_value() != place.longitude_deg.has_value()) {
     given.refuse(place.latitude_deg ? "site.latitude_deg" : "site.longitude_deg",
-                 "is half a place; give site.latitude_deg and site.longitude_deg");
+                 "incomplete georeference; set both site.latitude_deg and site.longitude_deg");
   }
   if (!given.flight.is_flown()) return;
   const flight::FlightOptions flight = flight_options(given);
   if (const auto& box = given.flight.unknown_box;
       box && !(box->min().array() < box->max().array()).all()) {
-    given.refuse("flight.unknown_box.max",
-                 "is not above flight.unknown_box.min on every axis; swap or widen the corners");
+    given.refuse(
+        "flight.unknown_box.max",
+        "must be greater than flight.unknown_box.min on every axis; swap or widen the corners");
   }
   check_boxes_beside(given);
   if (flight.unknown_box.isEmpty()) {
     given.refuse("flight.vehicle",
-                 "needs flight.unknown_box, around the building: in it nothing is free until "
-                 "measured; give the box's min and max");
+                 "requires flight.unknown_box around the building, in which unknown space counts "
+                 "as occupied; set its min and max");
   }
   const flight::ClearanceBudget budget = flight.budget();
   if (budget.margin < 0.0) {
-    given.refuse("flight.clearance",
-                 "is less than the vehicle's radius of " + short_text(budget.vehicle_radius) +
-                     " m and the position, tracking and map errors make together, " +
-                     short_text(budget.total() - budget.margin) +
-                     " m; make it larger or the errors smaller");
+    given.refuse("flight.clearance", "must be at least the sum of the vehicle's radius (" +
+                                         short_text(budget.vehicle_radius) +
+                                         " m) and the position, tracking and map errors: " +
+                                         short_text(budget.total() - budget.margin) +
+                                         " m; raise it or lower the errors");
   }
   check_views(given);
   if (flight.style == flight::FlightStyle::pass && given.sensor.options.settle > 0.0) {
     given.refuse("flight.style",
-                 "takes pictures without a stop, but the sensor has to rest before each "
+                 "pass conflicts with a sensor that must rest before each capture "
                  "(sensor.settle); choose stop, blend or smooth");
   }
   if (const double climb = flight.climb(); climb <= flight.clearance) {
     given.refuse("flight.takeoff_climb",
-                 "of " + short_text(climb) +
-                     " m ends within the clearance of the ground; make it more than "
-                     "flight.clearance");
+                 "a climb of " + short_text(climb) +
+                     " m ends within the clearance of the ground; set more than flight.clearance");
   }
   if (!flight.rally.empty() && flight.flown().dialect == flight::Dialect::dji) {
-    given.refuse("flight.rally", "is not for " + flight.vehicle_name +
-                                     ": DJI's vehicles return to their pad only; leave it out");
+    given.refuse("flight.rally",
+                 "conflicts with flight.vehicle " + flight.vehicle_name +
+                     ": DJI vehicles return to their take-off point only; remove it");
   }
   if (const double sigma = given.sensor.options.camera.noise.sigma;
       flight.map_error < 3.0 * sigma) {
     given.refuse("flight.map_error",
-                 "is below three standard deviations of the sensor's noise; make it at least " +
+                 "must be at least three standard deviations of the sensor noise: " +
                      short_text(3.0 * sigma) + " m");
   }
   if (const double most = flight.flown().max_wind; flight.wind_speed >= most) {
-    given.refuse("flight.wind_speed", "is not below the " + short_text(most) + " m/s that " +
-                                          flight.vehicle_name + " is made for");
+    given.refuse("flight.wind_speed", "must be less than the maximum wind of " + short_text(most) +
+                                          " m/s that " + flight.vehicle_name + " allows");
   }
 }
 
@@ -240,17 +240,20 @@ void lead_fleet(MissionDocument& given) {
   if (fleet.names.empty()) {
     // A fleet of one is a vehicle once it is resolved.
     if (given.gives("flight.vehicles") && given.flight.is_flown()) {
+      if (!fleet.pads.empty()) {
+        given.refuse("flight.pads", "requires flight.vehicles");
+      }
       if (!flight.vehicle && !fleet.vehicles.empty()) flight.vehicle = fleet.vehicles.front();
       fleet = {};
       return;
     }
     for (const char* key : keys_of_fleets) {
-      if (given.gives(key)) given.refuse(key, "is for several vehicles; give flight.vehicles");
+      if (given.gives(key)) given.refuse(key, "requires flight.vehicles");
     }
     return;
   }
   if (given.flight.is_flown() && flight.vehicle_name != fleet.names.front()) {
-    given.refuse("flight.vehicle", "is not the first of flight.vehicles; leave it out");
+    given.refuse("flight.vehicle", "must be the first of flight.vehicles; remove it");
   }
   check_pads_given(given);
   flight.vehicle_name = fleet.names.front();
@@ -263,19 +266,19 @@ void check_fleet(const MissionDocument& given) {
   if (!given.flight.options.is_fleet()) return;
   if (!has_place(given)) {
     given.refuse("flight.vehicles",
-                 "needs a place on the Earth: vehicles are kept apart as their route files say; "
-                 "give site.latitude_deg and site.longitude_deg");
+                 "requires a georeference, because the separation is verified on the route files; "
+                 "set site.latitude_deg and site.longitude_deg");
   }
   const flight::FlightOptions& flight = given.flight.options;
   if (flight.style != flight::FlightStyle::stop) {
     given.refuse("flight.style",
-                 "several vehicles are kept apart as they fly from stop to stop; "
-                 "leave the key out");
+                 "conflicts with flight.vehicles: the separation is verified for flights with "
+                 "stops; remove it");
   }
   if (const double least = least_separation(flight); flight.fleet.separation < least) {
     given.refuse("flight.separation",
-                 "is less than two vehicles' radii, position and tracking errors make together, " +
-                     support::short_text(least) + " m; make it larger");
+                 "must be at least the sum of two vehicles' radii, position and tracking errors: " +
+                     support::short_text(least) + " m; raise it");
   }
   for (std::size_t v = 1; v < flight.fleet.names.size(); ++v) {
     MissionDocument own = given;
@@ -287,12 +290,13 @@ void check_fleet(const MissionDocument& given) {
 void check_view_limits(const MissionDocument& given) {
   const survey::ViewLimits limits = view_limits(given);
   if (limits.least_height && limits.most_height && *limits.least_height >= *limits.most_height) {
-    given.refuse("site.highest_height",
-                 "is not above site.lowest_height and limits.ground_clearance; nothing is left to "
-                 "fly in");
+    given.refuse(
+        "site.highest_height",
+        "must be greater than site.lowest_height and limits.ground_clearance; no airspace is left");
   }
   if (limits.least_pitch >= limits.most_pitch) {
-    given.refuse("limits.highest_pitch_deg", "is not above limits.lowest_pitch_deg; raise it");
+    given.refuse("limits.highest_pitch_deg",
+                 "must be greater than limits.lowest_pitch_deg; raise it");
   }
 }
 
@@ -304,10 +308,10 @@ void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
   if (!settings.sphere_centre || !settings.sphere_radius || !config.least_height) return;
   const double highest = config.sphere_centre.z() + config.sphere_radius;
   if (highest > *config.least_height) return;
-  throw Error(ErrorKind::bad_config,
-              "sphere_radius is " + short_text(config.sphere_radius) +
-                  "; it must be large enough for the sphere to reach above the least height of " +
-                  short_text(*config.least_height) + " m, which limits.ground_clearance gives");
+  throw Error(ErrorKind::bad_config, "sphere_radius is " + short_text(config.sphere_radius) +
+                                         "; the sphere must reach above the minimum height of " +
+                                         short_text(*config.least_height) +
+                                         " m (limits.ground_clearance)");
 }
 
 }  // namespace

@@ -185,12 +185,12 @@ std::string expected_value(const Key& key) {
   const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
   switch (key.type) {
     case KeyType::text:
-      return "a text";
+      return "a string";
     case KeyType::number:
       return (key.choices.empty() ? "" : listed(key.choices) + " or ") + "a number" +
              range_text(key.range) + unit;
     case KeyType::integer:
-      return "a whole number" + range_text(key.range) + unit;
+      return "an integer" + range_text(key.range) + unit;
     case KeyType::boolean:
       return "true or false";
     case KeyType::choice:
@@ -202,13 +202,13 @@ std::string expected_value(const Key& key) {
     case KeyType::vectors:
       return "a list of lists of three numbers" + range_text(key.range) + unit;
     case KeyType::texts:
-      return "a list of texts";
+      return "a list of strings";
     case KeyType::integers:
-      return "a list of whole numbers" + range_text(key.range);
+      return "a list of integers" + range_text(key.range);
     case KeyType::pairs:
-      return "a map of texts";
+      return "a map of strings";
     case KeyType::sources:
-      return "a list of maps, each with file, role and what else is needed";
+      return "a list of maps, each with file, role and further keys";
     case KeyType::vector:
       break;
   }

@@ -36,27 +36,26 @@ std::vector<std::string> planner_words() {
 std::vector<Key> which_planner() {
   return {
       otherwise(
-          "skycap with a vehicle, else see++",
+          "skycap with a vehicle, otherwise see++",
           choice_key(
               "planner.name", planner_words(), [](auto& m) -> auto& { return m.planner.name; },
-              "The planner. see is see++ without optimise_views and visibility_graph; skycap is "
-              "our "
-              "own, which of the keys below uses spacing, view_distance, scene_box, "
-              "wanted_coverage "
-              "and least_gain. The others are volumetric: of the keys below they use "
-              "resolution_radius as the width of voxels, spacing, view_distance and scene_box, and "
-              "those of the section volumetric.")),
+              "Planner. skycap: the planner of this program; uses spacing, view_distance, "
+              "scene_box, wanted_coverage and least_gain of the keys below. see++: SEE++. see: "
+              "see++ without optimise_views and visibility_graph. The others are volumetric and "
+              "use resolution_radius as voxel width, spacing, view_distance, scene_box and the "
+              "section volumetric.")),
       choice_key(
           "planner.preset", {"paper", "building"},
           [](auto& m) -> auto& { return m.planner.preset; },
-          "Values that the keys below override: paper as published, building as described "
-          "below."),
+          "Values that the keys below override. paper: as published. building: tuned for "
+          "buildings."),
       otherwise(
-          "minutes with sensor.capture: moving, else views",
+          "minutes with sensor.capture: moving, otherwise views",
           choice_key(
               "planner.goal", {"minutes", "views"}, [](auto& m) -> auto& { return m.planner.goal; },
-              "What skycap spares. minutes: a view costs what its stop costs, or without a vehicle "
-              "one view distance of way; views: it costs three view distances.")),
+              "Goal of the planner skycap: minimise the flight time or the number of views. "
+              "minutes: a view costs its stop, or without a vehicle one view distance of path. "
+              "views: a view costs three view distances.")),
   };
 }
 
@@ -65,45 +64,48 @@ std::vector<Key> density_keys() {
   const auto scene_box = [](auto& m) -> auto& { return m.planner.sampling.scene_box; };
   return {
       number_key("planner.density", "points/m^3", above(0, 1e12),
-                 sampling(&SamplingSection::density), "rho: wanted density of the measurements."),
+                 sampling(&SamplingSection::density), "rho: required density of the measurements."),
       number_key("planner.resolution_radius", "m", above(0, 1e3),
                  sampling(&SamplingSection::resolution_radius),
                  "r: radius in which the density is counted."),
-      number_key("planner.occlusion_search_distance", "m", above(0, 1e6),
-                 see(&See::occlusion_search_distance),
-                 "psi: how far from a frontier occluding measurements are looked for."),
+      number_key(
+          "planner.occlusion_search_distance", "m", above(0, 1e6),
+          see(&See::occlusion_search_distance),
+          "psi: distance from a frontier up to which occluding measurements are searched for."),
       integer_key("planner.visibility_update_limit", "views", between(1, 1e6),
                   see(&See::visibility_update_limit),
-                  "tau: how many views nearest the sensor are kept up to date after a scan."),
+                  "tau: number of views nearest to the sensor that are updated after a scan."),
+      otherwise("ceil(4/3 pi r^3 rho); in preset building 1.09 (r/epsilon)^2, rounded, if larger",
+                integer_key(
+                    "planner.core_threshold", "points", between(1, 1e6), see(&See::core_threshold),
+                    "k: minimum number of points within r, including itself, of a core point.")),
       otherwise(
-          "ceil(4/3 pi r^3 rho); in preset building 1.09 (r/epsilon)^2, rounded, if that is more",
-          integer_key("planner.core_threshold", "points", between(1, 1e6),
-                      see(&See::core_threshold),
-                      "k: points within r, itself counted, that make a point core.")),
-      otherwise(
-          "rho^(-1/2), or 0.8 evaluation.registration_distance if that is less, but then no less "
-          "than a camera's rays are apart at the view distance",
+          "rho^(-1/2), or 0.8 evaluation.registration_distance if smaller, but at least the "
+          "distance between a camera's rays at the view distance",
           number_key("planner.spacing", "m", above(0, 1e3), sampling(&SamplingSection::spacing),
-                     "epsilon: least distance of stored measurements.")),
+                     "epsilon: minimum spacing of stored measurements.")),
       otherwise("from the sensor and rho",
                 number_key("planner.view_distance", "m", above(0, 1e6),
                            sampling(&SamplingSection::view_distance),
-                           "d: distance from a frontier to the view proposed for it.")),
-      otherwise("unlimited",
-                box_corner("planner.scene_box.min", scene_box, false,
-                           "Lower corner of the box outside which measurements are dropped.")),
-      otherwise("unlimited",
-                box_corner("planner.scene_box.max", scene_box, true, "Upper corner of that box.")),
+                           "d: distance between a frontier and the view proposed for it.")),
+      otherwise(
+          "unlimited",
+          box_corner(
+              "planner.scene_box.min", scene_box, false,
+              "Lower corner of the region of interest. Measurements outside it are discarded.")),
+      otherwise("unlimited", box_corner("planner.scene_box.max", scene_box, true,
+                                        "Upper corner of the region of interest.")),
       choice_key(
           "planner.outlier_rule", {"non_core", "labelled"}, see(&See::outlier_rule),
-          "Which neighbours make a point beside a core point a frontier: any other that is not "
-          "core, or one labelled outlier (released code, depends on the order)."),
-      otherwise("k", integer_key("planner.frame_neighbours", "points", between(3, 1000),
-                                 see(&See::frame_neighbours),
-                                 "Nearest points, itself counted, that a frontier's normal is "
-                                 "estimated from.")),
+          "Neighbours that make a point beside a core point a frontier. non_core: any other that "
+          "is not core. labelled: one labelled outlier (released code, depends on the order)."),
+      otherwise(
+          "k",
+          integer_key(
+              "planner.frame_neighbours", "points", between(3, 1000), see(&See::frame_neighbours),
+              "Number of nearest points, including itself, used to estimate a frontier's normal.")),
       boolean_key("planner.free_space_normals", see(&See::free_space_normals),
-                  "Whether normals that point into measured surface are turned round."),
+                  "Flip normals that point into measured surface."),
   };
 }
 
@@ -111,35 +113,35 @@ std::vector<Key> density_keys() {
 std::vector<Key> occlusion_keys() {
   return {
       choice_key("planner.offset_line", {"sight_line", "normal"}, see(&See::offset_line),
-                 "Along which line the start of the occlusion test (zeta) is looked for."),
+                 "Line along which the start of the occlusion test (zeta) is searched for."),
       otherwise("r", number_key("planner.occlusion_radius", "m", between(1e-4, 1e3),
                                 see(&See::occlusion_radius),
                                 "Ball radius and step of the occlusion test.")),
       choice_key("planner.march_end", {"search_distance", "search_distance_from_offset"},
-                 see(&See::march_end), "Whether the occlusion test ends at psi or at zeta + psi."),
+                 see(&See::march_end), "End of the occlusion test: psi or zeta + psi."),
       boolean_key("planner.optimise_views", see(&See::optimise_views),
-                  "Whether occluded frontiers are given a view from a clear direction (SEE++)."),
+                  "Propose views of occluded frontiers from an unoccluded direction (SEE++)."),
       choice_key(
           "planner.cap.policy", {"local", "global", "nonlinear_program"},
           [](auto& m) -> auto& { return m.planner.see.cap.policy; },
-          "Which clear direction: the one downhill from the observing direction, the centre of "
-          "the largest empty cap, or what the published program finds with NLopt."),
+          "Choice of the unoccluded direction. local: downhill from the observing direction. "
+          "global: centre of the largest empty cap. nonlinear_program: solution of the published "
+          "program with NLopt."),
       integer_key(
           "planner.cap.max_evaluations", "", between(1, 1e6),
           [](auto& m) -> auto& { return m.planner.see.cap.max_evaluations; },
-          "Evaluations in each of the published program's two optimisations."),
-      choice_key(
-          "planner.observing_direction", {"ray", "image_axis"}, see(&See::observing_direction),
-          "What is called the observing direction of a point: its ray, or the optical axis."),
+          "Maximum number of evaluations in each of the two optimisations of nonlinear_program."),
+      choice_key("planner.observing_direction", {"ray", "image_axis"},
+                 see(&See::observing_direction),
+                 "Observing direction of a point: its ray or the optical axis."),
       number_key("planner.occluder_spacing", "m", above(0, 1e3), see(&See::occluder_spacing),
-                 "Spacing of the sparse cloud in which the clear direction is looked for."),
+                 "Spacing of the sparse cloud used to find the unoccluded direction."),
       otherwise("give_up; in preset building put_off",
                 choice_key("planner.still_occluded", {"give_up", "put_off", "keep"},
                            see(&See::still_occluded),
-                           "What becomes of frontiers that even the optimised view does not see: "
-                           "given up, looked "
-                           "at from where they were seen when nothing else is left, or looked at "
-                           "all the same.")),
+                           "What to do with frontiers that are still occluded after view "
+                           "optimisation: give_up (discard), put_off (observe last, from where "
+                           "they were first seen) or keep (observe anyway).")),
   };
 }
 
@@ -147,28 +149,29 @@ std::vector<Key> occlusion_keys() {
 std::vector<Key> choice_of_view_keys() {
   return {
       boolean_key("planner.visibility_graph", see(&See::visibility_graph),
-                  "Whether views are weighed by how many frontiers they see (SEE++)."),
+                  "Weight views by the number of frontiers that they observe (SEE++)."),
       boolean_key("planner.facing_test", see(&See::facing_test),
-                  "Whether a frontier counts as seen only from the side of its normal."),
+                  "Count a frontier as seen only from the side of its normal."),
       boolean_key("planner.field_of_view_test", see(&See::field_of_view_test),
-                  "Whether a frontier counts as seen only inside the view's image."),
-      number_key(
-          "planner.first_view_weight", "", between(0, 1e6), see(&See::first_view_weight),
-          "SEE adds this times the distance to the first view when it looks for the nearest."),
+                  "Count a frontier as seen only inside the view's image."),
+      number_key("planner.first_view_weight", "", between(0, 1e6), see(&See::first_view_weight),
+                 "SEE adds this factor times the distance to the first view when it searches for "
+                 "the nearest view."),
       choice_key("planner.nearest", {"exact", "octree"}, see(&See::nearest),
-                 "How the nearest view is found: exactly, or with an approximate octree as in the "
+                 "Search for the nearest view. exact: exact. octree: approximate octree, as in the "
                  "released code."),
       choice_key("planner.adjustment", {"rotation", "shift", "none"}, see(&See::adjustment),
-                 "How a view is moved that failed to resolve its frontier."),
+                 "Adjustment of a view that failed to resolve its frontier."),
       choice_key("planner.adjustment_centroid", {"whole_scan", "accepted_points"},
                  see(&See::adjustment_centroid),
-                 "Whose centroid tells the adjustment where the surface was seen."),
+                 "Points whose centroid is used as the observed surface in the adjustment."),
       integer_key("planner.max_attempts", "views", between(1, 1e6), see(&See::max_attempts),
-                  "Views aimed at one frontier before it is given up."),
+                  "Maximum number of views of one frontier before it is discarded."),
       boolean_key("planner.stay_on_target", see(&See::stay_on_target),
-                  "Whether views aim at one frontier until it is resolved or given up."),
-      number_key("planner.frontier_spacing", "m", between(0, 1e3), see(&See::frontier_spacing),
-                 "Views are proposed for one frontier within this distance; 0 for every one."),
+                  "Aim at one frontier until it is resolved or discarded."),
+      number_key(
+          "planner.frontier_spacing", "m", between(0, 1e3), see(&See::frontier_spacing),
+          "Propose views for one frontier only within this distance; 0: for every frontier."),
   };
 }
 
@@ -179,20 +182,24 @@ std::vector<Key> skycap_keys() {
     return [member](auto& m) -> auto& { return m.planner.skycap_stop.*member; };
   };
   return {
-      number_key("planner.wanted_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),
-                 "skycap ends when it believes this share of the surface covered."),
+      number_key(
+          "planner.wanted_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),
+          "The survey ends when skycap estimates that this fraction of the surface is covered."),
       number_key("planner.least_gain", "share", between(0, 1), stop(&Stop::least_gain),
-                 "skycap ends when no view promises this share of the known surface, or of "
-                 "seven times what one view covered at most, if that is less."),
-      idea("dose", &Ideas::dose, "weigh looks at a surface by the noise; off: one look covers it."),
-      idea("unseen_surface", &Ideas::unseen_surface, "guess where the surface goes on."),
-      idea("free_space", &Ideas::free_space, "drop guesses where the sensor saw through."),
+                 "The survey ends when no view is predicted to add at least this fraction of the "
+                 "known surface (or of seven times the largest area that one view has covered, if "
+                 "smaller). Planner skycap only."),
+      idea("dose", &Ideas::dose,
+           "weight observations of a surface by the noise; off: one observation covers it."),
+      idea("unseen_surface", &Ideas::unseen_surface, "predict where the surface continues."),
+      idea("free_space", &Ideas::free_space,
+           "discard predicted surface that the sensor saw through."),
       idea("learned_rates", &Ideas::learned_rates,
-           "grade the guesses by what became of earlier ones."),
+           "weight predicted surface by the success of earlier predictions."),
       idea("targeted_views", &Ideas::targeted_views,
-           "propose views for what is missing; off: from fixed directions only."),
-      idea("refinement", &Ideas::refinement, "move the best views about their target."),
-      idea("batch", &Ideas::batch, "plan several views ahead; off: the best next one only."),
+           "propose views of missing surface; off: from fixed directions only."),
+      idea("refinement", &Ideas::refinement, "optimise the best views around their target."),
+      idea("batch", &Ideas::batch, "plan several views ahead; off: the next best view only."),
   };
 }
 

@@ -25,8 +25,8 @@ PresetText preset_text(const std::string& kind, const std::string& name_or_file,
   constexpr std::size_t longest = 60;  // of a name in a message
   const std::string named =
       name_or_file.size() <= longest ? name_or_file : name_or_file.substr(0, longest) + "...";
-  throw Error(ErrorKind::bad_config, "there is no " + kind + " " + named + "; known are " + known +
-                                         ", or give a file NAME.yaml");
+  throw Error(ErrorKind::bad_config, "unknown " + kind + " " + named +
+                                         "; expected one of: " + known + ", or a file NAME.yaml");
 }
 
 }  // namespace skycap::missions::config

@@ -72,8 +72,8 @@ Key vertical_key() {
   key.type = KeyType::choice;
   key.choices = names_of({HeightDatum::ellipsoid, HeightDatum::geoid, HeightDatum::takeoff});
   key.meaning =
-      "What the file's heights count from: WGS84's ellipsoid, the geoid (the file's own, else "
-      "EGM96), or the pad.";
+      "Vertical datum of the file's heights: the WGS84 ellipsoid, the geoid (the file's own, "
+      "otherwise EGM96), or the take-off point.";
   key.set = [names = key.choices](MissionDocument& mission, const KeyValue& value) {
     const auto name = std::ranges::find(names, std::get<std::string>(value));
     mission.prior.back().vertical = static_cast<HeightDatum>(name - names.begin());
@@ -83,7 +83,7 @@ Key vertical_key() {
     if (!stored) return std::nullopt;
     return names[static_cast<std::size_t>(*stored)];
   };
-  return otherwise("the coordinate system's; without one the mission's frame", key);
+  return otherwise("from the coordinate reference system; without one the mission frame", key);
 }
 
 Key up_axis_key() {
@@ -91,7 +91,7 @@ Key up_axis_key() {
   key.path = "up_axis";
   key.type = KeyType::choice;
   key.choices = {"z", "y"};
-  key.meaning = "Of models of scenes: which axis points up, whatever the file says.";
+  key.meaning = "Axis of scene models that points up; overrides the file.";
   key.set = [](MissionDocument& mission, const KeyValue& value) {
     mission.prior.back().is_y_up = std::get<std::string>(value) == "y";
   };
@@ -99,7 +99,7 @@ Key up_axis_key() {
     const std::optional<bool>& stored = mission.prior.back().is_y_up;
     return stored ? std::optional<KeyValue>(*stored ? "y" : "z") : std::nullopt;
   };
-  return otherwise("the file's, else z", key);
+  return otherwise("from the file, otherwise z", key);
 }
 
 Key base_key() {
@@ -109,7 +109,7 @@ Key base_key() {
   key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
   key.range = between(-1e4, 1e4);
   key.choices = {"terrain"};
-  key.meaning = "Of polygons: the height they are extruded from.";
+  key.meaning = "Base height of extruded polygons.";
   key.set = [](MissionDocument& mission, const KeyValue& value) {
     Source& source = mission.prior.back();
     source.base_on_terrain = std::holds_alternative<std::string>(value);
@@ -120,7 +120,7 @@ Key base_key() {
     if (source.base_on_terrain) return std::string("terrain");
     return source.base ? std::optional<KeyValue>(*source.base) : std::nullopt;
   };
-  return otherwise("the file's", key);
+  return otherwise("from the file", key);
 }
 
 /// A key of the optional place, which the first of them brings about.
@@ -149,32 +149,32 @@ Key place_key(std::string path, KeyType type, std::string unit, KeyRange range, 
 /// Which file, what it is for, and where it is.
 std::vector<Key> place_keys() {
   return {
-      required(path_key(
-          "file", source(&Source::file),
-          "A map, model, terrain or scan, relative to the mission file; its format is told by its "
-          "content (docs/reference/prior-formats.md).")),
+      required(path_key("file", source(&Source::file),
+                        "Map, model, terrain or scan, relative to the mission file. The format is "
+                        "detected by content (docs/reference/prior-formats.md).")),
       required(choice_key(
           "role", names_of({Role::target, Role::obstacle, Role::terrain, Role::truth}),
           source(&Source::role),
-          "What it is to the survey. target: what is surveyed, guessed where not measured yet. "
-          "obstacle: in the way of every leg. terrain: the ground. truth: what the simulated "
-          "sensor measures, in place of scene.model. None proves that space is free.")),
-      optional_text_key("crs", "the file's; without one the mission's frame", source(&Source::crs),
-                        "Coordinate reference system, horizontal or compound, such as "
-                        "EPSG:25832+7837: anything that PROJ knows."),
+          "Role in the survey. target: the object to survey; predicted surface where it is not "
+          "measured yet. obstacle: to be avoided by every leg. terrain: the ground. truth: ground "
+          "truth for the simulated sensor, instead of scene.model. No role makes space free.")),
+      optional_text_key("crs", "from the file; without one the mission frame", source(&Source::crs),
+                        "Coordinate reference system, horizontal or compound, for example "
+                        "EPSG:25832+7837; any that PROJ knows."),
       vertical_key(),
       otherwise("-", place_key("place.position", KeyType::vector, "m", between(-1e6, 1e6), 1.0,
                                &site_data::Place::position,
-                               "Where the origin of a file without coordinate reference system is "
-                               "in the mission's frame; excludes crs.")),
+                               "Origin of a file without coordinate reference system, in the "
+                               "mission frame; excludes crs.")),
       otherwise("0", place_key("place.heading_deg", KeyType::number, "degrees", between(-360, 360),
                                geometry::radians_per_degree, &site_data::Place::heading,
-                               "Where its y axis points, clockwise from north.")),
-      vector_key("offset", "m", between(-1e8, 1e8), source(&Source::offset),
-                 "Added to coordinates, in the file's system: what photogrammetry took off."),
-      otherwise("the file's, else 1",
+                               "Direction of the file's y axis, clockwise from north.")),
+      vector_key(
+          "offset", "m", between(-1e8, 1e8), source(&Source::offset),
+          "Coordinate offset (global shift) added to all coordinates, in the file's system."),
+      otherwise("from the file, otherwise 1",
                 number_key("unit", "m", above(0, 1e6), source(&Source::unit),
-                           "How long one unit of the file's coordinates is.")),
+                           "Linear unit: length of one unit of the file's coordinates.")),
       up_axis_key(),
   };
 }
@@ -184,19 +184,19 @@ std::vector<Key> selection_keys() {
   using site_data::Selection;
   const auto all = [](Key key) { return otherwise("all", std::move(key)); };
   Key classes = all(list_key("select.classes", KeyType::integers, selection(&Selection::classes),
-                             "Of points: only those of these ASPRS classes."));
+                             "Point clouds: only points of these ASPRS classes."));
   classes.range = between(0, 255);
   return {
       all(list_key("select.id", KeyType::texts, selection(&Selection::ids),
-                   "Only the objects of these names, and what is part of them.")),
+                   "Only objects with these names, and their parts.")),
       all(list_key("select.attribute", KeyType::pairs, selection(&Selection::attributes),
-                   "Only the objects whose attributes are these.")),
+                   "Only objects with these attributes.")),
       all(path_key("select.within", selection(&Selection::within),
-                   "Only what is inside of the polygons of this file.")),
+                   "Only what is inside the polygons of this file.")),
       classes,
       optional_text_key("select.layer", "all", selection(&Selection::layer),
                         "Only this layer of the file."),
-      otherwise("each object's highest",
+      otherwise("the highest of each object",
                 number_key("select.lod", "", between(0, 4), selection(&Selection::lod),
                            "Only this level of detail.")),
   };
@@ -206,21 +206,21 @@ std::vector<Key> selection_keys() {
 std::vector<Key> meaning_keys() {
   return {
       base_key(),
-      otherwise("the file's", number_key("height", "m", above(0, 1e4), source(&Source::height),
-                                         "Of polygons: how high they are above their base.")),
-      optional_text_key("height_attribute", "height and its siblings, then storeys",
+      otherwise("from the file", number_key("height", "m", above(0, 1e4), source(&Source::height),
+                                            "Height of polygons above their base.")),
+      optional_text_key("height_attribute", "height and its variants, then storeys",
                         source(&Source::height_attribute),
-                        "Of maps: the attribute that is the height of a polygon above its base."),
+                        "Attribute of a map that contains the height of a polygon above its base."),
       number_key("min_height", "m", between(0, 1e4), source(&Source::min_height),
-                 "Of polygons: how high above their base they begin."),
+                 "Height of the lower edge of polygons above their base."),
       otherwise("0.3; 1 for extruded polygons",
-                number_key("uncertainty", "m", between(0, 1000), source(&Source::uncertainty),
-                           "How far off its surfaces may be: obstacles are in the way that much "
-                           "farther out, on top of flight.map_error. What stand-ins for a geoid "
-                           "or a datum may be off is added to it.")),
+                number_key(
+                    "uncertainty", "m", between(0, 1000), source(&Source::uncertainty),
+                    "Uncertainty of the data. Obstacles are enlarged by this distance, in addition "
+                    "to flight.map_error. The error of a substitute geoid or datum is added.")),
       otherwise("0.25", number_key("spacing", "m", above(0, 100), source(&Source::spacing),
-                                   "Clouds are thinned to one point in a cube of this side, which "
-                                   "should be no less than the points are apart.")),
+                                   "Voxel-grid downsampling of point clouds: one point per cube of "
+                                   "this side, which should be at least the point spacing.")),
   };
 }
 
@@ -229,7 +229,7 @@ std::vector<Key> meaning_keys() {
 std::vector<Key> prior_keys() {
   Key key = key_for(
       "prior", KeyType::sources, [](auto& m) -> auto& { return m.prior; },
-      "What is known of the site before it is measured; docs/howto/use-prior-data.md.");
+      "Prior data: what is known about the site before the survey (docs/howto/use-prior-data.md).");
   key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     return mission.prior.empty() ? std::nullopt : std::optional<KeyValue>(mission.prior);
   };

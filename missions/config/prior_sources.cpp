@@ -27,19 +27,18 @@ void make_absolute(std::filesystem::path& path, const std::filesystem::path& fol
 void check_source(const MissionDocument& document, std::size_t i) {
   const Source& source = document.prior[i];
   if (source.place && !source.crs.empty()) {
-    document.refuse(key_of(i, "crs"), "excludes place; a file is put by one of the two");
+    document.refuse(key_of(i, "crs"), "conflicts with place; keep one of the two");
   }
   if (!source.crs.empty() && !has_place(document)) {
     document.refuse(key_of(i, "crs"),
-                    "needs the place of the mission's frame; give site.latitude_deg and "
+                    "requires the georeference of the mission frame; set site.latitude_deg and "
                     "site.longitude_deg");
   }
   if (source.base_on_terrain && source.role == Role::terrain) {
-    document.refuse(key_of(i, "base"), "of the terrain cannot be the terrain; give a number");
+    document.refuse(key_of(i, "base"), "the base of terrain must be a number");
   }
   if (source.role == Role::truth && !document.scene.model.empty()) {
-    document.refuse(key_of(i, "role"),
-                    "of truth takes the place of scene.model; leave one of the two out");
+    document.refuse(key_of(i, "role"), "truth conflicts with scene.model; remove one of the two");
   }
 }
 
@@ -89,8 +88,9 @@ std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& 
   std::size_t begun = 0;
   const auto reading = [&](std::size_t i) {
     if (!report) return;
-    report("reading file " + std::to_string(++begun) + " of " + std::to_string(sources.size()) +
-           " of prior data, " + sources[i].file.filename().string());
+    report("reading prior data file " + std::to_string(++begun) + " of " +
+           std::to_string(sources.size()) + " of prior data, " +
+           sources[i].file.filename().string());
   };
   return std::make_shared<const site_data::SitePriors>(
       site_data::read_site_priors(sources, frame, failed, reading));
@@ -99,14 +99,15 @@ std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& 
 void check_truth(const MissionDocument& document) {
   if (!document.scene.is_truth_prior()) return;
   if (prior_truth(document.scene).triangles.empty()) {
-    document.refuse("scene.model", "is prior data, but no target or truth among it has a surface");
+    document.refuse("scene.model",
+                    "prior requires a target or truth with a surface in the prior data");
   }
   for (const char* key : {"scene.up_axis", "scene.rotation_deg", "scene.longest_side",
                           "scene.scale", "scene.copies", "scene.materials"}) {
     if (differs_from_default(document, key)) {
       document.refuse(key,
-                      "does not go with a truth from prior data, which is "
-                      "placed by its own keys; leave it out");
+                      "conflicts with ground truth from prior data, which has its own position "
+                      "keys; remove it");
     }
   }
 }

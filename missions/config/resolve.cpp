@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/record_log.h"
 #include "geometry/place/camera.h"
 #include "missions/config/derived_values.h"
 #include "missions/config/key_texts.h"
@@ -47,6 +49,15 @@ flight::Vehicle read_vehicle_of(const MissionDocument& document, const std::stri
   }
 }
 
+/// CRC-32 of the description of a vehicle that is given as a file; nothing for a preset.
+std::optional<std::uint32_t> checksum_of_vehicle(const MissionDocument& document,
+                                                 const std::string& given) {
+  constexpr std::size_t max_bytes = 1 << 20;
+  const std::string file = vehicle_name(document, given);
+  if (!file.ends_with(".yaml")) return std::nullopt;
+  return geometry::crc32_of(geometry::read_file(file, max_bytes));
+}
+
 /// The scanner that `sensor.lidar` names.
 sim::LidarConfig read_scanner(const MissionDocument& document) {
   const SensorDescription description =
@@ -54,7 +65,7 @@ sim::LidarConfig read_scanner(const MissionDocument& document) {
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,
-                description.name + " is a camera; give its values as the other keys of sensor");
+                description.name + " is a camera; set its values with the other keys of sensor");
   }
   return *lidar;
 }
@@ -75,22 +86,21 @@ void mount_scanner(MissionDocument& document) {
   constexpr double level = 0.02;
   if (spins && std::abs(mount.linear()(2, 2)) > level) {
     document.refuse("scan.mount.rotation_deg",
-                    "does not lay the scanner's axis level, as planned flights need it; leave it "
-                    "out, or give [0, 90, 0]: along the way");
+                    "the scanner's axis must be level for planned flights; remove the key, or "
+                    "set [0, 90, 0] (along the flight direction)");
   }
   constexpr double steepest = 75.0 * std::numbers::pi / 180.0;
   if (!spins && std::abs(mount.linear()(2, 0)) > std::sin(steepest)) {
     document.refuse("scan.mount.rotation_deg",
-                    "has the scanner look up or down by more than 75 degrees, so that planned "
-                    "flights could not turn it to what they want to see; leave it out, or give "
-                    "[0, 30, 90]: to the left, 30 degrees down");
+                    "the scanner must not look up or down by more than 75 degrees in planned "
+                    "flights; remove the key, or set [0, 30, 90] (to the left, 30 degrees down)");
   }
   sensor.mount = scanner_mount(lidar, mount);
   if (kind_of(lidar) == ScannerKind::line && document.gives("sensor.capture") &&
       !sensor.is_moving()) {
     document.refuse("sensor.capture",
-                    "is stops, at which a scanner that measures a line sees next to nothing; leave "
-                    "it out");
+                    "stops conflicts with a single-line LiDAR, which measures next to nothing at "
+                    "a stop; remove it");
   }
   if (!document.gives("sensor.capture")) sensor.capture = sim::Capture::moving;
   if (!document.gives("sensor.frame_period")) sensor.frame_period = sim::scanner_period;
@@ -102,7 +112,9 @@ void complete_scanner(MissionDocument& document, const Profiles& profiles) {
   document.sensor.options.scanner = profiles.scanner;
   if (document.flight.is_flown()) mount_scanner(document);
   try {
-    document.sensor.options.camera = planning_camera(document.sensor.options);
+    document.sensor.rosette = flown_rosette(document.sensor.options);
+    document.sensor.options.camera =
+        planning_camera(document.sensor.options, document.sensor.rosette);
   } catch (const Error& error) {
     document.refuse("sensor.lidar", error.what());
   }
@@ -250,6 +262,12 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   for (std::string& name : flight.fleet.names) name = vehicle_name(document, name);
   flight.fleet.vehicles = profiles.fleet;
   lead_fleet(document);
+  if (document.flight.is_flown() && !document.gives("flight.position_error")) {
+    flight.position_error = flight.flown().position_error;
+    for (const flight::Vehicle& vehicle : flight.fleet.vehicles) {
+      flight.position_error = std::max(flight.position_error, vehicle.position_error);
+    }
+  }
   // What flies is there to be done soon: the paper's planners are for comparison.
   if (document.flight.is_flown() && !document.gives("planner.name")) {
     document.planner.name = survey::PlannerName::skycap;
@@ -301,7 +319,8 @@ scan::FlownScanOptions scan_options(const MissionDocument& document) {
 }
 
 /// The options of all libraries from a document that is complete.
-MissionSetup setup_of(const MissionDocument& document) {
+MissionSetup setup_of(const MissionDocument& document,
+                      const std::optional<std::uint32_t>& vehicle_checksum) {
   MissionSetup setup{.name = document.name};
   evaluation::SimulationOptions& simulation = setup.simulation;
   simulation.scene = document.scene;
@@ -321,7 +340,7 @@ MissionSetup setup_of(const MissionDocument& document) {
   setup.reference = {document.paper.views, document.paper.coverage, document.paper.planning_time,
                      document.paper.distance};
   setup.run = {document.seed, document.threads};
-  setup.settings = survey_settings(document);
+  setup.settings = survey_settings(document, vehicle_checksum);
   return setup;
 }
 
@@ -340,9 +359,13 @@ Profiles read_profiles(const MissionDocument& document) {
   const flight::FlightOptions& flight = document.flight.options;
   if (document.flight.is_flown()) {
     profiles.vehicle = read_vehicle_of(document, flight.vehicle_name, "flight.vehicle");
+    profiles.vehicle_checksum = checksum_of_vehicle(document, flight.vehicle_name);
   }
   for (const std::string& name : flight.fleet.names) {
     profiles.fleet.push_back(read_vehicle_of(document, name, "flight.vehicles"));
+  }
+  if (!flight.fleet.names.empty()) {
+    profiles.vehicle_checksum = checksum_of_vehicle(document, flight.fleet.names.front());
   }
   for (const char* name : {"generic", "generic_ardupilot", "m350_rtk"}) {  // one of each dialect
     profiles.stand_ins.push_back(find_vehicle(name));
@@ -354,7 +377,7 @@ Profiles read_profiles(const MissionDocument& document) {
   for (const auto& [path, place] : document.places) {
     if (path.starts_with("sensor.") && path != "sensor.lidar" && path != "sensor.capture" &&
         path != "sensor.frame_period") {
-      document.refuse(path, "does not go with sensor.lidar; leave one of the two out");
+      document.refuse(path, "conflicts with sensor.lidar; remove one of the two");
     }
   }
   try {
@@ -387,7 +410,7 @@ MissionSetup resolve(MissionDocument document, const Profiles& profiles,
   std::optional<double>& undulation = document.georeference.geoid_undulation;
   if (!undulation) undulation = geoid;
   complete_with_priors(document, std::move(priors));
-  MissionSetup setup = setup_of(document);
+  MissionSetup setup = setup_of(document, profiles.vehicle_checksum);
   setup.source = std::move(source);
   setup.document = std::make_shared<const MissionDocument>(std::move(document));
   return setup;
@@ -395,7 +418,11 @@ MissionSetup resolve(MissionDocument document, const Profiles& profiles,
 
 MissionSetup resolve(MissionDocument document, const Report& report) {
   const Profiles profiles = read_profiles(document);
-  MissionDocument checked = document;  // what is wrong with its keys is said before files are read
+  if (document.prior.empty()) {
+    const std::optional<double> geoid = geoid_undulation(document);
+    return resolve(std::move(document), profiles, nullptr, geoid);
+  }
+  MissionDocument checked = document;  // errors in its keys are reported before files are read
   complete_own_keys(checked, profiles);
   const std::optional<double> geoid = geoid_undulation(checked);
   auto priors = read_priors(checked, site_frame(checked, geoid), report);
@@ -425,11 +452,11 @@ MissionSetup read_mission(const std::filesystem::path& file,
   if (document.scene.model.empty() && !truth_role(document)) {
     document.refuse(
         "scene.model",
-        std::string("is missing; give a text, such as builtin:teapot") +
+        std::string("is missing; set a model, for example builtin:teapot") +
             (has_target(document)
-                 ? ", or plan with --dry-run prior, where the targets stand in for it"
+                 ? ", or plan with --dry-run prior, which uses the targets as ground truth"
                  : "") +
-            ". Without a scene a mission is for live surveys: skycap next, serve and finish");
+            ". A mission without a scene is a live survey: skycap next, serve and finish");
   }
   return resolve(std::move(document), report);
 }

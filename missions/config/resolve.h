@@ -6,9 +6,11 @@
 /// completed itself it makes the same setup.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,7 @@ using Report = std::function<void(const std::string& what)>;
 /// What the names in a document stand for.
 struct Profiles {
   std::optional<flight::Vehicle> vehicle;
+  std::optional<std::uint32_t> vehicle_checksum;  ///< CRC-32 of the first vehicle's file, if any
   std::vector<flight::Vehicle> fleet;
   std::vector<flight::Vehicle> stand_ins;  ///< see FlightOptions
   std::optional<sim::LidarConfig> scanner;

@@ -17,7 +17,7 @@ std::vector<Key> orbit_keys() {
   };
   return {
       vector_key("scan.orbit.centre", "m", between(-1e6, 1e6), orbit(&Orbit::centre),
-                 "Point round which the carrier circles; heights count from its z."),
+                 "Centre of the platform's circles; heights count from its z."),
       number_key("scan.orbit.radius", "m", above(0, 1e4), orbit(&Orbit::radius),
                  "Radius of the circles."),
       number_key("scan.orbit.lowest", "m", between(-1e4, 1e4), orbit(&Orbit::lowest),
@@ -25,11 +25,11 @@ std::vector<Key> orbit_keys() {
       number_key("scan.orbit.highest", "m", between(-1e4, 1e4), orbit(&Orbit::highest),
                  "Height of the last circle."),
       integer_key("scan.orbit.circles", "", between(1, 1000), orbit(&Orbit::circles),
-                  "How many circles, evenly spaced in height; a single one is the lowest."),
+                  "Number of circles, evenly spaced in height; a single one is the lowest."),
       number_key("scan.orbit.speed", "m/s", above(0, 100), orbit(&Orbit::speed),
                  "Speed along the circles and the climbs between them."),
       angle_key("scan.orbit.start_deg", between(-360, 360), orbit(&Orbit::start),
-                "Where the circles begin: direction from the centre, anticlockwise from east."),
+                "Start of the circles: direction from the centre, anticlockwise from east."),
   };
 }
 
@@ -39,52 +39,51 @@ std::vector<Key> navigation_keys() {
     return [member](auto& m) -> auto& { return m.scan.navigation.*member; };
   };
   return {
-      number_key(
-          "scan.navigation.horizontal_sigma", "m", between(0, 100),
-          navigation(&Navigation::horizontal_sigma),
-          "Standard deviation of the believed position, east and north each, in scans and in "
-          "surveys of a vehicle."),
+      number_key("scan.navigation.horizontal_sigma", "m", between(0, 100),
+                 navigation(&Navigation::horizontal_sigma),
+                 "Standard deviation of the estimated position, east and north each, in scans and "
+                 "in surveys with a vehicle."),
       number_key("scan.navigation.vertical_sigma", "m", between(0, 100),
-                 navigation(&Navigation::vertical_sigma), "The same of the height."),
+                 navigation(&Navigation::vertical_sigma),
+                 "Standard deviation of the estimated height."),
       angle_key("scan.navigation.tilt_sigma_deg", between(0, 45),
-                navigation(&Navigation::tilt_sigma), "The same of roll and of pitch."),
+                navigation(&Navigation::tilt_sigma),
+                "Standard deviation of the estimated roll and pitch."),
       angle_key("scan.navigation.heading_sigma_deg", between(0, 45),
-                navigation(&Navigation::heading_sigma), "The same of the heading."),
+                navigation(&Navigation::heading_sigma),
+                "Standard deviation of the estimated heading."),
       number_key("scan.navigation.correlation_time", "s", between(0, 1e5),
                  navigation(&Navigation::correlation_time),
-                 "How long these errors take to change: their correlation falls to 1/e."),
+                 "Correlation time of the navigation errors: time in which their correlation falls "
+                 "to 1/e."),
   };
 }
 
 std::vector<Key> source_keys() {
   return {
-      text_key(
-          "scan.sensor", scan(&scan::FlownScanOptions::sensor),
-          "Sensor of skycap scan: a preset of sim/sensors/presets, or the path of a description "
-          "(NAME.yaml), relative to the mission file."),
-      otherwise(
-          "the orbit below",
-          text_key("scan.route", scan(&scan::FlownScanOptions::route),
-                   "File of the route that is flown, relative to the mission file; the same as "
-                   "--route.")),
+      text_key("scan.sensor", scan(&scan::FlownScanOptions::sensor),
+               "Sensor of skycap scan: a preset of sim/sensors/presets, or the path of a sensor "
+               "file (NAME.yaml), relative to the mission file."),
+      otherwise("the orbit below",
+                text_key("scan.route", scan(&scan::FlownScanOptions::route),
+                         "Route file to fly, relative to the mission file; the same as --route.")),
   };
 }
 
 std::vector<Key> carrier_keys() {
   return {
-      choice_key(
-          "scan.crs", {"local", "utm"}, scan(&scan::FlownScanOptions::crs),
-          "Coordinates of LAS and E57 files: the mission's frame, or UTM on WGS84, in the zone of "
-          "the site, which utm needs; heights are then above the EGM96 geoid if "
-          "site.geoid_undulation is known, else above the ellipsoid."),
+      choice_key("scan.crs", {"local", "utm"}, scan(&scan::FlownScanOptions::crs),
+                 "Coordinates of LAS and E57 files: local is the mission frame; utm is WGS84/UTM "
+                 "in the zone of the site, which requires a georeference. Heights are above the "
+                 "EGM96 geoid if site.geoid_undulation is known, otherwise above the ellipsoid."),
       number_key("scan.speed", "m/s", above(0, 100), scan(&scan::FlownScanOptions::speed),
                  "Speed along a route whose file has no times."),
       vector_key("scan.mount.position", "m", between(-10, 10),
                  scan(&scan::FlownScanOptions::mount_position),
-                 "Where the sensor is on its carrier, whose x points forward, y left, z up."),
+                 "Position of the sensor in the platform frame (x forward, y left, z up)."),
       angles_key("scan.mount.rotation_deg", between(-360, 360),
                  scan(&scan::FlownScanOptions::mount_rotation),
-                 "How the sensor is turned on its carrier: about x, then y, then z."),
+                 "Rotation of the sensor in the platform frame: about x, then y, then z."),
   };
 }
 
@@ -92,15 +91,16 @@ std::vector<Key> recording_keys() {
   return {
       vector_key("scan.lever_arm_error", "m", between(-10, 10),
                  scan(&scan::FlownScanOptions::lever_arm_error),
-                 "Error of the believed mount.position."),
+                 "Lever-arm error: error of the estimated mount.position."),
       angles_key("scan.boresight_error_deg", between(-45, 45),
                  scan(&scan::FlownScanOptions::boresight_error),
-                 "Error of the believed rotation, small angles about the carrier's axes."),
+                 "Boresight error: error of the estimated mount rotation, small angles about the "
+                 "platform's axes."),
       number_key("scan.frame_period", "s", between(1e-6, 1e5),
                  scan(&scan::FlownScanOptions::frame_period),
-                 "Time between the images of a camera, along a route that does not say where."),
+                 "Interval between camera images along a route that does not define them."),
       number_key("scan.depth_unit", "m", above(0, 1), scan(&scan::FlownScanOptions::depth_unit),
-                 "What one step of a 16-bit depth image stands for."),
+                 "Depth of one step of a 16-bit depth image."),
   };
 }
 

@@ -19,7 +19,7 @@ struct SensorDescription {
 };
 
 /// Reads the text of a description; `file` is what messages call it. Throws Error{bad_config} in
-/// the form "FILE:LINE: key KEY: what is wrong", for unknown, missing and mistyped keys too.
+/// the form "FILE:LINE: key KEY WHAT IS WRONG", for unknown, missing and mistyped keys too.
 SensorDescription read_sensor(const std::string& text, const std::string& file);
 
 /// The names of the presets, such as "ouster_os1_128", in alphabetical order.

@@ -53,7 +53,7 @@ std::string unknown_key_message(const std::string& path, std::span<const Key> ke
   }
   std::string known;
   for (const std::string& child : children) known += (known.empty() ? "" : ", ") + child;
-  return "is unknown; known are " + known;
+  return "is unknown; expected one of: " + known;
 }
 
 }  // namespace skycap::missions::config

@@ -17,7 +17,7 @@ namespace {
 using flight::MissionMode;
 using flight::Vehicle;
 
-constexpr double degree = geometry::radians_per_degree;
+using geometry::radians_per_degree;
 
 /// A number of a description, what it may be in the file's unit, and that unit in ours.
 template <typename Owner>
@@ -32,11 +32,11 @@ constexpr std::array vehicle_numbers{
     NumberKey<Vehicle>{"radius", &Vehicle::radius, 0.01, 20},
     NumberKey<Vehicle>{"max_speed", &Vehicle::max_speed, 0.1, 100},
     NumberKey<Vehicle>{"max_wind", &Vehicle::max_wind, 0, 50},
-    NumberKey<Vehicle>{"gimbal_rate_deg", &Vehicle::gimbal_rate, 1, 1000, degree},
-    NumberKey<Vehicle>{"gimbal_min_deg", &Vehicle::gimbal_min, -180, 90, degree},
-    NumberKey<Vehicle>{"gimbal_max_deg", &Vehicle::gimbal_max, -90, 180, degree},
+    NumberKey<Vehicle>{"gimbal_rate_deg", &Vehicle::gimbal_rate, 1, 1000, radians_per_degree},
+    NumberKey<Vehicle>{"gimbal_min_deg", &Vehicle::gimbal_min, -180, 90, radians_per_degree},
+    NumberKey<Vehicle>{"gimbal_max_deg", &Vehicle::gimbal_max, -90, 180, radians_per_degree},
     NumberKey<Vehicle>{"sway_speed", &Vehicle::sway_speed, 0, 10},
-    NumberKey<Vehicle>{"sway_rate_deg", &Vehicle::sway_rate, 0, 100, degree},
+    NumberKey<Vehicle>{"sway_rate_deg", &Vehicle::sway_rate, 0, 100, radians_per_degree},
     NumberKey<Vehicle>{"mass", &Vehicle::mass, 0.01, 1000},
     NumberKey<Vehicle>{"rotor_diameter", &Vehicle::rotor_diameter, 0.01, 10},
     NumberKey<Vehicle>{"battery_wh", &Vehicle::battery_wh, 0.1, 1e5},
@@ -46,6 +46,8 @@ constexpr std::array vehicle_numbers{
     NumberKey<Vehicle>{"energy_error", &Vehicle::energy_error, 0, 0.9},
 };
 
+constexpr NumberKey<Vehicle> position_error{"position_error", &Vehicle::position_error, 0, 100};
+
 constexpr std::array mode_numbers{
     NumberKey<MissionMode>{"max_ascent", &MissionMode::max_ascent, 0.1, 50},
     NumberKey<MissionMode>{"max_descent", &MissionMode::max_descent, 0.1, 50},
@@ -54,8 +56,9 @@ constexpr std::array mode_numbers{
     NumberKey<MissionMode>{"jerk", &MissionMode::jerk, 0.1, 500},
     NumberKey<MissionMode>{"jerk_rise", &MissionMode::jerk_rise, 0, 5},
     NumberKey<MissionMode>{"settle_time", &MissionMode::settle_time, 0, 60},
-    NumberKey<MissionMode>{"yaw_rate_deg", &MissionMode::yaw_rate, 1, 1000, degree},
-    NumberKey<MissionMode>{"yaw_acceleration_deg", &MissionMode::yaw_acceleration, 1, 1e4, degree},
+    NumberKey<MissionMode>{"yaw_rate_deg", &MissionMode::yaw_rate, 1, 1000, radians_per_degree},
+    NumberKey<MissionMode>{"yaw_acceleration_deg", &MissionMode::yaw_acceleration, 1, 1e4,
+                           radians_per_degree},
     NumberKey<MissionMode>{"takeoff_speed", &MissionMode::takeoff_speed, 0.1, 50},
     NumberKey<MissionMode>{"takeoff_ramp", &MissionMode::takeoff_ramp, 0, 60},
     NumberKey<MissionMode>{"landing_speed", &MissionMode::landing_speed, 0.05, 20},
@@ -79,6 +82,9 @@ class VehicleReader {
     }
     if (vehicle_.dialect == Dialect::dji || root_.has("wpml")) read_codes();
     read_numbers<Vehicle>(root_, vehicle_, vehicle_numbers);
+    if (root_.has(position_error.key)) {  // optional: descriptions of version 0.1 do not have it
+      read_numbers<Vehicle>(root_, vehicle_, std::span(&position_error, 1));
+    }
     if (wants(root_, "rotors")) vehicle_.rotors = whole_number("rotors", 1, 100);
     if (wants(root_, "max_waypoints")) {
       vehicle_.max_waypoints = whole_number("max_waypoints", 20, 65535);
@@ -137,7 +143,8 @@ class VehicleReader {
   void read_codes() {
     std::optional<support::YamlSection> section = part("wpml");
     if (!section) {
-      if (vehicle_.wpml.drone <= 0) root_.fail_at("wpml", "is missing; DJI's vehicles have codes");
+      if (vehicle_.wpml.drone <= 0)
+        root_.fail_at("wpml", "is missing; vehicles of DJI require their codes");
       return;
     }
     flight::WpmlCodes& codes = vehicle_.wpml;
@@ -146,7 +153,7 @@ class VehicleReader {
     codes.drone_variant = section->integer("drone_variant", codes.drone_variant);
     codes.payload = section->integer("payload", codes.payload);
     section->finish();
-    if (codes.drone <= 0) root_.fail_at("wpml", "must give DJI's number of the drone");
+    if (codes.drone <= 0) root_.fail_at("wpml", "must contain DJI's number of the drone");
   }
 
   support::YamlSection& root_;
@@ -173,7 +180,7 @@ flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
   VehicleReader(root, vehicle, is_like_another).read();
   root.finish();
   if (vehicle.gimbal_min >= vehicle.gimbal_max) {
-    root.fail_at("gimbal_max_deg", "is not above gimbal_min_deg");
+    root.fail_at("gimbal_max_deg", "must be greater than gimbal_min_deg");
   }
   try {
     const flight::Motion motion(vehicle, {.cruise_speed = vehicle.max_speed});
@@ -181,12 +188,6 @@ flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
     root.fail_at("endurance_min", error.what());
   }
   return vehicle;
-}
-
-std::vector<std::string_view> vehicle_presets() {
-  std::vector<std::string_view> names;
-  for (const PresetFile& preset : vehicle_preset_files()) names.push_back(preset.name);
-  return names;
 }
 
 flight::Vehicle find_vehicle(const std::string& name_or_file) {

@@ -23,25 +23,24 @@ auto rays(auto member) {
 /// Which views are candidates, and which of them is taken.
 std::vector<Key> candidate_keys() {
   return {
-      otherwise("130; in a benchmark, the most views that see needed",
+      otherwise("130; in a benchmark, the maximum number of views that see needed",
                 integer_key("volumetric.view_limit", "views", between(1, 1e6),
                             setting(&Settings::view_limit),
-                            "V: a volumetric survey ends after this many views.")),
+                            "V: maximum number of views of a volumetric survey.")),
       number_key("volumetric.candidates_per_view", "", above(0, 1e4),
                  setting(&Settings::candidates_per_view),
-                 "Candidate views on the sphere for each view of the limit."),
-      otherwise("the surface's centroid",
+                 "Number of candidate views on the sphere for each view of the limit."),
+      otherwise("centroid of the surface",
                 vector_key("volumetric.sphere_centre", "m", between(-1e6, 1e6),
                            setting(&Settings::sphere_centre), "Centre of the candidates' sphere.")),
-      otherwise("the view distance and the surface's mean distance to its centroid",
+      otherwise("view distance plus the mean distance of the surface from its centroid",
                 number_key("volumetric.sphere_radius", "m", above(0, 1e6),
                            setting(&Settings::sphere_radius), "Radius of the candidates' sphere.")),
-      number_key(
-          "volumetric.cost_weight", "", between(0, 1e6), setting(&Settings::cost_weight),
-          "Weight of the way to a candidate against its gain, both as shares of their sums over "
-          "the candidates."),
+      number_key("volumetric.cost_weight", "", between(0, 1e6), setting(&Settings::cost_weight),
+                 "Weight of the path length to a candidate against its gain, both as fractions of "
+                 "their sums over the candidates."),
       choice_key("volumetric.ties", {"first", "nearest"}, setting(&Settings::ties),
-                 "Which of equally useful candidates is taken."),
+                 "Choice among candidates of equal utility."),
   };
 }
 
@@ -57,7 +56,7 @@ std::vector<Key> gain_keys() {
           "Which rays that end on a surface rse counts: all as the evaluation code, or those "
           "from an uncertain voxel as published."),
       choice_key("volumetric.af_share", {"all_rays", "hitting_rays"},
-                 gain(&GainSettings::area_share), "Of which rays af takes shares."),
+                 gain(&GainSettings::area_share), "Rays that af uses as the total."),
   };
 }
 
@@ -66,24 +65,24 @@ std::vector<Key> map_keys() {
   return {
       number_key("volumetric.rays_per_pixel", "1/px", above(0, 1),
                  rays(&RayPattern::rays_per_pixel),
-                 "Rays of a candidate, in a row and in a column of its image."),
+                 "Rays per pixel of a candidate's image, along rows and along columns."),
       number_key("volumetric.window_begin", "share", between(0, 1), rays(&RayPattern::window_begin),
-                 "First column and row with rays, as a share of the image."),
+                 "First column and row with rays, as a fraction of the image."),
       number_key("volumetric.window_end", "share", between(0, 1), rays(&RayPattern::window_end),
-                 "Last column and row with rays."),
-      otherwise("the sphere's radius",
+                 "Last column and row with rays, as a fraction of the image."),
+      otherwise("radius of the sphere",
                 number_key("volumetric.ray_depth", "m", above(0, 1e6),
-                           setting(&Settings::ray_depth), "Where rays end that meet nothing.")),
-      otherwise("18 voxels",
-                number_key("volumetric.shadow_length", "m", above(0, 1e6),
-                           setting(&Settings::shadow_length),
-                           "s: how far behind measurements voxels are marked as occluded.")),
+                           setting(&Settings::ray_depth), "Length of rays that hit nothing.")),
+      otherwise(
+          "18 voxels",
+          number_key("volumetric.shadow_length", "m", above(0, 1e6),
+                     setting(&Settings::shadow_length),
+                     "s: distance behind measurements up to which voxels are marked as occluded.")),
       boolean_key(
           "volumetric.thinned", setting(&Settings::thinned),
-          "Whether the voxels take in only the points that are kept at the spacing, in place of "
-          "whole scans."),
+          "Insert only the points kept at the spacing into the voxels, instead of whole scans."),
       boolean_key("volumetric.carve_no_returns", setting(&Settings::carve_no_returns),
-                  "Whether space along pixels without a return counts as free up to ray_depth."),
+                  "Count space along no-return pixels as free up to ray_depth."),
   };
 }
 

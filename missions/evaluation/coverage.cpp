@@ -1,7 +1,6 @@
 #include "missions/evaluation/coverage.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -16,7 +15,7 @@ CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double re
     : cell_size_(2.0 * registration_distance * (1.0 + 1e-6)),
       squared_distance_(static_cast<float>(registration_distance * registration_distance)),
       is_covered_(samples.size(), 0),
-      slots_(std::bit_ceil(2 * samples.size() + 1)) {
+      ranges_(samples.size()) {
   std::vector<Cell> cells;
   cells.reserve(samples.size());
   for (const Eigen::Vector3f& sample : samples) cells.push_back(cell_of(sample));
@@ -25,11 +24,9 @@ CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double re
   std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return cells[i]; });
   samples_.reserve(samples.size());
   for (const std::uint32_t i : order) {
-    Slot& slot = slot_of(cells[i]);
     const auto place = static_cast<std::uint32_t>(samples_.size());
-    if (slot.cell == no_cell) slot = {cells[i], place, place};
+    ++ranges_.insert(cells[i], {place, place}).value.end;
     samples_.push_back({samples[i], i});
-    ++slot.end;
   }
 }
 
@@ -44,14 +41,6 @@ CoverageMeter::Cell CoverageMeter::cell_of(const Eigen::Vector3f& sample) const 
     return static_cast<std::int64_t>(std::floor(double{sample[axis]} / cell_size_));
   };
   return cell_at(cell(0), cell(1), cell(2));
-}
-
-CoverageMeter::Slot& CoverageMeter::slot_of(Cell cell) {
-  const std::size_t mask = slots_.size() - 1;
-  constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio
-  std::size_t place = (cell * golden >> 32) & mask;
-  while (slots_[place].cell != cell && slots_[place].cell != no_cell) place = (place + 1) & mask;
-  return slots_[place];
 }
 
 void CoverageMeter::add(std::span<const Eigen::Vector3f> points) {
@@ -70,15 +59,16 @@ void CoverageMeter::add(std::span<const Eigen::Vector3f> points) {
 }
 
 void CoverageMeter::cover_cell(Cell cell, const Eigen::Vector3f& point) {
-  Slot& slot = slot_of(cell);
-  for (std::uint32_t i = slot.begin; i < slot.end;) {
+  Range* const range = ranges_.find(cell);
+  if (range == nullptr) return;
+  for (std::uint32_t i = range->begin; i < range->end;) {
     if (geometry::squared_distance(samples_[i].position, point) > squared_distance_) {
       ++i;
       continue;
     }
     is_covered_[samples_[i].index] = 1;
     ++covered_;
-    samples_[i] = samples_[--slot.end];
+    samples_[i] = samples_[--range->end];
   }
 }
 

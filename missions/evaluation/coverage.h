@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "geometry/points/hash_grid.h"
+
 namespace skycap::missions::evaluation {
 
 /// Keeps count of the surface samples that have a measurement within the registration distance
@@ -29,9 +31,8 @@ class CoverageMeter {
 
  private:
   using Cell = std::uint64_t;
-  /// A place of the table of cells: what is left of the cell's samples.
-  struct Slot {
-    Cell cell = no_cell;
+  /// What is left of a cell's samples.
+  struct Range {
     std::uint32_t begin = 0, end = 0;  ///< of samples_
   };
   struct Sample {
@@ -39,18 +40,15 @@ class CoverageMeter {
     std::uint32_t index;
   };
 
-  static constexpr Cell no_cell = ~Cell{0};
-
   static Cell cell_at(std::int64_t x, std::int64_t y, std::int64_t z);
   Cell cell_of(const Eigen::Vector3f& sample) const;
-  Slot& slot_of(Cell cell);
   void cover_cell(Cell cell, const Eigen::Vector3f& point);
 
   double cell_size_;
   float squared_distance_;
   std::size_t covered_ = 0;
   std::vector<std::uint8_t> is_covered_;
-  std::vector<Slot> slots_;      ///< hashed by cell, the next one taken where one is taken
+  geometry::HashGrid<Range> ranges_;
   std::vector<Sample> samples_;  ///< cell by cell
 };
 

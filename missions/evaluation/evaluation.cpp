@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <random>
 
 #include "geometry/parallel.h"
 #include "geometry/place/space_curve.h"
+#include "geometry/random_numbers.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/thinned_cloud.h"
 
@@ -97,7 +97,7 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
                                              const CeilingConfig& config,
                                              const std::stop_token& stop) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
-  std::mt19937_64 random(config.seed);
+  geometry::RandomNumbers random(config.seed);
   std::vector<std::uint32_t> targets;  // visible samples in random order
   for (std::uint32_t i = 0; i < samples.size(); ++i) {
     if (is_visible[i]) targets.push_back(i);

@@ -12,6 +12,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "geometry/random_numbers.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
 #include "missions/session/opening_flight.h"
@@ -52,7 +53,7 @@ sim::Scene scene_of(const geometry::Mesh& model, const SimulationOptions& option
 
 std::string metres_text(double length) { return fmt::format("{:.12g}", length); }
 
-Vector3d uniform_direction(std::mt19937_64& random) {
+Vector3d uniform_direction(geometry::RandomNumbers& random) {
   std::normal_distribution<double> normal;
   for (;;) {
     // From z to x, one a declarator: arguments of a call are drawn in an order that is each
@@ -177,13 +178,13 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   if (const auto& start = begins.view) {
     if (!reachable().is_empty()) return *start;
     throw Error(ErrorKind::bad_config,
-                "start.position is inside the model, or so enclosed by it that a ball of " +
+                "start.position is inside the model, or enclosed by it: a sphere of radius " +
                     metres_text(radius_ + reachable().cell()) +
-                    " m does not fit; move it, or make evaluation.radius less");
+                    " m does not fit through any opening; move it, or lower evaluation.radius");
   }
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;
-  std::mt19937_64 random(seed);
+  geometry::RandomNumbers random(seed);
   constexpr int most_attempts = 10'000;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
@@ -193,10 +194,11 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
       return view;
     }
   }
-  throw Error(ErrorKind::bad_config,
-              "limits.ground_clearance, the gimbal's pitch, evaluation.radius, the site and "
-              "flight.unknown_box leave no place for a random start at the view distance of " +
-                  metres_text(view_distance_) + " m; loosen them or give start.position");
+  throw Error(
+      ErrorKind::bad_config,
+      "no random start at the view distance of " + metres_text(view_distance_) +
+          " m satisfies limits.ground_clearance, the gimbal's pitch limits, evaluation.radius, the "
+          "site and flight.unknown_box; relax them or set start.position");
 }
 
 Admissible SurveyScene::admissible() const {

@@ -70,8 +70,7 @@ CloudTally read_tally(const fs::path& folder) {
     std::ifstream file(folder / distances_name, std::ios::binary);
     if (!file.read(reinterpret_cast<char*>(distances.data()),
                    static_cast<std::streamsize>(distances.size() * sizeof(float)))) {
-      throw Error(ErrorKind::bad_file,
-                  (folder / distances_name).string() + ": is not as long as it was written");
+      throw Error(ErrorKind::bad_file, (folder / distances_name).string() + ": is truncated");
     }
     return tally;
   } catch (const Json::exception& failure) {

@@ -35,11 +35,11 @@ Json stations_json(const StationPlan& stations) {
 }
 
 std::string figures_text(const MissionFigures& figures) {
-  return fmt::format("{} views, {} pieces, {:.0f} m, {:.0f} s", figures.views, figures.pieces,
+  return fmt::format("{} views, {} segments, {:.0f} m, {:.0f} s", figures.views, figures.pieces,
                      figures.length, figures.duration);
 }
 
-std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
+std::string percent(double share) { return fmt::format("{:.2f}%", 100.0 * share); }
 
 /// The survey's views, and those of the frames on its ways.
 std::vector<geometry::View> all_views_of(const session::SurveyRecord& record) {
@@ -74,8 +74,8 @@ Json again_json(const FlownAgain& again) {
 }
 
 std::string again_text(const FlownAgain& again) {
-  std::string text = "flown again " + percent(again.all) + " of the surface";
-  if (again.visible) text += ", " + percent(*again.visible) + " of what is visible";
+  std::string text = "simulated re-flight " + percent(again.all) + " of the surface";
+  if (again.visible) text += ", " + percent(*again.visible) + " of the visible surface";
   if (again.visible_unthinned && again.visible_unthinned != again.visible) {
     text += " (" + percent(*again.visible_unthinned) + " if all points are kept)";
   }
@@ -147,14 +147,14 @@ std::optional<StationPlan> anew_stations(const Json& json, const std::string& na
 
 std::string anew_text(const AnewMission& mission) {
   const package::MissionChoice& choice = mission.choice;
-  std::string text = choice.is_anew ? "  anew      " + figures_text(choice.anew) +
-                                          "; the survey's " + figures_text(choice.survey)
-                                    : "  anew      nothing better was found than the survey's " +
+  std::string text = choice.is_anew ? "  replanned " + figures_text(choice.anew) +
+                                          "; survey views: " + figures_text(choice.survey)
+                                    : "  replanned no faster plan found than the survey views: " +
                                           figures_text(choice.survey);
-  text += "\n  promise   " + percent(choice.anew.promised) +
-          " of what was measured, the survey's views " + percent(choice.survey.promised);
+  text += "\n  coverage  " + percent(choice.anew.promised) +
+          " predicted of the measured surface, survey views " + percent(choice.survey.promised);
   if (mission.again) text += "; " + again_text(*mission.again);
-  if (mission.survey_again) text += "; the survey's views " + again_text(*mission.survey_again);
+  if (mission.survey_again) text += "; survey views: " + again_text(*mission.survey_again);
   return text + "\n";
 }
 

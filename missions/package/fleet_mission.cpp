@@ -56,10 +56,10 @@ void check_pads(const FleetMission& fleet, const std::vector<flight::FleetSortie
       if (v == sortie.vehicle) continue;
       const double distance = distance_from(sortie.script, fleet.members[v].pad);
       if (distance >= fleet.members[v].flight.clearance) continue;
-      throw Error(ErrorKind::bad_config, "vehicle " + std::to_string(sortie.vehicle + 1) +
-                                             " comes within " + flight::length_text(distance) +
-                                             " of the pad of vehicle " + std::to_string(v + 1) +
-                                             "; give other places in flight.pads");
+      throw Error(ErrorKind::bad_config,
+                  "vehicle " + std::to_string(sortie.vehicle + 1) + " comes within " +
+                      flight::length_text(distance) + " of the take-off point of vehicle " +
+                      std::to_string(v + 1) + "; set other positions in flight.pads");
     }
   }
 }
@@ -146,8 +146,8 @@ flight::FleetSplit share(flight::FleetGoal goal, flight::CertifiedCosts& costs,
   }
   if (!split.parts.empty()) return split;
   throw Error(ErrorKind::bad_config,
-              "the stations cannot be shared out among flight.vehicles: too many of them are "
-              "out of reach for one or the other");
+              "the views cannot be distributed over flight.vehicles: too many of them are "
+              "unreachable for one of the vehicles");
 }
 
 void stage_fleet(const std::string& name, FleetMission& fleet,
@@ -156,8 +156,11 @@ void stage_fleet(const std::string& name, FleetMission& fleet,
   for (std::size_t v = 0; v < fleet.members.size(); ++v) {
     FleetMember& member = fleet.members[v];
     if (member.route.sorties.empty()) continue;
-    const flight::Format own = own_format(member.flight.flown().dialect);
-    std::vector<flight::Format> all(formats.begin(), formats.end());
+    const flight::Dialect dialect = member.flight.flown().dialect;
+    const flight::Format own = own_format(dialect);
+    const std::span<const flight::Format> asked =
+        formats.empty() ? package_formats(dialect) : formats;
+    std::vector<flight::Format> all(asked.begin(), asked.end());
     if (std::ranges::find(all, own) == all.end()) all.push_back(own);
     member.files =
         stage_flight(name, member.flight, member.route, measured, all, folder, stem_of(v));

@@ -51,8 +51,8 @@ FleetMission plan_fleet(const flight::FlightOptions& options, const flight::Meas
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
                         unsigned threads, const std::stop_token& stop = {});
 
-/// The same with every vehicle's route files in these formats and its own autopilot's, and the
-/// timetable, staged. `name` is the mission's.
+/// The same with every vehicle's route files in these formats and its own autopilot's (without
+/// `formats`: in package_formats() of each), and the timetable, staged. `name` is the mission's.
 std::shared_ptr<const FleetMission> staged_fleet(
     const std::string& name, const flight::FlightOptions& options,
     const flight::MeasuredSpace& measured, const flight::Route& alone,

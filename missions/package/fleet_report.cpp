@@ -44,24 +44,28 @@ Json member_json(const FleetMember& member) {
 
 }  // namespace
 
-std::string fleet_text(const FleetMission& fleet) {
+std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
   std::string text = fmt::format(
-      "  fleet     {} vehicles, {:.1f} min until the last has landed, {:.1f} min in the air; "
-      "within {:.1f} % and {:.1f} % of what no fleet on such legs undercuts, {:.1f} % and {:.1f} % "
-      "of what none does on any\n",
-      fleet.members.size(), fleet.makespan / 60.0, fleet.flown / 60.0,
-      gap(fleet.makespan, fleet.bound.makespan), gap(fleet.flown, fleet.bound.flown),
-      gap(fleet.makespan, fleet.least.makespan), gap(fleet.flown, fleet.least.flown));
+      "  fleet     {} vehicles, last landing after {:.1f} min, total flight time {:.1f} min\n",
+      fleet.members.size(), fleet.makespan / 60.0, fleet.flown / 60.0);
+  if (is_verbose) {
+    text += fmt::format(
+        "            above the lower bounds on legs like these by {:.1f}% and {:.1f}%, on any legs "
+        "by {:.1f}% and {:.1f}%\n",
+        gap(fleet.makespan, fleet.bound.makespan), gap(fleet.flown, fleet.bound.flown),
+        gap(fleet.makespan, fleet.least.makespan), gap(fleet.flown, fleet.least.flown));
+  }
   text += fmt::format(
-      "  apart     proven at {:.2f} m at all times; the last landing {:.0f} s later for it\n",
+      "  separation at least {:.2f} m at all times, verified; it delays the last landing by {:.0f} "
+      "s\n",
       fleet.distance, fleet.delay);
   for (const TimetableRow& row : fleet.timetable) {
     text +=
-        fmt::format("  {:9} starts at {:.0f} s, lands at {:.0f} s: {}\n",
+        fmt::format("  {:9} take-off at {:.0f} s, landing at {:.0f} s: {}\n",
                     fmt::format("vehicle {}", row.vehicle + 1), row.start, row.landing, row.file);
   }
   for (const flight::Unreached& missed : fleet.unreached) {
-    text += fmt::format("  left out  view {}, by the fleet: {}\n", missed.station.view_index,
+    text += fmt::format("  skipped   view {}, by the fleet: {}\n", missed.station.view_index,
                         missed.reason);
   }
   return text;

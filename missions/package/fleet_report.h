@@ -10,8 +10,8 @@
 
 namespace skycap::missions::package {
 
-/// Some lines for the user.
-std::string fleet_text(const FleetMission& fleet);
+/// Some lines for the user; with `is_verbose` also how far the fleet is from its lower bounds.
+std::string fleet_text(const FleetMission& fleet, bool is_verbose);
 
 /// `flight.fleet` of summary.json; `goal` is the text of flight.fleet_goal.
 nlohmann::ordered_json fleet_json(const FleetMission& fleet, const std::string& goal,

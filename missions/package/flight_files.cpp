@@ -20,8 +20,9 @@ namespace {
 using flight::Dialect;
 using flight::Format;
 
-constexpr std::array formats_of_packages{Format::plan, Format::waypoints, Format::kmz,
-                                         Format::kml,  Format::geojson,   Format::csv};
+constexpr std::array formats_of_mavlink{Format::plan, Format::waypoints, Format::kml,
+                                        Format::geojson, Format::csv};
+constexpr std::array formats_of_dji{Format::kmz, Format::kml, Format::geojson, Format::csv};
 
 /// A file that is in the local frame needs no place on the Earth.
 bool is_local(Format format) {
@@ -32,13 +33,13 @@ bool is_local(Format format) {
 std::string what_is_missing_for(Format format, const flight::FlightOptions& options) {
   if (is_local(format)) return "";
   if (!options.has_place) {
-    return "it needs the place on the Earth; give site.latitude_deg and site.longitude_deg";
+    return "requires a georeference; set site.latitude_deg and site.longitude_deg";
   }
   const bool has_sea_level =
       format == Format::plan || format == Format::kml ||
       (format == Format::waypoints && options.flown().dialect != Dialect::px4);
   if (!has_sea_level || options.site.geoid_undulation) return "";
-  return "its heights count from sea level; give site.geoid_undulation";
+  return "requires heights above mean sea level; set site.geoid_undulation";
 }
 
 /// The plan as the format's programs want it: QGroundControl's files in the dialect of PX4 and
@@ -81,7 +82,7 @@ void certify_dialect(flight::FlightPlan& plan, const flight::FreeSpace& space, d
   flight::ReturnSearch search =
       least_return(space, legs, law, highest, flight::return_clearance(plan.clearance));
   if (!search.found) {
-    throw Error(ErrorKind::bad_config, "there is no certified way home: " + search.why);
+    throw Error(ErrorKind::bad_config, "no verified return altitude: " + search.why);
   }
   search.found->energy = plan.returns->energy;
   plan.returns = std::move(search.found);
@@ -94,9 +95,10 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
   std::string text = flight::write_parameters(plan);
   const flight::Dialect dialect = plan.vehicle.dialect;
   const std::vector<flight::Parameter> read = flight::read_parameters(text);
-  flight::throw_first(flight::return_problems(read, dialect), "not good parameters");
+  flight::throw_first(flight::return_problems(read, dialect),
+                      "the return parameters are not those that were verified");
   if (flight::return_height(read, dialect) != plan.returns->height) {
-    throw Error(ErrorKind::bad_file, "the parameters do not hold the certified height of return");
+    throw Error(ErrorKind::bad_file, "the parameters do not contain the verified return altitude");
   }
   return text;
 }
@@ -178,7 +180,7 @@ class RouteFiles {
     if (!holds_curves && options_.style != flight::FlightStyle::stop) {
       const bool passes = options_.style == flight::FlightStyle::pass;
       notes.push_back(stem_ + info.ending + " stops " + (passes ? "at every view and " : "") +
-                      "in every corner: the format cannot say which curve is flown");
+                      "in every corner: the format cannot define curves");
     }
     const auto corners = holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
     flight::FlightPlan plan =
@@ -209,7 +211,10 @@ class RouteFiles {
 
 }  // namespace
 
-std::span<const Format> package_formats() { return formats_of_packages; }
+std::span<const Format> package_formats(Dialect dialect) {
+  if (dialect == Dialect::dji) return formats_of_dji;
+  return formats_of_mavlink;
+}
 
 flight::FlightOptions in_given_order(flight::FlightOptions options) {
   options.order = flight::VisitOrder::survey;

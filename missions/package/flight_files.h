@@ -65,8 +65,9 @@ struct FlightFiles {
   std::vector<std::string> notes;  ///< what was not written, or what a format leaves out, and why
 };
 
-/// The formats of a mission package.
-std::span<const flight::Format> package_formats();
+/// The formats of a mission package: those that this autopilot reads, and those of maps and other
+/// programs.
+std::span<const flight::Format> package_formats(flight::Dialect dialect);
 
 /// Stages the route of the mission `name` in each of the formats; with several sorties a file for
 /// each, "mission-1.plan" and so on, or with another `stem`. Every file is read back and proved. A

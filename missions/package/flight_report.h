@@ -12,7 +12,8 @@ namespace skycap::missions::package {
 /// A line about the survey's own flight.
 std::string flown_text(const flight::FlightOptions& options, const session::SurveyRecord& record);
 
-/// Some lines: the route, what its clearance is made of, views left out, files and notes.
-std::string flight_text(const SurveyMission& flight);
+/// Some lines: the route, its clearance budget, skipped views, files and notes; with `is_verbose`
+/// also how far the tour and the fleet are from their lower bounds.
+std::string flight_text(const SurveyMission& flight, bool is_verbose = false);
 
 }  // namespace skycap::missions::package

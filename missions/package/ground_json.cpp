@@ -41,20 +41,13 @@ std::vector<PadGround> measured_grounds(const Json& list, const std::string& nam
   return grounds;
 }
 
-std::string grounds_text(std::span<const PadGround> grounds, std::size_t expected) {
+std::string grounds_text(std::span<const PadGround> grounds) {
   std::string text;
   for (const PadGround& ground : grounds) {
-    text += fmt::format("{}{:.1f} degrees steep {}", text.empty() ? "" : ", ",
+    text += fmt::format("{}slope {:.1f} degrees {}", text.empty() ? "  pad       " : ", ",
                         ground.slope * geometry::degrees_per_radian, name_of(ground.source));
   }
-  if (grounds.size() < expected) {
-    text += text.empty() ? "" : "; ";
-    text += fmt::format(
-        "nobody knows how steep {}: see that it is fit, and say so "
-        "(flight.pad_slope_deg)",
-        grounds.empty() ? "it is" : "the others are");
-  }
-  return "  pad       " + text + "\n";
+  return text.empty() ? "" : text + "\n";
 }
 
 }  // namespace skycap::missions::package

@@ -18,7 +18,7 @@ nlohmann::ordered_json grounds_json(std::span<const flight::PadGround> grounds);
 std::vector<flight::PadGround> measured_grounds(const nlohmann::ordered_json& list,
                                                 const std::string& name);
 
-/// What the program prints: a line for each place to land of `expected`, known or not.
-std::string grounds_text(std::span<const flight::PadGround> grounds, std::size_t expected);
+/// A line for the user: slopes of the landing points that are known; empty if none is.
+std::string grounds_text(std::span<const flight::PadGround> grounds);
 
 }  // namespace skycap::missions::package

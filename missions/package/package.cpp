@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
@@ -48,7 +49,7 @@ Json json_of_summary(const std::string& text, const std::string& name) {
   Json summary = geometry::parse_json<Json>(text);
   if (summary.is_object()) return summary;
   fail(name,
-       "is not a package's summary, but no JSON or nested too deep; name the folder of a mission "
+       "is not a package's summary: not JSON, or nested too deep; give the folder of a mission "
        "package");
 }
 
@@ -101,7 +102,7 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
                              flown.pad, views_of(record), ways_of(flown), flown.grounds, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
     const flight::Unreached& first = flight.route.unreached.front();
-    throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
+    throw Error(ErrorKind::bad_config, "no view can be part of the flight; view " +
                                            std::to_string(first.station.view_index) + ": " +
                                            first.reason);
   }
@@ -121,12 +122,14 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
 /// Does a part of the flight's work. What goes wrong becomes its failure: the survey itself shall
 /// not be lost.
 template <typename Work>
-void attempt(SurveyMission& flight, const std::stop_token& stop, Work work) {
+void attempt(SurveyMission& flight, Work work) {
   if (!flight.failure.empty()) return;
   try {
     work();
+  } catch (const Interrupted&) {
+    flight.failure = "interrupted; skycap export creates it";
   } catch (const Error& error) {
-    flight.failure = stop.stop_requested() ? "interrupted; skycap export makes it" : error.what();
+    flight.failure = error.what();
   }
 }
 
@@ -138,7 +141,7 @@ std::optional<SurveyMission> planned_mission(const evaluation::SimulationOptions
                                              const std::stop_token& stop) {
   if (!record.flown) return std::nullopt;
   SurveyMission flight;
-  attempt(flight, stop, [&] { plan_route(simulation, run, record, coverage, stop, flight); });
+  attempt(flight, [&] { plan_route(simulation, run, record, coverage, stop, flight); });
   return flight;
 }
 
@@ -151,12 +154,13 @@ void stage_mission(const std::string& name, const flight::FlightOptions& options
       std::ios::badbit);  // else text is lost without a word where memory is missing
   record.flown->measured->write(free_space);
   folder.write(free_space_name, free_space.str());
-  attempt(flight, stop, [&] {
+  attempt(flight, [&] {
     const flight::MeasuredSpace& measured = *record.flown->measured;
-    flight.files = stage_flight(name, options, flight.route, measured, package_formats(), folder);
+    flight.files = stage_flight(name, options, flight.route, measured,
+                                package_formats(options.flown().dialect), folder);
     if (!options.is_fleet()) return;
-    flight.fleet = staged_fleet(name, options, measured, flight.route, record.flown->grounds,
-                                package_formats(), folder, threads, stop);
+    flight.fleet = staged_fleet(name, options, measured, flight.route, record.flown->grounds, {},
+                                folder, threads, stop);
   });
 }
 
@@ -351,11 +355,11 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<config::KeyOverride>& overrides) {
   PackageSummary summary = read_package_summary(folder, overrides);
   if (!summary.pad) {
-    fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
+    fail(folder / summary_name, "is a survey without a vehicle; plan it with flight.vehicle");
   }
   if (summary.mission.flight().views == flight::MissionViews::anew && !summary.has_choice) {
     fail(folder / summary_name,
-         "has no views chosen anew; plan the mission again, or say flight.views=survey");
+         "contains no replanned views; plan the mission again, or set flight.views=survey");
   }
   const std::filesystem::path space_file = folder / free_space_name;
   std::ifstream space;

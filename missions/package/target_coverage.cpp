@@ -58,7 +58,7 @@ TargetCoverage coverage_of(const site_data::Object& object, const site_data::Sur
 }
 
 std::string text_of(const CoveredPart& part) {
-  return fmt::format("{:.2f} % of {:.4g} m^2", 100.0 * part.covered, part.area);
+  return fmt::format("{:.2f}% of {:.4g} m^2", 100.0 * part.covered, part.area);
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ std::string target_text(const std::vector<TargetCoverage>& targets) {
   for (const TargetCoverage& target : targets) {
     text += fmt::format("  target    {}: {}", target.object.name, text_of(target.object));
     for (const CoveredPart& kind : target.kinds) text += ", " + kind.name + " " + text_of(kind);
-    text += fmt::format("; as mapped, within {:.2f} m\n", target.radius);
+    text += fmt::format("; within {:.2f} m of the map's surface\n", target.radius);
   }
   return text;
 }

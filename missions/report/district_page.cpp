@@ -24,10 +24,10 @@ Verdict district_verdict(const Json& summary) {
     const auto views = flight.at("views").get<std::size_t>();
     const auto flown = flight.at("views_flown").get<std::size_t>();
     verdict.lights = {
-        {"views flown of " + std::to_string(views), "flight.views_flown", "count", flown,
+        {"views in the flight of " + std::to_string(views), "flight.views_flown", "count", flown,
          flown == views ? "green" : "amber", "green: all of them"},
-        {"least proven clearance", "flight.min_clearance_m", "metres", flight.at("min_clearance_m"),
-         "green", "every leg is proven at what is asked for"},
+        {"minimum clearance (verified)", "flight.min_clearance_m", "metres",
+         flight.at("min_clearance_m"), "green", "green: every leg keeps the required clearance"},
         {"sorties", "flight.sorties", "count", flight.at("sorties"), "none", ""},
         {"flight", "flight.duration_s", "minutes", flight.at("duration_s"), "none", ""}};
   }

@@ -31,8 +31,8 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
     names += (names.empty() ? "" : ", ") + page.results;
   }
   throw Error(ErrorKind::bad_file, folder.string() +
-                                       ": has no results to show; name a folder that plan, scan, "
-                                       "benchmark or finish wrote, with one of " +
+                                       ": contains no results; give a folder written by plan, "
+                                       "scan, benchmark or finish, with one of " +
                                        names);
 }
 
@@ -76,10 +76,9 @@ std::vector<MadePage> made_pages(const fs::path& folder, std::size_t most_points
   }
   if (found.empty()) refuse_folder(folder);
   if (out && found.size() > 1) {
-    throw Error(ErrorKind::bad_usage,
-                folder.string() +
-                    ": has several pages; leave out --out, or move the results of one of them to a "
-                    "folder of their own");
+    throw Error(ErrorKind::bad_usage, folder.string() +
+                                          ": contains several reports; remove --out, or move one "
+                                          "of the results to a folder of its own");
   }
   std::vector<MadePage> pages;
   pages.reserve(found.size());

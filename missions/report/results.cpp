@@ -30,14 +30,14 @@ std::string results_text(const fs::path& file) {
 Json read_results(const fs::path& file) {
   Json json = geometry::parse_json<Json>(results_text(file));
   if (json.is_object()) return json;
-  throw Error(ErrorKind::bad_file, file.string() +
-                                       ": is no JSON object, or nested too deep; name a folder of "
-                                       "results as skycap wrote it");
+  throw Error(
+      ErrorKind::bad_file,
+      file.string() +
+          ": is not a JSON object, or nested too deep; give a results folder written by skycap");
 }
 
 void refuse_results(const fs::path& file, std::string_view why) {
-  throw Error(ErrorKind::bad_file,
-              file.string() + ": is not as skycap wrote it (" + std::string(why) + ")");
+  throw Error(ErrorKind::bad_file, file.string() + ": is damaged (" + std::string(why) + ")");
 }
 
 Json files_json(const std::vector<std::string>& names, const ResultFinder& results,

@@ -137,7 +137,7 @@ std::vector<std::string> file_names(const Json& summary) {
 Json verdict_of(const Json& summary) {
   const bool is_complete = summary.value("complete", false);
   Verdict verdict{.is_complete = is_complete,
-                  .because = is_complete ? "the whole route was flown" : "it was interrupted",
+                  .because = is_complete ? "the complete route was flown" : "interrupted",
                   .lights = {}};
   const auto add = [&](const char* name, const char* figure, const char* form) {
     if (summary.contains(figure)) verdict.lights.push_back({name, figure, form, summary[figure]});

@@ -75,7 +75,7 @@ std::string deflated(std::string_view bytes, Repetition repetition) {
   const int error = deflate(&stream, Z_FINISH);
   packed.resize(stream.total_out);
   deflateEnd(&stream);
-  if (error != Z_STREAM_END) throw std::runtime_error("zlib cannot deflate");
+  if (error != Z_STREAM_END) throw std::runtime_error("zlib cannot compress");
   return packed;
 }
 

@@ -34,19 +34,20 @@ Light coverage(const std::string& name, const std::string& figure, const Json& v
           "share",
           value,
           light,
-          fmt::format("green from {:.0f} %, amber from {:.0f} %", 100.0 * good_coverage,
+          fmt::format("green: at least {:.0f}%, amber: at least {:.0f}%", 100.0 * good_coverage,
                       100.0 * fair_coverage)};
 }
 
 void add_coverage(const Json& summary, std::vector<Light>& lights) {
   if (const Json believed = at(summary, "/belief/predicted_coverage"); believed.is_number()) {
     lights.push_back(
-        coverage("Coverage, as the planner believes", "belief.predicted_coverage", believed));
+        coverage("Coverage (planner estimate)", "belief.predicted_coverage", believed));
   }
   if (const Json visible = at(summary, "/coverage_visible"); visible.is_number()) {
-    lights.push_back(coverage("Coverage of what is visible, true", "coverage_visible", visible));
+    lights.push_back(
+        coverage("Coverage of visible surface (ground truth)", "coverage_visible", visible));
   } else if (const Json all = at(summary, "/coverage"); all.is_number()) {
-    lights.push_back({"Coverage of the whole surface, true", "coverage", "share", all});
+    lights.push_back({"Coverage of all surface (ground truth)", "coverage", "share", all});
   }
 }
 
@@ -55,7 +56,7 @@ void add_flight(const Json& summary, std::vector<Light>& lights) {
   if (!flight.is_object()) return;
   if (flight.contains("failure")) {
     lights.push_back(
-        {"Flight", "flight.failure", "text", "no route", "red", "red: no route could be proven"});
+        {"Flight", "flight.failure", "text", "no route", "red", "red: no verified route"});
     return;
   }
   const Json clearance = at(summary, "/flight/route/min_clearance_m");
@@ -63,8 +64,9 @@ void add_flight(const Json& summary, std::vector<Light>& lights) {
   if (clearance.is_number() && asked.is_number()) {
     // Floating-point sums of the terms may differ from the bound in the last bits.
     const bool is_kept = clearance.get<double>() >= asked.get<double>() * (1.0 - 1e-9);
-    lights.push_back({"Least proven clearance", "flight.route.min_clearance_m", "metres", clearance,
-                      is_kept ? "green" : "red", "green from the clearance that was asked for"});
+    lights.push_back({"Minimum clearance (verified)", "flight.route.min_clearance_m", "metres",
+                      clearance, is_kept ? "green" : "red",
+                      "green: at least the required clearance"});
   }
   if (const Json minutes = at(summary, "/flight/route/duration_s"); minutes.is_number()) {
     lights.push_back({"Flight", "flight.route.duration_s", "minutes", minutes});
@@ -73,13 +75,13 @@ void add_flight(const Json& summary, std::vector<Light>& lights) {
   const Json sorties = at(summary, "/flight/route/sorties");
   for (const Json& sortie : sorties) left = std::min(left, sortie.value("energy_left_wh", 0.0));
   if (!sorties.empty()) {
-    lights.push_back({"Sorties, one battery each", "flight.route.sorties.length", "count",
+    lights.push_back({"Sorties (one battery each)", "flight.route.sorties.length", "count",
                       sorties.size(), left >= 0.0 ? "green" : "red",
-                      "green if each lands with its reserve"});
+                      "green: every sortie keeps its battery reserve"});
   }
   const std::size_t missed = at(summary, "/flight/route/unreached").size();
-  lights.push_back({"Views left out of the flight", "flight.route.unreached.length", "count",
-                    missed, missed == 0 ? "green" : "amber", "green if none, else amber"});
+  lights.push_back({"Views not in the mission", "flight.route.unreached.length", "count", missed,
+                    missed == 0 ? "green" : "amber", "green: none, otherwise amber"});
 }
 
 }  // namespace
@@ -95,12 +97,12 @@ Json json_of(const Verdict& verdict) {
 
 Json stop_words() {
   using enum survey::StopReason;
-  return {{session::name_of(complete), "nothing more is worth a view"},
-          {session::name_of(view_limit), "the limit of views came first"},
-          {session::name_of(distance_limit), "the limit of distance came first"},
-          {session::name_of(time_limit), "the limit of time came first"},
-          {session::name_of(nowhere_to_go), "no view that is left can be reached safely"},
-          {session::name_of(interrupted), "it was interrupted"}};
+  return {{session::name_of(complete), "no remaining view adds enough coverage"},
+          {session::name_of(view_limit), "view limit reached"},
+          {session::name_of(distance_limit), "distance limit reached"},
+          {session::name_of(time_limit), "time limit reached"},
+          {session::name_of(nowhere_to_go), "no remaining view is reachable"},
+          {session::name_of(interrupted), "interrupted"}};
 }
 
 Json verdict(const Json& summary) {

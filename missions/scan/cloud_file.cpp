@@ -65,7 +65,7 @@ void CloudFile::append_file(const std::filesystem::path& other, const CloudState
     bytes.resize(std::min<std::uint64_t>(window, grown.bytes - at));
     if (!file.read(reinterpret_cast<char*>(bytes.data()),
                    static_cast<std::streamsize>(bytes.size()))) {
-      throw Error(ErrorKind::bad_file, other.string() + ": is shorter than it was written");
+      throw Error(ErrorKind::bad_file, other.string() + ": is truncated");
     }
     if (!format_->is_paged()) {
       put_content(bytes);

@@ -18,6 +18,9 @@
 
 namespace skycap::missions::scan {
 
+/// Beyond this, neighbouring single-precision numbers are 2 mm apart [m].
+inline constexpr double farthest_coordinate = 16384.0;
+
 /// What a file's header says of its points.
 struct CloudTotals {
   std::uint64_t points = 0;
@@ -39,6 +42,11 @@ enum class ReturnPosition {
   reported,  ///< measured distance along the believed ray
   actual,    ///< of the surface that was met
 };
+
+inline const std::vector<Eigen::Vector3f>& positions_of(const sim::LidarReturns& returns,
+                                                        ReturnPosition position) {
+  return position == ReturnPosition::reported ? returns.points : returns.true_points;
+}
 
 /// How far a file has grown.
 struct CloudState {

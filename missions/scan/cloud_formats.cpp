@@ -5,25 +5,21 @@
 #include <cmath>
 #include <cstdio>
 
+#include "geometry/byte_values.h"
 #include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/text/ply.h"
 #include "missions/scan/las_format.h"
-#include "missions/scan/little_endian.h"
 
 namespace skycap::missions::scan {
 namespace {
 
-/// Beyond this, neighbouring single-precision numbers are 2 mm apart.
-constexpr double farthest_coordinate = 16384.0;
+using geometry::put_value;
 
 CloudTotals totals_of(const sim::LidarReturns& returns) {
   CloudTotals totals;  // what these formats' headers need
   totals.points = returns.size();
   return totals;
-}
-
-const std::vector<Eigen::Vector3f>& positions(const sim::LidarReturns& returns,
-                                              ReturnPosition position) {
-  return position == ReturnPosition::reported ? returns.points : returns.true_points;
 }
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
@@ -36,20 +32,21 @@ class RecordFormat : public CloudFormat {
     constexpr std::size_t size = 28;
     chunk.totals = totals_of(returns);
     chunk.bytes.resize(returns.size() * size);
-    const auto& points = positions(returns, position);
+    const auto& points = positions_of(returns, position);
     std::uint8_t* out = chunk.bytes.data();
     double farthest = 0.0;
     for (std::size_t i = 0; i < returns.size(); ++i, out += size) {
       const Eigen::Vector3d point = returns.origin + points[i].cast<double>();
       farthest = std::max(farthest, point.cwiseAbs().maxCoeff());
-      for (int axis = 0; axis < 3; ++axis) store(out + 4UL * axis, static_cast<float>(point[axis]));
-      store(out + 12, returns.intensities[i]);
-      store(out + 16, returns.times[i]);
-      store(out + 24, returns.channels[i]);
+      for (int axis = 0; axis < 3; ++axis)
+        put_value(out, 4UL * axis, static_cast<float>(point[axis]));
+      put_value(out, 12, returns.intensities[i]);
+      put_value(out, 16, returns.times[i]);
+      put_value(out, 24, returns.channels[i]);
       out[26] = returns.return_numbers[i];
       out[27] = returns.returns_of_shots[i];
     }
-    if (farthest > farthest_coordinate) {
+    if (farthest > geometry::farthest_single_coordinate) {
       throw Error(ErrorKind::bad_geometry,
                   "a point is " + std::to_string(farthest) +
                       " m from the origin, too far for single precision; write LAS or xyz");
@@ -60,14 +57,13 @@ class RecordFormat : public CloudFormat {
 class PlyFormat final : public RecordFormat {
  public:
   std::vector<std::uint8_t> header(const CloudState& grown) const override {
-    const std::string count = std::to_string(grown.totals.points);
-    // The comment takes up what the number of points leaves.
-    return bytes_of(
-        "ply\nformat binary_little_endian 1.0\ncomment written by Skycap" +
-        std::string(20 - count.size(), ' ') + "\nelement vertex " + count +
-        "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\n"
-        "property double time\nproperty ushort channel\nproperty uchar return_number\n"
-        "property uchar returns\nend_header\n");
+    using geometry::PlyType;
+    geometry::PlyElement vertex{"vertex", grown.totals.points, {}};
+    vertex.add(PlyType::float32, {"x", "y", "z", "intensity"});
+    vertex.add(PlyType::float64, {"time"});
+    vertex.add(PlyType::uint16, {"channel"});
+    vertex.add(PlyType::uint8, {"return_number", "returns"});
+    return bytes_of(geometry::growing_ply_header(vertex));
   }
 };
 
@@ -96,7 +92,7 @@ class XyzFormat final : public CloudFormat {
     constexpr std::size_t longest_line = 200;  // eight numbers below 1e15 in size
     chunk.totals = totals_of(returns);
     chunk.bytes.resize(returns.size() * longest_line);
-    const auto& points = positions(returns, position);
+    const auto& points = positions_of(returns, position);
     char* const begin = reinterpret_cast<char*>(chunk.bytes.data());
     char* out = begin;
     const auto put = [&](double number, int decimals) {
@@ -165,7 +161,7 @@ const CloudFormatInfo& cloud_format_named(const std::string& name) {
     if (format.name == name) return format;
   }
   throw Error(ErrorKind::bad_usage,
-              "there is no point format '" + name + "'; the formats are " + cloud_format_names());
+              "unknown point format '" + name + "'; expected one of: " + cloud_format_names());
 }
 
 std::string cloud_format_names() {

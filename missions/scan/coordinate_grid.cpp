@@ -19,8 +19,8 @@ Eigen::AlignedBox3d CoordinateGrid::bounds(const Eigen::AlignedBox3d& units) con
   constexpr double most = std::numeric_limits<std::int32_t>::max();
   if (!(units.min().array() >= -most).all() || !(units.max().array() <= most).all()) {
     throw Error(ErrorKind::bad_geometry,
-                "a point is farther than " + std::to_string(most * scale) +
-                    " m from the file's offset; choose an offset near the scene");
+                "a point is more than " + std::to_string(most * scale) +
+                    " m from the file's offset; set an offset near the scene");
   }
   Eigen::AlignedBox3d written;
   for (const Eigen::Vector3d& corner : {units.min(), units.max()}) {

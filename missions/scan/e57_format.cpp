@@ -2,11 +2,11 @@
 #include <limits>
 #include <string_view>
 
+#include "geometry/byte_values.h"
 #include "geometry/io/e57/crc32c.h"
 #include "geometry/io/e57/pages.h"
 #include "geometry/io/e57/scan_file.h"
 #include "missions/scan/cloud_formats.h"
-#include "missions/scan/little_endian.h"
 
 namespace skycap::missions::scan {
 namespace {
@@ -69,7 +69,7 @@ class E57Format final : public CloudFormat {
     }
     put_positions(returns, position, values, chunk.totals);
     const auto put = [&](Column column, std::size_t i, auto value) {
-      store(bytes_of(values[column]) + i * sizeof value, value);
+      geometry::put_value(values[column].data(), i * sizeof value, value);
     };
     for (std::size_t i = 0; i < returns.size(); ++i) {
       put(intensity, i, returns.intensities[i]);
@@ -84,21 +84,16 @@ class E57Format final : public CloudFormat {
   }
 
  private:
-  static std::uint8_t* bytes_of(std::string& text) {
-    return reinterpret_cast<std::uint8_t*>(text.data());
-  }
-
   void put_positions(const sim::LidarReturns& returns, ReturnPosition position,
                      std::array<std::string, columns>& values, CloudTotals& totals) const {
-    const auto& points =
-        position == ReturnPosition::reported ? returns.points : returns.true_points;
+    const auto& points = positions_of(returns, position);
     const auto put_all = [&](const auto& units) {
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Vector3d place = units(points[i]);
         for (const Column axis : {x, y, z}) {
           // What is stored counts from the minimum of 32 bits.
           const auto stored = static_cast<std::uint32_t>(nearest(place[axis])) ^ 0x80000000U;
-          store(bytes_of(values[axis]) + 4 * i, stored);
+          geometry::put_value(values[axis].data(), 4 * i, stored);
         }
       }
     };

@@ -178,9 +178,8 @@ class FrameRecording {
       const auto previewed = options_.begun.at("preview_points").get<std::size_t>();
       if (previewed > 0) read_preview(previewed);
       if (result_.frames > frames_.size() || preview_.size() != previewed) {
-        throw Error(ErrorKind::bad_file, journal_.file().string() +
-                                             ": says more than there is; begin anew without "
-                                             "--resume");
+        throw Error(ErrorKind::bad_file,
+                    journal_.file().string() + ": is truncated; start again without --resume");
       }
       return options_.begun.at("rawlog_bytes").get<std::uint64_t>();
     } catch (const nlohmann::json::exception& failure) {

@@ -46,8 +46,8 @@ Json json_of(const LaserCheckpoint& checkpoint) {
 LaserCheckpoint parse_laser_checkpoint(const Json& json, std::size_t files,
                                        const std::string& name) {
   const auto fail = [&](const std::string& why) -> void {
-    throw Error(ErrorKind::bad_file, name + ": its last line is not as scan writes it (" + why +
-                                         "); begin anew without --resume");
+    throw Error(ErrorKind::bad_file,
+                name + ": the last line is damaged (" + why + "); start again without --resume");
   };
   LaserCheckpoint checkpoint;
   try {

@@ -5,48 +5,45 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/byte_values.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/text/ply.h"
 #include "geometry/split_mix.h"
-#include "missions/scan/little_endian.h"
 
 namespace skycap::missions::scan {
 namespace {
 
 constexpr double wanted_shots = 1.5e6;
 
-/// Beyond this, neighbouring single-precision numbers are 2 mm apart.
-constexpr double farthest_coordinate = 16384.0;
-
 class PreviewFormat final : public CloudFormat {
  public:
   PreviewFormat(const PreviewPieces& pieces, double share) : pieces_(pieces), share_(share) {}
 
   std::vector<std::uint8_t> header(const CloudState& grown) const override {
-    const std::string count = std::to_string(grown.totals.points);
-    // The comment takes up what the number of points leaves.
-    const std::string text =
-        "ply\nformat binary_little_endian 1.0\ncomment written by Skycap" +
-        std::string(20 - count.size(), ' ') + "\nelement vertex " + count +
-        "\nproperty float x\nproperty float y\nproperty float z\nproperty uint view\nend_header\n";
+    geometry::PlyElement vertex{"vertex", grown.totals.points, {}};
+    vertex.add(geometry::PlyType::float32, {"x", "y", "z"});
+    vertex.add(geometry::PlyType::uint32, {"view"});
+    const std::string text = geometry::growing_ply_header(vertex);
     return {text.begin(), text.end()};
   }
 
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override {
     constexpr std::size_t size = 16;
-    const auto& points =
-        position == ReturnPosition::reported ? returns.points : returns.true_points;
+    const auto& points = positions_of(returns, position);
     chunk.totals = {};
     chunk.bytes.clear();
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const double time = returns.times[i];
       if (!is_previewed(std::bit_cast<std::uint64_t>(time), returns.channels[i], share_)) continue;
       const Eigen::Vector3d point = returns.origin + points[i].cast<double>();
-      if (!(point.cwiseAbs().maxCoeff() < farthest_coordinate)) continue;
+      if (!(point.cwiseAbs().maxCoeff() < geometry::farthest_single_coordinate)) continue;
       chunk.bytes.resize(chunk.bytes.size() + size);
       std::uint8_t* out = &chunk.bytes[chunk.bytes.size() - size];
-      for (int axis = 0; axis < 3; ++axis) store(out + 4UL * axis, static_cast<float>(point[axis]));
+      for (int axis = 0; axis < 3; ++axis)
+        geometry::put_value(out, 4UL * axis, static_cast<float>(point[axis]));
       const double piece = std::floor((time - pieces_.start) / pieces_.length);
-      store(out + 12, static_cast<std::uint32_t>(std::max(0.0, piece)));
+      geometry::put_value(out, 12, static_cast<std::uint32_t>(std::max(0.0, piece)));
       ++chunk.totals.points;
     }
   }

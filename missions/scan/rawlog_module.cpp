@@ -69,8 +69,7 @@ class RawlogFormat final : public CloudFormat {
 
   Piece piece_of(const sim::LidarReturns& returns, ReturnPosition position,
                  const SensorMotion& motion) const {
-    const auto& points =
-        position == ReturnPosition::reported ? returns.points : returns.true_points;
+    const auto& points = positions_of(returns, position);
     Piece piece;
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const double since_start =

@@ -94,9 +94,9 @@ void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown) {
   throw Error(ErrorKind::bad_config, "scan: the route takes " + support::short_text(duration) +
                                          " s, in which the sensor's " + "firing period of " +
                                          support::short_text(lidar.config().firing_period) +
-                                         " s makes " + support::short_text(firings) +
+                                         " s results in " + support::short_text(firings) +
                                          " firings; at most " + support::short_text(most_firings) +
-                                         " are simulated");
+                                         " can be simulated");
 }
 
 }  // namespace skycap::missions::scan

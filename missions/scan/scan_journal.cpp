@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-void require(const std::error_code& failure, const fs::path& path, const char* what) {
+void require_success(const std::error_code& failure, const fs::path& path, const char* what) {
   if (!failure) return;
   throw Error(ErrorKind::bad_file, path.string() + ": " + what + " (" + failure.message() + ")");
 }
@@ -23,7 +23,7 @@ void require(const std::error_code& failure, const fs::path& path, const char* w
 void copy_bytes(const fs::path& from, const fs::path& to) {
   std::error_code failure;
   fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
-  require(failure, to, "cannot be written");
+  require_success(failure, to, "cannot be written");
 }
 
 /// The same file under another name, or its bytes. Whether it is the same.
@@ -48,7 +48,7 @@ Json ScanJournal::open(const support::Identity& run, const Json& more, bool resu
   }
   const std::vector<std::string>& records = log_->records();
   support::require_same_survey(file_.string(), records.front(), identity,
-                               "begin anew without --resume");
+                               "start again without --resume");
   return records.size() > 1 ? geometry::parse_json<Json>(records.back()) : Json();
 }
 
@@ -65,7 +65,7 @@ void ScanJournal::begin(const std::string& identity) {
   close();
   std::error_code failure;
   fs::create_directories(folder_, failure);
-  require(failure, folder_, "cannot be made");
+  require_success(failure, folder_, "cannot be made");
   geometry::sync_to_disk(folder_.parent_path());
   log_.emplace(file_);
   log_->append(identity);
@@ -79,7 +79,7 @@ fs::path ScanJournal::path_to_change(const std::string& name) const {
     copy_bytes(path, own);
     std::error_code failure;
     fs::rename(own, path, failure);
-    require(failure, path, "cannot be replaced");
+    require_success(failure, path, "cannot be replaced");
   }
   return path;
 }
@@ -102,7 +102,7 @@ void ScanJournal::close() {
   log_.reset();
   std::error_code failure;
   fs::remove_all(folder_, failure);
-  require(failure, folder_, "cannot be removed");
+  require_success(failure, folder_, "cannot be removed");
 }
 
 }  // namespace skycap::missions::scan

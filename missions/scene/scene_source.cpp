@@ -68,9 +68,10 @@ geometry::Mesh joined_tiles(const SceneOptions& scene, const std::filesystem::pa
         static_cast<double>(all.triangles.size()) +
         static_cast<double>(tile.shifts.size()) * static_cast<double>(mesh.triangles.size());
     if (triangles > most_triangles) {
-      throw Error(ErrorKind::bad_config, "scene.model: the tiles have more than " +
-                                             support::short_text(most_triangles) +
-                                             " triangles; scan them, or name fewer of them here");
+      throw Error(
+          ErrorKind::bad_config,
+          "scene.model: the tiles have more than " + support::short_text(most_triangles) +
+              " triangles; use fewer tiles for this command; skycap scan accepts all of them");
     }
     for (const Vector3d& shift : tile.shifts) {
       geometry::Mesh copy = mesh;
@@ -137,8 +138,8 @@ std::map<std::string, Material> materials_of(const std::filesystem::path& file,
 /// The model in its own frame, with reflectances by the names of its materials.
 ReflectingScene model_of_materials(const SceneOptions& scene, const std::filesystem::path& folder) {
   if (scene.model.starts_with(builtin)) {
-    throw Error(ErrorKind::bad_config,
-                "scene.materials needs a model from a file; " + scene.model + " has no materials");
+    throw Error(ErrorKind::bad_config, "scene.materials requires a model from a file; " +
+                                           scene.model + " has no materials");
   }
   const std::filesystem::path file = model_file(scene, folder);
   const std::filesystem::path list = folder / *scene.materials;
@@ -160,7 +161,7 @@ ReflectingScene model_of_materials(const SceneOptions& scene, const std::filesys
   }
   if (!unused.empty()) {
     throw Error(ErrorKind::bad_config, list.string() + ": the model has no material " +
-                                           *unused.begin() + "; it has " + known);
+                                           *unused.begin() + "; its materials are " + known);
   }
   return result;
 }
@@ -244,8 +245,9 @@ geometry::Mesh with_copies(const SceneOptions& scene, const geometry::Mesh& plac
   if (triangles > most_triangles) {
     throw Error(ErrorKind::bad_config,
                 "scene.copies: " + std::to_string(places.size()) + " times " +
-                    std::to_string(placed_model.triangles.size()) + " triangles are more than " +
-                    support::short_text(most_triangles) + "; give fewer copies or a coarser model");
+                    std::to_string(placed_model.triangles.size()) +
+                    " triangles exceed the limit of " + support::short_text(most_triangles) +
+                    "; use fewer copies or a coarser model");
   }
   geometry::Mesh all;
   for (const Eigen::Isometry3d& place : places) {

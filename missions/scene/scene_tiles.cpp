@@ -43,14 +43,14 @@ class TileEntry {
 
   void append_to(std::vector<TileKind>& tiles) {
     if (section_.has("files") == section_.has("model")) {
-      section_.fail_at("files",
-                       "or else model has to be given: a pattern of mesh files, such as "
-                       "tiles/*.ply, or one model");
+      section_.fail_at(
+          "files",
+          "or model is required: a pattern of mesh files, such as tiles/*.ply, or one model");
     }
     origin_ = origin();
     const std::string key = section_.has("files") ? "files" : "model";
     if (section_.text(key).ends_with(".tiles")) {
-      section_.fail_at(key, "is a list of tiles itself; name meshes or a model");
+      section_.fail_at(key, "is itself a tile list; use meshes or a model");
     }
     if (key == "files") {
       append_files(tiles);
@@ -81,8 +81,8 @@ class TileEntry {
     }
     if (names.empty()) {
       section_.fail_at("files", "is " + pattern.string() +
-                                    ", and no file has such a name; give a pattern of mesh files "
-                                    "in one folder, such as tiles/*.ply");
+                                    " and matches no file; give a pattern of mesh files in one "
+                                    "folder, such as tiles/*.ply");
     }
     std::ranges::sort(names);
     for (const std::string& name : names) {
@@ -106,13 +106,13 @@ class TileEntry {
     const int columns = count("columns"), rows = count("rows");
     const bool is_alone = columns == 1 && rows == 1;
     const double spacing = is_alone ? section_.number("spacing", 0.0) : section_.number("spacing");
-    if (!is_alone && !(spacing > 0.0)) section_.fail_at("spacing", "must be more than 0");
+    if (!is_alone && !(spacing > 0.0)) section_.fail_at("spacing", "must be above 0");
     const int all_kinds = section_.integer("kinds", 1), seed = section_.integer("seed", 1);
     const bool is_drawn = is_builtin && sim::is_drawn(std::string_view(model).substr(8));
     if (all_kinds < 0 || (all_kinds != 1 && !is_drawn)) {
       section_.fail_at("kinds",
-                       "is of builtin models that are drawn, such as builtin:city-block: "
-                       "how many different ones there are, 0 for all");
+                       "applies only to generated builtin models, such as builtin:city-block: "
+                       "number of different ones, 0 for all");
     }
     if (seed < 0) section_.fail_at("seed", "must not be negative");
     std::map<std::uint64_t, TileKind> kinds;
@@ -140,8 +140,7 @@ class TileEntry {
 
 void require_for_tiles(const SceneOptions& scene) {
   const auto refuse = [](const char* key) {
-    throw Error(ErrorKind::bad_config,
-                std::string(key) + " is not for scenes of tiles; leave it out");
+    throw Error(ErrorKind::bad_config, std::string(key) + " conflicts with a tile list; remove it");
   };
   if (!scene.copies.empty()) refuse("scene.copies");
   if (scene.longest_side) refuse("scene.longest_side");
@@ -175,7 +174,7 @@ std::vector<TileKind> tiles_of(const SceneOptions& scene, const fs::path& folder
     TileEntry(section, scene, scene.model, folder).append_to(tiles);
   }
   sections.finish();
-  if (tiles.empty()) sections.fail_at("tiles", "is missing; list what stands in the scene");
+  if (tiles.empty()) sections.fail_at("tiles", "is missing; list the tiles of the scene");
   return tiles;
 }
 

@@ -11,14 +11,15 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using geometry::View;
 
-/// From the box: the clearance, the voxels that the box may grow by, and room to spare.
-double spare_of(const StartOptions& start) { return 1.5 * start.clearance; }
+/// From the box to the opening views: the clearance, the voxels that the box may grow by, and a
+/// reserve.
+double distance_from_box(const StartOptions& start) { return 1.5 * start.clearance; }
 
 /// How often round the box: once for each band of its height that is no higher than the way is from
 /// the box's middle, or than planners look from.
 unsigned circles_round(const AlignedBox3d& box, const StartOptions& start) {
   constexpr double most = 32.0;
-  const double away = 0.5 * box.sizes().head<2>().minCoeff() + spare_of(start);
+  const double away = 0.5 * box.sizes().head<2>().minCoeff() + distance_from_box(start);
   const double apart = std::max(away, start.view_distance);
   return static_cast<unsigned>(std::clamp(std::ceil(box.sizes().z() / apart - 1e-9), 1.0, most));
 }
@@ -27,7 +28,7 @@ unsigned circles_round(const AlignedBox3d& box, const StartOptions& start) {
 /// circles from the one to the other, each of whose last sides climbs to the next.
 std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
   const AlignedBox3d box = start.box;
-  const double spare = spare_of(start);
+  const double spare = distance_from_box(start);
   const Vector3d low = box.min() - Vector3d::Constant(spare);
   const Vector3d high = box.max() + Vector3d::Constant(spare);
   const double bottom = std::max(low.z(), (start.lowest + 0.5));
@@ -52,7 +53,7 @@ std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
 std::vector<View> strips(const StartOptions& start, std::uint64_t seed) {
   const AlignedBox3d box = start.box;
   const int along = box.sizes().x() >= box.sizes().y() ? 0 : 1, across = 1 - along;
-  const double height = box.max().z() + spare_of(start);
+  const double height = box.max().z() + distance_from_box(start);
   const double width = box.sizes()[across];
   const auto count =
       std::max(1, static_cast<int>(std::ceil(width / (height - box.min().z()) - 1e-9)));

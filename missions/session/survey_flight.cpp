@@ -6,12 +6,12 @@
 #include <string>
 #include <utility>
 
-#include "flight/paths/path.h"
+#include "flight/route/leg_planner.h"
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 #include "flight/space/interruptible_space.h"
-#include "flight/way_home/ways_home.h"
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "geometry/parallel.h"
 #include "geometry/place/camera.h"
 #include "geometry/place/platform.h"
@@ -41,7 +41,7 @@ struct SurveyFlight::Impl {
         rules(options.rules()),
         known({measured.get(), &rules}),
         space(known),
-        finder(space, options.budget().total(), options.route(Vector3d::Zero()).path),
+        legs(space, options.budget().total(), options.route(Vector3d::Zero()).path),
         motion(options),
         mount(options.capture.mount),
         rays(options.capture.rays),
@@ -62,52 +62,21 @@ struct SurveyFlight::Impl {
     return mount ? geometry::nose_view(*mount, view) : view;
   }
 
-  std::optional<FlownLeg> proven(std::vector<Vector3d> points) const {
-    FlownLeg way{std::move(points), finder.clearance() + flight::reported_surplus};
-    for (std::size_t i = 1; i < way.points.size(); ++i) {
-      const flight::LegProof proof =
-          flight::prove(space, {way.points[i - 1], way.points[i]}, finder.clearance(),
-                        finder.clearance() + flight::reported_surplus);
-      if (!proof.is_proven) return std::nullopt;
-      way.clearance = std::min(way.clearance, proof.clearance);
-    }
-    return way;
-  }
-
-  std::optional<FlownLeg> find_way(const Vector3d& from, const Vector3d& to) {
-    flight::Path path = finder.find(from, to);
-    if (path.status != flight::PathStatus::found) return std::nullopt;
-    return proven(std::move(path.points));
-  }
-
-  /// The same with a certified way home from all of its points, if those are asked for.
-  std::optional<FlownLeg> find_returnable_way(const Vector3d& from, const Vector3d& to) {
-    if (!ways_home) return find_way(from, to);
-    if (!ways_home->why_none(to).empty()) return std::nullopt;
-    flight::Path path = finder.find(from, to);
-    if (path.status != flight::PathStatus::found) return std::nullopt;
-    return proven(ways_home->with_returns(std::move(path.points), worthwhile_saving));
-  }
-
   flight::Vehicle vehicle;
   geometry::Camera camera;
   std::shared_ptr<flight::MeasuredSpace> measured;
   flight::KnownSpace rules;
   flight::JointSpace known;
   flight::InterruptibleSpace space;
-  flight::PathFinder finder;
+  flight::LegPlanner legs;  ///< with returns if autopilots return from its ways by themselves
   WayMotion motion;
   std::optional<geometry::ScannerMount> mount;  ///< of a scanner
   std::optional<flight::SweepRays> rays;        ///< of its scans, if they prove space free
-  /// If its ways are those of the written mission, too, from which autopilots return by themselves.
-  std::optional<flight::WaysHome> ways_home;
-  double worthwhile_saving = 0.0;  ///< that corners of such ways are worth [m]
   /// Among neighbours most places beside the target are not free, and to look for ways to them in
   /// vain takes long.
   bool is_crowded;
   double frame_period;
   unsigned threads;
-  std::stop_token stop;
   FlownLeg leg;  ///< that the next fly() takes
   Vector3d above_pad = Vector3d::Zero();
   std::vector<flight::PadScan> pads;
@@ -121,25 +90,22 @@ SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry:
   const Vector3d home = impl_->survey.pad + Vector3d(0.0, 0.0, options.climb());
   impl_->above_pad = home;
   if (impl_->mount) {
-    const flight::RouteOptions route = options.route(impl_->survey.pad);
-    impl_->worthwhile_saving = route.path.worthwhile_saving;
-    impl_->ways_home.emplace(impl_->space, planning_law(route, home.z()), home,
-                             impl_->finder.clearance());
+    impl_->legs.require_returns(planning_law(options.route(impl_->survey.pad), home.z()), home);
   }
   const auto refuse = [&](const std::string& place, const Vector3d& at, const std::string& cure) {
-    const double clearance = impl_->finder.clearance();
+    const double clearance = impl_->legs.clearance();
     const flight::Closest closest = impl_->space.closest({at, at}, clearance + 1e-3);
     const std::string why = closest.distance < clearance
                                 ? "is " + support::short_text(closest.distance) + " m from " +
                                       impl_->space.name(closest)
-                                : "cannot be reached through space that is known to be free";
+                                : "cannot be reached through free space";
     throw Error(ErrorKind::bad_config,
                 place + " at (" + support::short_text(at.x()) + ", " + support::short_text(at.y()) +
-                    ", " + support::short_text(at.z()) + ") " + why + ", at a clearance of " +
+                    ", " + support::short_text(at.z()) + ") " + why + ", with a clearance of " +
                     support::short_text(clearance) + " m; " + cure);
   };
-  if (!impl_->space.is_free({home, home}, impl_->finder.clearance())) {
-    refuse("the place above the take-off pad", home,
+  if (!impl_->space.is_free({home, home}, impl_->legs.clearance())) {
+    refuse("the point above the take-off point", home,
            "move flight.takeoff, raise flight.takeoff_climb, or shrink flight.unknown_box");
   }
   flight::check_grounds(options.grounds(impl_->survey.pad, {}), options.ground_limits());
@@ -148,7 +114,7 @@ SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry:
   }
   if (!can_reach(home, first_view)) {
     refuse("the first view", first_view.position,
-           "give another start.position (or seed), within the gimbal's limits and outside of "
+           "set another start.position (or seed), within the gimbal's limits and outside "
            "flight.unknown_box");
   }
 }
@@ -156,33 +122,28 @@ SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry:
 SurveyFlight::~SurveyFlight() = default;
 
 bool SurveyFlight::may_be_at(const Vector3d& place) const try {
-  if (impl_->is_crowded && !impl_->space.is_free({place, place}, impl_->finder.clearance())) {
+  if (impl_->is_crowded && !impl_->space.is_free({place, place}, impl_->legs.clearance())) {
     return false;
   }
-  return !impl_->ways_home || impl_->ways_home->why_none(place).empty();
-} catch (const Error&) {
-  if (impl_->stop.stop_requested()) throw survey::Interrupted();
-  throw;
+  return !impl_->legs.returns() || impl_->legs.returns()->why_none(place).empty();
+} catch (const Interrupted&) {
+  throw survey::Interrupted();
 }
 
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
   if (flight::can_look(impl_->vehicle, impl_->carrier(to))) {
-    if (auto way = impl_->find_returnable_way(from, to.position)) {
-      impl_->leg = std::move(*way);
+    if (auto leg = impl_->legs.leg(from, to.position)) {
+      impl_->leg = {std::move(leg->points), leg->clearance};
       return true;
     }
   }
   ++impl_->survey.refused;
   return false;
-} catch (const Error&) {
-  if (impl_->stop.stop_requested()) throw survey::Interrupted();
-  throw;
+} catch (const Interrupted&) {
+  throw survey::Interrupted();
 }
 
-void SurveyFlight::stop_on(std::stop_token stop) {
-  impl_->stop = stop;
-  impl_->space.stop_on(std::move(stop));
-}
+void SurveyFlight::stop_on(std::stop_token stop) { impl_->space.stop_on(std::move(stop)); }
 
 const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
 
@@ -201,7 +162,9 @@ double SurveyFlight::time(const geometry::View& from, const geometry::View& to) 
 }
 
 std::optional<FlownLeg> SurveyFlight::find_way(const Vector3d& from, const Vector3d& to) {
-  return impl_->find_way(from, to);
+  auto leg = impl_->legs.verified(impl_->legs.path(from, to).points);
+  if (!leg) return std::nullopt;
+  return FlownLeg{std::move(leg->points), leg->clearance};
 }
 
 const Vector3d& SurveyFlight::pad() const { return impl_->survey.pad; }
@@ -229,7 +192,7 @@ void SurveyFlight::take_in(const geometry::Scan& scan) {
       for (flight::PadScan& pad : impl_->pads) pad.take_in(scan.points);
     }
   });
-  impl_->finder.forget();
+  impl_->legs.forget();
 }
 
 FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {

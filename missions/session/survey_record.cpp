@@ -30,7 +30,7 @@ double SurveyRecord::sensing_time() const {
 
 survey::StopReason stop_reason_named(const std::string& name) {
   if (const auto reason = survey::stop_reason_named(name)) return *reason;
-  throw Error(ErrorKind::bad_file, "'" + name + "' is no reason for a survey to stop");
+  throw Error(ErrorKind::bad_file, "'" + name + "' is not a stop reason");
 }
 
 }  // namespace skycap::missions::session

@@ -70,16 +70,16 @@ class Inspection {
     const double views = geometry::surface_area(scene_.model()) / footprint;
     if (views > most_views) {
       problem(
-          "the model is {:.4g} m long, and from the view distance of {:.4g} m a view covers {:.3g} "
-          "m^2: over {:.2g} views; if the model is in millimetres, give scene.scale: 0.001, else "
-          "raise planner.view_distance",
+          "the model is {:.4g} m long, but a view from the view distance ({:.4g} m) covers {:.3g} "
+          "m^2: over {:.2g} views are required. If the model is in millimetres, set scene.scale: "
+          "0.001; otherwise raise planner.view_distance",
           longest_, distance_, footprint, views);
     }
     const double radius = options_.evaluation.registration_distance;
     if (longest_ < 2.0 * radius) {
       problem(
-          "the model is {:.4g} m long, less than twice evaluation.registration_distance of {:.4g} "
-          "m: one point would cover it; check its unit (scene.scale), or lower the distance",
+          "the model ({:.4g} m long) must be at least twice evaluation.registration_distance "
+          "({:.4g} m); check its unit (scene.scale), or lower the distance",
           longest_, radius);
     }
   }
@@ -89,8 +89,8 @@ class Inspection {
     const flight::FlightOptions& flight = options_.survey.flight;
     if (stand_off >= distance_) {
       problem(
-          "{} of {:.4g} m is not less than the view distance of {:.4g} m: no view is so near to "
-          "what it looks at; lower it, or raise planner.view_distance",
+          "{} ({:.4g} m) must be smaller than the view distance ({:.4g} m); lower it or raise "
+          "planner.view_distance",
           flight.is_flown() && stand_off == flight.clearance ? "flight.clearance"
                                                              : "limits.stand_off",
           stand_off, distance_);
@@ -98,14 +98,14 @@ class Inspection {
     const geometry::CameraConfig& camera = camera_.config();
     if (camera.max_range <= distance_) {
       problem(
-          "the sensor measures up to {:.4g} m, and the view distance is {:.4g} m; lower "
-          "planner.view_distance, or raise sensor.max_range",
+          "the maximum range of the sensor ({:.4g} m) must be at least the view distance ({:.4g} "
+          "m); lower planner.view_distance or raise sensor.max_range",
           camera.max_range, distance_);
     }
     if (camera.min_range >= distance_) {
       problem(
-          "the sensor measures from {:.4g} m on, and the view distance is {:.4g} m; raise "
-          "planner.view_distance, or lower sensor.min_range",
+          "the minimum range of the sensor ({:.4g} m) must be at most the view distance ({:.4g} "
+          "m); raise planner.view_distance or lower sensor.min_range",
           camera.min_range, distance_);
     }
   }
@@ -125,12 +125,12 @@ class Inspection {
     if (const auto& box = options_.survey.planner.scene_box) {
       const double outside = share_outside(*box);
       if (outside >= 1.0) {
-        problem("planner.scene_box holds nothing of the model, which reaches from {}; move it",
+        problem("planner.scene_box contains no part of the model, which extends from {}; move it",
                 reach);
       } else if (outside > cut_off) {
         warn(
-            "planner.scene_box leaves {:.3g} % of the surface out, which no survey then covers; "
-            "widen it to hold the model, {}",
+            "planner.scene_box excludes {:.3g}% of the surface, which no survey can cover; extend "
+            "it to contain the model, {}",
             100.0 * outside, reach);
       }
     }
@@ -139,8 +139,8 @@ class Inspection {
     const double outside = share_outside(flight.unknown_box);
     if (outside > cut_off) {
       problem(
-          "{} leaves {:.3g} % of the surface out, where the vehicle would take all for free; widen "
-          "it to hold the model, {}",
+          "{} excludes {:.3g}% of the surface, where unknown space would be assumed free; extend "
+          "it to contain the model, {}",
           flight.has_own_box ? "flight.unknown_box" : "planner.scene_box", 100.0 * outside, reach);
     }
   }
@@ -152,16 +152,17 @@ class Inspection {
     const double gap = std::sqrt(0.5 / rays);
     if (gap > radius) {
       warn(
-          "from the view distance of {:.4g} m rays meet a wall {:.3g} m apart, so that a view "
-          "covers only some of what it sees within evaluation.registration_distance of {:.4g} m; "
-          "lower planner.view_distance to {:.4g} m",
+          "at the view distance ({:.4g} m) rays hit a wall {:.3g} m apart, so that a view covers "
+          "only part of what it sees within evaluation.registration_distance ({:.4g} m); lower "
+          "planner.view_distance to {:.4g} m",
           distance_, std::sqrt(1.0 / rays), radius, distance_ * radius / gap);
     }
     const double spacing = options_.survey.planner.spacing;
     if (spacing > std::sqrt(3.0) * radius) {  // even points in a hexagonal lattice leave holes
       warn(
-          "points are stored {:.4g} m apart, and evaluation.registration_distance is {:.4g} m: "
-          "what lies between them does not count; lower planner.spacing to {:.4g} m",
+          "the spacing of stored points ({:.4g} m) must be at most "
+          "evaluation.registration_distance ({:.4g} m) for gapless coverage; lower planner.spacing "
+          "to {:.4g} m",
           spacing, radius, 0.8 * radius);
     }
   }
@@ -174,14 +175,13 @@ class Inspection {
     const double share = evaluation::marked_share(
         evaluation::visible_samples(some, scene_.scene(), scene_.admissible(), run_.threads));
     const char* remedy =
-        "loosen the heights, the fence and the gimbal's pitches, or lower limits.stand_off, "
+        "widen the height limits, the geofence and the gimbal limits, or lower limits.stand_off, "
         "flight.clearance or evaluation.radius";
     if (share == 0.0) {
-      problem("nothing of the model can be seen from {:.4g} m away and where the limits allow; {}",
-              distance_, remedy);
+      problem("no part of the model is visible from {:.4g} m away within the limits; {}", distance_,
+              remedy);
     } else if (share < little) {
-      warn("only {:.2g} % of the surface can be seen from where the limits allow; {}",
-           100.0 * share, remedy);
+      warn("only {:.2g}% of the surface is visible within the limits; {}", 100.0 * share, remedy);
     }
   }
 
@@ -195,7 +195,7 @@ class Inspection {
         return !box || box->contains(point.cast<double>());
       });
       if (!sees) {
-        problem("the first scan holds no point of the scene; start from a place that sees it");
+        problem("the first scan contains no point of the scene; start from a view that sees it");
       } else if (options_.survey.flight.is_flown()) {
         const session::SurveyFlight way(options_.survey.flight, first, run_.threads);
       }

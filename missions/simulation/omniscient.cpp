@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <utility>
 #include <vector>
 
 #include "geometry/parallel.h"
 #include "geometry/place/camera.h"
 #include "geometry/place/pose.h"
+#include "geometry/random_numbers.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/evaluation.h"
 #include "missions/simulation/measurement.h"
@@ -64,7 +64,7 @@ class Truth {
   std::vector<View> candidates(std::size_t count, std::uint64_t seed) const {
     const std::vector<Vector3d> directions =
         evaluation::fibonacci_directions(admissible_.directions);
-    std::mt19937_64 random(seed);
+    geometry::RandomNumbers random(seed);
     std::vector<View> views;
     for (std::size_t i = 0; i < count && !points_.empty(); ++i) {
       const Vector3d target = points_[random() % points_.size()].cast<double>();

@@ -40,14 +40,13 @@ SurveyJournal::SurveyJournal(std::filesystem::path file, const support::Identity
 
 void SurveyJournal::read_known(const std::vector<std::string>& records) {
   support::require_same_survey(file_.string(), records.front(), identity_,
-                               "begin anew without --resume");
+                               "start again without --resume");
   try {
     for (const std::string& record : std::span(records).subspan(1)) {
       known_.push_back(parse(record));
     }
   } catch (const Json::exception& failure) {
-    fail("line " + std::to_string(known_.size() + 2) +
-         " is not as plan writes it: " + failure.what());
+    fail("line " + std::to_string(known_.size() + 2) + " is damaged: " + failure.what());
   }
 }
 
@@ -70,7 +69,7 @@ SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) const {
                              return geometry::is_place(place);
                            });
   if (!is_in_world) {
-    fail("line " + std::to_string(known_.size() + 2) + " names a place out of the world");
+    fail("line " + std::to_string(known_.size() + 2) + " contains a position outside the world");
   }
   return record;
 }
@@ -97,8 +96,8 @@ void SurveyJournal::begin_view(const geometry::View& view) {
   if (!is_known()) return;
   const geometry::View& known = known_[at_].view;
   if (view.position == known.position && view.direction == known.direction) return;
-  fail("says that view " + std::to_string(at_) +
-       " was taken elsewhere; begin anew without --resume");
+  fail("does not match: view " + std::to_string(at_) +
+       " was taken elsewhere; start again without --resume");
 }
 
 void SurveyJournal::end_view(const survey::SurveyedView& view) {
@@ -114,8 +113,8 @@ void SurveyJournal::end_view(const survey::SurveyedView& view) {
     log_->append(text_of(current_));
     known_.push_back(current_);
   } else if (text_of(current_) != text_of(known_[at_])) {
-    fail("says that view " + std::to_string(at_) +
-         " gave something else; begin anew without --resume");
+    fail("does not match: view " + std::to_string(at_) +
+         " gave other points; start again without --resume");
   }
   ++at_;
 }

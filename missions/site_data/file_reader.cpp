@@ -168,7 +168,8 @@ struct Opened {
 
 Opened open_file(const fs::path& file, Role role) {
   std::error_code failure;
-  if (!fs::is_regular_file(file, failure)) fail_file(file, "is not there, or is no regular file");
+  if (!fs::is_regular_file(file, failure))
+    fail_file(file, "does not exist, or is not a regular file");
   const std::string beginning = beginning_of(file);
   const bool is_read_piece_by_piece = begins_with_one_of(beginning, {"LASF", "ASTM-E57"});
   if (!is_read_piece_by_piece && fs::file_size(file, failure) > most_bytes) {
@@ -189,14 +190,13 @@ Opened open_file(const fs::path& file, Role role) {
   }
   if (!format) format = format_by_ending(ending, role);
   if (!format && text.starts_with("PK\3\4")) {
-    fail_file(file, "is a zip archive; unpack it and name the file in it");
+    fail_file(file, "is a zip archive; unpack it and use the file in it");
   }
   if (!format) {
     fail_file(file,
-              "is of no format that is known here: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
+              "has an unsupported format; supported: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
               "KML, KMZ, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, E57, glTF, Collada, FBX, IFC, "
-              "PLY, OBJ, "
-              "STL, OFF, PCD");
+              "PLY, OBJ, STL, OFF, PCD");
   }
   opened.format = *format;
   const bool is_parsed_here = *format == Format::citygml || *format == Format::cityjson;
@@ -209,7 +209,7 @@ Opened open_file(const fs::path& file, Role role) {
     opened.bytes = geometry::as_utf8(std::move(opened.bytes));
   }
   if (is_compressed && !is_parsed_here && *format != Format::mesh && *format != Format::cloud) {
-    fail_file(file, "is compressed by gzip; decompress it first");
+    fail_file(file, "is gzip-compressed; decompress it first");
   }
   return opened;
 }

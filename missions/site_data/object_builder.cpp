@@ -94,7 +94,7 @@ double ObjectBuilder::height_of(const FileObject& object) const {
   if (!object.height_problem.empty()) {
     throw Error(ErrorKind::bad_config, name + one_line(object.id) + " " +
                                            one_line(object.height_problem) +
-                                           "; correct it, or leave the object out by select");
+                                           "; correct it, or exclude the object with select");
   }
   std::optional<double> height = source_.height ? source_.height : object.height;
   // What is in the way is as high as anybody says.
@@ -102,11 +102,11 @@ double ObjectBuilder::height_of(const FileObject& object) const {
     height = std::max(*height, *object.height);
   }
   if (!height) {
-    throw Error(ErrorKind::bad_config,
-                name + "does not say how high " + one_line(object.id) +
-                    " is; give height, in metres above its base, or height_attribute (it has the "
-                    "attributes " +
-                    attribute_names(object) + ")");
+    throw Error(
+        ErrorKind::bad_config,
+        name + "contains no height of " + one_line(object.id) +
+            "; set height, in metres above its base, or height_attribute (it has the attributes " +
+            attribute_names(object) + ")");
   }
   return *height;
 }
@@ -118,8 +118,8 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
   if (!(height > least)) {
     throw Error(ErrorKind::bad_config, source_.file.string() + ": the height of " +
                                            one_line(object.id) + ", " + std::to_string(height) +
-                                           " m, is not above where it begins, " +
-                                           std::to_string(least) + " m");
+                                           " m, must be above its base, " + std::to_string(least) +
+                                           " m");
   }
   has_extruded_ = true;
   Rings bottom = rings_of(object), top = bottom;
@@ -146,10 +146,11 @@ void ObjectBuilder::add_draped(const FileObject& object, Object& result) {
     const bool is_obstacle = source_.role == Role::obstacle;
     ground = lowest - (is_obstacle ? below_plane : 0.0);
     if (notes_.empty()) {
-      notes_.emplace_back(is_obstacle ? "no terrain is known there: extruded polygons reach 100 m "
-                                        "below the plane that is taken for the ground"
-                                      : "no terrain is known there: extruded polygons reach the "
-                                        "plane that is taken for the ground");
+      notes_.emplace_back(
+          is_obstacle
+              ? "unknown terrain there: extruded polygons extend 100 m below the assumed ground "
+                "plane"
+              : "unknown terrain there: extruded polygons extend to the assumed ground plane");
     }
   }
   Rings bottom = top;
@@ -190,9 +191,9 @@ void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, d
   } else if (has_heights) {
     for (const Vector3d& corner : bottom.corners) base = std::min(base, corner.z());
   } else {
-    throw Error(ErrorKind::bad_config,
-                source_.file.string() +
-                    ": does not say where its outlines stand; give base, a height or terrain");
+    throw Error(
+        ErrorKind::bad_config,
+        source_.file.string() + ": outlines without a base; set base to a height or to terrain");
   }
   for (Vector3d& corner : bottom.corners) corner.z() = base + least / unit;
   for (Vector3d& corner : top.corners) corner.z() = base + most / unit;
@@ -203,13 +204,13 @@ void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, d
 void ObjectBuilder::place_on_terrain(Rings& bottom, Rings& top, double least, double most) const {
   if (!terrain_) {
     throw Error(ErrorKind::bad_config,
-                source_.file.string() + ": base is terrain, but no prior has the role terrain");
+                source_.file.string() + ": base: terrain requires prior data with role: terrain");
   }
   transform_.to_site(bottom.corners);
   const double base = ground_below(bottom.corners);
   if (!std::isfinite(base)) {
     throw Error(ErrorKind::bad_config,
-                source_.file.string() + ": an outline stands where the terrain is not known");
+                source_.file.string() + ": an outline stands where the terrain is unknown");
   }
   top.corners = bottom.corners;
   for (Vector3d& corner : bottom.corners) corner.z() = base + least;

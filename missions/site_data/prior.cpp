@@ -38,7 +38,8 @@ class Region {
         ring.push_back(corners[i].head<2>());
       }
     }
-    if (rings_.empty()) fail_file(polygons.file, "holds no polygons; those of select.within do");
+    if (rings_.empty())
+      fail_file(polygons.file, "contains no polygons; select.within requires them");
   }
 
   /// Without a file everything is inside. A ring within a ring is a hole.
@@ -74,9 +75,11 @@ double add_objects(const Source& source, const SiteFrame& site, const FileConten
   for (const auto& notes : {builder.transform().notes(), builder.notes()}) {
     prior.notes.insert(prior.notes.end(), notes.begin(), notes.end());
   }
-  if (outside > 0) prior.notes.push_back(std::to_string(outside) + " objects outside of within");
+  if (outside > 0)
+    prior.notes.push_back(std::to_string(outside) + " objects outside within ignored");
   if (without_level > 0) {
-    prior.notes.push_back(std::to_string(without_level) + " objects without surfaces of that lod");
+    prior.notes.push_back(std::to_string(without_level) +
+                          " objects without surfaces of that lod ignored");
   }
   if (builder.has_extruded()) prior.uncertainty = 1.0;
   return builder.transform().stand_in_error();
@@ -128,11 +131,12 @@ void drop_impossible_heights(const Source& source, const SiteTransform& transfor
   const std::string example = fmt::format("{:.6g} m", first);
   if (kept == 0) {
     throw Error(ErrorKind::bad_config, source.file.string() +
-                                           ": has no height from -500 to 9000 m, but " + example +
-                                           "; set unit, or correct its heights");
+                                           ": heights must be from -500 to 9000 m; one is " +
+                                           example + "; set unit, or correct its heights");
   }
-  prior.notes.push_back(std::to_string(dropped) + " cells without ground: heights such as " +
-                        example + " are not from -500 to 9000 m");
+  prior.notes.push_back(std::to_string(dropped) +
+                        " cells without ground ignored: heights such as " + example +
+                        " are not from -500 to 9000 m");
 }
 
 void add_grid(FileContents& contents, const SiteTransform& transform, const Region& region,
@@ -197,12 +201,13 @@ void warn_of_size(Prior& prior) {
   constexpr double smallest = 1.0, largest = 5000.0;
   const double size = prior.box.sizes().maxCoeff();
   if (size < smallest) {
-    prior.notes.push_back(
-        fmt::format("Warning: all of it is {:.3g} m in size. Check unit, crs and place.", size));
-  } else if (prior.box.sizes().head<2>().maxCoeff() > largest) {
     prior.notes.push_back(fmt::format(
-        "Warning: it is {:.1f} km in size. Check unit, crs and place, or select a part.",
-        prior.box.sizes().head<2>().maxCoeff() / 1000.0));
+        "Warning: the extent of the data is only {:.3g} m. Check unit, crs and place.", size));
+  } else if (prior.box.sizes().head<2>().maxCoeff() > largest) {
+    prior.notes.push_back(
+        fmt::format("Warning: the extent of the data is {:.1f} km. Check unit, crs and place, or "
+                    "select a part.",
+                    prior.box.sizes().head<2>().maxCoeff() / 1000.0));
   }
 }
 
@@ -212,7 +217,7 @@ void note_flat_objects(const Source& source, Prior& prior) {
   const auto count = std::ranges::count_if(prior.objects, is_nothing);
   if (count == 0) return;
   if (count == std::ssize(prior.objects) && prior.points.empty() && prior.grid.nodes.empty()) {
-    fail_file(source.file, "holds no surface with an area");
+    fail_file(source.file, "contains no surface with an area");
   }
   prior.notes.push_back(std::to_string(count) + " objects without an area are ignored");
 }
@@ -223,18 +228,20 @@ void require_use(const Source& source, const Prior& prior) {
     throw Error(ErrorKind::bad_config, source.file.string() + ": " + what);
   };
   if (source.role == Role::target && prior.objects.empty()) {
-    refuse("holds no surfaces of objects, which a target has to; give role: obstacle");
+    refuse("contains no surfaces of objects; a target requires them. Use role: obstacle");
   }
   const auto is_surface = [](const Object& object) { return has_area(object.mesh); };
   if (source.role == Role::terrain && prior.points.empty() && prior.grid.nodes.empty() &&
       std::ranges::none_of(prior.objects, is_surface)) {
-    refuse("holds no surface, which the ground has to be; give role: obstacle");
+    refuse("contains no surface; terrain requires one. Use role: obstacle");
   }
   if (source.role == Role::terrain && !prior.points.empty()) {
-    refuse("holds points, which are no ground; make a raster of them, or give role: obstacle");
+    refuse(
+        "is a point cloud; terrain must be a raster or a mesh. Rasterise it, or use role: "
+        "obstacle");
   }
   if (source.role == Role::truth && !prior.points.empty()) {
-    refuse("holds points, which no sensor can be simulated on; give surfaces or a raster");
+    refuse("is a point cloud; ground truth must be a raster or a mesh");
   }
 }
 
@@ -262,7 +269,7 @@ Prior prior_of(FileContents contents, const Source& source, const SiteFrame& sit
   prior.uncertainty = source.uncertainty.value_or(prior.uncertainty) + stand_in_error;
   measure(site, prior);
   if (prior.box.isEmpty()) {
-    fail_file(source.file, "holds neither surfaces nor points that select lets through");
+    fail_file(source.file, "contains neither surfaces nor points that match select");
   }
   note_flat_objects(source, prior);
   require_use(source, prior);
@@ -291,9 +298,9 @@ std::vector<Vector3d> places_of(const Source& source, const FileContents& conten
 
 flight::GeodeticPoint middle_of(const Source& source, const FileContents& contents) {
   if (contents.crs.empty() && source.crs.empty()) {
-    throw Error(ErrorKind::bad_config, source.file.string() +
-                                           ": does not say which coordinates it is in; give crs, "
-                                           "such as \"EPSG:25832+7837\"");
+    throw Error(ErrorKind::bad_config,
+                source.file.string() +
+                    ": missing coordinate reference system; set crs, such as \"EPSG:25832+7837\"");
   }
   const SiteTransform transform(source, contents, {}, false);
   std::vector<Vector3d> places = places_of(source, contents);
@@ -306,7 +313,7 @@ flight::GeodeticPoint middle_of(const Source& source, const FileContents& conten
     if (!first) first = place.x();
     box.extend(Vector2d(*first + std::remainder(place.x() - *first, 360.0), place.y()));
   }
-  if (box.isEmpty()) fail_file(source.file, "holds nothing that is somewhere on the Earth");
+  if (box.isEmpty()) fail_file(source.file, "contains nothing with a geographic position");
   return {box.center().y(), std::remainder(box.center().x(), 360.0), 0.0};
 }
 
@@ -360,7 +367,7 @@ geometry::Mesh read_surfaces(const std::filesystem::path& file) {
   const Prior prior = prior_of(std::move(contents), source, site, {});
   geometry::Mesh mesh;
   for (const Object& object : prior.objects) geometry::append(mesh, object.mesh);
-  if (mesh.triangles.empty()) fail_file(file, "holds no surfaces; a mesh is wanted");
+  if (mesh.triangles.empty()) fail_file(file, "contains no surfaces; expected a mesh");
   return mesh;
 }
 

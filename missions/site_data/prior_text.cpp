@@ -38,13 +38,12 @@ std::string text_of(const Source& source, const Prior& prior) {
     text += fmt::format("{}{:.3f} x {:.3f} x {:.3f} m, z {:.2f} to {:.2f} m", indent, size.x(),
                         size.y(), size.z(), prior.box.min().z(), prior.box.max().z());
     text += heights_text("above the ellipsoid", prior.ellipsoid_heights);
-    text += heights_text("above sea level", prior.sea_level_heights);
-    text += fmt::format("\n{}{:.1f} m from the site's origin, up to {:.2f} m off\n", indent,
+    text += heights_text(" above mean sea level", prior.sea_level_heights);
+    text += fmt::format("\n{}{:.1f} m from the site's origin, uncertainty {:.2f} m\n", indent,
                         prior.box.exteriorDistance(Eigen::Vector3d::Zero()), prior.uncertainty);
   }
   if (prior.dropped_polygons > 0) {
-    text +=
-        fmt::format("{}{} polygons without area are left out\n", indent, prior.dropped_polygons);
+    text += fmt::format("{}{} polygons without area ignored\n", indent, prior.dropped_polygons);
   }
   for (const std::string& note : prior.notes) text += indent + note + "\n";
   return text;

@@ -187,7 +187,7 @@ ObjectPtr unbound(PJ_CONTEXT* context, ObjectPtr system) {
 }
 
 System system_of(PJ_CONTEXT* context, const std::string& crs) {
-  const std::string quoted = "the reference system '" + crs.substr(0, 200) + "'";
+  const std::string quoted = "the coordinate reference system '" + crs.substr(0, 200) + "'";
   System system;
   system.whole.reset(proj_create(context, proj_name(crs).c_str()));
   const auto is_known = [&] { return system.whole && proj_is_crs(system.whole.get()) != 0; };
@@ -196,7 +196,7 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
   if (!is_known()) {
     const std::string likely = likely_name(crs);
     fail("PROJ does not know " + quoted + "; " +
-         (likely.empty() ? std::string("set crs to the name that PROJ has for it")
+         (likely.empty() ? std::string("set crs to its name in PROJ")
                          : "set crs: " + likely + " if that is meant"));
   }
   ObjectPtr plain = unbound(context, ObjectPtr(proj_clone(context, system.whole.get())));
@@ -212,7 +212,7 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
   const PJ_TYPE type = proj_get_type(plain.get());
   system.is_geographic = type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS;
   if (!axes || (!system.is_geographic && type != PJ_TYPE_PROJECTED_CRS)) {
-    fail(quoted + " has neither a map's coordinates nor longitude and latitude");
+    fail(quoted + " has neither map coordinates nor longitude and latitude");
   }
   if (!system.horizontal) {
     system.has_own_heights = proj_cs_get_axis_count(context, axes.get()) == 3;
@@ -224,24 +224,24 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
 }
 
 std::string stand_in(const char* standing, const std::string& what, const Operation& operation) {
-  return std::string(standing) + " stands in for " + what + "; PROJ states " +
-         stated(operation.accuracy);
+  return std::string(standing) + " is used instead of " + what +
+         "; its accuracy by PROJ: " + stated(operation.accuracy);
 }
 
 /// Heights count from `vertical`, not from what the system says.
 void add_stated_heights(Chain& chain, const OperationFinder& finder,
                         const ReferenceRequest& request, GeodeticTransform& result) {
   if (*request.vertical == HeightDatum::takeoff) {
-    if (!request.takeoff_height) fail("vertical is takeoff, but flight.takeoff is not given");
+    if (!request.takeoff_height) fail("vertical: takeoff requires flight.takeoff");
     chain.added_height = *request.takeoff_height;
   }
   if (*request.vertical != HeightDatum::geoid) return;
   const ObjectPtr geoid(proj_create(chain.context.get(), egm96));
   Operation operation = finder.find(geoid.get(), ellipsoidal);
   if (!operation.object || !operation.is_best) {
-    throw Error(ErrorKind::bad_file, "PROJ's grid of EGM96 is not installed (proj-data)");
+    throw Error(ErrorKind::bad_file, "PROJ's EGM96 grid is not installed (proj-data)");
   }
-  result.notes.push_back("heights above the geoid are taken as EGM96's; PROJ states " +
+  result.notes.push_back("heights above the geoid refer to EGM96; its accuracy by PROJ: " +
                          stated(operation.accuracy));
   result.stand_in_error += std::max(0.0, operation.accuracy);
   chain.height = std::move(operation.object);
@@ -254,9 +254,9 @@ bool takes_own_heights(Chain& chain, const OperationFinder& finder, const System
   Operation operation = finder.find(system.whole.get(), ellipsoidal);
   if (!operation.object || !operation.is_best) {
     if (request.vertical) return false;
-    fail("PROJ cannot bring " + result.name + " to WGS84 as well as it should" +
-         (operation.missing.empty() ? "" : ": it lacks " + operation.missing) +
-         "; install that, or say vertical: geoid to let EGM96 stand in");
+    fail("PROJ cannot transform " + result.name + " to WGS84 with full accuracy" +
+         (operation.missing.empty() ? "" : ": missing " + operation.missing) +
+         "; install it, or set vertical: geoid to use EGM96 instead");
   }
   chain.position = std::move(operation.object);
   chain.moves_height = true;
@@ -268,10 +268,11 @@ void add_position(Chain& chain, const OperationFinder& finder, const System& sys
   Operation operation = finder.find(system.horizontal.get(), surface);
   const bool is_close = operation.accuracy >= 0.0 && operation.accuracy <= farthest_stand_in;
   if (!operation.object || !(operation.is_best || is_close || !request.near)) {
-    fail("PROJ cannot bring " + result.name + " to WGS84 as well as it should" +
-         (operation.missing.empty() ? "" : ": it lacks " + operation.missing) +
-         (operation.object ? "; for the next best way it states " + stated(operation.accuracy)
-                           : ""));
+    fail("PROJ cannot transform " + result.name + " to WGS84 with full accuracy" +
+         (operation.missing.empty() ? "" : ": missing " + operation.missing) +
+         (operation.object
+              ? "; the accuracy of the next best operation is " + stated(operation.accuracy)
+              : ""));
   }
   if (!operation.is_best) {
     result.notes.push_back(stand_in("the next best operation", operation.missing, operation));
@@ -303,8 +304,7 @@ extern "C" void skycap_geodetic_transform(const ReferenceRequest& given,
       request.needs_heights && system.has_own_heights &&
       (!request.vertical || (request.vertical == HeightDatum::geoid && system.is_compound));
   if (request.needs_heights && !system.has_own_heights && !request.vertical) {
-    fail(result.name +
-         " does not say what heights count from; give vertical: ellipsoid, geoid or takeoff");
+    fail(result.name + " has no vertical datum; set vertical: ellipsoid, geoid or takeoff");
   }
   if (!wants_own || !takes_own_heights(*chain, finder, system, request, result)) {
     add_position(*chain, finder, system, request, result);
@@ -326,7 +326,7 @@ extern "C" void skycap_egm96_undulation(double latitude_deg, double longitude_de
   transform_all(chain.height.get(), {&place, 1}, true);
   undulation = place.z();
   if (!std::isfinite(undulation)) {
-    throw Error(ErrorKind::bad_file, "PROJ's grid of EGM96 has no height at latitude " +
+    throw Error(ErrorKind::bad_file, "PROJ's EGM96 grid has no height at latitude " +
                                          std::to_string(latitude_deg) + ", longitude " +
                                          std::to_string(longitude_deg));
   }

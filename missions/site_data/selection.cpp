@@ -21,7 +21,7 @@ Indices lineage(const Source& source, const FileContents& contents, std::size_t 
     result.push_back(*parent);
     if (result.size() > deepest) {
       fail_file(source.file, "has the object " + contents.objects[object].id +
-                                 ", which is part of itself or nested deeper than 64");
+                                 ", which contains itself or is nested deeper than 64 levels");
     }
   }
   return result;
@@ -43,8 +43,8 @@ bool matches(const Selection& select, const FileObject& object) {
   for (std::size_t i = 0; i < std::min<std::size_t>(5, contents.objects.size()); ++i) {
     some += (some.empty() ? "" : ", ") + one_line(contents.objects[i].id.substr(0, 100));
   }
-  throw Error(ErrorKind::bad_config, source.file.string() + ": holds no object " + what +
-                                         (some.empty() ? "" : "; it holds " + some) +
+  throw Error(ErrorKind::bad_config, source.file.string() + ": contains no object " + what +
+                                         (some.empty() ? "" : "; it contains " + some) +
                                          (contents.objects.size() > 5 ? ", ..." : ""));
 }
 
@@ -53,7 +53,7 @@ void require_all_met(const Source& source, const FileContents& contents,
   std::set<std::string> met;
   for (const auto& [index, object] : selected) met.insert(contents.objects[index].id);
   for (const std::string& id : source.select.ids) {
-    if (!met.contains(id)) refuse(source, "with the id " + id, contents);
+    if (!met.contains(id)) refuse(source, "with id " + id, contents);
   }
   if (selected.empty() && !source.select.attributes.empty()) {
     const auto& [key, value] = *source.select.attributes.begin();
@@ -138,17 +138,17 @@ void refuse_unused(const Source& source, const FileContents& contents) {
        "city models with levels of detail"},
       {"select.id", !select.ids.empty(), has_objects, "files of objects"},
       {"select.attribute", !select.attributes.empty(), has_objects, "files of objects"},
-      {"up_axis", source.is_y_up.has_value(), contents.is_scene, "models of scenes"},
+      {"up_axis", source.is_y_up.has_value(), contents.is_scene, "scene models"},
       {"uncertainty", source.uncertainty.has_value(), has_uncertainty_in_use,
-       "what is not the truth"},
+       "data other than ground truth"},
       {"vertical", source.vertical.has_value(), !stands_on_terrain,
-       "heights, and these outlines stand on the terrain"},
+       "heights, but these outlines stand on the terrain"},
   }};
   for (const KeyUse& use : uses) {
     if (!use.is_given || use.is_used) continue;
     throw Error(ErrorKind::bad_config, source.file.string() + ": " + use.key +
-                                           " has no use here, it is for " + use.purpose +
-                                           "; leave it out");
+                                           " does not apply to this file; it applies to " +
+                                           use.purpose + "; remove it");
   }
 }
 

@@ -60,13 +60,13 @@ SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
       const Vector3d& some =
           contents.nodes.empty() ? contents.corners.front() : contents.nodes.front();
       throw Error(ErrorKind::bad_config,
-                  file_.string() + ": names no reference system, and its coordinates (" +
+                  file_.string() + ": missing coordinate reference system, and its coordinates (" +
                       decimal(some.x(), 4) + ", " + decimal(some.y(), 4) +
                       ") may be degrees; set crs: EPSG:4326, or place if they are metres");
     }
     prepare_place(source, contents);
     if (!source.place && !contents.is_local_frame) {
-      notes_.push_back("it names no reference system: taken to be in the mission's frame");
+      notes_.push_back("missing coordinate reference system: the mission frame is assumed");
     }
   } else {
     prepare_crs(source, contents, site);
@@ -85,13 +85,12 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
   require_unit(source, contents);
   if (!source.crs.empty()) {
     throw Error(ErrorKind::bad_config,
-                file_.string() + ": has both a place and a crs; one of them puts it on the site");
+                file_.string() + ": place conflicts with crs; keep one of them");
   }
   if (source.vertical) {
-    throw Error(ErrorKind::bad_config,
-                file_.string() +
-                    ": vertical has no use here, as no reference system puts it on the site; its "
-                    "heights are z in the mission's frame");
+    throw Error(ErrorKind::bad_config, file_.string() +
+                                           ": vertical requires a coordinate reference system; "
+                                           "without one heights are z in the mission frame");
   }
   const Place place = source.place.value_or(Place{});
   const double unit = source.unit.value_or(contents.unit.value_or(1.0));
@@ -103,16 +102,16 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
   prepared_ = Eigen::Translation3d(place.position) * heading * Eigen::Translation3d(source.offset) *
               upright_metres;
   metres_per_unit_ = Vector3d(unit, unit, up);
-  name_ = "the mission's frame";
+  name_ = "the mission frame";
 }
 
 void SiteTransform::prepare_crs(const Source& source, const FileContents& contents,
                                 const SiteFrame& site) {
   if (source.crs.empty() && !contents.other_crs.empty()) {
-    throw Error(ErrorKind::bad_config, file_.string() + ": names two reference systems, " +
-                                           one_line(contents.crs) + " and " +
-                                           one_line(contents.other_crs) +
-                                           "; give the one that all of it is in as crs");
+    throw Error(ErrorKind::bad_config,
+                file_.string() + ": contains two coordinate reference systems, " +
+                    one_line(contents.crs) + " and " + one_line(contents.other_crs) +
+                    "; set crs to the one that applies to the whole file");
   }
   ReferenceRequest request;
   request.crs = source.crs.empty() ? contents.crs : source.crs;
@@ -138,11 +137,11 @@ void SiteTransform::prepare_crs(const Source& source, const FileContents& conten
 void SiteTransform::prepare_units(const Source& source, const FileContents& contents) {
   if (!geodetic_->has_own_heights) require_unit(source, contents);
   if (contents.unit && !contents.is_scene && *contents.unit != 1.0) {
-    notes_.push_back("the unit that it names is not applied: crs says what it is in");
+    notes_.push_back("its linear unit is not applied: crs defines the unit");
   }
   if (source.unit && geodetic_->has_own_heights && !contents.is_scene) {
-    throw Error(ErrorKind::bad_config, file_.string() + ": unit does not go with " + name_ +
-                                           ", which says itself what its heights are in");
+    throw Error(ErrorKind::bad_config, file_.string() + ": unit conflicts with " + name_ +
+                                           ", which defines the unit of heights");
   }
   const double across = geodetic_->horizontal_unit;
   const std::optional<double> scene_unit = source.unit ? source.unit : contents.unit;
@@ -154,8 +153,8 @@ void SiteTransform::prepare_units(const Source& source, const FileContents& cont
     up = across;
   }
   if (needs_heights_ && across != 1.0 && !source.unit && up == across) {
-    notes_.push_back("heights are taken in units of " + decimal(across, 6) +
-                     " m, as the map is; unit says otherwise");
+    notes_.push_back("heights are read in units of " + decimal(across, 6) +
+                     " m, as the map; set unit to change it");
   }
   prepared_ =
       Eigen::Translation3d(source.offset) *
@@ -185,7 +184,7 @@ void SiteTransform::to_site(std::span<Vector3d> coordinates) const {
   }
   if (!origin_) {
     throw Error(ErrorKind::bad_config, file_.string() + ": is in " + name_ +
-                                           "; give site.latitude_deg and site.longitude_deg");
+                                           "; set site.latitude_deg and site.longitude_deg");
   }
   const flight::LocalFrame frame(*origin_);
   constexpr std::size_t at_once = 1 << 16;
@@ -208,9 +207,8 @@ void SiteTransform::refuse(const Vector3d& coordinate, const Vector3d& place) co
   const std::string what = file_.string() + ": has " + decimal(coordinate.x(), 3) + " " +
                            decimal(coordinate.y(), 3) + " " + decimal(coordinate.z(), 3);
   if (!geodetic_) {
-    throw Error(ErrorKind::bad_config, what +
-                                           ", more than 50 km from the site; its unit, offset "
-                                           "or place must be wrong");
+    throw Error(ErrorKind::bad_config,
+                what + ", more than 50 km from the site; check unit, offset and place");
   }
   std::string message = what + " in " + name_;
   if (place.allFinite()) {
@@ -218,7 +216,7 @@ void SiteTransform::refuse(const Vector3d& coordinate, const Vector3d& place) co
                ", more than 50 km from the site at " +
                place_text(origin_->latitude_deg, origin_->longitude_deg);
   } else {
-    message += ", which is no place on the Earth; the site is at " +
+    message += ", which is not a position on the Earth; the site is at " +
                place_text(origin_->latitude_deg, origin_->longitude_deg);
   }
   std::array<Vector3d, 1> swapped = {Vector3d(coordinate.y(), coordinate.x(), coordinate.z())};
@@ -228,8 +226,8 @@ void SiteTransform::refuse(const Vector3d& coordinate, const Vector3d& place) co
       flight::LocalFrame(*origin_).to_local(geodetic_point(swapped[0])).norm() <=
           farthest_from_site;
   throw Error(ErrorKind::bad_config,
-              message + (is_swapped ? "; its axes seem to be swapped: east must come first"
-                                    : "; is its crs right, and the site's place?"));
+              message + (is_swapped ? "; the axes may be swapped: east must come first"
+                                    : "; check crs and the site's position"));
 }
 
 }  // namespace skycap::missions::site_data

@@ -17,7 +17,7 @@ constexpr double foot_height = 0.5;
 constexpr double level = 0.9;  // z of such a normal, up or down
 
 /// How far beside a surface it is asked whether that is inside of the object [m].
-constexpr float beside = 0.05F;
+constexpr float probe_distance = 0.05F;
 
 Vector3d area_vector(const geometry::Mesh& mesh, std::size_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
@@ -74,8 +74,9 @@ SurfacePoints spread_over(const Object& object, std::size_t most, double spacing
   };
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
     const Vector3f &position = samples.points[i], &normal = samples.normals[i];
-    const bool is_turned = is_inside(position + beside * normal);
-    if (is_turned && is_inside(position - beside * normal)) continue;  // solid on both sides
+    const bool is_turned = is_inside(position + probe_distance * normal);
+    if (is_turned && is_inside(position - probe_distance * normal))
+      continue;  // solid on both sides
     points.positions.push_back(position);
     points.normals.push_back(is_turned ? Vector3f(-normal) : normal);
     points.kinds.push_back(kind_of(object, part.triangles[samples.triangles[i]]));

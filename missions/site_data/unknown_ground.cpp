@@ -245,10 +245,12 @@ std::string note_of(const Lattice& lattice, const Gaps& gaps, double plane_z) {
     cells += gap.cells;
   }
   std::string note = fmt::format(
-      "beyond the terrain's files the ground is taken to be the plane at z = {:.2f} m", plane_z);
+      "outside the terrain files the ground is assumed to be the plane z = {:.2f} m", plane_z);
   if (holes > 0) {
-    note += fmt::format("; {} holes of {:.0f} m^2 in them to be as high as the highest beside each",
-                        holes, static_cast<double>(cells) * lattice.cell_area());
+    note += fmt::format(
+        "; {} holes of {:.0f} m^2 in them are assumed to be as high as the highest ground beside "
+        "each",
+        holes, static_cast<double>(cells) * lattice.cell_area());
   }
   return note;
 }
@@ -260,7 +262,7 @@ UnknownGround::UnknownGround(const std::vector<flight::PriorObstacleConfig>& ter
     : plane_z_(plane_z) {
   const Lattice lattice(terrain);
   const Gaps gaps(lattice);
-  obstacle_.name = "the ground where no terrain is known";
+  obstacle_.name = "the ground where the terrain is unknown";
   obstacle_.is_ground = true;
   for (const flight::PriorObstacleConfig& part : terrain) {
     obstacle_.uncertainty = std::max(obstacle_.uncertainty, part.uncertainty);

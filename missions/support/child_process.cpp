@@ -73,7 +73,7 @@ void PipeWriter::put_bytes(const void* data, std::size_t size) {
 ChildProcess::ChildProcess(Reading reading, const std::function<void(PipeWriter&)>& work)
     : reading_(std::move(reading)) {
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) fail("no pipe can be had");
+  if (::pipe2(ends, O_CLOEXEC) != 0) fail("cannot create a pipe");
   const pid_t parent = ::getpid();
   child_ = ::fork();
   if (child_ == 0) {
@@ -84,7 +84,7 @@ ChildProcess::ChildProcess(Reading reading, const std::function<void(PipeWriter&
   file_ = ends[0];
   if (child_ < 0) {
     ::close(file_);
-    fail("no process can be had");
+    fail("cannot start a process");
   }
 }
 
@@ -127,10 +127,10 @@ void ChildProcess::fail(const std::string& what) const {
 void ChildProcess::fail_by_end() {
   const int status = wait();
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
-    fail("takes " + reading_.library + " longer than " + std::to_string(reading_.seconds) +
-         " s to read, which no sound file of its size does");
+    fail("timeout: " + reading_.library + " took more than " + std::to_string(reading_.seconds) +
+         " s, too long for an intact file of its size");
   }
-  fail("is damaged: " + reading_.library + " ends within it");
+  fail("is damaged: " + reading_.library + " stopped while reading it");
 }
 
 }  // namespace skycap::missions::support

@@ -38,15 +38,15 @@ void require_same_survey(const std::string& file, const std::string& found,
                          const std::string& wanted, const std::string& cure) {
   const Json theirs = geometry::parse_json<Json>(found), ours = Json::parse(wanted);
   if (!theirs.is_object()) {
-    throw Error(ErrorKind::bad_file, file + ": does not begin as a journal");
+    throw Error(ErrorKind::bad_file, file + ": is not a journal");
   }
   require_same_format(file, theirs, ours, cure);
   for (const auto& [key, value] : ours.items()) {
     const Json other = theirs.contains(key) ? theirs[key] : Json("-");
     if (other == value) continue;
-    throw Error(ErrorKind::bad_file, file + ": was begun otherwise: " + key + " was " +
-                                         journal_line(other) + " and is " + journal_line(value) +
-                                         "; take that back, or " + cure);
+    throw Error(ErrorKind::bad_file, file + ": cannot resume: " + key + " changed from " +
+                                         journal_line(other) + " to " + journal_line(value) +
+                                         "; restore it, or " + cure);
   }
 }
 

@@ -25,8 +25,8 @@ fs::path file_of_this_code() {
   std::error_code failure;  // programs are known by how they were called
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
   if (!failure) return program;
-  throw Error(ErrorKind::bad_file, "/proc/self/exe cannot be read (" + failure.message() +
-                                       "); name the folder of libskycap_*.so in $SKYCAP_PLUGINS");
+  throw Error(ErrorKind::bad_file, "cannot read /proc/self/exe (" + failure.message() +
+                                       "); set $SKYCAP_PLUGINS to the folder of libskycap_*.so");
 }
 
 /// Where the modules are, from there, wherever that was put: beside the program or where its
@@ -52,8 +52,8 @@ void* module_symbol(const std::string& module, const std::string& function) {
   void* const symbol = handle != nullptr ? ::dlsym(handle, function.c_str()) : nullptr;
   if (symbol == nullptr) {
     throw Error(ErrorKind::bad_file,
-                path + ": this part of the program cannot be loaded (" + ::dlerror() +
-                    "); put it beside the program, or name its folder in $SKYCAP_PLUGINS");
+                path + ": cannot load this part of the program (" + ::dlerror() +
+                    "); put it beside the program, or set $SKYCAP_PLUGINS to its folder");
   }
   return symbol;
 }

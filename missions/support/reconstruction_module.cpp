@@ -52,7 +52,8 @@ void require_spread(const Cloud& cloud) {
                                      .cwiseMax(0.0)
                                      .cwiseSqrt();
   if (spread[1] > rounding * std::max(spread[2], mean.norm())) return;
-  throw Error(ErrorKind::bad_geometry, "all points lie on one line; they are no surface");
+  throw Error(ErrorKind::bad_geometry,
+              "all points are on one line; a surface requires points in a plane or in space");
 }
 
 Cloud::Ptr thinned(const Cloud::Ptr& cloud, double spacing) {
@@ -189,8 +190,8 @@ Reconstruction reconstructed(std::span<const Eigen::Vector3f> points,
   Cloud::Ptr cloud = pcl_cloud(points, normals);
   if (config.spacing > 0.0) cloud = thinned(cloud, config.spacing);
   if (cloud->size() < 100) {
-    throw Error(ErrorKind::bad_geometry, "there are " + std::to_string(cloud->size()) +
-                                             " points; a surface needs at least 100");
+    throw Error(ErrorKind::bad_geometry, "too few points: " + std::to_string(cloud->size()) +
+                                             "; a surface requires at least 100");
   }
   require_spread(*cloud);
   KdTree tree;
@@ -224,7 +225,7 @@ Reconstruction reconstructed(std::span<const Eigen::Vector3f> points,
   result.trimmed_triangles = triangles.size() - result.mesh.triangles.size();
   if (result.mesh.triangles.empty()) {
     throw Error(ErrorKind::bad_geometry,
-                "no part of the surface has enough points around it; lower the least density");
+                "no part of the surface has the required point density; lower the minimum density");
   }
   return result;
 }

@@ -17,8 +17,8 @@ namespace skycap::missions::support {
 
 namespace {
 
-void require(int result) {
-  if (result != 1) throw std::runtime_error("the cryptography library cannot compute SHA-256");
+void require_success(int result) {
+  if (result != 1) throw std::runtime_error("the cryptography library does not support SHA-256");
 }
 
 /// The algorithm, from a library context of its own: where memory is short, OpenSSL 3.0 goes on
@@ -38,16 +38,16 @@ class Sha256 {
  public:
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
     if (!context_) throw std::bad_alloc();
-    require(EVP_DigestInit_ex(context_.get(), algorithm(), nullptr));
+    require_success(EVP_DigestInit_ex(context_.get(), algorithm(), nullptr));
   }
 
   void add(std::span<const std::byte> bytes) {
-    require(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
+    require_success(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
   }
 
   std::string finish() {
     std::array<unsigned char, 32> digest{};
-    require(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
+    require_success(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
     std::string text;
     constexpr char digits[] = "0123456789abcdef";
     for (const unsigned char byte : digest) {

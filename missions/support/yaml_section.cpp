@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/error.h"
+#include "missions/support/key_text.h"
 
 namespace skycap::missions::support {
 
@@ -46,7 +47,7 @@ int YamlSection::integer(const std::string& key, int fallback) {
   if (!has(key)) return fallback;
   const double value = number(key);
   if (value != std::round(value) || std::abs(value) > 1e9) {
-    fail(find(key)->line, path_ + key, "must be a whole number");
+    fail(find(key)->line, path_ + key, "must be an integer");
   }
   return static_cast<int>(value);
 }
@@ -63,7 +64,7 @@ std::vector<double> YamlSection::numbers(const std::string& key) {
 std::string YamlSection::text(const std::string& key) {
   const YamlNode* value = find(key);
   if (value == nullptr) fail(node_.line, path_ + key, "is missing");
-  if (value->kind != YamlNode::Kind::scalar) fail(value->line, path_ + key, "must be a text");
+  if (value->kind != YamlNode::Kind::scalar) fail(value->line, path_ + key, "must be a string");
   return value->text;
 }
 
@@ -78,7 +79,7 @@ std::vector<std::string> YamlSection::texts(const std::string& key) {
   if (value->kind != YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
   for (const YamlNode& item : value->items) {
     if (item.kind != YamlNode::Kind::scalar) {
-      fail(item.line, path_ + key, "must be a list of texts");
+      fail(item.line, path_ + key, "must be a list of strings");
     }
     result.push_back(item.text);
   }
@@ -101,7 +102,7 @@ void YamlSection::finish() const {
     if (asked_.contains(entry.key)) continue;
     std::string known;
     for (const std::string& key : asked_) known += (known.empty() ? "" : ", ") + key;
-    fail(entry.line, path_ + entry.key, "is unknown; known are " + known);
+    fail(entry.line, path_ + entry.key, "is unknown; expected one of: " + known);
   }
 }
 
@@ -131,7 +132,7 @@ double YamlSection::to_number(const YamlNode& value, const std::string& key) con
 
 void YamlSection::fail(int line, const std::string& key, const std::string& what) const {
   throw Error(ErrorKind::bad_config,
-              file_ + ":" + std::to_string(line) + ": key " + key + ": " + what);
+              file_ + ":" + std::to_string(line) + ": key " + about_key(key, what));
 }
 
 }  // namespace skycap::missions::support

@@ -1,5 +1,5 @@
 /// A map of a description file, such as a sensor's or a vehicle's, read key by key. Every key that
-/// is asked for is known; the others are refused. Messages are "FILE:LINE: key KEY: what is wrong".
+/// is asked for is known; the others are refused. Messages are "FILE:LINE: key KEY WHAT IS WRONG".
 #pragma once
 
 #include <initializer_list>

@@ -33,7 +33,8 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    fail(line_of(mark), "aliases ('*name') are not used in mission files; write the value out");
+    fail(line_of(mark),
+         "aliases ('*name') are not supported in mission files; write the value out");
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -82,12 +83,12 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
     if (anchor == YAML::NullAnchor) return;
-    fail(line_of(mark), "anchors ('&name') are not used in mission files; leave it out");
+    fail(line_of(mark), "anchors ('&name') are not supported in mission files; remove it");
   }
 
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?") return;
-    fail(line_of(mark), "tags ('" + tag + "') are not used in mission files; leave it out");
+    fail(line_of(mark), "tags ('" + tag + "') are not supported in mission files; remove it");
   }
 
   void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -95,7 +96,8 @@ class TreeBuilder final : public YAML::EventHandler {
     refuse_anchor(mark, anchor);
     refuse_tag(mark, tag);
     if (open_.size() == deepest_nesting) {
-      fail(line_of(mark), "lists and maps are nested deeper than 16; a mission file needs 3");
+      fail(line_of(mark),
+           "lists and maps are nested deeper than 16 levels; a mission file needs 3");
     }
     open_.push_back({node_at(mark, kind), false, {}});
   }
@@ -127,7 +129,7 @@ class TreeBuilder final : public YAML::EventHandler {
     if (key.text.size() > longest) fail(key.line, "a key has more than 1000 characters");
     const auto [same, is_new] = open_.back().lines.emplace(key.text, key.line);
     if (!is_new) {
-      fail(key.line, "key " + key.text + ": is given twice, first in line " +
+      fail(key.line, "key " + key.text + " is given twice, first in line " +
                          std::to_string(same->second) + "; keep one");
     }
     open_.back().node.entries.push_back({key.text, key.line, {}});
@@ -149,8 +151,9 @@ YamlNode parse_yaml(const std::string& text, const std::string& name) {
     YamlNode root = builder.take_root();
     TreeBuilder rest(name);
     if (parser.HandleNextDocument(rest)) {
-      throw Error(ErrorKind::bad_config,
-                  name + ":1: holds more than one YAML document; a mission is one");
+      throw Error(
+          ErrorKind::bad_config,
+          name + ":1: contains more than one YAML document; a mission is a single document");
     }
     return root;
   } catch (const YAML::Exception& failure) {

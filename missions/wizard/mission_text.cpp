@@ -43,21 +43,21 @@ std::string source_text(const Source& source, const std::filesystem::path& missi
 const char* purpose_of(site_data::Role role) {
   switch (role) {
     case site_data::Role::target:
-      return "what is surveyed; coverage is told of it";
+      return "what is surveyed; its coverage is reported";
     case site_data::Role::obstacle:
-      return "in the way of every leg, widened by its uncertainty; it frees nothing";
+      return "avoided by every leg, enlarged by its uncertainty; makes no space free";
     case site_data::Role::terrain:
-      return "the ground: legs keep off it, the pad stands on it";
+      return "the ground: legs stay above it, the take-off point is on it";
     case site_data::Role::truth:
       break;
   }
-  return "what the simulated sensor measures";
+  return "ground truth of the simulated sensor";
 }
 
 std::string prior_section(const MissionValues& values) {
   std::string text =
-      "# What is known before anything is measured; uncertainty: METRES says how far "
-      "off it may be.\nprior:\n";
+      "# Prior data: known before the survey; uncertainty: METRES is the maximum error of the "
+      "data.\nprior:\n";
   for (const Source& source : values.sources) {
     text +=
         fmt::format("  # {}\n  - {}\n", purpose_of(source.role), source_text(source, values.file));
@@ -68,14 +68,11 @@ std::string prior_section(const MissionValues& values) {
 std::string site_section(const MissionValues& values) {
   const Vector3d low = values.fence.min(), high = values.fence.max();
   return fmt::format(
-      "site:\n"
-      "  # The origin of the mission's frame (x east, y north, z up): {}.\n"
-      "  latitude_deg: {:.7f}  # WGS84, north\n"
-      "  longitude_deg: {:.7f}  # east\n"
-      "  ellipsoid_height: {:.2f}  # metres above WGS84's ellipsoid, not above the sea\n"
-      "  # Views and legs stay inside of this; make it what you are allowed to fly in.\n"
-      "  geofence: [[{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}]]\n"
-      "  highest_height: {:g}  # z; over the ground here\n",
+      "site:\n  # Origin of the mission frame (x east, y north, z up): {}.\n  latitude_deg: {:.7f} "
+      " # WGS84, north\n  longitude_deg: {:.7f}  # east\n  ellipsoid_height: {:.2f}  # metres "
+      "above the WGS84 ellipsoid, not above mean sea level\n  # Views and legs stay inside this "
+      "geofence; set the area in which you are allowed to fly.\n  geofence: [[{:g}, {:g}], [{:g}, "
+      "{:g}], [{:g}, {:g}], [{:g}, {:g}]]\n  highest_height: {:g}  # z; above the ground here\n",
       values.origin_is, values.origin.latitude_deg, values.origin.longitude_deg,
       values.origin.height, low.x(), low.y(), high.x(), low.y(), high.x(), high.y(), low.x(),
       high.y(), high.z());
@@ -85,22 +82,20 @@ std::string flight_section(const MissionValues& values) {
   // A preset has a name, a description has a path.
   const bool is_file = std::filesystem::path(values.vehicle).extension() == ".yaml";
   std::string text = fmt::format(
-      "flight:\n"
-      "  vehicle: {}  # a preset, or the path of a description\n"
-      "  clearance: {:g}  # least distance of the vehicle's centre from anything\n",
+      "flight:\n  vehicle: {}  # a preset, or the path of a vehicle file\n  clearance: {:g}  # "
+      "minimum distance from the vehicle centre to any obstacle\n",
       is_file ? path_text(values.vehicle, values.file) : yaml_quoted(values.vehicle),
       values.clearance);
   if (values.pad) {
     text += fmt::format(
-        "  # Where it takes off and lands; go and see that it is free, and the air over it.\n"
-        "  takeoff: {}\n",
+        "  # Take-off point, where the vehicle also lands. Check on site that it and the air above "
+        "are free.\n  takeoff: {}\n",
         vector_text(*values.pad));
   }
   text += fmt::format(
-      "  # In this box nothing is free before it is measured. Outside of it you vouch "
-      "for the air, but\n"
-      "  # for what prior files have there: widen it over trees, wires and cranes.\n"
-      "  unknown_box: {{min: {}, max: {}}}\n",
+      "  # In this box unknown space is treated as occupied. Outside it the air is assumed free, "
+      "except\n  # for prior data; the pilot must check it. Extend the box over trees, wires and "
+      "cranes.\n  unknown_box: {{min: {}, max: {}}}\n",
       vector_text(values.unknown.min()), vector_text(values.unknown.max()));
   std::string corners;
   for (const Eigen::AlignedBox3d& box : values.unknown_beside) {
@@ -109,8 +104,8 @@ std::string flight_section(const MissionValues& values) {
   }
   if (!corners.empty()) {
     text +=
-        "  # Nor in those of neighbours, which are surveyed, too: the corners of each.\n"
-        "  unknown_beside: [" +
+        "  # The same for neighbours that are surveyed as well: the corners of each box.\n  "
+        "unknown_beside: [" +
         corners + "]\n";
   }
   return text;
@@ -119,29 +114,24 @@ std::string flight_section(const MissionValues& values) {
 std::string planner_section(const MissionValues& values) {
   const double distance = values.registration_distance;
   std::string text = fmt::format(
-      "sensor:  # a depth camera; `skycap check` says what it resolves\n"
-      "  width: 320  # pixels\n"
-      "  height: 240  # pixels\n"
-      "  max_range: {:g}  # metres\n"
-      "  noise: {{sigma: 0.02}}  # metres, one standard deviation\n"
-      "planner:\n",
+      "sensor:  # a depth camera; `skycap check` prints its resolution\n  width: 320  # pixels\n  "
+      "height: 240  # pixels\n  max_range: {:g}  # metres\n  noise: {{sigma: 0.02}}  # metres, one "
+      "standard deviation\nplanner:\n",
       sensor_range(values));
   if (values.scene) {
     text += fmt::format(
-        "  # Surface in this box is wanted; what is lower counts as the ground.\n"
-        "  scene_box: {{min: {}, max: {}}}\n",
+        "  # Region of interest: surface below this box counts as ground.\n  scene_box: {{min: {}, "
+        "max: {}}}\n",
         vector_text(values.scene->min()), vector_text(values.scene->max()));
   }
   return text +
          fmt::format(
-             "  view_distance: {:g}  # metres, from which surfaces are looked at\n"
-             "  density: {:.3g}  # points a square metre, wanted everywhere\n"
-             "  resolution_radius: {:g}  # metres, in which they are counted\n"
-             "  spacing: {:g}  # metres; points nearer to each other than this are not kept\n"
-             "evaluation:\n"
-             "  registration_distance: {:g}  # a surface is covered with a point so near to it\n"
-             "limits:\n"
-             "  max_views: 150  # the survey ends before, when nothing is left to see\n",
+             "  view_distance: {:g}  # metres, distance of views from the surface\n  density: "
+             "{:.3g}  # required points per square metre\n  resolution_radius: {:g}  # metres, "
+             "radius in which points are counted\n  spacing: {:g}  # metres, minimum spacing of "
+             "stored points\nevaluation:\n  registration_distance: {:g}  # coverage distance: a "
+             "surface within it of a point is covered\nlimits:\n  max_views: 150  # the survey "
+             "ends earlier when it is complete\n",
              values.view_distance, 0.36 / (distance * distance), 3.0 * distance, 0.5 * distance,
              distance);
 }
@@ -153,17 +143,13 @@ double sensor_range(const MissionValues& values) { return 4.0 * values.view_dist
 std::string mission_text(const MissionValues& values) {
   const std::string name = values.file.stem().string();
   return fmt::format(
-             "# A first mission, proposed by `{}`. It runs as it is; what the files do not say is "
-             "a "
-             "guess,\n"
-             "# so read every line of it before you fly. `skycap check` says what the files hold.\n"
-             "name: {}  # of the results\n"
-             "# A dry run: {} what there is. Leave `scene` out for a live "
-             "survey.\n"
-             "scene: {{model: prior, ground: true{}{}}}\n",
+             "# First mission, proposed by `{}`. It runs as it is. Values that the files do not "
+             "contain are\n# estimates: check every line before you fly. `skycap check` prints "
+             "what the files contain.\nname: {}  # of the results\n# Simulation: {} the ground "
+             "truth. Remove `scene` for a live survey.\nscene: {{model: prior, ground: "
+             "true{}{}}}\n",
              values.verb, yaml_quoted(name),
-             values.sees_neighbours ? "the target and its neighbours stand in for"
-                                    : "the target stands in for",
+             values.sees_neighbours ? "the target and its neighbours are" : "the target is",
              values.sees_neighbours ? ", neighbours: true" : "",
              values.ground == 0.0 ? "" : fmt::format(", position: [0, 0, {:g}]", values.ground)) +
          prior_section(values) + site_section(values) + flight_section(values) +

@@ -21,7 +21,7 @@ struct MissionValues {
   std::string vehicle;
   std::vector<site_data::Source> sources;
   flight::GeodeticPoint origin;
-  std::string origin_is = "the middle of the target, at its lowest place";
+  std::string origin_is = "the centre of the target, at its lowest point";
   double ground = 0.0;           ///< z of the ground where the sources have none
   bool sees_neighbours = false;  ///< of the sources in the dry run
   Eigen::AlignedBox3d unknown;   ///< where nothing is free before it is measured

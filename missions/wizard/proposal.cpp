@@ -90,11 +90,9 @@ std::string propose_mission(const Wishes& wishes, const std::filesystem::path& f
   values.scene = rounded_out(mission.survey().planner.scene_box.value(), 0.1);
   const auto pad = PadSearch(mission.flight()).beside(values.unknown, top_of_climbs(values));
   if (!pad) {
-    throw Error(ErrorKind::bad_config,
-                wishes.map.string() +
-                    ": leaves no room for a pad within 100 m of the target, by what stands there "
-                    "and how steep and even the ground is; what is in the way may be left out by "
-                    "select");
+    throw Error(ErrorKind::bad_config, wishes.map.string() +
+                                           ": no take-off point within 100 m of the target is "
+                                           "free, level and even; exclude obstacles with select");
   }
   return mission_text(with_pad(std::move(values), *pad));
 }

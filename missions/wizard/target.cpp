@@ -53,8 +53,8 @@ std::string clicked(const std::vector<Source>& files, const Click& click) {
   if (nearest == nullptr || least > near_click) {
     throw Error(
         ErrorKind::bad_config,
-        fmt::format("{}: has nothing within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}", file,
-                    near_click, click.latitude_deg, click.longitude_deg,
+        fmt::format("{}: contains nothing within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}",
+                    file, near_click, click.latitude_deg, click.longitude_deg,
                     nearest == nullptr
                         ? ""
                         : fmt::format("; the nearest, {}, is {:.0f} m away", nearest->id, least)));
@@ -82,9 +82,10 @@ std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pi
   for (std::size_t i = 0; i < std::min<std::size_t>(5, ids.size()); ++i) {
     some += (i == 0 ? "" : ", ") + ids[i];
   }
-  throw Error(ErrorKind::bad_config,
-              fmt::format("{}: holds {} things, {}{}; say which by --id, --at or --attribute",
-                          source.file.string(), ids.size(), some, ids.size() > 5 ? ", ..." : ""));
+  throw Error(
+      ErrorKind::bad_config,
+      fmt::format("{}: contains {} objects, {}{}; choose one with --id, --at or --attribute",
+                  source.file.string(), ids.size(), some, ids.size() > 5 ? ", ..." : ""));
 }
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
@@ -140,8 +141,7 @@ void require_single(const std::vector<Object>& objects, const std::string& id,
   if (std::ranges::count(objects, id, &Object::id) <= 1) return;
   throw Error(
       ErrorKind::bad_config,
-      fmt::format("{}: holds several things that are called {}; give them names of their own", file,
-                  id));
+      fmt::format("{}: contains several objects named {}; give them unique names", file, id));
 }
 
 Target find_target(const std::vector<Source>& files, const Pick& pick) {

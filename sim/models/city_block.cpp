@@ -95,7 +95,7 @@ class Block {
   }
 
   Fineness fineness_;
-  Draw draw_;
+  RandomNumbers draw_;
   int buildings_ = 0;
   Parts parts_;
 };

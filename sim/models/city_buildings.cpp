@@ -25,7 +25,7 @@ struct Facade {
   double reveal;
 };
 
-Facade draw_facade(Draw& draw) {
+Facade draw_facade(geometry::RandomNumbers& draw) {
   Facade facade;
   facade.storey = draw.between(3.2, 4.2);
   facade.window_width = draw.between(1.0, 1.6);
@@ -79,7 +79,8 @@ Mesh rim(double width, double depth, double foot, double height, double reach) {
 }
 
 /// Chimneys along the ridge above the line y = `axis`.
-void add_chimneys(double width, double axis, double foot, double ridge, Draw& draw, Parts& parts) {
+void add_chimneys(double width, double axis, double foot, double ridge,
+                  geometry::RandomNumbers& draw, Parts& parts) {
   const int count = draw.integer(1, 3);
   for (int i = 0; i < count; ++i) {
     const double x = width * ((i + 0.5) / count - 0.5) + draw.between(-0.8, 0.8);
@@ -126,7 +127,7 @@ void add_wing(double width, double depth, int count, const Facade& facade, doubl
 
 }  // namespace
 
-Parts town_house(const Lot& lot, Draw& draw, const Fineness&) {
+Parts town_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&) {
   const Facade facade = draw_facade(draw);
   const double width = lot.width - draw.between(1.0, 5.0);
   const double depth = std::min(lot.depth, draw.between(12.0, 16.0));
@@ -154,7 +155,7 @@ Parts town_house(const Lot& lot, Draw& draw, const Fineness&) {
   return parts;
 }
 
-Parts office(const Lot& lot, Draw& draw, const Fineness& fineness) {
+Parts office(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness) {
   const Facade facade = draw_facade(draw);
   Parts parts;
   double width = lot.width - draw.between(1.0, 4.0), depth = std::min(lot.depth, 30.0);
@@ -193,7 +194,7 @@ Parts office(const Lot& lot, Draw& draw, const Fineness& fineness) {
   return parts;
 }
 
-Parts courtyard_house(const Lot& lot, Draw& draw, const Fineness&) {
+Parts courtyard_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&) {
   const Facade facade = draw_facade(draw);
   const double wing = std::min(draw.between(9.0, 11.0), 0.28 * std::min(lot.width, lot.depth));
   const double width = lot.width - 2.0, depth = lot.depth - 2.0;
@@ -212,7 +213,7 @@ Parts courtyard_house(const Lot& lot, Draw& draw, const Fineness&) {
   return parts;
 }
 
-Parts arcade_house(const Lot& lot, Draw& draw, const Fineness& fineness) {
+Parts arcade_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness) {
   Parts parts;
   Facade facade = draw_facade(draw);
   facade.storey = 3.8;
@@ -253,7 +254,7 @@ Parts arcade_house(const Lot& lot, Draw& draw, const Fineness& fineness) {
   return parts;
 }
 
-Parts tower_hall(const Lot& lot, Draw& draw, const Fineness&) {
+Parts tower_hall(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&) {
   Parts parts;
   const Facade facade = draw_facade(draw);
   const double width = lot.width - 3.0, depth = std::min(lot.depth - 2.0, 16.0);

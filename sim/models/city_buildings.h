@@ -2,7 +2,7 @@
 /// the origin, its front to -y.
 #pragma once
 
-#include "sim/models/masonry/draw.h"
+#include "geometry/random_numbers.h"
 #include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models::city {
@@ -12,14 +12,14 @@ struct Lot {
 };
 
 /// A house under a hipped or gabled roof with chimneys and dormers.
-Parts town_house(const Lot& lot, Draw& draw, const Fineness& fineness);
+Parts town_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
 /// A flat-roofed block behind a parapet, stepped back towards the top, with plant on the roof.
-Parts office(const Lot& lot, Draw& draw, const Fineness& fineness);
+Parts office(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
 /// Four wings round a court.
-Parts courtyard_house(const Lot& lot, Draw& draw, const Fineness& fineness);
+Parts courtyard_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
 /// A house whose front stands on arches over the pavement.
-Parts arcade_house(const Lot& lot, Draw& draw, const Fineness& fineness);
+Parts arcade_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
 /// A hall with a tall tower under a spire.
-Parts tower_hall(const Lot& lot, Draw& draw, const Fineness& fineness);
+Parts tower_hall(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
 
 }  // namespace skycap::sim::models::city

@@ -80,7 +80,7 @@ Mesh teapot(const ModelOptions& options) {
 }
 
 models::FamilyScene family_scene(const models::Family& family, const ModelOptions& options) {
-  models::Draw draw(options.seed);
+  geometry::RandomNumbers draw(options.seed);
   return family.make(draw, fineness(options.detail));
 }
 
@@ -128,8 +128,8 @@ Mesh builtin_model(std::string_view name, const ModelOptions& options) {
   for (const std::string_view each : builtin_models()) {
     known += (known.empty() ? "" : ", ") + std::string(each);
   }
-  throw Error(ErrorKind::bad_config, "there is no built-in model named '" + std::string(name) +
-                                         "'; it must be one of: " + known);
+  throw Error(ErrorKind::bad_config,
+              "unknown builtin model '" + std::string(name) + "'; expected one of: " + known);
 }
 
 }  // namespace skycap::sim

@@ -168,9 +168,8 @@ void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, Mesh& mesh)
 
 Mesh teapot(int cells) {
   if (cells < 1 || cells > 1000) {
-    throw Error(ErrorKind::bad_config, "the teapot cannot be divided into " +
-                                           std::to_string(cells) +
-                                           " cells a patch; it must be from 1 to 1000");
+    throw Error(ErrorKind::bad_config, "the teapot has " + std::to_string(cells) +
+                                           " cells per patch; it must be from 1 to 1000");
   }
   const std::size_t side = static_cast<std::size_t>(cells) + 1;
   Mesh mesh;

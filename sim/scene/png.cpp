@@ -32,7 +32,7 @@ void write_png(const Image& image, const std::filesystem::path& path) {
   if (is_encoded) bytes.resize(size), is_encoded = encode(bytes.data());
   if (!is_encoded) {
     throw Error(ErrorKind::bad_file,
-                "cannot write the picture '" + path.string() + "': " + png.message);
+                "cannot write the image '" + path.string() + "': " + png.message);
   }
   geometry::write_file(path, bytes);
 }
@@ -46,8 +46,7 @@ Image read_png(const std::filesystem::path& path) {
     const png_color black = {0, 0, 0};  // what transparent pixels are laid over
     if (png_image_finish_read(&png, &black, image.pixels.data(), 0, nullptr) != 0) return image;
   }
-  throw Error(ErrorKind::bad_file,
-              "cannot read the picture '" + path.string() + "': " + png.message);
+  throw Error(ErrorKind::bad_file, "cannot read the image '" + path.string() + "': " + png.message);
 }
 
 }  // namespace skycap::sim

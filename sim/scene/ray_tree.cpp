@@ -157,8 +157,8 @@ void throw_on_device_error(RTCDevice device) {
   if (error == RTC_ERROR_NONE) return;
   throw Error(ErrorKind::bad_geometry,
               error == RTC_ERROR_OUT_OF_MEMORY
-                  ? "there is not enough memory to make the scene ready for ray casting; use a "
-                    "mesh with fewer triangles"
+                  ? "out of memory while building the scene for ray casting; use a mesh with fewer "
+                    "triangles"
                   : "Embree cannot build the scene: error " + std::to_string(error));
 }
 

@@ -9,8 +9,8 @@
 
 #include "geometry/angle.h"
 #include "geometry/parallel.h"
+#include "geometry/random_numbers.h"
 #include "geometry/requirement.h"
-#include "geometry/split_mix.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::sim {
@@ -30,21 +30,8 @@ const Vector3d horizon(0.66, 0.76, 0.88);
 
 constexpr int rows_at_a_time = 25;  ///< some 0.1 s of work of large scenes
 
-/// Numbers in [0, 1) that look random but depend on the sample only, so that any thread may draw
-/// it: the SplitMix64 sequence, seeded with the sample's place.
-class Dice {
- public:
-  // The place is mixed too: neighbours must not draw the same sequence, shifted.
-  explicit Dice(std::uint64_t place) : state_(geometry::split_mix(place)) {}
-  double operator()() {
-    const std::uint64_t number = geometry::split_mix(state_);
-    state_ += geometry::split_mix_step;
-    return static_cast<double>(number >> 11) * 0x1.0p-53;
-  }
-
- private:
-  std::uint64_t state_;
-};
+/// Seeded with the sample's place, so that any thread may draw it.
+using Dice = geometry::ShortRandomNumbers;
 
 /// A unit vector about `normal`, with probability proportional to its cosine to it.
 Vector3d cosine_direction(const Vector3d& normal, double u, double v) {
@@ -139,7 +126,8 @@ class Renderer {
         Vector3d sum = Vector3d::Zero();
         for (int i = 0; i < side * side; ++i) {
           const int row_in_pixel = i / side;
-          const double down = (row_in_pixel + dice()) / side, across = (i % side + dice()) / side;
+          const double down = (row_in_pixel + dice.uniform()) / side,
+                       across = (i % side + dice.uniform()) / side;
           const Vector3d direction = pixel(across, down);
           // Clipped before the mean: one glaring sample shall not outshine an edge.
           sum += light_along(view.view.position, direction, dice).cwiseMin(2.5);
@@ -216,13 +204,13 @@ class Renderer {
     Vector3d light = Vector3d::Zero();
     if (sine > 0.0 && normal.dot(to_sun_) > 0.0) {
       // The sun as a disc of a degree or so, for soft edges of shadows.
-      const Vector3d wobble{dice() - 0.5, dice() - 0.5, dice() - 0.5};
+      const Vector3d wobble{dice.uniform() - 0.5, dice.uniform() - 0.5, dice.uniform() - 0.5};
       const Vector3d to_sun = to_sun_ + 0.015 * wobble;
       if (!scene_.is_blocked(start, start + 2.0 * size_ * to_sun)) light += sine * sunlight;
     }
     for (int i = 0; i < options_.sky_rays; ++i) {
       // Strata in u keep the few rays apart.
-      const double u = (i + dice()) / options_.sky_rays, v = dice();
+      const double u = (i + dice.uniform()) / options_.sky_rays, v = dice.uniform();
       const Vector3d direction = cosine_direction(smooth, u, v);
       const bool is_open = direction.dot(normal) > 0.0 &&
                            (direction.z() > 0.0 || !options_.has_floor) &&

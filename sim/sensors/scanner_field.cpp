@@ -128,8 +128,8 @@ ScannerKind kind_of(const LidarConfig& lidar) {
   if (!lidar.prisms.empty()) return ScannerKind::rosette;
   if (lidar.rotation_rate == 0.0) {
     throw Error(ErrorKind::bad_config,
-                "this scanner neither spins nor has prisms; a survey needs one that does, such as "
-                "ouster_os1_128 or livox_avia");
+                "a survey requires a scanner that spins or has prisms, such as ouster_os1_128 or "
+                "livox_avia");
   }
   const auto [lowest, highest] = elevations(lidar);
   constexpr double least_spread = 0.01;
@@ -150,8 +150,8 @@ DepthCameraConfig forward_camera(const LidarConfig& lidar) {
   switch (kind_of(lidar)) {
     case ScannerKind::line:
       throw Error(ErrorKind::bad_config,
-                  "this scanner measures a line, which is no field unless it is flown: give "
-                  "flight.vehicle, or a scanner with several lasers, such as ouster_os1_128");
+                  "a single-line LiDAR requires flight.vehicle; set it, or use a scanner with "
+                  "several lasers, such as ouster_os1_128");
     case ScannerKind::rosette: {
       Matrix3d optical_from_scanner;  // x right, y down, z forward, of x forward, y left, z up
       optical_from_scanner << 0, -1, 0, 0, 0, -1, 1, 0, 0;

@@ -108,7 +108,8 @@ geometry::ScannerMount scanner_mount(const LidarConfig& lidar,
   return {body_from_scanner, std::atan2(axis.y(), axis.x()) + 0.5 * std::numbers::pi, 0.0};
 }
 
-DepthCameraConfig planning_camera(const SurveySensorOptions& sensor) {
+DepthCameraConfig planning_camera(const SurveySensorOptions& sensor,
+                                  const std::optional<RosetteField>& rosette) {
   const LidarConfig& lidar = sensor.scanner.value();
   if (!sensor.mount) return forward_camera(lidar);
   switch (kind_of(lidar)) {
@@ -120,11 +121,12 @@ DepthCameraConfig planning_camera(const SurveySensorOptions& sensor) {
     case ScannerKind::rosette:
       break;
   }
-  return rosette_camera(lidar, rosette_of(sensor));
+  return rosette_camera(lidar, rosette.value());
 }
 
-RosetteField rosette_of(const SurveySensorOptions& sensor) {
-  const geometry::ScannerMount& mount = sensor.mount.value();
+std::optional<RosetteField> flown_rosette(const SurveySensorOptions& sensor) {
+  if (!sensor.mount || kind_of(sensor.scanner.value()) != ScannerKind::rosette) return std::nullopt;
+  const geometry::ScannerMount& mount = *sensor.mount;
   const View look = geometry::scanner_view(mount, {Vector3d::Zero(), Vector3d::UnitX()});
   return rosette_field(
       sensor.scanner.value(), sensor.is_moving() ? sensor.frame_period : rosette_period,

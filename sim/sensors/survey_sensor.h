@@ -63,13 +63,15 @@ struct SurveySensorOptions {
 /// How often a scanner turns in one of its scans: once, or in flight all the time between two.
 std::size_t turns_of(const SurveySensorOptions& sensor);
 
-/// The camera that stands for the scanner when views are chosen, as it is carried. A line's is
-/// about as dense as its rays until it is known how fast it flies. Throws what forward_camera()
-/// throws.
-DepthCameraConfig planning_camera(const SurveySensorOptions& sensor);
+/// Field of one scan of a flown rosette scanner, in the frame of its planning camera; nothing for
+/// other scanners. Takes some tenths of a second to compute.
+std::optional<RosetteField> flown_rosette(const SurveySensorOptions& sensor);
 
-/// What a rosette that is flown draws in one of its scans, in its planning camera's frame.
-RosetteField rosette_of(const SurveySensorOptions& sensor);
+/// Camera that stands for the mounted or hand-held scanner when views are chosen; `rosette` is
+/// flown_rosette(sensor). The camera of a single-line scanner is about as dense as its rays until
+/// its speed is known. Throws what forward_camera() throws.
+DepthCameraConfig planning_camera(const SurveySensorOptions& sensor,
+                                  const std::optional<RosetteField>& rosette);
 
 /// Between two scans of a scanner in flight, each of which stands for the turns around it [s].
 inline constexpr double scanner_period = 0.5;

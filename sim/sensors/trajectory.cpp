@@ -16,7 +16,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-void require(bool holds, std::size_t pose, const std::string& what) {
+void require_pose(bool holds, std::size_t pose, const std::string& what) {
   if (holds) return;
   throw Error(ErrorKind::bad_geometry, "trajectory pose " + std::to_string(pose) + " " + what);
 }
@@ -27,11 +27,12 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
   if (poses_.empty()) throw Error(ErrorKind::bad_geometry, "the trajectory has no poses");
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     StampedPose& pose = poses_[i];
-    require(std::isfinite(pose.time) && pose.attitude.coeffs().allFinite(), i,
-            "has a value that is not a finite number");
+    require_pose(std::isfinite(pose.time) && pose.attitude.coeffs().allFinite(), i,
+                 "has a value that is not a finite number");
     geometry::require_place(pose.position, "trajectory pose " + std::to_string(i));
-    require(pose.attitude.norm() > 1e-6, i, "has an attitude of length zero");
-    require(i == 0 || pose.time > poses_[i - 1].time, i, "is not later than the one before it");
+    require_pose(pose.attitude.norm() > 1e-6, i, "has an attitude of length zero");
+    require_pose(i == 0 || pose.time > poses_[i - 1].time, i,
+                 "is not later than the one before it");
     pose.attitude.normalize();
   }
 }

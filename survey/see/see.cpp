@@ -126,7 +126,7 @@ void SeePlanner::Impl::insert(std::span<const Vector3f> points,
   const auto& positions = map.cloud().positions;
   if (positions.empty()) {
     throw Error(ErrorKind::bad_geometry,
-                "the first scan holds no point of the scene; start from a place that sees it");
+                "the first scan contains no point of the scene; start from a view that sees it");
   }
   step.points_new = positions.size() - first_new;
   if (!config.optimise_views) return;

@@ -43,7 +43,7 @@ void SeeConfig::validate() const {
   require(std::isfinite(effective_spacing()) && effective_spacing() >= 0.0, "spacing",
           effective_spacing(), "zero or a positive number of metres");
   require(effective_spacing() < resolution_radius, "spacing", effective_spacing(),
-          "less than resolution_radius, or no point has neighbours (by default it is "
+          "less than resolution_radius, otherwise no point has neighbours (by default it is "
           "density^(-1/2))");
   require(!view_distance || is_length(*view_distance), "view_distance", view_distance.value_or(0.0),
           length);
@@ -68,7 +68,7 @@ void SeeConfig::validate() const {
 
   const int k = effective_core_threshold();
   if (core_threshold) {
-    require(k >= 4, "core_threshold", k, "at least 4, or no point can be a frontier");
+    require(k >= 4, "core_threshold", k, "at least 4, otherwise no point can be a frontier");
   } else if (k < 4) {
     std::ostringstream message;
     message << "density " << density << " and resolution_radius " << resolution_radius

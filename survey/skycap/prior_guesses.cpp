@@ -11,7 +11,7 @@ using Eigen::Vector3f;
 
 /// Surfaces that face apart by more than this cosine says are not the same: the two sides of a
 /// wall.
-constexpr float least_cosine = -0.3F;
+constexpr float least_facing = -0.3F;
 
 /// The cube that a point lies in, and which of the six ways it faces most.
 std::uint64_t cell_of(const Vector3f& position, const Vector3f& normal, float edge) {
@@ -79,7 +79,7 @@ void PriorGuesses::update(const DoseMap& map, const SpaceMemory& space) {
       const PriorPatch& patch = patches_[near.index];
       const float within = spacing_ + patch.uncertainty;
       const float cosine = surfels.normals[surfels_asked_].dot(patch.normal);
-      if (near.squared_distance > within * within || cosine < least_cosine) continue;
+      if (near.squared_distance > within * within || cosine < least_facing) continue;
       states_[near.index] = State::found;
     }
   }

@@ -277,7 +277,7 @@ struct SkycapPlanner::Impl {
     step.points_new += insert(scan);
     if (kept.cloud().size() == 0) {
       throw Error(ErrorKind::bad_geometry,
-                  "the first scan holds no point of the scene; start from a view that sees it");
+                  "the first scan contains no point of the scene; start from a view that sees it");
     }
     stopwatch.lap("insert");
     if (!map) start();

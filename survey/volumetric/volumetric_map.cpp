@@ -10,16 +10,10 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int first_hash_bits = 10;
-
 }  // namespace
 
 VolumetricMap::VolumetricMap(double resolution, double shadow_length, const OccupancyModel& model)
-    : resolution_(resolution),
-      shadow_length_(shadow_length),
-      states_(model),
-      slots_(std::size_t{1} << first_hash_bits),
-      hash_shift_(64 - first_hash_bits) {}
+    : resolution_(resolution), shadow_length_(shadow_length), states_(model) {}
 
 void VolumetricMap::insert(const Vector3f& origin, std::span<const Vector3f> returns,
                            std::span<const Vector3f> empty_ends) {
@@ -74,26 +68,10 @@ void VolumetricMap::summarise(Block& block, std::uint32_t brick) {
 
 VolumetricMap::Block& VolumetricMap::block_at(const VoxelIndex& index) {
   if (Block* const block = find(index)) return *block;
-  if (2 * (blocks_.size() + 1) > slots_.size()) grow();
   Block& block = blocks_.emplace_back();
   block.index = index;
-  const std::uint64_t key = key_of(index);
-  std::size_t i = slot_of(key);
-  while (slots_[i].block) i = (i + 1) & (slots_.size() - 1);
-  slots_[i] = {key, &block};
+  index_.insert(key_of(index), &block);
   return block;
-}
-
-void VolumetricMap::grow() {
-  std::vector<Slot> old(2 * slots_.size());
-  old.swap(slots_);
-  --hash_shift_;
-  for (const Slot& slot : old) {
-    if (!slot.block) continue;
-    std::size_t i = slot_of(slot.key);
-    while (slots_[i].block) i = (i + 1) & (slots_.size() - 1);
-    slots_[i] = slot;
-  }
 }
 
 VolumetricMap::Code VolumetricMap::code_of(const VoxelIndex& voxel) const {
@@ -102,14 +80,8 @@ VolumetricMap::Code VolumetricMap::code_of(const VoxelIndex& voxel) const {
                : OccupancyStates::untouched;
 }
 
-std::optional<float> VolumetricMap::log_odds_at(const Vector3f& point) const {
-  const Code code = code_at(point);
-  if (!OccupancyStates::is_measured(code)) return std::nullopt;
-  return states_.log_odds(code);
-}
-
 std::size_t VolumetricMap::memory() const {
-  return blocks_.size() * sizeof(Block) + slots_.capacity() * sizeof(Slot) +
+  return blocks_.size() * sizeof(Block) + index_.memory() +
          states_.size() * (sizeof(VoxelState) + 40);
 }
 

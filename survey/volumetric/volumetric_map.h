@@ -22,6 +22,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "geometry/points/hash_grid.h"
 #include "survey/volumetric/occupancy_states.h"
 #include "survey/volumetric/voxel_walk.h"
 
@@ -51,8 +52,6 @@ class VolumetricMap {
   const VoxelState& state_at(const Eigen::Vector3f& point) const {
     return states_.state(code_at(point));
   }
-  /// Log-odds of the voxel at a point; nothing unless it was measured.
-  std::optional<float> log_odds_at(const Eigen::Vector3f& point) const;
 
   /// 2 s / res, for shadows of length s: what shadow depths are subtracted from.
   double shadow_ceiling() const { return 2.0 * shadow_length_ / resolution_; }
@@ -86,26 +85,16 @@ class VolumetricMap {
     std::uint64_t changed = 0;   // while a scan is taken in
     std::array<std::array<Code, voxels_in_brick>, bricks_in_block> codes{};
   };
-  struct Slot {
-    std::uint64_t key = 0;
-    Block* block = nullptr;
-  };
-
   static std::uint64_t key_of(const VoxelIndex& block) {  // 21 bits an axis, and a carry of the sum
-    return static_cast<std::uint64_t>(block[0] + (std::int64_t{block[1]} << 21) +
-                                      (std::int64_t{block[2]} << 42));
+    constexpr std::uint64_t lower_bits = ~std::uint64_t{0} >> 1;
+    return lower_bits & static_cast<std::uint64_t>(block[0] + (std::int64_t{block[1]} << 21) +
+                                                   (std::int64_t{block[2]} << 42));
   }
   Block* find(const VoxelIndex& block) const {
-    const std::uint64_t key = key_of(block);
-    for (std::size_t i = slot_of(key);; i = (i + 1) & (slots_.size() - 1)) {
-      if (!slots_[i].block || slots_[i].key == key) return slots_[i].block;
-    }
-  }
-  std::size_t slot_of(std::uint64_t key) const {
-    return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15ULL >> hash_shift_);
+    Block* const* const found = index_.find(key_of(block));
+    return found == nullptr ? nullptr : *found;
   }
   Block& block_at(const VoxelIndex& index);  // made if need be
-  void grow();
   void summarise(Block& block, std::uint32_t brick);
   Code code_of(const VoxelIndex& voxel) const;
   Code code_at(const Eigen::Vector3f& point) const {
@@ -115,9 +104,8 @@ class VolumetricMap {
   double resolution_;
   double shadow_length_;
   OccupancyStates states_;
-  std::vector<Slot> slots_;  // open addressing, linear probing, at most half full
-  int hash_shift_;           // 64 - log2 of the number of slots
   std::deque<Block> blocks_;
+  geometry::HashGrid<Block*> index_;
   Eigen::AlignedBox3d surface_box_;
 };
 

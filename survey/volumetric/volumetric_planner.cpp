@@ -11,6 +11,7 @@
 #include "geometry/parallel.h"
 #include "geometry/points/point_grid.h"
 #include "geometry/points/spaced_points.h"
+#include "geometry/random_numbers.h"
 #include "survey/stopwatch.h"
 #include "survey/volumetric/volumetric_gain.h"
 
@@ -44,7 +45,7 @@ std::vector<Vector3f> ends_of_no_returns(const ScanSpan& scan, const geometry::C
 
 std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double radius,
                                const std::optional<double>& least_height, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+  geometry::RandomNumbers random(seed);
   std::normal_distribution<double> normal;
   std::vector<View> views;
   views.reserve(count);
@@ -53,7 +54,7 @@ std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double
     if (attempt == most_attempts) {
       std::ostringstream message;
       message << "the candidates' sphere reaches up to " << centre.z() + radius
-              << " m, of which less than a thousandth is above the least height of "
+              << " m, of which less than a thousandth is above the minimum height of "
               << least_height.value_or(0.0) << " m; lower limits.ground_clearance";
       throw Error(ErrorKind::bad_config, message.str());
     }
@@ -136,8 +137,8 @@ std::optional<View> VolumetricPlanner::next_view(const ScanSpan& scan) {
   stopwatch.lap("insert");
   if (impl_->cloud.positions.empty()) {
     throw Error(ErrorKind::bad_geometry,
-                "the first scan holds no point of the scene; start where the sensor sees it, or "
-                "widen the scene's box");
+                "the first scan contains no point of the scene; start from a view that sees it, or "
+                "enlarge planner.scene_box");
   }
   impl_->score();
   stopwatch.lap("score");

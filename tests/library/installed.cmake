@@ -42,9 +42,9 @@ function(expect_output name pattern)
 endfunction()
 
 set(heavy PCL MRPT mrpt-maps ompl CGAL OpenSSL fmt yaml-cpp CLI11 nlohmann_json)
-build_against_installed(own_sensor ${SOURCE}/examples/own_sensor ${heavy} Ceres embree PNG)
+build_against_installed(own_sensor ${SOURCE}/examples/own_sensor ${heavy} Ceres embree)
 expect_output(own_sensor "views, [0-9]+ points, (9[0-9]|100)[.][0-9] % believed covered\n$")
-build_against_installed(certify_route ${SOURCE}/examples/certify_route ${heavy} embree PNG)
+build_against_installed(certify_route ${SOURCE}/examples/certify_route ${heavy} embree)
 # Only the third leg is too near: it crosses the roof, which is 30 m high, at 31 m.
 expect_output(certify_route "^leg 2: 1[.]000 m from [^\n]*\n3 of 4 legs keep 2 m\n$")
 build_against_installed(simulate_lidar ${SOURCE}/examples/simulate_lidar ${heavy} Ceres)

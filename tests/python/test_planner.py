@@ -144,13 +144,13 @@ class Arrays(SmallMission):
                 ((points, pose[:3], pixels), ValueError, r"\(4, 4\)"),
                 ((points, skewed, pixels), ValueError, "rotation"),
                 ((broken, pose, pixels), skycap.Error, "point 1 that is not finite"),
-                ((points, pose, pixels[:-1]), skycap.Error, "one for each"),
-                ((points, pose, pixels[::-1]), skycap.Error, "do not ascend"),
+                ((points, pose, pixels[:-1]), skycap.Error, "each point requires one"),
+                ((points, pose, pixels[::-1]), skycap.Error, "are not ascending"),
                 ((np.zeros((0, 3)), pose), skycap.Error, "no point of the scene"),
-                ((points, pose, pixels.astype(np.int64) + 2**32), ValueError, "fit 32 bits"),
-                ((points, pose, pixels.astype(np.int64) - 2**31), ValueError, "fit 32 bits"),
-                ((points, pose, pixels + 0.5), ValueError, "whole numbers"),
-                ((points, far, pixels), skycap.Error, "taken from a place"),
+                ((points, pose, pixels.astype(np.int64) + 2**32), ValueError, "integers of 32 bits"),
+                ((points, pose, pixels.astype(np.int64) - 2**31), ValueError, "integers of 32 bits"),
+                ((points, pose, pixels + 0.5), ValueError, "integers"),
+                ((points, far, pixels), skycap.Error, "has a position"),
                 (("points", pose), TypeError, "")):
             with self.subTest(message), self.assertRaisesRegex(kind, message):
                 self.planner.next_view(*arguments)

@@ -26,7 +26,7 @@ using testing::IsEmpty;
 Rooms house() {
   const std::vector<std::string> geometry = {
       "geometry",          "geometry/place", "geometry/points", "geometry/directions",
-      "geometry/surfaces", "geometry/io",    "geometry/io/laz", "geometry/io/e57",
+      "geometry/surfaces", "geometry/io",    "geometry/io/las", "geometry/io/e57",
       "geometry/io/text"};
   Rooms rooms = {
       {"geometry", {}},
@@ -34,12 +34,12 @@ Rooms house() {
       {"geometry/points", {"geometry", "geometry/place"}},
       {"geometry/directions", {"geometry", "geometry/place"}},
       {"geometry/surfaces", {"geometry", "geometry/place"}},
-      {"geometry/io/laz", {"geometry"}},
       {"geometry/io/e57", {"geometry"}},
       {"geometry/io/text", {"geometry"}},
       {"geometry/io",
-       {"geometry", "geometry/place", "geometry/points", "geometry/surfaces", "geometry/io/laz",
-        "geometry/io/e57", "geometry/io/text"}},
+       {"geometry", "geometry/place", "geometry/points", "geometry/surfaces", "geometry/io/e57",
+        "geometry/io/text"}},
+      {"geometry/io/las", {"geometry", "geometry/io"}},
   };
   const auto add = [&](const std::string& room, std::vector<std::string> others) {
     others.insert(others.end(), geometry.begin(), geometry.end());

@@ -18,7 +18,7 @@ using std::string_view;
 constexpr std::size_t most_fields = 1000;  // of a record; real ones have about 20
 
 /// For a message: a piece of a file's text in one line.
-std::string quoted(string_view text) {
+std::string in_quotes(string_view text) {
   std::string result(text.substr(0, 60));
   for (char& c : result) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = ' ';
@@ -43,7 +43,7 @@ Number number_of(string_view text, const std::string& what) {
   const char* const end = text.data() + text.size();
   const auto [stop, failure] = std::from_chars(text.data(), end, number);
   if (failure != std::errc() || stop != end) {
-    refuse("has the " + what + " " + quoted(text) + ", which is no usable number");
+    refuse("has the " + what + " " + in_quotes(text) + ", which is not a valid number");
   }
   return number;
 }
@@ -58,7 +58,7 @@ template <typename Number>
 Number attribute_or(const pugi::xml_node& node, const char* name, Number otherwise) {
   const pugi::xml_attribute attribute = node.attribute(name);
   if (!attribute) return otherwise;
-  return number_of<Number>(attribute.value(), std::string(name) + " of " + quoted(node.name()));
+  return number_of<Number>(attribute.value(), std::string(name) + " of " + in_quotes(node.name()));
 }
 
 /// The number in an element's child, if it has it.
@@ -77,7 +77,7 @@ Coding coding_of(const pugi::xml_node& node) {
   if (type == "Float" && (precision.empty() || precision == "double")) {
     return Coding::double_precision;
   }
-  refuse("has records with a field " + quoted(node.name()) + " of type " + quoted(type) +
+  refuse("has records with a field " + in_quotes(node.name()) + " of type " + in_quotes(type) +
          "; it must be Integer, ScaledInteger, Float (single or double) or String");
 }
 
@@ -87,13 +87,13 @@ Field parse_field(const pugi::xml_node& node) {
   field.minimum = attribute_or(node, "minimum", field.minimum);
   field.maximum = attribute_or(node, "maximum", field.maximum);
   if (field.minimum > field.maximum) {
-    refuse("has a field " + quoted(field.name) + " whose minimum is above its maximum");
+    refuse("has a field " + in_quotes(field.name) + " whose minimum is above its maximum");
   }
   if (field.coding == Coding::integer) return field;
   field.scale = attribute_or(node, "scale", field.scale);
   field.offset = attribute_or(node, "offset", field.offset);
   if (!std::isfinite(field.scale) || !std::isfinite(field.offset)) {
-    refuse("has a field " + quoted(field.name) + " whose scale or offset is not finite");
+    refuse("has a field " + in_quotes(field.name) + " whose scale or offset is not finite");
   }
   return field;
 }

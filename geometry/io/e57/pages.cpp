@@ -61,7 +61,7 @@ std::uint64_t Pages::logical(std::uint64_t physical, const std::string& what) co
   const std::uint64_t page = physical / page_size_, in_page = physical % page_size_;
   if (physical >= file_size_ || in_page >= content_) {
     refuse("says that " + what + " is at byte " + std::to_string(physical) + ", which is " +
-           (physical >= file_size_ ? "behind its end" : "in a checksum"));
+           (physical >= file_size_ ? "after its end" : "in a checksum"));
   }
   return page * content_ + in_page;
 }
@@ -94,7 +94,7 @@ void Pages::read_window(std::uint64_t place) {
     if (crc32c(page.substr(0, content_)) != stored_checksum(page)) {
       window_.clear();
       refuse("is damaged: its page at byte " + std::to_string(first + begin) +
-             " does not agree with its checksum");
+             " has a wrong checksum");
     }
     window_ += page.substr(0, content_);
   }

@@ -118,7 +118,37 @@ PlyProperty parse_property(TextScanner& scanner) {
   return property;
 }
 
+std::string_view name_of(PlyType type) {
+  return std::ranges::find(type_names, type, [](const auto& row) { return row.second; })->first;
+}
+
 }  // namespace
+
+void PlyElement::add(PlyType type, std::initializer_list<std::string_view> names) {
+  for (const std::string_view scalar : names) {
+    properties.push_back({std::string(scalar), type, {}});
+  }
+}
+
+std::string ply_header(std::span<const PlyElement> elements, std::string_view comment) {
+  std::string text = "ply\nformat binary_little_endian 1.0\n";
+  if (!comment.empty()) text.append("comment ").append(comment).append("\n");
+  for (const PlyElement& element : elements) {
+    text += "element " + element.name + " " + std::to_string(element.count) + "\n";
+    for (const PlyProperty& property : element.properties) {
+      text += "property ";
+      if (property.count_type) text.append("list ").append(name_of(*property.count_type)) += ' ';
+      text.append(name_of(property.type)).append(" ").append(property.name) += '\n';
+    }
+  }
+  return text + "end_header\n";
+}
+
+std::string growing_ply_header(const PlyElement& element) {
+  constexpr std::size_t most_digits = 20;  // of 64 bits
+  const std::size_t digits = std::to_string(element.count).size();
+  return ply_header({&element, 1}, "written by Skycap" + std::string(most_digits - digits, ' '));
+}
 
 // For each property of an element: the column it goes to, or -1; and which of them is the list.
 struct PlyReader::Wanted {
@@ -186,7 +216,7 @@ void PlyReader::read_header() {
       elements_.back().properties.push_back(parse_property(scanner));
     } else {
       scanner.fail("'" + std::string(keyword->substr(0, 40)) +
-                   "' is no PLY header keyword; it must be format, element, property, comment, "
+                   "' is not a PLY header keyword; it must be format, element, property, comment, "
                    "obj_info or end_header");
     }
   }
@@ -240,8 +270,8 @@ PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
 
   // The last row of ascii needs no line end, hence the 1.
   if (left > (bytes_.size() - at_ + 1) / std::max<std::size_t>(wanted.smallest_row, 1)) {
-    fail("the header promises " + std::to_string(element.count) + " of element '" + element.name +
-         "', but the file is too short for so many; it may have been cut off");
+    fail("the header declares " + std::to_string(element.count) + " of element '" + element.name +
+         "', but the file is too short; it may be truncated");
   }
   for (const int column : wanted.column) {
     if (column >= 0) table.columns[static_cast<std::size_t>(column)].reserve(rows.end - rows.begin);
@@ -264,13 +294,13 @@ void PlyReader::pass_rows(std::uint64_t count) {
 
 void PlyReader::fail_within(const PlyElement& element, std::uint64_t row) const {
   fail("ends within " + element.name + " " + std::to_string(row) + " of " +
-       std::to_string(element.count) + "; it may have been cut off");
+       std::to_string(element.count) + "; it may be truncated");
 }
 
 void PlyReader::require_short(const Rows& rows, const PlyTable& table, std::uint64_t values) const {
   if (values <= longest_ply_list) return;
   fail(rows.element.name + " " + std::to_string(rows.begin + table.rows) + " has a list of " +
-       std::to_string(values) + " values; at most 1e6 are read");
+       std::to_string(values) + " values; the maximum is 1e6");
 }
 
 std::int64_t PlyReader::index_of(const Rows& rows, double value) const {
@@ -279,7 +309,7 @@ std::int64_t PlyReader::index_of(const Rows& rows, double value) const {
     return static_cast<std::int64_t>(value);
   }
   fail(rows.element.name + " has a list with " + std::to_string(value) +
-       "; its values must be whole numbers");
+       "; its values must be integers");
 }
 
 void PlyReader::read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table) {

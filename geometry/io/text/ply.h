@@ -1,9 +1,10 @@
-/// The PLY format, for the mesh and the cloud reader: any elements and properties, in ascii and
-/// both binary byte orders. Source: Turk, "The PLY Polygon File Format", 1994, with the type names
-/// that came later (int8 ... float64).
+/// The PLY format, for readers and writers of meshes and clouds: reads any elements and properties,
+/// in ascii and both binary byte orders; writes binary little-endian files. Source: Turk, "The PLY
+/// Polygon File Format", 1994, with the type names that came later (int8 ... float64).
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,7 +25,19 @@ struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
+
+  /// Adds scalar properties of one type.
+  void add(PlyType type, std::initializer_list<std::string_view> names);
 };
+
+/// Returns the header of a binary little-endian file. The rows follow it, element by element, each
+/// value as append_value() of byte_values.h writes it. An empty comment is omitted.
+std::string ply_header(std::span<const PlyElement> elements,
+                       std::string_view comment = "written by Skycap");
+
+/// Returns the header of a file of one element that is written while it grows: the length of the
+/// header does not depend on the number of rows.
+std::string growing_ply_header(const PlyElement& element);
 
 /// What was asked for of an element, row by row in the file's order.
 struct PlyTable {

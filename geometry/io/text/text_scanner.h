@@ -85,7 +85,7 @@ class TextScanner {
     if (has_decimal_comma(word)) {
       fail(quoted + " has a comma for the decimal point; write numbers with points");
     }
-    fail(quoted + " stands where " + std::string(what) + " is expected");
+    fail(quoted + " is found where " + std::string(what) + " is expected");
   }
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }

@@ -202,8 +202,8 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
                     Times times) {
   std::vector<std::string> head{"planner", "trials"};
   for (const Column& column : columns(times)) head.emplace_back(column.title);
-  head.insert(head.end(),
-              {"of the visible surface [%]", "of the attainable [%]", "survey flight [s]"});
+  head.insert(head.end(), {"of the visible surface [%]", "of the attainable coverage [%]",
+                           "survey flight [s]"});
   std::string text = row(head) + rule(head.size());
   for (const BenchmarkCell& cell : cells) {
     if (cell.mission != mission || cell.trials.empty()) continue;
@@ -360,17 +360,15 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
                             Times times) {
   std::string text =
       "# " + title +
-      "\n\n"
-      "Means over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width of "
-      "the mean's 95 % interval, sd the standard deviation over the trials, and × the ratio to the "
-      "paper. docs/howto/compare-planners.md explains the figures.\n\n"
-      "## Table 1\n\n" +
+      "\n\nMeans over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width "
+      "of the 95% interval of the mean, sd the standard deviation over the trials, and × the ratio "
+      "to the paper. Definitions: docs/howto/compare-planners.md.\n\n## Table 1\n\n" +
       table_1(cells, times);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {
     text += "\n### " + mission + "\n\n" + details(cells, mission, times);
     const std::string reach = reach_table(cells, mission, times);
     if (!reach.empty())
-      text += "\nUntil a coverage is reached; × is the ratio to all of its survey:\n\n" + reach;
+      text += "\nUntil a coverage is reached; × is the ratio to the whole survey:\n\n" + reach;
   }
   const auto has_standard_see = [](const BenchmarkCell& cell) {
     return is_standard_model(cell.mission) && paper_view_result(cell.planner) &&
@@ -378,7 +376,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
   };
   if (std::ranges::any_of(cells, has_standard_see)) {
     text += "\n## Table 2\n\nPer view, over the standard models.\n\n" + table_2(cells) +
-            "\n## Figure 6\n\nFrontiers that views were aimed at, until one was observed.\n\n" +
+            "\n## Figure 6\n\nTarget frontiers of views, until one was observed.\n\n" +
             figure_6(cells);
   }
   return text;

@@ -62,7 +62,7 @@ std::vector<const Contestant*> contestants_named(const std::vector<std::string>&
   for (const std::string& name : names) {
     if (name == "all" || find_contestant(name)) continue;
     throw Error(ErrorKind::bad_usage,
-                "there is no planner '" + name + "'; give all or some of " + known);
+                "unknown planner '" + name + "'; expected all or some of " + known);
   }
   return chosen;
 }

@@ -17,7 +17,7 @@ struct Row {
 };
 
 // Coverage in percent, as printed.
-constexpr std::array<Row, 9> table_1{{
+constexpr std::array<Row, 9> rows_of_table_1{{
     {survey::PlannerName::see_plus_plus,
      {{{22.3, 97.1, 20.1, 29.7},
        {31.5, 99.4, 46.0, 40.9},
@@ -69,9 +69,9 @@ constexpr std::array<Row, 9> table_1{{
 
 std::optional<PaperResult> paper_result(std::string_view mission, std::string_view planner) {
   const auto model = std::ranges::find(models, mission);
-  const auto row = std::ranges::find(table_1, survey::planner_called(planner),
+  const auto row = std::ranges::find(rows_of_table_1, survey::planner_called(planner),
                                      [](const Row& entry) { return std::optional(entry.planner); });
-  if (model == models.end() || row == table_1.end()) return std::nullopt;
+  if (model == models.end() || row == rows_of_table_1.end()) return std::nullopt;
   PaperResult result = row->of_model[static_cast<std::size_t>(model - models.begin())];
   result.coverage /= 100.0;
   return result;

@@ -9,6 +9,7 @@
 #include "geometry/io/file.h"
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/campaign/key_changes.h"
+#include "missions/support/key_text.h"
 #include "missions/support/yaml_section.h"
 
 namespace skycap::missions::batch {
@@ -48,26 +49,26 @@ class CampaignReader {
   void read_name() {
     campaign_.name = root_.text("name", fs::path(file_).stem().string());
     if (!is_plain(campaign_.name)) {
-      root_.fail_at("name", "is no name of a folder; " + std::string(plain_names));
+      root_.fail_at("name", "is not a valid folder name; " + std::string(plain_names));
     }
   }
 
   void read_missions() {
     campaign_.missions = root_.texts("missions");
     if (campaign_.missions.empty()) {
-      root_.fail_at("missions", "is missing or empty; give a list of mission files");
+      root_.fail_at("missions", "is missing or empty; list mission files");
     }
     std::map<std::string, std::string> path_of;
     for (const std::string& path : campaign_.missions) {
       const std::string title = mission_title(path);
       if (!is_plain(title)) {
-        root_.fail_at("missions", path + " has a name that does not fit in tables; " +
+        root_.fail_at("missions", path + " has a name that cannot be used in tables; " +
                                       std::string(plain_names));
       }
       const auto [known, is_new] = path_of.emplace(title, path);
       if (is_new) continue;
       root_.fail_at("missions", known->second + " and " + path +
-                                    " have the same name; give files of different names");
+                                    " have the same name; use files with different names");
     }
   }
 
@@ -97,11 +98,11 @@ class CampaignReader {
     for (const support::YamlEntry& entry : root_.entries("variants")) {
       const std::string key = "variants." + entry.key;
       if (!is_plain(entry.key)) {
-        fail(entry.line, key, "is no name of a folder; " + std::string(plain_names));
+        fail(entry.line, key, "is not a valid folder name; " + std::string(plain_names));
       }
       if (entry.value.kind == support::YamlNode::Kind::list ||
           entry.value.kind == support::YamlNode::Kind::scalar) {
-        fail(entry.line, key, "must be a map of keys of the mission file");
+        fail(entry.line, key, "must be a map of mission keys");
       }
       Variant variant{entry.key, of_all};
       for (auto& change : changes_in(entry.value.entries, key + ".")) {
@@ -117,7 +118,7 @@ class CampaignReader {
                                               const std::string& path) const {
     static const FollowingKeys following{
         {"name", "seed", "threads", "planner.name"},
-        "the campaign; give its own name, planners, seeds or first_seed"};
+        "the campaign; set its own name, planners, seeds or first_seed"};
     return key_changes(entries, path, file_, following);
   }
 
@@ -127,14 +128,14 @@ class CampaignReader {
                          static_cast<double>(std::max<std::size_t>(1, campaign_.planners.size())) *
                          static_cast<double>(campaign_.seeds);
     if (items <= static_cast<double>(most_items)) return;
-    root_.fail_at("missions", "with variants, planners and seeds make more than " +
-                                  std::to_string(most_items) + " items; give fewer");
+    root_.fail_at("missions", "together with variants, planners and seeds more than " +
+                                  std::to_string(most_items) + " runs; use fewer");
   }
 
   std::string place(int line) const { return file_ + ":" + std::to_string(line); }
 
   [[noreturn]] void fail(int line, const std::string& key, const std::string& what) const {
-    throw Error(ErrorKind::bad_config, place(line) + ": key " + key + ": " + what);
+    throw Error(ErrorKind::bad_config, place(line) + ": key " + support::about_key(key, what));
   }
 
   YamlSection root_;

@@ -44,13 +44,13 @@ bool is_plain(std::string_view name);
 
 /// What to give instead, for messages.
 inline constexpr std::string_view plain_names =
-    "give one of at most 100 bytes, without / \\ , \" | and not beginning with a dot";
+    "use at most 100 bytes without / \\ , \" | and no leading dot";
 
 /// The name of a mission among the campaign's: its file's, without folder and ending.
 std::string mission_title(const std::string& path);
 
 /// Reads the file but none of the missions. Throws Error{bad_file} if it cannot be read, and
-/// Error{bad_config}, "FILE:LINE: key KEY: what is wrong; what would be right".
+/// Error{bad_config}, "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
 CampaignFile read_campaign(const std::filesystem::path& file);
 
 /// The same of a text; `name` stands for the file in messages.

@@ -7,6 +7,7 @@
 #include "missions/config/mission_keys.h"
 #include "missions/config/unknown_key.h"
 #include "missions/support/flow_text.h"
+#include "missions/support/key_text.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -37,7 +38,8 @@ class ChangeReader {
   std::string place(int line) const { return file_ + ":" + std::to_string(line); }
 
   [[noreturn]] void fail(int line, const std::string& key, const std::string& what) const {
-    throw Error(ErrorKind::bad_config, place(line) + ": key " + path_ + key + ": " + what);
+    throw Error(ErrorKind::bad_config,
+                place(line) + ": key " + support::about_key(path_ + key, what));
   }
 
   const std::string& path_;

@@ -19,7 +19,7 @@ struct FollowingKeys {
 
 /// The changes in `entries` of the file `file`, each key written out or nested as in a mission
 /// file; `path`, such as "set.", goes before them in messages. Throws Error{bad_config},
-/// "FILE:LINE: key KEY: ...", for one that is unknown or `following`.
+/// "FILE:LINE: key KEY ...", for one that is unknown or `following`.
 std::vector<config::KeyOverride> key_changes(const std::vector<support::YamlEntry>& entries,
                                              const std::string& path, const std::string& file,
                                              const FollowingKeys& following);

@@ -17,7 +17,7 @@ std::string started(const Words& command, const std::stop_token& stop,
   const support::ProgramResult result = support::run_external_program(command, ".", stop);
   if (result.exit_code == 127 && result.output.empty()) {
     throw Error(ErrorKind::bad_usage,
-                "there is no program " + command[0] + "; install the engine, or name another one");
+                "unknown program " + command[0] + "; install the scheduler, or use another one");
   }
   if (result.exit_code != 0 && !stop.stop_requested()) {
     warn(fmt::format("{} ended with {}: {}", command[0], result.exit_code, result.output));

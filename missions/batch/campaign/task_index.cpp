@@ -29,8 +29,8 @@ std::size_t number_in(const std::string& text, std::size_t first, const std::str
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || number < first ||
       number - first >= most_items) {
-    refuse(origin + " is '" + text + "'; it must be a whole number from " + std::to_string(first) +
-           " on");
+    refuse(origin + " is '" + text + "'; it must be an integer of at least " +
+           std::to_string(first));
   }
   return number - first;
 }
@@ -50,11 +50,11 @@ std::size_t the_only_task(const Environment& environment) {
     if (!environment(engine.variable)) continue;
     if (found) {
       refuse("--index auto: " + std::string(found->variable) + " and " + engine.variable +
-             " are both set; give --index " + found->name + " or --index " + engine.name);
+             " are both set; use --index " + found->name + " or --index " + engine.name);
     }
     found = &engine;
   }
-  if (!found) refuse("--index auto: none of " + known + " is set; give --index N");
+  if (!found) refuse("--index auto: none of " + known + " is set; use --index N");
   return *task_of(*found, environment);
 }
 
@@ -73,7 +73,8 @@ std::size_t task_index(const std::string& index, const Environment& environment)
       std::ranges::find_if(engines, [&](const Engine& known) { return index == known.name; });
   if (engine == engines.end()) return number_in(index, 0, "--index");
   if (const auto task = task_of(*engine, environment)) return *task;
-  refuse("--index " + index + ": " + engine->variable + " is not set; this is no task of it");
+  refuse("--index " + index + ": " + engine->variable +
+         " is not set; this is not a task of that scheduler");
 }
 
 ItemRange items_of_task(std::size_t task, std::size_t chunk, std::size_t items) {

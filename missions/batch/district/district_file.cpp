@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using support::YamlSection;
 
-constexpr std::size_t largest_file = std::size_t{16} << 20;  // [byte]; 100,000 names
-constexpr double farthest = 50e3;                            // of anything from the site [m]
+constexpr std::size_t largest_district_file = std::size_t{16} << 20;  // [byte]; 100,000 names
+constexpr double farthest = 50e3;  // of anything from the site [m]
 
 /// Reads the keys of a district in the order of the manual.
 class DistrictReader {
@@ -34,7 +34,7 @@ class DistrictReader {
     district_.file = file_;
     district_.name = root_.text("name", fs::path(file_).stem().string());
     if (!batch::is_plain(district_.name)) {
-      root_.fail_at("name", "is no name of a folder; " + std::string(batch::plain_names));
+      root_.fail_at("name", "is not a valid folder name; " + std::string(batch::plain_names));
     }
     read_files();
     if (auto targets = root_.section("targets")) read_targets(*targets);
@@ -79,18 +79,18 @@ class DistrictReader {
     choice.ids = section.texts("id");
     for (const support::YamlEntry& entry : section.entries("attribute")) {
       if (entry.value.kind != support::YamlNode::Kind::scalar) {
-        section.fail_at("attribute", "holds a value for each key, such as {street: Am Ring}");
+        section.fail_at("attribute", "must have a value for each key, such as {street: Am Ring}");
       }
       choice.attributes[entry.key] = entry.value.text;
     }
     choice.within = clicks(section, "within");
     if (section.has("within") && choice.within.size() != 2) {
-      section.fail_at("within", fmt::format("has {} places; give two opposite corners of a box",
+      section.fail_at("within", fmt::format("has {} positions; list two opposite corners of a box",
                                             choice.within.size()));
     }
     if (section.has("near") != section.has("distance")) {
       section.fail_at(section.has("near") ? "near" : "distance",
-                      "needs the other one of near, a place, and distance, in metres");
+                      "requires both near (a position) and distance (metres)");
     }
     if (section.has("near")) {
       choice.near = click(section, "near", section.text("near"));
@@ -119,7 +119,7 @@ class DistrictReader {
          "site.latitude_deg", "site.longitude_deg", "site.ellipsoid_height", "site.geofence",
          "flight.vehicle", "flight.vehicles", "flight.takeoff", "flight.rally",
          "flight.unknown_box", "flight.unknown_beside", "flight.order"},
-        "the district's files, targets, pads, vehicle, planner and seed; give those"};
+        "the district's files, targets, pads, vehicle, planner and seed; set those"};
     district_.set = batch::key_changes(root_.entries("set"), "set.", file_, following);
   }
 
@@ -136,7 +136,7 @@ class DistrictReader {
                              const std::string& text) {
     const auto found = wizard::click_in(text);
     if (!found)
-      section.fail_at(key, "has " + text + "; give " + wizard::click_form + ", in quotes");
+      section.fail_at(key, "has " + text + "; it must be " + wizard::click_form + ", in quotes");
     return *found;
   }
 
@@ -163,7 +163,7 @@ DistrictFile parse_district(const std::string& text, const std::string& name) {
 }
 
 DistrictFile read_district(const fs::path& file) {
-  return parse_district(geometry::read_file(file, largest_file), file.string());
+  return parse_district(geometry::read_file(file, largest_district_file), file.string());
 }
 
 }  // namespace skycap::missions::batch

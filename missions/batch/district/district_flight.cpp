@@ -11,6 +11,7 @@
 #include "flight/district/pad_sorties.h"
 #include "flight/paths/path.h"
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "missions/config/resolve.h"
 
 namespace skycap::missions::batch {
@@ -74,7 +75,7 @@ class FlightPlanner {
     std::vector<flight::MeasuredSpace> spaces;
     for (std::size_t t = 0; t < targets_.size() && !stop_.stop_requested(); ++t) {
       const SurveyedTarget& target = targets_[t];
-      tell_(fmt::format("taking in survey {} of {}", t + 1, targets_.size()));
+      tell_(fmt::format("merging survey {} of {}", t + 1, targets_.size()));
       if (!target.figures) {
         flight::FlightOptions unmeasured = flights_.front();
         unmeasured.unknown_box = target.target.unknown;
@@ -97,14 +98,14 @@ class FlightPlanner {
 
   /// An order and pads for all stations; whether there is anything to fly.
   bool choose_pads() {
-    tell_(fmt::format("ordering {} stations", stations_.size()));
+    tell_(fmt::format("ordering {} views", stations_.size()));
     const flight::RouteOptions options = flights_.front().route(prepared_.pads[0]);
     const flight::Motion motion(flights_.front().flown(), options.conditions);
     const flight::PadSorties sorties = flight::sorties_from_pads(
         stations_, of_target_, prepared_.pads, options.takeoff_climb, motion);
     for (const std::uint32_t i : sorties.out_of_reach) {
       flight_.stations[i].why_not =
-          "getting there and back takes more than a battery has, from any pad";
+          "the flight there and back needs more than one battery, from every take-off point";
     }
     order_ = sorties.order;
     flight_.order_length = sorties.length;
@@ -125,14 +126,15 @@ class FlightPlanner {
     routes_[pad].reset();
     for (const Station& station : own) flight_.stations[station.view_index].why_not.clear();
     if (own.empty()) return;
-    tell_(fmt::format("proving the ways from pad {} of {} to {} stations", pad + 1, flights_.size(),
-                      own.size()));
+    tell_(fmt::format("verifying legs from take-off point {} of {} to {} views", pad + 1,
+                      flights_.size(), own.size()));
     take_ways(pad, own);
     try {
       routes_[pad] = package::plan_flight(flights_[pad], *measured_, prepared_.pads[pad], own,
                                           grounds_, stop_);
+    } catch (const Interrupted&) {
+      return;
     } catch (const Error& error) {
-      if (stop_.stop_requested()) return;
       for (const Station& station : own) {
         flight_.stations[station.view_index].why_not = error.what();
       }
@@ -188,10 +190,12 @@ class FlightPlanner {
   void finish(geometry::OutputFolder& folder) {
     for (std::size_t pad = 0; pad < routes_.size(); ++pad) {
       if (!routes_[pad] || routes_[pad]->sorties.empty()) continue;
-      tell_(fmt::format("writing {} sorties from pad {}", routes_[pad]->sorties.size(), pad + 1));
+      tell_(fmt::format("writing {} sorties from take-off point {}", routes_[pad]->sorties.size(),
+                        pad + 1));
       PadFlight own{pad, *std::move(routes_[pad])};
       own.files = package::stage_flight(names_[pad], flights_[pad], own.route, *measured_,
-                                        package::package_formats(), folder, pad_name(pad));
+                                        package::package_formats(flights_[pad].flown().dialect),
+                                        folder, pad_name(pad));
       for (const std::string& note : own.files.notes) flight_.notes.push_back(note);
       flight_.pads.push_back(std::move(own));
     }

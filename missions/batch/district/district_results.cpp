@@ -222,15 +222,14 @@ std::string results_text(std::span<const SurveyedTarget> targets, const District
   }
   std::string text = fmt::format("  targets   {} of {} surveyed", surveyed, targets.size());
   if (surveyed > 0) {
-    text += fmt::format(", {} views, {:.2f} % covered in the mean\n  planning  {:.3f} s a view",
-                        views, 100.0 * coverage / static_cast<double>(surveyed),
+    text += fmt::format(", {} views, mean coverage {:.2f}%\n  planning  {:.3f} s per view", views,
+                        100.0 * coverage / static_cast<double>(surveyed),
                         planning / std::max<double>(1.0, static_cast<double>(views)));
   }
   if (!flight.pads.empty()) {
     text += fmt::format(
-        "\n  flight    {} of {} views, {:.1f} m in {:.1f} min, {} from {}; each target by itself "
-        "{:.1f} min\n"
-        "  clearance every leg proven at {:.2f} m, least {:.2f} m",
+        "\n  flight    {} of {} views, {:.1f} m in {:.1f} min, {} from {}; each target separately "
+        "{:.1f} min\n  clearance required {:.2f} m, minimum {:.2f} m, verified for every leg",
         flown(flight), flight.stations.size(), flight.length(), flight.duration() / 60.0,
         support::counted(flight.sorties(), "sortie"), support::counted(flight.pads.size(), "pad"),
         alone / 60.0, flight.pads[0].route.clearance, least_clearance(flight));

@@ -45,9 +45,8 @@ void PadChoice::take_given(const DistrictFile& district, const flight::GeodeticP
     const auto pad = search_.at(place.head<2>());
     if (!pad || search_.room_over(*pad, top, 1.0) <= 0.0) {
       throw Error(ErrorKind::bad_config,
-                  fmt::format("{}: key pads: {:.7f},{:.7f} is no pad, by what stands there or will "
-                              "be surveyed, and how steep and even the ground is; give another "
-                              "place",
+                  fmt::format("{}: key pads: {:.7f},{:.7f} is not free, level and even ground "
+                              "outside the surveyed objects; use another position",
                               district.file.string(), click.latitude_deg, click.longitude_deg));
     }
     given_.push_back(*pad);

@@ -90,7 +90,7 @@ class Preparer {
             .vehicle = district_.wishes.vehicle,
             .sources = {},
             .origin = chosen_.origin,
-            .origin_is = "the middle of the district's targets",
+            .origin_is = "the centre of the district's targets",
             .unknown = {}};
   }
 
@@ -166,14 +166,13 @@ class Preparer {
   }
 
   void place_pads() {
-    tell_(fmt::format("looking for pads beside {} targets", values_.size()));
+    tell_(fmt::format("searching for take-off points beside {} targets", values_.size()));
     PadChoice choice(district_, draft_.flight(), chosen_.origin, prepared_.targets);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const auto pad = choice.pad_of(i, wizard::top_of_climbs(values_[i]));
       if (!pad) {
         prepared_.targets[i].refusal =
-            "there is no room for a pad within 100 m of it, by what stands there and how steep and "
-            "even the ground is; give pads";
+            "no take-off point within 100 m of it is free, level and even; set pads";
         continue;
       }
       prepared_.targets[i].pad = *pad;

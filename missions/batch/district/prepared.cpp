@@ -96,8 +96,8 @@ Prepared read_prepared(const fs::path& file) {
     for (const Json& target : json.at("targets")) prepared.targets.push_back(target_of(target));
     return prepared;
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::bad_file, file.string() + ": is not what skycap district wrote (" +
-                                         error.what() + "); remove it, and it is made again");
+    throw Error(ErrorKind::bad_file, file.string() + ": is damaged (" + error.what() +
+                                         "); remove it; skycap district creates it again");
   }
 }
 

@@ -14,12 +14,11 @@ namespace skycap::missions::batch {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 /// Of all things of the target together, by their area.
-double coverage_in(const Json& targets) {
+double coverage_in(const nlohmann::json& targets) {
   double area = 0.0, covered = 0.0;
-  for (const Json& target : targets) {
+  for (const nlohmann::json& target : targets) {
     area += target.at("area_m2").get<double>();
     covered += target.at("area_m2").get<double>() * target.at("coverage").get<double>();
   }
@@ -40,8 +39,8 @@ SurveyFigures figures_of(const fs::path& folder, const batch::TrialRecord& recor
   geometry::finish_commit(folder);
   const fs::path file = folder / package::summary_name;
   try {
-    const Json summary =
-        geometry::parse_json<Json>(geometry::read_file(file, geometry::largest_json));
+    const nlohmann::json summary =
+        geometry::parse_json<nlohmann::json>(geometry::read_file(file, geometry::largest_json));
     SurveyFigures figures{.folder = folder,
                           .views = summary.at("views"),
                           .coverage = coverage_in(summary.at("targets")),
@@ -51,14 +50,14 @@ SurveyFigures figures_of(const fs::path& folder, const batch::TrialRecord& recor
                           .peak_memory = record.run.peak_memory,
                           .file_bytes = bytes_in(folder),
                           .stop_reason = summary.at("stop_reason")};
-    const Json& visible = summary.at("coverage_visible");
+    const nlohmann::json& visible = summary.at("coverage_visible");
     if (visible.is_number()) figures.coverage_visible = visible.get<double>();
     if (const auto& flight = summary.at("flight"); flight.contains("route")) {
       figures.time = flight["route"].at("duration_s");
       figures.length = flight["route"].at("length_m");
     }
     return figures;
-  } catch (const Json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw Error(ErrorKind::bad_file, file.string() + ": is not a survey's summary (" +
                                          error.what() + "); remove its folder, and run again");
   }

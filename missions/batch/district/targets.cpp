@@ -74,9 +74,8 @@ GeodeticPoint origin_of(const std::vector<AlignedBox3d>& boxes, const flight::Lo
   }
   if (!has_terrain && highest - lowest > most_uneven) {
     throw Error(ErrorKind::bad_config,
-                fmt::format("{}: its targets stand at heights that differ by {:.1f} m, and the "
-                            "ground between them is not known; give terrain, or choose targets "
-                            "within {:g} m",
+                fmt::format("{}: the heights of its targets differ by {:.1f} m, and the ground "
+                            "between them is unknown; set terrain, or choose targets within {:g} m",
                             map, highest - lowest, most_uneven));
   }
   GeodeticPoint origin = frame.to_geodetic(all.center());
@@ -149,10 +148,11 @@ ChosenTargets choose_targets(const DistrictFile& district,
     boxes.push_back(box);
   }
   if (chosen.ids.empty()) {
-    throw Error(ErrorKind::bad_config,
-                fmt::format("{}: key targets: leaves none of the {} things of {}; widen the box or "
-                            "the distance",
-                            district.file.string(), objects.size(), map));
+    throw Error(
+        ErrorKind::bad_config,
+        fmt::format(
+            "{}: key targets leaves none of the {} objects of {}; enlarge the box or the distance",
+            district.file.string(), objects.size(), map));
   }
   std::vector<std::string> sorted = chosen.ids;
   std::ranges::sort(sorted);

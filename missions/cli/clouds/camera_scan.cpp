@@ -26,11 +26,11 @@ std::vector<double> image_times(const scan::ScanRoute& route, double period) {
   std::vector<double> times;
   const double start = route.carrier.start(), duration = route.carrier.end() - start;
   if (!(duration / period <= most_images)) {
-    throw Error(ErrorKind::bad_config, "scan.frame_period: every " + support::short_text(period) +
-                                           " s of a flight of " + support::short_text(duration) +
-                                           " s would be " + support::short_text(duration / period) +
-                                           " images; at most " + support::short_text(most_images) +
-                                           " are taken");
+    throw Error(ErrorKind::bad_config,
+                "scan.frame_period: one image every " + support::short_text(period) +
+                    " s of a flight of " + support::short_text(duration) + " s would be " +
+                    support::short_text(duration / period) + " images; at most " +
+                    support::short_text(most_images) + " are allowed");
   }
   for (std::size_t i = 0; static_cast<double>(i) * period <= duration + rounding; ++i) {
     times.push_back(start + static_cast<double>(i) * period);
@@ -61,7 +61,7 @@ int scan_with_camera(const ScanVerbOptions& options, const config::MissionSetup&
                       believed.pose(time) * mount.believed * scan::body_from_camera()});
   }
   ProgressLine progress(console, options.is_quiet);
-  progress.show(setup.name + ": making the scene ready");
+  progress.show(setup.name + ": loading scene");
   const scene::SensedScene truth(setup.scene(), options.mission.parent_path(), setup.run.threads);
   const sim::DepthCamera camera(config);
   const sim::Scene scene = truth.scene(

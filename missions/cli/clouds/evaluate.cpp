@@ -38,8 +38,7 @@ evaluation::CloudJudgement judged_cloud(const EvaluateOptions& options, const Tr
   const std::size_t skipped = geometry::read_positions(file, take);
   progress.clear();
   if (skipped > 0) {
-    warn(console,
-         fmt::format("{}: {} points skipped that are NaN or infinite", file.string(), skipped));
+    warn(console, fmt::format("{}: {} points skipped (NaN or infinite)", file.string(), skipped));
   }
   return judge.judgement();
 }
@@ -84,8 +83,7 @@ Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config:
   }
   if (!options.distance) {
     throw Error(ErrorKind::bad_usage,
-                "--distance is missing; give the distance within which a surface point counts as "
-                "covered, in metres");
+                "missing argument: --distance, the coverage distance in metres");
   }
   const scene::SceneOptions scene{.model = options.model};
   try {
@@ -129,30 +127,27 @@ void print_evaluation(const EvaluateOptions& options, const Truth& truth,
   const std::optional<double> visible = visible_share(judged, truth);
   const std::filesystem::path& file = options.mesh.empty() ? options.cloud : options.mesh;
   out << fmt::format(
-      "{}: {} points against {}{}\n"
-      "  coverage  {:.2f} % of the surface within {:g} m{}\n"
-      "  accuracy  mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95 % below {:.4g} m, largest "
-      "{:.4g} m\n"
-      "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
+      "{}: {} points against {}{}\n  coverage  {:.2f}% of the surface within {:g} m{}\n  accuracy  "
+      "mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95% below {:.4g} m, maximum {:.4g} m\n  "
+      "density   {:.4g} points per m^2 of the surface ({:.4g} m^2)\n",
       file.filename().string(), judged.points, options.model,
       truth.beside.triangles.empty()
           ? ""
-          : fmt::format("; {} more are of the ground and what else stands there", judged.beside),
+          : fmt::format("; {} more on the ground and on neighbours", judged.beside),
       100.0 * judged.coverage, truth.registration_distance,
-      visible ? fmt::format(", {:.2f} % of what is visible", 100.0 * *visible) : "", accuracy.mean,
-      accuracy.root_mean_square, accuracy.median, accuracy.percentile_95, accuracy.largest,
-      judged.density(), judged.area);
+      visible ? fmt::format(", {:.2f}% of the visible surface", 100.0 * *visible) : "",
+      accuracy.mean, accuracy.root_mean_square, accuracy.median, accuracy.percentile_95,
+      accuracy.largest, judged.density(), judged.area);
 }
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
   if (options.pieces > 0) return split_evaluation(options, console);
   if (options.task.is_given() || options.out) {
     throw Error(ErrorKind::bad_usage,
-                "--out, --index, --chunk, --collect and --submit are of a cloud in pieces; give "
-                "--pieces");
+                "--out, --index, --chunk, --collect and --submit require --pieces");
   }
   ProgressLine progress(console, options.is_quiet);
-  progress.show("making " + options.model + " ready");
+  progress.show("loading " + options.model);
   const Truth truth = truth_of(options, true, progress.teller(), console.stop);
   const bool is_mesh = !options.mesh.empty();
   progress.show("reading " + (is_mesh ? options.mesh : options.cloud).string());

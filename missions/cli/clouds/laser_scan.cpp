@@ -34,8 +34,8 @@ std::shared_ptr<const flight::UtmProjection> projection_of(const scan::FlownScan
   if (scan.crs == scan::ScanCrs::local) return nullptr;
   if (!scan.site) {
     throw Error(ErrorKind::bad_config,
-                "scan.crs is utm, but the mission has no place; add site.latitude_deg and "
-                "site.longitude_deg, or say local");
+                "scan.crs: utm requires a georeference; set site.latitude_deg and "
+                "site.longitude_deg, or use local");
   }
   return std::make_shared<const flight::UtmProjection>(*scan.site);
 }
@@ -68,12 +68,11 @@ class ScanReport {
     shown_ = now;
     const auto flown = static_cast<double>(progress.firings - range_.first);
     const auto all = static_cast<double>(range_.count);
-    std::string text =
-        fmt::format("{}: {:.1f} % flown, {:.1f} M points", name_, 100.0 * flown / all,
-                    1e-6 * static_cast<double>(progress.points));
+    std::string text = fmt::format("{}: {:.1f}% flown, {:.1f} M points", name_, 100.0 * flown / all,
+                                   1e-6 * static_cast<double>(progress.points));
     if (begun_) {
       const double rate = (flown - *begun_) / seconds_since(start_);
-      text += fmt::format(", {:.1f} M shots/s, {:.0f} s left", 1e-6 * shots_in_firing_ * rate,
+      text += fmt::format(", {:.1f} M pulses/s, {:.0f} s left", 1e-6 * shots_in_firing_ * rate,
                           (all - flown) / rate);
     } else {  // the pace is not known yet
       begun_ = flown;
@@ -97,8 +96,8 @@ std::vector<scan::LaserOutput> output_files(const ScanVerbOptions& options,
   const auto add = [&](const std::string& name, const auto& format, scan::ReturnPosition position) {
     for (const scan::LaserOutput& output : outputs) {
       if (output.name == name) {
-        throw Error(ErrorKind::bad_usage,
-                    "--format asks for two files " + name + "; leave one of the formats out");
+        throw Error(ErrorKind::bad_usage, "--format conflicts: two formats have the file name " +
+                                              name + "; remove one of them");
       }
     }
     outputs.push_back({name, format, position});
@@ -153,7 +152,7 @@ Json LaserScan::identity(const scan::FlightPiece& piece) const {
 
 scene::SensedScene LaserScan::read_scene(const std::filesystem::path& index) {
   scan::require_measurable(lidar_, flown_.route.carrier);
-  progress_.show(setup_.name + ": making the scene ready");
+  progress_.show(setup_.name + ": loading scene");
   return {setup_.scene(), options_.mission.parent_path(), setup_.run.threads, index};
 }
 
@@ -224,7 +223,7 @@ std::optional<scan::CompletePiece> LaserScan::complete(const scan::FlightPiece& 
 
 int LaserScan::join(std::span<const scan::CompletePiece> pieces, geometry::OutputFolder& folder) {
   const HoldsResults results(console_);
-  progress_.show(setup_.name + ": joining the pieces");
+  progress_.show(setup_.name + ": merging the pieces");
   return finish(join_pieces(pieces, outputs_, folder), folder);
 }
 
@@ -275,8 +274,8 @@ void LaserScan::print(const scan::LaserResult& recorded,
   const double shots = shots_of(recorded.scan.progress.firings), time = recorded.reached.time;
   std::ostream& out = console_.out;
   out << fmt::format(
-             "{}: {}, {:.1f} s of flight{}\n"
-             "  scan      {:.2f} M shots, {:.2f} M points in {:.1f} s, {:.1f} M shots/s\n",
+             "{}: {}, {:.1f} s of flight{}\n  scan      {:.2f} M pulses, {:.2f} M points in {:.1f} "
+             "s, {:.1f} M pulses/s\n",
              setup_.name, sensor_.name, seconds_of(recorded.scan.progress.firings),
              recorded.scan.is_complete ? "" : ", interrupted", 1e-6 * shots,
              1e-6 * static_cast<double>(recorded.scan.progress.points), time, 1e-6 * shots / time)

@@ -26,7 +26,7 @@ int reconstruct_cloud(const ReconstructOptions& options, const Console& console)
   ProgressLine progress(console, false);
   progress.show("reading " + options.cloud.string());
   const geometry::AttributedCloud cloud = geometry::read_cloud(options.cloud);
-  progress.show("reconstructing the surface of " + options.cloud.string());
+  progress.show("reconstructing a mesh of " + options.cloud.string());
   const auto start = std::chrono::steady_clock::now();
   const support::Reconstruction result = [&] {
     try {
@@ -38,14 +38,14 @@ int reconstruct_cloud(const ReconstructOptions& options, const Console& console)
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   geometry::write_mesh(out, result.mesh);
   progress.clear();
-  console.out
-      << fmt::format(
-             "{}: {} points, {:.3g} m apart{}\n"
-             "  surface   {} triangles in {:.1f} s, octree of depth {}; {} triangles trimmed\n",
-             options.cloud.filename().string(), result.points, result.spacing,
-             cloud.normals.empty() ? ", normals estimated" : "", result.mesh.triangles.size(),
-             time.count(), result.depth, result.trimmed_triangles)
-      << "  results   " << out.string() << "\n";
+  console.out << fmt::format(
+                     "{}: {} points, spacing {:.3g} m{}\n  surface   {} triangles in {:.1f} s, "
+                     "octree depth {}; {} triangles trimmed\n",
+                     options.cloud.filename().string(), result.points, result.spacing,
+                     cloud.normals.empty() ? ", normals estimated" : "",
+                     result.mesh.triangles.size(), time.count(), result.depth,
+                     result.trimmed_triangles)
+              << "  results   " << out.string() << "\n";
   return 0;
 }
 

@@ -29,16 +29,14 @@ int scan(const ScanVerbOptions& options, const Console& console) {
   const bool is_laser = std::holds_alternative<sim::LidarConfig>(sensor.sensor);
   if (options.pieces > 0) {
     if (!is_laser) {
-      throw Error(ErrorKind::bad_usage,
-                  "--pieces: " + sensor.name +
-                      " is a camera; only the flights of laser scanners are split");
+      throw Error(
+          ErrorKind::bad_usage,
+          "--pieces: " + sensor.name + " is a camera; only scans of laser scanners can be split");
     }
     return split_scan(options, setup, sensor, out, console);
   }
   if (options.task.is_given()) {
-    throw Error(
-        ErrorKind::bad_usage,
-        "--index, --chunk, --collect and --submit are of a flight in pieces; give --pieces");
+    throw Error(ErrorKind::bad_usage, "--index, --chunk, --collect and --submit require --pieces");
   }
   geometry::OutputFolder folder(out);
   if (!is_laser) return scan_with_camera(options, setup, sensor, folder, console);

@@ -27,7 +27,7 @@ nlohmann::ordered_json open_journal(scan::ScanJournal& journal, bool resumes,
                                     const Console& console) {
   nlohmann::ordered_json begun = journal.open(run, identity, resumes);
   if (begun.is_object() && !options.is_quiet) {
-    console.err << "going on with an interrupted scan\n" << std::flush;
+    console.err << "resuming an interrupted scan\n" << std::flush;
   }
   return begun;
 }

@@ -54,7 +54,7 @@ class PiecesOfCloud final : public PieceWork {
           const bool is_own = std::min(place, options_.pieces - 1) == number;
           if (!is_own || console_.stop.stop_requested()) return;
           progress_.show(
-              fmt::format("{}: piece {}, {:.0f} %", options_.cloud.string(), number, 100.0 * end));
+              fmt::format("{}: piece {}, {:.0f}%", options_.cloud.string(), number, 100.0 * end));
           judge.add(points);
         });
     if (console_.stop.stop_requested()) return false;
@@ -83,7 +83,7 @@ class PiecesOfCloud final : public PieceWork {
 
  private:
   Truth read_truth() {
-    progress_.show("making " + options_.model + " ready");
+    progress_.show("loading " + options_.model);
     const bool wants_visible = !options_.task.index;  // which only the whole cloud is asked for
     return truth_of(options_, wants_visible, progress_.teller(), console_.stop);
   }
@@ -133,11 +133,10 @@ batch::Words command_of(const EvaluateOptions& options) {
 
 int split_evaluation(const EvaluateOptions& options, const Console& console) {
   if (!options.mesh.empty() || !options.out) {
-    throw Error(ErrorKind::bad_usage,
-                "--pieces are of a cloud and need a folder; give --cloud and --out");
+    throw Error(ErrorKind::bad_usage, "--pieces requires --cloud and --out");
   }
   if (!fs::is_regular_file(options.cloud)) {
-    throw Error(ErrorKind::bad_file, options.cloud.string() + ": there is no such file");
+    throw Error(ErrorKind::bad_file, options.cloud.string() + ": does not exist");
   }
   const SplitWork work{.pieces = options.pieces,
                        .out = *options.out,

@@ -72,7 +72,7 @@ int run_split(const SplitWork& split, const TaskOptions& task, const Console& co
   }
   geometry::OutputFolder folder(split.out);
   if (task.collects && is_collected(split)) {
-    warn(console, split.out.string() + ": has no pieces; its results are complete already");
+    warn(console, split.out.string() + ": contains no pieces; its results are complete");
     return 0;
   }
   const std::unique_ptr<PieceWork> work = split.begin();

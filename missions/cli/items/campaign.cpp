@@ -46,8 +46,7 @@ int campaign_verb(const ItemOptions& options, const Console& console) {
     write_page("results.json", options.has_report, folder, console);
     folder.commit();
     if (!options.is_quiet) {
-      console.out << markdown
-                  << fmt::format("\n{} of {} items", run->done(), run->manifest().size())
+      console.out << markdown << fmt::format("\n{} of {} runs", run->done(), run->manifest().size())
                   << run->missing() << "\nresults: " << out.string() << "\n"
                   << std::flush;
     }
@@ -64,8 +63,7 @@ int campaign_verb(const ItemOptions& options, const Console& console) {
 }  // namespace
 
 void add_campaign(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "campaign", "Run missions x planners x seeds x changes, here or on an engine for many jobs");
+  CLI::App* verb = app.add_subcommand("campaign", "Run a batch of surveys locally or on a cluster");
   const auto options = std::make_shared<ItemOptions>();
   add_item_options(*verb, *options, "Campaign file (docs/reference/batch-files.md)");
   run(*verb, options, campaign_verb, console, action);

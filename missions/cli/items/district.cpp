@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using batch::SurveyedTarget;
 
-constexpr const char* not_complete = "its survey is not complete; the warnings of its run say why";
+constexpr const char* not_complete = "the survey is not complete; see the warnings of its run";
 
 /// A district while it is surveyed.
 class DistrictVerb {
@@ -105,7 +105,7 @@ int district_verb(const ItemOptions& options, const Console& console) {
 
 void add_district(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "district", "Survey the buildings of a map, here or on an engine, and fly all of them");
+      "district", "Survey several buildings of a map and plan one flight for all");
   const auto options = std::make_shared<ItemOptions>();
   add_item_options(*verb, *options, "District file (docs/reference/batch-files.md)");
   run(*verb, options, district_verb, console, action);

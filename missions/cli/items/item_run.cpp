@@ -70,7 +70,7 @@ std::size_t ItemRun::work_on(const batch::ItemRange& range, bool runs) {
       .unfinished = [&](const batch::Item& item) { progress_.expect(kind_of(item), 1); },
       .preparing =
           [&](const batch::Setup& setup) {
-            progress_.say(setup.title + ": measuring what could be covered at all");
+            progress_.say(setup.title + ": computing attainable coverage");
           },
       .done =
           [&](const batch::Item& item, const batch::TrialRecord& record) {
@@ -185,15 +185,14 @@ LastResort::~LastResort() = default;
 void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what) {
   verb.add_option("file", options.file, what)->required();
   verb.add_option("--out", options.out,
-                  "Folder for the results; default results/NAME. What is complete there is not run "
-                  "again");
+                  "Folder for the results (default: results/NAME). Complete runs are not repeated");
   verb.add_option("--threads", options.threads,
-                  "Items at a time, 0 for all processors; default 0, with --index 1")
+                  "Number of parallel runs, 0: all processors (default: 0; with --index: 1)")
       ->check(CLI::Range(0, 1024));
-  auto* lists = verb.add_flag("--list", options.lists, "Print the manifest and run nothing");
-  for (CLI::Option* other : add_task_options(verb, options.task, "item")) lists->excludes(other);
-  verb.add_flag("!--no-report", options.has_report, "Leave out the pages");
-  verb.add_flag("--quiet", options.is_quiet, "Print nothing but warnings and errors");
+  auto* lists = verb.add_flag("--list", options.lists, "Print the runs and exit");
+  for (CLI::Option* other : add_task_options(verb, options.task, "run")) lists->excludes(other);
+  verb.add_flag("!--no-report", options.has_report, "Do not write the HTML reports");
+  verb.add_flag("--quiet", options.is_quiet, "Print warnings and errors only");
 }
 
 }  // namespace skycap::missions::cli

@@ -13,18 +13,18 @@ std::string failures_of(const AimErrors& errors, double arrival) {
     text += (text.empty() ? "" : "; ") + failure;
   };
   if (errors.position > arrival) {
-    add(fmt::format("position is off by {:.2f} m (at most {:.2f})", errors.position, arrival));
+    add(fmt::format("position error {:.2f} m (at most {:.2f})", errors.position, arrival));
   }
   if (errors.speed > rest_speed) {
-    add(fmt::format("speed is {:.2f} m/s (at most {:.1f})", errors.speed, rest_speed));
+    add(fmt::format("speed {:.2f} m/s (at most {:.1f})", errors.speed, rest_speed));
   }
   if (errors.turn > aim_tolerance) {
-    add(fmt::format("heading is off by {:.1f} degrees (at most {:.0f})", degrees(errors.turn),
+    add(fmt::format("heading error {:.1f} degrees (at most {:.0f})", degrees(errors.turn),
                     degrees(aim_tolerance)));
   }
   if (std::abs(errors.pitch - errors.asked_pitch) > aim_tolerance) {
     add(
-        fmt::format("gimbal pitch is {:.1f} degrees instead of {:.1f} (at most {:.0f} off), the "
+        fmt::format("gimbal pitch {:.1f} degrees instead of {:.1f} (at most {:.0f} off), the "
                     "vehicle's own pitch {:.1f}",
                     degrees(errors.pitch), degrees(errors.asked_pitch), degrees(aim_tolerance),
                     degrees(errors.vehicle_pitch)));

@@ -27,21 +27,20 @@ GuidedLimits limits_of(const flight::FlightOptions& flight) {
 void require_flyable(const flight::FlightOptions& flight) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorKind::bad_config, what); };
   if (!flight.is_flown()) {
-    refuse("flight.vehicle is missing; what flies must be named, such as generic_ardupilot");
+    refuse("flight.vehicle is missing; set an ArduPilot vehicle, such as generic_ardupilot");
   }
   if (flight.capture.is_moving) {
     refuse(
-        "sensor.capture is moving, and skycap fly takes its scans at views; leave it out (skycap "
-        "serve takes in scans from the way)");
+        "sensor.capture: moving conflicts with skycap fly, which scans at views only; remove it "
+        "(skycap serve accepts en-route scans)");
   }
   if (flight.flown().dialect != flight::Dialect::ardupilot) {
-    refuse("flight.vehicle " + flight.vehicle_name +
-           " is no ArduPilot's; only ArduCopter is flown live, such as generic_ardupilot");
+    refuse(
+        "flight.vehicle " + flight.vehicle_name +
+        " does not use ArduPilot; live flights require ArduCopter, for example generic_ardupilot");
   }
   if (!flight.has_place) {
-    refuse(
-        "site.latitude_deg and site.longitude_deg are missing; the autopilot must be told places "
-        "on the Earth");
+    refuse("missing georeference; set site.latitude_deg and site.longitude_deg");
   }
 }
 

@@ -42,8 +42,6 @@ std::string place_text(const Vector3d& place) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f})", place.x(), place.y(), place.z());
 }
 
-Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }
-
 /// A trouble, and what has come up while the vehicle came to rest: the later one decides what may
 /// be done.
 Trouble joined(const Trouble& first, const MaybeTrouble& later) {
@@ -89,10 +87,10 @@ MaybeTrouble GuidedFlight::command(std::uint16_t number, const std::array<float,
                                    const std::string& what) {
   const std::optional<std::uint8_t> answer = link_.command(number, params);
   if (answer && *answer == 0) return std::nullopt;
-  if (!answer) return Trouble{TroubleKind::link, "no answer when told to " + what};
+  if (!answer) return Trouble{TroubleKind::link, "timeout: no answer to the command to " + what};
   const std::string& warning = link_.state().warning();
-  return refused(fmt::format("the autopilot refuses to {} (result {}){}", what, *answer,
-                             warning.empty() ? "" : ": " + warning));
+  return refused(fmt::format("the autopilot rejected the command to {} (result {}){}", what,
+                             *answer, warning.empty() ? "" : ": " + warning));
 }
 
 MaybeTrouble GuidedFlight::enter_mode(std::uint32_t mode, const std::string& name) {
@@ -103,7 +101,7 @@ MaybeTrouble GuidedFlight::enter_mode(std::uint32_t mode, const std::string& nam
   }
   const double end = link_.now() + mode_patience;
   while (link_.state().heartbeat()->mode != mode) {
-    if (link_.now() > end) return refused("the autopilot does not enter mode " + name);
+    if (link_.now() > end) return refused("timeout: the autopilot did not enter mode " + name);
     listen();
   }
   mode_ = mode;
@@ -114,7 +112,7 @@ MaybeTrouble GuidedFlight::arm_motors() {
   if (MaybeTrouble trouble = command(arm, {1.0F}, "arm")) return trouble;
   const double end = link_.now() + mode_patience;
   while (!link_.state().heartbeat()->is_armed) {
-    if (link_.now() > end) return refused("the vehicle does not arm");
+    if (link_.now() > end) return refused("timeout: the vehicle did not arm");
     listen();
   }
   return std::nullopt;
@@ -138,7 +136,7 @@ MaybeTrouble GuidedFlight::take_off(const Vector3d& above) {
     listen();
     MaybeTrouble trouble = watch({begin, place_});
     if (!trouble && link_.now() > end)
-      trouble = refused("the vehicle does not climb to its height");
+      trouble = refused("timeout: the vehicle did not climb to its take-off altitude");
     if (!trouble) continue;
     place_ = stopping_place({begin, above});
     flown_ = {place_};
@@ -179,15 +177,15 @@ MaybeTrouble GuidedFlight::fly_leg(const Vector3d& to) {
     if (late > longest_stall) {
       listen();  // what was said meanwhile
       trouble = Trouble{TroubleKind::stalled,
-                        fmt::format("no set points were sent for {:.1f} s: this program stood "
-                                    "still; stopping where the vehicle is",
+                        fmt::format("set points were interrupted for {:.1f} s because this program "
+                                    "was suspended; stopping at the current position",
                                     late)};
     } else {
       trouble = watch(leg_);
     }
     if (!trouble && link_.now() > end) {
-      trouble =
-          Trouble{TroubleKind::off_leg, "the vehicle does not come to rest at " + place_text(to)};
+      trouble = Trouble{TroubleKind::off_leg,
+                        "timeout: the vehicle did not come to rest at " + place_text(to)};
     }
     flown = time_after(leg, motion_.vehicle().mode.jerk, flown, sent, late);
     if (trouble) return give_up(leg, flown, *trouble);
@@ -242,7 +240,7 @@ MaybeTrouble GuidedFlight::come_to_rest(const flight::Segment& leg) {
     MaybeTrouble trouble = watch_place(leg);
     if (!trouble && link_.now() > end) {
       trouble = Trouble{TroubleKind::off_leg,
-                        "the vehicle does not come to rest at " + place_text(place_)};
+                        "timeout: the vehicle did not come to rest at " + place_text(place_)};
     }
     if (!trouble) continue;
     hold_after(*trouble);
@@ -263,9 +261,9 @@ MaybeTrouble GuidedFlight::settle(const geometry::View& view) {
     const std::string failures = failures_of(errors_at(view), limits_.arrival);
     if (!failures.empty()) since = link_.now();
     if (link_.now() > end) {
-      return refused("the camera does not come to rest at " + place_text(place_) +
-                     " to look where it is asked to: " +
-                     (failures.empty() ? "it does not stay so for flight.hold" : failures));
+      return refused("timeout: the camera did not settle at " + place_text(place_) +
+                     " on the requested direction: " +
+                     (failures.empty() ? "it did not stay there for flight.hold" : failures));
     }
   }
   return std::nullopt;
@@ -314,7 +312,7 @@ MaybeTrouble GuidedFlight::land(const Vector3d& pad) {
     listen();
     const MaybeTrouble trouble = watch({place_, {place_.x(), place_.y(), pad.z()}});
     if (trouble && link_.state().heartbeat()->is_armed) return trouble;
-    if (link_.now() > end) return refused("the vehicle does not land");
+    if (link_.now() > end) return refused("timeout: the vehicle did not land");
   }
   is_flying_ = false;
   return std::nullopt;
@@ -370,10 +368,10 @@ MaybeTrouble GuidedFlight::watch_place(const flight::Segment& leg) const {
   if (MaybeTrouble trouble = watch_link(link_.state(), mode_, link_.now())) return trouble;
   const double off = std::sqrt(nearest(leg, position()).squared_distance);
   if (off > limits_.corridor) {
-    return Trouble{TroubleKind::off_leg,
-                   fmt::format("the vehicle is {:.1f} m off its leg, at {}; the leg is proven for "
-                               "{:.1f} m",
-                               off, place_text(position()), limits_.corridor)};
+    return Trouble{
+        TroubleKind::off_leg,
+        fmt::format("cross-track error of {:.1f} m at {}; the leg is verified for {:.1f} m", off,
+                    place_text(position()), limits_.corridor)};
   }
   return std::nullopt;
 }
@@ -384,9 +382,8 @@ MaybeTrouble GuidedFlight::watch(const flight::Segment& leg) const {
   if (stop_.stop_requested()) return Trouble{TroubleKind::interrupted, "interrupted"};
   const double battery = this->battery().value_or(0.0);
   if (battery < battery_needed_) {
-    return Trouble{TroubleKind::battery,
-                   fmt::format("the battery is at {:.0f} %, and the way home needs {:.0f} %",
-                               100.0 * battery, 100.0 * battery_needed_)};
+    return Trouble{TroubleKind::battery, fmt::format("battery at {:.0f}%; the return needs {:.0f}%",
+                                                     100.0 * battery, 100.0 * battery_needed_)};
   }
   return std::nullopt;
 }

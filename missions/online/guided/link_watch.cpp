@@ -33,9 +33,10 @@ MaybeTrouble watch_link(const mavlink::VehicleState& state, std::uint32_t mode, 
   const mavlink::HeardHeartbeat& heartbeat = state.heartbeat().value();
   if (!heartbeat.is_armed) return Trouble{TroubleKind::pilot, "the vehicle was disarmed"};
   if (heartbeat.mode != mode) {
-    return Trouble{TroubleKind::pilot, fmt::format("somebody else has control: the vehicle is in "
-                                                   "mode {}, which was not set from here",
-                                                   heartbeat.mode)};
+    return Trouble{TroubleKind::pilot,
+                   fmt::format("another station or the pilot has control: the vehicle is in mode "
+                               "{}, which was not set by this program",
+                               heartbeat.mode)};
   }
   const double silence = now - state.last_heard().value();
   const double without_beat = now - heartbeat.time;
@@ -43,16 +44,16 @@ MaybeTrouble watch_link(const mavlink::VehicleState& state, std::uint32_t mode, 
   // What else it said just after its last position makes a silence no shorter.
   const bool is_silent = age > position_patience && silence > silence_patience;
   if (is_silent || without_beat > heartbeat_patience) {
-    return Trouble{TroubleKind::link, fmt::format("the link is lost: the vehicle was not heard for "
-                                                  "{:.1f} s",
-                                                  std::max(silence, without_beat))};
+    return Trouble{TroubleKind::link,
+                   fmt::format("link lost: no message from the vehicle for {:.1f} s",
+                               std::max(silence, without_beat))};
   }
   if (age > position_patience) {
     return Trouble{TroubleKind::position,
-                   fmt::format("the vehicle's position is {:.1f} s old", age)};
+                   fmt::format("the position estimate is {:.1f} s old", age)};
   }
   if (is_sure_of_place(state)) return std::nullopt;
-  return Trouble{TroubleKind::position, "the vehicle is not sure any more where it is"};
+  return Trouble{TroubleKind::position, "position estimate lost (EKF)"};
 }
 
 }  // namespace skycap::missions::online

@@ -44,7 +44,7 @@ FlightEnd LiveFlight::run() {
   MaybeTrouble trouble = begin();
   while (!trouble && survey_.proposal().view) trouble = visit(*survey_.proposal().view);
   if (trouble) return end(*trouble);
-  options_.note("the survey is over");
+  options_.note("survey completed");
   return go_home(std::nullopt);
 }
 
@@ -57,7 +57,7 @@ MaybeTrouble LiveFlight::begin() {
   const auto over = survey_.flight()->find_way(here_, above_pad_);
   if (!climb || climb->points.size() > 2 || !over) {
     return Trouble{TroubleKind::refused,
-                   "the climb from where the vehicle stands is not proven to be free"};
+                   "the climb from the vehicle's position is not verified as free"};
   }
   home_ = over->points;
   if (survey_.proposal().view) {
@@ -81,9 +81,8 @@ MaybeTrouble LiveFlight::visit(const geometry::View& view) {
   if (MaybeTrouble trouble = vehicle_.settle(view)) return trouble;
   if (vehicle_.reports_against_vehicle() && !std::exchange(is_gimbal_noted_, true)) {
     options_.note(
-        "the gimbal reports its pitch against the vehicle, not the horizon: the vehicle's own "
-        "pitch "
-        "is added");
+        "the gimbal reports its pitch relative to the vehicle, not to the horizon: the vehicle's "
+        "pitch is added");
   }
   if (MaybeTrouble trouble = sense(view)) return trouble;
   return plan();
@@ -100,11 +99,11 @@ void LiveFlight::search_way(const geometry::View& view) {
 
 MaybeTrouble LiveFlight::find_way(const geometry::View& view) {
   if (MaybeTrouble trouble = beside([this, view] { search_way(view); }, options_.planning_limit,
-                                    TroubleKind::planner, "finding the way to the view")) {
+                                    TroubleKind::planner, "planning a path to the view")) {
     return trouble;
   }
   if (!way_.empty()) return std::nullopt;
-  return Trouble{TroubleKind::planner, "no way to the view is proven from where the vehicle is"};
+  return Trouble{TroubleKind::planner, "no verified path from the vehicle's position to the view"};
 }
 
 /// For the way there and back, and home from here.
@@ -114,10 +113,11 @@ MaybeTrouble LiveFlight::check_battery() {
       there + share_for(home_) + share_for({above_pad_, pad_}) + motion_.conditions().reserve;
   const double left = vehicle_.battery().value_or(0.0);
   if (left < there + home) {
-    return Trouble{TroubleKind::battery,
-                   fmt::format("the battery is at {:.0f} %; the next view and the way home from it "
-                               "need {:.0f} %, the reserve with them",
-                               100.0 * left, 100.0 * (there + home))};
+    return Trouble{
+        TroubleKind::battery,
+        fmt::format(
+            "battery at {:.0f}%; the next view and the return from it, with reserve, need {:.0f}%",
+            100.0 * left, 100.0 * (there + home))};
   }
   vehicle_.need_battery(home);
   return std::nullopt;
@@ -153,11 +153,11 @@ MaybeTrouble LiveFlight::plan() {
           beside(work, options_.planning_limit, TroubleKind::planner, "planning the next view")) {
     return trouble;
   }
-  if (!is_new_) return Trouble{TroubleKind::sensor, "the sensor gave a scan that it gave before"};
+  if (!is_new_) return Trouble{TroubleKind::sensor, "the sensor delivered the same scan twice"};
   if (survey_.proposal().warns_of_pose()) {
-    return Trouble{TroubleKind::pose,
-                   "the scan was set aside: it does not fit what is known from where the vehicle "
-                   "takes itself to be"};
+    return Trouble{
+        TroubleKind::pose,
+        "scan rejected: pose inconsistent with the map at the vehicle's estimated position"};
   }
   // Else it came here by ways that were proven when it flew them.
   home_ = home_found_ ? home_found_->points : way_home();
@@ -178,7 +178,7 @@ MaybeTrouble LiveFlight::beside(std::function<void()> work, double limit, Troubl
   const auto is_done = [this] {
     return work_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   };
-  const Trouble too_late{kind, fmt::format("{} takes longer than {:.0f} s", what, limit)};
+  const Trouble too_late{kind, fmt::format("timeout: {} took more than {:.0f} s", what, limit)};
   if (MaybeTrouble trouble = vehicle_.hold_until(is_done, limit, too_late)) return trouble;
   work_.get();
   if (!failure->empty()) return Trouble{kind, what + " failed: " + *failure};
@@ -204,14 +204,14 @@ FlightEnd LiveFlight::end(const Trouble& trouble) {
 
 FlightEnd LiveFlight::hold(const Trouble& trouble) {
   if (trouble.kind != TroubleKind::pilot) {
-    options_.note("holding position until somebody takes control");
+    options_.note("holding position until a pilot takes control");
     options_.note(vehicle_.hold_on().what);
   }
   return {trouble, false};
 }
 
 FlightEnd LiveFlight::go_home(const MaybeTrouble& trouble) {
-  options_.note("flying home");
+  options_.note("returning to the take-off point");
   vehicle_.begin_return();
   MaybeTrouble on_the_way = vehicle_.fly(way_home());
   if (!on_the_way) on_the_way = vehicle_.land(pad_);

@@ -76,7 +76,7 @@ NetworkPort::NetworkPort(const NetworkAddress& address, double pace)
   }
   const std::string why = std::generic_category().message(errno);
   if (handle_ >= 0) ::close(handle_);
-  throw Error(ErrorKind::bad_usage, "--connect: the address cannot be had: " + why);
+  throw Error(ErrorKind::bad_usage, "--connect: cannot resolve the address: " + why);
 }
 
 NetworkPort::~NetworkPort() { ::close(handle_); }

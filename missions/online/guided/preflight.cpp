@@ -20,7 +20,7 @@ namespace mavlink = flight::mavlink;
 constexpr std::uint16_t set_message_interval = 511;                               ///< MAV_CMD
 constexpr std::uint8_t ardupilot = 3;                                             ///< MAV_AUTOPILOT
 constexpr std::array<std::uint8_t, 8> multicopters{2, 3, 4, 13, 14, 15, 29, 35};  ///< MAV_TYPE
-constexpr double period = 0.1;                                                    ///< [s]
+constexpr double listening_period = 0.1;                                          ///< [s]
 
 /// A message and how often it is wanted [1/s].
 struct Wish {
@@ -33,8 +33,6 @@ constexpr std::array<Wish, 5> wishes{{{mavlink::GlobalPosition::id, 10.0},
                                       {mavlink::SystemStatus::id, 1.0},
                                       {mavlink::EstimatorStatus::id, 2.0}}};
 
-Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }
-
 /// Listens until it is so; `late` says what is missing.
 template <class IsSo, class Late>
 MaybeTrouble wait_until(mavlink::AutopilotLink& link, double patience, const std::stop_token& stop,
@@ -43,7 +41,7 @@ MaybeTrouble wait_until(mavlink::AutopilotLink& link, double patience, const std
   while (!is_so(link.state())) {
     if (stop.stop_requested()) return Trouble{TroubleKind::interrupted, "interrupted"};
     if (link.now() > end) return late(link.state());
-    link.spin(period);
+    link.spin(listening_period);
   }
   return std::nullopt;
 }
@@ -52,8 +50,8 @@ MaybeTrouble check_kind(const mavlink::HeardHeartbeat& heard) {
   const bool is_copter = std::ranges::find(multicopters, heard.type) != multicopters.end();
   if (heard.autopilot == ardupilot && is_copter) return std::nullopt;
   return refused(
-      fmt::format("the vehicle says that its autopilot is number {} and its type {}; "
-                  "only ArduCopter is flown: 3, and a multicopter's type",
+      fmt::format("unsupported vehicle: the autopilot is number {} and the type {}; only "
+                  "ArduCopter is supported (autopilot 3, a multicopter type)",
                   heard.autopilot, heard.type));
 }
 
@@ -63,11 +61,10 @@ MaybeTrouble find_vehicle(mavlink::AutopilotLink& link, double patience,
     return state.heartbeat().has_value();
   };
   const auto late = [&](const mavlink::VehicleState&) {
-    return Trouble{
-        TroubleKind::link,
-        fmt::format("no autopilot was heard for {:.0f} s; see that it sends MAVLink 2 to "
-                    "the address that --connect names",
-                    patience)};
+    return Trouble{TroubleKind::link,
+                   fmt::format("timeout: no autopilot was heard for {:.0f} s; check that it sends "
+                               "MAVLink 2 to the address in --connect",
+                               patience)};
   };
   if (MaybeTrouble trouble = wait_until(link, patience, stop, is_heard, late)) return trouble;
   return check_kind(*link.state().heartbeat());
@@ -79,12 +76,12 @@ MaybeTrouble find_place(mavlink::AutopilotLink& link, double patience,
     return is_sure_of_place(state) && state.position() && state.yaw() && state.battery();
   };
   const auto late = [&](const mavlink::VehicleState& state) {
-    const char* missing = !is_sure_of_place(state) ? "where it is on the Earth (EKF_STATUS_REPORT)"
+    const char* missing = !is_sure_of_place(state) ? "its position estimate (EKF_STATUS_REPORT)"
                           : !state.position()      ? "its position (GLOBAL_POSITION_INT)"
                           : !state.yaw()           ? "its heading (ATTITUDE)"
-                                                   : "how full its battery is (SYS_STATUS)";
+                                                   : "its battery level (SYS_STATUS)";
     return refused(
-        fmt::format("after {:.0f} s the vehicle does not say for sure {}", patience, missing));
+        fmt::format("timeout: for {:.0f} s the vehicle did not report {}", patience, missing));
   };
   return wait_until(link, patience, stop, is_complete, late);
 }
@@ -92,15 +89,15 @@ MaybeTrouble find_place(mavlink::AutopilotLink& link, double patience,
 MaybeTrouble check_pad(const mavlink::VehicleState& state, const FlightFrame& frame,
                        const Vector3d& pad, const GuidedLimits& limits) {
   if (state.heartbeat()->is_armed) {
-    return refused("the vehicle is armed; this flight begins on the pad, disarmed");
+    return refused("the vehicle is armed; a flight begins at the take-off point, disarmed");
   }
   const Vector3d off = place_of(state, frame) - pad;
   const double beside = off.head<2>().norm();
   if (beside <= limits.pad_radius && std::abs(off.z()) <= limits.pad_height) return std::nullopt;
   return refused(
-      fmt::format("the vehicle takes itself to be {:.1f} m beside and {:.1f} m above the "
-                  "pad at ({:.1f}, {:.1f}, {:.1f}); put it there, or mend "
-                  "flight.takeoff or the site's latitude and longitude",
+      fmt::format("the vehicle reports a position {:.1f} m beside and {:.1f} m above the take-off "
+                  "point ({:.1f}, {:.1f}, {:.1f}); put it there, or correct flight.takeoff or the "
+                  "site's latitude and longitude",
                   beside, off.z(), pad.x(), pad.y(), pad.z()));
 }
 

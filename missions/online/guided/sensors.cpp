@@ -46,7 +46,7 @@ fs::path wait_for_scan(const fs::path& folder, const std::string& name, double p
     if (const auto file = scan_in(folder, name)) return *file;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  throw Error(ErrorKind::bad_file, (folder / name).string() + ".*: no scan came");
+  throw Error(ErrorKind::bad_file, (folder / name).string() + ".*: timeout: no scan arrived");
 }
 
 }  // namespace
@@ -55,13 +55,15 @@ Sensor folder_sensor(const flight::FlightOptions& flight, const LiveOptions& liv
                      const fs::path& folder, ScanInput input, double patience,
                      std::stop_token stop) {
   if (!fs::is_directory(folder)) {
-    throw Error(ErrorKind::bad_file, folder.string() + ": is no folder; name one for scans");
+    throw Error(ErrorKind::bad_file,
+                folder.string() + ": is not a folder; give the folder that scans are written to");
   }
   return [flight, live, folder, input = std::move(input), patience, stop = std::move(stop)](
              const geometry::View&, const geometry::View& taken, std::size_t number) {
     const std::string name = fmt::format("scan-{:04}", number);
     if (const auto old = scan_in(folder, name)) {
-      throw Error(ErrorKind::bad_file, old->string() + ": is there before the scan was taken");
+      throw Error(ErrorKind::bad_file,
+                  old->string() + ": existed before the scan was taken; empty the folder");
     }
     ScanInput wanted = input;
     wanted.world_from_sensor = geometry::camera_pose(taken);

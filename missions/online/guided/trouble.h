@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace skycap::missions::online {
 
@@ -25,6 +26,8 @@ struct Trouble {
   TroubleKind kind;
   std::string what;  ///< for the user
 };
+
+inline Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }
 
 using MaybeTrouble = std::optional<Trouble>;
 

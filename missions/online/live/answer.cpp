@@ -64,10 +64,10 @@ Json frames_json(const std::vector<session::ViewInFlight>& frames,
 
 /// What a motion is like that brings a scan onto what is known.
 std::string motion_text(const PoseFinding& pose) {
-  std::string text = fmt::format("moved by {:.3f} m and turned by {:.2f} deg", pose.shift,
+  std::string text = fmt::format("moved by {:.3f} m and rotated by {:.2f} deg", pose.shift,
                                  pose.turn / geometry::radians_per_degree);
   if (pose.unobservable > 0) {
-    text += fmt::format(" ({} of 6 ways to move do not show in what both have)", pose.unobservable);
+    text += fmt::format(" ({} of 6 degrees of freedom are unobservable)", pose.unobservable);
   }
   return text;
 }
@@ -75,10 +75,10 @@ std::string motion_text(const PoseFinding& pose) {
 std::string pose_text(const PoseFinding& pose) {
   if (pose.is_wrong) {
     const std::string seen =
-        fmt::format("it saw through {:.0f} % of what was known", 100.0 * pose.seen_through);
-    return "; warning: pose: the scan is set aside, its pose is wrong: " +
-           (pose.is_checked ? "it would fit " + motion_text(pose) + ", " + seen : seen) +
-           "; hold position, mend the pose and scan again";
+        fmt::format("{:.0f}% of the expected surface was seen through", 100.0 * pose.seen_through);
+    return "; warning: scan rejected: pose inconsistent with the map (" +
+           (pose.is_checked ? "best fit " + motion_text(pose) + ", " + seen : seen) +
+           "). Hold position, correct the pose, scan again";
   }
   if (pose.correction) return "; pose " + motion_text(pose);
   return "";
@@ -121,10 +121,10 @@ std::string answer_text(const LiveSurvey& survey) {
   const Proposal& proposal = survey.proposal();
   std::string scans =
       fmt::format("{} scans, {} points", survey.views().size(), survey.planner().cloud().size());
-  if (survey.set_aside() > 0) scans += fmt::format(", {} scans set aside", survey.set_aside());
+  if (survey.set_aside() > 0) scans += fmt::format(", {} scans rejected", survey.set_aside());
   if (proposal.pose) scans += pose_text(*proposal.pose);
   if (proposal.end) return std::string(state_of(proposal)) + " after " + scans;
-  if (!proposal.view) return "take the first scan from any place that sees the scene";
+  if (!proposal.view) return "take the first scan from any position that sees the scene";
   const Vector3d& at = proposal.view->position;
   std::string text = fmt::format(
       "view {}: {:.3f} {:.3f} {:.3f}, heading {:.1f} deg, pitch {:.1f} deg", proposal.number,
@@ -134,7 +134,7 @@ std::string answer_text(const LiveSurvey& survey) {
     text += fmt::format("; {} legs, clearance {:.2f} m", proposal.way.points.size() - 1,
                         proposal.way.clearance);
     if (const std::size_t frames = survey.frames().size(); frames > 0) {
-      text += fmt::format(", {} scans on the way", frames);
+      text += fmt::format(", {} en-route scans", frames);
     }
   }
   return text + "; " + scans;

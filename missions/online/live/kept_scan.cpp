@@ -1,12 +1,11 @@
 #include "missions/online/live/kept_scan.h"
 
 #include <array>
-#include <bit>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "geometry/byte_values.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/text/ply.h"
@@ -14,21 +13,18 @@
 
 namespace skycap::missions::online {
 
-static_assert(std::endian::native == std::endian::little, "the file is written by copying bytes");
-
 std::string kept_scan(const geometry::Scan& scan) {
   const bool is_organised = !scan.pixels.empty();
-  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                      std::to_string(scan.points.size()) +
-                      "\nproperty float x\nproperty float y\nproperty float z\n" +
-                      (is_organised ? "property uint pixel\n" : "") + "end_header\n";
-  constexpr std::size_t point_size = 3 * sizeof(float), pixel_size = sizeof(std::uint32_t);
-  const std::size_t row = point_size + (is_organised ? pixel_size : 0);
-  std::size_t at = bytes.size();
-  bytes.resize(at + row * scan.points.size());
-  for (std::size_t i = 0; i < scan.points.size(); ++i, at += row) {
-    std::memcpy(&bytes[at], scan.points[i].data(), point_size);
-    if (is_organised) std::memcpy(&bytes[at + point_size], &scan.pixels[i], pixel_size);
+  geometry::PlyElement vertex{"vertex", scan.points.size(), {}};
+  vertex.add(geometry::PlyType::float32, {"x", "y", "z"});
+  if (is_organised) vertex.add(geometry::PlyType::uint32, {"pixel"});
+  // Without a comment: the bytes are part of the identity of scans in journals.
+  std::string bytes = geometry::ply_header({&vertex, 1}, "");
+  constexpr std::size_t largest_point = 16;  // [bytes]
+  bytes.reserve(bytes.size() + largest_point * scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    geometry::append_value(bytes, scan.points[i]);
+    if (is_organised) geometry::append_value(bytes, scan.pixels[i]);
   }
   return bytes;
 }
@@ -54,7 +50,7 @@ geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
   }
   for (const double pixel : pixels) {
     if (!(pixel >= 0.0 && pixel <= std::numeric_limits<std::uint32_t>::max())) {
-      fail("has a pixel that is no number of one");
+      fail("has an invalid pixel number");
     }
     scan.pixels.push_back(static_cast<std::uint32_t>(pixel));
   }
@@ -71,8 +67,7 @@ geometry::Scan read_kept_scan(const std::filesystem::path& file, const std::stri
   if (digest_of(bytes) != sha256) {
     throw Error(ErrorKind::bad_file,
                 file.string() +
-                    ": is damaged (its digest is not the one that the journal has); restore it "
-                    "from a copy");
+                    ": is damaged (checksum differs from the journal); restore it from a backup");
   }
   return parse_kept_scan(file.string(), bytes);
 }

@@ -61,7 +61,7 @@ ScanRecord parse_scan(const Json& json) {
   if (json.contains("found")) scan.pose = parse_finding(json["found"]);
   const std::filesystem::path file = scan.file;
   if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
-    throw Error(ErrorKind::bad_file, "its scan is outside of the folder");
+    throw Error(ErrorKind::bad_file, "its scan is outside the folder");
   }
   return scan;
 }
@@ -91,7 +91,8 @@ void add_record(const Json& json, std::vector<LiveEvent>& events) {
   } else if (json.contains("proposal") && follows) {
     events.back().proposal = parse_proposal(json["proposal"]);
   } else {
-    throw Error(ErrorKind::bad_file, "it is no scan, refusal, proposal or rejection in its place");
+    throw Error(ErrorKind::bad_file,
+                "unexpected kind; expected a scan, refusal, proposal or rejection");
   }
 }
 
@@ -166,14 +167,14 @@ Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::stri
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorKind::bad_file, what + " " + why);
   };
-  if (numbers.size() != 12) refuse("must have twelve numbers, of [rotation | position] by rows");
+  if (numbers.size() != 12) refuse("must have twelve numbers, [rotation | position] row by row");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (int i = 0; i < 12; ++i) pose(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
   const Eigen::Matrix3d turn = pose.linear();
   const double stretch = (turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm();
   constexpr double rounding = 1e-9, sloppiness = 1e-2;
   if (!(stretch < sloppiness && turn.determinant() > 0.0)) {
-    refuse("must turn without stretching or mirroring");
+    refuse("must be a rotation without scale or reflection");
   }
   // Trackers let rotations drift; ours stay as they are, to the last bit.
   if (stretch > rounding) {

@@ -33,8 +33,8 @@ fs::path made_folder(const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder / scans_name, failure);
   if (!failure) return folder;
-  throw Error(ErrorKind::bad_file, folder.string() + ": cannot be made (" + failure.message() +
-                                       "); name a folder you may write to");
+  throw Error(ErrorKind::bad_file, folder.string() + ": cannot create the folder (" +
+                                       failure.message() + "); use a folder that you can write to");
 }
 
 /// `sha256` is that of the scan as it is kept.
@@ -65,7 +65,7 @@ struct LiveSurvey::Impl {
       log.append(text);
     } else {
       support::require_same_survey(log.file().string(), log.records().front(), text,
-                                   "name another folder");
+                                   "use another folder");
     }
     events = events_of(log.records(), log.file().string());
     replay();
@@ -120,10 +120,10 @@ struct LiveSurvey::Impl {
       if (!known) {  // a kill came before it was written down
         write_down(text_of(*event.proposal));
       } else if (!is_same(*known, *event.proposal)) {
-        throw Error(ErrorKind::bad_file,
-                    log.file().string() + ": proposal " + std::to_string(proposal.number) +
-                        " comes out otherwise than it was written down; use the program that the "
-                        "survey was begun with");
+        throw Error(
+            ErrorKind::bad_file,
+            log.file().string() + ": proposal " + std::to_string(proposal.number) +
+                " differs from the one recorded; use the program version that began the survey");
       }
     }
   }
@@ -264,14 +264,16 @@ struct LiveSurvey::Impl {
   void require_wanted(bool is_on_way) const {
     const auto refuse = [](const std::string& what) { throw Error(ErrorKind::bad_usage, what); };
     if (options.flight.is_flown() && proposal.end) {
-      refuse("the survey is over, and no way was proven to where this scan is from; finish it");
+      refuse(
+          "the survey is complete, and no path to the pose of this scan was verified; finish the "
+          "survey");
     }
     if (!is_on_way) return;
     if (!options.flight.capture.is_moving) {
-      refuse("the mission measures at its views only; give it sensor.capture: moving");
+      refuse("en-route scans require sensor.capture: moving");
     }
     if (steps->views().empty()) {
-      refuse("the way to the first view is not measured on; give a scan from there first");
+      refuse("en-route scans require a scan from the first view; add it first");
     }
   }
 
@@ -370,8 +372,8 @@ void LiveSurvey::refuse(const std::string& reason) {
   if (!impl_->proposal.view || views().empty()) {
     throw Error(
         ErrorKind::bad_usage,
-        "there is no view to refuse: " +
-            std::string(views().empty() ? "the first one is the mission's" : "the survey is over"));
+        "no view to reject: " + std::string(views().empty() ? "the first view is set by the mission"
+                                                            : "the survey is complete"));
   }
   impl_->catch_up();
   impl_->log.append(refusal_text(reason));

@@ -16,7 +16,7 @@ using geometry::Registration;
 using geometry::RigidDirection;
 using geometry::SurfacePatch;
 
-constexpr std::size_t most_points = 100'000;  // of a scan, that become patches
+constexpr std::size_t most_patch_points = 100'000;  // of a scan, that become patches
 constexpr std::size_t most_patches = 1500;
 constexpr std::size_t least_matches = 50;
 constexpr double sigmas = 5.0;  // beyond, nobody says chance
@@ -37,7 +37,8 @@ bool are_flat(const std::vector<SurfacePatch>& patches, double radius) {
 Patches patches_of(const geometry::ScanSpan& scan, std::span<const geometry::SurfaceMap> maps) {
   for (std::size_t level = 0; level < maps.size(); ++level) {
     const double radius = maps[level].radius();
-    geometry::ScanPatches all = geometry::scan_patches(scan, radius, most_points, most_patches);
+    geometry::ScanPatches all =
+        geometry::scan_patches(scan, radius, most_patch_points, most_patches);
     const bool is_surface = 3 * all.patches.size() >= all.tried;
     if (is_surface && are_flat(all.patches, radius)) return {std::move(all.patches), level};
   }

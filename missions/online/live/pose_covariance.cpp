@@ -57,15 +57,15 @@ std::string fault_of(const Matrix& matrix) {
                            above, names[i], names[j], below);
       }
       if (!(std::abs(above) <= (1.0 + rounding) * scale)) {
-        return fmt::format("{},{} is {:.6g}, more than the variances of {} and {} allow", names[j],
-                           names[i], above, names[j], names[i]);
+        return fmt::format("{},{} is {:.6g}, beyond the limit set by the variances of {} and {}",
+                           names[j], names[i], above, names[j], names[i]);
       }
       correlations(i, j) = correlations(j, i) = scale > 0.0 ? 0.5 * (above + below) / scale : 0.0;
     }
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> axes(correlations, Eigen::EigenvaluesOnly);
   if (axes.eigenvalues().minCoeff() >= -6.0 * rounding) return {};
-  return "is not positive semidefinite: no errors are distributed so";
+  return "is not positive semidefinite and therefore not a covariance";
 }
 
 }  // namespace
@@ -104,15 +104,15 @@ PoseCovariance parse_pose_sigma(const std::string& text, const std::string& what
       n.size() == 2 && n[0] >= 0.0 && n[0] <= farthest && n[1] >= 0.0 && n[1] <= widest;
   if (is_good) return PoseCovariance::of(n[0], n[1] * geometry::radians_per_degree);
   throw Error(ErrorKind::bad_usage,
-              what + ": give \"metres degrees\", from 0 to 100 and from 0 to 90");
+              what + ": must be \"metres degrees\", from 0 to 100 and from 0 to 90");
 }
 
 PoseCovariance parse_pose_covariance(const std::string& text, const std::string& what) {
   const std::vector<double> numbers = parse_numbers(text, what);
   if (numbers.size() != 36 && numbers.size() != 21) {
     throw Error(ErrorKind::bad_usage,
-                fmt::format("{}: has {} numbers; give the 36 of a covariance of x y z rx ry rz [m, "
-                            "rad] by rows, or the 21 of its upper triangle",
+                fmt::format("{}: has {} numbers; it must have the 36 of a covariance of x y z rx "
+                            "ry rz [m, rad] row by row, or the 21 of its upper triangle",
                             what, numbers.size()));
   }
   const Matrix matrix = matrix_of(numbers);

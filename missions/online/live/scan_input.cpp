@@ -27,7 +27,7 @@ Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
   const Eigen::Quaterniond turn(n[6], n[3], n[4], n[5]);
   if (!(std::abs(turn.norm() - 1.0) < 1e-2)) {
     throw Error(ErrorKind::bad_file,
-                what + ": the quaternion's length is not one; give x y z qx qy qz qw");
+                what + ": the quaternion must have length one; order x y z qx qy qz qw");
   }
   Isometry3d pose = Isometry3d::Identity();
   pose.translation() = Vector3d(n[0], n[1], n[2]);
@@ -124,8 +124,8 @@ void require_same_size(const geometry::DepthImage& image, const Lens& lens) {
   if (!(size > 0.0) || is_same_size || !(skew < same && skew > 1.0 / same)) return;
   throw Error(
       ErrorKind::bad_file,
-      fmt::format("the lens is of an image of about {:.0f} x {:.0f} pixels (principal point "
-                  "{:g}, {:g}), and the image has {} x {}; multiply fx fy cx cy by {:.3g}",
+      fmt::format("the intrinsics are those of an image of about {:.0f} x {:.0f} pixels (principal "
+                  "point {:g}, {:g}), but the image has {} x {}; multiply fx fy cx cy by {:.3g}",
                   2.0 * lens.principal_point_px.x(), 2.0 * lens.principal_point_px.y(),
                   lens.principal_point_px.x(), lens.principal_point_px.y(), image.width,
                   image.height, size));
@@ -148,7 +148,7 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& wh
   while (const auto word = scanner.word()) {
     numbers.push_back(scanner.number<double>(word, "a number"));
     if (!std::isfinite(numbers.back()) || numbers.size() > 36) {
-      throw Error(ErrorKind::bad_file, what + ": is not a short row of finite numbers");
+      throw Error(ErrorKind::bad_file, what + ": must be a short row of finite numbers");
     }
   }
   return numbers;
@@ -157,10 +157,9 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& wh
 Lens parse_lens(const std::string& text, const std::string& what) {
   const std::vector<double> n = parse_numbers(text, what);
   if ((n.size() != 4 && n.size() != 9) || n[0] == 0.0 || n[1] == 0.0) {
-    throw Error(ErrorKind::bad_usage,
-                what +
-                    ": give \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\", with focal lengths "
-                    "other than zero");
+    throw Error(ErrorKind::bad_usage, what +
+                                          ": must be \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 "
+                                          "k3\", with non-zero focal lengths");
   }
   Lens lens{.focal_length_px = {n[0], n[1]}, .principal_point_px = {n[2], n[3]}, .distortion = {}};
   if (n.size() == 9) std::copy(n.begin() + 4, n.end(), lens.distortion.begin());
@@ -174,14 +173,15 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
   if (numbers.size() == 16) {
     if (!std::equal(numbers.begin() + 12, numbers.end(), std::begin({0.0, 0.0, 0.0, 1.0}))) {
       throw Error(ErrorKind::bad_file,
-                  what + ": the fourth row is not 0 0 0 1; give the matrix by rows");
+                  what + ": the fourth row must be 0 0 0 1; give the matrix row by row");
     }
     numbers.resize(12);
   }
   if (numbers.size() == 12) return parse_pose(numbers, what);
-  throw Error(ErrorKind::bad_file, what + ": has " + std::to_string(numbers.size()) +
-                                       " numbers; give x y z qx qy qz qw, or a matrix of three or "
-                                       "four rows of four");
+  throw Error(
+      ErrorKind::bad_file,
+      what + ": has " + std::to_string(numbers.size()) +
+          " numbers; it must be x y z qx qy qz qw, or a matrix of three or four rows of four");
 }
 
 std::vector<Vector3d> points_of(const geometry::DepthImage& image, const Lens& lens, double unit,
@@ -256,7 +256,8 @@ void require_usable(const geometry::Scan& scan, const flight::FlightOptions& fli
   const bool needs_pixels = flight.is_flown() && !flight.capture.is_scanner;
   if (needs_pixels && scan.pixels.empty() && !scan.points.empty()) {
     throw Error(ErrorKind::bad_geometry,
-                "the scan has no pixels; with flight.vehicle free space is proven by depth images");
+                "the scan has no pixels; with flight.vehicle a depth image is required to "
+                "establish free space");
   }
 }
 

@@ -106,14 +106,15 @@ class Client {
     if (!is_readable(handle_.get(), poll_period)) {
       const bool is_late = reader_.is_within_message() && Clock::now() - heard_ > patience;
       if (!is_late) return true;
-      reason = "sent a part of a message and no more for 30 s";
+      reason = "timeout: an incomplete message for 30 s";
       dismiss(handle_.get(), error_message(reason));
       return false;
     }
     const ssize_t count = ::recv(handle_.get(), chunk_.data(), chunk_.size(), MSG_DONTWAIT);
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
     if (count <= 0) {
-      reason = reader_.is_within_message() ? "left within a message, which is dropped" : "left";
+      reason =
+          reader_.is_within_message() ? "disconnected during a message; message discarded" : "left";
       return false;
     }
     heard_ = Clock::now();
@@ -124,7 +125,7 @@ class Client {
   bool answer(Session& session, std::string& reason) {
     while (const std::optional<Message> message = reader_.next()) {
       if (!send_all(handle_.get(), session.answer(*message))) {
-        reason = "does not take its answer";
+        reason = "does not receive its answer";
         return false;
       }
       session.settle();
@@ -153,17 +154,17 @@ Handle unix_listener(const std::filesystem::path& path) {
   address.sun_family = AF_UNIX;
   const std::string name = path.string();
   if (name.size() >= sizeof address.sun_path) {
-    fail(name, "is too long for a socket's name; give one of at most 107 bytes");
+    fail(name, "is too long for a socket path; use at most 107 bytes");
   }
   std::memcpy(address.sun_path, name.data(), name.size());
   Handle probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
-    fail(name, "is served by another program; name another socket");
+    fail(name, "is in use by another program; use another socket");
   }
-  if (errno != ECONNREFUSED && errno != ENOENT) fail(name, "cannot be looked at: " + last_error());
+  if (errno != ECONNREFUSED && errno != ENOENT) fail(name, "cannot be accessed: " + last_error());
   struct stat status {};
   if (::lstat(name.c_str(), &status) == 0) {
-    if (!S_ISSOCK(status.st_mode)) fail(name, "is there and no socket; name another");
+    if (!S_ISSOCK(status.st_mode)) fail(name, "exists and is not a socket; use another path");
     ::unlink(name.c_str());  // a killed server left it
   }
   Handle listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -171,7 +172,7 @@ Handle unix_listener(const std::filesystem::path& path) {
   const bool is_made = is_bound(listener.get(), address);
   const std::string why = is_made ? "" : last_error();
   ::umask(mask);
-  if (!is_made) fail(name, "cannot be made: " + why);
+  if (!is_made) fail(name, "cannot be created: " + why);
   return listener;
 }
 
@@ -184,7 +185,7 @@ Handle tcp_listener(std::uint16_t& port) {
   constexpr int yes = 1;
   ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   if (!is_bound(listener.get(), address)) {
-    fail("port " + std::to_string(port), "cannot be had: " + last_error());
+    fail("port " + std::to_string(port), "cannot be opened: " + last_error());
   }
   socklen_t size = sizeof address;
   ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
@@ -216,11 +217,11 @@ void Server::run(Session& session, const std::function<void(const std::string&)>
     if (is_readable(listener_, client ? 0 : poll_period)) {
       Handle visitor(::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC));
       if (visitor.is_open() && client) {
-        dismiss(visitor.get(), error_message("another client is served; come back later"));
-        note("a second client was sent away");
+        dismiss(visitor.get(), error_message("server busy: another client is connected"));
+        note("a second client was refused");
       } else if (visitor.is_open()) {
         client.emplace(std::move(visitor));
-        note("a client came");
+        note("client connected");
       }
     }
     std::string reason;

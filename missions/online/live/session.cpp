@@ -36,7 +36,7 @@ std::uint32_t count_at(const Json& header, const char* key) {
   const bool is_whole = number.is_number_unsigned() ||
                         (number.is_number_integer() && number.get<std::int64_t>() >= 0);
   if (!is_whole || number.get<std::uint64_t>() > most) {
-    refuse_message(std::string(key) + " must be a whole number from 0 to " + std::to_string(most));
+    refuse_message(std::string(key) + " must be an integer from 0 to " + std::to_string(most));
   }
   return number.get<std::uint32_t>();
 }
@@ -56,7 +56,7 @@ Eigen::Isometry3d pose_of(const Json& header) {
 std::optional<PoseCovariance> covariance_of(const Json& header) {
   constexpr const char *sigma = "pose_sigma", *covariance = "pose_covariance";
   if (header.contains(sigma) && header.contains(covariance)) {
-    refuse_message("pose_sigma and pose_covariance do not go together; give one");
+    refuse_message("pose_sigma conflicts with pose_covariance; remove one of them");
   }
   if (header.contains(sigma)) return parse_pose_sigma(row_at(header, sigma), sigma);
   if (!header.contains(covariance)) return std::nullopt;
@@ -71,7 +71,7 @@ ScanNumber number_of(const Json& header) {
 
 std::string text_of(const ScanNumber& number) {
   const std::string text = "scan " + std::to_string(number.view);
-  return number.on_way ? text + " on the way " + std::to_string(*number.on_way) : text;
+  return number.on_way ? text + " en-route frame " + std::to_string(*number.on_way) : text;
 }
 
 void require_payload(const Message& message, std::size_t size, const std::string& what_takes) {
@@ -86,7 +86,7 @@ geometry::Scan cloud_scan(const Message& message) {
   const bool has_pixels = message.header.value("has_pixels", false);
   constexpr std::size_t point = 3 * sizeof(float), pixel = sizeof(std::uint32_t);
   const std::size_t size = std::size_t{count} * (point + (has_pixels ? pixel : 0));
-  require_payload(message, size, std::to_string(count) + " points take ");
+  require_payload(message, size, std::to_string(count) + " points require ");
   geometry::Scan scan;
   scan.world_from_sensor = pose_of(message.header);
   scan.points.resize(count);
@@ -102,7 +102,7 @@ ScanFound sensor_cloud_scan(const Message& message, const flight::CaptureOptions
                             const LiveOptions& live) {
   const auto count = count_at(message.header, "points");
   constexpr std::size_t point = 3 * sizeof(float);
-  require_payload(message, std::size_t{count} * point, std::to_string(count) + " points take ");
+  require_payload(message, std::size_t{count} * point, std::to_string(count) + " points require ");
   std::vector<Eigen::Vector3d> points;
   points.reserve(count);
   for (const auto& place : values_at<std::array<float, 3>>(message.payload, 0, count)) {
@@ -124,7 +124,7 @@ ScanFound depth_scan(const Message& message, const flight::CaptureOptions& captu
   }
   geometry::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
   const std::size_t count = std::size_t{width} * height;
-  require_payload(message, count * sizeof(std::uint16_t), "the image takes ");
+  require_payload(message, count * sizeof(std::uint16_t), "the image requires ");
   image.values = values_at<std::uint16_t>(message.payload, 0, count);
   std::optional<Lens> lens;
   if (header.contains("lens")) lens = parse_lens(row_at(header, "lens"), "lens");
@@ -153,9 +153,8 @@ Message Session::answer(const Message& message) {
   try {
     return answer_unguarded(message);
   } catch (const Json::exception& failure) {
-    return error_message(
-        std::string("the header is not as docs/reference/live-protocol.md has it: ") +
-        failure.what());
+    return error_message(std::string("invalid header (docs/reference/live-protocol.md): ") +
+                         failure.what());
   } catch (const Error& failure) {
     return error_message(failure.what());
   }
@@ -173,13 +172,12 @@ Message Session::answer_unguarded(const Message& message) {
   if (type == "scan") return take_scan(message);
   if (type == "refuse") return refuse(message);
   if (type == "finish") {
-    if (survey_.views().empty()) refuse_message("finish: there is no scan yet");
+    if (survey_.views().empty()) refuse_message("finish: no scan yet");
     Message answer{{{"type", "finished"}, {"text", finish_()}}, {}};
     is_finished_ = true;
     return answer;
   }
-  refuse_message("the type '" + type +
-                 "' is unknown; it must be hello, scan, next, refuse or finish");
+  refuse_message("unknown type '" + type + "'; expected hello, scan, next, refuse or finish");
 }
 
 bool Session::is_taken(const ScanNumber& number) const {
@@ -191,7 +189,7 @@ std::string Session::next_text() const {
   const std::size_t next = survey_.views().size();
   std::string text = "the next one is " + std::to_string(next);
   if (flight_.capture.is_moving && next > 0) {
-    text += ", or on the way to it " + std::to_string(survey_.on_way());
+    text += ", or en-route frame " + std::to_string(survey_.on_way());
   }
   return text;
 }
@@ -206,8 +204,7 @@ void Session::require_in_order(const ScanNumber& number) const {
 Message Session::take_scan(const Message& message) {
   const auto format = message.header.at("format").get<std::string>();
   if (format != "points" && format != "cloud" && format != "depth") {
-    refuse_message("scan: the format '" + format +
-                   "' is unknown; it must be points, cloud or depth");
+    refuse_message("scan: unknown format '" + format + "'; expected points, cloud or depth");
   }
   const ScanNumber number = number_of(message.header);
   require_in_order(number);
@@ -224,7 +221,7 @@ Message Session::take_scan(const Message& message) {
   const geometry::Scan& scan = found.scan;
   const std::optional<PoseCovariance> covariance = covariance_of(message.header);
   if (is_taken(number) && survey_.number_of(scan_id(scan, covariance)) != number) {
-    refuse_message(text_of(number) + " was another one; " + next_text());
+    refuse_message(text_of(number) + " was a different scan; " + next_text());
   }
   const bool is_new =
       number.on_way ? survey_.add_on_way(scan, "", covariance) : survey_.add(scan, "", covariance);
@@ -242,12 +239,12 @@ Message Session::refuse(const Message& message) {
   const auto id = std::size_t{count_at(message.header, "id")};
   const std::size_t present_id = survey_.proposal().number;
   if (id > present_id) {
-    refuse_message("refuse: there is no proposal " + std::to_string(id) + "; the present one is " +
+    refuse_message("refuse: unknown proposal " + std::to_string(id) + "; the current one is " +
                    std::to_string(present_id));
   }
   // One that was refused already is acknowledged.
   if (id == present_id) {
-    survey_.refuse(message.header.value("reason", std::string("none given")));
+    survey_.refuse(message.header.value("reason", std::string("not stated")));
     has_changed_ = true;
   }
   return present();

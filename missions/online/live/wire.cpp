@@ -41,14 +41,14 @@ std::optional<Message> FrameReader::next() {
   std::memcpy(lengths.data(), buffer_.data(), sizeof lengths);
   const auto [header_size, payload_size, checksum] = lengths;
   require(header_size <= largest_header && payload_size <= largest_payload,
-          "announces more bytes than any may have (64 KiB of header, 256 MiB of payload)");
+          "is larger than allowed (64 KiB of header, 256 MiB of payload)");
   const std::size_t size = std::size_t{header_size} + payload_size;
   if (buffer_.size() - sizeof lengths < size) return std::nullopt;
   const std::string_view body = std::string_view(buffer_).substr(sizeof lengths, size);
-  require(geometry::crc32_of(body) == checksum, "was damaged on its way: its checksum is wrong");
+  require(geometry::crc32_of(body) == checksum, "is damaged (checksum)");
   Message message{geometry::parse_json<nlohmann::ordered_json>(body.substr(0, header_size)),
                   std::string(body.substr(header_size))};
-  require(message.header.is_object(), "has no JSON object for a header");
+  require(message.header.is_object(), "header is not a JSON object");
   buffer_.erase(0, sizeof lengths + size);
   return message;
 }

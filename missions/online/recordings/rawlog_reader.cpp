@@ -9,7 +9,7 @@ namespace skycap::missions::online {
 
 std::unique_ptr<RawlogReader> open_rawlog(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
-    throw Error(ErrorKind::bad_file, file.string() + ": is no file; name a rawlog of MRPT");
+    throw Error(ErrorKind::bad_file, file.string() + ": is not a file; expected an MRPT rawlog");
   }
   const auto make =
       support::module_function<MakeRawlogReader>("libskycap_rawlog.so", make_rawlog_reader_name);

@@ -99,12 +99,12 @@ class Reader final : public RawlogReader {
       is_at_end_ = true;
       return nullptr;
     } catch (const std::bad_alloc&) {
-      fail("it asks for more than 2 GiB of memory");
+      fail("it requires more than 2 GiB of memory");
     } catch (const std::exception& failure) {
       const std::string damage = archive_.damage();
       fail(damage.empty() ? message_of(failure) : damage);
     }
-    fail("it has no object");
+    fail("it contains no object");
   }
 
   void take_in(const mrpt::serialization::CSerializable& object) {

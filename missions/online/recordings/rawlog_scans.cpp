@@ -44,17 +44,17 @@ std::string fault_of(const mrpt::img::TCamera& camera) {
   const auto is_focal = [](double length) { return std::isfinite(length) && length > 0.0; };
   if (!is_focal(camera.fx()) || !is_focal(camera.fy()) || !std::isfinite(camera.cx()) ||
       !std::isfinite(camera.cy())) {
-    return "it has no focal length or image centre";
+    return "missing focal length or image centre";
   }
   if (camera.distortion == DistortionModel::none) return {};
   if (camera.distortion != DistortionModel::plumb_bob) {
-    return "its lens is a fisheye's; those of Brown and Conrady are known";
+    return "fisheye lens; only Brown-Conrady distortion is supported";
   }
   const std::span<const double> known = std::span(camera.dist).first(5);
   const std::span<const double> others = std::span(camera.dist).subspan(5);
   const bool is_known = std::ranges::all_of(known, [](double k) { return std::isfinite(k); }) &&
                         std::ranges::all_of(others, [](double k) { return k == 0.0; });
-  return is_known ? "" : "its lens has coefficients beyond k1 k2 p1 p2 k3, or some that are none";
+  return is_known ? "" : "distortion coefficients beyond k1 k2 p1 p2 k3, or not finite";
 }
 
 /// A name in the folder of the rawlog's images, and none elsewhere on this machine.
@@ -67,12 +67,12 @@ bool is_beside(const std::string& name) {
 /// What keeps a file of an observation from being read; empty if nothing does.
 template <typename Observation>
 std::string fault_of_load(const Observation& observation, const std::string& name) {
-  if (!is_beside(name)) return "it is kept in '" + name + "', outside of the rawlog's folder";
+  if (!is_beside(name)) return "stored in '" + name + "', outside the rawlog's folder";
   try {
     observation.load();
     return {};
   } catch (const std::exception&) {
-    return "it is kept in '" + name + "', which is not there or cannot be read";
+    return "stored in '" + name + "', which does not exist or cannot be read";
   }
 }
 
@@ -83,7 +83,7 @@ bool is_too_much(std::ptrdiff_t count) { return count > geometry::most_depth_pix
 void put_points(RawlogScan& scan, std::span<const float> x, std::span<const float> y,
                 std::span<const float> z) {
   if (is_too_much(std::ssize(x))) {
-    scan.fault = "it has more than 2.5e7 points";
+    scan.fault = "more than 2.5e7 points";
   } else {
     scan.content = in_optical(x, y, z);
   }
@@ -113,15 +113,15 @@ RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
     }
     if (scan.fault.empty()) scan.fault = fault_of(observation.cameraParams);
     const double unit = observation.rangeUnits;
-    if (!(unit >= 1e-6 && unit <= 1.0)) scan.fault = "a step of its image is none of metres";
-    if (is_too_much(observation.rangeImage.size())) scan.fault = "it has more than 2.5e7 pixels";
+    if (!(unit >= 1e-6 && unit <= 1.0)) scan.fault = "the depth unit must be from 1e-6 to 1 m";
+    if (is_too_much(observation.rangeImage.size())) scan.fault = "more than 2.5e7 pixels";
     if (scan.fault.empty()) scan.content = image_of(observation);
     return scan;
   }
   if (observation.hasPoints3D && observation.points3D_isExternallyStored()) {
     scan.fault = fault_of_load(observation, observation.points3D_getExternalStorageFile());
   }
-  if (!observation.hasPoints3D) scan.fault = "it has neither range image nor points";
+  if (!observation.hasPoints3D) scan.fault = "neither range image nor points";
   if (scan.fault.empty()) {
     put_points(scan, observation.points3D_x, observation.points3D_y, observation.points3D_z);
   }
@@ -133,7 +133,7 @@ RawlogScan cloud_scan(const mrpt::obs::CObservationPointCloud& observation) {
   if (observation.isExternallyStored()) {
     scan.fault = fault_of_load(observation, observation.getExternalStorageFile());
   }
-  if (scan.fault.empty() && !observation.pointcloud) scan.fault = "it has no points";
+  if (scan.fault.empty() && !observation.pointcloud) scan.fault = "no points";
   if (!scan.fault.empty()) return scan;
   const mrpt::maps::CPointsMap& cloud = *observation.pointcloud;
   put_points(scan, cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(),

@@ -55,16 +55,16 @@ void RawlogSequence::survey_file(const std::function<void(const std::string&)>& 
   const auto reader = open_rawlog(file_);
   while (const auto entry = reader->next()) {
     if (const auto* pose = std::get_if<RawlogPose>(&*entry)) {
-      if (poses_.size() == most_poses) fail("has more than 3 million poses; give --poses");
+      if (poses_.size() == most_poses) fail("has more than 3 million poses; use --poses");
       if (!choice_.poses) poses_.push_back(*pose);
       continue;
     }
     const auto& scan = std::get<RawlogScan>(*entry);
-    if (report) report(file_.string() + ": looking for poses, scan " + std::to_string(++scans));
+    if (report) report(file_.string() + ": reading poses, scan " + std::to_string(++scans));
     has_movements = has_movements || scan.moved;
     if (std::ranges::find(labels, scan.label) != labels.end()) continue;
     if (labels.size() == most_sensors) fail("has scans of more than 64 sensors");
-    if (scan.label.size() > longest_label) fail("names a sensor with more than 256 bytes");
+    if (scan.label.size() > longest_label) fail("has a sensor label of more than 256 bytes");
     labels.push_back(scan.label);
   }
   choose_sensor(labels);
@@ -78,17 +78,17 @@ void RawlogSequence::fail(const std::string& what) const {
 void RawlogSequence::choose_sensor(const std::vector<std::string>& labels) {
   if (labels.empty()) {
     fail(
-        "has no scan that can be used (CObservation3DRangeScan, CObservationPointCloud or "
+        "contains no usable scan (CObservation3DRangeScan, CObservationPointCloud or "
         "CObservationVelodyneScan)");
   }
   const bool is_chosen = !choice_.sensor.empty();
   if (!is_chosen && labels.size() > 1) {
     throw Error(ErrorKind::bad_usage, file_.string() + ": has scans of several sensors, " +
-                                          quoted(labels) + "; name one with --sensor");
+                                          quoted(labels) + "; choose one with --sensor");
   }
   if (is_chosen && std::ranges::find(labels, choice_.sensor) == labels.end()) {
-    throw Error(ErrorKind::bad_usage, file_.string() + ": has no scan of a sensor '" +
-                                          choice_.sensor + "'; it has " + quoted(labels));
+    throw Error(ErrorKind::bad_usage, file_.string() + ": contains no scan of sensor '" +
+                                          choice_.sensor + "'; its sensors are " + quoted(labels));
   }
   if (!is_chosen) choice_.sensor = labels.front();
 }
@@ -109,14 +109,14 @@ void RawlogSequence::choose_poses(bool has_movements) {
     pose_source_ = "its CObservationRobotPose";
     poses_ = estimates;
   } else if (has_movements) {
-    pose_source_ = "its actions' movements, added up from the first: they drift";
+    pose_source_ = "the movements of its actions, accumulated (with drift)";
   } else if (!odometry.empty()) {
-    pose_source_ = "its CObservationOdometry, of wheels in the plane: they drift";
+    pose_source_ = "its CObservationOdometry (wheel odometry in the plane, with drift)";
     poses_ = odometry;
   } else {
     fail(
-        "does not say where its scans are from (CObservationRobotPose, movements or "
-        "CObservationOdometry); give --poses, a TUM trajectory of the sensor's optical frame");
+        "contains no poses of its scans (CObservationRobotPose, movements or "
+        "CObservationOdometry); use --poses with a TUM trajectory of the sensor's optical frame");
   }
 }
 
@@ -130,7 +130,7 @@ Isometry3d RawlogSequence::pose_of(const RawlogScan& scan) const {
   geometry::require_place(world_from_sensor.translation(), "its pose");
   const Eigen::Matrix3d turn = world_from_sensor.linear();
   if (!(turn * turn.transpose()).isIdentity(1e-6)) {
-    throw Error(ErrorKind::bad_file, "its pose does not turn without stretching");
+    throw Error(ErrorKind::bad_file, "its pose is not a rotation without scale");
   }
   return world_from_sensor;
 }
@@ -144,7 +144,7 @@ std::optional<RawlogFrame> RawlogSequence::next() {
       if (!scan->fault.empty()) throw Error(ErrorKind::bad_file, scan->fault);
       frame.world_from_sensor = pose_of(*scan);
     } catch (const Error& failure) {
-      note_(frame.id + " is left out: " + failure.what());
+      note_(frame.id + " is skipped: " + failure.what());
       continue;
     }
     frame.scan = std::move(*scan);

@@ -20,10 +20,10 @@ constexpr std::size_t largest_pose = 1 << 16;  // [byte]
 template <typename Pose>
 void add_frame(RecordedSequence& sequence, const std::string& id, const fs::path& file, Pose pose) {
   try {
-    if (!fs::exists(file)) throw Error(ErrorKind::bad_file, file.string() + ": is not there");
+    if (!fs::exists(file)) throw Error(ErrorKind::bad_file, file.string() + ": does not exist");
     sequence.frames.push_back({.id = id, .file = file, .world_from_sensor = pose()});
   } catch (const Error& failure) {
-    sequence.notes.push_back(id + " is left out: " + failure.what());
+    sequence.notes.push_back(id + " is skipped: " + failure.what());
   }
 }
 
@@ -87,7 +87,7 @@ RecordedSequence read_sequence(const fs::path& folder, std::size_t count) {
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorKind::bad_file, folder.string() + ": " + why);
   };
-  if (!fs::is_directory(folder)) refuse("is no folder; name the one of a recording");
+  if (!fs::is_directory(folder)) refuse("is not a folder; give the folder of a recording");
   RecordedSequence sequence;
   if (fs::exists(folder / "depth.txt")) {
     sequence = read_tum(folder, count);
@@ -97,7 +97,7 @@ RecordedSequence read_sequence(const fs::path& folder, std::size_t count) {
   if (!sequence.frames.empty()) return sequence;
   if (!sequence.notes.empty()) refuse("has no usable frame; " + sequence.notes.front());
   refuse(
-      "has neither depth.txt and groundtruth.txt (TUM RGB-D) nor frame-NNNNNN.depth.png with "
+      "contains neither depth.txt and groundtruth.txt (TUM RGB-D) nor frame-NNNNNN.depth.png with "
       "frame-NNNNNN.pose.txt (7-Scenes)");
   return sequence;
 }

@@ -77,7 +77,7 @@ std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
                                     choice.count, capture, live);
   }
   if (choice.rawlog.poses || !choice.rawlog.sensor.empty()) {
-    throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");
+    throw Error(ErrorKind::bad_usage, "--poses and --sensor require a rawlog");
   }
   RecordedSequence sequence = read_sequence(place, choice.count);
   for (const std::string& remark : sequence.remarks) note(remark);

@@ -22,7 +22,8 @@ StampedList read_list(const std::filesystem::path& file) {
     const bool is_same = !list.lines.empty() && time == list.lines.back().time;
     const bool is_later = list.lines.empty() || time > list.lines.back().time;
     if (!std::isfinite(time) || !(is_same || is_later)) {
-      scanner.fail("time " + std::string(*word) + " is not after the one before; sort the list");
+      scanner.fail("time " + std::string(*word) +
+                   " is not later than the one before; sort the list");
     }
     std::string rest;
     while (const auto more = scanner.word_in_line()) {

@@ -38,7 +38,7 @@ Eigen::Isometry3d pose_at(std::span<const Stamped> poses, double time, const std
 template <typename Item>
 const Item& nearest_pose(std::span<const Item> items, double time, const std::string& what) {
   constexpr double most_apart = 0.02;  // [s]
-  const std::string complaint = what + ": has no pose within 20 ms of its time";
+  const std::string complaint = what + ": no pose within 20 ms of its time";
   if (items.empty()) throw Error(ErrorKind::bad_file, complaint);
   auto near = std::ranges::lower_bound(items, time, {}, &Item::time);
   const bool is_last = near == items.end();

@@ -30,7 +30,8 @@ class RowReader {
 
   TimetableRow read(const std::string& line) const {
     const std::vector<std::string> fields = flight::split(line, ',');
-    if (fields.size() != 9) fail("has " + std::to_string(fields.size()) + " fields; there are 9");
+    if (fields.size() != 9)
+      fail("has " + std::to_string(fields.size()) + " fields; it must have 9");
     TimetableRow row;
     row.vehicle = index(fields[0], "vehicle");
     row.name = fields[1];
@@ -43,7 +44,7 @@ class RowReader {
     }
     row.start = number(fields[4], "start_s");
     row.landing = number(fields[5], "landing_s");
-    if (row.start < 0.0 || row.landing <= row.start) fail("it does not land after it starts");
+    if (row.start < 0.0 || row.landing <= row.start) fail("the landing must be after the start");
     for (int axis = 0; axis < 3; ++axis) row.pad[axis] = number(fields[6 + axis], "pad");
     geometry::require_place(row.pad, place_ + "pad");
     return row;
@@ -56,19 +57,19 @@ class RowReader {
 
   std::size_t index(const std::string& field, const std::string& name) const {
     const auto index = index_in(field);
-    if (!index) fail(name + " is \"" + field + "\"; it is a whole number from 1 on");
+    if (!index) fail(name + " is \"" + field + "\"; it must be an integer from 1");
     return *index;
   }
 
   double number(const std::string& field, const std::string& name) const {
     const auto number = flight::to_number(field);
-    if (!number) fail(name + " is \"" + field + "\"; it is a number");
+    if (!number) fail(name + " is \"" + field + "\"; it must be a number");
     return *number;
   }
 
   void check_vehicle(const TimetableRow& row) const {
     if (row.vehicle >= vehicles_.size()) {
-      fail("there is no vehicle " + std::to_string(row.vehicle + 1) + ": flight.vehicles has " +
+      fail("unknown vehicle " + std::to_string(row.vehicle + 1) + ": flight.vehicles has " +
            std::to_string(vehicles_.size()));
     }
     if (row.name == vehicles_[row.vehicle]) return;
@@ -100,8 +101,9 @@ std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
   const std::string text = geometry::read_file(path, largest_timetable);
   const std::vector<std::string> lines = flight::lines_of(text);
   if (lines.empty() || lines.front() != header) {
-    throw Error(ErrorKind::bad_file,
-                path.string() + ":1: is no timetable; its first line is " + std::string(header));
+    throw Error(
+        ErrorKind::bad_file,
+        path.string() + ":1: is not a timetable; its first line must be " + std::string(header));
   }
   std::vector<TimetableRow> rows;
   for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -110,11 +112,11 @@ std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
     const bool is_twice = std::ranges::any_of(rows, [&](const TimetableRow& other) {
       return other.vehicle == row.vehicle && other.sortie == row.sortie;
     });
-    if (is_twice) throw Error(ErrorKind::bad_file, place + "the sortie stands there twice");
+    if (is_twice) throw Error(ErrorKind::bad_file, place + "the sortie is listed twice");
     rows.push_back(std::move(row));
   }
   if (!rows.empty()) return rows;
-  throw Error(ErrorKind::bad_file, path.string() + ": has no sorties");
+  throw Error(ErrorKind::bad_file, path.string() + ": contains no sorties");
 }
 
 std::string stem_of(std::size_t vehicle) { return std::string(stem) + std::to_string(vehicle + 1); }
@@ -139,7 +141,7 @@ flight::FlightOptions flight_of_file(const std::filesystem::path& file,
   for (const TimetableRow& row : read_timetable(table, options)) {
     if (row.vehicle == *vehicle) return options.of_vehicle(*vehicle, row.pad);
   }
-  throw Error(ErrorKind::bad_file, table.string() + ": has no sortie of vehicle " +
+  throw Error(ErrorKind::bad_file, table.string() + ": contains no sortie of vehicle " +
                                        std::to_string(*vehicle + 1) + ", whose file is " +
                                        file.filename().string());
 }

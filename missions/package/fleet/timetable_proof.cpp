@@ -68,8 +68,9 @@ class Proof {
     }
     const double distance = distance_from(flights_[i].script, other.pad);
     if (distance >= options_.clearance) return;
-    proof_.problems.push_back(title_of(one) + " comes within " + short_text(distance) +
-                              " m of the pad of vehicle " + std::to_string(other.vehicle + 1));
+    proof_.problems.push_back(title_of(one) + " violates the separation: it comes within " +
+                              short_text(distance) + " m of the take-off point of vehicle " +
+                              std::to_string(other.vehicle + 1));
   }
 
   void check_pairs(double up_to) {
@@ -105,8 +106,8 @@ FlownFile flown_file(const flight::FlightOptions& own, const std::string& conten
                      flight::Format format) {
   const flight::FlightFacts facts = own.facts();
   FlownFile flown{flight::interpret(content, format, facts), {}};
-  flight::throw_first(flown.route.problems, "is not flown");
-  if (flown.route.pieces.empty()) throw Error(ErrorKind::bad_file, "flies nowhere");
+  flight::throw_first(flown.route.problems, "cannot be flown");
+  if (flown.route.pieces.empty()) throw Error(ErrorKind::bad_file, "contains no flight");
   const flight::Motion motion(own.flown(), own.route(facts.pad).conditions);
   flown.script = script_of(flown.route, motion);
   return flown;

@@ -8,9 +8,10 @@
 #include <utility>
 
 #include "flight/motion/motion.h"
-#include "flight/route/leg_certifier.h"
+#include "flight/route/leg_costs.h"
 #include "flight/way_home/returnable_space.h"
 #include "geometry/error.h"
+#include "geometry/interrupted.h"
 #include "geometry/parallel.h"
 #include "geometry/place/platform.h"
 #include "missions/package/replan/dose_sum.h"
@@ -69,7 +70,7 @@ class MissionProblem {
         motion_(present.vehicle, present.options.conditions),
         clearance_(present.clearance),
         returnable_(space, planning_law(present.options, top_of(present))),
-        legs_(space, motion_, clearance_, no_ways_home_),
+        costs_(motion_),
         passing_(is_passed(present) ? std::optional(present.options.passing) : std::nullopt),
         mount_(flight.capture.scans_in_flight() ? flight.capture.mount : std::nullopt),
         kind_(choice.scanner),
@@ -87,7 +88,7 @@ class MissionProblem {
     } else {
       const flight::Station station{
           .view = {}, .hold = flight.rest_before(), .hold_after = flight.rest_after()};
-      problem_.time_per_view = legs_.station_cost(station).time;
+      problem_.time_per_view = costs_.station_cost(station).time;
     }
     problem_.looks = [this](const View& view) {
       return mount_ ? std::vector<Look>() : surface_.looks(view);
@@ -170,7 +171,7 @@ class MissionProblem {
     const double leg = motion_.leg_time(place(to) - place(from));
     if (from == nullptr || to == nullptr) return leg;
     const flight::Station there{.view = carrier(*to)}, here{.view = carrier(*from)};
-    return legs_.aimed_time(leg, &here, &there);
+    return costs_.aimed_time(leg, &here, &there);
   }
 
   /// Without a stop but above the pad, where half of the ramp up or down to speed is lost.
@@ -269,8 +270,7 @@ class MissionProblem {
   flight::Motion motion_;
   double clearance_;
   flight::ReturnableSpace returnable_;
-  std::optional<flight::WaysHome> no_ways_home_;
-  flight::LegCertifier legs_;
+  flight::LegCosts costs_;
   std::optional<flight::PassRules> passing_;     ///< if views are passed
   std::optional<geometry::ScannerMount> mount_;  ///< of a scanner that measures all the way
   sim::ScannerKind kind_;
@@ -284,6 +284,8 @@ class MissionProblem {
 std::optional<flight::Route> certified(const PlanRoute& plan, const std::vector<View>& views) {
   try {
     return plan({views, std::vector<std::vector<Vector3d>>(views.size())});
+  } catch (const Interrupted&) {
+    return std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
   }

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "flight/fly_test/random_numbers.h"
+#include "geometry/random_numbers.h"
 #include "missions/package/replan/leg_times.h"
 #include "missions/package/replan/tour_problem.h"
 
@@ -22,7 +22,7 @@ struct Move {
 /// Keeps references to problem and numbers.
 class TourMoves {
  public:
-  TourMoves(const TourProblem& problem, flight::RandomNumbers& random)
+  TourMoves(const TourProblem& problem, geometry::RandomNumbers& random)
       : problem_(problem), random_(random) {}
 
   /// A stop of this search.
@@ -51,7 +51,7 @@ class TourMoves {
   void insert(Move& move, const geometry::View& view);
 
   const TourProblem& problem_;
-  flight::RandomNumbers& random_;
+  geometry::RandomNumbers& random_;
   std::uint32_t stops_made_ = 0;
 };
 

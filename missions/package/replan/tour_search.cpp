@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "flight/fly_test/random_numbers.h"
+#include "geometry/random_numbers.h"
 #include "missions/package/replan/dose_sum.h"
 #include "missions/package/replan/leg_times.h"
 #include "missions/package/replan/tour_moves.h"
@@ -19,7 +19,7 @@ using geometry::View;
 /// Steps of moved views shrink to this share while the temperature falls.
 constexpr double last_scale = 0.3;
 
-std::vector<View> views_of(const Stops& stops) {
+std::vector<View> viewed_from(const Stops& stops) {
   std::vector<View> views;
   for (const auto& stop : stops) views.push_back(stop->view);
   return views;
@@ -73,7 +73,7 @@ class Search {
   }
 
   FoundTour found() const {
-    return best_ ? *best_ : FoundTour{views_of(stops_), time_, covered_.covered()};
+    return best_ ? *best_ : FoundTour{viewed_from(stops_), time_, covered_.covered()};
   }
 
  private:
@@ -119,7 +119,7 @@ class Search {
     const auto is_best = [&] { return covered >= wanted_ && (!best_ || time_ < best_->time); };
     if (!is_best()) return;
     time_ = legs_.proven(stops_);
-    if (is_best()) best_ = FoundTour{views_of(stops_), time_, covered};
+    if (is_best()) best_ = FoundTour{viewed_from(stops_), time_, covered};
   }
 
   /// The fastest tour with a stop less that covers enough.
@@ -143,7 +143,7 @@ class Search {
 
   const TourProblem& problem_;
   double wanted_;
-  flight::RandomNumbers random_;
+  geometry::RandomNumbers random_;
   TourMoves moves_;
   LegTimes legs_;
   WayDoses ways_;

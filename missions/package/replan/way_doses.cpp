@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t most_ways = 1U << 13;
 
 /// The stop with the lower number first; null, number zero, is home.
-struct Way {
+struct StopWay {
   const Stop *first, *second;
 
   std::uint64_t key() const {
@@ -21,21 +21,22 @@ struct Way {
 };
 
 /// By key.
-std::vector<Way> ways_of(const Stops& stops) {
-  std::vector<Way> ways;
+std::vector<StopWay> ways_of(const Stops& stops) {
+  std::vector<StopWay> ways;
   for (std::size_t i = 0; i <= stops.size() && !stops.empty(); ++i) {
     const Stop* a = i == 0 ? nullptr : stops[i - 1].get();
     const Stop* b = i == stops.size() ? nullptr : stops[i].get();
     const bool is_turned = b == nullptr || (a != nullptr && b->number < a->number);
-    ways.push_back(is_turned ? Way{b, a} : Way{a, b});
+    ways.push_back(is_turned ? StopWay{b, a} : StopWay{a, b});
   }
-  std::ranges::sort(ways, {}, &Way::key);
+  std::ranges::sort(ways, {}, &StopWay::key);
   return ways;
 }
 
-std::vector<Way> without(const std::vector<Way>& ways, const std::vector<Way>& others) {
-  std::vector<Way> rest;
-  std::ranges::set_difference(ways, others, std::back_inserter(rest), {}, &Way::key, &Way::key);
+std::vector<StopWay> without(const std::vector<StopWay>& ways, const std::vector<StopWay>& others) {
+  std::vector<StopWay> rest;
+  std::ranges::set_difference(ways, others, std::back_inserter(rest), {}, &StopWay::key,
+                              &StopWay::key);
   return rest;
 }
 
@@ -43,13 +44,13 @@ std::vector<Way> without(const std::vector<Way>& ways, const std::vector<Way>& o
 
 void WayDoses::change(DoseSum& sum, const Stops& from, const Stops& to) {
   if (!problem_.way_looks) return;
-  const std::vector<Way> before = ways_of(from), after = ways_of(to);
-  for (const Way& way : without(before, after)) sum.remove(doses(way.first, way.second));
-  for (const Way& way : without(after, before)) sum.add(doses(way.first, way.second));
+  const std::vector<StopWay> before = ways_of(from), after = ways_of(to);
+  for (const StopWay& way : without(before, after)) sum.remove(doses(way.first, way.second));
+  for (const StopWay& way : without(after, before)) sum.add(doses(way.first, way.second));
 }
 
 const std::vector<Dose>& WayDoses::doses(const Stop* a, const Stop* b) {
-  const std::uint64_t key = Way{a, b}.key();
+  const std::uint64_t key = StopWay{a, b}.key();
   if (const auto known = doses_.find(key); known != doses_.end()) return known->second;
   if (doses_.size() > most_ways) doses_.clear();
   const auto* from = a == nullptr ? nullptr : &a->view;

@@ -24,7 +24,7 @@ ReturnCheck check_returns(const std::filesystem::path& file,
   const std::optional<Dialect> dialect =
       options.is_flown() ? dialect_of(file, options.flown()) : std::nullopt;
   if (!dialect || points.size() < 2) {
-    return {true, "returns are not checked: no autopilot flies home by this file"};
+    return {true, "returns not checked: no autopilot returns by this file"};
   }
   std::vector<flight::Segment> legs;
   for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
@@ -48,8 +48,8 @@ ReturnCheck check_returns(const std::filesystem::path& file,
     law.level = ground + stated->height;
     const flight::ReturnSearch proof = prove_returns(space, legs, law, clearance);
     if (proof.found) {
-      return {true, "all returns at " + metres(stated->height) + " (" + stated->by +
-                        ") are proven, the nearest at " + metres(proof.found->clearance)};
+      return {true, "all returns verified at " + metres(stated->height) + " (" + stated->by +
+                        "), minimum clearance " + metres(proof.found->clearance)};
     }
     fault = "not safe, at " + metres(stated->height) + " (" + stated->by + ") " + proof.why + "; ";
   }
@@ -57,13 +57,13 @@ ReturnCheck check_returns(const std::filesystem::path& file,
   const flight::ReturnSearch least =
       least_return(space, legs, law, options.highest_return(ground, top), clearance);
   if (!least.found) {
-    return {false, fault.empty() ? "not safe, no height of return is: " + least.why
-                                 : fault + "no other height is safe"};
+    return {false, fault.empty() ? "not safe, no return altitude is: " + least.why
+                                 : fault + " no other altitude is safe"};
   }
   const std::string needed = metres(least.found->height);
-  if (!fault.empty()) return {false, fault + "the least safe height of return is " + needed};
-  return {true, "the file does not say how high the vehicle returns: set it to " + needed +
-                    " above take-off, the least that is safe"};
+  if (!fault.empty()) return {false, fault + "the lowest safe return altitude is " + needed};
+  return {true, "the file does not contain the vehicle's return altitude: set it to " + needed +
+                    " above take-off, the lowest verified one"};
 }
 
 }  // namespace skycap::missions::package

@@ -51,7 +51,7 @@ const percent = (share) => 100 * share;
 function coverage_chart(data, title, x_of, x_title) {
   const { summary } = data, views = summary.per_view;
   const points = views.map((view, i) => [x_of(view, i), percent(view.coverage)]);
-  const lines = [line("covered, true", points)];
+  const lines = [line("covered (ground truth)", points)];
   if (typeof summary.coverage_ceiling === "number") {
     lines.push(level("attainable", points[0][0], points[points.length - 1][0], percent(summary.coverage_ceiling), 5));
   }
@@ -72,9 +72,9 @@ function clearance_chart(data) {
     }
     points.push([way, leg.clearance]);
   }
-  return chart("Proven clearance along the route", "Least distance of each leg from anything measured, " +
-    "forbidden or unknown. What is farther away than 10 m more than was asked for is not told apart.",
-    "line", [line("proven", points, 0, { pointRadius: 0 }), level("asked for", 0, way, asked, 4)],
+  return chart("Verified clearance along the route", "Minimum distance of each leg to measured points, no-fly volumes " +
+    "and unknown space, limited to 10 m above the required clearance.",
+    "line", [line("verified", points, 0, { pointRadius: 0 }), level("required", 0, way, asked, 4)],
     { x: "metres flown", y: "m", y_more: { min: 0 } });
 }
 
@@ -99,7 +99,7 @@ function energy_chart(data) {
   });
   const longest = Math.max(...sorties.map((sortie) => sortie.duration_s / 60));
   const home = value_at(data, "summary.flight.return.energy_wh");
-  if (home > 0) lines.push(level("the way home takes at most", 0, longest, home, 4));
+  if (home > 0) lines.push(level("energy for return (maximum)", 0, longest, home, 4));
   return chart("Energy left above the reserve", null, "line", lines, { x: "minutes", y: "Wh", y_more: { min: 0 } });
 }
 
@@ -108,10 +108,10 @@ function reliability_chart(data) {
   const bands = value_at(data, "summary.belief.reliability.bands");
   if (!bands) return null;
   const seen = bands.filter((band) => band.share > 0);
-  return chart("Belief against truth",
-    "Of the surface that the planner believes covered with some probability, the share that is: on the diagonal the planner is right.",
+  return chart("Calibration of the coverage estimate",
+    "Share of surface that is covered, by the probability that the planner estimated. On the diagonal the estimate is exact.",
     "line", [line("covered", seen.map((band) => [percent(band.believed), percent(band.covered)])),
-      line("if belief were right", [[0, 0], [100, 100]], 4)], { x: "% believed", y: "% covered", y_more: { min: 0 } });
+      line("ideal", [[0, 0], [100, 100]], 4)], { x: "% estimated", y: "% covered", y_more: { min: 0 } });
 }
 
 function survey_charts(data) {
@@ -119,11 +119,11 @@ function survey_charts(data) {
   if (!views.length) return null;
   const is_known = typeof views[0].coverage === "number";  // not of a real place
   const charts = [
-    is_known ? coverage_chart(data, "Coverage over views", (view, i) => i + 1, "views") : null,
-    is_known ? coverage_chart(data, "Coverage over the way", (view) => view.distance_m, "metres, straight from view to view") : null,
+    is_known ? coverage_chart(data, "Coverage vs. views", (view, i) => i + 1, "views") : null,
+    is_known ? coverage_chart(data, "Coverage vs. path length", (view) => view.distance_m, "metres, straight from view to view") : null,
     chart("Points", null, "line", [line("points kept", views.map((view, i) => [i + 1, view.points])),
       line("new with the view", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
-    chart("Planning time", "Time that the planner took for each view, on this machine.", "line",
+    chart("Planning time", "Planning time per view on this machine.", "line",
       [line("planning", views.map((view, i) => [i + 1, view.planning_time_s]))], { x: "views", y: "s" }),
     clearance_chart(data), energy_chart(data), reliability_chart(data)];
   return element("section", { id: "curves" }, element("h2", {}, "Curves"),

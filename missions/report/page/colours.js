@@ -2,9 +2,9 @@
 
 const states = [
   { name: "covered", key: "covered", colour: [88, 176, 122] },
-  { name: "seen too thinly", key: "seen_too_thinly", colour: [255, 176, 32] },
-  { name: "never seen", key: "never_seen", colour: [238, 62, 66] },
-  { name: "out of reach", key: "unreachable", colour: [158, 96, 232] },
+  { name: "undersampled", key: "seen_too_thinly", colour: [255, 176, 32] },
+  { name: "unobserved", key: "never_seen", colour: [238, 62, 66] },
+  { name: "unreachable", key: "unreachable", colour: [158, 96, 232] },
 ];
 
 /// In the order of the numbers that points have for them.

@@ -8,10 +8,10 @@ const planner_colours = ["#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", 
 const compared = [
   { key: "views", name: "views", form: "mean" },
   { key: "coverage", name: "coverage", form: "share" },
-  { key: "coverage_visible", name: "of the visible", form: "share" },
+  { key: "coverage_visible", name: "of visible surface", form: "share" },
   { key: "distance_m", name: "distance", form: "metres" },
-  { key: "flown_s", name: "in the air", form: "minutes" },
-  { key: "planning_time_s", name: "planning, of a processor", form: "seconds" },
+  { key: "flown_s", name: "flight time", form: "minutes" },
+  { key: "planning_time_s", name: "planning (processor time)", form: "seconds" },
 ];
 
 /// [{cell, path, colour}] with trials: a planner's on a mission; `path` leads to it in the summary.
@@ -47,7 +47,7 @@ function compared_figure(data, { cell, path }, { key, form }) {
 function comparison_table(data, cells) {
   const known = compared.filter(({ key }) => cells.some(({ cell }) => cell[key]));
   const heading = [cells.length > 1 ? "planner" : "", { number: "trials" }, ...known.map(({ name }) => ({ number: name })),
-    { number: "of the attainable" }];
+    { number: "of attainable coverage" }];
   return table(heading, cells.map((one) => {
     const { cell, path } = one, ceiling = cell.coverage_ceiling;
     return [planner_name(one), { number: figure(data, path + "trials", "count") },
@@ -71,10 +71,10 @@ function curve_lines(one, axis, unit) {
 }
 
 /// Figure, title, name and kind of the axis, and what its unit is in that of the figure.
-const curve_axes = [["views", "Coverage over views", "views", "linear"],
-  ["distance_m", "Coverage over the way", "metres", "linear"],
-  ["flown_s", "Coverage over the time in the air", "minutes from the pad", "linear", 60],
-  ["planning_time_s", "Coverage over planning time", "seconds of a processor", "logarithmic"]];
+const curve_axes = [["views", "Coverage vs. views", "views", "linear"],
+  ["distance_m", "Coverage vs. path length", "metres", "linear"],
+  ["flown_s", "Coverage vs. flight time", "minutes from take-off", "linear", 60],
+  ["planning_time_s", "Coverage vs. planning time", "seconds of processor time", "logarithmic"]];
 
 function coverage_curves(cells) {
   return curve_axes.map(([axis, title, x, type, unit = 1]) => {
@@ -89,7 +89,7 @@ function trials_chart(cells) {
   const sets = cells.filter(({ cell }) => cell.each_trial).map((one) => ({ label: title_of(one.cell),
     data: one.cell.each_trial.map((trial) => ({ x: trial.distance_m, y: percent(trial.coverage) })),
     backgroundColor: one.colour, borderColor: one.colour, pointRadius: 3.5 }));
-  return sets.length ? chart("Each survey", "A point for each trial.", "scatter", sets,
+  return sets.length ? chart("Each survey", "One point per trial.", "scatter", sets,
     { x: "metres, straight from view to view", y: "% of the surface", is_free: true }) : null;
 }
 
@@ -102,7 +102,7 @@ function interval_chart(cells, { key, name, form }) {
   const ends = ({ cell }) => [-1, 1].map((side) => bounded(scale * (cell[key].mean + side * (cell[key].half_width_95 || 0))));
   const colours = known.map(({ colour }) => colour);
   const sets = [
-    { type: "bar", label: "95 % interval of the mean", data: known.map(ends), backgroundColor: colours.map((colour) => colour + "55"), barPercentage: 0.5 },
+    { type: "bar", label: "95% interval of the mean", data: known.map(ends), backgroundColor: colours.map((colour) => colour + "55"), barPercentage: 0.5 },
     { type: "line", label: "mean", data: known.map(({ cell }) => scale * cell[key].mean), showLine: false, pointStyle: "circle", pointRadius: 5, pointBackgroundColor: colours, borderColor: "#17212b" },
     { type: "line", label: "paper", data: known.map(({ cell }) => (typeof cell[key].paper === "number" ? scale * cell[key].paper : null)), showLine: false, pointRadius: 6, pointStyle: "crossRot", borderColor: "#17212b" }];
   const has_paper = known.some(({ cell }) => typeof cell[key].paper === "number");
@@ -124,9 +124,9 @@ function target_charts(cells) {
     return line(title_of(one.cell), [[0, 0], ...share_by_distance.map((share, i) => [distance_bin_m * (i + 1), percent(share)])],
       0, { borderColor: one.colour, backgroundColor: one.colour });
   });
-  return [chart("Views until a target is observed", "A target is the frontier that a view was aimed at.", "bar",
+  return [chart("Views until a target is observed", "A target is the frontier at which a view is aimed.", "bar",
     views, { labels, x: "views", y: "% of the targets" }),
-  chart("Way until a target is observed", null, "line", ways, { x: "within metres", y: "% of the targets", y_more: { min: 0, max: 100 } })];
+  chart("Path length until a target is observed", null, "line", ways, { x: "within metres", y: "% of the targets", y_more: { min: 0, max: 100 } })];
 }
 
 /// What it took to come to the coverage that another planner ends with.
@@ -142,7 +142,7 @@ function reach_table(data, cells) {
     }));
   if (!rows.length) return [];
   const number = (content) => ({ number: content });
-  return [element("h3", {}, "Until the coverage of another"), table(["coverage of", "planner", number("trials that reach it"),
+  return [element("h3", {}, "Until a given coverage is reached"), table(["coverage of", "planner", number("trials that reach it"),
     number("views"), number("distance"), number("planning")], rows)];
 }
 
@@ -161,7 +161,7 @@ function trial_table(data, { cell, path }) {
 /// A section for each mission.
 function comparison_sections(data) {
   const cells = cells_of(data);
-  if (!cells.length) return [element("section", {}, element("p", {}, "There is no finished survey yet."))];
+  if (!cells.length) return [element("section", {}, element("p", {}, "No completed survey yet."))];
   const missions = [...new Set(cells.map(({ cell }) => cell.mission))];
   const sections = missions.map((mission) => {
     const own = cells.filter(({ cell }) => cell.mission === mission);

@@ -89,14 +89,14 @@ function map_legend(summary) {
   const used = new Set(summary.targets.map(coverage_colour));
   const knows_visible = summary.targets.some((target) => target.survey && target.survey.coverage_visible !== null);
   return element("p", { class: "legend-line" },
-    coverage_steps.map(([to, colour], i) => (used.has(colour) ? entry(colour, reaching(to, i) + (knows_visible ? " of the visible" : "") + " covered") : null)),
+    coverage_steps.map(([to, colour], i) => (used.has(colour) ? entry(colour, reaching(to, i) + (knows_visible ? " of visible surface" : "") + " covered") : null)),
     used.has(not_surveyed) ? entry(not_surveyed, "not surveyed") : null,
     summary.neighbours.length ? entry("#c3cad1", "obstacle") : null);
 }
 
 function map_section(data) {
   return element("section", { id: "map" }, element("h2", {}, "Map"), map_legend(data.summary),
-    district_map(data), element("p", {}, "North is up. Numbers are pads; lines are sorties, with a dot at each view. A target leads to the page of its survey."));
+    district_map(data), element("p", {}, "North is up. Numbers are take-off points; lines are sorties, with a dot at each view. Click a target to open the report of its survey."));
 }
 
 function target_table(data) {
@@ -109,7 +109,7 @@ function target_table(data) {
     return [name, number(String(target.ids.length)), f("survey.views", "count"), f("survey.coverage", "share"), f("survey.coverage_visible", "share"), f("survey.alone_duration_s", "minutes"),
       number(target.survey ? target.views_flown + " of " + views : "–"), target.why_none || target.why_not_flown];
   });
-  return table(["target", number("buildings"), number("views"), number("covered"), number("of the visible"), number("flight by itself"), number("views flown"), "remark"], rows);
+  return table(["target", number("buildings"), number("views"), number("covered"), number("of visible surface"), number("separate flight"), number("views in the flight"), "remark"], rows);
 }
 
 function targets_of_district(data) {
@@ -118,7 +118,7 @@ function targets_of_district(data) {
 
 function district_flight_section(data) {
   const { flight } = data.summary, number = (content) => ({ number: content });
-  if (!flight) return element("section", { id: "flight" }, element("h2", {}, "Flight"), element("p", {}, "There is nothing to fly."));
+  if (!flight) return element("section", { id: "flight" }, element("h2", {}, "Flight"), element("p", {}, "No flight."));
   const rows = sorties_of_district(data.summary).map(({ pad, number: sortie_number, sortie, path }) => {
     const f = (key, form) => number(figure(data, path + key, form));
     const files = pad.files.filter((file) => file.sortie === sortie_number - 1);
@@ -131,16 +131,16 @@ function district_flight_section(data) {
     pad.parameters.join(", ")]);
   return element("section", { id: "flight" }, element("h2", {}, "Flight of all targets"),
     element("p", {}, "By " + flight.vehicle + ": ", figure(data, "flight.views_flown", "count"), " of ", figure(data, "flight.views", "count"), " views, ",
-      figure(data, "flight.length_m", "metres"), " in ", figure(data, "flight.duration_s", "minutes"), ". Every leg is proven at ", figure(data, "flight.clearance_m", "metres"), "."),
-    table(["sortie", number("views"), number("length"), number("time"), number("energy"), number("left"), number("least clearance"), "files"], rows),
-    element("h3", {}, "Ways home"), table(["from", number("views"), number("return at"), number("least clearance"), "parameters"], homes),
+      figure(data, "flight.length_m", "metres"), " in ", figure(data, "flight.duration_s", "minutes"), ". Clearance, verified for every leg: ", figure(data, "flight.clearance_m", "metres"), "."),
+    table(["sortie", number("views"), number("length"), number("time"), number("energy"), number("left"), number("minimum clearance"), "files"], rows),
+    element("h3", {}, "Return to launch"), table(["from", number("views"), number("return altitude"), number("minimum clearance"), "parameters"], homes),
     flight.notes.length ? element("ul", {}, [...new Set(flight.notes)].map((note) => element("li", {}, note))) : null);
 }
 
 const how_district = [
-  ["Covered", "Of points spread evenly over the surface of a target's buildings as the map has them, the share with a measurement within the registration distance, in simulation."],
-  ["Flight by itself", "Of a target's own mission, from its own pad."],
-  ["Views flown", "Views of the target's survey that the flight of all targets stops at. Every leg keeps the clearance from what any survey has measured, from space in the unknown boxes that none has seen free, and from all that the map holds, widened by what it may be off."],
+  ["Covered", "Share of samples, evenly spread over the buildings of a target as mapped, that have a measurement within the coverage distance, in simulation."],
+  ["Separate flight", "Flight time of the target's own mission, from its own take-off point."],
+  ["Views in the flight", "Views of this target that are part of the joint flight. Every leg keeps the clearance from all measured points, from unknown space inside the unknown boxes, and from everything on the map, enlarged by its uncertainty."],
 ];
 
 function district_sections(data) {

@@ -60,8 +60,8 @@ function follow(skycap, started) {
     say();
   } });
   const say = () => {
-    button.textContent = is_followed ? "follows the survey: read again every " +
-      Math.round(period / 1000) + " s – pause" : "paused – follow the survey";
+    button.textContent = is_followed ? "live: updated every " +
+      Math.round(period / 1000) + " s – pause" : "paused – resume";
   };
   say();
   document.getElementById("head").append(button);

@@ -59,7 +59,7 @@ function view_section(data, clouds, skycap) {
     section.append(...skycap.panel.bars);
     skycap.panel.viewer.resize();
   } catch (failure) {
-    stage.append(element("p", { class: "notice" }, "There is no 3-D view: " + failure.message));
+    stage.append(element("p", { class: "notice" }, "3-D view not available: " + failure.message));
   }
   section.append(element("div", { class: "pictures" }));
 }
@@ -109,7 +109,7 @@ async function show() {
   await load_library("chart");
   document.getElementById("main").append(...sections_of(data, skycap).filter(Boolean));
   draw_charts();
-  const foot = "Made by Skycap " + data.version + " from the results beside it. Nothing in this page is loaded from anywhere.";
+  const foot = "Made by Skycap " + data.version + " from the results in the same folder. This page loads no external content.";
   document.getElementById("foot").append(element("p", {}, foot));
   follow(skycap, started);
   addEventListener("beforeprint", () => {
@@ -122,7 +122,7 @@ async function show() {
 /// For whoever drives the page: a promise of all that it shows.
 function main() {
   window.skycap = show().catch((failure) => {
-    document.getElementById("main").append(element("p", { class: "notice" }, "The page cannot be shown: " + failure.message));
+    document.getElementById("main").append(element("p", { class: "notice" }, "Cannot show the page: " + failure.message));
     throw failure;
   });
 }

@@ -1,6 +1,6 @@
 // The controls around the 3-D view, and what it says of a view, a point or a distance.
 
-const colour_modes = [["state", "what is covered"], ["file", "colours of the file"], ["view", "view"], ["height", "height"],
+const colour_modes = [["state", "coverage"], ["file", "file colours"], ["view", "view"], ["height", "height"],
   ["time", "time"], ["incidence", "incidence"], ["density", "density"]];
 
 class Panel {
@@ -130,7 +130,7 @@ class Panel {
     if (meaning.ramp) rows.push(...ramp_legend(meaning.ramp.title, meaning.ramp));
     const asked = value_at(this.data, "summary.flight.clearance_m.total");
     if (this.viewer.layers.route && asked > 0 && legs_of(this.data).some((leg) => leg.clearance !== null)) {
-      rows.push(...ramp_legend("route: proven clearance", { stops: nearness_stops,
+      rows.push(...ramp_legend("route: verified clearance", { stops: nearness_stops,
         low: shown(asked, "metres"), high: "from " + shown(asked + told_apart, "metres") }));
     }
     vehicles_of(this.data).forEach((vehicle, i) => {
@@ -148,10 +148,10 @@ class Panel {
         swatch([255 * colour.r, 255 * colour.g, 255 * colour.b], "dot"), look.name));
     }
     for (const prior of priors.filter((one) => !is_drawn(one))) {
-      rows.push(element("div", { class: "row" }, prior.name + " has too many triangles to be drawn"));
+      rows.push(element("div", { class: "row" }, prior.name + " has too many triangles to display"));
     }
     rows.push(element("div", { class: "row hint" }, this.viewer.layers.views
-      ? "click a view or a point for its figures" : "click a point for its place"));
+      ? "click a view or a point for details" : "click a point for its position"));
     this.legend.replaceChildren(...rows);
   }
 
@@ -199,12 +199,12 @@ class Panel {
     }
     rows.push(["returns", figure(this.data, path + "returns", "count")],
       ["new points", figure(this.data, path + "points_new", "count")],
-      ["planned in", figure(this.data, path + "planning_time_s", "seconds")],
-      ["way so far", figure(this.data, path + "distance_m", "metres")]);
-    if (typeof view.coverage === "number") rows.push(["covered after it", figure(this.data, path + "coverage", "share")]);
+      ["planning time", figure(this.data, path + "planning_time_s", "seconds")],
+      ["path length", figure(this.data, path + "distance_m", "metres")]);
+    if (typeof view.coverage === "number") rows.push(["coverage after this view", figure(this.data, path + "coverage", "share")]);
     const leg = value_at(this.data, "summary.flight.anew.is_flown") ? null // then legs lead to other views
       : legs_of(this.data).find((one) => one.to === number);
-    if (leg && leg.clearance !== null) rows.push(["clearance on the way", shown(leg.clearance, "metres")]);
+    if (leg && leg.clearance !== null) rows.push(["leg clearance", shown(leg.clearance, "metres")]);
     return rows;
   }
 
@@ -216,7 +216,7 @@ class Panel {
       const aspect = Math.tan(Math.min(sensor.horizontal_fov, 2.6) / 2) / Math.tan(Math.min(sensor.vertical_fov, 2.6) / 2);
       const picture = element("canvas", { width: String(width), height: String(Math.round(width / aspect)) });
       this.viewer.picture_of(number, picture);
-      parts.push(picture, element("p", { class: "caption" }, "the points that this view added, as the sensor saw them"));
+      parts.push(picture, element("p", { class: "caption" }, "points added by this view, from the sensor position"));
     }
     this.open_card((this.data.pieces ? "Image " : "View ") + number, parts);
   }

@@ -8,8 +8,8 @@ function trajectory_lines(data) {
   const { flown, believed } = data.trajectory, lines = [];
   const apart = Math.max(0, ...flown.points.map((point, i) =>
     (believed.points[i] ? vector(point).distanceTo(vector(believed.points[i])) : 0)));
-  if (apart > 0.01) lines.push({ points: believed.points, colour: believed_colour, name: "the way, as believed" });
-  lines.push({ points: flown.points, colour: flown_colour, name: "the way, as flown" });
+  if (apart > 0.01) lines.push({ points: believed.points, colour: believed_colour, name: "trajectory, estimated" });
+  lines.push({ points: flown.points, colour: flown_colour, name: "trajectory, ground truth" });
   return lines;
 }
 
@@ -24,12 +24,12 @@ function scan_section(data) {
   add("images planned", "images_planned", "count");
   add("shots", "shots", "count");
   add("points", "points", "count");
-  if (summary.shots > 0) rows.push(["points of a shot", number((summary.points / summary.shots).toFixed(3))]);
-  add("error of the navigation, level", "navigation.horizontal_sigma_m", "millimetres");
-  add("error of the navigation, height", "navigation.vertical_sigma_m", "millimetres");
+  if (summary.shots > 0) rows.push(["points per pulse", number((summary.points / summary.shots).toFixed(3))]);
+  add("horizontal navigation error", "navigation.horizontal_sigma_m", "millimetres");
+  add("vertical navigation error", "navigation.vertical_sigma_m", "millimetres");
   const shown_points = value_at(data, "clouds.measured.of");
-  if (shown_points) rows.push(["points of the preview", number(shown(shown_points, "count"))]);
-  return element("section", { id: "scan" }, element("h2", {}, "The scan"),
+  if (shown_points) rows.push(["points in the preview", number(shown(shown_points, "count"))]);
+  return element("section", { id: "scan" }, element("h2", {}, "Scan"),
     element("div", { class: "few" }, table(["", number("")], rows)));
 }
 
@@ -46,15 +46,15 @@ function scan_charts(data) {
   return element("section", { id: "curves" }, element("h2", {}, "Curves"), element("div", { class: "charts" },
     chart("Height of the sensor", null, "line", [line("height", places.map((place, i) => [times[i] - start, place.z]), 0, plain)], { x, y: "m", is_free: true }),
     chart("Speed", null, "line", [line("speed", speeds, 0, plain)], { x, y: "m/s" }),
-    pieces.length > 1 ? chart("Points over time", "Of the preview, for each " + data.piece + ".", "line", [line("points", pieces, 0, plain)], { x, y: "points" }) : null,
-    apart.some(([, off]) => off > 1) ? chart("Error of the believed place", "Between where the sensor was and where its carrier believes that it was.",
+    pieces.length > 1 ? chart("Points over time", "Points of the preview, per " + data.piece + ".", "line", [line("points", pieces, 0, plain)], { x, y: "points" }) : null,
+    apart.some(([, off]) => off > 1) ? chart("Position error of the navigation solution", "Distance between true and estimated sensor position.",
       "line", [line("error", apart, 0, plain)], { x, y: "mm" }) : null));
 }
 
 const how_scanned = [
-  ["Points", "Of all shots or pixels with a return. The page shows the preview: an even choice of them, where the carrier believes that they are."],
-  ["Incidence", "Between the plane through a point's neighbours and the way to the sensor in the middle of the piece of the flight."],
-  ["Range", "From a point to the sensor in the middle of its piece of the flight."],
-  ["Speed", "Between neighbouring poses of the trajectory, of which the page has an even choice."],
-  ["Density", "Neighbours of a point of the preview within " + density_reach + " times the usual spacing, over that disc's area, scaled up if the page shows only some of the preview's points."],
+  ["Points", "Points of all pulses or pixels with a return. The page shows a preview: an even selection, at their estimated positions."],
+  ["Incidence", "Angle between the normal of the plane through a point's neighbours and the direction to the sensor at the middle of its piece of the flight."],
+  ["Range", "Distance from a point to the sensor at the middle of its piece of the flight."],
+  ["Speed", "Computed from consecutive poses of the trajectory, an even selection of which is in the page."],
+  ["Density", "Number of neighbours of a preview point within " + density_reach + " times the usual spacing, divided by the area of that disc; scaled up if the page shows only some of the points."],
 ];

@@ -1,8 +1,8 @@
 // What is in the 3-D view, layer by layer.
 
 const layer_names = {
-  measured: "points", missing: "missing", unreachable: "out of reach", route: "route", fleet: "fleet", clearance: "clearance", views: "views", next: "next view",
-  free: "end of free space", volumes: "volumes", priors: "prior data", ground: "ground",
+  measured: "points", missing: "missing", unreachable: "unreachable", route: "route", fleet: "fleet", clearance: "clearance", views: "views", next: "next view",
+  free: "free-space boundary", volumes: "volumes", priors: "prior data", ground: "ground",
 };
 
 /// The box of all that belongs to the survey.
@@ -127,8 +127,8 @@ function ground_grid(extent, height) {
 const volume_looks = {
   no_fly: { colour: 0xe03c3c, opacity: 0.16, name: "no-fly volume" },
   geofence: { colour: 0x3aa0e0, opacity: 0.04, name: "geofence" },
-  unknown: { colour: 0xd8b24a, opacity: 0, name: "unknown until measured" },
-  scene: { colour: 0xb0c4d0, opacity: 0, name: "to be surveyed" },
+  unknown: { colour: 0xd8b24a, opacity: 0, name: "unknown box" },
+  scene: { colour: 0xb0c4d0, opacity: 0, name: "scene to survey" },
   target: { colour: 0x58b07a, opacity: 0.3, name: "prior: target" },
   obstacle: { colour: 0xe0703c, opacity: 0.5, name: "prior: obstacle" },
   terrain: { colour: 0x9a8f6a, opacity: 0.5, name: "prior: terrain" },

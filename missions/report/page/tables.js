@@ -46,15 +46,15 @@ function holes_section(data, on_pick) {
   const rest_area = rest.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2;
   const wide = (text, area, form_path) => [text, number(form_path ? figure(data, form_path, "square_metres")
     : shown(area, "square_metres")), share(area), "", ...(has_places ? [""] : []), "", ""];
-  rows.push(wide((rest.length + surface.smaller.holes) + " smaller ones", rest_area));
-  rows.push(wide("spread over covered surface", surface.rest_m2, "surface.rest_m2"));
-  rows.push(wide("missing in all", total));
-  const headings = ["why", number("area"), number("of surface"), "centre x, y, z [m]", ...(has_places ? ["latitude, longitude, height"] : []),
-    number("nearest view"), "would be seen from"];
-  const who = surface.known_by === "planner" ? "as the planner believes" : "as the simulator knows";
-  return element("section", { id: "holes" }, element("h2", {}, "What is missing"),
-    element("p", {}, "Of " , figure(data, "surface.area_m2", "square_metres"), " of surface, " + who +
-      ". Click a row to go there."),
+  rows.push(wide((rest.length + surface.smaller.holes) + " smaller gaps", rest_area));
+  rows.push(wide("scattered gaps", surface.rest_m2, "surface.rest_m2"));
+  rows.push(wide("total uncovered", total));
+  const headings = ["Reason", number("Area"), number("Share of surface"), "Centre x, y, z [m]", ...(has_places ? ["Latitude, longitude, height"] : []),
+    number("Nearest view"), "Suggested viewpoint"];
+  const who = surface.known_by === "planner" ? "planner estimate" : "ground truth";
+  return element("section", { id: "holes" }, element("h2", {}, "Uncovered surface"),
+    element("p", {}, "Total surface " , figure(data, "surface.area_m2", "square_metres"), " (" + who +
+      "). Click a row to show the gap."),
     table(headings, rows, (i) => {
       if (i < shown_holes.length) return { class: "pick", "data-hole": String(i), onclick: () => on_pick(i) };
       return i === rows.length - 1 ? { class: "sum", id: "missing-sum", "data-area": String(total) } : {};
@@ -74,19 +74,19 @@ function targets_section(data) {
       ...target.kinds.map((kind, k) => cells(kind, path + "kinds." + k + ".", target.name + ", " + kind.name))];
   });
   const dry = data.summary.settings["scene.model"] === "prior"
-    ? " They also stood in for the truth: this was a dry run." : "";
+    ? " They were also the ground truth of the simulated sensor." : "";
   return element("section", { id: "targets" }, element("h2", {}, "Targets"),
-    element("p", {}, "The surface that prior data has, and its share with a measurement near it." + dry),
-    table(["object", number("area"), number("covered"), number("within")], rows));
+    element("p", {}, "Surface of the target prior data, and the share of it that is covered." + dry),
+    table(["Object", number("Area"), number("Covered"), number("Coverage distance")], rows));
 }
 
 /// Where a sensor would have to be to look at a hole head-on, as far off as its nearest view.
 function seen_from(data, hole) {
-  if (!hole.normal.some((part) => part !== 0)) return "no one side";
+  if (!hole.normal.some((part) => part !== 0)) return "no dominant side";
   const distance = Math.min(hole.view_distance_m || 10, 30);
   const place = hole.centre.map((part, axis) => part + distance * hole.normal[axis]);
   const has_ground = data.scene && (data.scene.flown || data.summary.settings["scene.ground"]);
-  if (has_ground && place[2] < data.scene.ground) return "below";
+  if (has_ground && place[2] < data.scene.ground) return "below the ground";
   return places_text(place);
 }
 
@@ -95,8 +95,8 @@ function passage_parts(data) {
   return sorties_of(data).map((sortie, i) => {
     if (!sortie.passage) return null;
     const f = (path, form) => figure(data, "flight.route.sorties." + i + ".passage." + path, form);
-    return element("p", {}, "The trajectory and KML files fly sortie " + (i + 1) + " past its views: ", f("length_m", "metres"),
-      " in ", f("duration_s", "minutes"), ", proven free at ", f("clearance_m", "metres"), "; stops between: ",
+    return element("p", {}, "Fly-through capture of sortie " + (i + 1) + " (trajectory and KML files only): ", f("length_m", "metres"),
+      " in ", f("duration_s", "minutes"), ", clearance at least ", f("clearance_m", "metres"), "; stops: ",
       f("stops", "count"), ". The other files stop at each view.");
   }).filter(Boolean);
 }
@@ -110,11 +110,11 @@ function anew_parts(data) {
   const row = (name, key) => [name, f(key + ".views", "count"), f(key + ".pieces", "count"), f(key + ".length_m", "metres"),
     f(key + ".duration_s", "minutes"), f(key + ".promised_coverage", "share")];
   const again = value_at(anew, "flown_again.coverage_visible");
-  return [element("h3", {}, "Views chosen anew"),
-    table(["", "views", "from stop to stop", "length", "time", "expected of what was measured"].map((name, i) => (i ? number(name) : name)),
-      [row("the survey's views", "survey"), row(anew.is_flown ? "chosen anew, flown" : "nothing faster was found", "anew")]),
-    typeof again === "number" ? element("p", {}, "Flown again in the simulator, the mission covers ",
-      figure(data, "flight.anew.flown_again.coverage_visible", "share"), " of what is visible.") : null].filter(Boolean);
+  return [element("h3", {}, "Replanned views"),
+    table(["", "Views", "Segments", "Length", "Time", "Predicted coverage"].map((name, i) => (i ? number(name) : name)),
+      [row("Survey views", "survey"), row(anew.is_flown ? "Replanned, in the mission" : "No faster plan found", "anew")]),
+    typeof again === "number" ? element("p", {}, "In a simulated re-flight the mission covers ",
+      figure(data, "flight.anew.flown_again.coverage_visible", "share"), " of the visible surface.") : null].filter(Boolean);
 }
 
 /// Several vehicles that fly the mission together.
@@ -123,33 +123,33 @@ function fleet_parts(data) {
   if (!fleet) return [];
   const number = (content) => ({ number: content });
   const f = (path, form) => figure(data, "flight.fleet." + path, form);
-  const vehicles = table(["vehicle", number("views"), number("sorties"), number("length"), number("time"), number("energy"),
-    number("least clearance"), number("comes home at"), "files"], fleet.vehicles.map((vehicle, i) => {
+  const vehicles = table(["Vehicle", number("Views"), number("Sorties"), number("Length"), number("Time"), number("Energy"),
+    number("Minimum clearance"), number("Return altitude"), "Files"], fleet.vehicles.map((vehicle, i) => {
     const name = element("span", {}, swatch(vehicle_colour(i)), (i + 1) + ", " + vehicle.vehicle);
-    if (!vehicle.order.length) return [name, number("0"), ...Array(6).fill(number("–")), "stays on the ground"];
+    if (!vehicle.order.length) return [name, number("0"), ...Array(6).fill(number("–")), "not used"];
     const flown = (key, form) => number(f("vehicles." + i + "." + key, form));
     return [name, number(String(vehicle.order.length)), number(String(vehicle.sorties.length)),
       flown("length_m", "metres"), flown("duration_s", "minutes"), flown("energy_wh", "watt_hours"),
       flown("min_clearance_m", "metres"), flown("return_height_m", "metres"), vehicle.files.join(", ")];
   }));
-  const times = table(["vehicle", "sortie", number("takes off"), number("lands"), "file"], fleet.timetable.map((row, i) => [
+  const times = table(["Vehicle", "Sortie", number("Take-off"), number("Landing"), "File"], fleet.timetable.map((row, i) => [
     String(row.vehicle), String(row.sortie), number(f("timetable." + i + ".start_s", "clock")),
     number(f("timetable." + i + ".landing_s", "clock")), row.file]));
   const missed = fleet.unreached.map((one) => element("li", {}, "view " + one.view + ": " + one.reason));
-  return [element("h3", {}, "Several vehicles"),
-    element("p", {}, "The last one lands ", f("makespan_s", "minutes"), " after the first take-off; together they are ",
-      f("flown_s", "minutes"), " in the air. They are proven ", f("separation.proven_m", "metres"), " apart at all times (asked: ",
-      f("separation.asked_m", "metres"), ") as long as each is within ", f("separation.tolerance_s", "clock"),
-      " of its times; the last lands ", f("delay_s", "clock"), " later for it."),
-    vehicles, element("p", {}, "By the clock of the first take-off:"), times, missed.length ? element("ul", {}, missed) : null].filter(Boolean);
+  return [element("h3", {}, "Fleet"),
+    element("p", {}, "The last landing is ", f("makespan_s", "minutes"), " after the first take-off; the total flight time is ",
+      f("flown_s", "minutes"), ". Verified minimum separation ", f("separation.proven_m", "metres"), " at all times (required ",
+      f("separation.asked_m", "metres"), "), if each vehicle is at most ", f("separation.tolerance_s", "clock"),
+      " early or late. The separation delays the last landing by ", f("delay_s", "clock"), "."),
+    vehicles, element("p", {}, "Times from the first take-off:"), times, missed.length ? element("ul", {}, missed) : null].filter(Boolean);
 }
 
 /// The flight that measured, before the mission that is written.
 function surveyed_part(data) {
   const frames = (data.summary.per_view || []).reduce((sum, view) => sum + (view.frames_on_way || 0), 0);
-  return element("p", {}, "The survey itself flew ", figure(data, "flight.survey.length_m", "metres"), " in ",
-    figure(data, "flight.survey.duration_s", "minutes"), ", from the pad to the last view" +
-    (frames ? ", and took " + frames + " frames on the way. The mission takes pictures at its views only, and covers less." : "."));
+  return element("p", {}, "The survey flew ", figure(data, "flight.survey.length_m", "metres"), " in ",
+    figure(data, "flight.survey.duration_s", "minutes"), ", from take-off to the last view" +
+    (frames ? ", with " + frames + " en-route frames. The mission captures at its views only, and covers less." : "."));
 }
 
 function flight_section(data) {
@@ -157,17 +157,17 @@ function flight_section(data) {
   if (!flight) return null;
   const section = element("section", { id: "flight" }, element("h2", {}, "Flight"));
   if (flight.failure) {
-    section.append(element("p", { class: "notice" }, "There is no route: " + flight.failure));
+    section.append(element("p", { class: "notice" }, "No route: " + flight.failure));
     return section;
   }
   const number = (content) => ({ number: content });
   const f = (path, form) => figure(data, "flight." + path, form);
   section.append(element("p", {}, "With ", f("vehicle", "text"), ": ", f("route.length_m", "metres"), " in ",
     f("route.duration_s", "minutes"), ", ", f("route.energy_wh", "watt_hours"),
-    ". Every leg is proven free, with ", f("clearance_m.total", "metres"), " to spare; the least is ",
-    f("route.min_clearance_m", "metres"), "."), surveyed_part(data));
-  section.append(table(["sortie", "stations", number("length"), number("time"), number("energy"),
-    number("left above reserve"), number("least clearance")], sorties_of(data).map((sortie, i) => {
+    ". Minimum clearance ", f("route.min_clearance_m", "metres"), ", verified for every leg (required ",
+    f("clearance_m.total", "metres"), ")."), surveyed_part(data));
+  section.append(table(["Sortie", "Views", number("Length"), number("Time"), number("Energy"),
+    number("Left above reserve"), number("Minimum clearance")], sorties_of(data).map((sortie, i) => {
     const path = "route.sorties." + i + ".";
     return [String(i + 1), sortie.first_station + " to " + sortie.last_station,
       number(f(path + "length_m", "metres")), number(f(path + "duration_s", "minutes")),
@@ -175,26 +175,27 @@ function flight_section(data) {
       number(f(path + "min_clearance_m", "metres"))];
   })));
   section.append(...passage_parts(data), ...anew_parts(data), ...fleet_parts(data));
-  const terms = [["vehicle's radius", "vehicle_radius"], ["position error", "position_error"],
-    ["tracking error", "tracking_error"], ["map error", "map_error"], ["margin", "margin"], ["together", "total"]];
-  section.append(element("h3", {}, "What the clearance is made of"),
+  const terms = [["Vehicle radius", "vehicle_radius"], ["Position error", "position_error"],
+    ["Tracking error", "tracking_error"], ["Map error", "map_error"], ["Margin", "margin"], ["Total", "total"]];
+  section.append(element("h3", {}, "Clearance budget"),
     table(terms.map(([name]) => number(name)), [terms.map(([, key]) => number(f("clearance_m." + key, "metres")))]));
   if (flight.return) {
     const home = flight.return;
-    section.append(element("h3", {}, "The way home"), element("p", {}, "From every point of the route the autopilot's own return is proven at ",
-      f("return.height_m", "metres"), " above the pad; the least clearance is ", f("return.clearance_m", "metres"),
-      ", from " + (home.nearest.obstacle || "nothing near") + ". It takes at most ", f("return.energy_wh", "watt_hours"), "."));
+    section.append(element("h3", {}, "Return to launch"), element("p", {}, "Return altitude ",
+      f("return.height_m", "metres"), " above take-off, verified from every point of the route, at this altitude only. Minimum clearance ",
+      f("return.clearance_m", "metres"), " to " + (home.nearest.obstacle || "any obstacle") + ". Energy for return (maximum): ",
+      f("return.energy_wh", "watt_hours"), "."));
   }
   const missed = flight.route.unreached || [], listed = 8;
   if (missed.length) {
-    const why = table(["view", "why"], missed.map((one) => [String(one.view), one.reason]));
-    section.append(element("h3", {}, "Views that are not flown to"), missed.length <= listed ? why
+    const why = table(["View", "Reason"], missed.map((one) => [String(one.view), one.reason]));
+    section.append(element("h3", {}, "Views not in the mission"), missed.length <= listed ? why
       : element("details", {}, element("summary", {}, "All " + missed.length), why));
   }
   if ((flight.notes || []).length) {
     section.append(element("h3", {}, "Notes"), element("ul", {}, flight.notes.map((note) => element("li", {}, note))));
   }
-  section.append(element("h3", {}, "Route files"), table(["file", "heights count", number("time as flown by it"), number("least clearance")],
+  section.append(element("h3", {}, "Route files"), table(["File", "Altitude reference", number("Flight time"), number("Minimum clearance")],
     (flight.files || []).map((file, i) => [file.name, file.heights,
       number(f("files." + i + ".duration_s", "minutes")), number(f("files." + i + ".min_clearance_m", "metres"))])));
   return section;
@@ -207,20 +208,20 @@ function accuracy_section(data) {
   const is_learnt = value_at(data, "summary.belief.noise_m") > 0;
   const millimetres = error_m && { counts: error_m.counts, low: 0, high: 1000 * error_m.high };
   return element("section", { id: "accuracy" }, element("h2", {}, "Accuracy"),
-    is_learnt ? element("p", {}, "The planner has learnt that a measurement head-on strays by ",
+    is_learnt ? element("p", {}, "Measurement noise at perpendicular incidence, estimated by the planner: ",
       figure(data, "belief.noise_m", "millimetres"), " (standard deviation).") : null,
     element("div", { class: "charts" },
-      error_m ? histogram_chart("Predicted error of the surface", "Standard error where the points within the registration distance are averaged; " +
-        (is_learnt ? "of the noise that the planner has learnt." : "of the noise that the mission states."), millimetres, "mm", 3) : null,
-      incidence_deg ? histogram_chart("Angle of incidence", "Between the surface's normal and the way to the sensor: flat looks measure badly.", incidence_deg, "degrees", 0) : null,
-      range_m ? histogram_chart("Range", "How far the sensor was from the points it took.", range_m, "m", 2) : null));
+      error_m ? histogram_chart("Predicted error of the surface", "Standard error if the points within the coverage distance are averaged, with the " +
+        (is_learnt ? "noise estimated by the planner." : "noise of the mission (sensor.noise)."), millimetres, "mm", 3) : null,
+      incidence_deg ? histogram_chart("Angle of incidence", "Angle between surface normal and ray. Large angles give large errors.", incidence_deg, "degrees", 0) : null,
+      range_m ? histogram_chart("Range", "Distance between sensor and points.", range_m, "m", 2) : null));
 }
 
 function files_section(data) {
   if (!(data.files || []).length) return null;
   return element("section", { id: "files" }, element("h2", {}, "Files"),
-    table(["file", { number: "size" }, "SHA-256"], data.files.map((file) => [file.name,
-      { number: shown(file.bytes, "bytes") }, element("span", { class: "code" }, file.sha256 || "not taken of an interrupted scan")])));
+    table(["File", { number: "Size" }, "SHA-256"], data.files.map((file) => [file.name,
+      { number: shown(file.bytes, "bytes") }, element("span", { class: "code" }, file.sha256 || "not computed for an interrupted scan")])));
 }
 
 const setting_text = (value) => (typeof value === "string" ? value : JSON.stringify(value));
@@ -229,32 +230,32 @@ function settings_section(data) {
   const settings = data.summary.settings;
   if (!settings) return null;
   return element("section", { id: "settings" }, element("details", { class: "settings" },
-    element("summary", {}, "All settings in force"),
-    table(["key", "value"], Object.entries(settings).map(([key, value]) => [key, setting_text(value)]))));
+    element("summary", {}, "Settings"),
+    table(["Key", "Value"], Object.entries(settings).map(([key, value]) => [key, setting_text(value)]))));
 }
 
-/// How the figures are computed: in the page, for whoever has nothing else.
+/// Definitions of the figures, for readers who have only the page.
 const how_surveyed = [
-  ["Coverage, as the planner believes", "Area of the surface that was measured or is guessed to be there, each piece times the probability that it has a measurement within the registration distance, over the whole area."],
-  ["Coverage, true", "Of points spread evenly over the simulated model's surface, the share with a measurement within evaluation.registration_distance. The planner never sees it. Of what is visible: of those points that a sensor could see from some admissible place."],
-  ["What is missing", "Pieces of surface that are more likely uncovered than covered hang together if they are near each other and missing for the same reason. Their area is the missing part of each piece. The rest is what even covered surface is expected to lack. All together is the surface's area times one less the coverage."],
-  ["Proven clearance", "For every leg a lower bound of the distance between the vehicle's centre and anything measured, forbidden, or not yet seen free, over the whole leg, not only at its ends."],
-  ["Times and energy", "Of the vehicle's profile, with stops, turns and hovering, in the wind and at the temperature that the mission gives."],
-  ["Predicted error", "At a sample of the points: the root of the summed squares of the noise across the surface of all points within the registration distance, over their number. The noise is what the planner has learnt head-on, else what the mission states (sensor.noise); along a ray it counts by the cosine of the incidence. What neighbours have in common, such as an error of the sensor's place, is not in it."],
-  ["Incidence and range", "From each point's normal, the plane through its neighbours, and the place of the sensor that took it."],
-  ["End of free space", "The faces of the voxels that were measured to be free, beyond which nothing was seen or something is; of many an even choice. The route is proven to keep its clearance from all of them."],
-  ["Density", "Neighbours of a point within " + density_reach + " times the usual spacing, over that disc's area, scaled up if the page shows only some of the points."],
+  ["Coverage (planner estimate)", "Area of measured and predicted surface, each piece weighted by the probability that it has a measurement within the coverage distance, divided by the total area."],
+  ["Coverage (ground truth)", "Share of samples, evenly spread over the surface of the simulated model, that have a measurement within the coverage distance. The planner does not use it. Visible surface: samples that a sensor can see from an admissible view."],
+  ["Uncovered surface", "Pieces of surface that are more likely uncovered than covered, grouped by neighbourhood and reason. The area of a gap is the uncovered part of its pieces. Scattered gaps are the expected uncovered part of covered surface. The total is the surface area times (1 - coverage)."],
+  ["Verified clearance", "Lower bound of the distance from the vehicle centre to any measured point, no-fly volume or unknown space, over the whole leg and not only its ends."],
+  ["Times and energy", "Estimates from the vehicle file, with stops, turns and hovering, at the wind and battery temperature of the mission."],
+  ["Predicted error", "Standard error of the mean, at a sample of the points, if all points within the coverage distance are averaged. Uses the noise estimated by the planner, otherwise sensor.noise; noise along a ray is multiplied by the cosine of the incidence. Correlated errors, such as a wrong sensor position, are not included."],
+  ["Incidence and range", "Computed from the normal of each point (plane through its neighbours) and the sensor position of its scan."],
+  ["Free-space boundary", "Faces between free voxels and unknown or occupied ones; an even selection if there are many. The route is verified to keep its clearance from all of them."],
+  ["Density", "Number of neighbours within " + density_reach + " times the usual spacing, divided by the area of that disc; scaled up if the page shows only some of the points."],
 ];
 
 const how_compared = [
-  ["Mean, ± and sd", "Over the trials: the mean, half the width of its 95 % interval by Student's t, and the standard deviation. Bands around curves are one standard deviation."],
-  ["Coverage", "Of points spread evenly over the simulated model's surface, the share with a measurement within evaluation.registration_distance; of the visible: of those that a sensor could see from some admissible place; of the attainable: over what all admissible views together would cover. Along a curve a survey that is over keeps its coverage."],
-  ["Distance", "Straight from view to view, from the first on."],
-  ["Planning", "The planner's own work for all views of a survey, in seconds of a processor; sensing and files are not in it."],
-  ["Paper", "Means of 100 surveys each in Border and Gammell, SEE++ (2020), where the mission is one of its models, or as the mission file says."],
+  ["Mean, ± and sd", "Mean over the trials, half width of its 95% confidence interval (Student's t), and standard deviation. Bands around curves are one standard deviation."],
+  ["Coverage", "Share of samples, evenly spread over the surface of the simulated model, that have a measurement within the coverage distance. Visible surface: samples that a sensor can see from an admissible view. Attainable coverage: coverage by all admissible views together. Along a curve, a completed survey keeps its coverage."],
+  ["Distance", "Sum of straight lines between consecutive views."],
+  ["Planning", "Processor time of the planner for all views of a survey, without sensing and files."],
+  ["Paper", "Means of 100 surveys each in Border and Gammell, SEE++ (2020), for its models, or values of the mission file."],
 ];
 
 function how_section(how) {
-  return element("section", { id: "how" }, element("details", {}, element("summary", {}, "How each figure is computed"),
+  return element("section", { id: "how" }, element("details", {}, element("summary", {}, "Definitions"),
     element("dl", { class: "how" }, how.flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)]))));
 }

@@ -10,7 +10,7 @@ class Viewer {
     this.clouds = clouds;
     this.main = clouds.measured || clouds.model || null;
     const context = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
-    if (!context) throw new Error("this browser shows no 3-D graphics (WebGL 2)");
+    if (!context) throw new Error("this browser does not support 3-D graphics (WebGL 2)");
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.autoClear = false;
     Object.assign(this, build_layers(data, clouds));
@@ -330,10 +330,10 @@ function painter_of(mode, cloud, legend, data) {
   }
   if (mode === "time" && data.pieces.length) {
     const times = data.pieces.map((piece) => piece.time_s), last = times.length - 1;
-    return ramp("time of the flight", (i) => times[Math.min(cloud.view[i], last)] - times[0], 0, times[last] - times[0], "clock");
+    return ramp("flight time", (i) => times[Math.min(cloud.view[i], last)] - times[0], 0, times[last] - times[0], "clock");
   }
   if (mode === "view" && cloud.view) {
-    legend.note = "a colour for each view";
+    legend.note = "one colour per view";
     return (i) => view_colour(cloud.view[i]);
   }
   if (mode === "incidence" && cloud.incidence) {
@@ -347,7 +347,7 @@ function painter_of(mode, cloud, legend, data) {
     return ramp("points per m²", (i) => cloud.density[i], 0, quantile(cloud.density, 0.99), "count");
   }
   if (mode === "file") {
-    legend.note = "as the file has them";
+    legend.note = "colours of the file";
     return (i) => data.palette[cloud.colour[i]];
   }
   if (cloud.state) {

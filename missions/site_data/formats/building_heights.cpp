@@ -190,7 +190,7 @@ class HeightReader {
       const std::optional<double> metres = metres_of(height->value);
       if (!metres) {
         object.height_problem = "has the " + height->name + " '" + height->value.substr(0, 60) +
-                                "', which is no height in metres or feet";
+                                "', which is not a height in metres or feet";
         return;
       }
       if (*metres > 0.0) {
@@ -220,7 +220,7 @@ class HeightReader {
     const std::optional<double> count = storeys_of(levels->value);
     if (!count) {
       object.height_problem = "has the " + levels->name + " '" + levels->value.substr(0, 60) +
-                              "', which is no number of storeys";
+                              "', which is not a number of storeys";
       return;
     }
     double roof = 0.0;
@@ -228,7 +228,7 @@ class HeightReader {
       const std::optional<double> metres = metres_of(found->value);
       if (!metres) {
         object.height_problem = "has the " + found->name + " '" + found->value.substr(0, 60) +
-                                "', which is no height in metres or feet";
+                                "', which is not a height in metres or feet";
         return;
       }
       roof = std::max(0.0, *metres);
@@ -236,7 +236,7 @@ class HeightReader {
       const std::optional<double> more = storeys_of(in_roof->value);
       if (!more) {
         object.height_problem = "has the " + in_roof->name + " '" + in_roof->value.substr(0, 60) +
-                                "', which is no number of storeys";
+                                "', which is not a number of storeys";
         return;
       }
       roof = storey * std::max(0.0, *more);
@@ -269,13 +269,12 @@ class HeightReader {
     const auto add = [&](std::size_t count, const char* what) {
       if (count > 0) contents_.notes.push_back(std::to_string(count) + what);
     };
-    add(thin_, " points and lines left out whose height is unknown");
+    add(thin_, " points and lines ignored: unknown height");
     add(by_height_, " outlines have a height of their own");
-    add(by_levels_, " outlines state levels alone: 3 m are taken for each");
-    add(with_roof_, " of these have a roof above their levels, which is added");
-    add(without_meaning_, " outlines have a height of 0 or less, which is taken for unknown");
-    add(without_min_,
-        " outlines have a min_height that is not understood: they begin at their base");
+    add(by_levels_, " outlines state storeys only: 3 m each are assumed");
+    add(with_roof_, " of these have a roof above their storeys, which is added");
+    add(without_meaning_, " outlines have a height of 0 or less, which counts as unknown");
+    add(without_min_, " outlines have an invalid min_height: they begin at their base");
   }
 
   FileContents& contents_;

@@ -263,8 +263,8 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
     }
   }
   if (dimension != 2 && dimension != 3) {
-    fail_file(file_, "has coordinates of " + std::to_string(dimension) +
-                         " dimensions (srsDimension); 2 or 3 are wanted");
+    fail_file(file_, "has coordinates with " + std::to_string(dimension) +
+                         " dimensions (srsDimension); only 2 and 3 are supported");
   }
   const auto width = static_cast<std::size_t>(dimension);
   if (dimension == 2 && !numbers_.empty()) {
@@ -273,7 +273,7 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   }
   if (numbers_.size() % width != 0) {
     fail_file(file_, "has a ring of " + std::to_string(numbers_.size()) +
-                         " numbers, which is no multiple of " + std::to_string(dimension));
+                         " numbers, which is not a multiple of " + std::to_string(dimension));
   }
   if (numbers_.empty()) ++rings_without_place_;
   if (contents_.corners.size() + numbers_.size() / width > most_corners) {
@@ -307,18 +307,18 @@ void Walker::finish() {
     contents_.objects[place.object].polygons[place.polygon].kind = kind->second;
   }
   for (const auto& [name, count] : left_out_) {
-    contents_.notes.push_back(std::to_string(count) + " " + name + " left out");
+    contents_.notes.push_back(std::to_string(count) + " " + name + " ignored");
   }
   if (rings_without_place_ > 0) {
     contents_.notes.push_back(std::to_string(rings_without_place_) +
-                              " rings without straight lines left out");
+                              " rings without straight lines ignored");
   }
   if (rings_without_heights_ == 0) return;
   if (contents_.corners.empty()) {
-    fail_file(file_, "has coordinates without heights alone (srsDimension 2)");
+    fail_file(file_, "has only coordinates without heights (srsDimension 2)");
   }
   contents_.notes.push_back(std::to_string(rings_without_heights_) +
-                            " rings without heights left out (srsDimension 2)");
+                            " rings without heights ignored (srsDimension 2)");
 }
 
 /// By the namespaces of its root.
@@ -339,7 +339,7 @@ bool is_by_authority(Name crs) { return crs.starts_with("urn:") || crs.starts_wi
 
 /// Bytes that the text, its tree and its corners take: 64 for a node of pugixml, 40 for an
 /// attribute; what is kept of a text besides; 24 for a corner, twice while the list of them grows.
-std::size_t tree_bytes(std::string_view xml) {
+std::size_t xml_tree_bytes(std::string_view xml) {
   std::size_t bytes = xml.size();
   const auto is_gap = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };
   for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
@@ -356,13 +356,13 @@ std::size_t tree_bytes(std::string_view xml) {
 
 FileContents parse_citygml(const std::filesystem::path& file, std::string bytes,
                            std::size_t most_objects) {
-  require_tree_fits(file, tree_bytes(bytes));
+  require_tree_fits(file, xml_tree_bytes(bytes));
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer_inplace(
       bytes.data(), bytes.size(), pugi::parse_escapes | pugi::parse_cdata);
   if (!result) {
     const auto end = bytes.begin() + std::min<std::ptrdiff_t>(result.offset, std::ssize(bytes));
-    fail_file(file, "is not XML from line " +
+    fail_file(file, "is not valid XML from line " +
                         std::to_string(1 + std::count(bytes.begin(), end, '\n')) + " on (" +
                         result.description() + ")");
   }

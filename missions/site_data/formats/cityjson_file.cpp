@@ -145,8 +145,8 @@ void Reader::read_objects(const Json& root) {
         read_geometry(geometry, object);
       }
     } catch (const Json::exception& error) {
-      fail_file(file_, "is not CityJSON as its specification has it in the object " +
-                           id.substr(0, 100) + " (" + error.what() + ")");
+      fail_file(file_, "violates the CityJSON specification in the object " + id.substr(0, 100) +
+                           " (" + error.what() + ")");
     }
   }
 }
@@ -202,7 +202,7 @@ void Reader::read_instance(const Json& geometry, FileObject& object) {
   placed_.pretranslate(places_.at(geometry.at("boundaries").at(0).get<std::size_t>()));
   const Json& original = templates_.at("templates").at(geometry.at("template").get<std::size_t>());
   if (original.at("type") == "GeometryInstance") {
-    fail_file(file_, "has a geometry template that is made of a template");
+    fail_file(file_, "has a geometry template that contains a template");
   }
   places_ = {&templates_.at("vertices-templates"), Vector3d::Ones(), Vector3d::Zero()};
   read_geometry(original, object);
@@ -247,7 +247,7 @@ void Reader::read_surface(const Json& rings, const Json* value) {
   polygon.lod = lod_;
   for (const Json& ring : rings) {
     if (contents_.corners.size() + ring.size() > most_json_corners) {
-      fail_file(file_, "has more than 16 million corners of polygons; cut it in pieces");
+      fail_file(file_, "has more than 16 million corners of polygons; split the file");
     }
     for (const Json& index : ring) {
       contents_.corners.push_back(placed_ * places_.at(index.get<std::size_t>()));
@@ -259,15 +259,15 @@ void Reader::read_surface(const Json& rings, const Json* value) {
 void Reader::finish() {
   if (left_out_ > 0) {
     contents_.notes.push_back(std::to_string(left_out_) +
-                              " rooms, inner and closing surfaces left out");
+                              " rooms, inner and closing surfaces ignored");
   }
   if (without_surfaces_ > 0) {
     contents_.notes.push_back(std::to_string(without_surfaces_) +
-                              " geometries of points or lines left out");
+                              " geometries of points or lines ignored");
   }
   if (without_level_ > 0) {
     contents_.notes.push_back(std::to_string(without_level_) +
-                              " geometries have a lod that is no number: taken for all levels");
+                              " geometries have an invalid lod: used for all levels");
   }
   if (without_kind_ > 0) {
     contents_.notes.push_back(std::to_string(without_kind_) +
@@ -277,7 +277,7 @@ void Reader::finish() {
 
 /// Bytes that the text and its tree take: values of 16 bytes in lists that grow by doubling, lists,
 /// maps and strings with what the heap adds to each.
-std::size_t tree_bytes(std::string_view json) {
+std::size_t json_tree_bytes(std::string_view json) {
   std::size_t bytes = json.size();
   for (const char c : json) {
     if (c == ',') bytes += 32;
@@ -309,19 +309,18 @@ std::vector<Json> texts_of(const std::filesystem::path& file, std::string_view b
 }  // namespace
 
 FileContents parse_cityjson(const std::filesystem::path& file, std::string_view bytes) {
-  require_tree_fits(file, tree_bytes(bytes));
+  require_tree_fits(file, json_tree_bytes(bytes));
   const std::vector<Json> texts = texts_of(file, bytes);
   FileContents contents;
   try {
     Reader reader(file, contents);
-    if (texts.empty()) fail_file(file, "is empty; give a CityJSON file");
+    if (texts.empty()) fail_file(file, "is empty; expected a CityJSON file");
     reader.read_header(texts.at(0));
     for (const Json& text : texts) reader.read_objects(text);
     reader.finish();
     if (texts.size() > 1) contents.format = "CityJSONSeq " + contents.format.substr(9);
   } catch (const Json::exception& error) {
-    fail_file(file,
-              std::string("is not CityJSON as its specification has it (") + error.what() + ")");
+    fail_file(file, std::string("violates the CityJSON specification (") + error.what() + ")");
   }
   return contents;
 }

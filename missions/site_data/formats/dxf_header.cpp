@@ -94,24 +94,23 @@ void take_dxf_unit(const std::filesystem::path& file, string_view text, bool has
   const Header header = header_of(text);
   if (header.thick > 0) {
     contents.notes.push_back(std::to_string(header.thick) +
-                             " entities have a thickness, which is not read: height says how high "
-                             "they are");
+                             " entities have a thickness, which is ignored: set height");
   }
   if (has_unit) return;
   if (header.unit.value_or(0) == 0) {
-    contents.notes.push_back(
-        std::string("it does not name its unit ($INSUNITS): taken to be in metres") +
-        (header.is_imperial ? ", though its measurement is imperial; unit says otherwise"
-                            : "; unit says otherwise"));
+    contents.notes.push_back(std::string("missing unit ($INSUNITS): metres are assumed") +
+                             (header.is_imperial
+                                  ? ", although $MEASUREMENT is imperial; set unit to change it"
+                                  : "; set unit to change it"));
     return;
   }
   const auto unit = std::ranges::find(units, *header.unit, &Unit::number);
   if (unit == units.end()) {
     fail_file(file, "has the unknown unit $INSUNITS " + std::to_string(*header.unit) +
-                        "; set unit, the length of its unit in metres");
+                        "; set unit, its length in metres");
   }
   contents.unit = unit->metres;
-  contents.notes.push_back(std::string("its unit is ") + unit->name + " ($INSUNITS)");
+  contents.notes.push_back(std::string("linear unit: ") + unit->name + " ($INSUNITS)");
 }
 
 }  // namespace skycap::missions::site_data

@@ -21,7 +21,7 @@ FileContents read_e57(const std::filesystem::path& file, const CloudThinning& th
   note_skipped(input.skipped(), contents);
   if (input.zero_rotations() > 0) {
     contents.notes.push_back(std::to_string(input.zero_rotations()) +
-                             " scans have a rotation of four zeros, which is taken for none");
+                             " scans have a rotation of four zeros, which counts as no rotation");
   }
   return contents;
 }

@@ -17,15 +17,13 @@ void fail_file(const std::filesystem::path& file, const std::string& what) {
 
 void require_tree_fits(const std::filesystem::path& file, std::size_t bytes) {
   if (bytes > most_tree_bytes) {
-    fail_file(file,
-              "has so many parts that reading them would take more than 2 GiB of memory; cut it in "
-              "pieces");
+    fail_file(file, "requires more than 2 GiB of memory; split the file");
   }
 }
 
 void note_skipped(std::size_t points, FileContents& contents) {
   if (points == 0) return;
-  contents.notes.push_back(std::to_string(points) + " points skipped that are NaN or infinite");
+  contents.notes.push_back(std::to_string(points) + " points skipped (NaN or infinite)");
 }
 
 void set_wkt(FileContents& contents, const std::string& wkt) {

@@ -57,7 +57,7 @@ void copy_file(const fs::path& file, const fs::path& from, const fs::path& to) {
   if (!failure) fs::permissions(to, fs::perms::owner_read | fs::perms::owner_write, failure);
   if (failure) {
     fail_file(file,
-              "cannot be read: it needs a copy, which cannot be made (" + failure.message() + ")");
+              "cannot be read: a temporary copy cannot be created (" + failure.message() + ")");
   }
 }
 
@@ -72,7 +72,7 @@ void CopyFolder::make(const fs::path& file) {
   std::error_code failure;
   std::string name = (fs::temp_directory_path(failure) / "skycap-XXXXXX").string();
   if (failure || ::mkdtemp(name.data()) == nullptr) {
-    fail_file(file, "cannot be read: it needs a copy, and there is no folder for temporary files");
+    fail_file(file, "cannot be read: a temporary copy requires a folder for temporary files");
   }
   path_ = name;
 }
@@ -91,7 +91,7 @@ fs::path OpenDataset::readable(const fs::path& file) {
         copy_file(file, file.string() + more, copy.string() + more);
       }
     }
-    notes_.emplace_back("read from a copy, with the changes in the log beside it");
+    notes_.emplace_back("read from a copy, with the changes of its log file");
     return copy;
   }
   std::string ending = file.extension().string();
@@ -108,7 +108,7 @@ fs::path OpenDataset::readable(const fs::path& file) {
     }
   }
   CPLSetConfigOption("SHAPE_RESTORE_SHX", "YES");
-  notes_.emplace_back("read from a copy, whose missing index (.shx) was made anew");
+  notes_.emplace_back("read from a copy, whose missing index (.shx) was rebuilt");
   return copy;
 }
 
@@ -121,7 +121,7 @@ OpenDataset::OpenDataset(const fs::path& file, unsigned kind,
   CPLSetConfigOption("SHAPE_RESTORE_SHX", "NO");  // writes beside the file
   // An absolute name is never one of GDAL's own, such as /vsicurl/ or "MEM:".
   const std::string name = fs::absolute(file).lexically_normal().string();
-  if (name.starts_with("/vsi")) fail_file(file, "has a name that GDAL would not take for a file's");
+  if (name.starts_with("/vsi")) fail_file(file, "has a file name that GDAL does not support");
   const std::string opened = readable(name).string();
   const std::array<const char*, 2> immutable{"IMMUTABLE=YES", nullptr};
   dataset_ = GDALDataset::Open(opened.c_str(), kind | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,

@@ -60,8 +60,8 @@ void MapReader::require_layer(const std::string& layer) {
     if (name == layer) return;
     names += (names.empty() ? "" : ", ") + name;
   }
-  throw Error(ErrorKind::bad_config,
-              file_.string() + ": has no layer " + layer + "; it has " + names.substr(0, 500));
+  throw Error(ErrorKind::bad_config, file_.string() + ": unknown layer " + layer +
+                                         "; expected one of: " + names.substr(0, 500));
 }
 
 void MapReader::read(const std::string& layer) {
@@ -91,11 +91,11 @@ void MapReader::take_system(OGRLayer& layer) {
   if (!has_system_) contents_.crs = wkt;
   has_system_ = true;
   if (wkt != contents_.crs) {
-    throw Error(ErrorKind::bad_config,
-                file_.string() +
-                    ": has layers in different reference systems; name one with "
-                    "select.layer, such as " +
-                    layer.GetName());
+    throw Error(
+        ErrorKind::bad_config,
+        file_.string() +
+            ": has layers in different reference systems; choose one with select.layer, such as " +
+            layer.GetName());
   }
 }
 
@@ -312,21 +312,21 @@ void MapReader::add_notes() {
   const auto add = [&](std::size_t count, const char* what, std::vector<std::string>& notes) {
     if (count > 0) notes.push_back(std::to_string(count) + what);
   };
-  add(others_, " points and lines left out", left_out);
-  add(cables_, " power lines and cableways left out: they state no height", left_out);
-  add(no_structures_, " areas left out that are no building, part of one or other structure",
-      left_out);
-  add(without_geometry_, " objects left out whose geometry is empty or of no known kind", left_out);
+  add(others_, " points and lines ignored", left_out);
+  add(cables_, " power lines and cableways ignored: no height", left_out);
+  add(no_structures_, " areas ignored: neither buildings nor other structures", left_out);
+  add(without_geometry_, " objects ignored: empty or unsupported geometry", left_out);
   if (contents_.objects.empty() && !left_out.empty()) {
     std::string all;
     for (const std::string& note : left_out) all += (all.empty() ? "" : ", ") + note;
-    fail_file(file_, "holds no outlines and nothing else with a height (" + all + ")");
+    fail_file(file_, "contains no outlines and nothing else with a height (" + all + ")");
   }
   contents_.notes.insert(contents_.notes.end(), left_out.begin(), left_out.end());
-  add(thin_, " points and lines with a height are poles and walls of 0.5 to 1 m", contents_.notes);
-  add(extruded_, " polygons with extrude reach from their altitude down to the ground",
+  add(thin_, " points and lines with a height are read as poles and walls of 0.5 to 1 m",
       contents_.notes);
-  add(raised_, " polygons above the ground without extrude are taken to stand on it",
+  add(extruded_, " polygons with extrude extend from their altitude to the ground",
+      contents_.notes);
+  add(raised_, " polygons above the ground without extrude are assumed to stand on it",
       contents_.notes);
 }
 

@@ -143,9 +143,9 @@ void refuse_pictures(const std::filesystem::path& file, GDALRasterBand& band) {
   const GDALColorInterp meaning = band.GetColorInterpretation();
   const bool is_colour =
       meaning >= GCI_PaletteIndex && meaning <= GCI_BlackBand && meaning != GCI_AlphaBand;
-  if (is_colour) fail_file(file, "is a picture; a raster of heights is wanted");
+  if (is_colour) fail_file(file, "is an image; expected a raster of heights");
   if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0) {
-    fail_file(file, "has complex numbers; a raster of heights is wanted");
+    fail_file(file, "has complex numbers; expected a raster of heights");
   }
 }
 
@@ -156,7 +156,7 @@ void note_bands(GDALDataset& dataset, FileContents& contents) {
     others += dataset.GetRasterBand(i)->GetColorInterpretation() != GCI_AlphaBand ? 1 : 0;
   }
   if (others == 0) return;
-  contents.notes.push_back("heights are those of the first of " + std::to_string(others + 1) +
+  contents.notes.push_back("heights are read from the first of " + std::to_string(others + 1) +
                            " bands");
 }
 
@@ -170,13 +170,13 @@ extern "C" void skycap_read_raster(const std::filesystem::path& file, FileConten
   GDALRasterBand* const band = dataset->GetRasterBand(1);
   std::array<double, 6> affine;
   if (band == nullptr || dataset->GetGeoTransform(affine.data()) != CE_None) {
-    fail_file(file, "does not say where its cells are (no georeference)");
+    fail_file(file, "has no georeference");
   }
   refuse_pictures(file, *band);
   const std::size_t cells =
       static_cast<std::size_t>(band->GetXSize()) * static_cast<std::size_t>(band->GetYSize());
   if (cells > most_cells) {
-    fail_file(file, "has " + std::to_string(cells) + " cells; at most 40 million are read");
+    fail_file(file, "has " + std::to_string(cells) + " cells; the maximum is 40 million");
   }
   contents.columns = static_cast<std::size_t>(band->GetXSize());
   contents.rows = static_cast<std::size_t>(band->GetYSize());

@@ -31,8 +31,8 @@ void append_gml_numbers(const std::filesystem::path& file, std::string_view text
     const auto next = static_cast<std::size_t>(end - text.data());
     if (error != std::errc() || !std::isfinite(number) ||
         (next < text.size() && !is_gap(text[next]))) {
-      fail_file(file,
-                "has the coordinate '" + std::string(text.substr(i, 20)) + "'; a number is wanted");
+      fail_file(file, "has the coordinate '" + std::string(text.substr(i, 20)) +
+                          "'; it must be a number");
     }
     numbers.push_back(number);
     i = next;

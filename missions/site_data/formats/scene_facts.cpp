@@ -51,8 +51,8 @@ bool is_harmless(string_view name) {
 bool is_deciding(string_view name) { return std::ranges::find(deciding, name) != deciding.end(); }
 
 [[noreturn]] void refuse_extension(const std::filesystem::path& file, const std::string& name) {
-  fail_file(file, "needs the glTF extension " + one_line(name.substr(0, 60)) +
-                      ", which is not read; save the scene without it");
+  fail_file(file, "requires the glTF extension " + one_line(name.substr(0, 60)) +
+                      ", which is not supported; save the scene without it");
 }
 
 /// An entity of an IFC file: what is between the parentheses.
@@ -219,10 +219,9 @@ void note_map_conversion(const Entities& entities, SceneFacts& facts) {
   };
   const bool is_turned = parts.size() > 6 && parts[5] != "$" && number_within(parts[6]) != 0.0;
   facts.notes.push_back(one_line(
-      "it names a place on the Earth (IfcMapConversion), which is not applied: its origin "
-      "is at " +
+      "it contains a georeference (IfcMapConversion), which is not applied: its origin is at " +
       number(parts[2]) + " " + number(parts[3]) + " " + number(parts[4]) + " in " + system +
-      (is_turned ? ", and it is turned against the map; set place"
+      (is_turned ? ", rotated against the map; set place"
                  : "; set crs, vertical and offset, or place")));
 }
 
@@ -243,8 +242,8 @@ SceneFacts gltf_facts(const std::filesystem::path& file, string_view json) {
   }
   const auto scenes = root.find("scenes");
   if (scenes != root.end() && scenes->is_array() && scenes->size() > 1) {
-    facts.notes.push_back("it has " + std::to_string(scenes->size()) +
-                          " scenes, of which the one that it names first is read");
+    facts.notes.push_back("it contains " + std::to_string(scenes->size()) +
+                          " scenes, of which the first one that it names is read");
   }
   return facts;
 }
@@ -255,19 +254,19 @@ SceneFacts ifc_facts(const std::filesystem::path& file, string_view text, bool h
   const std::optional<LengthUnit> unit = length_unit(entities);
   if (!has_unit && (!unit || (!unit->is_si && !unit->metres))) {
     fail_file(file, (unit ? "has the unknown unit of length '" + unit->name + "'"
-                          : std::string("does not say what its lengths are in")) +
-                        "; set unit, the length of its unit in metres");
+                          : std::string("has no linear unit")) +
+                        "; set unit, its length in metres");
   }
   if (unit && !unit->is_si && unit->metres) {
     facts.unit = unit->metres;
-    facts.notes.push_back(one_line("its unit is the " + geometry::lower_case(unit->name) + ", " +
+    facts.notes.push_back(one_line("linear unit: the " + geometry::lower_case(unit->name) + ", " +
                                    Json(*unit->metres).dump() + " m"));
   }
   note_map_conversion(entities, facts);
   // What files of IFC2X3 have for it.
   if (geometry::lower_case(text).find("'epset_mapconversion'") != std::string::npos) {
     facts.notes.emplace_back(
-        "it names a place on the Earth (ePset_MapConversion), which is not read; set place");
+        "it contains a georeference (ePset_MapConversion), which is not supported; set place");
   }
   return facts;
 }

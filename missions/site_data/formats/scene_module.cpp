@@ -139,7 +139,7 @@ void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from
     const aiFace& face = mesh.mFaces[i];
     if (face.mNumIndices != 3) continue;  // points and lines
     if (std::max({face.mIndices[0], face.mIndices[1], face.mIndices[2]}) >= mesh.mNumVertices) {
-      fail_file(file_, "has a face of vertices that are not there, in " + object.id);
+      fail_file(file_, "has a face with vertices that do not exist, in " + object.id);
     }
     const std::uint32_t second = first + face.mIndices[is_mirrored ? 2 : 1],
                         third = first + face.mIndices[is_mirrored ? 1 : 2];

@@ -38,7 +38,7 @@ void add_walls(const AlignedBox3d& room, double thickness, double gate_width, do
 }
 
 /// A box of a house under a gabled roof, its ridge along x, round the origin.
-Parts plain_house(double width, double depth, double eaves, double slope, Draw& draw) {
+Parts plain_house(double width, double depth, double eaves, double slope, RandomNumbers& draw) {
   Parts parts;
   parts.push_back({"walls", block(0.0, 0.0, width, depth, 0.0, eaves)});
   parts.push_back({"roof", gabled_roof(width, depth, eaves, slope)});
@@ -108,7 +108,7 @@ Mesh hill(const Slope& slope, double side) {
 
 }  // namespace
 
-FamilyScene hollow_house(Draw& draw, const Fineness&) {
+FamilyScene hollow_house(RandomNumbers& draw, const Fineness&) {
   const double width = draw.between(13.0, 20.0), depth = draw.between(8.0, 12.0);
   const double storey = draw.between(3.2, 3.8), wall = 0.3;
   const int upper = draw.integer(1, 3);
@@ -140,7 +140,7 @@ FamilyScene hollow_house(Draw& draw, const Fineness&) {
   return scene;
 }
 
-FamilyScene grove(Draw& draw, const Fineness& fineness) {
+FamilyScene grove(RandomNumbers& draw, const Fineness& fineness) {
   FamilyScene scene;
   const double width = draw.between(14.0, 20.0), depth = draw.between(8.0, 11.0);
   const double eaves = draw.between(5.5, 8.0), slope = draw.between(0.7, 1.0);
@@ -159,7 +159,7 @@ FamilyScene grove(Draw& draw, const Fineness& fineness) {
   return scene;
 }
 
-FamilyScene hillside(Draw& draw, const Fineness&) {
+FamilyScene hillside(RandomNumbers& draw, const Fineness&) {
   const double tilt = draw.between(0.1, 0.2), azimuth = draw.between(0.0, 2.0 * pi);
   const double wave = draw.between(0.4, 1.2), phase = draw.between(0.0, 2.0 * pi);
   const Slope slope{tilt, azimuth, wave, phase};
@@ -184,7 +184,7 @@ FamilyScene hillside(Draw& draw, const Fineness&) {
   return scene;
 }
 
-FamilyScene old_town(Draw& draw, const Fineness&) {
+FamilyScene old_town(RandomNumbers& draw, const Fineness&) {
   FamilyScene scene;
   const int columns = draw.integer(3, 4), rows = 3;
   const int bridged = draw.integer(0, columns - 2);  // the lane under a house, in the middle row

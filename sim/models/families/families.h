@@ -11,10 +11,12 @@
 
 #include <Eigen/Geometry>
 
-#include "sim/models/masonry/draw.h"
+#include "geometry/random_numbers.h"
 #include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
+
+using geometry::RandomNumbers;
 
 /// A scene of a family: closed solids, and what is known about them.
 struct FamilyScene {
@@ -28,7 +30,7 @@ struct FamilyScene {
 
 struct Family {
   std::string_view name;
-  FamilyScene (*make)(Draw& draw, const Fineness& fineness);
+  FamilyScene (*make)(RandomNumbers& draw, const Fineness& fineness);
 };
 
 /// In alphabetical order:
@@ -46,17 +48,17 @@ struct Family {
 ///   statue         a figure with raised arm and staff on a plinth
 std::span<const Family> families();
 
-FamilyScene bridge(Draw& draw, const Fineness& fineness);
-FamilyScene church(Draw& draw, const Fineness& fineness);
-FamilyScene factory(Draw& draw, const Fineness& fineness);
-FamilyScene fences(Draw& draw, const Fineness& fineness);
-FamilyScene garage(Draw& draw, const Fineness& fineness);
-FamilyScene glass_house(Draw& draw, const Fineness& fineness);
-FamilyScene grove(Draw& draw, const Fineness& fineness);
-FamilyScene hillside(Draw& draw, const Fineness& fineness);
-FamilyScene hollow_house(Draw& draw, const Fineness& fineness);
-FamilyScene lattice_tower(Draw& draw, const Fineness& fineness);
-FamilyScene old_town(Draw& draw, const Fineness& fineness);
-FamilyScene statue(Draw& draw, const Fineness& fineness);
+FamilyScene bridge(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene church(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene factory(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene fences(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene garage(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene glass_house(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene grove(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene hillside(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene hollow_house(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene lattice_tower(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene old_town(RandomNumbers& draw, const Fineness& fineness);
+FamilyScene statue(RandomNumbers& draw, const Fineness& fineness);
 
 }  // namespace skycap::sim::models

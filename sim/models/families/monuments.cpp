@@ -52,7 +52,7 @@ void add_nave(double length, double nave, double aisle, double eaves, int bays, 
 
 }  // namespace
 
-FamilyScene church(Draw& draw, const Fineness& fineness) {
+FamilyScene church(RandomNumbers& draw, const Fineness& fineness) {
   FamilyScene scene;
   Parts& parts = scene.parts;
   const double length = draw.between(22.0, 30.0), nave = draw.between(8.0, 10.0);
@@ -87,7 +87,7 @@ FamilyScene church(Draw& draw, const Fineness& fineness) {
   return scene;
 }
 
-FamilyScene statue(Draw& draw, const Fineness& fineness) {
+FamilyScene statue(RandomNumbers& draw, const Fineness& fineness) {
   FamilyScene scene;
   Parts& parts = scene.parts;
   const double plinth = draw.between(3.0, 5.0), side = draw.between(4.0, 5.5);
@@ -129,7 +129,7 @@ FamilyScene statue(Draw& draw, const Fineness& fineness) {
   return scene;
 }
 
-FamilyScene glass_house(Draw& draw, const Fineness&) {
+FamilyScene glass_house(RandomNumbers& draw, const Fineness&) {
   FamilyScene scene;
   Parts& parts = scene.parts;
   const int bays = draw.integer(5, 7), floors = draw.integer(4, 6);

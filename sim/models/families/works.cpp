@@ -41,7 +41,8 @@ void add_chimney(double radius, double height, const Vector3d& at, const Finenes
 }
 
 /// Pipes along x on trestles, in two layers.
-void add_pipe_rack(double length, double y, Draw& draw, const Fineness& fineness, Parts& parts) {
+void add_pipe_rack(double length, double y, RandomNumbers& draw, const Fineness& fineness,
+                   Parts& parts) {
   const double levels[] = {4.2, 6.0}, half = 0.5 * length;
   const int trestles = static_cast<int>(length / 6.0);
   for (int i = 0; i <= trestles; ++i) {
@@ -77,7 +78,7 @@ struct Span {
 };
 
 /// `count` openings of not quite the same width, between piers, in the middle.
-std::vector<Span> draw_spans(int count, double widest, double pier, Draw& draw) {
+std::vector<Span> draw_spans(int count, double widest, double pier, RandomNumbers& draw) {
   std::vector<Span> spans;
   double y = 0.0;
   for (int i = 0; i < count; ++i) {
@@ -105,7 +106,7 @@ Polyline2 arched_outline(const std::vector<Span>& spans, double springing, doubl
 
 }  // namespace
 
-FamilyScene factory(Draw& draw, const Fineness& fineness) {
+FamilyScene factory(RandomNumbers& draw, const Fineness& fineness) {
   FamilyScene scene;
   Parts& parts = scene.parts;
   const double width = draw.between(24.0, 34.0), eaves = draw.between(7.0, 9.0);
@@ -140,7 +141,7 @@ FamilyScene factory(Draw& draw, const Fineness& fineness) {
   return scene;
 }
 
-FamilyScene lattice_tower(Draw& draw, const Fineness& fineness) {
+FamilyScene lattice_tower(RandomNumbers& draw, const Fineness& fineness) {
   FamilyScene scene;
   Parts& parts = scene.parts;
   const double height = draw.between(36.0, 48.0), foot = draw.between(4.0, 5.5), top = 0.9;
@@ -175,7 +176,7 @@ FamilyScene lattice_tower(Draw& draw, const Fineness& fineness) {
   return scene;
 }
 
-FamilyScene garage(Draw& draw, const Fineness&) {
+FamilyScene garage(RandomNumbers& draw, const Fineness&) {
   FamilyScene scene;
   Parts& parts = scene.parts;
   const double width = draw.between(26.0, 34.0), depth = draw.between(15.0, 18.0);
@@ -206,7 +207,7 @@ FamilyScene garage(Draw& draw, const Fineness&) {
   return scene;
 }
 
-FamilyScene bridge(Draw& draw, const Fineness& fineness) {
+FamilyScene bridge(RandomNumbers& draw, const Fineness& fineness) {
   FamilyScene scene;
   const int arches = draw.integer(3, 5);
   const double span = draw.between(8.5, 48.0 / arches - 1.0), pier = draw.between(1.6, 2.4);
@@ -236,7 +237,7 @@ FamilyScene bridge(Draw& draw, const Fineness& fineness) {
   return scene;
 }
 
-FamilyScene fences(Draw& draw, const Fineness& fineness) {
+FamilyScene fences(RandomNumbers& draw, const Fineness& fineness) {
   FamilyScene scene;
   Parts& parts = scene.parts;
   const int walls = draw.integer(3, 4);

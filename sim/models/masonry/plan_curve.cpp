@@ -13,9 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using std::numbers::pi;
 
-constexpr double same = 1e-6;  // [m] places closer than this are one
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+constexpr double same_place = 1e-6;  // [m] places closer than this are one
 
 }  // namespace
 
@@ -73,15 +71,17 @@ PlanCurve PlanCurve::rectangle(double width, double depth) {
   return plan;
 }
 
-double PlanCurve::wrapped(double s) const { return s - length_ * std::floor((s + same) / length_); }
+double PlanCurve::wrapped(double s) const {
+  return s - length_ * std::floor((s + same_place) / length_);
+}
 
 Vector2d PlanCurve::point(double s, double offset) const {
   const double place = wrapped(s);
-  const auto is_past = [](double value, const Leg& leg) { return value < leg.start - same; };
+  const auto is_past = [](double value, const Leg& leg) { return value < leg.start - same_place; };
   const auto leg = std::upper_bound(legs_.begin(), legs_.end(), place, is_past) - 1;
   const double along = std::max(0.0, place - leg->start);
   const Vector2d normal = leg->normal(along);
-  if (along > same) return leg->point(along) + offset * normal;
+  if (along > same_place) return leg->point(along) + offset * normal;
   const Leg& before = leg == legs_.begin() ? legs_.back() : *(leg - 1);
   const Vector2d normal_before = before.normal(before.length);
   return leg->from + offset * (normal + normal_before) / (1.0 + normal.dot(normal_before));
@@ -90,7 +90,7 @@ Vector2d PlanCurve::point(double s, double offset) const {
 bool PlanCurve::is_corner(double s) const {
   const double place = wrapped(s);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    if (std::abs(place - legs_[i].start) > same) continue;
+    if (std::abs(place - legs_[i].start) > same_place) continue;
     const Leg& before = legs_[(i + legs_.size() - 1) % legs_.size()];
     return before.normal(before.length).dot(legs_[i].normal(0.0)) < 1.0 - 1e-6;
   }

@@ -7,6 +7,11 @@
 
 namespace skycap::sim::models {
 
+/// Twice the area of the triangle between two vectors; positive if b is to the left of a.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 /// A closed line on the ground round the origin, as a distance s along it.
 class PlanCurve {
  public:

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/surfaces/ear_clipping.h"
+
 namespace skycap::sim::models {
 namespace {
 
@@ -194,10 +196,10 @@ Mesh loft(const std::vector<Polyline3>& rings) {
   // flattened() looks at a ring from the side towards which it turns counter-clockwise; that is
   // against the way for the first ring if, and only if, it is along the way for the last.
   const auto last = static_cast<std::uint32_t>(mesh.vertices.size()) - size;
-  for (const auto& [a, b, c] : triangulate(flattened(rings.front()))) {
+  for (const auto& [a, b, c] : geometry::clip_ears(flattened(rings.front()))) {
     mesh.triangles.push_back({a, c, b});
   }
-  for (const auto& [a, b, c] : triangulate(flattened(rings.back()))) {
+  for (const auto& [a, b, c] : geometry::clip_ears(flattened(rings.back()))) {
     mesh.triangles.push_back({last + a, last + b, last + c});
   }
   return facing_outwards(std::move(mesh));

@@ -59,10 +59,6 @@ class Profile {
   Polyline2 points_;
 };
 
-/// Cuts a simple polygon, counter-clockwise, into triangles of its own corners; corners within a
-/// straight side are allowed. Takes the roundest ear first, O(n^2).
-std::vector<std::array<std::uint32_t, 3>> triangulate(const Polyline2& polygon);
-
 /// The solid that `profile` sweeps round the z axis, (radius, height) from its lowest point on the
 /// axis to its highest point on the axis.
 geometry::Mesh revolve(const Polyline2& profile, int chords);

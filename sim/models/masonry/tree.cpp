@@ -9,7 +9,7 @@ namespace skycap::sim::models {
 
 using std::numbers::pi;
 
-Parts tree(double height, Draw& draw, const Fineness& fineness) {
+Parts tree(double height, RandomNumbers& draw, const Fineness& fineness) {
   const double trunk = 0.022 * height, crown_foot = 0.28 * height;
   Parts parts;
   parts.push_back({"tree trunk", revolve({{0.0, 0.0},

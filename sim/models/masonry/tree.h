@@ -1,12 +1,14 @@
 /// Trees as coarse solids.
 #pragma once
 
-#include "sim/models/masonry/draw.h"
+#include "geometry/random_numbers.h"
 #include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
 
+using geometry::RandomNumbers;
+
 /// A tree of that height: a trunk and a lumpy crown.
-Parts tree(double height, Draw& draw, const Fineness& fineness);
+Parts tree(double height, RandomNumbers& draw, const Fineness& fineness);
 
 }  // namespace skycap::sim::models

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/surfaces/ear_clipping.h"
 #include "sim/models/masonry/wall_tiles.h"
 
 namespace skycap::sim::models {
@@ -267,7 +268,7 @@ class WallBuilder {
   }
 
   void add_polygon(const Polyline2& outline, const Loop& ring) {
-    for (const auto& [a, b, c] : triangulate(outline)) add(ring[a], ring[b], ring[c]);
+    for (const auto& [a, b, c] : geometry::clip_ears(outline)) add(ring[a], ring[b], ring[c]);
   }
 
   const Wall& wall_;

@@ -10,10 +10,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double same = same_corner;
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 /// Where a side ends up that lies between two corners: in proportion.
 void share_out(const Polyline2& polygon, const std::vector<std::size_t>& bends, Polyline2& moved) {
   const std::size_t size = polygon.size();
@@ -35,7 +31,7 @@ SideSplitter::SideSplitter(const Wall& wall) {
       for (const double turn : {-1.0, 0.0, 1.0}) {
         const Vector2d shifted(corner.x() + turn * wall.plan.length(), corner.y());
         auto& cell = cells_[cell_of(shifted)];
-        const auto is_same = [&](const Vector2d& p) { return (p - shifted).norm() < same; };
+        const auto is_same = [&](const Vector2d& p) { return (p - shifted).norm() < same_corner; };
         if (std::none_of(cell.begin(), cell.end(), is_same)) cell.push_back(shifted);
       }
     }
@@ -60,7 +56,7 @@ SideSplitter::Cell SideSplitter::cell_of(const Vector2d& place) {
 }
 
 Polyline2 SideSplitter::corners_within(const Vector2d& a, const Vector2d& b) const {
-  const Vector2d margin(same, same), along = b - a;
+  const Vector2d margin(same_corner, same_corner), along = b - a;
   const Cell first = cell_of(a.cwiseMin(b) - margin), last = cell_of(a.cwiseMax(b) + margin);
   Polyline2 corners;
   for (std::int64_t x = first[0]; x <= last[0]; ++x) {
@@ -68,9 +64,9 @@ Polyline2 SideSplitter::corners_within(const Vector2d& a, const Vector2d& b) con
       const auto cell = cells_.find({x, y});
       if (cell == cells_.end()) continue;
       for (const Vector2d& corner : cell->second) {
-        const bool is_beside = std::abs(cross(along, corner - a)) > same * along.norm();
+        const bool is_beside = std::abs(cross(along, corner - a)) > same_corner * along.norm();
         const double place = (corner - a).dot(along) / along.norm();
-        if (!is_beside && place > 2 * same && place < along.norm() - 2 * same) {
+        if (!is_beside && place > 2 * same_corner && place < along.norm() - 2 * same_corner) {
           corners.push_back(corner);
         }
       }
@@ -80,9 +76,9 @@ Polyline2 SideSplitter::corners_within(const Vector2d& a, const Vector2d& b) con
     return (p - a).squaredNorm() < (q - a).squaredNorm();
   };
   std::sort(corners.begin(), corners.end(), is_nearer);
-  // The same corner may have been found in two cells.
+  // The same_corner corner may have been found in two cells.
   const auto is_same = [](const Vector2d& p, const Vector2d& q) {
-    return (p - q).norm() < 3 * same;
+    return (p - q).norm() < 3 * same_corner;
   };
   corners.erase(std::unique(corners.begin(), corners.end(), is_same), corners.end());
   return corners;

@@ -116,7 +116,7 @@ TEST_F(BridgedRobot, IsToldOfGapsWhileItSettles) {
   for (const double time : times) odometry(time, {5, 0, 0});
   cloud(9.72);
   proceed();
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("passed over")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("ignored: the sensor's position")));
   begin_with_transforms();
   for (const double time : times) transforms(time, {{"map", "base_link", {5, 0, -0.5}}});
   cloud(9.72);
@@ -204,7 +204,7 @@ TEST_F(BridgedRobot, NothingThatIsWrongGetsIntoTheSurvey) {
     now_ += 10.0;
     cloud(time);
     proceed();
-    EXPECT_THAT(warnings_.back(), HasSubstr("is not after that of the last scan"));
+    EXPECT_THAT(warnings_.back(), HasSubstr("is not after that of the last accepted scan"));
   }
   now_ += 10.0;
   cloud(1.5e9);  // from the future
@@ -312,7 +312,7 @@ TEST_F(BridgedRobot, IsToldByCommands) {
   command("refuse behind the \"fence\"\n");
   EXPECT_THAT(refused_, ElementsAre(R"(3 behind the \"fence\"?)"));
   command("dance");
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("'dance' is none")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("'dance': unknown command")));
   command("finish");
   EXPECT_EQ(finished_, 1);
   EXPECT_TRUE(bridge_->is_finished());
@@ -322,7 +322,7 @@ TEST_F(BridgedRobot, AsksForTheSurveyNowAndThen) {
   int asked = 0;
   Bridge lost({},
               {.next = [&]() -> std::string {
-                 if (++asked > 1) throw std::runtime_error("the server has closed");
+                 if (++asked > 1) throw std::runtime_error("connection closed by the server");
                  return wanted;
                },
                .finish = {},

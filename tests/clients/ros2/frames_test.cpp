@@ -99,7 +99,7 @@ TEST(BodyPose, RefusesWhatIsNoPose) {
   EXPECT_THAT(complaint([](auto& p) { p.pose.orientation.x = none; }), HasSubstr("quaternion"));
   EXPECT_THAT(complaint([](auto& p) { p.pose.orientation.w = 0; }), HasSubstr("quaternion"));
   EXPECT_THAT(complaint([](auto& p) { p.pose.orientation.w = 1.02; }), HasSubstr("quaternion"));
-  EXPECT_THAT(complaint([](auto& p) { p.covariance[7] = none; }), HasSubstr("numbers that are"));
+  EXPECT_THAT(complaint([](auto& p) { p.covariance[7] = none; }), HasSubstr("is not finite"));
   EXPECT_THAT(complaint([](auto& p) { p.covariance[0] = -1; }), HasSubstr("negative variance"));
   EXPECT_THAT(complaint([](auto& p) { p.covariance[1] = 1; }), HasSubstr("not symmetric"));
 }
@@ -115,7 +115,7 @@ TEST(Extrinsic, RefusesWhatIsNone) {
   for (const char* text :
        {"", "1 2 3", "0 0 0 0 0 0 2", "0 0 0 0 0 0 1 0", "0 0 0 0 0 0 x", "nan 0 0 0 0 0 1"}) {
     EXPECT_THAT(complaint_of([&] { parse_extrinsic(text, "--sensor"); }),
-                HasSubstr("give x y z qx qy qz qw"))
+                HasSubstr("it must be x y z qx qy qz qw"))
         << text;
   }
 }

@@ -78,19 +78,19 @@ struct Spoiling {
 
 TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
   const std::vector<Spoiling> spoilings = {
-      {"1 rows of 64 are others", [](SampleCloud& c) { c.data.pop_back(); }},
-      {"2 rows of 32 are others",
+      {"1 rows of 64 are a different number", [](SampleCloud& c) { c.data.pop_back(); }},
+      {"2 rows of 32 are a different number",
        [](SampleCloud& c) {
          c.message.height = 2;
          c.message.width = 2;
          c.message.row_step = 32;
          c.data.push_back(0);
        }},
-      {"4 times 17 take more", [](SampleCloud& c) { c.message.point_step = 17; }},
+      {"4 times 17 require more", [](SampleCloud& c) { c.message.point_step = 17; }},
       {"points; at most", [](SampleCloud& c) { c.message.height = c.message.width = 0xFFFFFFFF; }},
       {"points; at most", [](SampleCloud& c) { c.message.width = 0x80000000; }},
-      {"times 16 take more", [](SampleCloud& c) { c.message.width = 0x01000001; }},
-      {"0 rows of 4294967280 are others",
+      {"times 16 require more", [](SampleCloud& c) { c.message.width = 0x01000001; }},
+      {"0 rows of 4294967280 are a different number",
        [](SampleCloud& c) {
          c.message.height = 0;
          c.message.row_step = 0xFFFFFFF0;
@@ -99,10 +99,10 @@ TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
       {"field x ends at byte 4294967299", [](SampleCloud& c) { c.fields[0].offset = 0xFFFFFFFF; }},
       {"field y has the type 2", [](SampleCloud& c) { c.fields[1].datatype = 2; }},
       {"field y has more than one number", [](SampleCloud& c) { c.fields[1].count = 3; }},
-      {"field x comes twice", [](SampleCloud& c) { c.fields.push_back(c.fields[0]); }},
-      {"no field z", [](SampleCloud& c) { c.fields.pop_back(); }},
-      {"no field x", [](SampleCloud& c) { c.fields[0].name = nullptr; }},
-      {"no field x", [](SampleCloud& c) { c.fields.clear(); }},
+      {"field x is listed twice", [](SampleCloud& c) { c.fields.push_back(c.fields[0]); }},
+      {"missing field z", [](SampleCloud& c) { c.fields.pop_back(); }},
+      {"missing field x", [](SampleCloud& c) { c.fields[0].name = nullptr; }},
+      {"missing field x", [](SampleCloud& c) { c.fields.clear(); }},
   };
   for (const Spoiling& spoiling : spoilings) {
     SampleCloud cloud(seconds(1.0), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}});
@@ -150,12 +150,13 @@ TEST(DepthScan, RefusesImagesWhoseNumbersDoNotFit) {
     spoil(image.message);
     return complaint_of([&] { scan_of(image.message, lens); });
   };
-  EXPECT_THAT(complaint([](Image& i) { i.step = 7; }), HasSubstr("4 times 2 take more"));
-  EXPECT_THAT(complaint([](Image& i) { i.step = 9; }), HasSubstr("2 rows of 9 are others"));
+  EXPECT_THAT(complaint([](Image& i) { i.step = 7; }), HasSubstr("4 times 2 require more"));
+  EXPECT_THAT(complaint([](Image& i) { i.step = 9; }),
+              HasSubstr("2 rows of 9 are a different number"));
   EXPECT_THAT(complaint([](Image& i) { i.data._length = 15; }), HasSubstr("it has 15 bytes"));
   EXPECT_THAT(complaint([](Image& i) { i.width = 0; }), HasSubstr("from 1 to 32768"));
   EXPECT_THAT(complaint([](Image& i) { i.height = 0xFFFFFFFF; }), HasSubstr("from 1 to 32768"));
-  EXPECT_THAT(complaint([](Image& i) { i.width = 3; }), HasSubstr("CameraInfo says 4 x 2"));
+  EXPECT_THAT(complaint([](Image& i) { i.width = 3; }), HasSubstr("CameraInfo has 4 x 2"));
   EXPECT_THAT(complaint([](Image& i) { i.encoding = nullptr; }), HasSubstr("16UC1 or 32FC1"));
 }
 
@@ -167,8 +168,10 @@ TEST(DepthScan, RefusesLensesThatItCannotGoBy) {
     return complaint_of([&] { lens_of(info.message, false); });
   };
   const auto nothing = [](SampleInfo&) {};
-  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.k[0] = 0; }), HasSubstr("no lens"));
-  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.k[2] = none; }), HasSubstr("no lens"));
+  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.k[0] = 0; }),
+              HasSubstr("invalid focal length or principal point"));
+  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.k[2] = none; }),
+              HasSubstr("invalid focal length or principal point"));
   EXPECT_THAT(complaint([](SampleInfo& i) { i.message.binning_x = 2; }), HasSubstr("binning"));
   EXPECT_THAT(complaint([](SampleInfo& i) { i.message.roi.width = 2; }), HasSubstr("region"));
   EXPECT_THAT(complaint([](SampleInfo& i) { i.message.roi.y_offset = 1; }), HasSubstr("region"));

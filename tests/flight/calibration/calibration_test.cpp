@@ -105,9 +105,9 @@ TEST(Calibration, RefusesLogsThatHoldTooLittle) {
   std::erase_if(level.samples, [](const LogSample& s) { return s.velocity.norm() < 0.1; });
   brief.samples.resize(600);
   const auto says = [](const char* what) { return ThrowsMessage<Error>(HasSubstr(what)); };
-  EXPECT_THAT(tried(brief), says("s of steady flight; at least 120 s are needed"));
+  EXPECT_THAT(tried(brief), says("s of steady flight; required: at least 120 s"));
   EXPECT_THAT(tried(hovering), says("s of level flight faster than 2.5 m/s; at least 30 s"));
-  EXPECT_THAT(tried(level), says("s of hovering; at least 20 s are needed"));
+  EXPECT_THAT(tried(level), says("s of hovering; required: at least 20 s"));
 }
 
 TEST(Calibration, TakesOverTheAutopilotsLimits) {

@@ -89,7 +89,7 @@ TEST(DataflashLog, OfMoreEntriesThanAllowedIsRefused) {
   EXPECT_THAT(read_dataflash(sample_log(), 4).samples, SizeIs(2));
   EXPECT_THAT(
       [] { read_dataflash(sample_log(), 3); },
-      ThrowsMessage<Error>(HasSubstr("holds more than 3 samples, parameters and commands")));
+      ThrowsMessage<Error>(HasSubstr("contains more than 3 samples, parameters and commands")));
 }
 
 TEST(DataflashLog, DamageIsSkipped) {
@@ -115,10 +115,10 @@ TEST(DataflashLog, AnyBytesAreReadOrRefused) {
 
 TEST(DataflashLog, SaysWhatIsMissing) {
   const auto says = [](const char* what) { return ThrowsMessage<Error>(HasSubstr(what)); };
-  EXPECT_THAT([] { read_dataflash("no log"); }, says("is no dataflash log"));
-  EXPECT_THAT([] { read_dataflash(sample_log().substr(0, 4 * 89)); }, says("holds no velocity"));
+  EXPECT_THAT([] { read_dataflash("no log"); }, says("dataflash log"));
+  EXPECT_THAT([] { read_dataflash(sample_log().substr(0, 4 * 89)); }, says("contains no velocity"));
   EXPECT_THAT([] { read_dataflash(sample_log().substr(0, 4 * 89 + 46)); },
-              says("holds no battery"));
+              says("contains no battery"));
 }
 
 TEST(CsvLog, ColumnsComeInAnyOrder) {
@@ -134,7 +134,7 @@ TEST(CsvLog, FaultsAreSaidByLine) {
   const auto refuses = [&](const std::string& text, const char* what) {
     EXPECT_THAT([&] { read_csv_log(text); }, ThrowsMessage<Error>(HasSubstr(what))) << text;
   };
-  refuses("time_s,power_w\n", "line 1 names no column east_m_s");
+  refuses("time_s,power_w\n", "line 1 has no column east_m_s");
   refuses(header + "1,0,0,0,x\n", "line 2 has \"x\" for power_w; it must be a number");
   refuses(header + "1,0,0\n", "line 2 has too few fields");
   refuses(header + "1,0,0,0,9\n1,0,0,0,9\n", "line 3 is not later than the line before it");
@@ -145,7 +145,7 @@ TEST(CsvLog, OfMoreSamplesThanAllowedIsRefused) {
   const std::string two = "time_s,east_m_s,north_m_s,up_m_s,power_w\n1,0,0,0,9\n2,0,0,0,9\n";
   EXPECT_THAT(read_csv_log(two, 2).samples, SizeIs(2));
   EXPECT_THAT([&] { read_csv_log(two, 1); },
-              ThrowsMessage<Error>(HasSubstr("line 3 is of more than 1 samples")));
+              ThrowsMessage<Error>(HasSubstr("line 3 exceeds the limit of 1 samples")));
 }
 
 }  // namespace

@@ -202,7 +202,7 @@ TEST(CalibrationBounds, HoverIsRightAndTheBoundIsAWarning) {
         calibrate(read_dataflash(log), vehicle_profile("generic_ardupilot"), 1.225);
     EXPECT_NEAR(found.hover_power, scale * Motion(vehicle, {}).hover_power(),
                 0.005 * scale * 250.0);
-    EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("rotors' efficiency is at its bound")));
+    EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("rotors' efficiency is at its limit")));
     EXPECT_NO_THROW(Motion(found.vehicle, {}));
   }
 }
@@ -227,7 +227,7 @@ TEST(CalibrationBounds, DragThatTheLogDoesNotShowIsAWarning) {
   vehicle.drag_area = 0.0;
   const Calibration found = calibrate(read_dataflash(log_of(newest(), vehicle)),
                                       vehicle_profile("generic_ardupilot"), 1.225);
-  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("drag_area is at its bound")));
+  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("drag_area is at its limit")));
 }
 
 // Whatever the preset's endurance says of its own mass.
@@ -265,16 +265,17 @@ TEST(CalibrationRefusals, NameTheirTrueReason) {
   };
   EXPECT_THAT(complaint([](double) { return 0.0; }), HasSubstr("measures no power"));
   EXPECT_THAT(complaint([](double) { return 0.02; }), HasSubstr("measures no power"));
-  EXPECT_THAT(complaint([](double) { return std::nan(""); }), HasSubstr("measures no current"));
-  EXPECT_THAT(complaint([](double amperes) { return 0.3 * amperes; }),
-              HasSubstr("2.00 kg on 4 rotors of 0.300 m take at least 130.5 W: give the mass that "
-                        "flew (--mass)"));
+  EXPECT_THAT(complaint([](double) { return std::nan(""); }), HasSubstr("contains no current"));
+  EXPECT_THAT(
+      complaint([](double amperes) { return 0.3 * amperes; }),
+      HasSubstr(
+          "2.00 kg on 4 rotors of 0.300 m need at least 130.5 W; set the mass that flew (--mass)"));
   EXPECT_THAT(complaint([&](double amperes) {
                 static int count = 0;
                 const double swing = count++ / 60 % 2 == 0 ? 1.7 : 1.0;  // each 6 s
                 return swing * amperes;
               }),
-              HasSubstr("fits no power model: its power scatters by"));
+              HasSubstr("fits no power model: the power scatters by"));
 }
 
 TEST(CalibrationRefusals, NameTheFlightThatSuffices) {
@@ -286,10 +287,9 @@ TEST(CalibrationRefusals, NameTheFlightThatSuffices) {
   for (LogSample& sample : hovering.samples) sample.velocity.setZero();
   std::erase_if(level.samples, [](const LogSample& s) { return s.velocity.norm() < 0.1; });
   brief.samples.resize(300);
-  EXPECT_THAT(complaint(hovering),
-              HasSubstr("at least 30 s are needed: fly 4 level legs of 100 m"));
-  EXPECT_THAT(complaint(level), HasSubstr("at least 20 s are needed: hover for 30 s"));
-  EXPECT_THAT(complaint(brief), HasSubstr("at least 120 s are needed: hover for 60 s and fly 4"));
+  EXPECT_THAT(complaint(hovering), HasSubstr("required: at least 30 s: fly 4 level legs of 100 m"));
+  EXPECT_THAT(complaint(level), HasSubstr("required: at least 20 s: hover for 30 s"));
+  EXPECT_THAT(complaint(brief), HasSubstr("required: at least 120 s: hover for 60 s and fly 4"));
 }
 
 TEST(ForeignLogs, AreNamedForWhatTheyAre) {
@@ -297,13 +297,12 @@ TEST(ForeignLogs, AreNamedForWhatTheyAre) {
     return complaint_of([&] { read_dataflash(bytes); });
   };
   using namespace std::string_literals;
-  EXPECT_THAT(kind("FMT, 128, 89, FMT, BBnNZ, Type,Length\n"),
-              HasSubstr("a text log of ArduPilot"));
-  EXPECT_THAT(kind("ULog\x01\x12\x35\x01 and so on"), HasSubstr("a ULog of PX4"));
+  EXPECT_THAT(kind("FMT, 128, 89, FMT, BBnNZ, Type,Length\n"), HasSubstr("an ArduPilot text log"));
+  EXPECT_THAT(kind("ULog\x01\x12\x35\x01 and so on"), HasSubstr("a PX4 ULog"));
   EXPECT_THAT(kind("\0\5\xE2\x1F\x3A\x10\x20\x30\xFD\x09rest"s), HasSubstr("(.tlog)"));
   EXPECT_THAT(kind("\0\5\xE2\x1F\x3A\x10\x20\x30\xFE\x09rest"s), HasSubstr("(.tlog)"));
-  EXPECT_THAT(kind("\x1f\x8b\x08"), HasSubstr("compressed (gzip); unpack it first"));
-  EXPECT_THAT(kind("H Product:Blackbox flight data recorder"), HasSubstr("a Blackbox log"));
+  EXPECT_THAT(kind("\x1f\x8b\x08"), HasSubstr("gzip-compressed; unpack it first"));
+  EXPECT_THAT(kind("H Product:Blackbox flight data recorder"), HasSubstr("Blackbox log"));
   EXPECT_THAT(kind("time_s,power_w\n1,2\n"), HasSubstr("a CSV table's name must end in .csv"));
   EXPECT_THAT(kind(""), HasSubstr("it is empty"));
 }

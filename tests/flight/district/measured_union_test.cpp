@@ -169,7 +169,7 @@ TEST(MeasuredUnion, OfNothingIsFree) {
 TEST(MeasuredUnion, RefusesSpacesThatDoNotGoTogether) {
   EXPECT_THAT(
       complaint_of([] { MeasuredUnion(both(space_of(west), MeasuredSpace({.voxel = voxel}))); }),
-      HasSubstr("a space without a region cannot be joined"));
+      HasSubstr("a measured space without a region cannot be merged"));
   EXPECT_THAT(complaint_of([] {
                 MeasuredUnion(both(space_of(west), MeasuredSpace({.voxel = 0.25, .region = east})));
               }),

@@ -53,16 +53,16 @@ TEST(Kmz, ZipAndXmlRules) {
   EXPECT_THAT(with_template("www.dji.com/wpmz/1.0.6", "www.autel.com/wpmz/1.0.0"),
               Contains(HasSubstr("xmlns:wpml")));
   EXPECT_THAT(with_template("www.dji.com/wpmz/1.0.6", "www.dji.com/wpmz/1.0.2"),
-              Contains(HasSubstr("do not agree")));
+              Contains(HasSubstr("template.kml and waylines.wpml differ")));
 }
 
 TEST(Kmz, MissionConfigRules) {
   EXPECT_THAT(with_waylines("<wpml:flyToWaylineMode>safely", "<wpml:flyToWaylineMode>boldly"),
               Contains(HasSubstr("flyToWaylineMode \"boldly\"")));
   EXPECT_THAT(with_waylines("<wpml:finishAction>goHome</wpml:finishAction>", ""),
-              Contains(HasSubstr("lacks wpml:finishAction")));
+              Contains(HasSubstr("has no wpml:finishAction")));
   EXPECT_THAT(with_waylines("<wpml:executeRCLostAction>goBack</wpml:executeRCLostAction>", ""),
-              Contains(HasSubstr("lacks wpml:executeRCLostAction")));
+              Contains(HasSubstr("has no wpml:executeRCLostAction")));
   EXPECT_THAT(with_waylines("<wpml:takeOffSecurityHeight>5.00", "<wpml:takeOffSecurityHeight>1.00"),
               Contains(HasSubstr("takeOffSecurityHeight 1.00")));
   EXPECT_THAT(
@@ -87,11 +87,11 @@ TEST(Kmz, WaypointRules) {
   EXPECT_THAT(with_waylines("<wpml:waypointSpeed>4.00", "<wpml:waypointSpeed>0"),
               Contains(HasSubstr("waypointSpeed 0")));
   EXPECT_THAT(with_waylines("toPointAndStopWithDiscontinuityCurvature", "coordinateTurn"),
-              Contains(HasSubstr("no clearance can be proven")));
+              Contains(HasSubstr("no clearance can be verified")));
   EXPECT_THAT(with_waylines("<wpml:waypointHeadingAngle>", "<wpml:waypointHeadingAngle>9"),
               Contains(HasSubstr("waypointHeadingAngle")));
   EXPECT_THAT(with_template("<wpml:height>", "<wpml:height>1"),
-              Contains(HasSubstr("do not agree")));
+              Contains(HasSubstr("template.kml and waylines.wpml differ")));
   EXPECT_THAT(with_template("<wpml:ellipsoidHeight>", "<wpml:ellipsoidHeight>x"),
               Contains(HasSubstr("ellipsoidHeight")));
 }
@@ -129,7 +129,7 @@ TEST(Kmz, HoldsWhatThePilotExpects) {
   }
   EXPECT_THAT(
       testing_support::complaint_of([&] { write_kmz(sample_plan(vehicle_profile("generic"))); }),
-      testing::HasSubstr("does not fly DJI's missions"));
+      testing::HasSubstr("does not fly DJI missions"));
 }
 
 // ---- KML -------------------------------------------------------------------------------------
@@ -194,7 +194,7 @@ TEST(GeoJson, Rules) {
   EXPECT_THAT(after([&](json& f) { last(f).erase(last(f).size() - 1); }),
               Contains(HasSubstr("not closed")));
   EXPECT_THAT(after([&](json& f) { std::reverse(last(f).begin(), last(f).end()); }),
-              Contains(HasSubstr("wrong way round")));
+              Contains(HasSubstr("wrong direction")));
 }
 
 TEST(GeoJson, StationsCarryTheirHeightsAboveEveryKnownDatum) {
@@ -238,11 +238,11 @@ TEST(Litchi, WhatItCannotHoldIsSaid) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints[1].shots = 20;
   EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
-              testing::HasSubstr("a station with 20 shots cannot be written for Litchi"));
+              testing::HasSubstr("a waypoint with 20 shots cannot be written for Litchi"));
   plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints.resize(120, plan.waypoints[0]);
   EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
-              testing::HasSubstr("has 120 waypoints; Litchi takes 99"));
+              testing::HasSubstr("has 120 waypoints; the limit of Litchi is 99"));
 }
 
 }  // namespace

@@ -87,9 +87,9 @@ TEST(PlanFile, ItemRules) {
   EXPECT_THAT(bad("frame", 7), Contains(HasSubstr("has frame 7")));
   EXPECT_THAT(after([](json& p) { item(p, 0).erase("Altitude"); }), Contains(HasSubstr("or none")));
   EXPECT_THAT(after([](json& p) { item(p, 0)["AltitudeMode"] = 2; }),
-              Contains(HasSubstr("does not go with its frame")));
+              Contains(HasSubstr("conflicts with its frame")));
   EXPECT_THAT(after([](json& p) { item(p, 0)["Altitude"] = 99; }),
-              Contains(HasSubstr("is not the height in its params")));
+              Contains(HasSubstr("must be the height in its params")));
 }
 
 TEST(PlanFile, RulesOnWhatTheItemsDo) {
@@ -113,14 +113,14 @@ TEST(PlanFile, RulesOnWhatTheItemsDo) {
                   if (i["command"] == 205) i["command"] = 530;
                 }
               }),
-              Contains(HasSubstr("shoots without a gimbal command")));
+              Contains(HasSubstr("captures without a gimbal command")));
   EXPECT_THAT(after([](json& p) {
                 item(p, 1)["command"] = 177;
                 item(p, 1)["params"][0] = 500;
               }),
               Contains(HasSubstr("jumps to item 500")));
   EXPECT_THAT(after([](json& p) { item(p, 1)["command"] = 115; }),
-              Contains(HasSubstr("PX4 refuses the whole mission")));
+              Contains(HasSubstr("PX4 rejects the whole mission")));
 }
 
 TEST(PlanFile, FenceRules) {
@@ -280,7 +280,7 @@ TEST(MissionItems, TooManyForTheVehicleIsSaid) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.vehicle.max_waypoints = 10;
   EXPECT_THAT(testing_support::complaint_of([&] { mission_items(plan); }),
-              testing::HasSubstr("mission items; vehicle \"generic\" takes 10"));
+              testing::HasSubstr("mission items; vehicle \"generic\" accepts 10"));
   EXPECT_THAT(
       testing_support::complaint_of([&] { write_plan(sample_plan(vehicle_profile("m30t"))); }),
       testing::HasSubstr("does not fly MAVLink missions"));
@@ -324,7 +324,7 @@ TEST(WaypointsFile, RulesOfTheText) {
   EXPECT_THAT(with("\n1\t0\t", "\n7\t0\t"), Contains(HasSubstr("index 7")));
   EXPECT_THAT(with("\n1\t0\t", "\n1\t1\t"), Contains(HasSubstr("current")));
   EXPECT_THAT(with("\t22\t0.0000", "\t22\tNaN"), Contains(HasSubstr("\"NaN\"")));
-  EXPECT_THAT(with("\t22\t", "\t22.5\t"), Contains(HasSubstr("an integer belongs")));
+  EXPECT_THAT(with("\t22\t", "\t22.5\t"), Contains(HasSubstr("it must be an integer")));
   EXPECT_THAT(with("\t22\t", "\t16\t"), Contains(HasSubstr("take-off")));
 }
 

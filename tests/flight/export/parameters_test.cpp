@@ -123,7 +123,7 @@ TEST(Parameters, SaysWhichSettingsChangeTheWayHome) {
               ElementsAre("RTL_CONE_SLOPE is 3; it must be 0"));
   EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_ALT_M", 4700}, {"RTL_CONE_SLOPE", 0}},
                               Dialect::ardupilot),
-              ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be the same height"));
+              ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be equal"));
   EXPECT_THAT(return_problems({{"RTL_RETURN_ALT", 47}, {"RTL_CONE_ANG", 0}}, Dialect::px4),
               ElementsAre("NAV_ACC_RAD is 10; it must be in [0.05, 1]"));
 }
@@ -141,9 +141,9 @@ TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
   FlightPlan plan = plan_of("generic");
   plan.returns.reset();
   EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan); }),
-              testing::HasSubstr("has no certified way home"));
+              testing::HasSubstr("has no verified return"));
   EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan_of("m350_rtk")); }),
-              testing::HasSubstr("takes no parameter files"));
+              testing::HasSubstr("does not use parameter files"));
 }
 
 // A ceiling leaves heights that are not whole metres: files and summaries state the same.

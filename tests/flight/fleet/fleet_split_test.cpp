@@ -22,8 +22,6 @@ using Eigen::Vector3d;
 
 using Order = std::vector<std::uint32_t>;
 
-constexpr double never = std::numeric_limits<double>::infinity();
-
 /// A flat world: times are metres, and so are energies.
 FleetProblem flat_problem(std::uint64_t seed, std::size_t stations,
                           const std::vector<Vector3d>& pads) {

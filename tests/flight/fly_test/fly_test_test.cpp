@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "flight/fly_test/random_numbers.h"
 #include "flight/interpreter/flight_facts.h"
 #include "flight/interpreter/mission_interpreter.h"
+#include "geometry/random_numbers.h"
 #include "tests/flight/export/sample_plan.h"
 #include "tests/flight/interpreter/spoiled.h"
 #include "tests/flight/scenes.h"
@@ -23,7 +23,7 @@ TEST(NearestPass, FindsTheNearestOfAllSteps) {
   Obstacles obstacles;
   obstacles.mesh = scenes::boxes(random, 12);
   const KnownSpace space(obstacles);
-  RandomNumbers draws(4, 2);
+  geometry::RandomNumbers draws(4, 2);
   for (int path = 0; path < 50; ++path) {
     NearestPass pass(space, 8.0);
     double least = 8.0;

@@ -35,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(ReturnFlight, AReturn,
                          testing::Values(Dialect::px4, Dialect::ardupilot, Dialect::dji));
 
 TEST_P(AReturn, StaysWithinWhatIsProven) {
-  RandomNumbers draws(7, 1);
+  geometry::RandomNumbers draws(7, 1);
   for (int i = 0; i < 2000; ++i) {
     const Vector3d place{draws.between(-70, 90), draws.between(-70, 70), draws.between(6, 50)};
     std::vector<ReturnPiece> proven = return_pieces(law(), place);
@@ -58,7 +58,7 @@ TEST_P(AReturn, StaysWithinWhatIsProven) {
 }
 
 TEST_P(AReturn, ComesDownAtTheNearestLandingPlace) {
-  RandomNumbers draws(8, 1);
+  geometry::RandomNumbers draws(8, 1);
   for (int i = 0; i < 200; ++i) {
     const Vector3d place{draws.between(70, 90), draws.between(-20, 20), draws.between(6, 30)};
     const Vector3d end = return_way(law(), place, draws).back();
@@ -67,7 +67,7 @@ TEST_P(AReturn, ComesDownAtTheNearestLandingPlace) {
 }
 
 TEST_P(AReturn, TakesAsLongAsItsParts) {
-  RandomNumbers draws(9, 1), same(9, 1);
+  geometry::RandomNumbers draws(9, 1), same(9, 1);
   const Motion motion(vehicle_profile("generic"), {});
   const Vector3d place(80, -40, 12);
   const FlightScript script = return_script(law(), motion, place, draws);

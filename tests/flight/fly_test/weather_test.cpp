@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 TEST(RandomNumbers, AreNormalAndUniformBySeedAndStream) {
-  RandomNumbers random(3, 4), same(3, 4), other(3, 5);
+  geometry::RandomNumbers random(3, 4), same(3, 4), other(3, 5);
   double sum = 0.0, squares = 0.0, uniforms = 0.0;
   constexpr int count = 200'000;
   for (int i = 0; i < count; ++i) {
@@ -31,7 +31,7 @@ TEST(RandomNumbers, AreNormalAndUniformBySeedAndStream) {
 // MIL-F-8785C at 20 ft, where W20 is measured: with h = 20, shape = 0.19346, sigma_w = 0.1 W20,
 // sigma_u = sigma_w / shape^0.4 = 0.1929 W20. A wind of 10 m/s from the west.
 TEST(Weather, GustsAreAsStrongAsTheDrydenModelSays) {
-  RandomNumbers random(1, 1);
+  geometry::RandomNumbers random(1, 1);
   Weather weather({10.0, 0.0}, random);
   Vector3d sum = Vector3d::Zero(), squares = Vector3d::Zero();
   constexpr int count = 400'000;
@@ -48,14 +48,14 @@ TEST(Weather, GustsAreAsStrongAsTheDrydenModelSays) {
 }
 
 TEST(Weather, IsStillWithoutWind) {
-  RandomNumbers random(1, 1);
+  geometry::RandomNumbers random(1, 1);
   Weather weather({0.0, 0.0}, random);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(weather.next(0.1, 10.0, 3.0), Vector3d::Zero());
 }
 
 // Property: never beyond the bound, near it at times, and no jumps.
 TEST(ReceiverError, StaysWithinItsBoundAndChangesSlowly) {
-  RandomNumbers random(2, 1);
+  geometry::RandomNumbers random(2, 1);
   ReceiverError receiver(0.3, random);
   double greatest = 0.0;
   Vector3d before = receiver.next(0.04);

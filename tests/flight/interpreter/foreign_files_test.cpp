@@ -116,7 +116,7 @@ TEST(WaypointsOfOthersRefused, NameTheTrueReason) {
 TEST(WaypointsOfOthersRefused, LandingsWithoutAPlaceOnPx4) {
   MissionFile file = sample_file(Dialect::px4);
   file.items.back().params[4] = file.items.back().params[5] = 0.0;
-  EXPECT_THAT(problems_of(file, Dialect::px4), Contains(HasSubstr("has no place")));
+  EXPECT_THAT(problems_of(file, Dialect::px4), Contains(HasSubstr("has no position")));
 }
 
 // ---- .plan -----------------------------------------------------------------------------------
@@ -204,10 +204,10 @@ TEST(PlansOfOthersRefused, NameTheTrueReason) {
   EXPECT_THAT(complaint([](json& p) {
                 p["mission"]["items"][2] = {{"type", "ComplexItem"}, {"complexItemType", "survey"}};
               }),
-              HasSubstr("mission.items[2].type must be \"SimpleItem\"; it is a survey "
-                        "(ComplexItem): save it as waypoints first"));
+              HasSubstr("mission.items[2].type must be \"SimpleItem\", but is survey "
+                        "(ComplexItem); save it as waypoints first"));
   EXPECT_THAT(complaint([](json& p) { p["mission"]["items"][2]["doJumpId"] = 1; }),
-              HasSubstr("mission.items[2].doJumpId must be an integer above"));
+              HasSubstr("mission.items[2].doJumpId must be an integer greater than"));
   EXPECT_THAT(complaint([](json& p) {
                 p["geoFence"] = {{"polygon", {{1, 2}, {3, 4}, {5, 6}}}, {"version", 1}};
               }),
@@ -306,14 +306,14 @@ TEST(KmzOfOthersRefused, NameTheTrueReason) {
     return testing_support::complaint_of([&] { read_kmz(bytes); });
   };
   EXPECT_THAT(complaint(archive_of({{"doc.kml", "<kml/>"}})),
-              HasSubstr("wpmz/waylines.wpml is missing; it holds doc.kml"));
+              HasSubstr("wpmz/waylines.wpml is missing; it contains doc.kml"));
   EXPECT_THAT(complaint(archive_of({{"a/waylines.wpml", good.waylines_wpml},
                                     {"b/waylines.wpml", good.waylines_wpml}})),
-              HasSubstr("it holds both a/waylines.wpml and b/waylines.wpml; remove one"));
+              HasSubstr("it contains both a/waylines.wpml and b/waylines.wpml; remove one"));
   KmzContent moved = good;
   const std::size_t height = moved.waylines_wpml.find("<wpml:executeHeight>") + 20;
   moved.waylines_wpml.insert(height, "1");
-  EXPECT_THAT(complaint(pack_kmz(moved)), HasSubstr("do not agree"));
+  EXPECT_THAT(complaint(pack_kmz(moved)), HasSubstr("template.kml and waylines.wpml differ"));
 }
 
 // Pilot 2: the template above the geoid, the waylines above the ellipsoid.

@@ -88,7 +88,7 @@ TEST(WpmlInterpreter, WaypointsAreNamedByTheirIndex) {
               Contains(StartsWith("waypoint 3 has wpml:waypointSpeed 15.00")));
   EXPECT_THAT(
       with_waylines("<wpml:useStraightLine>", "<wpml:wind>1</wpml:wind><wpml:useStraightLine>", 1),
-      Contains(StartsWith("waypoint 1 has wpml:wind, which is not known here")));
+      Contains(StartsWith("waypoint 1 has wpml:wind, which is not supported")));
   EXPECT_THAT(with_template("<wpml:useGlobalTurnParam>1", "<wpml:useGlobalTurnParam>0", 2),
               Contains(StartsWith("waypoint 2 has wpml:useGlobalTurnParam 0")));
   EXPECT_THAT(with_template("<wpml:useGlobalHeight>0", "<wpml:useGlobalHeight>1", 2),
@@ -96,18 +96,18 @@ TEST(WpmlInterpreter, WaypointsAreNamedByTheirIndex) {
   EXPECT_THAT(with_waylines("<wpml:actionGroupEndIndex>1<", "<wpml:actionGroupEndIndex>4<"),
               Contains(StartsWith("waypoint 1 has wpml:actionGroupEndIndex 4")));
   EXPECT_THAT(with_waylines("reachPoint", "multipleTiming", 2),
-              Contains(StartsWith("waypoint 2 acts by wpml:actionTriggerType")));
+              Contains(StartsWith("waypoint 2 has wpml:actionTriggerType")));
 }
 
 TEST(WpmlInterpreter, PhotographsAreTheMissions) {
   EXPECT_THAT(with_waylines("<wpml:hoverTime>2.00", "<wpml:hoverTime>0.00"),
-              Contains(HasSubstr("holds 0.00 s before its photograph")));
+              Contains(HasSubstr("holds 0.00 s before its image")));
   std::string ahead = good().waylines_wpml;
   for (std::size_t i = 0; (i = ahead.find("smoothTransition", i)) != std::string::npos;) {
     ahead.replace(i, 16, "followWayline");
   }
   EXPECT_THAT(after({good().template_kml, ahead}),
-              Contains(HasSubstr("photographs without a heading")));
+              Contains(HasSubstr("captures an image without a heading")));
   EXPECT_THAT(with_waylines("<wpml:gimbalPitchRotateEnable>1", "<wpml:gimbalPitchRotateEnable>0"),
               Contains(HasSubstr("without a gimbal pitch")));
   EXPECT_THAT(with_waylines("<wpml:gimbalYawRotateEnable>0", "<wpml:gimbalYawRotateEnable>1"),
@@ -124,7 +124,7 @@ TEST(WpmlInterpreter, ThePadIsTheMissions) {
                                   degrees(place.longitude_deg) + "," + fixed(place.height + up, 3));
   };
   EXPECT_THAT(reference(pad, 0.0), IsEmpty());
-  EXPECT_THAT(reference(pad, 30.0), Contains(HasSubstr("30.0 m above the pad")));
+  EXPECT_THAT(reference(pad, 30.0), Contains(HasSubstr("30.0 m above the take-off point")));
   EXPECT_THAT(reference(elsewhere, 0.0), Contains(HasSubstr("takeOffRefPoint 60.0 m from")));
 }
 

@@ -189,7 +189,7 @@ TEST(Motion, AbsurdLimitsAreNamed) {
   EXPECT_THAT(complaint(good, {.reserve = 1.0}), HasSubstr("reserve"));
   Vehicle heavy = good;
   heavy.mass = 20;
-  EXPECT_THAT(complaint(heavy, {}), HasSubstr("less than its mass takes to hover"));
+  EXPECT_THAT(complaint(heavy, {}), HasSubstr("less than its mass needs to hover"));
   Vehicle still = good;
   still.mode.acceleration = 0;
   EXPECT_THAT(complaint(still, {}), HasSubstr("acceleration is 0"));

@@ -86,16 +86,17 @@ TEST(PadGround, IsUnfitWhereItIsSteepUnevenOrElsewhere) {
   PadGround ground{pad, 9.9 * radians_per_degree, 0.1, -0.29, GroundSource::measured};
   EXPECT_EQ(why(ground, limits), "");
   ground.slope = 10.1 * radians_per_degree;
-  EXPECT_THAT(why(ground, limits), HasSubstr("is 10.1 degrees steep as measured; at most 10.0"));
+  EXPECT_THAT(why(ground, limits),
+              HasSubstr("has a slope of 10.1 degrees as measured; the maximum is 10.0"));
   ground.slope = 0.0;
   ground.unevenness = 0.31;
-  EXPECT_THAT(why(ground, limits), HasSubstr("uneven by 0.310 m"));
+  EXPECT_THAT(why(ground, limits), HasSubstr("has an unevenness of 0.310 m"));
   ground.unevenness = 0.0;
   ground.rise = -0.5;
-  EXPECT_THAT(why(ground, limits), HasSubstr("its ground 0.500 m below it as measured"));
+  EXPECT_THAT(why(ground, limits), HasSubstr("has ground 0.500 m below it as measured"));
   EXPECT_EQ(why(ground, {limits.steepest, 0.25}), "");
   EXPECT_THAT(complaint_of([&] { check_grounds(std::vector{ground}, limits); }),
-              HasSubstr("the place to land at (12.00, -7.00, 3.00) has its ground"));
+              HasSubstr("the landing point at (12.00, -7.00, 3.00) has ground"));
 }
 
 // Noise of 3 cm on a ramp, and what stands beside the pad or hangs over it.

@@ -106,7 +106,8 @@ TEST(Route, LeavesOutLegsThatAreNotProven) {
   ASSERT_EQ(route.stations.size(), 2U);
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_EQ(route.unreached[0].station.view_index, 2U);
-  EXPECT_EQ(route.unreached[0].reason, "the way to it cannot be proven at a clearance of 2.000 m");
+  EXPECT_EQ(route.unreached[0].reason,
+            "the path to it cannot be verified with a clearance of 2.000 m");
   for (const Sortie& sortie : route.sorties) {
     EXPECT_THAT(check_route(sortie_points(route, sortie), space, 2.0), testing::IsEmpty());
   }
@@ -336,7 +337,7 @@ TEST(Route, ABlockedPadIsRefusedWithAReason) {
     plan(ring(3, 18, 8), with_roof);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad"));
+    EXPECT_THAT(error.what(), HasSubstr("the climb from the take-off point"));
   }
 }
 
@@ -354,7 +355,8 @@ TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
     plan_beside(1.5);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad comes within 1.500 m of triangle"));
+    EXPECT_THAT(error.what(),
+                HasSubstr("the climb from the take-off point comes within 1.500 m of triangle"));
   }
 }
 
@@ -366,7 +368,7 @@ TEST(Route, AbsurdOptionsAreNamed) {
   RouteOptions nowhere = options();
   nowhere.takeoff.x() = std::nan("");
   EXPECT_THAT(testing_support::complaint_of([&] { plan({}, site(), nowhere); }),
-              testing::HasSubstr("the take-off place is not a finite position"));
+              testing::HasSubstr("the take-off point is not a finite position"));
   EXPECT_TRUE(plan({}, site()).sorties.empty());  // nothing to do is fine
 }
 

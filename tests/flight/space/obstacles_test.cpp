@@ -42,7 +42,7 @@ TEST(Obstacles, ValidateNamesThePartThatIsWrong) {
   Obstacles buried;
   buried.fence = Prism{"site", square, 0, 20};
   buried.ground_height = 30.0;
-  EXPECT_THAT(complaint(buried), HasSubstr("nothing can fly in it"));
+  EXPECT_THAT(complaint(buried), HasSubstr("must be above the ground"));
   Obstacles bad_point;
   bad_point.cloud.points = {{0, 0, std::numeric_limits<float>::quiet_NaN()}};
   EXPECT_THAT(complaint(bad_point), HasSubstr("obstacle point 0"));
@@ -54,7 +54,8 @@ TEST(Obstacles, ValidateNamesThePartThatIsWrong) {
   EXPECT_THAT(complaint(no_triangles), HasSubstr("no triangle"));
 }
 
-// Both ways of asking agree: parity in the plane, and the winding number of the closed surface.
+// Both tests agree: parity in the plane, and the winding number of the closed surface, inside
+// which nothing is free.
 TEST(Prism, ContainsAgreesWithTheWindingOfItsSurface) {
   std::mt19937_64 random(4);
   for (const bool clockwise : {false, true}) {
@@ -66,7 +67,7 @@ TEST(Prism, ContainsAgreesWithTheWindingOfItsSurface) {
     const KnownSpace space(obstacles);
     for (int i = 0; i < 500; ++i) {
       const Vector3d p = scenes::point_in(random, {Vector3d(-5, -5, 0), Vector3d(45, 45, 25)});
-      EXPECT_EQ(contains(prism, p), space.winding_number(p) > 0.5) << p.transpose();
+      EXPECT_EQ(contains(prism, p), !space.is_free({p, p}, 1e-9)) << p.transpose();
     }
   }
 }

@@ -134,7 +134,7 @@ TEST(LeastReturn, SaysWhatIsInTheWayUnderACeilingThatIsTooLow) {
   const KnownSpace space(obstacles);
   const ReturnSearch search = least_return(space, leg, law_of({Dialect::px4}), 60.0, clearance);
   EXPECT_FALSE(search.found);
-  EXPECT_THAT(search.why, AllOf(HasSubstr("at a height of return of 60 m"), HasSubstr("fence")));
+  EXPECT_THAT(search.why, AllOf(HasSubstr("at a return altitude of 60 m"), HasSubstr("fence")));
 }
 
 // DJI's applications take 20 m or more.
@@ -178,9 +178,8 @@ TEST(WaysHome, StationsUnderUnknownSpaceAreLeftOut) {
   ASSERT_EQ(route.stations.size(), 1U);
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_EQ(route.unreached[0].station.view_index, 6U);
-  EXPECT_THAT(route.unreached[0].reason,
-              AllOf(HasSubstr("no certified way home"), HasSubstr("the climb"),
-                    HasSubstr("never seen free")));
+  EXPECT_THAT(route.unreached[0].reason, AllOf(HasSubstr("no safe return"), HasSubstr("the climb"),
+                                               HasSubstr("unobserved space")));
   ASSERT_TRUE(route.returns);
   EXPECT_GE(route.returns->clearance, route.clearance - return_slack);
   options.returns.reset();
@@ -256,7 +255,7 @@ TEST(WaysHome, RefusesARouteWithoutASafeHeightOfReturn) {
   EXPECT_TRUE(route.sorties.empty());
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_THAT(route.unreached[0].reason,
-              AllOf(HasSubstr("no certified way home"), HasSubstr("the level flight")));
+              AllOf(HasSubstr("no safe return"), HasSubstr("the level flight")));
 }
 
 // A way that is pulled tight ends where a rule begins: at the 50 m within which DJI's vehicles fly

@@ -202,14 +202,14 @@ TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
       {std::string(500, 'x'), "is not a LAS file"},
       {with(25, 5), "is LAS 1.5 with points of format 6; only LAS 1.0 to 1.4"},
       {with(104, 11), "is LAS 1.4 with points of format 11; only LAS 1.0 to 1.4"},
-      {with(104, 0x86), "is compressed (LAZ), but has no record that says how"},
+      {with(104, 0x86), "is compressed (LAZ), but the record of its compression is missing"},
       {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
       {with(96, 0), "its points begin within its header"},
       {with(138, -1), "a scale or an offset"},  // the sign and exponent of the scale of x
       {las_bytes(6, 2, 5), "ends after 2 of its 5 points"},
       {las_bytes(6, 0, std::size_t{1} << 62), "ends after 0 of its 4611686018427387904 points"},
       {las_bytes(6, 1, 1).substr(0, 200), "ends within the header"},
-      {las_bytes(6, 0, 0), "holds no points"},
+      {las_bytes(6, 0, 0), "contains no points"},
   };
   for (const auto& broken : cases) {
     EXPECT_THAT([&] { read_cloud(folder.file("cloud.las", broken.bytes)); },
@@ -227,16 +227,17 @@ TEST(CloudIo, SaysWhatIsWrongWithAPcdFile) {
     std::string bytes, message;
   } cases[] = {
       {"", "its header has no DATA"},
-      {"ply\n", "line 1: 'ply' is not a word of a PCD header"},
+      {"ply\n", "line 1: 'ply' is not a PCD header keyword"},
       {"FIELDS x y z\nSIZE 4 4\n", "line 2: SIZE has 2 entries for 3 fields"},
-      {"FIELDS x y z\nSIZE 4 four 4\n", "line 2: 'four' stands where a number of SIZE"},
+      {"FIELDS x y z\nSIZE 4 four 4\n", "line 2: 'four' is found where a number of SIZE"},
       {"FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n", "the fields x, y and z"},
       {"FIELDS x\nSIZE 3\nTYPE F\nDATA ascii\n", "'x' has a SIZE, TYPE and COUNT"},
       {fields + "DATA ascii\n1 2 3\n", "neither POINTS nor WIDTH and HEIGHT"},
       {head + "DATA zipped\n", "DATA is 'zipped'; it must be ascii, binary or"},
       {head + "DATA ascii\n1 2 3\n", "ends after 1 of its 2 points"},
       {head + "DATA ascii\n1 2 3\n1 2\n", "line 10: ends where z is expected"},
-      {head + "DATA ascii\n1 nan 3\n1 2 inf\n", "holds no points but 2 that are NaN or infinite"},
+      {head + "DATA ascii\n1 nan 3\n1 2 inf\n",
+       "contains no points but 2 that are NaN or infinite"},
       {head + "DATA ascii\n1 2 3\n1 2 1e9\n", "coordinates must be local"},
       {head + "DATA binary\n" + std::string(13, '\0'), "ends after 1 of its 2 points"},
       {head + "DATA binary_compressed\n1234", "ends before its compressed data"},
@@ -259,14 +260,15 @@ TEST(CloudIo, SaysWhatIsWrongWithAFile) {
   const struct {
     std::string name, bytes, message;
   } cases[] = {
-      {"empty.xyz", "", "holds no points"},
+      {"empty.xyz", "", "contains no points"},
       {"empty.ply",
        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
        "property float z\nend_header\n",
-       "holds no points"},
-      {"word.xyz", "1 2 3\n1 two 3\n", "line 2: 'two' stands where a coordinate is expected"},
+       "contains no points"},
+      {"word.xyz", "1 2 3\n1 two 3\n", "line 2: 'two' is found where a coordinate is expected"},
       {"short.xyz", "1 2\n", "line 1: ends where a coordinate is expected"},
-      {"nan.ply", head + "end_header\n0 nan 0\n", "holds no points but 1 that are NaN or infinite"},
+      {"nan.ply", head + "end_header\n0 nan 0\n",
+       "contains no points but 1 that are NaN or infinite"},
       {"far.ply", head + "end_header\n0 4512345.5 0\n", "coordinates must be local"},
       {"view.ply", head + "property float view\nend_header\n0 0 0 1.5\n",
        "point 0 has the view 1.5"},

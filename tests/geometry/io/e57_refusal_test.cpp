@@ -20,7 +20,7 @@ TEST_F(E57, WhoseByteOfAPageIsDamagedIsRefused) {
       std::string bytes = whole;
       bytes[page * e57_page + place] = static_cast<char>(bytes[page * e57_page + place] ^ 0x10);
       EXPECT_THAT(refusal(bytes), HasSubstr("its page at byte " + std::to_string(page * e57_page) +
-                                            " does not agree with its checksum"));
+                                            " has a wrong checksum"));
     }
   }
 }
@@ -65,13 +65,13 @@ TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
       {with(with(whole, "<e57Root", "<E57Root"), "</e57Root>", "</E57Root>\n</e57Root>"),
        "has XML that is damaged"},
       {with(whole, "fileOffset=\"48\"", "fileOffset=\"99999999\""),
-       "a scan is at byte 99999999, which is behind its end"},
+       "a scan is at byte 99999999, which is after its end"},
       {with(whole, "fileOffset=\"48\"", "fileOffset=\"-48\""), "has the fileOffset of 'points'"},
       {with(whole, "fileOffset=\"48\"", "fileOffset=\"52\""), "has no records at byte 52"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"9223372036854775808\""),
        "says to have 9223372036854775808 points in a scan of"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"99999999999999999999\""),
-       "which is no usable number"},
+       "which is not a valid number"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"4\""),
        "ends after 3 of the 4 points of a scan"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"6\""),
@@ -82,10 +82,11 @@ TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
       {with(whole, "type=\"Float\"", "type=\"String\""), "have neither"},
       {with(whole, "type=\"Float\"", "type=\"Integer\" minimum=\"2\" maximum=\"1\""),
        "whose minimum is above its maximum"},
-      {with(whole, "type=\"Float\"", "type=\"ScaledInteger\" scale=\"1e999\""), "no usable number"},
+      {with(whole, "type=\"Float\"", "type=\"ScaledInteger\" scale=\"1e999\""),
+       "not a valid number"},
       {with(whole, "type=\"Float\"", "type=\"ScaledInteger\" scale=\"inf\""), "is not finite"},
       {with(whole, "type=\"Float\"", "type=\"Integer\" maximum=\"many\""),
-       "the maximum of 'cartesianX' 'many', which is no usable number"},
+       "the maximum of 'cartesianX' 'many', which is not a valid number"},
       {with(whole, "<points", pose_of("2 0 0 0", "") + "<points"), "quaternion of length 2.000000"},
       {with(whole, "<points", pose_of("", "nan 0 0") + "<points"),
        "x of a translation that is not"},

@@ -8,7 +8,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/las_layout.h"
+#include "geometry/io/las/layout.h"
 #include "tests/support/complaint.h"
 #include "tests/support/e57_bytes.h"
 #include "tests/support/temporary_folder.h"
@@ -140,7 +140,7 @@ TEST_F(ForeignCloud, SkipsAndCountsWhatIsNotFinite) {
       "property float z\nend_header\n";
   expect_corners("a.ply", ply + "nan 0 0\n" + lines(" "), 1);
   EXPECT_THAT(complaint("a.xyz", "nan nan nan\n"),
-              HasSubstr("holds no points but 1 that are NaN or infinite"));
+              HasSubstr("contains no points but 1 that are NaN or infinite"));
 }
 
 TEST_F(ForeignCloud, ReadsPcdOfOldVersionsAndOtherSystems) {

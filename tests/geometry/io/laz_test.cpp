@@ -11,7 +11,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/las_reader.h"
+#include "geometry/io/las/las_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::geometry {
@@ -168,15 +168,15 @@ TEST_F(SpoiledLaz, SaysWhatCannotBeRead) {
                    "points of format " + std::to_string(format) + ", compressed (LAZ); only");
   }
   expect_refusal(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); only");
-  expect_refusal(record_ - 54 + 18, std::uint16_t{1}, "has no record that says how");
+  expect_refusal(record_ - 54 + 18, std::uint16_t{1}, "the record of its compression is missing");
   expect_refusal(record_ - 54 + 20, std::uint16_t{40}, "it ends too early");
   expect_refusal(record_, std::uint16_t{1}, "is compressed by method 1 of LAZ");
   expect_refusal(record_ + 2, std::uint16_t{1}, "is compressed by method 3 of LAZ");
   expect_refusal(record_ + 12, std::uint32_t{0}, "its chunks have no points");
-  expect_refusal(record_ + 32, std::uint16_t{1}, "its items are not those of points of format 7");
-  expect_refusal(record_ + 34, std::uint16_t{11}, "its items are not those of points of format 7");
+  expect_refusal(record_ + 32, std::uint16_t{1}, "LAZ items do not match point format 7");
+  expect_refusal(record_ + 34, std::uint16_t{11}, "LAZ items do not match point format 7");
   expect_refusal(record_ + 38, std::uint16_t{2}, "by version 2 of LAZ's items");
-  expect_refusal(105, std::uint16_t{37}, "its items are not those of points of format 7 and 37");
+  expect_refusal(105, std::uint16_t{37}, "LAZ items do not match point format 7 and 37");
 }
 
 TEST_F(SpoiledLaz, SaysWhereItsChunksAreNot) {

@@ -64,7 +64,7 @@ TEST(MeshLimits, RefuseWhatGoesBeyondThem) {
     MeshLimits limits;
     const char* message;
   } cases[] = {
-      {{.faces = 1}, ": holds more than 1 faces, "},
+      {{.faces = 1}, ": contains more than 1 faces, "},
       {{.vertices = 5}, " corners of faces or 5 vertices; simplify the mesh"},
       {{.corners = 5}, " faces, 5 corners of faces or "},
       {{.face_corners = 2}, ": face 0 has more than 2 corners; triangulate it first"},
@@ -96,7 +96,7 @@ TEST(MeshLimits, RefuseAPlyFaceOfMoreCornersThanAnyHas) {
   bytes.resize(bytes.size() + corners);
   EXPECT_THAT([&] { parse_ply("a.ply", bytes); },
               ThrowsMessage<Error>(
-                  HasSubstr("a.ply: face 0 has a list of 1000001 values; at most 1e6 are read")));
+                  HasSubstr("a.ply: face 0 has a list of 1000001 values; the maximum is 1e6")));
 }
 
 /// Property: the pieces that a file is read in join without a seam.

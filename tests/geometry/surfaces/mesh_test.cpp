@@ -37,7 +37,7 @@ TEST(Mesh, ValidateNamesWhatIsWrong) {
   EXPECT_EQ(complaint(two_triangles()), "");
   Mesh bad_index = two_triangles();
   bad_index.triangles[1][2] = 6;
-  EXPECT_THAT(complaint(bad_index), HasSubstr("triangle 1 names vertex 6"));
+  EXPECT_THAT(complaint(bad_index), HasSubstr("triangle 1 has vertex 6"));
   Mesh not_finite = two_triangles();
   not_finite.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(complaint(not_finite), HasSubstr("vertex 3"));

@@ -144,7 +144,7 @@ TEST_F(BenchmarkVerb, LeavesAPageThatReportWritesAnew) {
 TEST_F(BenchmarkVerb, RefusesPlannersThatItDoesNotKnow) {
   const ProgramRun result = run("see,frontier");
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("there is no planner 'frontier'; give all or some of see++"));
+  EXPECT_THAT(result.err, HasSubstr("unknown planner 'frontier'; expected all or some of see++"));
 }
 
 TEST_F(BenchmarkVerb, DrawsASceneOfAFamilyForEachSeed) {
@@ -168,8 +168,7 @@ TEST_F(BenchmarkVerb, DrawsASceneOfAFamilyForEachSeed) {
 TEST_F(BenchmarkVerb, RefusesFamiliesThatItDoesNotKnow) {
   const ProgramRun result = run("see", {"--scenes", "garage,castle"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err,
-              HasSubstr("--scenes: there is no family 'castle'; there are all, bridge"));
+  EXPECT_THAT(result.err, HasSubstr("--scenes: unknown family 'castle'; expected all or bridge"));
 }
 
 TEST_F(BenchmarkVerb, RefusesMissionsOfTheSameName) {

@@ -104,7 +104,7 @@ TEST_F(CampaignVerb, MakesTheTablesOfAllItems) {
   const ProgramRun result = run("out");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
-  EXPECT_THAT(result.out, HasSubstr("8 of 8 items\n"));
+  EXPECT_THAT(result.out, HasSubstr("8 of 8 runs\n"));
   const Json json = Json::parse(content_of(folder_.path() / "out" / "results.json"));
   ASSERT_EQ(json["results"].size(), 4U);
   std::set<std::string> missions;
@@ -146,7 +146,7 @@ TEST_F(CampaignVerb, TakesItsIndexFromTheEngine) {
   EXPECT_EQ(last.exit_code, 0) << last.err;
   EXPECT_EQ(records("out").count("quick/short/oa/seed_2/item.json"), 1U);
   EXPECT_EQ(beyond.exit_code, 0);
-  EXPECT_THAT(beyond.err, HasSubstr("task 8 has no items; there are 8"));
+  EXPECT_THAT(beyond.err, HasSubstr("task 8 has no runs; there are 8"));
   EXPECT_EQ(records("out").size(), 1U);
 }
 
@@ -255,10 +255,9 @@ TEST_F(CampaignVerb, GoesOnWithoutWhatCannotBeRun) {
                               "seeds: 1\nset: {limits.max_views: 3}\n";
   const ProgramRun result = run("out");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err,
-              HasSubstr("broken.yaml:1: key evaluation.registration_distance: is miss"));
+  EXPECT_THAT(result.err, HasSubstr("broken.yaml:1: key evaluation.registration_distance is miss"));
   EXPECT_THAT(result.err, HasSubstr("lost.ply"));
-  EXPECT_THAT(result.out, HasSubstr("1 of 3 items"));
+  EXPECT_THAT(result.out, HasSubstr("1 of 3 runs"));
   const ProgramRun alone = run("out", {"--index", "0"});
   EXPECT_EQ(alone.exit_code, 2);
   EXPECT_THAT(alone.err, HasSubstr("skycap: error: "));
@@ -323,7 +322,7 @@ TEST_F(CampaignVerb, SubmitsTasksThatSlurmCanRun) {
   }
   const auto result = support::run_external_program(submit, folder_.path());
   ASSERT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_THAT(result.output, HasSubstr("job 42 of Slurm: 3 tasks of 3 items"));
+  EXPECT_THAT(result.output, HasSubstr("Slurm job 42: 3 tasks of 3 runs"));
   EXPECT_THAT(content_of(folder_.path() / "bin" / "sbatch.words"),
               HasSubstr("--dependency=afterany:42 "));
   const fs::path out = folder_.path() / "out";
@@ -344,7 +343,7 @@ TEST_F(CampaignVerb, SaysThatThereIsNoEngine) {
   for (const std::string& word : words("out", {"--submit", "parallel"})) submit.push_back(word);
   const auto result = support::run_external_program(submit, folder_.path());
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.output, HasSubstr("there is no program parallel"));
+  EXPECT_THAT(result.output, HasSubstr("unknown program parallel"));
 }
 
 }  // namespace

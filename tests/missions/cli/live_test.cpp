@@ -135,12 +135,12 @@ TEST_F(LiveVerbs, WarnOfAWrongPose) {
   EXPECT_GT(wrong["pose"]["shift_m"].get<double>(), 0.03);
   const ProgramRun run = run_skycap(verb("next"));
   EXPECT_EQ(run.exit_code, 12);
-  EXPECT_THAT(run.out, HasSubstr("warning: pose: the scan is set aside"));
+  EXPECT_THAT(run.out, HasSubstr("warning: scan rejected: pose inconsistent with the map"));
   call.insert(call.end(), {"--pose-sigma", "0.1"});
   EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("metres degrees"));
   call.back() = "0.1 1";
   call.insert(call.end(), {"--pose-covariance", "0.01"});
-  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("do not go together"));
+  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("conflicts with"));
   call.erase(call.end() - 4, call.end() - 2);
   EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("--pose-covariance: has 1 numbers"));
   call.back() = "0.01 0 0 0 0 0  0.01 0 0 0 0  0.01 0 0 0  1e-4 0 0  1e-4 0  1e-4";
@@ -153,16 +153,17 @@ TEST_F(LiveVerbs, SayWhatIsMissing) {
     EXPECT_EQ(run.exit_code, 2) << run.out;
     return run.err;
   };
-  EXPECT_THAT(refusal({"plan", mission_}), HasSubstr("scene.model: is missing"));
-  EXPECT_THAT(refusal({"scan", mission_}), HasSubstr("scene.model: is missing"));
-  EXPECT_THAT(refusal(verb("finish")), HasSubstr("has no scan yet"));
+  EXPECT_THAT(refusal({"plan", mission_}), HasSubstr("scene.model is missing"));
+  EXPECT_THAT(refusal({"scan", mission_}), HasSubstr("scene.model is missing"));
+  EXPECT_THAT(refusal(verb("finish")), HasSubstr("contains no scan yet"));
   EXPECT_THAT(refusal(verb("next", {"--scan", "x.ply"})), HasSubstr("--pose"));
-  EXPECT_THAT(refusal(verb("next", {"--refuse", "no"})), HasSubstr("no view to refuse"));
-  EXPECT_THAT(refusal(verb("next", {"--on-way"})), HasSubstr("--on-way goes with --scan"));
+  EXPECT_THAT(refusal(verb("next", {"--refuse", "no"})), HasSubstr("no view to reject"));
+  EXPECT_THAT(refusal(verb("next", {"--on-way"})), HasSubstr("--on-way requires --scan"));
   std::vector<std::string> on_way =
       measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
   on_way.emplace_back("--on-way");
-  EXPECT_THAT(refusal(verb("next", on_way)), HasSubstr("give it sensor.capture: moving"));
+  EXPECT_THAT(refusal(verb("next", on_way)),
+              HasSubstr("en-route scans require sensor.capture: moving"));
   const std::string bare = folder_.write("bare.yaml", "evaluation: {registration_distance: 1}\n");
   EXPECT_THAT(refusal({"next", bare, "--survey", folder_ / "s"}), HasSubstr("planner.scene_box"));
 }

@@ -81,7 +81,8 @@ TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
     resume.insert(resume.end(), {"--resume", "--threads", "2"});
     const tests::ProgramRun run = run_skycap(plan("part", resume));
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("going on after " + std::to_string(views) + " views"));
+    EXPECT_THAT(run.err, HasSubstr("resuming an interrupted survey after " + std::to_string(views) +
+                                   " views"));
     EXPECT_TRUE(results_in(folder_ / "part") == results_in(folder_ / "whole")) << planner;
     fs::remove_all(folder_.path() / "whole");
     fs::remove_all(folder_.path() / "part");
@@ -130,9 +131,9 @@ TEST_F(ResumedPlan, OfAnotherSurveyIsRefused) {
     EXPECT_EQ(content_of(journal_), journal);
     return run.err;
   };
-  EXPECT_THAT(refusal({"--resume", "--seed", "2"}), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(refusal({"--resume", "--seed", "2"}), HasSubstr("seed changed from 1 to 2"));
   EXPECT_THAT(refusal({"--resume", "--set", "planner.density=5300"}),
-              HasSubstr("planner.density was \"5200\" and is \"5300\""));
+              HasSubstr("planner.density changed from \"5200\" to \"5300\""));
   EXPECT_THAT(refusal({"--resume", "--set", "scene.longest_side=1.01"}), HasSubstr("surface"));
 }
 
@@ -163,7 +164,7 @@ TEST_F(ResumedPlan, ThatGoesAnotherWayIsNoticed) {
   }
   const tests::ProgramRun run = run_skycap(plan("part", {"--resume"}));
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("says that view 1 gave something else"));
+  EXPECT_THAT(run.err, HasSubstr("does not match: view 1 gave other points"));
 }
 
 }  // namespace

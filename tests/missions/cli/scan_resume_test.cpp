@@ -51,7 +51,7 @@ TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
   }
   const auto run = run_skycap(scan("part", with(clouds_, {"--resume", "--threads", "2"})));
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("going on with an interrupted scan"));
+  EXPECT_THAT(run.err, HasSubstr("resuming an interrupted scan"));
   expect_same_results();
 }
 
@@ -107,7 +107,7 @@ TEST_F(ResumedScan, WhoseFilesHaveShrunkIsRefused) {
     std::ofstream(file, std::ios::binary) << content.substr(0, content.size() - 1);
     const auto run = run_skycap(scan("part", with(options, {"--resume"})));
     EXPECT_EQ(run.exit_code, 2);
-    EXPECT_THAT(run.err, HasSubstr(std::string(name) + ": holds "));
+    EXPECT_THAT(run.err, HasSubstr(std::string(name) + ": contains "));
     fs::remove_all(folder_ / "part");
   }
 }
@@ -139,10 +139,10 @@ TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
     EXPECT_TRUE(tests::scan_results_in(folder_ / "part") == before);
     return run.err;
   };
-  EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed changed from 1 to 2"));
   EXPECT_THAT(refusal({"--format", "las"}), HasSubstr("formats was "));
   EXPECT_THAT(refusal(with(clouds_, {"--set", "scan.orbit.speed=21"})),
-              HasSubstr("was begun otherwise: "));
+              HasSubstr("cannot resume: "));
   folder_.write("cube.obj",
                 content_of(folder_ / "cube.obj") + "v 2 2 0\nv 2 3 0\nv 2 3 3\n" + "f 9 10 11\n");
   EXPECT_THAT(refusal(clouds_), HasSubstr("scene_digest was "));

@@ -80,7 +80,7 @@ TEST_F(ScanVerb, SaysAllOfTheSummaryWhateverTheNamesLength) {
   const ProgramRun run = scan({"--set", "name=" + name});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, testing::StartsWith(name + ": Test laser, 0.3 s of flight\n"));
-  EXPECT_THAT(run.out, HasSubstr(" M shots/s\n  results   "));
+  EXPECT_THAT(run.out, HasSubstr(" M pulses/s\n  results   "));
 }
 
 TEST_F(ScanVerb, LeavesTheCloudBothTrajectoriesAndASummary) {
@@ -336,7 +336,7 @@ TEST_F(ScanVerb, CtrlCLeavesWholeFilesOfTheBeginning) {
   EXPECT_THAT(run.out, HasSubstr("interrupted"));
   EXPECT_EQ(summary()["complete"], false);
   EXPECT_THAT(tests::content_of(folder / "out/scan.ply"), HasSubstr("element vertex 0\n"));
-  EXPECT_THAT(run.err, HasSubstr("no report after Ctrl-C; skycap report makes it"));
+  EXPECT_THAT(run.err, HasSubstr("no report after Ctrl-C; skycap report writes it"));
 }
 
 TEST_F(ScanVerb, ARawlogOfNothingIsNotWritten) {
@@ -357,13 +357,14 @@ TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {
     return run.err;
   };
   EXPECT_THAT(refused({"--format", "zip"}),
-              HasSubstr("no point format 'zip'; the formats are las"));
-  EXPECT_THAT(refused({"--format", "las,las7"}), HasSubstr("two files scan.las"));
-  EXPECT_THAT(refused({"--sensor", "sonar"}), HasSubstr("there is no sensor sonar"));
+              HasSubstr("unknown point format 'zip'; expected one of: las"));
+  EXPECT_THAT(refused({"--format", "las,las7"}),
+              HasSubstr("two formats have the file name scan.las"));
+  EXPECT_THAT(refused({"--sensor", "sonar"}), HasSubstr("unknown sensor sonar"));
   EXPECT_THAT(refused({"--route", folder / "none.tum"}), HasSubstr("none.tum"));
   EXPECT_THAT(refused({"--set", "scan.orbit.radius=0"}), HasSubstr("key scan.orbit.radius"));
   EXPECT_THAT(refused({"--set", "scan.crs=utm"}),
-              HasSubstr("scan.crs is utm, but the mission has no place"));
+              HasSubstr("scan.crs: utm requires a georeference"));
   EXPECT_THAT(refused({"--set", "scene.copies=[[6, 1]]"}), HasSubstr("key scene.copies"));
 }
 

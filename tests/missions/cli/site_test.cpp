@@ -194,18 +194,18 @@ TEST_F(Site, IsPickedByNameAddressOrClick) {
 }
 
 TEST_F(Site, SaysWhatIsMissing) {
-  EXPECT_THAT(propose("").err, AllOf(HasSubstr("holds 3 things, DEBY_0, DEBY_1, DEBY_2"),
+  EXPECT_THAT(propose("").err, AllOf(HasSubstr("contains 3 objects, DEBY_0, DEBY_1, DEBY_2"),
                                      HasSubstr("--id, --at or --attribute")));
-  EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with the id DEBY_7"));
-  EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("has nothing within 10 m"));
-  EXPECT_THAT(propose("--at north").err, HasSubstr("--at is north; give LATITUDE,LONGITUDE"));
-  EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("give one of them"));
+  EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with id DEBY_7"));
+  EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("contains nothing within 10 m"));
+  EXPECT_THAT(propose("--at north").err, HasSubstr("--at is north; it must be LATITUDE,LONGITUDE"));
+  EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("exclude each other"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
   std::ofstream(folder_.path() / "house.yaml") << "mine";
-  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml is there already"));
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml exists"));
   EXPECT_EQ(content_of(folder_.path() / "house.yaml"), "mine");
   std::filesystem::rename(folder_.path() / "house.yaml", folder_.path() / "house.html");
-  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html is there already"));
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html exists"));
   EXPECT_EQ(content_of(folder_.path() / "house.html"), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
 }
@@ -231,7 +231,7 @@ TEST_F(Site, LetsEgm96StandInWhereThatIsAskedFor) {
   write("tile.gml", tile(in_a_row, "EPSG:25832+7837"));
   EXPECT_THAT(
       run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --out " + path_ + "/house.yaml").err,
-      HasSubstr("say vertical: geoid to let EGM96 stand in"));
+      HasSubstr("set vertical: geoid to use EGM96 instead"));
   const auto run = run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --vertical geoid --out " +
                               path_ + "/house.yaml");
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -112,7 +112,7 @@ TEST_F(SplitEvaluation, TellsGroundFromTheModel) {
   EXPECT_EQ(figures.at("points"), 500);
   EXPECT_EQ(figures.at("points_beside"), 500);
   EXPECT_NEAR(figures.at("distance_to_model_m").at("mean").get<double>(), 0.01, 0.02);
-  EXPECT_THAT(json_of({}), HasSubstr("500 more are of the ground"));
+  EXPECT_THAT(json_of({}), HasSubstr("500 more on the ground"));
   EXPECT_EQ(json_of({"--json", "--out", folder_ / "out", "--pieces", "2"}), whole);
 }
 
@@ -131,7 +131,7 @@ TEST_F(SplitEvaluation, SkipsWhatIsCompleteAndSaysWhatIsMissing) {
   fs::resize_file(folder_.path() / "out" / "pieces" / "0_of_2" / "distances.bin", 4);
   const auto damaged = pieces(2, {"--collect"});
   EXPECT_EQ(damaged.exit_code, 2);
-  EXPECT_THAT(damaged.err, HasSubstr("distances.bin: is not as long as it was written"));
+  EXPECT_THAT(damaged.err, HasSubstr("distances.bin: is truncated"));
 }
 
 TEST_F(SplitEvaluation, SaysWhatItCannotSplit) {
@@ -144,13 +144,13 @@ TEST_F(SplitEvaluation, SaysWhatItCannotSplit) {
   const std::string model = folder_ / "sphere.ply", out = folder_ / "out";
   EXPECT_THAT(refusal({"evaluate", "--mesh", model, "--model", model, "--distance", "0.1",
                        "--pieces", "2", "--out", out}),
-              HasSubstr("--pieces are of a cloud and need a folder; give --cloud and --out"));
+              HasSubstr("--pieces requires --cloud and --out"));
   EXPECT_THAT(
       refusal({"evaluate", "--cloud", model, "--model", model, "--distance", "0.1", "--collect"}),
-      HasSubstr("are of a cloud in pieces; give --pieces"));
+      HasSubstr("require --pieces"));
   EXPECT_THAT(refusal({"evaluate", "--cloud", folder_ / "none.las", "--model", model, "--distance",
                        "0.1", "--pieces", "2", "--out", out}),
-              HasSubstr("none.las: there is no such file"));
+              HasSubstr("none.las: does not exist"));
 }
 
 }  // namespace

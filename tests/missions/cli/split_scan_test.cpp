@@ -70,7 +70,7 @@ TEST_F(SplitScan, MeasuresSeveralPiecesInATask) {
   EXPECT_TRUE(fs::exists(piece_folder("4_of_5")));
   const auto beyond = task(2, 5, {"--chunk", "3"});
   EXPECT_EQ(beyond.exit_code, 0);
-  EXPECT_THAT(beyond.err, HasSubstr("task 2 has no items; there are 5"));
+  EXPECT_THAT(beyond.err, HasSubstr("task 2 has no runs; there are 5"));
   const auto early = collect(5);
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.err, HasSubstr("2 of 5 pieces are complete; missing 0, 1, 2"));
@@ -80,7 +80,7 @@ TEST_F(SplitScan, MeasuresSeveralPiecesInATask) {
   expect_same_results();
   const auto again = collect(5);
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_THAT(again.err, HasSubstr("has no pieces; its results are complete already"));
+  EXPECT_THAT(again.err, HasSubstr("contains no pieces; its results are complete"));
 }
 
 TEST_F(SplitScan, SkipsWhatIsCompleteAndMeasuresAnewWhatIsOfAnotherScan) {
@@ -109,7 +109,7 @@ TEST_F(SplitScan, GoesOnWithAPieceThatWasInterrupted) {
   std::ofstream(grown, std::ios::binary | std::ios::app) << std::string(1000, 'x');
   const auto run = run_skycap(scan("part", second));
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("going on with an interrupted scan"));
+  EXPECT_THAT(run.err, HasSubstr("resuming an interrupted scan"));
   ASSERT_EQ(task(0, 2, clouds_).exit_code, 0);
   ASSERT_EQ(collect(2, clouds_).exit_code, 0);
   expect_same_results();
@@ -130,11 +130,11 @@ TEST_F(SplitScan, SaysWhatItCannotSplit) {
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
     return run.err;
   };
-  EXPECT_THAT(refusal({"--index", "1"}), HasSubstr("are of a flight in pieces; give --pieces"));
+  EXPECT_THAT(refusal({"--index", "1"}), HasSubstr("require --pieces"));
   EXPECT_THAT(refusal({"--pieces", "2", "--index", "one"}),
-              HasSubstr("--index is 'one'; it must be a whole number from 0 on"));
+              HasSubstr("--index is 'one'; it must be an integer of at least 0"));
   EXPECT_THAT(refusal({"--pieces", "2", "--sensor", folder_ / "camera.yaml"}),
-              HasSubstr("Test camera is a camera; only the flights of laser scanners are split"));
+              HasSubstr("Test camera is a camera; only scans of laser scanners can be split"));
   EXPECT_THAT(refusal({"--pieces", "2", "--resume"}), HasSubstr("--resume excludes --pieces"));
 }
 

@@ -74,7 +74,7 @@ TEST(FieldKeys, PutTheKeyAndItsLineIntoTheMessage) {
         "planner:\n  name: skycap\n  ideas: {dose: true}\n  least_gain: 1\n",
         "m.yaml");
   });
-  EXPECT_THAT(message, HasSubstr("m.yaml:6: key planner.least_gain: is 1; it must be"));
+  EXPECT_THAT(message, HasSubstr("m.yaml:6: key planner.least_gain is 1; it must be"));
   EXPECT_THAT(message, Not(HasSubstr("stop.least_gain")));
 }
 

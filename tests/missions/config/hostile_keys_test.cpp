@@ -153,7 +153,7 @@ bool is_refusal_of_a_key(const std::string& message) {
                           what.starts_with("lists and maps are nested deeper");
   if (is_of_yaml) return true;
   if (!what.starts_with("key ")) return false;
-  const std::string named = what.substr(4, what.find(": ") - 4);
+  const std::string named = what.substr(4, what.find_first_of(" :", 4) - 4);
   return config::find_key(named) != nullptr || named.find_first_of(".[") != std::string::npos;
 }
 

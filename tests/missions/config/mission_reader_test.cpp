@@ -55,16 +55,16 @@ TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
   const config::MissionDocument mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
   EXPECT_EQ(mission.seed, 8U);
   EXPECT_EQ(complaint(smallest, {{"--seed", "seed", "many"}}),
-            "--seed: key seed: is many; give a whole number from 0 to 1e+15");
+            "--seed: key seed is many; it must be an integer from 0 to 1e+15");
   EXPECT_THAT(complaint(smallest, {{"--set", "planner.densty", "1"}}),
               HasSubstr("did you mean planner.density?"));
 }
 
 TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
   EXPECT_EQ(complaint(smallest + "sensor:\n  sigma: 0.1\n"),
-            "m.yaml:4: key sensor.sigma: is unknown; did you mean sensor.noise.sigma?");
+            "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(complaint(smallest + "colour_of_the_sky: blue\n"),
-              HasSubstr("known are name, seed, threads, scene, sensor, planner, volumetric, "
+              HasSubstr("expected one of: name, seed, threads, scene, sensor, planner, volumetric, "
                         "start, limits, evaluation, paper, site, flight, scan"));
 }
 

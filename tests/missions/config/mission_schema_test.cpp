@@ -82,8 +82,8 @@ TEST(MissionSchema, HasTheReadersTypesAndRanges) {
       try {
         config::parse_mission("seed: 1", "m", {{"--set", key.path, text}});
       } catch (const Error& error) {
-        return std::string(error.what()).find("; give ") != std::string::npos &&
-               std::string(error.what()).starts_with("--set: key " + key.path + ":");
+        return std::string(error.what()).find("; it must be ") != std::string::npos &&
+               std::string(error.what()).starts_with("--set: key " + key.path + " ");
       }
       return false;
     };

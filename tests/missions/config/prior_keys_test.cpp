@@ -85,20 +85,21 @@ TEST(PriorKeys, AreReadBackFromSettings) {
 
 TEST(PriorKeys, AreNamedWithTheirLineWhenTheyAreWrong) {
   EXPECT_EQ(complaint("prior: {file: a.obj}\n"),
-            "m.yaml:3: key prior: is a map; give a list of maps, each with file, role and what "
-            "else is needed");
-  EXPECT_EQ(complaint("prior: [a.obj]\n"), "m.yaml:3: key prior[0]: is a.obj; give a map");
+            "m.yaml:3: key prior is a map; it must be a list of maps, each with file, role and "
+            "further keys");
+  EXPECT_EQ(complaint("prior: [a.obj]\n"), "m.yaml:3: key prior[0] is a.obj; it must be a map");
   EXPECT_THAT(complaint("prior:\n  - {file: a.obj, role: target}\n  - {role: target}\n"),
-              StartsWith("m.yaml:5: key prior[1].file: is missing; give a text"));
-  EXPECT_THAT(complaint("prior:\n  - file: a.obj\n    role: wall\n"),
-              StartsWith("m.yaml:5: key prior[0].role: is wall; give target, obstacle, terrain or "
-                         "truth"));
+              StartsWith("m.yaml:5: key prior[1].file is missing; it must be a string"));
+  EXPECT_THAT(
+      complaint("prior:\n  - file: a.obj\n    role: wall\n"),
+      StartsWith(
+          "m.yaml:5: key prior[0].role is wall; it must be target, obstacle, terrain or truth"));
   EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, hight: 3}]\n"),
-              HasSubstr("key prior[0].hight: is unknown; did you mean height?"));
+              HasSubstr("key prior[0].hight is unknown; did you mean height?"));
   EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, base: sea}]\n"),
-              HasSubstr("key prior[0].base: is sea; give terrain or a number"));
+              HasSubstr("key prior[0].base is sea; it must be terrain or a number"));
   EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, select: all}]\n"),
-              HasSubstr("key prior[0].select: is a section"));
+              HasSubstr("key prior[0].select is a section"));
 }
 
 // The hostile values that no key takes, at each key of a source: refused by its name, or taken

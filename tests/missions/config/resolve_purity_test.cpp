@@ -295,7 +295,7 @@ TEST_F(ResolvePurity, WithKeysNamesTheOriginOfWhatIsWrong) {
   EXPECT_EQ(testing_support::complaint_of([&] {
               config::with_keys(setup, {{"--views", "limits.max_views", "0"}});
             }),
-            "--views: key limits.max_views: is 0; give a whole number from 1 to 1000000");
+            "--views: key limits.max_views is 0; it must be an integer from 1 to 1000000");
   EXPECT_THAT(testing_support::complaint_of([&] {
                 config::with_keys(setup, {{"--set", "planner.densty", "1"}});
               }),

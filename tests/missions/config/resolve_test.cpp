@@ -153,10 +153,10 @@ TEST(Resolve, RefusesAirspacesThatCannotBe) {
               HasSubstr("a list of {corners, bottom, top}"));
   EXPECT_THAT(parsed("site: {no_fly: []}").flight().airspace.no_fly, testing::IsEmpty());
   EXPECT_THAT(complaint(std::string(smallest) + "site: {lowest_height: 5, highest_height: 5}"),
-              HasSubstr("site.highest_height: is not above"));
+              HasSubstr("site.highest_height must be greater than"));
   EXPECT_THAT(
       complaint(std::string(smallest) + "limits: {lowest_pitch_deg: 9, highest_pitch_deg: -9}"),
-      HasSubstr("limits.highest_pitch_deg: is not above"));
+      HasSubstr("limits.highest_pitch_deg must be greater than"));
 }
 
 TEST(Resolve, MeasuresTheGroundClearanceFromTheScenesBase) {
@@ -214,21 +214,20 @@ struct RefusedSetting {
 TEST(Resolve, ChecksEachPlannersOwnSettingsWithTheirPlace) {
   const std::vector<RefusedSetting> settings{
       {"see", "planner:\n  core_threshold: 3\n",
-       "m.yaml:4: key planner.core_threshold: is 3; it must be at least 4"},
+       "m.yaml:4: key planner.core_threshold is 3; it must be at least 4"},
       {"skycap", "planner:\n  least_gain: 1\n",
-       "m.yaml:4: key planner.least_gain: is 1; it must be at least 0 and below 1"},
+       "m.yaml:4: key planner.least_gain is 1; it must be at least 0 and below 1"},
       {"oa", "volumetric:\n  thinned: true\n  shadow_length: 1e3\n",
-       "m.yaml:5: key volumetric.shadow_length: is 1000; it must be positive and less than"},
+       "m.yaml:5: key volumetric.shadow_length is 1000; it must be positive and less than"},
       {"ae", "volumetric: {window_begin: 0.6, window_end: 0.5}\n",
-       "m.yaml:3: key volumetric.window_begin: is 0.6; it must be at least 0 and below "
-       "window_end"},
+       "m.yaml:3: key volumetric.window_begin is 0.6; it must be at least 0 and below window_end"},
       {"uv", "volumetric: {view_limit: 1, candidates_per_view: 0.1}\n",
-       "m.yaml:3: key volumetric.candidates_per_view: is 0.1; it must be large enough"},
+       "m.yaml:3: key volumetric.candidates_per_view is 0.1; it must be large enough"},
       {"af",
        "limits: {ground_clearance: 3}\nvolumetric: {sphere_centre: [0, 0, 0], sphere_radius: "
        "2}\n",
-       "m.yaml:4: key volumetric.sphere_radius: is 2; it must be large enough for the sphere to "
-       "reach above the least height of 3 m"},
+       "m.yaml:4: key volumetric.sphere_radius is 2; the sphere must reach above the minimum "
+       "height of 3 m"},
   };
   for (const RefusedSetting& setting : settings) {
     const std::string mission = smallest + setting.more;

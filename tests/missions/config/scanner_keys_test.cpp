@@ -28,29 +28,28 @@ TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
   };
   EXPECT_EQ(message_of("{lidar: velodyne_vlp16}", ""), "accepted");
   EXPECT_EQ(message_of("{lidar: livox_avia}", ""), "accepted");
-  EXPECT_THAT(
-      message_of("{lidar: riegl_vux_1uav}", ""),
-      HasSubstr("m.yaml:2: key sensor.lidar: this scanner measures a line, which is no field "
-                "unless it is flown: give flight.vehicle"));
+  EXPECT_THAT(message_of("{lidar: riegl_vux_1uav}", ""),
+              HasSubstr("m.yaml:2: key sensor.lidar: a single-line LiDAR requires flight.vehicle"));
   EXPECT_THAT(message_of("{lidar: see_d435}", ""), HasSubstr("is a camera"));
-  EXPECT_THAT(message_of("{lidar: os1}", ""), HasSubstr("known are"));
+  EXPECT_THAT(message_of("{lidar: os1}", ""), HasSubstr("expected one of"));
   EXPECT_THAT(message_of("{lidar: velodyne_vlp16, width: 100}", ""),
-              HasSubstr("key sensor.width: does not go with sensor.lidar"));
+              HasSubstr("key sensor.width conflicts with sensor.lidar"));
   const std::string flown =
       "flight: {vehicle: m350_rtk, unknown_box: {min: [-1, -1, 0], max: [1, 1, 1]}}\n";
   EXPECT_EQ(message_of("{lidar: velodyne_vlp16}", flown), "accepted");
   EXPECT_THAT(message_of("{lidar: velodyne_vlp16, width: 100}", flown),
-              HasSubstr("key sensor.width: does not go with sensor.lidar"));
+              HasSubstr("key sensor.width conflicts with sensor.lidar"));
   EXPECT_THAT(
       message_of("{lidar: velodyne_vlp16}", flown + "scan: {mount: {rotation_deg: [0, 0, 30]}}\n"),
-      HasSubstr("key scan.mount.rotation_deg: does not lay the scanner's axis level"));
+      HasSubstr("key scan.mount.rotation_deg: the scanner's axis must be level"));
   EXPECT_EQ(message_of("{lidar: livox_avia}", flown), "accepted");
   EXPECT_THAT(
       message_of("{lidar: livox_avia}", flown + "scan: {mount: {rotation_deg: [0, 90, 0]}}\n"),
-      HasSubstr("key scan.mount.rotation_deg: has the scanner look up or down by more than 75"));
+      HasSubstr(
+          "key scan.mount.rotation_deg: the scanner must not look up or down by more than 75"));
   EXPECT_EQ(message_of("{lidar: riegl_vux_1uav}", flown), "accepted");
   EXPECT_THAT(message_of("{lidar: riegl_vux_1uav, capture: stops}", flown),
-              HasSubstr("key sensor.capture: is stops, at which a scanner that measures a line"));
+              HasSubstr("key sensor.capture: stops conflicts with a single-line LiDAR"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "flight/motion/motion.h"
 #include "geometry/error.h"
+#include "missions/config/preset_files.h"
 #include "tests/support/complaint.h"
 #include "tests/support/not_empty.h"
 #include "tests/support/temporary_folder.h"
@@ -26,8 +27,8 @@ std::string complaint(const std::string& text) {
 }
 
 TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
-  EXPECT_EQ(config::vehicle_presets().size(), 7U);
-  for (const std::string_view preset : config::vehicle_presets()) {
+  EXPECT_EQ(config::vehicle_preset_files().size(), 7U);
+  for (const auto& [preset, text] : config::vehicle_preset_files()) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     EXPECT_EQ(vehicle.name, preset);
     EXPECT_NO_THROW(vehicle.validate()) << preset;
@@ -38,7 +39,7 @@ TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
 // The energy model's calibration holds for every one: a full battery hovers as long as the sheet
 // says.
 TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
-  for (const std::string_view preset : testing_support::not_empty(config::vehicle_presets())) {
+  for (const auto& [preset, text] : testing_support::not_empty(config::vehicle_preset_files())) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     const flight::Motion motion(vehicle, {.reserve = 0.0});
     const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
@@ -78,20 +79,22 @@ TEST(VehicleReader, ADescriptionMaySayWhatIsDifferent) {
 
 TEST(VehicleReader, WhatIsWrongIsNamedByLine) {
   const std::string base = "name: kite\nlike: generic\n";
-  EXPECT_THAT(complaint(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss: is unknown"));
-  EXPECT_THAT(complaint(base + "mass: heavy\n"), HasSubstr("kite.yaml:3: key mass: must be a num"));
+  EXPECT_THAT(complaint(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss is unknown"));
+  EXPECT_THAT(complaint(base + "mass: heavy\n"), HasSubstr("kite.yaml:3: key mass must be a num"));
   EXPECT_THAT(complaint(base + "mass: -1\n"),
-              HasSubstr("kite.yaml:3: key mass: is -1; it must be from 0.01 to 1000"));
+              HasSubstr("kite.yaml:3: key mass is -1; it must be from 0.01 to 1000"));
   EXPECT_THAT(complaint(base + "mode:\n  jerk: 0\n"),
-              HasSubstr("kite.yaml:4: key mode.jerk: is 0; it must be from"));
+              HasSubstr("kite.yaml:4: key mode.jerk is 0; it must be from"));
   EXPECT_THAT(complaint(base + "mode: {law: straight}\n"), HasSubstr("it must be one of s_curve"));
-  EXPECT_THAT(complaint(base + "rotors: 4.5\n"), HasSubstr("key rotors: must be a whole number"));
-  EXPECT_THAT(complaint(base + "gimbal_max_deg: -90\n"), HasSubstr("is not above gimbal_min_deg"));
-  EXPECT_THAT(complaint(base + "mass: 20\n"), HasSubstr("less than its mass takes to hover"));
-  EXPECT_THAT(complaint("name: kite\nlike: dragon\n"),
-              HasSubstr("kite.yaml:2: key like: there is no vehicle dragon; known are generic, "));
-  EXPECT_THAT(complaint("name: kite\n"), HasSubstr("key dialect: is missing"));
-  EXPECT_THAT(complaint("like: generic\n"), HasSubstr("key name: is missing"));
+  EXPECT_THAT(complaint(base + "rotors: 4.5\n"), HasSubstr("key rotors must be an integer"));
+  EXPECT_THAT(complaint(base + "gimbal_max_deg: -90\n"),
+              HasSubstr("must be greater than gimbal_min_deg"));
+  EXPECT_THAT(complaint(base + "mass: 20\n"), HasSubstr("less than its mass needs to hover"));
+  EXPECT_THAT(
+      complaint("name: kite\nlike: dragon\n"),
+      HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: generic, "));
+  EXPECT_THAT(complaint("name: kite\n"), HasSubstr("key dialect is missing"));
+  EXPECT_THAT(complaint("like: generic\n"), HasSubstr("key name is missing"));
 }
 
 TEST(VehicleReader, ReadsFiles) {
@@ -99,6 +102,7 @@ TEST(VehicleReader, ReadsFiles) {
   const std::string path = (folder.path() / "mine.yaml").string();
   std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";
   EXPECT_EQ(config::find_vehicle(path).max_speed, 12.0);
+  EXPECT_EQ(config::find_vehicle(path).position_error, 1.5);
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { config::find_vehicle((folder.path() / "none.yaml").string()); }),
               testing::HasSubstr("none.yaml: "));

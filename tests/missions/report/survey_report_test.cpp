@@ -185,7 +185,7 @@ TEST(TrialsPage, StandsBesideTheSurveys) {
   // Which of the two should the page be?
   const auto one = tests::run_skycap({"report", survey.folder / "out", "--out", "x.html"});
   EXPECT_EQ(one.exit_code, 2);
-  EXPECT_THAT(one.err, HasSubstr("has several pages"));
+  EXPECT_THAT(one.err, HasSubstr("contains several reports"));
 }
 
 TEST(ResultPages, RefuseWhatIsNoResult) {

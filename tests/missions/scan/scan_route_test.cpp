@@ -153,7 +153,7 @@ TEST_F(ScanRouteFile, AFlownPackageWithoutATrajectoryIsRefused) {
   folder.write("free_space.bin", "");
   const std::string complaint = testing_support::complaint_of(
       [&] { scan::read_scan_route(folder.path(), options, scan::Carrier::airframe); });
-  EXPECT_THAT(complaint, testing::HasSubstr("is flown, but has no mission.csv; export one"));
+  EXPECT_THAT(complaint, testing::HasSubstr("contains a flight, but no mission.csv; export one"));
 }
 
 // 2e-5 degrees of longitude at the equator: 2.2264 m on WGS84.
@@ -170,7 +170,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
     scan::read_scan_route(file, options, scan::Carrier::airframe);
     FAIL() << "read without a georeference";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("give site.latitude_deg and site.longitude_deg"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("set site.latitude_deg and site.longitude_deg"));
   }
   options.site = flight::Site{};
   options.site->origin.longitude_deg = 1e-3;
@@ -197,7 +197,7 @@ TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
   using testing::HasSubstr;
   EXPECT_THAT(message("a.tum", "1 2 3\n"), HasSubstr("a.tum: "));
   EXPECT_THAT(message("a.csv", "view,x\n0,1\n"), HasSubstr("a.csv: line 2 has 2 fields"));
-  EXPECT_THAT(message("b.csv", "view,x\n0,1,2,3,0,0,0\n"), HasSubstr("without length"));
+  EXPECT_THAT(message("b.csv", "view,x\n0,1,2,3,0,0,0\n"), HasSubstr("of zero length"));
   EXPECT_THAT(message("c.csv", "view,x\n0,1,2,x,0,0,1\n"), HasSubstr("line 2"));
   EXPECT_THAT(message("d.csv", "view,x\n"), HasSubstr("the trajectory has no poses"));
   options.site = flight::Site{.origin = {0.1, 0.1, 0.0}};

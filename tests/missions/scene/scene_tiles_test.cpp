@@ -164,23 +164,23 @@ TEST_F(TileScan, StandInRowsAndColumnsOfSeveralKinds) {
 
 TEST_F(TileScan, AreRefusedInOneLineWhereSomethingIsWrong) {
   const std::vector<std::pair<std::string, std::string>> wrong{
-      {"[{files: 'nothing*.ply'}]", "files: is nothing*.ply, and no file has such a name"},
-      {"[{files: 'tile_?.ply', model: joined.ply}]", "or else model has to be given"},
+      {"[{files: 'nothing*.ply'}]", "files is nothing*.ply and matches no file"},
+      {"[{files: 'tile_?.ply', model: joined.ply}]", "or model is required"},
       {"[{model: joined.ply, rows: 2}]", "spacing"},
-      {"[{model: joined.ply, rows: 2, spacing: -1}]", "spacing: must be more than 0"},
-      {"[{model: joined.ply, rows: 0}]", "rows: must be from 1 to 10000"},
-      {"[{model: joined.ply, kinds: 3}]", "kinds: is of builtin models that are drawn"},
-      {"[{model: joined.ply, position: [1, 2]}]", "position: must be [east, north, up]"},
+      {"[{model: joined.ply, rows: 2, spacing: -1}]", "spacing must be above 0"},
+      {"[{model: joined.ply, rows: 0}]", "rows must be from 1 to 10000"},
+      {"[{model: joined.ply, kinds: 3}]", "kinds applies only to generated builtin models"},
+      {"[{model: joined.ply, position: [1, 2]}]", "position must be [east, north, up]"},
       {"[{model: joined.ply, colour: red}]", "colour"},
-      {"[{model: scene.tiles}]", "model: is a list of tiles itself"},
-      {"[]", "tiles: is missing"}};
+      {"[{model: scene.tiles}]", "model is itself a tile list"},
+      {"[]", "tiles is missing"}};
   for (const auto& [tiles, message] : wrong) {
     write_tiles(tiles);
     EXPECT_THAT(refusal(), AllOf(HasSubstr("scene.tiles"), HasSubstr(message)));
   }
   write_tiles("[{files: 'tile_?.ply'}]");
   write_mission("scene.tiles", ", copies: [[0, 100, 0]]");
-  EXPECT_THAT(refusal(), HasSubstr("scene.copies is not for scenes of tiles"));
+  EXPECT_THAT(refusal(), HasSubstr("scene.copies conflicts with a tile list"));
   write_mission("scene.tiles");
   folder_.write("tile_4.ply", "ply\n");
   EXPECT_THAT(refusal(), HasSubstr("tile_4.ply"));

@@ -126,10 +126,10 @@ TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
   };
   const auto low = check_return("5");
   EXPECT_EQ(low.exit_code, 1);
-  EXPECT_THAT(low.out, HasSubstr(": fine, 0 of "));  // the mission itself is
+  EXPECT_THAT(low.out, HasSubstr(": verified, 0 of "));  // the mission itself is
   EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-height) "));
   EXPECT_THAT(low.out, HasSubstr(" of the scene"));
-  const std::string least = "the least safe height of return is ";
+  const std::string least = "the lowest safe return altitude is ";
   ASSERT_THAT(low.out, HasSubstr(least));
   const double height = std::stod(low.out.substr(low.out.find(least) + least.size()));
   EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance, less what proofs lose
@@ -141,8 +141,9 @@ TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
   const auto run = run_skycap(
       {"plan", folder / "m.yaml", "--out", folder / "steep", "--set", "flight.pad_slope_deg=12"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("the place to land at (-75.00, 0.00, 0.00) is 12.0 degrees steep "
-                                 "as declared; at most 10.0 degrees (flight.steepest_pad_deg)"));
+  EXPECT_THAT(run.err,
+              HasSubstr("the landing point at (-75.00, 0.00, 0.00) has a slope of 12.0 degrees as "
+                        "declared; the maximum is 10.0 degrees (flight.steepest_pad_deg)"));
   EXPECT_FALSE(std::filesystem::exists(folder / "steep/summary.json"));
 
   const auto exported = [&](const std::vector<std::string>& more) {
@@ -155,7 +156,7 @@ TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
   EXPECT_EQ(exported({}).exit_code, 2);
   const auto allowed = exported({"--set", "flight.steepest_pad_deg=15"});
   EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
-  EXPECT_THAT(allowed.out, HasSubstr("  pad       12.0 degrees steep as declared\n"));
+  EXPECT_THAT(allowed.out, HasSubstr("  pad       slope 12.0 degrees as declared\n"));
 }
 
 TEST(Pads, TooSteepByTheTerrainAreRefused) {
@@ -169,7 +170,7 @@ TEST(Pads, TooSteepByTheTerrainAreRefused) {
   const auto run = run_skycap({"check", mission});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   // A rise of 2.5 m on 10 m.
-  EXPECT_THAT(run.out, HasSubstr("is 14.0 degrees steep by the terrain")) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("has a slope of 14.0 degrees by the terrain")) << run.out;
 }
 
 TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
@@ -180,9 +181,9 @@ TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
   };
   const auto steep = with("steep.obj");
   EXPECT_EQ(steep.exit_code, 1);
-  EXPECT_THAT(steep.out, HasSubstr(": fine, 0 of "));
-  EXPECT_THAT(steep.out, HasSubstr("not safe, the place to land at (-75.00, 0.00, 0.00) is 14.0 "
-                                   "degrees steep in the scene"));
+  EXPECT_THAT(steep.out, HasSubstr(": verified, 0 of "));
+  EXPECT_THAT(steep.out, HasSubstr("not safe, the landing point at (-75.00, 0.00, 0.00) has a "
+                                   "slope of 14.0 degrees in the scene"));
   EXPECT_EQ(with("gentle.obj").exit_code, 0);
 }
 
@@ -222,7 +223,7 @@ TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
                 package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views,
                                      survey.ways, flown.grounds);
               }),
-              HasSubstr("degrees steep as measured; at most 10.0 degrees"));
+              HasSubstr("degrees as measured; the maximum is 10.0 degrees"));
 }
 
 }  // namespace

@@ -117,7 +117,10 @@ const TestFolder& package() {
     const std::string mission = folder.write("m.yaml", flown_mission());
     const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_THAT(run.out, HasSubstr("every leg proven at 2.00 m"));
+    EXPECT_THAT(run.out, HasSubstr("verified for every leg; required 2.00 m"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.kmz"));  // not for this vehicle
+    const auto dji = run_skycap({"export", folder / "out", "--format", "kmz"});
+    EXPECT_EQ(dji.exit_code, 0) << dji.err;
     return true;
   }();
   EXPECT_TRUE(is_made);
@@ -145,7 +148,7 @@ TEST(FlownPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth)
     const std::string file = folder / ("out/mission." + std::string(ending));
     const auto check = run_skycap({"check", folder / "m.yaml", "--route", file});
     EXPECT_EQ(check.exit_code, 0) << ending << check.out << check.err;
-    EXPECT_THAT(check.out, HasSubstr(": fine, 0 of "));
+    EXPECT_THAT(check.out, HasSubstr(": verified, 0 of "));
   }
 }
 
@@ -193,16 +196,16 @@ TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_skycap(arguments);
   };
-  EXPECT_THAT(check(folder / "out/mission.plan", {}).out, HasSubstr("(mission.params) are proven"));
-  EXPECT_THAT(check(folder / "out/mission.kmz", {}).out, HasSubstr("(globalRTHHeight) are proven"));
-  EXPECT_THAT(check(folder / "out/mission.csv", {}).out, HasSubstr("returns are not checked"));
+  EXPECT_THAT(check(folder / "out/mission.plan", {}).out, HasSubstr("(mission.params)"));
+  EXPECT_THAT(check(folder / "out/mission.kmz", {}).out, HasSubstr("(globalRTHHeight)"));
+  EXPECT_THAT(check(folder / "out/mission.csv", {}).out, HasSubstr("returns not checked"));
 
   // Alone, the file says nothing of returns; beside other parameters those count.
   const TestFolder alone;
   const std::string plan = alone.write("mission.plan", content_of(folder / "out/mission.plan"));
   const auto unsaid = check(plan, {});
   EXPECT_EQ(unsaid.exit_code, 0);
-  EXPECT_THAT(unsaid.out, HasSubstr("does not say how high the vehicle returns: set it to "));
+  EXPECT_THAT(unsaid.out, HasSubstr("does not contain the vehicle's return altitude: set it to "));
   alone.write("mission.params", "1\t1\tRTL_RETURN_ALT\t40\t9\n");
   const auto cone = check(plan, {});
   EXPECT_EQ(cone.exit_code, 1);
@@ -241,7 +244,8 @@ TEST(FlownPackage, ChecksNameTheItemsOfSpoiledFiles) {
   moved["mission"]["plannedHomePosition"][2] =
       moved["mission"]["plannedHomePosition"][2].get<double>() + 30.0;
   EXPECT_EQ(check(moved).exit_code, 1);
-  EXPECT_THAT(check(moved).out, HasSubstr("mission.plannedHomePosition is 30.0 m above the pad"));
+  EXPECT_THAT(check(moved).out,
+              HasSubstr("mission.plannedHomePosition is 30.0 m above the take-off point"));
   json skipping = plan;
   const std::size_t last = skipping["mission"]["items"].size() - 2;
   skipping["mission"]["items"][last]["command"] = 82;
@@ -260,6 +264,43 @@ TEST(FlownPackage, IsExportedAgainForAnotherVehicle) {
   for (const char* file : {"again/mission.kmz", "again/mission.litchi.csv"}) {
     EXPECT_EQ(run_skycap({"check", folder / "m.yaml", "--route", folder / file}).exit_code, 0);
   }
+}
+
+/// What is printed for the pilot when the package is exported for a vehicle.
+std::string steps_for(const std::string& vehicle, const std::string& format) {
+  const TestFolder& folder = package();
+  const TestFolder out;
+  const auto run = run_skycap({"export", folder / "out", "--format", format, "--set",
+                               "flight.vehicle=" + vehicle, "--out", out / "own"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const std::size_t steps = run.out.find("To do before the flight, " + vehicle + ":\n  1. ");
+  EXPECT_NE(steps, std::string::npos) << run.out;
+  return steps == std::string::npos ? "" : run.out.substr(steps);
+}
+
+TEST(FlownPackage, PrintsStepsForTheVehicleAndNoOther) {
+  const std::vector<std::string> ardupilot{"RTL_ALT ", "RTL_CONE_SLOPE", "BATT_LOW_MAH",
+                                           "mission.param "},
+      px4{"RTL_RETURN_ALT", "RTL_CONE_ANG", "mission.params ", "mission.plan in QGroundControl"},
+      dji{"DJI Pilot 2", "RTH altitude to ", "RTH mode", "mission.kmz"};
+  const auto expect_only = [](const std::string& text, const std::vector<std::string>& own,
+                              const std::vector<std::vector<std::string>>& others) {
+    for (const std::string& step : own) EXPECT_THAT(text, HasSubstr(step));
+    for (const std::vector<std::string>& other : others) {
+      for (const std::string& step : other) EXPECT_THAT(text, testing::Not(HasSubstr(step)));
+    }
+    EXPECT_THAT(text, HasSubstr("verified from every point of the route, at this altitude only"));
+    EXPECT_THAT(text, HasSubstr("Take off at latitude "));
+    EXPECT_THAT(text, HasSubstr("\nNot verified; the pilot must check: "));
+    const std::string warning =
+        "\nWarning: slope of the take-off pad is unknown. Inspect the pad and set "
+        "flight.pad_slope_deg.\n";
+    EXPECT_THAT(text, HasSubstr(warning));
+    EXPECT_LT(text.find("\nNot verified"), text.find("\nWarning: "));  // warnings are last
+  };
+  expect_only(steps_for("generic_ardupilot", "waypoints"), ardupilot, {px4, dji});
+  expect_only(steps_for("generic", "plan"), px4, {ardupilot, dji});
+  expect_only(steps_for("mavic_3e", "kmz"), dji, {ardupilot, px4});
 }
 
 TEST(FlownPackage, ReadsBackAsItWasPlanned) {
@@ -333,7 +374,7 @@ TEST(FlownPackage, SaysWhatAFormatLacks) {
   const std::string mission = folder.write("m.yaml", text);
   const auto run = run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "3"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("no mission.kmz: it needs the place on the Earth"));
+  EXPECT_THAT(run.out, HasSubstr("no mission.plan: requires a georeference"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/mission.csv"));
 
   const auto alone = run_skycap({"export", folder / "out", "--format", "plan", "--set",
@@ -351,7 +392,7 @@ TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
                   "--set", "flight.takeoff_climb=7.4", "--set", "start.position=[32, 0, 8]",
                   "--set", "start.look_at=[0, 0, 5]"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("flight    no route: the place above the take-off pad"));
+  EXPECT_THAT(run.out, HasSubstr("flight    none: the point above the take-off point"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.plan"));
   const json summary = json::parse(content_of(folder / "out/summary.json"));
@@ -372,9 +413,9 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
     return run.err;
   };
   EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
-              HasSubstr("summary.json: there is no such file"));
+              HasSubstr("summary.json: does not exist"));
   EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
-              HasSubstr("format \"pdf\" is not known; there are plan, "));
+              HasSubstr("unknown format \"pdf\"; expected one of: plan, "));
   const TestFolder broken;
   broken.write("summary.json", "{\"mission\": 3");
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
@@ -384,11 +425,11 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
               HasSubstr("free_space.bin: cannot be read; plan the mission again"));
   broken.write("free_space.bin", "skycap free v1");
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
-              HasSubstr("free_space.bin: is not a file of measured free space"));
+              HasSubstr("free_space.bin: is not a free-space file"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "out/cloud.ply"}),
               HasSubstr("cloud.ply is no route file: its name must end in .plan"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "no.plan"}),
-              HasSubstr("no.plan: there is no such file"));
+              HasSubstr("no.plan: does not exist"));
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ TEST(MovingSurvey, PackageNamesTheViewThatEachPointWasTakenOnTheWayTo) {
   const auto run = tests::run_skycap({"plan", mission, "--set", "sensor.capture=moving", "--set",
                                       "limits.max_views=3", "--out", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr(" frames on the way, blurred by at most "));
+  EXPECT_THAT(run.out, HasSubstr(" en-route frames, motion blur up to "));
   const auto summary = nlohmann::json::parse(tests::content_of(folder / "out/summary.json"));
   EXPECT_EQ(summary["per_view"][0]["frames_on_way"], 0);
   EXPECT_GT(summary["per_view"][1]["frames_on_way"], 0);
@@ -215,13 +215,13 @@ std::string refusal_of(const std::string& text, const std::vector<config::KeyOve
 TEST(MovingSurvey, NeedsAVehicleAndAPlannerThatLearnsOnTheWay) {
   const config::KeyOverride moving{"--set", "sensor.capture", "moving"};
   EXPECT_THAT(refusal_of(flown_mission(), {moving, {"--planner", "planner.name", "see++"}}),
-              HasSubstr("sensor.capture: is moving; it needs a planner that learns"));
+              HasSubstr("sensor.capture: moving requires a planner that uses"));
   EXPECT_THAT(refusal_of("scene: {model: 'builtin:teapot'}\n"
                          "evaluation: {registration_distance: 0.005}\n",
                          {moving}),
-              HasSubstr("sensor.capture: is moving; it needs a vehicle"));
+              HasSubstr("sensor.capture: moving requires a vehicle"));
   EXPECT_THAT(refusal_of(flown_mission(), {{"--set", "sensor.frame_period", "2"}}),
-              HasSubstr("sensor.frame_period: is for frames on the way"));
+              HasSubstr("sensor.frame_period requires sensor.capture: moving"));
 }
 
 }  // namespace

@@ -51,16 +51,17 @@ const std::string box_min = "planner.scene_box.min", box_max = "planner.scene_bo
 
 TEST(Feasibility, SaysWhatCannotWork) {
   const std::vector<Flaw> flaws{
-      {{{"limits.stand_off", "100"}}, "limits.stand_off of 100 m is not less than the view dist"},
-      {{{"scene.longest_side", "5000"}}, "in millimetres, give scene.scale: 0.001"},
-      {{{"scene.longest_side", "0.05"}}, "one point would cover it; check its unit"},
-      {{{"sensor.max_range", "0.1"}}, "the sensor measures up to 0.1 m"},
-      {{{"sensor.min_range", "50"}}, "the sensor measures from 50 m on"},
+      {{{"limits.stand_off", "100"}},
+       "limits.stand_off (100 m) must be smaller than the view dist"},
+      {{{"scene.longest_side", "5000"}}, "in millimetres, set scene.scale: 0.001"},
+      {{{"scene.longest_side", "0.05"}}, "must be at least twice evaluation.registration_distance"},
+      {{{"sensor.max_range", "0.1"}}, "the maximum range of the sensor (0.1 m)"},
+      {{{"sensor.min_range", "50"}}, "the minimum range of the sensor (50 m)"},
       {{{box_min, "[8, 8, 8]"}, {box_max, "[9, 9, 9]"}},
-       "holds nothing of the model, which reaches"},
-      {{{"limits.ground_clearance", "50"}}, "nothing of the model can be seen"},
+       "contains no part of the model, which extends"},
+      {{{"limits.ground_clearance", "50"}}, "no part of the model is visible"},
       {{{"start.position", "[0, 3, 1]"}, {"start.look_at", "[0, 6, 1]"}},
-       "the first scan holds no point of the scene; start from a place that sees it"}};
+       "the first scan contains no point of the scene; start from a view that sees it"}};
   for (const Flaw& flaw : flaws) {
     EXPECT_THAT(of(quick_mission(), flaw.settings).problems, Contains(HasSubstr(flaw.sentence)))
         << flaw.sentence;
@@ -72,10 +73,10 @@ TEST(Feasibility, SaysWhatCannotWork) {
 
 TEST(Feasibility, WarnsOfWhatIsHardlyMeant) {
   const std::vector<Flaw> flaws{
-      {{{box_min, "[-1, -1, 0]"}, {box_max, "[0, 1, 1]"}}, "of the surface out, which no survey"},
-      {{{"planner.view_distance", "20"}}, "covers only some of what it sees"},
+      {{{box_min, "[-1, -1, 0]"}, {box_max, "[0, 1, 1]"}}, "of the surface, which no survey"},
+      {{{"planner.view_distance", "20"}}, "covers only part of what it sees"},
       {{{"planner.resolution_radius", "0.1"}, {"planner.spacing", "0.06"}},
-       "what lies between them does not count"}};
+       "for gapless coverage"}};
   for (const Flaw& flaw : flaws) {
     const simulation::Feasibility found = of(quick_mission(), flaw.settings);
     EXPECT_THAT(found.warnings, Contains(HasSubstr(flaw.sentence))) << flaw.sentence;
@@ -86,10 +87,10 @@ TEST(Feasibility, WarnsOfWhatIsHardlyMeant) {
 TEST(Feasibility, IsAskedBeforeASurveyBegins) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
-  const std::string sentence = "limits.stand_off of 100 m is not less than the view distance";
+  const std::string sentence = "limits.stand_off (100 m) must be smaller than the view distance";
   const auto checked = run_skycap({"check", mission, "--set", "limits.stand_off=100"});
   EXPECT_EQ(checked.exit_code, 1);
-  EXPECT_THAT(checked.out, HasSubstr("m.yaml: cannot work"));
+  EXPECT_THAT(checked.out, HasSubstr("m.yaml: cannot be surveyed"));
   EXPECT_THAT(checked.out, HasSubstr(sentence));
   for (const char* trials : {"", "2"}) {
     std::vector<std::string> arguments{"plan",  mission,       "--set", "limits.stand_off=100",

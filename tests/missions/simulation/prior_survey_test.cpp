@@ -114,16 +114,17 @@ TEST(PriorSurvey, SaysAtWhichKeyASourceIsWrong) {
   EXPECT_THAT(complaint("{file: none.obj, role: target}"),
               testing::MatchesRegex("m.yaml:[0-9]+: key prior.0..file: .*none.obj.*"));
   EXPECT_THAT(complaint("{file: a.obj, role: target, crs: 'EPSG:25832', place: {heading_deg: 1}}"),
-              HasSubstr("key prior[0].crs: excludes place"));
+              HasSubstr("key prior[0].crs conflicts with place"));
   EXPECT_THAT(complaint("{file: a.obj, role: terrain, base: terrain}"),
-              HasSubstr("key prior[0].base: of the terrain"));
+              HasSubstr("key prior[0].base of the terrain"));
   const TestFolder folder;
   geometry::write_mesh(folder.path() / "a.obj", flight::scenes::box({0, 0, 0}, {1, 1, 1}));
   const std::string file = "{file: '" + (folder.path() / "a.obj").string() + "', role: obstacle, ";
-  EXPECT_THAT(complaint(file + "height: 3}"), HasSubstr("a.obj: height has no use here"));
-  EXPECT_THAT(complaint(file + "spacing: 0}"), HasSubstr("key prior[0].spacing: is 0"));
+  EXPECT_THAT(complaint(file + "height: 3}"),
+              HasSubstr("a.obj: height does not apply to this file"));
+  EXPECT_THAT(complaint(file + "spacing: 0}"), HasSubstr("key prior[0].spacing is 0"));
   EXPECT_THAT(complaint("{file: a.obj, role: truth}"),
-              HasSubstr("key prior[0].role: of truth takes the place of scene.model"));
+              HasSubstr("key prior[0].role: truth conflicts with scene.model"));
 }
 
 /// A plane that rises eastward by a metre in 20, 100 m each way.
@@ -223,7 +224,7 @@ TEST(PriorSurvey, HeightsCountFromAPadThatIsGiven) {
   EXPECT_THAT(testing_support::complaint_of([&] {
                 read({latitude, longitude});
               }),
-              HasSubstr("flight.takeoff is not given"));
+              HasSubstr("vertical: takeoff requires flight.takeoff"));
   const config::MissionSetup mission = read({latitude, longitude, pad});
   EXPECT_NEAR(mission.scene().priors->priors[0].box.min().z(), -3.75, 1e-3);
 }
@@ -243,7 +244,7 @@ TEST(PriorSurvey, ADryRunTakesTheTargetsForTheTruth) {
                                "--out " +
                                path + "/dry");
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
-  EXPECT_THAT(plan.out, HasSubstr("the targets' prior data stand in for it"));
+  EXPECT_THAT(plan.out, HasSubstr("the targets' prior data, used as ground truth"));
   const json summary = json::parse(content_of(folder.path() / "dry" / "summary.json"));
   EXPECT_EQ(summary.at("settings").at("scene.model"), "prior");
   ASSERT_EQ(summary.at("targets").size(), 1U);

@@ -384,7 +384,7 @@ TEST(Model, HasLevelsOfDetailOfTheSameShape) {
 
   const auto refused = printed("scan.ply", "fine");
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("--detail needs a builtin model; scan.ply is as detailed"));
+  EXPECT_THAT(refused.err, HasSubstr("--detail requires a builtin model; scan.ply has the detail"));
   EXPECT_EQ(printed("radcliffe-camera", "finest").exit_code, 2);
 }
 

@@ -73,7 +73,8 @@ TEST_F(CityGml, OfTwoReferenceSystemsIsRefusedUnlessOneIsNamed) {
     s.vertical = HeightDatum::ellipsoid;
   };
   EXPECT_THAT([&] { read(text, without_place); },
-              ThrowsMessage<Error>(HasSubstr("two reference systems, EPSG:25832 and EPSG:31468")));
+              ThrowsMessage<Error>(
+                  HasSubstr("two coordinate reference systems, EPSG:25832 and EPSG:31468")));
   EXPECT_EQ(read(text).objects.size(), 1U) << "a place puts all of it";
 }
 
@@ -84,10 +85,10 @@ TEST_F(CityGml, LeavesOutWhatHasNoHeights) {
   const Prior prior = read(model(
       building("<bldg:lod2MultiSurface>" + flat + square(10, 30) + "</bldg:lod2MultiSurface>")));
   EXPECT_EQ(prior.box.min().z(), 30.0);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 rings without heights left out")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 rings without heights ignored")));
   EXPECT_THAT(
       [&] { read(model(building("<bldg:lod2MultiSurface>" + flat + "</bldg:lod2MultiSurface>"))); },
-      ThrowsMessage<Error>(HasSubstr("without heights alone")));
+      ThrowsMessage<Error>(HasSubstr("only coordinates without heights")));
 }
 
 TEST_F(CityGml, GivesAPartWhereAPartIsAskedFor) {
@@ -138,8 +139,8 @@ TEST_F(CityGml, LeavesRoomsAndClosuresOutAndSaysSo) {
                      square(5, 0) + "</bldg:lod4Solid></bldg:Room></bldg:interiorRoom>"));
   const Prior prior = read(text);
   EXPECT_DOUBLE_EQ(geometry::surface_area(prior.objects[0].mesh), 100.0);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 ClosureSurface left out")));
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 Room left out")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 ClosureSurface ignored")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 Room ignored")));
 }
 
 TEST_F(CityGml, ReadsPositionsOneByOne) {
@@ -184,7 +185,7 @@ TEST_F(CityGml, SaysWhatIsWrong) {
   const struct {
     std::string text, message;
   } cases[] = {
-      {model("<a>") + "</b>", "is not XML from line"},
+      {model("<a>") + "</b>", "is not valid XML from line"},
       {model(building("<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>1 2 x"
                       "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>")),
        "the coordinate 'x'"},
@@ -197,7 +198,7 @@ TEST_F(CityGml, SaysWhatIsWrong) {
       {model(building("<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>1 2 nan"
                       "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>")),
        "the coordinate 'nan'"},
-      {model(""), "holds neither surfaces nor points"},
+      {model(""), "contains neither surfaces nor points"},
   };
   for (const auto& broken : cases) {
     EXPECT_THAT(

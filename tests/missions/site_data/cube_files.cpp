@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "geometry/io/las_layout.h"
+#include "geometry/io/las/layout.h"
 #include "tests/support/e57_bytes.h"
 
 namespace skycap::testing_support {

@@ -80,7 +80,7 @@ TEST_F(ForeignCity, NamesItsSystemAsAuthoritiesDo) {
                                      Cube(), "urn:adv:crs:ETRS89_UTM32*DE_DHHN2099_NH")),
               HasSubstr("; set crs: EPSG:25832 if that is meant"));
   EXPECT_THAT(complaint("a.gml", testing_support::citygml_of(Cube(), "my own")),
-              HasSubstr("'my own'; set crs to the name that PROJ has for it"));
+              HasSubstr("'my own'; set crs to its name in PROJ"));
 }
 
 /// The cube with the coordinates of each ring written in another way.
@@ -115,7 +115,7 @@ TEST_F(ForeignCity, ReadsCoordinatesWithSeparatorsOfTheirOwn) {
   expect_cube("a.gml", coordinates(" decimal=\",\" cs=\";\" ts=\" \"", ";", " ", ','));
   expect_cube("a.gml", coordinates(" decimal=\",\" cs=\" \" ts=\"|\"", " ", "|", ','));
   expect_cube("a.gml", coordinates(" cs=\";\"", ";", " ", '.'));
-  EXPECT_THAT(complaint("a.gml", coordinates("", ";", " ", '.')), HasSubstr("a number is wanted"));
+  EXPECT_THAT(complaint("a.gml", coordinates("", ";", " ", '.')), HasSubstr("it must be a number"));
 }
 
 TEST_F(ForeignCity, ReadsPointsOneByOne) {
@@ -170,7 +170,7 @@ TEST_F(ForeignCity, TakesALevelThatIsNoNumberForAll) {
   for (const char* lod :
        {R"("lod":null)", R"("lod":"")", R"("lod":"high")", R"("lod":true)", R"("lod":-1)"}) {
     expect_cube("a.json", replaced(json, R"("lod":"2.2")", lod));
-    EXPECT_THAT(notes_, Contains(HasSubstr("1 geometries have a lod that is no number"))) << lod;
+    EXPECT_THAT(notes_, Contains(HasSubstr("1 geometries have an invalid lod"))) << lod;
   }
   for (const char* lod : {R"("lod":"LoD2")", R"("lod":" lod2.2 ")", R"("lod":2)"}) {
     expect_cube("a.json", replaced(json, R"("lod":"2.2")", lod));
@@ -181,7 +181,7 @@ TEST_F(ForeignCity, TakesALevelThatIsNoNumberForAll) {
 TEST_F(ForeignCity, NamesTheObjectThatIsBroken) {
   const std::string json = testing_support::cityjson_of(Cube());
   EXPECT_THAT(complaint("a.json", replaced(json, R"("boundaries":[[)", R"("bounds":[[)")),
-              HasSubstr("is not CityJSON as its specification has it in the object cube ("));
+              HasSubstr("violates the CityJSON specification in the object cube ("));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_F(ForeignKml, ExtrudedPolygonsReachTheGround) {
   EXPECT_EQ(open.objects[0].mesh.triangles.size(), 12U);
   EXPECT_NEAR(open.box.max().z(), 20.0, 0.1);
   EXPECT_NEAR(open.box.min().z(), -100.0, 0.1);
-  EXPECT_THAT(open.notes, Contains(HasSubstr("no terrain is known there")));
+  EXPECT_THAT(open.notes, Contains(HasSubstr("unknown terrain there")));
   const Prior on_terrain = read("a.kml", text, {}, [](const Eigen::Vector2d&) { return -3.0; });
   EXPECT_NEAR(on_terrain.box.min().z(), -3.0, 1e-6);
   EXPECT_NEAR(on_terrain.box.max().z(), 20.0, 0.1);
@@ -90,7 +90,7 @@ TEST_F(ForeignKml, HeightsAboveTheGroundAreThoseOfSolids) {
   }
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { read("a.kml", placemark(polygon(mode("clampToGround"), 12.0)), based); }),
-              HasSubstr("does not say how high hall is"));
+              HasSubstr("contains no height of hall"));
 }
 
 TEST_F(ForeignKml, ExtrudedLinesAreWallsAndPointsArePoles) {
@@ -145,7 +145,7 @@ TEST_F(ForeignKml, IsReadFromKmz) {
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_NEAR(prior.box.max().z(), 20.0, 0.1);
   EXPECT_THAT(testing_support::complaint_of([&] { read("hall.zip", zip_of("doc.kml", text)); }),
-              HasSubstr("is a zip archive; unpack it and name the file in it"));
+              HasSubstr("is a zip archive; unpack it and use the file in it"));
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST_F(ForeignMap, ThatSaysAHeightNobodyUnderstandsIsRefused) {
                                  R"("building:levels":"2","roof:height":"steep")"}) {
     EXPECT_THAT(complaint("a.geojson", building(properties), [](Source& s) { s.height = 10.0; }),
                 AllOf(HasSubstr("a.geojson: way/1 has the "),
-                      HasSubstr("; correct it, or leave the object out by select")))
+                      HasSubstr("; correct it, or exclude the object with select")))
         << properties;
   }
 }
@@ -115,7 +115,7 @@ TEST_F(ForeignMap, ThatSaysAHeightNobodyUnderstandsIsRefused) {
 TEST_F(ForeignMap, TakesZeroAndLessForUnknown) {
   for (const char* height : {"-1", "0", "-1.0"}) {
     const std::string text = building(R"("height":)" + std::string(height));
-    EXPECT_THAT(complaint("a.geojson", text), HasSubstr("does not say how high way/1 is"));
+    EXPECT_THAT(complaint("a.geojson", text), HasSubstr("contains no height of way/1"));
     const Prior prior = read("a.geojson", text, [](Source& s) { s.height = 10.0; });
     EXPECT_NEAR(prior.box.max().z(), 10.0, 1e-3);
     EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines have a height of 0 or less")));
@@ -171,7 +171,7 @@ TEST_F(ForeignMap, HasThePartsOfItsBuildings) {
     const Prior prior = read("a.osm", osm(hall + tower));
     ASSERT_EQ(prior.objects.size(), 2U);
     EXPECT_NEAR(prior.box.max().z(), 40.0, 1e-2);
-    EXPECT_THAT(prior.notes, Not(Contains(HasSubstr("points and lines left out"))));
+    EXPECT_THAT(prior.notes, Not(Contains(HasSubstr("points and lines ignored"))));
   }
   const std::string tank = way(104, true, tag("man_made", "storage_tank") + tag("height", "20"));
   EXPECT_NEAR(read("a.osm", osm(hall + tank)).box.max().z(), 20.0, 1e-2);
@@ -187,7 +187,8 @@ TEST_F(ForeignMap, HasMastsAndWallsThatStateAHeight) {
   EXPECT_NEAR(prior.box.sizes().x(), 1.08, 0.01);
   EXPECT_NEAR(prior.box.center().x(), 7.46, 0.02);
   EXPECT_NEAR(prior.box.center().y(), 11.12, 0.02);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 points and lines with a height are poles")));
+  EXPECT_THAT(prior.notes,
+              Contains(HasSubstr("1 points and lines with a height are read as poles")));
   const std::string wall = "<way id='7' version='1'><nd ref='1'/><nd ref='2'/>" +
                            tag("barrier", "wall") + tag("height", "3") + "</way>";
   const Prior walled = read("a.osm", osm(wall));
@@ -206,10 +207,10 @@ TEST_F(ForeignMap, LeavesOutWhatIsNoStructureAndCountsIt) {
   const Prior prior = read("a.osm", osm(hall + others), [](Source& s) { s.height = 10.0; });
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_NEAR(prior.box.max().z(), 12.0, 1e-2);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("3 areas left out that are no building")));
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 power lines and cableways left out")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("3 areas ignored: neither buildings")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 power lines and cableways ignored")));
   EXPECT_THAT(complaint("a.osm", osm(way(102, false, tag("landuse", "forest")))),
-              HasSubstr("holds no outlines and nothing else with a height (1 areas left out"));
+              HasSubstr("contains no outlines and nothing else with a height (1 areas ignored"));
 }
 
 /// A closed line of 8 x 10 units as AutoCAD writes it.
@@ -241,12 +242,12 @@ TEST_F(ForeignMap, OfADrawingIsInItsUnit) {
     SCOPED_TRACE(number);
     const Prior prior = read("a.dxf", dxf(insunits(number), metres), here);
     EXPECT_LT((prior.box.sizes() - Eigen::Vector3d(8, 10, 12)).norm(), 1e-3) << prior.box.sizes();
-    EXPECT_THAT(prior.notes, Contains(HasSubstr("its unit is the ")));
+    EXPECT_THAT(prior.notes, Contains(HasSubstr("linear unit: the ")));
   }
   for (const std::string& header : {std::string(), insunits(0)}) {
     const Prior prior = read("a.dxf", dxf(header, 1.0), here);
     EXPECT_LT((prior.box.sizes() - Eigen::Vector3d(8, 10, 12)).norm(), 1e-3);
-    EXPECT_THAT(prior.notes, Contains(HasSubstr("does not name its unit ($INSUNITS)")));
+    EXPECT_THAT(prior.notes, Contains(HasSubstr("missing unit ($INSUNITS)")));
   }
   EXPECT_THAT(complaint("a.dxf", dxf(insunits(99), 1.0), here),
               HasSubstr("has the unknown unit $INSUNITS 99; set unit"));
@@ -264,9 +265,9 @@ TEST_F(ForeignMap, WarnsOfASizeThatComesFromAWrongUnit) {
     s.height = 0.5;
   };
   EXPECT_THAT(read("a.dxf", dxf(insunits(6), 100.0), here).notes,
-              Contains(HasSubstr("Warning: all of it is 0.5 m in size")));
+              Contains(HasSubstr("Warning: the extent of the data is only 0.5 m")));
   EXPECT_THAT(read("a.dxf", dxf(insunits(6), 0.001), here).notes,
-              Contains(HasSubstr("Warning: it is 10.0 km in size")));
+              Contains(HasSubstr("Warning: the extent of the data is 10.0 km")));
   EXPECT_THAT(read("a.dxf", dxf(insunits(6), 1.0), here).notes,
               Not(Contains(HasSubstr("Warning"))));
 }
@@ -294,8 +295,8 @@ TEST_F(ForeignMap, WithoutAnIndexIsReadAndWithoutASystemRefused) {
   const auto nowhere = [](Source& s) { s.vertical.reset(); };
   EXPECT_THAT(
       testing_support::complaint_of([&] { read_file(file, nowhere); }),
-      HasSubstr("names no reference system, and its coordinates (9.0000, 48.0000) may be degrees; "
-                "set crs: EPSG:4326, or place if they are metres"));
+      HasSubstr("missing coordinate reference system, and its coordinates (9.0000, 48.0000) may be "
+                "degrees; set crs: EPSG:4326, or place if they are metres"));
   EXPECT_NEAR(read_file(file, [](Source& s) { s.crs = "EPSG:4326"; }).box.sizes().x(), 14.93, 0.01);
   for (const char* driver : {"GPKG", "FlatGeobuf"}) {
     const auto other = folder_.path() / (std::string("a.") + (driver[0] == 'G' ? "gpkg" : "fgb"));

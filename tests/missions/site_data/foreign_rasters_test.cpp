@@ -52,7 +52,8 @@ TEST_F(ForeignRaster, HasNoGroundAtHeightsThatAreNone) {
     SCOPED_TRACE(hole);
     const Prior prior = read({.hole = hole});
     expect_hole(prior);
-    EXPECT_THAT(prior.notes, Contains(HasSubstr("10 cells without ground: heights such as ")));
+    EXPECT_THAT(prior.notes,
+                Contains(HasSubstr("10 cells without ground ignored: heights such as ")));
   }
   const Prior whole = read({});
   EXPECT_EQ(whole.grid.nodes.size(), 100U);
@@ -78,7 +79,7 @@ TEST_F(ForeignRaster, IsInTheUnitOfItsBandOrRefused) {
 TEST_F(ForeignRaster, OfImpossibleHeightsAloneIsRefused) {
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { read({.hole = -9999.0}, [](Source& s) { s.unit = 1000.0; }); }),
-              HasSubstr("has no height from -500 to 9000 m, but "));
+              HasSubstr("heights must be from -500 to 9000 m; one is "));
 }
 
 TEST_F(ForeignRaster, InDegreesWithoutASystemIsRefused) {

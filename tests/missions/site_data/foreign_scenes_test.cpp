@@ -88,7 +88,7 @@ TEST_F(ForeignScene, ThatNeedsAnUnknownExtensionIsRefusedByName) {
        {"KHR_mesh_quantization", "EXT_meshopt_compression", "CESIUM_RTC", "ACME_rotated_houses"}) {
     const std::string member = R"("extensionsRequired":[")" + name + R"("],)";
     EXPECT_THAT(complaint("scene.gltf", gltf("b.bin", member)),
-                AllOf(HasSubstr("scene.gltf: needs the glTF extension " + name),
+                AllOf(HasSubstr("scene.gltf: requires the glTF extension " + name),
                       HasSubstr("save the scene without it")));
     // The same of the binary form.
     const Glb parts = parts_of(testing_support::glb_of({}));
@@ -104,14 +104,14 @@ TEST_F(ForeignScene, ThatNeedsAnUnknownExtensionIsRefusedByName) {
     bytes += "JSON" + json;
     append(parts.binary.size());
     bytes += std::string("BIN\0", 4) + parts.binary;
-    EXPECT_THAT(complaint("scene.glb", bytes), HasSubstr("needs the glTF extension " + name));
+    EXPECT_THAT(complaint("scene.glb", bytes), HasSubstr("requires the glTF extension " + name));
   }
   EXPECT_THAT(
       complaint("scene.gltf", gltf("b.bin", R"("extensionsUsed":["EXT_mesh_gpu_instancing"],)")),
-      HasSubstr("needs the glTF extension EXT_mesh_gpu_instancing"));
+      HasSubstr("requires the glTF extension EXT_mesh_gpu_instancing"));
   EXPECT_THAT(
       complaint("scene.gltf", gltf("b.bin", R"("extensions":{"CESIUM_RTC":{"center":[1,2,3]}},)")),
-      HasSubstr("needs the glTF extension CESIUM_RTC"));
+      HasSubstr("requires the glTF extension CESIUM_RTC"));
 }
 
 TEST_F(ForeignScene, ThatNeedsAnExtensionOfLooksAloneIsRead) {
@@ -191,8 +191,7 @@ TEST_F(ForeignScene, OfIfcIsInTheUnitThatItSays) {
 TEST_F(ForeignScene, OfIfcWithoutAKnownUnitIsRefused) {
   const std::string unknown =
       "#10=IFCSIUNIT(*,.AREAUNIT.,$,.SQUARE_METRE.);\n#14=IFCUNITASSIGNMENT((#10));\n";
-  EXPECT_THAT(complaint("a.ifc", ifc(unknown, 1.0)),
-              HasSubstr("does not say what its lengths are in; set unit"));
+  EXPECT_THAT(complaint("a.ifc", ifc(unknown, 1.0)), HasSubstr("has no linear unit; set unit"));
   EXPECT_LT((read("a.ifc", ifc(unknown, 0.5), 0.5).box.sizes() - Vector3d(8, 10, 12)).norm(), 1e-3);
 }
 
@@ -209,7 +208,7 @@ TEST_F(ForeignScene, OfIfcNotesAPlaceOnAMap) {
                    "#80=IFCPROPERTYSINGLEVALUE('Eastings',$,IFCREAL(678193.),$);\n"
                    "#81=IFCPROPERTYSET('0000000000000000000009',#5,'ePSet_MapConversion',$,(#80));"
                    "\n"));
-  EXPECT_THAT(older.notes, Contains(HasSubstr("(ePset_MapConversion), which is not read")));
+  EXPECT_THAT(older.notes, Contains(HasSubstr("(ePset_MapConversion), which is not supported")));
 }
 
 }  // namespace

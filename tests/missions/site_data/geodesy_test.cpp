@@ -115,7 +115,7 @@ TEST(Geodesy, CountsHeightsFromGeoidOrPad) {
   EXPECT_NEAR(geodetic(request, place).z(), 500.0, 1e-9);
   request.takeoff_height.reset();
   EXPECT_THAT([&] { geodetic_transform(request); },
-              ThrowsMessage<Error>(HasSubstr("flight.takeoff is not given")));
+              ThrowsMessage<Error>(HasSubstr("vertical: takeoff requires flight.takeoff")));
 }
 
 // What stands in for something better is within what PROJ states, and that is added up.
@@ -125,7 +125,7 @@ TEST(Geodesy, AddsUpWhatStandInsMayBeOff) {
   request.near = flight::GeodeticPoint{51.6965, -1.278, 0.0};
   const GeodeticTransform helmert = geodetic_transform(request);
   EXPECT_EQ(helmert.stand_in_error, 2.0);  // projinfo -s EPSG:27700 -t EPSG:4326 --summary
-  EXPECT_THAT(helmert.notes, testing::ElementsAre(HasSubstr("stands in for")));
+  EXPECT_THAT(helmert.notes, testing::ElementsAre(HasSubstr("is used instead of")));
   const Vector3d place = geodetic(request, {450000.0, 200000.0, 0.0});
   EXPECT_NEAR(place.y(), 51.696528816, 1e-8);  // echo 450000 200000 | cs2cs EPSG:27700 EPSG:4326
   EXPECT_NEAR(place.x(), -1.277971385, 1e-8);
@@ -257,7 +257,7 @@ TEST(Geodesy, CountsHeightsInFeetWhereTheSystemHasThem) {
   }
   source.unit = 1.0;
   EXPECT_THAT([&] { SiteTransform(source, {}, site); },
-              ThrowsMessage<Error>(HasSubstr("wall.gml: unit does not go with")));
+              ThrowsMessage<Error>(HasSubstr("wall.gml: unit conflicts with")));
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST_F(Map, HeightsOfAPolygonInGoogleEarthCountOnlyIfTheyAreAbsolute) {
   for (const char* mode : {"", "<altitudeMode>clampToGround</altitudeMode>",
                            "<extrude>1</extrude><altitudeMode>relativeToGround</altitudeMode>"}) {
     EXPECT_THAT([&] { read("court.kml", kml_of(mode, ring_at("30")), unplaced); },
-                ThrowsMessage<Error>(HasSubstr("give base")))
+                ThrowsMessage<Error>(HasSubstr("set base")))
         << mode;
   }
   const Prior prior =
@@ -102,7 +102,7 @@ TEST_F(Map, APolygonWithHeightsMakesNoSurfacesOfThoseWithout) {
                              feature(R"({"id":"roof"})", roof) + "," +
                              feature(R"({"id":"flat"})", json_ring()) + "]}";
   EXPECT_THAT([&] { read("mixed.geojson", unsaid); },
-              ThrowsMessage<Error>(HasSubstr("how high flat is; give height")));
+              ThrowsMessage<Error>(HasSubstr("contains no height of flat; set height")));
 }
 
 TEST_F(Map, TakesHeightsAndLevelsFromAttributes) {
@@ -117,7 +117,7 @@ TEST_F(Map, TakesHeightsAndLevelsFromAttributes) {
   const Eigen::AlignedBox3d flat = geometry::bounding_box(prior.objects[1].mesh);
   EXPECT_NEAR(flat.min().z(), 3.0, 1e-3);
   EXPECT_NEAR(flat.max().z(), 12.0, 1e-3);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines state levels alone")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines state storeys only")));
 }
 
 TEST_F(Map, ReadsBuildingsOfOpenStreetMap) {
@@ -143,7 +143,7 @@ TEST_F(Map, CutsCourtyardsOut) {
 
 TEST_F(Map, AsksForWhatItCannotKnow) {
   const std::string text = feature("{}", json_ring());
-  EXPECT_THAT([&] { read("a.geojson", text); }, ThrowsMessage<Error>(HasSubstr("give height")));
+  EXPECT_THAT([&] { read("a.geojson", text); }, ThrowsMessage<Error>(HasSubstr("set height")));
   EXPECT_THAT(
       [&] {
         read("a.geojson", text, [](Source& s) {
@@ -151,7 +151,7 @@ TEST_F(Map, AsksForWhatItCannotKnow) {
           s.base.reset();
         });
       },
-      ThrowsMessage<Error>(HasSubstr("give base")));
+      ThrowsMessage<Error>(HasSubstr("set base")));
   EXPECT_THAT(
       [&] {
         read("a.geojson", text, [](Source& s) {
@@ -160,9 +160,9 @@ TEST_F(Map, AsksForWhatItCannotKnow) {
           s.base_on_terrain = true;
         });
       },
-      ThrowsMessage<Error>(HasSubstr("no prior has the role terrain")));
+      ThrowsMessage<Error>(HasSubstr("base: terrain requires prior data with role: terrain")));
   EXPECT_THAT([&] { read("a.geojson", text, [](Source& s) { s.select.layer = "b"; }); },
-              ThrowsMessage<Error>(HasSubstr("has no layer b; it has a")));
+              ThrowsMessage<Error>(HasSubstr("unknown layer b; expected one of: a")));
 }
 
 TEST_F(Map, KeepsWhatIsWithinAPolygon) {

@@ -239,26 +239,26 @@ TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
            {"select.classes", [](Source& s) { s.select.classes = {6}; }},
            {"select.layer", [](Source& s) { s.select.layer = "a"; }},
            {"up_axis", [](Source& s) { s.is_y_up = true; }}}) {
-    EXPECT_THAT(complaint("cube.gml", gml, change), HasSubstr(key + std::string(" has no use")));
+    EXPECT_THAT(complaint("cube.gml", gml, change), HasSubstr(key + std::string(" does not apply")));
   }
   for (const auto& [key, change] : std::initializer_list<std::pair<const char*, Change>>{
            {"select.id", [](Source& s) { s.select.ids = {"cube"}; }},
            {"select.attribute", [](Source& s) { s.select.attributes["a"] = "b"; }},
            {"select.lod", [](Source& s) { s.select.lod = 2.0; }}}) {
-    EXPECT_THAT(complaint("cube.las", las, change), HasSubstr(key + std::string(" has no use")));
+    EXPECT_THAT(complaint("cube.las", las, change), HasSubstr(key + std::string(" does not apply")));
   }
   EXPECT_THAT(complaint("cube.obj", obj_of(cube_),
                         [](Source& s) {
                           s.crs.clear();
                           s.place = Place{};
                         }),
-              HasSubstr("vertical has no use here"));
+              HasSubstr("vertical requires a coordinate reference system"));
   EXPECT_THAT(complaint("cube.geojson", geojson_of(cube_),
                         [](Source& s) {
                           s.base_on_terrain = true;
                           s.height = 1.0;
                         }),
-              HasSubstr("vertical has no use here"));
+              HasSubstr("vertical requires a coordinate reference system"));
 }
 
 TEST_F(OneBox, OfPlacesInTheSitesFrame) {
@@ -292,7 +292,7 @@ TEST_F(OneBox, WithSwappedAxesIsRefusedWithBothPlaces) {
   swapped.low = {5403900.0, 676300.0, 380.0};
   EXPECT_THAT([&] { read("cube.gml", citygml_of(swapped)); },
               ThrowsMessage<Error>(AllOf(HasSubstr("cube.gml: "), HasSubstr("48.763"),
-                                         HasSubstr("axes seem to be swapped"))));
+                                         HasSubstr("axes may be swapped"))));
 }
 
 TEST_F(OneBox, FarFromTheSiteIsRefused) {
@@ -306,7 +306,7 @@ TEST_F(OneBox, FarFromTheSiteIsRefused) {
 
 TEST_F(OneBox, WithoutADatumOfHeightsIsRefused) {
   EXPECT_THAT([&] { read("cube.gml", citygml_of(cube_), [](Source& s) { s.vertical.reset(); }); },
-              ThrowsMessage<Error>(HasSubstr("give vertical: ellipsoid, geoid or takeoff")));
+              ThrowsMessage<Error>(HasSubstr("set vertical: ellipsoid, geoid or takeoff")));
 }
 
 TEST_F(OneBox, OfAMapWithoutACrsIsNotTakenForTheSitesFrame) {
@@ -329,9 +329,9 @@ TEST_F(OneBox, IsWhatSelectLetsThrough) {
           .objects.size(),
       1U);
   EXPECT_THAT([&] { read("a.gml", text, select([](Selection& s) { s.ids = {"ball"}; })); },
-              ThrowsMessage<Error>(HasSubstr("no object with the id ball; it holds cube")));
+              ThrowsMessage<Error>(HasSubstr("no object with id ball; it contains cube")));
   EXPECT_THAT([&] { read("a.gml", text, select([](Selection& s) { s.lod = 3.0; })); },
-              ThrowsMessage<Error>(HasSubstr("that select lets through")));
+              ThrowsMessage<Error>(HasSubstr("that match select")));
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ TEST(UnknownGround, IsThePlaneBesideATurnedTile) {
   EXPECT_NEAR(top_at(obstacle, -15, 12), -3.0 + 0.4, 1e-5);
   EXPECT_NEAR(top_at(obstacle, 300, 0), -3.0 + 0.4, 1e-5);
   EXPECT_LT(top_at(obstacle, 0, 0), -5.0) << "the tile itself knows its ground";
-  EXPECT_THAT(unknown.note(), testing::HasSubstr("plane at z = -3.00 m"));
+  EXPECT_THAT(unknown.note(), testing::HasSubstr("plane z = -3.00 m"));
 }
 
 // A hole within the ground is as high as the highest ground beside it, a gap between two tiles that

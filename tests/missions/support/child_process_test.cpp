@@ -32,7 +32,7 @@ TEST(ChildProcess, HandsOverWhatItFinds) {
 }
 
 TEST(ChildProcess, ThatCrashesOrEndsEarlyIsAComplaint) {
-  const std::string end = "x.file: is damaged: their library ends within it";
+  const std::string end = "x.file: is damaged: their library stopped while reading it";
   EXPECT_EQ(complaint([](PipeWriter&) { std::raise(SIGKILL); }), end);
   EXPECT_EQ(complaint([](PipeWriter&) {}), end);
 }
@@ -42,9 +42,9 @@ TEST(ChildProcess, ThatNeverEndsIsEnded) {
     for (volatile bool goes_on = true; goes_on;) {
     }
   };
-  EXPECT_EQ(complaint(loop),
-            "x.file: takes their library longer than 1 s to read, which no sound file of its size "
-            "does");
+  EXPECT_EQ(
+      complaint(loop),
+      "x.file: timeout: their library took more than 1 s, too long for an intact file of its size");
   const ChildProcess left({"x.file", "their library"}, loop);  // goes with its owner
 }
 

@@ -12,7 +12,7 @@ namespace skycap::missions::support {
 namespace {
 
 const Identity run{7, {{"scene.model", "builtin:teapot"}, {"limits.max_views", "12"}}};
-const std::string cure = "begin anew without --resume";
+const std::string cure = "start again without --resume";
 
 std::string identity_of(const Identity& given) {
   return identity_text(given, {{"format", journal_format}, {"surface", "abc"}});
@@ -36,8 +36,7 @@ TEST(JournalText, NamesWhatIsDifferent) {
   other.settings[1].value = "13";
   EXPECT_EQ(
       complaint(identity_of(run), identity_of(other)),
-      "j: was begun otherwise: limits.max_views was \"12\" and is \"13\"; take that back, or " +
-          cure);
+      "j: cannot resume: limits.max_views changed from \"12\" to \"13\"; restore it, or " + cure);
 }
 
 // Earlier journals count what limits refuse as unreachable, and say nothing of a format.
@@ -58,7 +57,7 @@ TEST(JournalText, AsksForAFormatOnlyWhereThereIsOne) {
 }
 
 TEST(JournalText, RejectsWhatIsNotAnIdentity) {
-  EXPECT_EQ(complaint("[1, 2]", identity_of(run)), "j: does not begin as a journal");
+  EXPECT_EQ(complaint("[1, 2]", identity_of(run)), "j: is not a journal");
 }
 
 }  // namespace

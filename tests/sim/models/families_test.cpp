@@ -25,7 +25,7 @@ class Families : public testing::TestWithParam<std::string_view> {
  protected:
   static FamilyScene scene_of(std::uint64_t seed) {
     const auto all = families();
-    Draw draw(seed);
+    geometry::RandomNumbers draw(seed);
     return std::ranges::find(all, GetParam(), &Family::name)->make(draw, coarse);
   }
 };
@@ -116,7 +116,7 @@ std::map<std::string, int> counts_of(const FamilyScene& scene) {
 }
 
 FamilyScene drawn(FamilyScene (*make)(Draw&, const Fineness&), std::uint64_t seed) {
-  Draw draw(seed);
+  geometry::RandomNumbers draw(seed);
   return make(draw, coarse);
 }
 

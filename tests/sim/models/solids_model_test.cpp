@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geometry/surfaces/ear_clipping.h"
 #include "sim/models/masonry/corinthian.h"
 #include "sim/models/masonry/rustication.h"
 #include "sim/models/masonry/solids.h"
@@ -79,7 +80,7 @@ TEST(Triangulate, CoversStarsWithCornersInStraightSides) {
       polygon.push_back(a);
       polygon.push_back(0.75 * a + 0.25 * b);
     }
-    const auto triangles = triangulate(polygon);
+    const auto triangles = geometry::clip_ears(polygon);
     EXPECT_EQ(triangles.size(), polygon.size() - 2);
     EXPECT_NEAR(area(polygon, triangles), shoelace_area(polygon), 1e-9);
   }
@@ -100,7 +101,7 @@ TEST(Triangulate, CoversArcadesOfAnyWidth) {
         outline.to(left, springing).arc_to(left + 2.0 * radius, springing, -pi);
       }
       const Polyline2 wall = outline.to(end, springing).to(end, top).points();
-      const auto triangles = triangulate(wall);
+      const auto triangles = geometry::clip_ears(wall);
       ASSERT_EQ(triangles.size(), wall.size() - 2) << bays << " bays, " << width;
       ASSERT_NEAR(area(wall, triangles), shoelace_area(wall), 1e-9) << bays << " bays, " << width;
     }

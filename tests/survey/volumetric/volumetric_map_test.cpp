@@ -1,6 +1,7 @@
 #include "survey/volumetric/volumetric_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 #include <vector>
@@ -68,10 +69,12 @@ TEST_P(AgainstOctoMap, HoldsTheSameVoxelsAfterEveryScan) {
     std::size_t compared = 0, different = 0;
     const auto compare = [&](const octomap::OcTreeKey& key) {
       const octomap::point3d centre = tree.keyToCoord(key);
-      const auto ours = map.log_odds_at({centre.x(), centre.y(), centre.z()});
+      const volumetric::VoxelState& ours = map.state_at({centre.x(), centre.y(), centre.z()});
+      const bool is_measured = ours.kind >= volumetric::VoxelKind::free;
       const octomap::OcTreeNode* theirs = tree.search(key);
       ++compared;
-      if (ours.has_value() != (theirs != nullptr) || (theirs && *ours != theirs->getLogOdds())) {
+      if (is_measured != (theirs != nullptr) ||
+          (theirs && std::abs(ours.occupancy - theirs->getOccupancy()) > 1e-12)) {
         ++different;
       }
     };

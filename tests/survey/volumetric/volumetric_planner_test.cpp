@@ -109,7 +109,7 @@ TEST(SphereViews, StayAboveTheLeastHeight) {
   }
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { volumetric::sphere_views(10, Vector3d::Zero(), 2.0, 3.0, 5); }),
-              testing::HasSubstr("above the least height of 3 m"));
+              testing::HasSubstr("above the minimum height of 3 m"));
 }
 
 TEST(VolumetricPlanner, VisitsEveryCandidateOnce) {
@@ -203,7 +203,7 @@ TEST(VolumetricPlanner, CarvesPixelsWithoutReturnIfAsked) {
     config.settings.carve_no_returns = carves;
     volumetric::VolumetricPlanner planner(config, camera);
     planner.next_view(scan);
-    EXPECT_EQ(planner.map().log_odds_at(beside).has_value(), carves);
+    EXPECT_EQ(planner.map().state_at(beside).kind == volumetric::VoxelKind::free, carves);
   }
 }
 
@@ -213,7 +213,7 @@ TEST(VolumetricPlanner, DropsMeasurementsOutsideTheBox) {
   volumetric::VolumetricPlanner planner(config, camera);
   planner.next_view(tests::scan_spheres({{}}, camera, look_at({2.0, 0.0, 0.0}, Vector3d::Zero())));
   for (const auto& point : planner.cloud().positions) EXPECT_GE(point.z(), 0.0F);
-  EXPECT_FALSE(planner.map().log_odds_at({0.45F, 0.0F, -0.2F}));
+  EXPECT_EQ(planner.map().state_at({0.45F, 0.0F, -0.2F}).kind, volumetric::VoxelKind::untouched);
 }
 
 TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {
@@ -232,7 +232,7 @@ TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {
 TEST(VolumetricPlanner, RefusesAFirstScanWithoutTheScene) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
   EXPECT_THAT(testing_support::complaint_of([&] { planner.next_view(geometry::Scan{}); }),
-              testing::HasSubstr("the first scan holds no point of the scene"));
+              testing::HasSubstr("the first scan contains no point of the scene"));
 }
 
 TEST(VolumetricConfig, NamesTheFieldThatIsWrong) {

@@ -59,10 +59,10 @@ TEST(TaskIndex, RefusesWhatSaysNoTask) {
   EXPECT_THAT(refusal_of("slurm", none), HasSubstr("SLURM_ARRAY_TASK_ID is not set"));
   EXPECT_THAT(refusal_of("auto", none), HasSubstr("none of SLURM_ARRAY_TASK_ID"));
   EXPECT_THAT(refusal_of("parallel", environment_of({{"PARALLEL_SEQ", "0"}})),
-              HasSubstr("PARALLEL_SEQ is '0'; it must be a whole number from 1 on"));
+              HasSubstr("PARALLEL_SEQ is '0'; it must be an integer of at least 1"));
   EXPECT_THAT(
       refusal_of("auto", environment_of({{"PARALLEL_SEQ", "1"}, {"SLURM_ARRAY_TASK_ID", "4"}})),
-      HasSubstr("SLURM_ARRAY_TASK_ID and PARALLEL_SEQ are both set; give --index slurm"));
+      HasSubstr("SLURM_ARRAY_TASK_ID and PARALLEL_SEQ are both set; use --index slurm"));
 }
 
 // Property: the tasks of a job together have each item once, whatever the chunk.

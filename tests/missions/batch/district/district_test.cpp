@@ -188,7 +188,7 @@ TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {
 
 TEST_F(District, SaysWhyThereIsNothingToSurvey) {
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {near: '48.0,11.0', distance: 10}\n");
-  EXPECT_THAT(run().err, HasSubstr("key targets: leaves none of the 4 things of"));
+  EXPECT_THAT(run().err, HasSubstr("key targets leaves none of the 4 objects of"));
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {id: [castle]}\n");
   EXPECT_THAT(run().err, HasSubstr("castle"));
 }
@@ -250,7 +250,8 @@ TEST_F(District, RefusesAPadInABuilding) {
   write(map + "pads: ['" + place + "']\n");
   const auto refused = run();
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("key pads: "), HasSubstr("is no pad, by what stands")));
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("key pads: "), HasSubstr("is not free, level and even ground")));
   write(map + "pads: ['" + value("latitude_deg") + "," + value("longitude_deg") + "']\n");
   const auto given = run({"--list"});
   EXPECT_EQ(given.exit_code, 0) << given.err;

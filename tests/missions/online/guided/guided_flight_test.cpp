@@ -219,7 +219,8 @@ TEST_P(Stalls, EndWhereTheVehicleIs) {
   ASSERT_TRUE(port.woken_at());
   if (!trouble) GTEST_SKIP() << "it fell between two legs";
   EXPECT_EQ(trouble->kind, TroubleKind::stalled);
-  EXPECT_THAT(trouble->what, HasSubstr("this program stood still; stopping where the vehicle is"));
+  EXPECT_THAT(trouble->what,
+              HasSubstr("this program was suspended; stopping at the current position"));
   EXPECT_LT(flight.off_the_way(flight.autopilot.position()), 0.35);
   // From its top speed it comes to rest in less than 4 m.
   EXPECT_LT((flight.autopilot.position() - *port.woken_at()).norm(), 4.0);
@@ -310,16 +311,18 @@ TEST(Gimbals, ThatDoNotTurnAreNamed) {
   SteppedPort port(flight.autopilot);
   const MaybeTrouble trouble = aimed(flight, port, -20.0 * degree);
   ASSERT_TRUE(trouble);
-  EXPECT_THAT(trouble->what, HasSubstr("look where it is asked to: gimbal pitch is 0.0 degrees "
-                                       "instead of -20.0 (at most 2 off)"));
+  EXPECT_THAT(
+      trouble->what,
+      HasSubstr(
+          "on the requested direction: gimbal pitch 0.0 degrees instead of -20.0 (at most 2 off)"));
   EXPECT_THAT(trouble->what, testing::Not(HasSubstr("position")));
 }
 
 TEST(AimErrors, NameWhatIsOff) {
   EXPECT_EQ(failures_of({}, 0.3), "");
-  EXPECT_EQ(failures_of({.position = 0.5}, 0.3), "position is off by 0.50 m (at most 0.30)");
+  EXPECT_EQ(failures_of({.position = 0.5}, 0.3), "position error 0.50 m (at most 0.30)");
   EXPECT_EQ(failures_of({.speed = 0.4, .turn = 5.0 * degree}, 0.3),
-            "speed is 0.40 m/s (at most 0.2); heading is off by 5.0 degrees (at most 2)");
+            "speed 0.40 m/s (at most 0.2); heading error 5.0 degrees (at most 2)");
 }
 
 }  // namespace

@@ -52,17 +52,17 @@ TEST_F(FolderSensor, AsksByAPoseAndTakesTheScanThatComes) {
 
 TEST_F(FolderSensor, TakesNoOldScan) {
   folder_.write("scan-0002.ply", "");
-  EXPECT_THAT(complaint_of([&] { scan(2); }), HasSubstr("is there before"));
+  EXPECT_THAT(complaint_of([&] { scan(2); }), HasSubstr("existed before"));
 }
 
 TEST_F(FolderSensor, GivesUp) {
-  EXPECT_THAT(complaint_of([&] { scan(3, 0.1); }), HasSubstr("no scan came"));
+  EXPECT_THAT(complaint_of([&] { scan(3, 0.1); }), HasSubstr("timeout: no scan arrived"));
   stop_.request_stop();
-  EXPECT_THAT(complaint_of([&] { scan(4, 600.0); }), HasSubstr("no scan came"));
+  EXPECT_THAT(complaint_of([&] { scan(4, 600.0); }), HasSubstr("timeout: no scan arrived"));
   EXPECT_THAT(complaint_of([&] {
                 folder_sensor(setup_.flight(), setup_.live, folder_.path() / "none", {}, 1.0, {});
               }),
-              HasSubstr("is no folder"));
+              HasSubstr("is not a folder"));
 }
 
 }  // namespace

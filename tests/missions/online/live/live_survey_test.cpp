@@ -99,7 +99,7 @@ TEST(LiveSurvey, RemembersRefusals) {
   {
     LiveSurvey survey = rehearsal.open(folder.path());
     EXPECT_THAT(testing_support::complaint_of([&] { survey.refuse("too early"); }),
-                testing::HasSubstr("there is no view to refuse"));
+                testing::HasSubstr("no view to reject"));
     rehearsal.add_one(survey);
     first = survey.proposal().view->position;
     survey.refuse("behind the fence");
@@ -118,7 +118,7 @@ TEST(LiveSurvey, DoesNotCountAScanThatCannotBePlannedWith) {
   {
     LiveSurvey survey = rehearsal.open(folder.path());
     EXPECT_THAT(testing_support::complaint_of([&] { survey.add({}, "nothing"); }),
-                testing::HasSubstr("the first scan holds no point of the scene"));
+                testing::HasSubstr("the first scan contains no point of the scene"));
     EXPECT_TRUE(survey.views().empty());
     rehearsal.add_one(survey);
   }
@@ -243,7 +243,7 @@ TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
   EXPECT_TRUE(survey.frames().empty());
   const geometry::Scan scan = rehearsal.scan(survey);
   EXPECT_THAT(complaint_of([&] { survey.add_on_way(scan, "a"); }),
-              HasSubstr("measures at its views only; give it sensor.capture: moving"));
+              HasSubstr("en-route scans require sensor.capture: moving"));
 }
 
 // Of houses, whose walls and roofs show every way to move and are large beside the patches that are
@@ -293,7 +293,8 @@ TEST(LiveSurvey, RefusesWhatItCannotTrust) {
     rehearsal.add_one(survey);
     EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("another skycap"));
   }
-  EXPECT_THAT(complaint_of([&] { other.open(folder.path()); }), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(complaint_of([&] { other.open(folder.path()); }),
+              HasSubstr("seed changed from 1 to 2"));
 
   const fs::path scan = fs::directory_iterator(folder.path() / "scans")->path();
   std::string bytes = content_of(scan);
@@ -321,7 +322,7 @@ TEST(LiveSurvey, RefusesAJournalOfAnotherFormatNamingItsVersion) {
   write_records(journal, records);
   EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
               HasSubstr("was written by version 0.1.0, whose journals this version cannot "
-                        "continue; name another folder"));
+                        "continue; use another folder"));
 }
 
 /// Writes the one scan of a survey's folder anew, and its digest in the journal.
@@ -372,7 +373,7 @@ TEST(LiveSurvey, NoticesProposalsThatComeOutOtherwise) {
   records.back().insert(records.back().find(field) + field.size(), "1");
   write_records(journal, records);
   EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
-              HasSubstr("comes out otherwise"));
+              HasSubstr("differs from the one recorded"));
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST(PoseCovariance, ThatIsNoneIsRefusedInOneLine) {
     matrix(column, row) = other;
     return complaint(text_of(matrix, true));
   };
-  EXPECT_THAT(complaint("1 2 3"), HasSubstr("has 3 numbers; give the 36"));
+  EXPECT_THAT(complaint("1 2 3"), HasSubstr("has 3 numbers; it must have the 36"));
   EXPECT_THAT(complaint(""), HasSubstr("has 0 numbers"));
   EXPECT_THAT(with(2, 2, NAN, NAN), HasSubstr("finite"));
   EXPECT_THAT(with(2, 2, INFINITY, INFINITY), HasSubstr("finite"));

@@ -135,7 +135,8 @@ TEST(Lens, OfNegativeFocalLengthFlipsItsAxis) {
   ASSERT_TRUE(up && down);
   EXPECT_EQ(up->x(), down->x());
   EXPECT_EQ(up->y(), -down->y());
-  EXPECT_THAT(complaint_of([] { parse_lens("480 0 319.5 239.5"); }), HasSubstr("other than zero"));
+  EXPECT_THAT(complaint_of([] { parse_lens("480 0 319.5 239.5"); }),
+              HasSubstr("non-zero focal lengths"));
 }
 
 // By a factor in both directions; a cropped image, or a lens off its middle, is what it is.
@@ -147,10 +148,11 @@ TEST(DepthImage, OfAnotherSizeThanItsLensIsRefused) {
     geometry::write_depth_png({width, height, std::vector<std::uint16_t>(count, 1500)}, file);
     return complaint_of([&] { read({.file = file, .lens = lens}); });
   };
-  EXPECT_THAT(complaint(320, 240, parse_lens("145 145 80 60")),
-              testing::AllOf(HasSubstr("size.png"),
-                             HasSubstr("the lens is of an image of about 160 x 120 pixels"),
-                             HasSubstr("the image has 320 x 240; multiply fx fy cx cy by 1.99")));
+  EXPECT_THAT(
+      complaint(320, 240, parse_lens("145 145 80 60")),
+      testing::AllOf(HasSubstr("size.png"),
+                     HasSubstr("the intrinsics are those of an image of about 160 x 120 pixels"),
+                     HasSubstr("the image has 320 x 240; multiply fx fy cx cy by 1.99")));
   EXPECT_THAT(complaint(160, 120, parse_lens("517 517 318.6 255.3")),
               HasSubstr("multiply fx fy cx cy by 0.24"));
   EXPECT_THAT(complaint(160, 120, std::nullopt), HasSubstr("about 63 x 47 pixels"));
@@ -225,9 +227,9 @@ TEST(RequireUsable, RefusesScansThatWouldHarm) {
   scan.pixels = {5};
   EXPECT_THAT(message(scan), HasSubstr("1 pixels for 2 points"));
   scan.pixels = {5, 5};
-  EXPECT_THAT(message(scan), HasSubstr("do not ascend"));
+  EXPECT_THAT(message(scan), HasSubstr("are not ascending"));
   scan.pixels = {5, 64 * 48};
-  EXPECT_THAT(message(scan), HasSubstr("has not"));
+  EXPECT_THAT(message(scan), HasSubstr("outside the mission's camera"));
   scan.pixels = {5, 6};
   scan.points[1].x() = NAN;
   EXPECT_THAT(message(scan), HasSubstr("point 1"));

@@ -166,7 +166,7 @@ TEST(Serve, AnswersOneClientAtATime) {
     }
   }
   EXPECT_TRUE(answer);
-  EXPECT_THAT(served.notes(), HasSubstr("a second client was sent away"));
+  EXPECT_THAT(served.notes(), HasSubstr("a second client was refused"));
 }
 
 class SessionAnswers : public testing::Test {
@@ -218,14 +218,16 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
     return session.answer({header, payload}).header;
   };
   const geometry::Scan first = rehearsal.scan(survey);
-  EXPECT_THAT(ask(first, 0, 0).dump(), HasSubstr("the way to the first view is not measured on"));
+  EXPECT_THAT(ask(first, 0, 0).dump(),
+              HasSubstr("en-route scans require a scan from the first view"));
   nlohmann::ordered_json answer = ask(first, 0, {});
   ASSERT_GT(answer.at("frames").size(), 2U);
   EXPECT_EQ(answer.at("on_way"), 0);
   Carrier carrier(rehearsal);
   const geometry::Scan frame = carrier.next(survey).scan;
-  EXPECT_THAT(ask(frame, 1, 1).dump(), HasSubstr("scan 1 on the way 1 is out of order: the next "
-                                                 "one is 1, or on the way to it 0"));
+  EXPECT_THAT(
+      ask(frame, 1, 1).dump(),
+      HasSubstr("scan 1 en-route frame 1 is out of order: the next one is 1, or en-route frame 0"));
   const std::size_t frames = answer.at("frames").size();
   answer = ask(frame, 1, 0);
   EXPECT_EQ(answer.at("is_new"), true);
@@ -233,7 +235,7 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
   EXPECT_EQ(answer.at("scans"), 1);
   EXPECT_EQ(answer.at("frames").size(), frames - 1);
   EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
-  EXPECT_THAT(ask(first, 1, 0).dump(), HasSubstr("scan 1 on the way 0 was another one"));
+  EXPECT_THAT(ask(first, 1, 0).dump(), HasSubstr("scan 1 en-route frame 0 was a different scan"));
   // Frames are left out as one likes: the view may come at any time.
   answer = ask(rehearsal.scan(survey), 1, {});
   EXPECT_EQ(answer.at("scans"), 2);
@@ -250,7 +252,7 @@ TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
   EXPECT_THAT(ask(scan_header(0, scan), payload), HasSubstr("\"is_new\":false"));
   geometry::Scan other = scan;
   other.points[0].x() += 1.0F;
-  EXPECT_THAT(ask(scan_header(0, other), payload_of(other)), HasSubstr("was another one"));
+  EXPECT_THAT(ask(scan_header(0, other), payload_of(other)), HasSubstr("was a different scan"));
   EXPECT_EQ(survey_.views().size(), 1U);
 }
 
@@ -269,7 +271,7 @@ TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
   for (const Eigen::Vector3f& place : places) points.push_back(place.cast<double>());
   nlohmann::ordered_json header = scan_header(0, scan);
   header["format"] = "cloud";
-  EXPECT_THAT(ask(header, payload.substr(1)), HasSubstr("points take"));
+  EXPECT_THAT(ask(header, payload.substr(1)), HasSubstr("points require"));
   EXPECT_THAT(ask(header, payload), HasSubstr("\"is_new\":true"));
   const ScanFound same = scan_of(points, scan.world_from_sensor,
                                  rehearsal_.setup().flight().capture, rehearsal_.setup().live);
@@ -293,7 +295,7 @@ TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
   EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_sigma"));
   header["pose_sigma"] = {0.01, 0.1};
   header["pose_covariance"] = {1, 2, 3};
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("do not go together"));
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("conflicts with"));
   header.erase("pose_sigma");
   EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_covariance: has 3 numbers"));
   header["pose_covariance"] = PoseCovariance::of(0.01, 0.002).triangle();
@@ -332,7 +334,7 @@ TEST_F(SessionAnswers, RefusalsTwiceAreOne) {
   ask(scan_header(0, scan), payload_of(scan));
   const std::string other = ask({{"type", "refuse"}, {"id", 1}});
   EXPECT_EQ(ask({{"type", "refuse"}, {"id", 1}}), other);
-  EXPECT_THAT(ask({{"type", "refuse"}, {"id", 9}}), HasSubstr("there is no proposal 9"));
+  EXPECT_THAT(ask({{"type", "refuse"}, {"id", 9}}), HasSubstr("unknown proposal 9"));
 }
 
 TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
@@ -349,14 +351,14 @@ TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
   header["pose"] = "here";
   EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
   header["format"] = "mp3";
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("must be points, cloud or depth"));
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("expected points, cloud or depth"));
   EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("the type 'dance' is unknown"));
   EXPECT_THAT(ask({{"number", 1}}), HasSubstr("error"));
-  EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("there is no scan yet"));
+  EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("no scan yet"));
   nlohmann::ordered_json depth{{"type", "scan"},    {"number", 0}, {"pose", pose_of(scan)},
                                {"format", "depth"}, {"width", 2},  {"height", 2},
                                {"unit", 0.001}};
-  EXPECT_THAT(ask(depth, "12345"), HasSubstr("the image takes 8"));
+  EXPECT_THAT(ask(depth, "12345"), HasSubstr("the image requires 8"));
   depth["width"] = 1 << 20;
   EXPECT_THAT(ask(depth, "12345678"), HasSubstr("from 1 to 32768"));
   EXPECT_TRUE(survey_.views().empty());

@@ -61,11 +61,11 @@ TEST(Wire, WaitsForTheRestOfAMessage) {
 }
 
 TEST(Wire, RefusesWhatIsNoMessage) {
-  EXPECT_THAT(refusal(std::string(12, '\xff')), HasSubstr("more bytes than any may have"));
+  EXPECT_THAT(refusal(std::string(12, '\xff')), HasSubstr("larger than allowed"));
   std::string damaged = frame_of(sample);
   damaged.back() ^= 1;
   EXPECT_THAT(refusal(damaged), HasSubstr("checksum"));
-  EXPECT_THAT(refusal(frame_of({"text", {}})), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal(frame_of({"text", {}})), HasSubstr("not a JSON object"));
   EXPECT_THAT(refusal(frame_of({nlohmann::ordered_json::array(), {}})), HasSubstr("JSON object"));
 }
 

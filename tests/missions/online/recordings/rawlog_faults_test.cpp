@@ -20,8 +20,8 @@ using testing::IsEmpty;
 
 TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
   EXPECT_THAT(complaint(write({range_scan(1.0), std::make_shared<mrpt::obs::CObservationGPS>()})),
-              AllOf(HasSubstr("x.rawlog: does not say where"), HasSubstr("--poses")));
-  EXPECT_THAT(complaint(write({robot_pose(1.0, {})})), HasSubstr("has no scan that can be used"));
+              AllOf(HasSubstr("x.rawlog: contains no poses of its scans"), HasSubstr("--poses")));
+  EXPECT_THAT(complaint(write({robot_pose(1.0, {})})), HasSubstr("contains no usable scan"));
   const std::string two = write({robot_pose(1.0, {}), range_scan(1.0, "L"), range_scan(1.0, "R")});
   EXPECT_THAT(complaint(two), AllOf(HasSubstr("'L', 'R'"), HasSubstr("--sensor")));
   EXPECT_THAT(complaint(two, {.sensor = "M", .poses = {}}), HasSubstr("'M'; it has 'L', 'R'"));
@@ -35,9 +35,10 @@ TEST_F(Rawlog, LensesAndStepsThatAreNoneAreNamed) {
     EXPECT_THAT(frames(write({robot_pose(1.0, {}), scan})), IsEmpty());
     return notes_.at(0);
   };
-  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.fx(0.0); }), HasSubstr("no focal length"));
+  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.fx(0.0); }),
+              HasSubstr("missing focal length"));
   EXPECT_THAT(note([](auto& scan) { scan.cameraParams.cx(NAN); }), HasSubstr("image centre"));
-  EXPECT_THAT(note([](auto& scan) { scan.rangeUnits = 0.0F; }), HasSubstr("a step of its image"));
+  EXPECT_THAT(note([](auto& scan) { scan.rangeUnits = 0.0F; }), HasSubstr("the depth unit"));
   EXPECT_THAT(note([](auto& scan) { scan.hasRangeImage = false; }), HasSubstr("neither"));
   EXPECT_THAT(note([](auto& scan) {
                 scan.cameraParams.distortion = mrpt::img::DistortionModel::kannala_brandt;
@@ -82,7 +83,7 @@ TEST_F(Rawlog, ThatEndsTooSoonIsRefused) {
   }
   EXPECT_THAT(complaint(folder_.write("text.rawlog", "this is a text and no rawlog at all")),
               HasSubstr("text.rawlog: entry 0 cannot be read"));
-  EXPECT_THAT(complaint(folder_ / "nowhere.rawlog"), HasSubstr("is no file"));
+  EXPECT_THAT(complaint(folder_ / "nowhere.rawlog"), HasSubstr("is not a file"));
 }
 
 /// MRPT allocates what a file says it needs: a count of points, and the sides of an image.

@@ -52,7 +52,7 @@ TEST_F(Recording, OfTumIsPairedByTime) {
   EXPECT_EQ(sequence.frames[1].world_from_sensor.translation(), Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(sequence.frames[1].file, folder_.path() / "b.png");
   EXPECT_THAT(sequence.notes,
-              ElementsAre(AllOf(HasSubstr("1.20 is left out"), HasSubstr("no pose within 20 ms"),
+              ElementsAre(AllOf(HasSubstr("1.20 is skipped"), HasSubstr("no pose within 20 ms"),
                                 HasSubstr("0.075 s off"))));
 }
 
@@ -101,14 +101,14 @@ TEST_F(Recording, SaysWhatIsWrongWithAFrame) {
   EXPECT_THAT(ids(sequence), ElementsAre("1.00"));
   EXPECT_THAT(sequence.notes,
               ElementsAre(AllOf(HasSubstr("groundtruth.txt: time 1.10"), HasSubstr("quaternion")),
-                          HasSubstr("c.png: is not there")));
+                          HasSubstr("c.png: does not exist")));
 }
 
 TEST_F(Recording, WithTimesThatGoBackIsRefused) {
   write_tum("1.00 0 0 0 0 0 0 1\n0.90 0 0 0 0 0 0 1\n");
   EXPECT_THAT(complaint(), AllOf(HasSubstr("groundtruth.txt: line 2"), HasSubstr("0.90")));
   write("groundtruth.txt", "now 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(complaint(), HasSubstr("'now' stands where a time is expected"));
+  EXPECT_THAT(complaint(), HasSubstr("'now' is found where a time is expected"));
 }
 
 TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
@@ -122,13 +122,13 @@ TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
   EXPECT_THAT(ids(sequence), ElementsAre("frame-000000", "frame-000005"));
   EXPECT_EQ(sequence.frames[1].world_from_sensor.translation(), Eigen::Vector3d(4, 5, 6));
   EXPECT_THAT(sequence.notes,
-              ElementsAre(HasSubstr("without stretching"), HasSubstr("frame-000015.pose.txt")));
+              ElementsAre(HasSubstr("without scale"), HasSubstr("frame-000015.pose.txt")));
 }
 
 TEST_F(Recording, ThatIsNoneIsRefused) {
-  EXPECT_THAT(complaint(), HasSubstr("has neither depth.txt and groundtruth.txt"));
+  EXPECT_THAT(complaint(), HasSubstr("contains neither depth.txt and groundtruth.txt"));
   EXPECT_THAT(complaint_of([&] { read_sequence(folder_.path() / "x", all); }),
-              HasSubstr("is no folder"));
+              HasSubstr("is not a folder"));
   write("depth.txt", "1.0 a.png\n");
   EXPECT_THAT(complaint(), HasSubstr("groundtruth.txt"));
   write("groundtruth.txt", "");

@@ -40,6 +40,7 @@ const TestFolder& package() {
     const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("  fleet     2 vehicles, "));
+    EXPECT_THAT(run.out, HasSubstr("To do before the flight, vehicle 2 (generic_ardupilot):\n"));
     return true;
   }();
   EXPECT_TRUE(is_made);
@@ -103,11 +104,11 @@ TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
 
   const auto proof = check(package() / "out/timetable.csv");
   EXPECT_EQ(proof.exit_code, 0) << proof.out << proof.err;
-  EXPECT_THAT(proof.out, HasSubstr(": fine, 2 sorties of 2 vehicles in "));
-  for (const char* file : {"out/fleet-1.plan", "out/fleet-2.waypoints", "out/fleet-2.kmz"}) {
+  EXPECT_THAT(proof.out, HasSubstr(": verified, 2 sorties of 2 vehicles in "));
+  for (const char* file : {"out/fleet-1.plan", "out/fleet-2.waypoints", "out/fleet-2.kml"}) {
     const auto own = check(package() / file);
     EXPECT_EQ(own.exit_code, 0) << file << own.out << own.err;
-    EXPECT_THAT(own.out, HasSubstr(": fine, 0 of "));
+    EXPECT_THAT(own.out, HasSubstr(": verified, 0 of "));
   }
 }
 
@@ -157,8 +158,8 @@ TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
     EXPECT_EQ(run.exit_code, 2) << run.out;
     return run.err;
   };
-  EXPECT_THAT(complaint(1, 1, "drone"), HasSubstr("timetable.csv:1: is no timetable"));
-  EXPECT_THAT(complaint(3, 1, "3"), HasSubstr("timetable.csv:3: there is no vehicle 3"));
+  EXPECT_THAT(complaint(1, 1, "drone"), HasSubstr("timetable.csv:1: is not a timetable"));
+  EXPECT_THAT(complaint(3, 1, "3"), HasSubstr("timetable.csv:3: unknown vehicle 3"));
   EXPECT_THAT(complaint(3, 1, "x"), HasSubstr("timetable.csv:3: vehicle is \"x\""));
   EXPECT_THAT(complaint(2, 2, "m30t"), HasSubstr("timetable.csv:2: vehicle 1 is generic in"));
   EXPECT_THAT(complaint(3, 3, "0"), HasSubstr("timetable.csv:3: sortie is \"0\""));
@@ -166,7 +167,7 @@ TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
   EXPECT_THAT(complaint(3, 4, "fleet-2.plan"), HasSubstr("fleet-2.plan"));
   EXPECT_THAT(complaint(3, 4, "fleet-2.plan/../../x.plan"), HasSubstr("is not one of fleet-2.*"));
   EXPECT_THAT(complaint(2, 5, "soon"), HasSubstr("timetable.csv:2: start_s is \"soon\""));
-  EXPECT_THAT(complaint(2, 6, "-1"), HasSubstr("timetable.csv:2: it does not land after"));
+  EXPECT_THAT(complaint(2, 6, "-1"), HasSubstr("timetable.csv:2: the landing must be after"));
   EXPECT_THAT(complaint(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));
 }
 
@@ -185,10 +186,10 @@ TEST(Fleet, TheRestSharesWhatALostVehicleLeaves) {
   const std::string landing = std::to_string(fleet_summary()["makespan_s"].get<double>() + 10.0);
   const auto none = rest_of({"--lost", "2", "--after", landing, "--out", package() / "none"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("it had photographed all of its views by then"));
-  EXPECT_THAT(rest_of({"--lost", "2"}).err, HasSubstr("give --out"));
+  EXPECT_THAT(none.err, HasSubstr("it had captured all of its views by then"));
+  EXPECT_THAT(rest_of({"--lost", "2"}).err, HasSubstr("requires --out"));
   EXPECT_THAT(rest_of({"--lost", "3", "--out", package() / "none"}).err, HasSubstr("--lost 3"));
-  EXPECT_THAT(rest_of({"--after", "3"}).err, HasSubstr("give --lost"));
+  EXPECT_THAT(rest_of({"--after", "3"}).err, HasSubstr("requires --lost"));
 }
 
 // A list of one is the vehicle: the same settings, and so the same survey and files.
@@ -208,23 +209,42 @@ TEST(Fleet, OfOneIsTheVehicleItself) {
   }
 }
 
+TEST(Fleet, PlansWithTheLargestPositionErrorOfItsVehicles) {
+  const auto position_error = [](const std::string& flight) {
+    return config::parse_mission(fleet_mission(flight), "m.yaml").flight().position_error;
+  };
+  EXPECT_EQ(position_error("vehicle: m350_rtk"), 0.1);
+  EXPECT_EQ(position_error("vehicle: mavic_3e, clearance: 3"), 1.5);
+  EXPECT_EQ(position_error("vehicle: mavic_3e, position_error: 0.2"), 0.2);
+  EXPECT_EQ(position_error("vehicles: [m350_rtk, mavic_3e], clearance: 3"), 1.5);
+}
+
+// 0.32 + 1.5 + 0.3 + 0.1 m: without RTK the default clearance of 2 m is too small.
+TEST(Fleet, RefusesAClearanceBelowTheErrorsOfAVehicleWithoutRtk) {
+  EXPECT_THAT(
+      complaint_of([] { config::parse_mission(fleet_mission("vehicle: mavic_3e"), "m.yaml"); }),
+      HasSubstr("key flight.clearance"));
+}
+
 TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
   const auto complaint = [](const std::string& flight) {
     return complaint_of([&] { config::parse_mission(fleet_mission(flight), "m.yaml"); });
   };
   EXPECT_THAT(complaint("vehicle: m30t, vehicles: [generic, generic]"),
-              HasSubstr("key flight.vehicle: is not the first of flight.vehicles"));
+              HasSubstr("key flight.vehicle must be the first of flight.vehicles"));
   EXPECT_THAT(complaint("vehicles: [generic, no_such]"), HasSubstr("key flight.vehicles: "));
   EXPECT_THAT(complaint("vehicles: [generic, generic], pads: [[-75, 0, 0]]"),
-              HasSubstr("key flight.pads: has 1 pads for the 2"));
+              HasSubstr("key flight.pads has 1 take-off points for 2"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], pads: [[-70, 0, 0], [-75, 0, 0]]"),
-              HasSubstr("key flight.takeoff: is not the first of flight.pads"));
+              HasSubstr("key flight.takeoff must be the first of flight.pads"));
   EXPECT_THAT(complaint("vehicle: generic, separation: 8"),
-              HasSubstr("key flight.separation: is for several vehicles"));
+              HasSubstr("key flight.separation requires flight.vehicles"));
+  EXPECT_THAT(complaint("vehicle: generic, vehicles: [], pads: [[-75, 0, 0]]"),
+              HasSubstr("key flight.pads requires flight.vehicles"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], separation: 1"),
-              HasSubstr("key flight.separation: is less than"));
+              HasSubstr("key flight.separation must be at least the sum of"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], style: pass"),
-              HasSubstr("key flight.style: several vehicles are kept apart as they fly from stop"));
+              HasSubstr("key flight.style conflicts with flight.vehicles"));
 }
 
 // Along the side that the first pad is at, to either side in turn.

@@ -31,7 +31,7 @@ const TestFolder& packages() {
     const auto anew = run_skycap({"plan", mission, "--out", folder / "anew", "--threads", "1",
                                   "--set", "flight.views=anew"});
     EXPECT_EQ(anew.exit_code, 0) << anew.err;
-    EXPECT_THAT(anew.out, HasSubstr("  promise   "));
+    EXPECT_THAT(anew.out, HasSubstr("  coverage  "));
     const auto survey = run_skycap({"plan", mission, "--out", folder / "survey"});
     EXPECT_EQ(survey.exit_code, 0) << survey.err;
     return true;
@@ -120,11 +120,11 @@ TEST(AnewMission, DoesNotDependOnThreads) {
 // Against the scene as it is, every leg of every file.
 TEST(AnewMission, FilesKeepTheClearanceFromTheTruth) {
   const TestFolder& folder = packages();
-  for (const char* ending : {"plan", "waypoints", "kmz", "kml", "geojson", "csv"}) {
+  for (const char* ending : {"plan", "waypoints", "kml", "geojson", "csv"}) {
     const auto check = run_skycap(
         {"check", folder / "m.yaml", "--route", folder / ("anew/mission." + std::string(ending))});
     EXPECT_EQ(check.exit_code, 0) << ending << check.out << check.err;
-    EXPECT_THAT(check.out, HasSubstr(": fine, 0 of "));
+    EXPECT_THAT(check.out, HasSubstr(": verified, 0 of "));
   }
 }
 
@@ -169,12 +169,12 @@ TEST(AnewMission, SaysWhyNothingIsPassed) {
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "blurred", "--set",
                                "flight.style=pass", "--set", "sensor.exposure=1", "--set",
                                "limits.max_views=2"});
-  EXPECT_THAT(run.out, HasSubstr("  passing   nothing: ")) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("  passing   none: ")) << run.err;
   EXPECT_THAT(run.out, HasSubstr("shorten sensor.exposure"));
   const auto resting = run_skycap(
       {"check", folder / "m.yaml", "--set", "flight.style=pass", "--set", "sensor.settle=1"});
   EXPECT_EQ(resting.exit_code, 2);
-  EXPECT_THAT(resting.err, HasSubstr("flight.style: takes pictures without a stop"));
+  EXPECT_THAT(resting.err, HasSubstr("flight.style: pass conflicts with a sensor that must rest"));
 }
 
 TEST(AnewMission, IsExportedAgainAsItWasPlanned) {
@@ -205,8 +205,8 @@ TEST(AnewMission, IsNotMadeOfASurveyThatDidNotAskForIt) {
   const auto run = run_skycap({"export", folder / "survey", "--format", "csv", "--set",
                                "flight.views=anew", "--out", folder / "refused"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("summary.json: has no views chosen anew; plan the mission again, "
-                                 "or say flight.views=survey"));
+  EXPECT_THAT(run.err, HasSubstr("summary.json: contains no replanned views; plan the mission "
+                                 "again, or set flight.views=survey"));
   EXPECT_FALSE(std::filesystem::exists(folder / "refused/mission.csv"));
 }
 
@@ -226,8 +226,9 @@ TEST(AnewMission, NeedsAPlannerThatKnowsTheSurface) {
     });
   };
   EXPECT_THAT(complaint("planner.name", "see++"),
-              HasSubstr("flight.views: is anew, and the planner see++ keeps no surface"));
-  EXPECT_THAT(complaint("flight.order", "survey"), HasSubstr("leave out flight.order or"));
+              HasSubstr("flight.views: anew requires the planner skycap; the planner see++"));
+  EXPECT_THAT(complaint("flight.order", "survey"),
+              HasSubstr("conflicts with flight.order: survey"));
   EXPECT_EQ(complaint("flight.vehicle", "none"), "") << "nothing is flown, and nothing chosen";
 }
 

@@ -1,0 +1,98 @@
+#include "geometry/io/las/arithmetic_decoder.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace skycap::geometry::las {
+namespace {
+
+constexpr std::uint32_t most_counted = 1 << 15;  // symbols, until all counts are halved
+constexpr std::uint32_t most_counted_bits = 1 << 13;
+
+[[noreturn]] void refuse_value() {
+  refuse("has compressed points that are damaged: their bytes decode to nothing");
+}
+
+}  // namespace
+
+void SymbolModel::begin() {
+  if (counts_.empty()) {
+    if (symbols_ > 16) {
+      std::uint32_t bits = 3;
+      while (symbols_ > 1U << (bits + 2)) ++bits;
+      table_shift_ = 15 - bits;
+      table_.resize((1U << bits) + 2);
+    }
+    counts_.resize(symbols_);
+    distribution_.resize(symbols_);
+  }
+  std::ranges::fill(counts_, std::uint16_t{1});
+  total_ = 0;
+  cycle_ = symbols_;
+  update();
+  cycle_ = until_update_ = (symbols_ + 6) / 2;
+}
+
+void SymbolModel::update() {
+  total_ += cycle_;
+  if (total_ > most_counted) {
+    total_ = 0;
+    for (std::uint16_t& count : counts_) {
+      count = static_cast<std::uint16_t>((count + 1) / 2);
+      total_ += count;
+    }
+  }
+  const std::uint32_t scale = 0x80000000 / total_;
+  std::uint32_t sum = 0;
+  for (std::uint32_t symbol = 0; symbol < symbols_; ++symbol) {
+    distribution_[symbol] = static_cast<std::uint16_t>(scale * sum >> 16);
+    sum += counts_[symbol];
+  }
+  if (table_shift_ != 0) fill_table();
+  cycle_ = std::min(cycle_ * 5 / 4, (symbols_ + 6) * 8);
+  until_update_ = cycle_;
+}
+
+/// Each entry is the last symbol whose share begins before the entry's.
+void SymbolModel::fill_table() {
+  std::size_t entry = 0;
+  for (std::uint32_t symbol = 1; symbol < symbols_; ++symbol) {
+    const std::size_t begin = distribution_[symbol] >> table_shift_;
+    while (entry < begin) table_[++entry] = static_cast<std::uint16_t>(symbol - 1);
+  }
+  table_[0] = 0;
+  while (entry + 1 < table_.size()) table_[++entry] = static_cast<std::uint16_t>(symbols_ - 1);
+}
+
+void BitModel::update() {
+  total_ += cycle_;
+  if (total_ > most_counted_bits) {
+    total_ = (total_ + 1) / 2;
+    zeros_ = (zeros_ + 1) / 2;
+    if (zeros_ == total_) ++total_;
+  }
+  zero_share_ = zeros_ * (0x80000000 / total_) >> 18;
+  cycle_ = std::min(cycle_ * 5 / 4, 64U);
+  until_update_ = cycle_;
+}
+
+ArithmeticDecoder::ArithmeticDecoder(ByteWindow bytes) : bytes_(std::move(bytes)) {
+  for (int i = 0; i < 4; ++i) value_ = value_ << 8 | bytes_.next();
+  if (value_ >= length_) refuse_value();
+}
+
+std::uint32_t ArithmeticDecoder::bits(std::uint32_t count) {
+  if (count <= 19) return few_bits(count);
+  const std::uint32_t low = few_bits(16);
+  return few_bits(count - 16) << 16 | low;
+}
+
+std::uint32_t ArithmeticDecoder::few_bits(std::uint32_t count) {
+  const std::uint32_t unit = length_ >> count;
+  const std::uint32_t value = value_ / unit;
+  if (value >> count != 0) refuse_value();
+  narrow(value * unit, unit);
+  return value;
+}
+
+}  // namespace skycap::geometry::las

@@ -1,0 +1,119 @@
+/// Arithmetic decoding of symbols and bits with models that adapt to what was decoded (A. Said,
+/// Introduction to Arithmetic Coding, HP Laboratories 2004; LAZ specification 1.4, section 5): the
+/// entropy coder of compressed LAS.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/io/las/byte_window.h"
+
+namespace skycap::geometry::las {
+
+/// How probable each symbol of an alphabet is, by how often it came. Costs nothing until it is
+/// used.
+class SymbolModel {
+ public:
+  /// `symbols` from 2 to 2048.
+  explicit SymbolModel(std::uint32_t symbols = 256) : symbols_(symbols) {}
+
+  /// Forgets what it has learnt: all symbols are as probable again.
+  void reset() { until_update_ = 0; }
+
+ private:
+  friend class ArithmeticDecoder;
+  void begin();
+  void update();
+  void fill_table();
+
+  std::uint32_t symbols_, until_update_ = 0, cycle_ = 0, total_ = 0;
+  std::uint32_t table_shift_ = 0;            ///< 0: few symbols, no table
+  std::vector<std::uint16_t> counts_;        ///< of each symbol
+  std::vector<std::uint16_t> distribution_;  ///< share of the symbols before each, of 2^15
+  std::vector<std::uint16_t> table_;         ///< a symbol to begin with, by the share's first bits
+};
+
+/// How probable a bit is.
+class BitModel {
+ public:
+  void reset() { *this = {}; }
+
+ private:
+  friend class ArithmeticDecoder;
+  void update();
+
+  std::uint32_t zeros_ = 1, total_ = 2, zero_share_ = 1 << 12;  ///< of 2^13
+  std::uint32_t cycle_ = 4, until_update_ = 4;
+};
+
+/// Throws Error{bad_file} from any function when the bytes end, or cannot have been encoded.
+class ArithmeticDecoder {
+ public:
+  ArithmeticDecoder() = default;  ///< of nothing: must not be asked
+  explicit ArithmeticDecoder(ByteWindow bytes);
+
+  std::uint32_t symbol(SymbolModel& model);
+  bool bit(BitModel& model);
+
+  /// A number of `count` bits, each of which is as probable as not; at most 32.
+  std::uint32_t bits(std::uint32_t count);
+
+ private:
+  std::uint32_t few_bits(std::uint32_t count);
+  void narrow(std::uint32_t low, std::uint32_t length);
+
+  ByteWindow bytes_;
+  std::uint32_t value_ = 0, length_ = 0xFFFFFFFF;  // value_ < length_ whatever is decoded
+};
+
+inline void ArithmeticDecoder::narrow(std::uint32_t low, std::uint32_t length) {
+  constexpr std::uint32_t least_length = 1 << 24;
+  value_ -= low;
+  length_ = length;
+  while (length_ < least_length) {
+    value_ = value_ << 8 | bytes_.next();
+    length_ <<= 8;
+  }
+}
+
+inline std::uint32_t ArithmeticDecoder::symbol(SymbolModel& model) {
+  if (model.until_update_ == 0) model.begin();
+  const std::uint16_t* const shares = model.distribution_.data();
+  const std::uint32_t unit = length_ >> 15;
+  std::uint32_t symbol = 0, end = model.symbols_;
+  if (model.table_shift_ != 0) {
+    const std::uint32_t share = value_ / unit, entry = share >> model.table_shift_;
+    symbol = model.table_[entry];
+    end = model.table_[entry + 1] + 1U;
+    while (end - symbol > 1) {
+      const std::uint32_t middle = (symbol + end) / 2;
+      (shares[middle] > share ? end : symbol) = middle;
+    }
+  } else {
+    while (end - symbol > 1) {
+      const std::uint32_t middle = (symbol + end) / 2;
+      (unit * shares[middle] > value_ ? end : symbol) = middle;
+    }
+  }
+  const std::uint32_t low = unit * shares[symbol];
+  narrow(low, (end == model.symbols_ ? length_ : unit * shares[end]) - low);
+  ++model.counts_[symbol];
+  if (--model.until_update_ == 0) model.update();
+  return symbol;
+}
+
+inline bool ArithmeticDecoder::bit(BitModel& model) {
+  const std::uint32_t zeros = model.zero_share_ * (length_ >> 13);
+  const bool is_one = value_ >= zeros;
+  if (!is_one) ++model.zeros_;
+  if (is_one) {
+    narrow(zeros, length_ - zeros);
+  } else {
+    narrow(0, zeros);
+  }
+  if (--model.until_update_ == 0) model.update();
+  return is_one;
+}
+
+}  // namespace skycap::geometry::las

@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "geometry/io/cloud_parsers.h"
+#include "geometry/io/las/las_reader.h"
+
+namespace skycap::geometry {
+namespace {
+
+/// Of 16 bits the upper 8. A file whose numbers all are below 256 has 8 bits in them, against the
+/// specification.
+std::vector<std::array<std::uint8_t, 3>> bytes_of(
+    const std::vector<std::array<std::uint16_t, 3>>& colours) {
+  const bool has_bytes = std::ranges::all_of(
+      colours, [](const auto& colour) { return std::ranges::max(colour) <= 255; });
+  std::vector<std::array<std::uint8_t, 3>> result;
+  result.reserve(colours.size());
+  for (const auto& colour : colours) {
+    auto& bytes = result.emplace_back();
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      bytes[channel] =
+          static_cast<std::uint8_t>(has_bytes ? colour[channel] : colour[channel] >> 8);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+AttributedCloud read_las_cloud(const std::filesystem::path& path) {
+  LasReader reader(path);
+  AttributedCloud cloud;
+  LasPoints points;
+  std::vector<std::array<std::uint16_t, 3>> colours;
+  while (reader.next(points)) {
+    require_few_points(path, cloud.positions.size() + points.positions.size());
+    add_positions(path, cloud.positions.size(), points.positions, cloud.positions);
+    colours.insert(colours.end(), points.colours.begin(), points.colours.end());
+  }
+  cloud.colours = bytes_of(colours);
+  return cloud;
+}
+
+std::size_t read_las_positions(const std::filesystem::path& path, const TakePositions& take) {
+  LasReader reader(path);
+  LasPoints points;
+  std::vector<Eigen::Vector3f> piece;
+  std::size_t count = 0;
+  const auto all = static_cast<double>(reader.header().points);
+  for (double read = 1.0; reader.next(points, piece_size); ++read) {
+    piece.clear();
+    add_positions(path, count, points.positions, piece);
+    count += points.positions.size();
+    if (!piece.empty()) take(piece, std::min(1.0, read * piece_size / all));
+  }
+  if (count == 0) fail_without_points(path, 0);
+  return 0;
+}
+
+}  // namespace skycap::geometry

@@ -1,0 +1,258 @@
+#include "geometry/io/las/las_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "geometry/byte_values.h"
+#include "geometry/io/cloud_parsers.h"
+#include "geometry/io/las/layout.h"
+
+namespace skycap::geometry {
+namespace {
+
+constexpr int compressed_bit = 0x80;  // of the format of points
+
+/// Throws unless it is LAS of a kind that can be read; the header's size is that of its version.
+void require_readable(const std::filesystem::path& path, std::string_view beginning) {
+  if (beginning.size() <= las::header::point_format || !beginning.starts_with("LASF")) {
+    fail_cloud(path, "is not a LAS file: it does not begin with a LAS header");
+  }
+  const int major = value_at<std::uint8_t>(beginning.data(), las::header::major),
+            minor = value_at<std::uint8_t>(beginning.data(), las::header::minor);
+  const int kind = value_at<std::uint8_t>(beginning.data(), las::header::point_format);
+  const bool is_compressed = (kind & compressed_bit) != 0;
+  const int format = is_compressed ? kind - compressed_bit : kind;
+  const bool has_waveforms = format == 4 || format == 5 || format == 9 || format == 10;
+  if (major != 1 || minor > 4 || format > 10 || (is_compressed && has_waveforms)) {
+    fail_cloud(
+        path,
+        "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
+            " with points of format " + std::to_string(format) +
+            (is_compressed ? ", compressed (LAZ)" : "") +
+            "; only LAS 1.0 to 1.4 with points of format 0 to 10 can be read, and compressed ones "
+            "of format 0 to 3 and 6 to 8: convert it, for example with `pdal translate` or laszip");
+  }
+  const std::size_t size = minor == 4 ? las::header::end : las::header::old_end;
+  if (beginning.size() < size) fail_cloud(path, "ends within the header");
+}
+
+LasHeader fields_of(std::string_view beginning) {
+  const char* const bytes = beginning.data();
+  LasHeader header;
+  header.minor = value_at<std::uint8_t>(bytes, las::header::minor);
+  const int kind = value_at<std::uint8_t>(bytes, las::header::point_format);
+  header.is_compressed = (kind & compressed_bit) != 0;
+  header.format = header.is_compressed ? kind - compressed_bit : kind;
+  header.header_size = value_at<std::uint16_t>(bytes, las::header::size);
+  header.first_point = value_at<std::uint32_t>(bytes, las::header::first_point);
+  header.records = value_at<std::uint32_t>(bytes, las::header::records);
+  header.point_size = value_at<std::uint16_t>(bytes, las::header::point_size);
+  header.points = value_at<std::uint32_t>(bytes, las::header::old_points);
+  if (header.minor == 4) {
+    // Some writers of 1.4 fill in the count of the versions before alone.
+    const auto points = value_at<std::uint64_t>(bytes, las::header::points);
+    if (points != 0) header.points = points;
+    header.first_extended_record =
+        value_at<std::uint64_t>(bytes, las::header::first_extended_record);
+    header.extended_records = value_at<std::uint32_t>(bytes, las::header::extended_records);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    header.scale[axis] = value_at<double>(bytes, las::header::scale + 8UL * axis);
+    header.offset[axis] = value_at<double>(bytes, las::header::offset + 8UL * axis);
+  }
+  return header;
+}
+
+/// `beginning` is the file's first 375 bytes, or all of a shorter file.
+LasHeader parse_header(const std::filesystem::path& path, std::string_view beginning,
+                       std::uint64_t file_size) {
+  require_readable(path, beginning);
+  const LasHeader header = fields_of(beginning);
+  const std::uint16_t least_size = las::point_size(header.format);
+  if (header.point_size < least_size) {
+    fail_cloud(path, "has points of " + std::to_string(header.point_size) +
+                         " bytes; those of format " + std::to_string(header.format) + " have " +
+                         std::to_string(least_size) + " or more");
+  }
+  if (!header.scale.allFinite() || !(header.scale.array() > 0.0).all() ||
+      !header.offset.allFinite()) {
+    fail_cloud(path, "has a scale or an offset of coordinates that is not a valid number");
+  }
+  const std::size_t header_end = header.minor == 4 ? las::header::end : las::header::old_end;
+  if (header.first_point < header_end) {
+    fail_cloud(path, "says that its points begin within its header");
+  }
+  const std::uint64_t room = file_size < header.first_point ? 0 : file_size - header.first_point;
+  if (!header.is_compressed && room / header.point_size < header.points) {
+    fail_cloud(path, "ends after " + std::to_string(room / header.point_size) + " of its " +
+                         std::to_string(header.points) + " points");
+  }
+  return header;
+}
+
+int class_of(const LasHeader& header, const char* point) {
+  if (header.format >= 6) return value_at<std::uint8_t>(point, las::point::classification);
+  return value_at<std::uint8_t>(point, las::old_point::classification) & las::old_point::classes;
+}
+
+bool is_withheld(const LasHeader& header, const char* point) {
+  const int flags = value_at<std::uint8_t>(
+      point, header.format >= 6 ? las::point::flags : las::old_point::classification);
+  return (flags & (header.format >= 6 ? las::point::withheld : las::old_point::withheld)) != 0;
+}
+
+std::size_t colour_place(const LasHeader& header) {
+  return las::colour_places[static_cast<std::size_t>(header.format)];
+}
+
+void add_point(const LasHeader& header, const char* point, LasPoints& points) {
+  Eigen::Vector3d& position = points.positions.emplace_back();
+  for (int axis = 0; axis < 3; ++axis) {
+    position[axis] =
+        value_at<std::int32_t>(point, las::point::position + 4UL * axis) * header.scale[axis] +
+        header.offset[axis];
+  }
+  points.classes.push_back(static_cast<std::uint8_t>(class_of(header, point)));
+  if (!header.has_colours()) return;
+  auto& colour = points.colours.emplace_back();
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    colour[channel] = value_at<std::uint16_t>(point, colour_place(header) + 2 * channel);
+  }
+}
+
+std::string_view text_of(std::string_view bytes) { return bytes.substr(0, bytes.find('\0')); }
+
+std::string_view user_of(std::string_view record) {
+  return text_of(record.substr(las::record::user, las::record::user_size));
+}
+
+int id_of(std::string_view record) {
+  return value_at<std::uint16_t>(record.data(), las::record::id);
+}
+
+/// Reads the directory of GeoKeys (GeoTIFF 1.1, OGC 19-008r4): key, place of the value, count,
+/// value.
+void read_geo_keys(std::string_view directory, LasReferenceSystem& system) {
+  constexpr int geographic = 2048, projected = 3072, vertical = 4096, vertical_unit = 4099;
+  constexpr int user_defined = 32767;
+  for (std::size_t i = 8; i + 8 <= directory.size(); i += 8) {
+    const int key = value_at<std::uint16_t>(directory.data(), i),
+              place = value_at<std::uint16_t>(directory.data(), i + 2),
+              value = value_at<std::uint16_t>(directory.data(), i + 6);
+    if (place != 0) continue;
+    if (value == user_defined) {
+      if (key == projected || key == geographic) system.is_user_defined = true;
+      continue;
+    }
+    if (key == projected) system.projected = value;
+    if (key == geographic) system.geographic = value;
+    if (key == vertical) system.vertical = value;
+    if (key == vertical_unit) system.vertical_unit = value;
+  }
+}
+
+}  // namespace
+
+bool LasHeader::has_colours() const { return colour_place(*this) != 0; }
+
+LasReader::LasReader(std::filesystem::path path)
+    : file_(std::make_unique<SeekableFile>(std::move(path))),
+      header_(parse_header(file_->path(), bytes(0, las::header::end), file_->size())) {
+  if (header_.is_compressed) open_compressed();
+}
+
+std::string LasReader::bytes(std::uint64_t place, std::uint64_t count) {
+  return file_->with_name([&] { return file_->bytes(place, count); });
+}
+
+void LasReader::visit_records(const TakeRecord& take) {
+  std::uint64_t place = header_.header_size;
+  for (std::uint32_t i = 0; i < header_.records && place < header_.first_point; ++i) {
+    const std::string head = bytes(place, las::record::end);
+    if (head.size() < las::record::end) return;
+    const auto length = value_at<std::uint16_t>(head.data(), las::record::length);
+    const std::string content = bytes(place + las::record::end, length);
+    if (!take(user_of(head), id_of(head), content)) return;
+    place += las::record::end + length;
+  }
+}
+
+void LasReader::visit_extended_records(const TakeRecord& take) {
+  constexpr std::uint64_t longest = 1 << 20;  // of what is read of a record
+  constexpr std::uint32_t most_records = 1000;
+  std::uint64_t place = header_.first_extended_record;
+  for (std::uint32_t i = 0; i < std::min(header_.extended_records, most_records); ++i) {
+    const std::string head = bytes(place, las::record::extended_end);
+    if (head.size() < las::record::extended_end) return;
+    const auto length = value_at<std::uint64_t>(head.data(), las::record::length);
+    const std::string content = bytes(place + las::record::extended_end, std::min(length, longest));
+    if (!take(user_of(head), id_of(head), content) || length > file_->size()) return;
+    place += las::record::extended_end + length;
+  }
+}
+
+LasReferenceSystem LasReader::reference_system() {
+  LasReferenceSystem system;
+  const auto take = [&](std::string_view user, int id, std::string_view content) {
+    if (user != las::record::projection && user != "liblas") return true;
+    if (id == las::record::wkt && system.wkt.empty()) system.wkt = text_of(content);
+    if (id == las::record::geo_keys) read_geo_keys(content, system);
+    return true;
+  };
+  visit_records(take);
+  visit_extended_records(take);
+  return system;
+}
+
+std::string LasReader::compression_record() {
+  std::optional<std::string> record;
+  visit_records([&](std::string_view user, int id, std::string_view content) {
+    if (id == las::compression_id && user.starts_with(las::compression_user)) record = content;
+    return !record;
+  });
+  if (!record) fail_cloud(file_->path(), "is compressed (LAZ), but the record of its compression is missing");
+  return *record;
+}
+
+void LasReader::open_compressed() {
+  const std::string record = compression_record();
+  const las::StoredPoints points{header_.format, header_.point_size, header_.first_point};
+  const auto read = [file = file_.get()](std::uint64_t place, std::uint64_t count) {
+    return file->bytes(place, count);
+  };
+  compressed_ = file_->with_name(
+      [&] { return std::make_unique<las::PointStream>(read, file_->size(), points, record); });
+  record_.resize(header_.point_size);
+}
+
+bool LasReader::next(LasPoints& points, std::size_t most) {
+  points.positions.clear();
+  points.classes.clear();
+  points.colours.clear();
+  const std::uint64_t count = std::min<std::uint64_t>(most, header_.points - points_read_);
+  if (compressed_ != nullptr) {
+    decompress(points, count);
+  } else {
+    const std::string some =
+        bytes(header_.first_point + points_read_ * header_.point_size, count * header_.point_size);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const char* const point = some.data() + i * header_.point_size;
+      if (!is_withheld(header_, point)) add_point(header_, point, points);
+    }
+  }
+  points_read_ += count;
+  return count > 0;
+}
+
+void LasReader::decompress(LasPoints& points, std::uint64_t count) {
+  file_->with_name([&] {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      compressed_->next(record_.data());
+      if (!is_withheld(header_, record_.data())) add_point(header_, record_.data(), points);
+    }
+  });
+}
+
+}  // namespace skycap::geometry

@@ -1,0 +1,231 @@
+#include "missions/package/pilot_text.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "flight/export/geodesy.h"
+#include "flight/export/parameters.h"
+#include "missions/package/fleet_mission.h"
+#include "missions/support/number_text.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using flight::Dialect;
+
+/// One vehicle's part of a mission.
+struct Part {
+  const flight::FlightOptions& options;
+  const flight::Route& route;
+  const FlightFiles& files;
+};
+
+/// Names of the written files with this ending, separated by commas; empty if there are none.
+std::string names_of(const FlightFiles& files, std::string_view ending) {
+  std::string names;
+  for (const FlightFile& file : files.written) {
+    if (file.name.ends_with(ending)) names += (names.empty() ? "" : ", ") + file.name;
+  }
+  return names;
+}
+
+std::string parameter_file(const Part& part) {
+  const std::string ending = flight::parameters_name(part.route.vehicle.dialect, "");
+  for (const std::string& name : part.files.parameters) {
+    if (name.ends_with(ending)) return name;
+  }
+  return "";
+}
+
+std::string takeoff_text(const Part& part) {
+  const Eigen::Vector3d& pad = part.route.options.takeoff;
+  const std::string local =
+      fmt::format("({:.1f}, {:.1f}, {:.1f}) of the mission frame", pad.x(), pad.y(), pad.z());
+  if (!part.options.has_place) return local;
+  const flight::GeodeticPoint point = flight::LocalFrame(part.options.site.origin).to_geodetic(pad);
+  return fmt::format("latitude {:.7f}, longitude {:.7f}, {}", point.latitude_deg,
+                     point.longitude_deg, local);
+}
+
+/// What a geofence or rally points add to an upload; empty if the mission has neither.
+std::string plan_extras(const Part& part) {
+  const flight::AirspaceOptions& airspace = part.options.airspace;
+  const bool has_fence = !airspace.geofence.empty() || !airspace.no_fly.empty();
+  if (has_fence && !part.options.rally.empty()) return "the geofence and the rally points";
+  if (has_fence) return "the geofence";
+  return part.options.rally.empty() ? "" : "the rally points";
+}
+
+const char* verified = "verified from every point of the route, at this altitude only";
+
+std::vector<std::string> ardupilot_steps(const Part& part) {
+  std::vector<std::string> steps;
+  const std::string parameters = parameter_file(part);
+  if (!parameters.empty()) {
+    const double height = part.route.returns->height;
+    steps.push_back("Load " + parameters +
+                    " into the autopilot (Mission Planner or QGroundControl: load parameters from "
+                    "file). Restart the autopilot if the station asks for it.");
+    steps.push_back(fmt::format(
+        "Read back the return altitude: RTL_ALT {:.0f} cm or RTL_ALT_M {} m above take-off ({}), "
+        "and RTL_CONE_SLOPE 0.",
+        100.0 * height, flight::return_altitude_text(height), verified));
+    steps.push_back("Set BATT_CAPACITY, BATT_LOW_MAH and BATT_CRT_MAH as the comments in " +
+                    parameters + " state.");
+  }
+  const std::string plan = names_of(part.files, ".plan");
+  const std::string waypoints = names_of(part.files, ".waypoints");
+  if (const std::string extras = plan_extras(part); !extras.empty() && !plan.empty()) {
+    steps.push_back("Upload " + extras + " from " + plan + ".");
+  }
+  if (!plan.empty() || !waypoints.empty()) {
+    steps.push_back("Upload the mission: " + waypoints +
+                    (plan.empty() || waypoints.empty() ? "" : " (Mission Planner) or ") + plan +
+                    (plan.empty() ? "." : " (QGroundControl)."));
+  }
+  return steps;
+}
+
+std::vector<std::string> px4_steps(const Part& part) {
+  std::vector<std::string> steps;
+  const std::string parameters = parameter_file(part);
+  if (!parameters.empty()) {
+    steps.push_back("Load " + parameters +
+                    " in QGroundControl (Vehicle Setup, Parameters, Tools, Load from file). "
+                    "Restart the autopilot if the station asks for it.");
+    steps.push_back(fmt::format(
+        "Read back the return altitude: RTL_RETURN_ALT {} m above take-off ({}), and RTL_CONE_ANG "
+        "0.",
+        flight::return_altitude_text(part.route.returns->height), verified));
+  }
+  const std::string plan = names_of(part.files, ".plan");
+  const std::string extras = plan_extras(part);
+  if (!plan.empty()) {
+    steps.push_back("Upload " + plan + " in QGroundControl (Plan view)" +
+                    (extras.empty() ? "." : ": the mission, " + extras + "."));
+  } else if (const std::string waypoints = names_of(part.files, ".waypoints"); !waypoints.empty()) {
+    steps.push_back("Upload the mission: " + waypoints + ".");
+  }
+  return steps;
+}
+
+std::vector<std::string> dji_steps(const Part& part) {
+  std::vector<std::string> steps;
+  if (const std::string kmz = names_of(part.files, ".kmz"); !kmz.empty()) {
+    steps.push_back("Import " + kmz + " in DJI Pilot 2 as a flight route, or in FlightHub 2.");
+  }
+  if (part.route.returns) {
+    steps.push_back(fmt::format(
+        "Set the RTH altitude to {} m in DJI Pilot 2 ({}). The value in the file does not replace "
+        "this setting.",
+        flight::return_altitude_text(part.route.returns->height), verified));
+    steps.push_back(
+        "Set the RTH mode to \"preset\" and the action on signal loss to return to home. The path "
+        "of the RTH mode \"optimal\" is not verified.");
+  }
+  return steps;
+}
+
+std::vector<std::string> steps_of(const Part& part) {
+  std::vector<std::string> steps;
+  switch (part.route.vehicle.dialect) {
+    case Dialect::ardupilot:
+      steps = ardupilot_steps(part);
+      break;
+    case Dialect::px4:
+      steps = px4_steps(part);
+      break;
+    case Dialect::dji:
+      steps = dji_steps(part);
+      break;
+  }
+  steps.push_back("Take off at " + takeoff_text(part) + ".");
+  if (part.route.vehicle.dialect == Dialect::dji) {
+    steps.back() += " Check that the home point is there.";
+  } else {
+    steps.back() += " After arming, check that home is within 2 m of it: returns end at home.";
+  }
+  return steps;
+}
+
+std::string part_text(const Part& part, const std::string& whom) {
+  std::string text = "To do before the flight, " + whom + ":\n";
+  std::size_t number = 0;
+  for (const std::string& step : steps_of(part)) {
+    text += fmt::format("  {}. {}\n", ++number, step);
+  }
+  return text;
+}
+
+/// Limits of what was verified, which the pilot must check.
+std::string limits_text(const flight::FlightOptions& options, const SurveyMission& flight) {
+  std::string text =
+      "Not verified; the pilot must check: moving obstacles, landings at other places than the "
+      "take-off point";
+  const bool has_rally =
+      flight.route.options.returns && !flight.route.options.returns->rally.empty();
+  if (has_rally) text += " and the rally points";
+  if (!options.airspace.geofence.empty()) text += ", returns from outside the geofence";
+  text += fmt::format(", the climb to {:.1f} m above take-off", flight.route.options.takeoff_climb);
+  if (has_rally) text += ", the airspace above the rally points";
+  return text + ", unobserved airspace outside flight.unknown_box.\n";
+}
+
+/// The slope of pads is known only of some.
+std::string slope_warning(const flight::Route& route, const std::string& whose) {
+  const std::size_t rally = route.options.returns ? route.options.returns->rally.size() : 0;
+  const std::size_t known = route.options.grounds.size();
+  if (known > rally) return "";
+  std::string what = "the take-off pad" + whose + " is";
+  if (rally > 0) {
+    what = fmt::format("{} of {} landing points{} (take-off point, rally points) is",
+                       1 + rally - known, 1 + rally, whose);
+  }
+  return "Warning: slope of " + what + " unknown. Inspect the pad and set flight.pad_slope_deg.\n";
+}
+
+/// Minutes that are a range, with its upper end.
+std::string time_warning(const flight::Route& route, const std::string& whose) {
+  const double longest = route.options.conditions.longest_flight;
+  if (longest == 1.0 || route.sorties.empty()) return "";
+  return fmt::format(
+      "Warning: flight time{} {:.1f} to {:.1f} min: PX4 took up to {:.1f} times the estimated time "
+      "in its simulator; {} planned for the longer time, one battery each.\n",
+      whose, route.duration / 60.0, longest * route.duration / 60.0, longest,
+      support::counted(route.sorties.size(), "sortie"));
+}
+
+std::string images_warning(const SurveyMission& flight) {
+  if (!flight.pictures || flight.pictures->is_sharp()) return "";
+  return fmt::format(
+      "Warning: image motion of more than one pixel at {:.1f} m. Shorten sensor.exposure or "
+      "sensor.readout, or raise the view distance.\n",
+      flight.pictures->distance);
+}
+
+}  // namespace
+
+std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight) {
+  if (!flight.failure.empty() || flight.route.sorties.empty()) return "";
+  std::string text, warnings;
+  if (flight.fleet) {
+    for (std::size_t v = 0; v < flight.fleet->members.size(); ++v) {
+      const FleetMember& member = flight.fleet->members[v];
+      if (member.route.sorties.empty()) continue;
+      const std::string name = fmt::format("vehicle {}", v + 1);
+      text += part_text({member.flight, member.route, member.files},
+                        name + " (" + member.route.vehicle.name + ")");
+      warnings += slope_warning(member.route, " of " + name);
+      warnings += time_warning(member.route, " of " + name);
+    }
+    text += "To do, all vehicles: start each sortie at its time in timetable.csv.\n";
+  } else {
+    text += part_text({options, flight.route, flight.files}, flight.route.vehicle.name);
+    warnings += slope_warning(flight.route, "") + time_warning(flight.route, "");
+  }
+  return text + limits_text(options, flight) + warnings + images_warning(flight);
+}
+
+}  // namespace skycap::missions::package
