@@ -52,15 +52,11 @@ std::vector<Key> gain_keys() {
           "What rse, oa and uv multiply the visibility weight by at a voxel of occupancy p: p as "
           "the evaluation code, or 1 - p as published."),
       choice_key(
-          "Factor of the visibility weight in rse, oa and uv at a voxel of occupancy p. code: p, "
-          "as in the evaluation code. paper: 1 - p, as published.",
-          {"code", "paper"}, gain(&GainSettings::rear_side_end),
+          "volumetric.rse_end", {"code", "paper"}, gain(&GainSettings::rear_side_end),
           "Which rays that end on a surface rse counts: all as the evaluation code, or those "
           "from an uncertain voxel as published."),
-      choice_key("Rays ending on a surface that rse counts. code: all, as in the evaluation code. "
-                 "paper: those from an uncertain voxel, as published.",
-                 {"all_rays", "hitting_rays"}, gain(&GainSettings::area_share),
-                 "Rays that af uses as the total."),
+      choice_key("volumetric.af_share", {"all_rays", "hitting_rays"},
+                 gain(&GainSettings::area_share), "Rays that af uses as the total."),
   };
 }
 

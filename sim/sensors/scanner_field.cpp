@@ -95,11 +95,16 @@ double filled_share(const std::vector<Vector2d>& angles, const Vector2d& half_sl
     const int row = cells + static_cast<int>(std::floor(angle.y() / width));
     is_filled[static_cast<std::size_t>(row) * across + column] = 1;
   }
+  // Of the edges between rows, and between columns.
+  std::vector<double> sines, cosines;
+  for (int edge = 0; edge <= across; ++edge) {
+    const double angle = (edge - cells) * width;
+    sines.push_back(std::sin(angle));
+    cosines.push_back(std::cos(angle));
+  }
   std::size_t all = 0, filled = 0;
   const auto is_within = [&](int row, int column) {
-    const double elevation = (row - cells) * width, azimuth = (column - cells) * width;
-    const Vector3d d(std::sin(elevation), std::cos(elevation) * std::sin(azimuth),
-                     std::cos(elevation) * std::cos(azimuth));
+    const Vector3d d(sines[row], cosines[row] * sines[column], cosines[row] * cosines[column]);
     return d.z() > 0.0 && std::abs(d.x()) <= half_slopes.x() * d.z() &&
            std::abs(d.y()) <= half_slopes.y() * d.z();
   };

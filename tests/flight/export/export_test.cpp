@@ -102,7 +102,7 @@ TEST_P(EveryFormat, GetsItsNameOnlyOnceProvedAgain) {
   renamed.name = "another";
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { export_flight(renamed, format, KnownSpace(changed), scratch / name); }),
-              testing::HasSubstr(" is not written: "));
+              testing::HasSubstr(" was not written: "));
   EXPECT_EQ(content_of(scratch / name), write(plan, format));
   EXPECT_FALSE(scratch.has(name + ".part"));
 
@@ -175,12 +175,12 @@ TEST(Export, SaysWhatAFormatCannotHold) {
 TEST(Export, UnknownFormatsAndFilesAreNamed) {
   EXPECT_EQ(format_named("kmz"), Format::kmz);
   EXPECT_THAT(testing_support::complaint_of([&] { format_named("gpx"); }),
-              testing::HasSubstr("format \"gpx\" is not known"));
+              testing::HasSubstr("unknown format \"gpx\""));
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { read_route("/nowhere/mission.plan", {}, Vector3d::Zero()); }),
               testing::HasSubstr("/nowhere/mission.plan: "));
   EXPECT_THAT(testing_support::complaint_of([&] { format_of_file("a.gpx", ""); }),
-              testing::HasSubstr("a.gpx is no route file"));
+              testing::HasSubstr("a.gpx is not a route file"));
   EXPECT_EQ(format_of_file("a.csv", "latitude,longitude"), Format::litchi);
   EXPECT_EQ(format_of_file("a.csv", "# frame: NED"), Format::csv);
 }

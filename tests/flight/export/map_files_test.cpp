@@ -129,7 +129,7 @@ TEST(Kmz, HoldsWhatThePilotExpects) {
   }
   EXPECT_THAT(
       testing_support::complaint_of([&] { write_kmz(sample_plan(vehicle_profile("generic"))); }),
-      testing::HasSubstr("does not fly DJI's missions"));
+      testing::HasSubstr("does not fly DJI missions"));
 }
 
 // ---- KML -------------------------------------------------------------------------------------
@@ -238,11 +238,11 @@ TEST(Litchi, WhatItCannotHoldIsSaid) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints[1].shots = 20;
   EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
-              testing::HasSubstr("a station with 20 shots cannot be written for Litchi"));
+              testing::HasSubstr("a waypoint with 20 shots cannot be written for Litchi"));
   plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints.resize(120, plan.waypoints[0]);
   EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
-              testing::HasSubstr("has 120 waypoints; Litchi takes 99"));
+              testing::HasSubstr("has 120 waypoints; the limit of Litchi is 99"));
 }
 
 }  // namespace

@@ -280,7 +280,7 @@ TEST(MissionItems, TooManyForTheVehicleIsSaid) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.vehicle.max_waypoints = 10;
   EXPECT_THAT(testing_support::complaint_of([&] { mission_items(plan); }),
-              testing::HasSubstr("mission items; vehicle \"generic\" takes 10"));
+              testing::HasSubstr("mission items; vehicle \"generic\" accepts 10"));
   EXPECT_THAT(
       testing_support::complaint_of([&] { write_plan(sample_plan(vehicle_profile("m30t"))); }),
       testing::HasSubstr("does not fly MAVLink missions"));

@@ -141,9 +141,9 @@ TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
   FlightPlan plan = plan_of("generic");
   plan.returns.reset();
   EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan); }),
-              testing::HasSubstr("has no certified way home"));
+              testing::HasSubstr("has no verified return"));
   EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan_of("m350_rtk")); }),
-              testing::HasSubstr("takes no parameter files"));
+              testing::HasSubstr("does not use parameter files"));
 }
 
 // A ceiling leaves heights that are not whole metres: files and summaries state the same.

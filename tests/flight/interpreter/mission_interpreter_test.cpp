@@ -192,7 +192,7 @@ TEST_P(BothAutopilots, HeightsCountItemByItem) {
   FlightFacts facts = sample_facts(GetParam());
   facts.site.geoid_undulation.reset();
   EXPECT_THAT(testing_support::complaint_of([&] { interpret(file, facts); }),
-              testing::HasSubstr(", above sea level, needs"));
+              testing::HasSubstr(", above sea level, requires"));
 }
 
 TEST_P(BothAutopilots, PlacesThatMeanAsBeforeAreRefused) {

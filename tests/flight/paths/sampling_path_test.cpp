@@ -72,7 +72,7 @@ TEST(SamplingPath, IsTheSameWhateverWasAskedBefore) {
   EXPECT_THAT(testing_support::complaint_of([&] {
                 find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, {.seed = 0});
               }),
-              testing::HasSubstr("the seed of a search by sampling is 0"));
+              testing::HasSubstr("the seed of a sampling search is 0"));
 }
 
 TEST(SamplingPath, NoWayIsANormalAnswer) {

@@ -368,7 +368,7 @@ TEST(Route, AbsurdOptionsAreNamed) {
   RouteOptions nowhere = options();
   nowhere.takeoff.x() = std::nan("");
   EXPECT_THAT(testing_support::complaint_of([&] { plan({}, site(), nowhere); }),
-              testing::HasSubstr("the take-off place is not a finite position"));
+              testing::HasSubstr("the take-off point is not a finite position"));
   EXPECT_TRUE(plan({}, site()).sorties.empty());  // nothing to do is fine
 }
 

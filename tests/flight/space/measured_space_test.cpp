@@ -388,7 +388,7 @@ TEST(MeasuredSpace, BadScansAndConfigurationsAreNamed) {
               testing::HasSubstr("1 points but 0 pixels"));  // no pixels
   scan.pixels = {96 * 64};
   EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, small_camera); }),
-              testing::HasSubstr("a scan names pixel 6144"));  // one too far
+              testing::HasSubstr("a scan has pixel 6144"));  // one too far
   EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, 0.0); }),
               testing::HasSubstr("the ray spacing is 0.0"));
   EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace({.voxel = 0.0}); }),

@@ -16,6 +16,7 @@
 
 #include "geometry/directions/spherical_cap_methods.h"
 #include "tests/geometry/directions/directions.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::geometry {
 namespace {
@@ -150,7 +151,7 @@ TEST_P(EvenSphere, NoCapIsCentredWhereClearingsWereGivenUp) {
       const Clearings clearings = find_clearings(index, start);
       EXPECT_LE(clearings.cosine, start);
       EXPECT_TRUE(clearings.cosine == start || clearings.cosine >= best - 1e-12);
-      for (const Facet& facet : facets) {
+      for (const Facet& facet : testing_support::not_empty(facets)) {
         if (facet.offset > clearings.cosine + cap_tolerance) continue;
         EXPECT_TRUE(is_in_a_part(clearings, facet.normal)) << facet.offset - best;
         EXPECT_TRUE(clearings.meet(facet.normal, 1.0));
@@ -187,7 +188,7 @@ TEST_P(EvenSphere, OfEqualCapsTheOneNearestToTheClearDirectionWins) {
     const Vector3d clear = random_direction(random);
     const auto found = clearest_direction(occluded, clear, {CapPolicy::global});
     ASSERT_TRUE(found);
-    for (const Facet& facet : facets) {
+    for (const Facet& facet : testing_support::not_empty(facets)) {
       if (facet.offset > best + 0.5 * cap_tolerance) continue;
       EXPECT_LE(facet.normal.dot(clear), found->direction.dot(clear) + 10.0 * cap_tolerance);
     }

@@ -150,6 +150,7 @@ TEST_F(E57, HasNoUseForEntitiesAndDepth) {
 
 TEST_F(E57, ThatIsCutShortIsRefused) {
   const std::string whole = e57_of_points(E57Triples(300, {1, 2, 3}));
+  ASSERT_FALSE(whole.empty());
   for (std::size_t size = 0; size < whole.size(); size += 101) {
     EXPECT_NE(refusal(whole.substr(0, size)), "") << size;
   }

@@ -9,6 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::geometry {
@@ -80,7 +81,9 @@ TEST_F(RecordLogFile, EveryChangedByteBeforeTheLastRecordIsFound) {
     std::string changed = whole;
     changed[at] ^= 1;
     put(changed);
-    EXPECT_THROW(read_records(file_), Error) << at;
+    EXPECT_THAT(testing_support::complaint_of([&] { read_records(file_); }),
+                testing::HasSubstr("log: line "))
+        << at;
   }
 }
 
@@ -111,7 +114,8 @@ TEST_F(RecordLogFile, HasOneWriter) {
 }
 
 TEST(RecordLog, InAFolderThatIsNotThereIsRefused) {
-  EXPECT_THROW(RecordLog("/nowhere/to/be/found/log"), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { RecordLog("/nowhere/to/be/found/log"); }),
+              testing::HasSubstr("/nowhere/to/be/found/log: "));
 }
 
 }  // namespace

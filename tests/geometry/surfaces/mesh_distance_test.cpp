@@ -6,9 +6,11 @@
 #include <random>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/support/complaint.h"
 #include "tests/support/instruction_sets.h"
 
 namespace skycap::geometry {
@@ -214,7 +216,10 @@ TEST(MeshDistance, EndsWithCoordinatesThatNoFloatHolds) {
   }
 }
 
-TEST(MeshDistance, RefusesAMeshWithoutSurface) { EXPECT_THROW(MeshDistance(Mesh{}), Error); }
+TEST(MeshDistance, RefusesAMeshWithoutSurface) {
+  EXPECT_THAT(testing_support::complaint_of([&] { MeshDistance(Mesh{}); }),
+              testing::HasSubstr("there is no triangle with a positive area"));
+}
 
 }  // namespace
 }  // namespace skycap::geometry

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/not_empty.h"
+
 namespace skycap::geometry {
 namespace {
 
@@ -56,7 +58,7 @@ TEST(PolygonTriangulation, TurnsAsTheOutlineDoesOnAnyPlane) {
   }
   const Mesh mesh = Polygon().ring(outline).mesh();
   EXPECT_NEAR(area(mesh), 9.0 * 9.0 - 5.0 * 5.0, 1e-6);
-  for (const auto& t : mesh.triangles) {
+  for (const auto& t : testing_support::not_empty(mesh.triangles)) {
     const Vector3d normal = (mesh.vertices[t[1]] - mesh.vertices[t[0]])
                                 .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]);
     EXPECT_GT(normal.dot(right.cross(up)), 0.0);

@@ -13,6 +13,7 @@
 #include "missions/config/mission_keys.h"
 #include "missions/config/resolve.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::missions {
 namespace {
@@ -68,7 +69,7 @@ TEST(MissionKeys, StandInTheirSectionAndOnce) {
 // For each key, what the schema calls the limits is where the reader starts to refuse.
 TEST(MissionSchema, HasTheReadersTypesAndRanges) {
   const Json schema = shipped_schema();
-  for (const config::Key& key : config::mission_keys()) {
+  for (const config::Key& key : testing_support::not_empty(config::mission_keys())) {
     const Json& property = property_of(schema, key.path);
     const Json& number = key.type == config::KeyType::vector ? property["items"] : property;
     if (key.type == config::KeyType::choice) {

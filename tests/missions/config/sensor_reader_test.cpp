@@ -8,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "sim/sensors/scan_pattern.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -124,7 +125,8 @@ TEST(FindSensor, SaysWhichSensorsThereAre) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("expected one of: dji_zenmuse_l1"));
   }
-  EXPECT_THROW(config::find_sensor("no/such/file.yaml"), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { config::find_sensor("no/such/file.yaml"); }),
+              testing::HasSubstr("no/such/file.yaml: "));
 }
 
 }  // namespace

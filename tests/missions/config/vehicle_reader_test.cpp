@@ -10,6 +10,7 @@
 #include "geometry/error.h"
 #include "missions/config/preset_files.h"
 #include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
@@ -38,7 +39,7 @@ TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
 // The energy model's calibration holds for every one: a full battery hovers as long as the sheet
 // says.
 TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
-  for (const auto& [preset, text] : config::vehicle_preset_files()) {
+  for (const auto& [preset, text] : testing_support::not_empty(config::vehicle_preset_files())) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     const flight::Motion motion(vehicle, {.reserve = 0.0});
     const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
@@ -102,7 +103,9 @@ TEST(VehicleReader, ReadsFiles) {
   std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";
   EXPECT_EQ(config::find_vehicle(path).max_speed, 12.0);
   EXPECT_EQ(config::find_vehicle(path).position_error, 1.5);
-  EXPECT_THROW(config::find_vehicle((folder.path() / "none.yaml").string()), Error);
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { config::find_vehicle((folder.path() / "none.yaml").string()); }),
+              testing::HasSubstr("none.yaml: "));
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ TEST(VisibleSamples, AreThoseOutside) {
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
   const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
+  ASSERT_FALSE(samples.points.empty());
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
     const bool is_outside = samples.points[i].cwiseAbs().maxCoeff() > 0.9F;
     ASSERT_EQ(is_visible[i], is_outside ? 1 : 0) << samples.points[i].transpose();
@@ -58,6 +59,7 @@ TEST(VisibleSamples, ObeyTheGroundClearance) {
   evaluation::Admissible above = from_anywhere;
   above.allows = [](const geometry::View& view) { return view.position.z() >= 0.0; };
   const auto is_visible = evaluation::visible_samples(samples.points, scene, above);
+  ASSERT_FALSE(samples.points.empty());
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
     ASSERT_EQ(is_visible[i], samples.normals[i].z() > -0.5F ? 1 : 0);
   }

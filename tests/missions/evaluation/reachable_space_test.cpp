@@ -34,11 +34,11 @@ bool leads_inside(const geometry::Mesh& mesh, const ReachableSpace::Config& conf
 }
 
 TEST(ReachableSpace, HasNoSealedRooms) {
-  const geometry::Mesh box = sim::models::box({-30, -30, 0}, {30, 30, 60});
+  const geometry::Mesh box = sim::models::box({-12, -12, 0}, {12, 12, 24});
   for (const double radius : {0.0, 0.5, 5.0}) {
     EXPECT_FALSE(leads_inside(box, {.radius = radius})) << radius;
-    EXPECT_FALSE(leads_inside(box, {.radius = radius}, {29.9, 29.9, 0.1})) << radius;
-    EXPECT_TRUE(leads_inside(box, {.radius = radius}, {0, 0, 65.5})) << radius;
+    EXPECT_FALSE(leads_inside(box, {.radius = radius}, {11.9, 11.9, 0.1})) << radius;
+    EXPECT_TRUE(leads_inside(box, {.radius = radius}, {0, 0, 29.5})) << radius;
     EXPECT_TRUE(leads_inside(box, {.radius = radius}, {500, 0, 1})) << radius;
   }
 }

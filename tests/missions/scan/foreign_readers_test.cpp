@@ -26,6 +26,7 @@
 #include "missions/scan/scan_runner.h"
 #include "tests/missions/scan/las_file.h"
 #include "tests/sim/shapes.h"
+#include "tests/support/not_empty.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
@@ -246,7 +247,7 @@ TEST_F(ForeignReader, PclsOwnFilesAreRead) {
     ASSERT_EQ(read.positions.size(), 1980U);
     ASSERT_EQ(read.normals.size(), read.positions.size());
     std::size_t next = 0;
-    for (const pcl::PointNormal& point : cloud) {
+    for (const pcl::PointNormal& point : testing_support::not_empty(cloud)) {
       if (std::isnan(point.x)) continue;
       // PCL writes eight digits of text.
       ASSERT_LT((read.positions[next] - point.getVector3fMap()).norm(), way == 0 ? 1e-5F : 1e-30F);

@@ -14,6 +14,7 @@
 #include "missions/scan/las_format.h"
 #include "tests/missions/scan/las_file.h"
 #include "tests/sim/shapes.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -179,12 +180,17 @@ TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
     }
   }
   std::vector<scan::CloudFile> none;
-  EXPECT_THROW(scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, none,
-                              {.begun = {.firings = 1}}),
-               Error);
-  EXPECT_THROW(scan::CloudFile(folder / "whole.las", scan::las_format({}),
-                               scan::ReturnPosition::reported, scan::CloudState{{}, 1'000'000'000}),
-               Error);
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, none,
+                               {.begun = {.firings = 1}});
+              }),
+              testing::HasSubstr("was interrupted after 1 firings"));
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                scan::CloudFile(folder / "whole.las", scan::las_format({}),
+                                scan::ReturnPosition::reported,
+                                scan::CloudState{{}, 1'000'000'000});
+              }),
+              testing::HasSubstr("less than the 1000000000"));
 }
 
 TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
@@ -199,10 +205,14 @@ TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
        {scan::las_format({}), scan::e57_format({}, ""), scan::ply_format(), scan::pcd_format()}) {
     std::vector<scan::CloudFile> near_zero;
     near_zero.emplace_back(folder / "scan", format);
-    EXPECT_THROW(scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, near_zero, {}),
-                 Error);
+    EXPECT_THAT(
+        testing_support::complaint_of([&] {
+          scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, near_zero, {});
+        }),
+        testing::HasSubstr("a point is "));
   }
-  EXPECT_THROW(scan::las_format({.point_format = 5}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { scan::las_format({.point_format = 5}); }),
+              testing::HasSubstr("las.point_format is 5"));
 }
 
 }  // namespace

@@ -332,6 +332,7 @@ TEST(FlownPackage, KeepsTheWaysOfTheSurveyInItsOrder) {
   double top = survey.pad.z() + route.options.takeoff_climb;
   for (const geometry::View& view : survey.views) top = std::max(top, view.position.z());
   const flight::ReturnableSpace returnable(space, planning_law(route.options, top));
+  ASSERT_FALSE(route.legs.empty());
   for (std::size_t i = 0; i < route.legs.size(); ++i) {
     EXPECT_EQ(route.stations[i + 1].view_index, i + 1);
     EXPECT_EQ(route.legs[i].points.front(), survey.ways[i + 1].front()) << i;

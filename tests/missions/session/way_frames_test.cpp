@@ -18,6 +18,7 @@
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::missions {
 namespace {
@@ -95,8 +96,8 @@ TEST(WayFrames, LookAtTheSceneWhereBothViewsDo) {
   const Vector3d scene(50, 60, 5);
   const View from = geometry::look_at({0, 0, 20}, scene),
              to = geometry::look_at({0, 30, 20}, scene);
-  for (const auto& [frame, velocity, time, stretch] :
-       motion.frames({{from.position, to.position}, 2.0}, from, to, 1.0)) {
+  for (const auto& [frame, velocity, time, stretch] : testing_support::not_empty(
+           motion.frames({{from.position, to.position}, 2.0}, from, to, 1.0))) {
     const Vector3d wanted = (scene - frame.position).normalized();
     EXPECT_LT(std::acos(wanted.dot(frame.direction)), 0.1);
   }

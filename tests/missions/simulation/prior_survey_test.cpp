@@ -18,6 +18,7 @@
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::missions {
 namespace {
@@ -70,7 +71,7 @@ TEST(PriorSurvey, KeepsEveryLegClearOfObstaclesNobodyMeasured) {
     const session::SurveyRecord record = simulation::run_survey(
         mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), seed, 1);
     ASSERT_GT(record.views.size(), 3U);
-    for (const session::FlownLeg& leg : record.flown->legs) {
+    for (const session::FlownLeg& leg : testing_support::not_empty(record.flown->legs)) {
       EXPECT_GE(nearest(leg.points, mast), mission.flight().clearance + uncertainty);
     }
     const session::SurveyRecord other = simulation::run_survey(

@@ -13,6 +13,7 @@
 #include "missions/config/resolve.h"
 #include "missions/config/sensor_reader.h"
 #include "sim/sensors/survey_sensor.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::missions {
 namespace {
@@ -141,7 +142,7 @@ TEST(ScannerField, WhatARosetteInFlightProvesFreeHoldsNothing) {
                    rays);
     }
     EXPECT_GT(space.free_volume(), 1000.0) << lidar;  // of 32,000
-    for (const Eigen::Vector3f& p : truth.points) {
+    for (const Eigen::Vector3f& p : testing_support::not_empty(truth.points)) {
       const Vector3d place = p.cast<double>();
       ASSERT_NE(space.closest({place, place}, 0.01).kind, flight::ObstacleKind::none)
           << lidar << " at " << place.transpose();

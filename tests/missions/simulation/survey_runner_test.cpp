@@ -19,6 +19,7 @@
 #include "survey/planners/planner_options.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::missions {
 namespace {
@@ -111,7 +112,7 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
       "  no_fly: [{corners: [[1, -3], [3, -3], [3, 1], [1, 1]], bottom: -5, top: 1.5}]\n"
       "  lowest_height: 0.2\n"
       "  highest_height: 1.9\n";
-  for (const std::string& name : planner_names()) {
+  for (const std::string& name : testing_support::not_empty(planner_names())) {
     const config::MissionSetup mission =
         config::parse_mission(quick_mission(site), "m.yaml",
                               {{"--planner", "planner.name", name},

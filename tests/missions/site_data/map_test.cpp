@@ -3,6 +3,7 @@
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "tests/missions/site_data/cube_files.h"
+#include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions::site_data {
@@ -180,11 +181,15 @@ TEST_F(Map, KeepsWhatIsWithinAPolygon) {
 
 TEST_F(Map, OpensNothingButTheFile) {
   // A VRT may name any other file: its driver is not among those that are asked.
-  EXPECT_THROW(read("a.tif", "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"/>"), Error);
-  EXPECT_THROW(read("a.gpkg", "<OGRVRTDataSource/>"), Error);
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { read("a.tif", "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"/>"); }),
+              testing::HasSubstr("a.tif: "));
+  EXPECT_THAT(testing_support::complaint_of([&] { read("a.gpkg", "<OGRVRTDataSource/>"); }),
+              testing::HasSubstr("a.gpkg: "));
   Source source;
   source.file = "/vsizip/a.zip";
-  EXPECT_THROW(read_prior(source, {}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { read_prior(source, {}); }),
+              testing::HasSubstr("/vsizip/a.zip: "));
 }
 
 }  // namespace

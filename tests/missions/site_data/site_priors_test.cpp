@@ -84,6 +84,7 @@ TEST(SitePriors, AThinnedSurfaceModelHidesNoHeight) {
   const auto config = obstacle_of({.file = "dsm.tif"}, Prior{.grid = grid});
   EXPECT_LT(config.columns.size(), 2'000'000U);
   const flight::PriorObstacle obstacle(config);
+  ASSERT_FALSE(grid.nodes.empty());
   for (std::size_t i = 0; i < grid.nodes.size(); i += 997) {
     EXPECT_EQ(obstacle.distance(grid.nodes[i].cast<double>(), 1.0), 0.0);
   }
@@ -127,6 +128,7 @@ TEST(Terrain, KeepsThePeaksOfALargeGrid) {
     }
   }
   const Terrain terrain({&prior});
+  ASSERT_FALSE(prior.grid.nodes.empty());
   for (std::size_t i = 0; i < prior.grid.nodes.size(); i += 1237) {
     const Vector3f& node = prior.grid.nodes[i];
     EXPECT_GE(terrain.height(node.head<2>().cast<double>()).value(), node.z() - 1e-4);

@@ -15,6 +15,7 @@
 #include "missions/support/external_program.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/sim/shapes.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -90,10 +91,16 @@ TEST(Reconstruct, ThinsTheCloudToTheSpacing) {
 
 TEST(Reconstruct, RefusesWhatMakesNoSurface) {
   const std::vector<Vector3f> few(99, Vector3f::Zero());
-  EXPECT_THROW(support::reconstruct(few, {}, {}), Error);
-  EXPECT_THROW(support::reconstruct(few, {}, {.depth = 13}), Error);
-  EXPECT_THROW(support::reconstruct(few, {}, {.spacing = -1.0}), Error);
-  EXPECT_THROW(support::reconstruct(few, {}, {.least_density = 1.0}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { support::reconstruct(few, {}, {}); }),
+              testing::HasSubstr("too few points: 99"));
+  EXPECT_THAT(testing_support::complaint_of([&] { support::reconstruct(few, {}, {.depth = 13}); }),
+              testing::HasSubstr("reconstruction.depth is 13"));
+  EXPECT_THAT(
+      testing_support::complaint_of([&] { support::reconstruct(few, {}, {.spacing = -1.0}); }),
+      testing::HasSubstr("reconstruction.spacing is -1.0"));
+  EXPECT_THAT(
+      testing_support::complaint_of([&] { support::reconstruct(few, {}, {.least_density = 1.0}); }),
+      testing::HasSubstr("reconstruction.least_density is 1.0"));
 }
 
 class ReconstructVerb : public testing::Test {

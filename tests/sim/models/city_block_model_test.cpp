@@ -12,6 +12,7 @@
 #include "sim/models/models.h"
 #include "sim/scene/scene.h"
 #include "tests/sim/models/closed_solids.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::sim {
 namespace {
@@ -59,7 +60,8 @@ TEST(CityBlock, HasNineToSixteenSeparateBuildingsOnItsGround) {
 
 TEST(CityBlock, EveryPartIsClosedAndFacesOutwards) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    for (const models::Part& part : models::city_block({seed, {0.02}})) {
+    for (const models::Part& part :
+         testing_support::not_empty(models::city_block({seed, {0.02}}))) {
       ASSERT_EQ(models::why_not_closed(part.mesh), "") << part.name << ", seed " << seed;
     }
   }
@@ -82,18 +84,48 @@ TEST(CityBlock, NoRayFromAboveMeetsABackFace) {
   EXPECT_EQ(backs, 0);
 }
 
-TEST(CityBlock, OneCanLookThroughTheArcadeAndIntoACourt) {
-  bool is_open = false;
-  const models::Parts parts = models::city_block({1, {0.02}});
-  const Scene scene(join(parts));
-  // Level rays through the walk behind the piers, along x.
-  for (const auto& [name, mesh, surface] : parts) {
-    if (name.find("arcade wall") == std::string::npos) continue;
-    const Eigen::AlignedBox3d box = bounding_box(mesh);
-    const Vector3d from(box.min().x() - 1.0, box.max().y() + 1.5, 1.6);
-    is_open = !scene.is_blocked(from, {box.max().x() + 1.0, from.y(), 1.6});
+TEST(CityBlock, EveryArcadeIsOpenAlongItsWalkAndThroughItsArches) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    const models::Parts parts = models::city_block({seed, {0.02}});
+    const Scene scene(join(parts));
+    int arcades = 0;
+    for (const auto& [name, mesh, surface] : parts) {
+      if (name.find("arcade wall") == std::string::npos) continue;
+      ++arcades;
+      const Eigen::AlignedBox3d wall = bounding_box(mesh);
+      // The walk is behind the wall, 2.9 m wide.
+      const double eye = 1.6, walk = wall.max().y() + 1.45;
+      EXPECT_FALSE(scene.is_blocked({wall.min().x(), walk, eye}, {wall.max().x(), walk, eye}));
+      int rays = 0, through = 0;
+      for (double x = wall.min().x(); x < wall.max().x(); x += 0.05, ++rays) {
+        through += !scene.is_blocked({x, wall.min().y() - 0.3, eye}, {x, walk, eye});
+      }
+      // Piers of 0.9 m in bays of 4.2 to 5.6 m.
+      EXPECT_GT(through, 0.7 * rays);
+      EXPECT_LT(through, 0.9 * rays);
+    }
+    EXPECT_GT(arcades, 0);
   }
-  EXPECT_TRUE(is_open);
+}
+
+TEST(CityBlock, CourtsAreEnclosedByWingsAndOpenToTheSky) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const models::Parts parts = models::city_block({seed, {0.02}});
+    const Scene scene(join(parts));
+    int courts = 0;
+    for (const auto& [number, box] : buildings(parts)) {
+      const Vector3d middle(box.center().x(), box.center().y(), 2.0);
+      if (scene.is_blocked(middle + Vector3d(0, 0, 80), middle)) continue;
+      int walls = 0;
+      for (const Vector3d& side :
+           {Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
+        walls += scene.is_blocked(middle, middle + 0.5 * box.sizes().cwiseProduct(side));
+      }
+      courts += walls == 4;
+    }
+    EXPECT_GE(courts, 2) << "one in each row of backs, seed " << seed;
+  }
 }
 
 TEST(CityBlock, TheSeedDecides) {
@@ -109,7 +141,7 @@ TEST(CityBlock, TheSeedDecides) {
 TEST(BuiltinModel, PutsItsGroundUnderItOnDemand) {
   ModelOptions options;
   options.detail = LevelOfDetail::coarse;
-  for (const std::string_view name : builtin_models()) {
+  for (const std::string_view name : testing_support::not_empty(builtin_models())) {
     options.has_ground = false;
     const geometry::Mesh bare = builtin_model(name, options);
     options.has_ground = true;

@@ -11,6 +11,7 @@
 #include "sim/models/models.h"
 #include "sim/scene/scene.h"
 #include "tests/sim/models/closed_solids.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::sim::models {
 namespace {
@@ -52,7 +53,7 @@ class Places {
 
 TEST_P(Families, AreClosedSolidsThatFaceOutwards) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    for (const Part& part : scene_of(seed).parts) {
+    for (const Part& part : testing_support::not_empty(scene_of(seed).parts)) {
       ASSERT_EQ(why_not_closed(part.mesh), "") << part.name << ", seed " << seed;
     }
   }
@@ -76,8 +77,10 @@ TEST_P(Families, AreDrawnFromTheSeedAlone) {
 
 TEST_P(Families, LetNoRayIntoSealedRoomsAndSomeIntoOpenOnes) {
   Places places;
+  std::size_t rooms = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const FamilyScene made = scene_of(seed);
+    rooms += made.sealed_rooms.size() + made.open_rooms.size();
     const Scene scene(join(made.parts));
     for (const AlignedBox3d& room : made.sealed_rooms) {
       for (int i = 0; i < 2000; ++i) {
@@ -92,6 +95,7 @@ TEST_P(Families, LetNoRayIntoSealedRoomsAndSomeIntoOpenOnes) {
       EXPECT_GT(seen, 5) << "seed " << seed << ", room at " << room.center().transpose();
     }
   }
+  EXPECT_GT(rooms, 0U);
 }
 
 std::string name_of(const testing::TestParamInfo<std::string_view>& family) {
@@ -119,7 +123,7 @@ FamilyScene drawn(FamilyScene (*make)(geometry::RandomNumbers&, const Fineness&)
 
 TEST(FamilyScenes, HaveWhatTheyAreNamedAfter) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    for (const Part& part : drawn(factory, seed).parts) {
+    for (const Part& part : testing_support::not_empty(drawn(factory, seed).parts)) {
       const Vector3d size = bounding_box(part.mesh).sizes();
       if (part.name == "chimney") {
         EXPECT_GE(size.z(), 10.0 * size.x()) << "not slender";
@@ -144,6 +148,7 @@ TEST(FamilyScenes, LanesOfTheOldTownAreWideEnoughToFlyThrough) {
     for (const Part& part : drawn(old_town, seed).parts) {
       if (part.name == "walls") houses.push_back(bounding_box(part.mesh));
     }
+    ASSERT_FALSE(houses.empty());
     for (std::size_t i = 0; i < houses.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         EXPECT_GE(houses[i].exteriorDistance(houses[j]), 2.6 - 1e-9);
@@ -153,7 +158,7 @@ TEST(FamilyScenes, LanesOfTheOldTownAreWideEnoughToFlyThrough) {
 }
 
 TEST(FamilyScenes, OnlyTheGlassHouseHasGlassAndAMirror) {
-  for (const std::string_view name : model_families()) {
+  for (const std::string_view name : testing_support::not_empty(model_families())) {
     const std::vector<Surface> surfaces = builtin_surfaces(name);
     if (name != "glass-house") {
       EXPECT_TRUE(surfaces.empty()) << name;

@@ -12,6 +12,7 @@
 #include "sim/models/masonry/tower.h"
 #include "sim/models/masonry/wall.h"
 #include "tests/sim/models/closed_solids.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::sim::models {
 namespace {
@@ -192,7 +193,7 @@ TEST(CorinthianColumn, IsMadeOfClosedSolidsOfTheOrdersHeight) {
   for (const int flutes : {0, 24}) {
     const Parts parts = corinthian_column({11.3, 0.565, 0.475, flutes, pi + 0.1}, Fineness{0.005});
     int leaves = 0, volutes = 0;
-    for (const Part& part : parts) {
+    for (const Part& part : testing_support::not_empty(parts)) {
       EXPECT_EQ(why_not_closed(part.mesh), "") << part.name;
       leaves += part.name == "acanthus leaf";
       volutes += part.name == "capital volute";

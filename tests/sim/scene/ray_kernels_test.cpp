@@ -19,6 +19,7 @@
 #include "tests/sim/shapes.h"
 #include "tests/sim/triangle_soup.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::sim {
 namespace {
@@ -104,7 +105,7 @@ TEST(RayKernels, AgreeInPacketsAloneAndOnEveryInstructionSet) {
   for (SingleRay& each : expected) {
     baseline_ray_kernels.cast_single(triangles.target(), each, infinity);
   }
-  for (const geometry::InstructionSet set : instruction_sets()) {
+  for (const geometry::InstructionSet set : testing_support::not_empty(instruction_sets())) {
     const InstructionSetLimit limit(set);
     for (std::size_t first = 0; first + RayPacket::width <= rays.size();
          first += RayPacket::width) {

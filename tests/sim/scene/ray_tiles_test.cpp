@@ -7,6 +7,7 @@
 #include "sim/scene/ray_kernels.h"
 #include "tests/sim/triangle_soup.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::sim {
 namespace {
@@ -49,7 +50,7 @@ TEST(RayKernels, AgreeInTilesAndAlone) {
       const float width = i % 3 == 0 ? 2.0F : i % 3 == 1 ? 0.3F : 0.02F;
       const float reach = i % 5 == 0 ? 6.0F : infinity;
       const std::vector<RayPacket> packets = tile(random, count, width);
-      for (const geometry::InstructionSet set : instruction_sets()) {
+      for (const geometry::InstructionSet set : testing_support::not_empty(instruction_sets())) {
         const InstructionSetLimit limit(set);
         std::vector<RayPacket> all = packets, distances = packets;
         const int number = static_cast<int>(count);

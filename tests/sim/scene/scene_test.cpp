@@ -13,6 +13,7 @@
 #include "geometry/error.h"
 #include "tests/sim/packets.h"
 #include "tests/sim/shapes.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::sim {
 namespace {
@@ -293,9 +294,15 @@ TEST(Scene, CopiesTakeNoMemoryToSpeakOf) {
   EXPECT_EQ(hit->triangle / ball.triangles.size(), 150U);
 }
 
-TEST(Scene, RejectsToHaveNoParts) { EXPECT_THROW(Scene(std::span<const ScenePart>(), 1), Error); }
+TEST(Scene, RejectsToHaveNoParts) {
+  EXPECT_THAT(testing_support::complaint_of([&] { Scene(std::span<const ScenePart>(), 1); }),
+              testing::HasSubstr("the scene has no meshes"));
+}
 
-TEST(Scene, RejectsAMeshWithoutSurface) { EXPECT_THROW(Scene(geometry::Mesh{}, 1), Error); }
+TEST(Scene, RejectsAMeshWithoutSurface) {
+  EXPECT_THAT(testing_support::complaint_of([&] { Scene(geometry::Mesh{}, 1); }),
+              testing::HasSubstr("there is no triangle with a positive area"));
+}
 
 }  // namespace
 }  // namespace skycap::sim

@@ -204,6 +204,7 @@ TEST(ClosedForm, ALineScannersSpacingAndDensity) {
 
   const double step = 2 * pi * config.rotation_rate * config.firing_period;
   std::vector<double> nadirs;  // along the track
+  ASSERT_GT(returns.size(), 1U);
   for (std::size_t i = 1; i < returns.size(); ++i) {
     const Vector3d before = returns.origin + returns.points[i - 1].cast<double>();
     const Vector3d after = returns.origin + returns.points[i].cast<double>();

@@ -11,6 +11,7 @@
 #include "sim/sensors/vector_kernels.h"
 #include "tests/sim/shapes.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::sim {
 namespace {
@@ -323,7 +324,7 @@ TEST(DepthCamera, PointsAreTheSameOnEveryInstructionSet) {
     row.noise_direction = direction;
     const auto expected = emit(baseline_kernels);
     EXPECT_GT(expected.second.size(), 100U);
-    for (const geometry::InstructionSet set : instruction_sets()) {
+    for (const geometry::InstructionSet set : testing_support::not_empty(instruction_sets())) {
       const InstructionSetLimit limit(set);
       EXPECT_EQ(emit(vector_kernels()), expected) << static_cast<int>(set);
     }

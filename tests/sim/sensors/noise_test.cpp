@@ -10,7 +10,9 @@
 
 #include "geometry/error.h"
 #include "sim/sensors/vector_kernels.h"
+#include "tests/support/complaint.h"
 #include "tests/support/instruction_sets.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::sim {
 namespace {
@@ -110,7 +112,7 @@ TEST(Noise, IsTheSameOnEveryInstructionSet) {
   for (const std::size_t length : {1UL, 31UL, 32UL, 127UL, 128UL, 129UL, count}) {
     std::vector<float> expected(length), sample(length);
     baseline_kernels.fill_normals(key, 64, expected.data(), length);
-    for (const geometry::InstructionSet set : instruction_sets()) {
+    for (const geometry::InstructionSet set : testing_support::not_empty(instruction_sets())) {
       const InstructionSetLimit limit(set);
       fill_normals(key, 64, sample);
       EXPECT_EQ(sample, expected) << static_cast<int>(set) << ", " << length;
@@ -126,7 +128,8 @@ TEST(NoiseConfig, RejectsANegativeSigma) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_config);
     EXPECT_THAT(error.what(), testing::HasSubstr("noise.sigma is -0.01"));
   }
-  EXPECT_THROW(NoiseConfig{.sigma = NAN}.validate(), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { NoiseConfig{.sigma = NAN}.validate(); }),
+              testing::HasSubstr("noise.sigma is nan"));
 }
 
 }  // namespace

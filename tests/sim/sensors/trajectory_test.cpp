@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::sim {
 namespace {
@@ -48,9 +49,15 @@ TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("pose 2 is not later"));
   }
-  EXPECT_THROW(Trajectory(std::vector<StampedPose>{}), Error);
-  EXPECT_THROW(Trajectory(std::vector<StampedPose>{{.time = NAN}}), Error);
-  EXPECT_THROW(Trajectory(std::vector<StampedPose>{{.attitude = Quaterniond(0, 0, 0, 0)}}), Error);
+  EXPECT_THAT(testing_support::complaint_of([&] { Trajectory(std::vector<StampedPose>{}); }),
+              testing::HasSubstr("has no poses"));
+  EXPECT_THAT(
+      testing_support::complaint_of([&] { Trajectory(std::vector<StampedPose>{{.time = NAN}}); }),
+      testing::HasSubstr("pose 0 has a value that is not a finite number"));
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                Trajectory(std::vector<StampedPose>{{.attitude = Quaterniond(0, 0, 0, 0)}});
+              }),
+              testing::HasSubstr("pose 0 has an attitude of length zero"));
 }
 
 // A Gauss-Markov process sampled every tau has correlation 1/e between neighbours; N = 40,000

@@ -80,6 +80,22 @@ TEST(PriorGuesses, AreFoundWhereTheyAreMeasured) {
   }
 }
 
+// The same in the planner's guesses: what was shown is not guessed, the far side is.
+TEST(PriorGuesses, AreGuessedOnlyWhereTheyAreOpen) {
+  Knowledge known;
+  known.look_from({2, 0, 0});
+  skycap::UnseenSurface unseen({});
+  unseen.expect({sphere_at({0, 0, 0}, 0.01F), spacing});
+  unseen.predict(known.map, known.space, std::nullopt);
+  std::size_t guessed = 0;
+  for (const skycap::UnseenPatch& patch : unseen.patches()) {
+    if (patch.kind != skycap::prior_kind) continue;
+    EXPECT_LE(patch.position.x(), 0.25F);
+    ++guessed;
+  }
+  EXPECT_GT(guessed, 1000U);
+}
+
 // A sphere that is not there, beside the ball: the sensor sees through its place.
 TEST(PriorGuesses, AreRefutedWhereASensorSeesThroughThem) {
   Knowledge known;

@@ -109,7 +109,7 @@ TEST(SphereViews, StayAboveTheLeastHeight) {
   }
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { volumetric::sphere_views(10, Vector3d::Zero(), 2.0, 3.0, 5); }),
-              testing::HasSubstr("above the least height of 3 m"));
+              testing::HasSubstr("above the minimum height of 3 m"));
 }
 
 TEST(VolumetricPlanner, VisitsEveryCandidateOnce) {
@@ -232,7 +232,7 @@ TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {
 TEST(VolumetricPlanner, RefusesAFirstScanWithoutTheScene) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
   EXPECT_THAT(testing_support::complaint_of([&] { planner.next_view(geometry::Scan{}); }),
-              testing::HasSubstr("the first scan holds no point of the scene"));
+              testing::HasSubstr("the first scan contains no point of the scene"));
 }
 
 TEST(VolumetricConfig, NamesTheFieldThatIsWrong) {

@@ -9,6 +9,7 @@
 #include "geometry/error.h"
 #include "missions/batch/benchmark/benchmark_report.h"
 #include "missions/batch/benchmark/paper_results.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -202,8 +203,23 @@ TEST(TrialText, GivesTheSameTrialBack) {
 }
 
 TEST(TrialText, RefusesWhatIsNoTrial) {
-  for (const char* text : {"", "{}", "[1, 2]", "{\"seed\": \"x\"}"}) {
-    EXPECT_THROW(batch::parse_trial(text), Error) << text;
+  const auto complaint = [](const std::string& text) {
+    return testing_support::complaint_of([&] { batch::parse_trial(text); });
+  };
+  for (const char* text : {"", "[1, 2]"}) {
+    EXPECT_THAT(complaint(text), HasSubstr("is not a trial: ")) << text;
+  }
+  // Of each field: that it is missing, and that it is of another type.
+  const std::string whole = batch::trial_json(trial(0.5, 0.25, 0.7));
+  const auto fields = nlohmann::json::parse(whole);
+  ASSERT_GE(fields.size(), 15U);
+  for (const auto& [name, value] : fields.items()) {
+    if (name == "stop_reason" || name == "flown_s") continue;  // another message; not read
+    nlohmann::json spoiled = fields;
+    spoiled.erase(name);
+    EXPECT_THAT(complaint(spoiled.dump()), HasSubstr("'" + name + "'"));
+    spoiled[name] = "x";
+    EXPECT_THAT(complaint(spoiled.dump()), HasSubstr("is not a trial: ")) << name;
   }
 }
 

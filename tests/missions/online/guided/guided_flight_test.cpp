@@ -17,6 +17,7 @@
 #include "missions/online/guided/preflight.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/online/guided/test_autopilot.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::missions::online {
 namespace {
@@ -237,7 +238,7 @@ TEST(GuidedFlight, DoesNotFlyBackAfterAShortStall) {
     ASSERT_FALSE(trouble) << trouble->what;
     const std::vector<Vector3d>& track = flight.autopilot.track();
     double farthest = -75.0;
-    for (const Vector3d& place : track) {
+    for (const Vector3d& place : testing_support::not_empty(track)) {
       if (place.y() > 0.5) break;  // the first leg leads east
       EXPECT_GT(place.x(), farthest - 0.3) << duration;
       farthest = std::max(farthest, place.x());

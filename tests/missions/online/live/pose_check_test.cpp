@@ -12,6 +12,7 @@
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "tests/missions/room_scene.h"
+#include "tests/support/not_empty.h"
 
 namespace skycap::missions::online {
 namespace {
@@ -94,7 +95,7 @@ TEST_F(PoseChecks, NeverSuspectTrueOnes) {
   for (const double noise : {0.0, 0.005, 0.02, 0.05}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       Survey survey(scene_, noise, seed);
-      for (const Vector3d& stop : stops) {
+      for (const Vector3d& stop : testing_support::not_empty(stops)) {
         const geometry::Scan scan = survey.scan(stop, cupboard);
         const PoseFinding finding = survey.find(scan);
         EXPECT_FALSE(finding.is_wrong)

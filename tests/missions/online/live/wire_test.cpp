@@ -51,6 +51,7 @@ TEST(Wire, IsWhatTheDocumentationSays) {
 
 TEST(Wire, WaitsForTheRestOfAMessage) {
   const std::string frame = frame_of(sample);
+  ASSERT_FALSE(frame.empty());
   for (std::size_t size = 0; size < frame.size(); ++size) {
     FrameReader reader;
     reader.feed(frame.substr(0, size));
