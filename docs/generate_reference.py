@@ -279,7 +279,7 @@ AREAS = [  # what a source's path has, and what its messages are about; the firs
      "Sensors and vehicle files"),
     (r"missions/config/(mission_rules|derived)|missions/(simulation|session)",
      "Missions that cannot work"),
-    (r"missions/(config|wizard)|campaign/key_changes", "Mission files"),
+    (r"missions/(config|wizard)", "Mission files"),
     (r"missions/site_data", "Prior data and `site`"),
     (r"missions/scene|sim/models", "Scenes"),
     (r"missions/online/live", "Live surveys"),

@@ -12,11 +12,8 @@
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
-#include "missions/batch/benchmark/benchmark_results.h"
-#include "missions/batch/benchmark/contestants.h"
-#include "missions/batch/campaign/item_runner.h"
-#include "missions/batch/campaign/tables.h"
-#include "missions/cli/survey_progress.h"
+#include "missions/batch/benchmark/benchmark_report.h"
+#include "missions/cli/survey_batch.h"
 #include "missions/cli/verbs.h"
 #include "missions/cli/write_page.h"
 #include "missions/config/resolve.h"
@@ -84,7 +81,7 @@ Entry entry_of(const fs::path& file, const batch::Contestant* contestant, const 
     setup.mission = config::with_keys(setup.mission, {{"--scenes", "scene.seed", seed}});
     entry.title = options.missions.size() == 1 ? scene : setup.title + " " + scene;
     setup.title = fmt::format("{} {}", entry.title, seed);
-    setup.fingerprint = batch::fingerprint_of(setup);
+    setup.name_kind_and_fingerprint();
     entry.setups.push_back(std::make_shared<batch::Setup>(std::move(setup)));
   }
   return entry;
@@ -146,8 +143,7 @@ class Benchmark {
         console_(console),
         entries_(entries_of(options, console)),
         folder_(options.out.value_or("results/benchmark")),
-        progress_("benchmark", console, options.is_quiet, geometry::thread_count(options.threads)) {
-  }
+        runner_("benchmark", console, options.is_quiet, options.threads) {}
 
   int run() {
     run_entries([](const Entry& entry) { return !entry.contestant->is_volumetric; });
@@ -171,21 +167,7 @@ class Benchmark {
         trials.push_back(&entry.trials[trial]);
       }
     }
-    const auto kind = [](const batch::Item& item) {
-      return item.setup->title + " " + item.setup->contestant->title;
-    };
-    const batch::RunEvents events{
-        .unfinished = [&](const batch::Item& item) { progress_.expect(kind(item), 1); },
-        .preparing =
-            [&](const batch::Setup& setup) {
-              progress_.say(setup.title + ": computing attainable coverage");
-            },
-        .done =
-            [&](const batch::Item& item, const batch::TrialRecord& record) {
-              progress_.survey_done(kind(item), record.run.wall_time);
-            },
-        .failed = {}};
-    auto records = batch::run_items(items, options_.threads, console_.stop, events);
+    batch::Records records = runner_.run(items);
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (records[i]) *trials[i] = std::move(records[i]->trial);
     }
@@ -204,7 +186,7 @@ class Benchmark {
       for (const auto& setup : entry.setups) {
         setup->mission = config::with_keys(
             setup->mission, {{"benchmark", "volumetric.view_limit", std::to_string(most)}});
-        setup->fingerprint = batch::fingerprint_of(*setup);
+        setup->name_kind_and_fingerprint();
       }
     }
   }
@@ -227,7 +209,7 @@ class Benchmark {
     folder_.write("manifest.json", manifest(options_, entries_, is_whole()));
     const std::string markdown =
         batch::stage_tables(cells, "Benchmark", batch::Times::shown, folder_);
-    progress_.clear();
+    runner_.clear();
     write_page("results.json", options_.has_report, folder_, console_);
     folder_.commit();
     if (options_.is_quiet) return;
@@ -238,7 +220,7 @@ class Benchmark {
   const Console& console_;
   std::vector<Entry> entries_;
   geometry::OutputFolder folder_;
-  SurveyProgress progress_;
+  SurveyRunner runner_;
 };
 
 }  // namespace

@@ -8,9 +8,8 @@
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
-#include "missions/batch/benchmark/trial_files.h"
-#include "missions/batch/benchmark/trials.h"
-#include "missions/batch/campaign/item_runner.h"
+#include "missions/batch/benchmark/benchmark_report.h"
+#include "missions/cli/survey_batch.h"
 #include "missions/cli/verbs.h"
 #include "missions/cli/write_page.h"
 #include "missions/config/resolve.h"
@@ -138,45 +137,23 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
   return went_through ? 0 : 1;
 }
 
-/// The surveys of all seeds; those that were finished before are not run again.
-std::vector<batch::Trial> run_trials(const PlanOptions& options, const batch::Setup& own,
-                                     const std::filesystem::path& folder, const Console& console,
-                                     ProgressLine& progress) {
-  const config::MissionSetup& mission = own.mission;
-  const auto setup = std::make_shared<const batch::Setup>(own);
+int plan_trials(const PlanOptions& options, const config::MissionSetup& mission,
+                geometry::OutputFolder& folder, const Console& console) {
+  SurveyRunner runner("plan", console, options.is_quiet, mission.run.threads);
+  const HoldsResults results(console);
+  const auto setup =
+      std::make_shared<const batch::Setup>(batch::own_setup(options.mission, mission));
   std::vector<batch::Item> items;
   for (std::size_t i = 0; i < options.trials; ++i) {
     const std::uint64_t seed = mission.run.seed + i;
-    items.push_back({setup, seed, folder / "items" / ("seed_" + std::to_string(seed) + ".json")});
+    items.push_back(
+        {setup, seed, folder.path() / "items" / ("seed_" + std::to_string(seed) + ".json")});
   }
-  std::size_t ended = 0;
-  const batch::RunEvents events{
-      .unfinished = {},
-      .preparing =
-          [&](const batch::Setup&) {
-            progress.show(mission.name + ": computing attainable coverage");
-          },
-      .done =
-          [&](const batch::Item& item, const batch::TrialRecord& done) {
-            progress.show(fmt::format("{}: trial {} of {}, seed {}: {} views, {}", mission.name,
-                                      ++ended, options.trials, item.seed, done.trial.views,
-                                      percent(done.trial.coverage.all)));
-          },
-      .failed = {}};
-  std::vector<batch::Trial> trials;
-  for (auto& done : batch::run_items(items, mission.run.threads, console.stop, events)) {
+  std::vector<batch::Trial> trials;  // those that were finished before are not run again
+  for (auto& done : runner.run(items)) {
     if (done) trials.push_back(std::move(done->trial));
   }
-  return trials;
-}
-
-int plan_trials(const PlanOptions& options, const config::MissionSetup& mission,
-                geometry::OutputFolder& folder, const Console& console) {
-  ProgressLine progress(console, options.is_quiet);
-  const HoldsResults results(console);
-  const std::vector<batch::Trial> trials = run_trials(
-      options, batch::own_setup(options.mission, mission), folder.path(), console, progress);
-  progress.clear();
+  runner.clear();
   folder.write("trials.csv", batch::trials_csv(trials));
   folder.write("trials.json",
                batch::trials_json(mission, trials, options.trials, mission.run.threads));

@@ -8,6 +8,7 @@
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/report/cloud_page.h"
+#include "missions/site_data/file_reader.h"
 #include "missions/site_data/prior_text.h"
 #include "missions/wizard/proposal.h"
 
@@ -98,6 +99,7 @@ int propose_site(const SiteOptions& options, const Console& console) {
   }
   ProgressLine progress(console, false);
   progress.show("reading " + options.map.filename().string());
+  const site_data::ReadOnce once;
   const std::string text = wizard::propose_mission(wishes_of(options), file);
   progress.show("drawing the map");
   const config::MissionSetup setup = config::parse_mission(text, file.string());

@@ -1,24 +1,62 @@
 #include "missions/cli/tasks.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <utility>
+#include <system_error>
 
 #include <fmt/format.h>
 
-#include "missions/batch/campaign/submission.h"
+#include "missions/package/package.h"
 
 namespace skycap::missions::cli {
+namespace {
 
-batch::ItemRange items_of(const TaskOptions& options, std::size_t items, const Console& console) {
+namespace fs = std::filesystem;
+
+/// Has an engine run the job. Behind a job that is over, the results are made here; behind a queued
+/// one, a job does it.
+int submit(const TaskWork& work, const TaskOptions& options, const Console& console) {
+  geometry::OutputFolder folder(work.job.out);
+  if (work.submitting) work.submitting(folder);
+  batch::JobRequest job = work.job;
+  job.command.insert(job.command.begin(), fs::read_symlink("/proc/self/exe"));
+  job.out = fs::absolute(job.out);
+  job.chunk = options.chunk;
+  ProgressLine progress(console, work.is_quiet);
+  progress.show("waiting for " + *options.engine);
+  const auto tell = [&](const std::string& what) {
+    progress.clear();
+    warn(console, what);
+  };
+  const batch::Submission submission =
+      batch::submit(batch::engine_named(*options.engine), job, folder, console.stop, tell);
+  progress.clear();
+  if (!submission.is_queued) {
+    return console.stop.stop_requested() ? interrupted_exit_code(console) : work.collect(folder);
+  }
+  if (!submission.job.empty() && !work.is_quiet) {
+    console.out << fmt::format("Slurm job {}: {} tasks of {} runs\nresults: {}\n", submission.job,
+                               submission.tasks.tasks, submission.tasks.chunk,
+                               folder.path().string())
+                << std::flush;
+  }
+  return submission.is_accepted ? 0 : 1;
+}
+
+/// The items of one task. Others may be at other items of the same work.
+int run_task(const TaskWork& work, const TaskOptions& options, const Console& console) {
   const std::size_t task = batch::task_index(options.index.value(), batch::program_environment());
   const batch::ItemRange range =
-      batch::items_of_task(task, std::max<std::size_t>(1, options.chunk), items);
+      batch::items_of_task(task, std::max<std::size_t>(1, options.chunk), work.job.items);
   if (range.size() == 0) {
-    warn(console, fmt::format("task {} has no runs; there are {}", task, items));
+    warn(console, fmt::format("task {} has no runs; there are {}", task, work.job.items));
+    return 0;
   }
-  return range;
+  const std::size_t done = work.work(range);
+  if (console.stop.stop_requested()) return interrupted_exit_code(console);
+  return done == range.size() ? 0 : 1;
 }
+
+}  // namespace
 
 std::string missing_text(const std::vector<std::size_t>& missing) {
   constexpr std::size_t most = 20;
@@ -29,29 +67,60 @@ std::string missing_text(const std::vector<std::size_t>& missing) {
   return missing.size() > most ? text + ", ..." : text;
 }
 
-int submit_job(const TaskOptions& options, batch::JobRequest job, geometry::OutputFolder& folder,
-               bool is_quiet, const Console& console, const std::function<int()>& collect) {
-  job.command.insert(job.command.begin(), std::filesystem::read_symlink("/proc/self/exe"));
-  job.chunk = options.chunk;
-  ProgressLine progress(console, is_quiet);
-  progress.show("waiting for " + *options.engine);
-  const auto tell = [&](const std::string& what) {
-    progress.clear();
-    warn(console, what);
+int run_tasks(const TaskWork& work, const TaskOptions& options, const Console& console) {
+  if (options.engine) return submit(work, options, console);
+  if (options.index) return run_task(work, options, console);
+  geometry::OutputFolder folder(work.job.out);
+  if (options.collects && work.is_collected && work.is_collected()) {
+    warn(console, work.job.out.string() + ": contains no pieces; its results are complete");
+    return 0;
+  }
+  if (!options.collects) work.work({0, work.job.items});
+  return console.stop.stop_requested() ? interrupted_exit_code(console) : work.collect(folder);
+}
+
+fs::path folder_of_pieces(const fs::path& results) { return results / "pieces"; }
+
+fs::path folder_of_piece(const fs::path& results, std::size_t number, std::size_t pieces) {
+  return folder_of_pieces(results) / fmt::format("{}_of_{}", number, pieces);
+}
+
+int run_pieces(const batch::JobRequest& job, const TaskOptions& options, bool is_quiet,
+               const std::string& summary, const std::function<std::unique_ptr<PieceWork>()>& begin,
+               const Console& console) {
+  std::unique_ptr<PieceWork> begun;
+  const auto work = [&]() -> PieceWork& {
+    if (!begun) begun = begin();
+    return *begun;
   };
-  const batch::Submission submission =
-      batch::submit(batch::engine_named(*options.engine), job, folder, console.stop, tell);
-  progress.clear();
-  if (!submission.is_queued) {
-    return console.stop.stop_requested() ? interrupted_exit_code(console) : collect();
-  }
-  if (!submission.job.empty() && !is_quiet) {
-    console.out << fmt::format("Slurm job {}: {} tasks of {} runs\nresults: {}\n", submission.job,
-                               submission.tasks.tasks, submission.tasks.chunk,
-                               folder.path().string())
-                << std::flush;
-  }
-  return submission.is_accepted ? 0 : 1;
+  const auto do_pieces = [&](const batch::ItemRange& range) {
+    std::size_t number = range.first;
+    while (number < range.end && work().do_piece(number)) ++number;
+    return number - range.first;
+  };
+  const auto is_collected = [&] {
+    std::error_code ignored;
+    return !fs::exists(folder_of_pieces(job.out), ignored) &&
+           package::is_complete_result(job.out / summary);
+  };
+  const auto collect = [&](geometry::OutputFolder& folder) {
+    std::vector<std::size_t> missing;
+    std::error_code ignored;
+    for (std::size_t number = 0; number < job.items; ++number) {
+      const fs::path piece = folder_of_piece(job.out, number, job.items);
+      if (fs::exists(piece, ignored)) geometry::finish_commit(piece);
+      if (!work().take_piece(number)) missing.push_back(number);
+    }
+    if (!missing.empty()) {
+      warn(console, fmt::format("{} of {} pieces are complete{}", job.items - missing.size(),
+                                job.items, missing_text(missing)));
+      return 1;
+    }
+    const int exit_code = work().join(folder);
+    if (exit_code == 0) fs::remove_all(folder_of_pieces(job.out), ignored);
+    return exit_code;
+  };
+  return run_tasks({job, is_quiet, {}, do_pieces, is_collected, collect}, options, console);
 }
 
 }  // namespace skycap::missions::cli

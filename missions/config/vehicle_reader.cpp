@@ -8,7 +8,6 @@
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "missions/config/preset_files.h"
-#include "missions/support/number_text.h"
 #include "missions/support/yaml_section.h"
 
 namespace skycap::missions::config {
@@ -109,21 +108,13 @@ class VehicleReader {
     for (const NumberKey<Owner>& number : keys) {
       if (!wants(section, number.key)) continue;
       const double value = section.number(number.key);
-      check_range(section, number.key, value, number.least, number.most);
+      section.require_between(number.key, value, number.least, number.most);
       owner.*number.field = number.unit * value;
     }
   }
 
-  static void check_range(support::YamlSection& section, const std::string& key, double value,
-                          double least, double most) {
-    if (value >= least && value <= most) return;
-    section.fail_at(key, "is " + support::short_text(value) + "; it must be from " +
-                             support::short_text(least) + " to " + support::short_text(most));
-  }
-
   int whole_number(const std::string& key, int least, int most) {
-    const double value = root_.number(key);
-    check_range(root_, key, value, least, most);
+    root_.require_between(key, root_.number(key), least, most);
     return root_.integer(key, least);
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <fmt/format.h>
+
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
@@ -270,11 +272,8 @@ FileContents scene_contents(const Source& source) {
   return contents;
 }
 
-}  // namespace
-
-FileContents read_contents(const Source& source, const SiteFrame& site) {
+FileContents parsed(Opened opened, const Source& source, const SiteFrame& site) {
   const fs::path& file = source.file;
-  Opened opened = open_file(file, source.role);
   const CloudThinning thinning{source.spacing.value_or(usual_spacing),
                                [&](const FileContents& header) {
                                  return SiteTransform(source, header, site).metres_per_unit();
@@ -300,6 +299,43 @@ FileContents read_contents(const Source& source, const SiteFrame& site) {
       break;
   }
   return cloud_contents(source);
+}
+
+/// Whether it holds neither points nor nodes of a raster.
+bool holds_objects(Format format) {
+  return format == Format::citygml || format == Format::cityjson || format == Format::map ||
+         format == Format::scene || format == Format::mesh;
+}
+
+thread_local ReadOnce* read_once = nullptr;
+
+}  // namespace
+
+SharedContents read_contents(const Source& source, const SiteFrame& site) {
+  std::error_code ignored;  // the reader says what is wrong with the file
+  const std::string key =
+      fmt::format("{}\n{}\n{}\n{}", fs::canonical(source.file, ignored).string(),
+                  source.select.layer, source.height_attribute, source.unit.has_value());
+  if (read_once != nullptr && read_once->contents_ && read_once->key_ == key) {
+    return read_once->contents_;
+  }
+  Opened opened = open_file(source.file, source.role);
+  const bool keeps = read_once != nullptr && holds_objects(opened.format);
+  if (keeps) read_once->contents_.reset();  // two may be more than memory holds
+  auto contents = std::make_shared<FileContents>(parsed(std::move(opened), source, site));
+  if (keeps) {
+    read_once->key_ = key;
+    read_once->contents_ = contents;
+  }
+  return contents;
+}
+
+ReadOnce::ReadOnce() {
+  if (read_once == nullptr) read_once = this;
+}
+
+ReadOnce::~ReadOnce() {
+  if (read_once == this) read_once = nullptr;
 }
 
 }  // namespace skycap::missions::site_data

@@ -28,7 +28,8 @@ class Region {
     if (source.select.within.empty()) return;
     Source polygons;
     polygons.file = source.select.within;
-    const FileContents contents = read_contents(polygons, site);
+    const SharedContents shared = read_contents(polygons, site);
+    const FileContents& contents = *shared;
     const SiteTransform transform(polygons, contents, site, false);
     std::vector<Vector3d> corners = contents.corners;
     transform.to_site(corners);
@@ -245,8 +246,9 @@ void require_use(const Source& source, const Prior& prior) {
   }
 }
 
-Prior prior_of(FileContents contents, const Source& source, const SiteFrame& site,
+Prior prior_of(const SharedContents& shared, const Source& source, const SiteFrame& site,
                const TerrainHeight& terrain) {
+  FileContents& contents = *shared;
   refuse_unused(source, contents);
   Prior prior;
   prior.role = source.role;
@@ -328,11 +330,12 @@ Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeigh
 }
 
 flight::GeodeticPoint middle_of(const Source& source) {
-  return middle_of(source, read_contents(source, {}));
+  return middle_of(source, *read_contents(source, {}));
 }
 
 Source completed(Source source, const Assumptions& assumed) {
-  const FileContents contents = read_contents(source, {});
+  const SharedContents shared = read_contents(source, {});
+  const FileContents& contents = *shared;
   if (contents.crs.empty()) source.crs = assumed.crs;
   if (contents.crs.empty() && source.crs.empty()) return source;  // in the mission's frame
   const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
@@ -355,7 +358,8 @@ geometry::Mesh read_surfaces(const std::filesystem::path& file) {
   source.file = file;
   source.role = Role::truth;
   SiteFrame site;
-  FileContents contents = read_contents(source, site);
+  const SharedContents shared = read_contents(source, site);
+  const FileContents& contents = *shared;
   if (contents.crs.empty()) {
     source.place = Place{};
   } else {
@@ -364,7 +368,7 @@ geometry::Mesh read_surfaces(const std::filesystem::path& file) {
   }
   const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
   if (contents.is_outlines && is_flat) source.base = 0.0;
-  const Prior prior = prior_of(std::move(contents), source, site, {});
+  const Prior prior = prior_of(shared, source, site, {});
   geometry::Mesh mesh;
   for (const Object& object : prior.objects) geometry::append(mesh, object.mesh);
   if (mesh.triangles.empty()) fail_file(file, "contains no surfaces; expected a mesh");

@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
+#include "missions/site_data/file_reader.h"
 #include "missions/site_data/unknown_ground.h"
 
 namespace skycap::missions::site_data {
@@ -49,6 +50,7 @@ flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior
 SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
                             const std::function<void(std::size_t, const std::string&)>& failed,
                             const std::function<void(std::size_t)>& reading) {
+  const ReadOnce once;
   SitePriors result;
   result.priors.resize(sources.size());
   result.digests.resize(sources.size());

@@ -3,10 +3,19 @@
 #include <charconv>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "geometry/error.h"
 #include "missions/support/key_text.h"
 
 namespace skycap::missions::support {
+
+YamlNode parse_map(const std::string& text, const std::string& name, const std::string& what) {
+  YamlNode root = parse_yaml(text, name);
+  if (root.kind == YamlNode::Kind::map) return root;
+  throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) + ": is not a map; " +
+                                         what + " is a list of 'key: value'");
+}
 
 YamlSection::YamlSection(const YamlNode& node, std::string path, const std::string& file)
     : node_(node), path_(std::move(path)), file_(file) {
@@ -50,6 +59,19 @@ int YamlSection::integer(const std::string& key, int fallback) {
     fail(find(key)->line, path_ + key, "must be an integer");
   }
   return static_cast<int>(value);
+}
+
+int YamlSection::integer(const std::string& key, int fallback, int least, int most) {
+  const int value = integer(key, fallback);
+  require_between(key, value, least, most);
+  return value;
+}
+
+void YamlSection::require_between(const std::string& key, double value, double least, double most,
+                                  const std::string& unit) {
+  if (value >= least && value <= most) return;
+  fail_at(key, fmt::format("is {:.10g}{}; it must be from {:.10g} to {:.10g}", value,
+                           unit.empty() ? "" : " " + unit, least, most));
 }
 
 std::vector<double> YamlSection::numbers(const std::string& key) {

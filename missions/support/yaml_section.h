@@ -13,6 +13,9 @@
 
 namespace skycap::missions::support {
 
+/// As parse_yaml(), of a document that must be a map; `what` it describes, such as "a mission".
+YamlNode parse_map(const std::string& text, const std::string& name, const std::string& what);
+
 /// Refers to the tree and to the file's name, which must outlive it. Everything throws
 /// Error{bad_config} if a key is missing that has no fallback, or of another type.
 class YamlSection {
@@ -27,6 +30,7 @@ class YamlSection {
   double number(const std::string& key);
   double number(const std::string& key, double fallback);
   int integer(const std::string& key, int fallback);
+  int integer(const std::string& key, int fallback, int least, int most);
   std::vector<double> numbers(const std::string& key);  ///< empty without the key
   std::string text(const std::string& key);
   std::string text(const std::string& key, const std::string& fallback);
@@ -46,6 +50,10 @@ class YamlSection {
     }
     fail_at(key, "is " + given + "; it must be one of " + known);
   }
+
+  /// Refuses a value of a key, of `unit`, that is out of its range or not a number.
+  void require_between(const std::string& key, double value, double least, double most,
+                       const std::string& unit = "");
 
   /// Refuses keys that nobody asked for.
   void finish() const;

@@ -132,7 +132,7 @@ Rooms house() {
   add_library({"api"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
-  add_library({"cli", "cli/clouds", "cli/items"}, {"sim", "survey", "flight"},
+  add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
               {"report", "batch", "wizard", "package", "config", "online", "scan", "simulation",
                "evaluation", "session", "scene", "site_data", "support"});
   // As a user of the library: public headers.

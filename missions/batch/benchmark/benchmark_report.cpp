@@ -1,23 +1,133 @@
 #include "missions/batch/benchmark/benchmark_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "geometry/parallel.h"
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/benchmark/paper_results.h"
-#include "missions/batch/benchmark/trial_json.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"
 #include "missions/version.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::batch {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t curve_points = 100;
+
+Json curve_json(const std::vector<Trial>& trials, CurveAxis axis) {
+  Json x = Json::array(), mean = Json::array(), deviation = Json::array();
+  for (const CurvePoint& point : coverage_curve(trials, axis, curve_points)) {
+    x.push_back(point.x);
+    mean.push_back(point.mean);
+    deviation.push_back(point.deviation);
+  }
+  return {{"x", x}, {"coverage", mean}, {"standard_deviation", deviation}};
+}
+
+/// {"mean", "standard_deviation", "half_width_95"}; of one number the half width is null.
+Json statistic_json(const Statistic& statistic) {
+  // JSON has no infinity: one trial says nothing about the mean's certainty.
+  return {{"mean", statistic.mean},
+          {"standard_deviation", statistic.deviation},
+          {"half_width_95",
+           std::isfinite(statistic.half_width_95) ? Json(statistic.half_width_95) : Json()}};
+}
+
+/// {"views", "planning_time_s", "distance_m", "flown_s"}: the mean coverage over the trials along
+/// each, as {"x", "coverage", "standard_deviation"}; lists are empty for what no trial has.
+Json curves_json(const std::vector<Trial>& trials) {
+  return {{"views", curve_json(trials, CurveAxis::views)},
+          {"planning_time_s", curve_json(trials, CurveAxis::planning_time)},
+          {"distance_m", curve_json(trials, CurveAxis::distance)},
+          {"flown_s", curve_json(trials, CurveAxis::flown_time)}};
+}
+
+/// Of each trial {"seed", "stop_reason", "views", "coverage", "distance_m", "planning_time_s"}.
+Json each_trial_json(const std::vector<Trial>& trials) {
+  Json list = Json::array();
+  for (const Trial& trial : trials) {
+    list.push_back({{"seed", trial.seed},
+                    {"stop_reason", session::name_of(trial.stop_reason)},
+                    {"views", trial.views},
+                    {"coverage", trial.coverage.all},
+                    {"distance_m", trial.distance},
+                    {"flown_s", trial.is_flown() ? Json(*trial.flown_time()) : Json()},
+                    {"planning_time_s", trial.planning_time}});
+  }
+  return list;
+}
+
+/// One of the figures that trials are compared by.
+struct Figure {
+  const char* name;
+  double (*of)(const Trial&);
+  std::optional<double> config::ReferenceResults::*reference;  ///< or null
+  double PaperResult::*in_table_1;                             ///< or null
+};
+
+constexpr std::array trial_figures{
+    Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
+           &config::ReferenceResults::views, &PaperResult::views},
+    Figure{"coverage", [](const Trial& t) { return t.coverage.all; },
+           &config::ReferenceResults::coverage, &PaperResult::coverage},
+    // No reference: publications do not say which surface cannot be seen.
+    Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
+           nullptr, nullptr},
+    Figure{"distance_m", [](const Trial& t) { return t.distance; },
+           &config::ReferenceResults::distance, &PaperResult::distance},
+    Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
+           &config::ReferenceResults::planning_time, &PaperResult::planning_time}};
+
+/// What the mission says of a publication, or else what the SEE++ paper has of its model.
+std::optional<double> reference_of(const config::MissionSetup& mission, const Figure& figure) {
+  if (figure.reference == nullptr) return std::nullopt;
+  if (const auto& given = mission.reference.*figure.reference) return given;
+  const auto paper =
+      paper_result(mission.name, survey::title_of(mission.survey().planner.name).word);
+  return paper ? std::optional((*paper).*figure.in_table_1) : std::nullopt;
+}
+
+Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
+  std::vector<double> numbers;
+  numbers.reserve(trials.size());
+  for (const Trial& trial : trials) numbers.push_back(figure.of(trial));
+  return statistic(numbers);
+}
+
+/// The mean over the trials of a curve at each view; a trial that has ended stays at its end.
+std::vector<double> mean_curve(const std::vector<Trial>& trials,
+                               std::vector<double> Trial::*curve) {
+  std::size_t longest = 0;
+  for (const Trial& trial : trials) longest = std::max(longest, (trial.*curve).size());
+  std::vector<double> means(longest, 0.0);
+  for (std::size_t view = 0; view < longest; ++view) {
+    for (const Trial& trial : trials) {
+      const std::vector<double>& values = trial.*curve;
+      if (!values.empty()) means[view] += values[std::min(view, values.size() - 1)];
+    }
+    means[view] /= static_cast<double>(trials.size());
+  }
+  return means;
+}
+
+Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
+std::string csv_of(const std::optional<double>& number) {
+  return number ? support::exact_text(*number) : std::string();
+}
+
+std::size_t completed(const std::vector<Trial>& trials) {
+  return static_cast<std::size_t>(
+      std::ranges::count(trials, survey::StopReason::complete, &Trial::stop_reason));
+}
 
 /// The four figures of Table 1.
 struct Column {
@@ -307,6 +417,70 @@ std::string figure_6(const std::vector<BenchmarkCell>& cells) {
 
 }  // namespace
 
+std::string trials_csv(const std::vector<Trial>& trials, Times times) {
+  const bool has_times = times == Times::shown;
+  std::string csv =
+      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,flown_m,"
+      "flown_s";
+  csv += has_times ? ",planning_time_s\n" : "\n";
+  for (const Trial& trial : trials) {
+    csv += std::to_string(trial.seed) + "," + session::name_of(trial.stop_reason) + "," +
+           std::to_string(trial.views) + "," + support::exact_text(trial.coverage.all) + "," +
+           csv_of(trial.coverage.visible) + "," + csv_of(trial.coverage.ceiling) + "," +
+           support::exact_text(trial.distance) + "," + std::to_string(trial.points) + "," +
+           csv_of(trial.flown_length) + "," + csv_of(trial.flown_time());
+    csv += has_times ? "," + support::exact_text(trial.planning_time) + "\n" : "\n";
+  }
+  return csv;
+}
+
+std::string trials_json(const config::MissionSetup& mission, const std::vector<Trial>& trials,
+                        std::size_t requested, unsigned threads) {
+  Json json{{"mission", mission.name},
+            {"planner", survey::title_of(mission.survey().planner.name).word},
+            {"title", survey::title_of(mission.survey().planner.name).title},
+            {"preset", mission.text("planner.preset")},
+            {"first_seed", mission.run.seed},
+            {"threads", geometry::thread_count(threads)},
+            {"version", version},
+            {"complete", trials.size() == requested},
+            {"trials_requested", requested},
+            {"trials", trials.size()},
+            {"trials_complete", completed(trials)},
+            {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
+  if (trials.empty()) return support::json_text(json);
+  for (const Figure& figure : trial_figures) {
+    json[figure.name] = statistic_json(statistic_of(trials, figure));
+    if (const auto reference = reference_of(mission, figure)) {
+      json[figure.name]["paper"] = *reference;
+    }
+  }
+  if (std::ranges::all_of(trials, &Trial::is_flown)) {
+    json["flown_s"] = statistic_json(
+        statistic_of(trials, {"", [](const Trial& t) { return *t.flown_time(); }, {}, {}}));
+  }
+  json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
+                             {"distance_m", mean_curve(trials, &Trial::distance_after)}};
+  json["curves"] = curves_json(trials);
+  json["each_trial"] = each_trial_json(trials);
+  return support::json_text(json);
+}
+
+std::string trials_table(const config::MissionSetup& mission, const std::vector<Trial>& trials) {
+  if (trials.empty()) return "";
+  std::string table =
+      fmt::format("{}: {} trials, {} complete\n{:<18} {:>12} {:>10} {:>10} {:>12}\n", mission.name,
+                  trials.size(), completed(trials), "", "mean", "+- (95 %)", "sd", "paper");
+  for (const Figure& figure : trial_figures) {
+    const Statistic statistic = statistic_of(trials, figure);
+    const auto reference = reference_of(mission, figure);
+    table += fmt::format("{:<18} {:12.4g} {:10.2g} {:10.2g} {:>12}\n", figure.name, statistic.mean,
+                         statistic.half_width_95, statistic.deviation,
+                         reference ? fmt::format("{:.4g}", *reference) : "-");
+  }
+  return table;
+}
+
 std::string results_json(const std::vector<BenchmarkCell>& cells) {
   Json json{{"version", version}, {"results", Json::array()}};
   for (const BenchmarkCell& cell : cells) json["results"].push_back(json_of(cell, cells));
@@ -380,6 +554,26 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
             figure_6(cells);
   }
   return text;
+}
+
+std::string stage_tables(const std::vector<BenchmarkCell>& cells, const std::string& title,
+                         Times times, geometry::OutputFolder& folder) {
+  folder.write("trials.csv", all_trials_csv(cells, times));
+  folder.write("table1.csv", table_1_csv(cells, times));
+  folder.write("results.json", results_json(cells));
+  std::string markdown = report_markdown(cells, title, times);
+  folder.write("report.md", markdown);
+  return markdown;
+}
+
+std::string times_csv(const std::vector<ItemTimes>& items) {
+  std::string csv = "item,host,wall_time_s,planning_time_s,peak_memory_bytes\n";
+  for (const ItemTimes& item : items) {
+    csv += std::to_string(item.number) + "," + item.run.host + "," +
+           support::exact_text(item.run.wall_time) + "," + support::exact_text(item.planning_time) +
+           "," + std::to_string(item.run.peak_memory) + "\n";
+  }
+  return csv;
 }
 
 }  // namespace skycap::missions::batch

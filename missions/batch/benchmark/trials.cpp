@@ -1,66 +1,29 @@
 #include "missions/batch/benchmark/trials.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <boost/math/distributions/students_t.hpp>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "geometry/io/json.h"
-#include "geometry/parallel.h"
-#include "missions/batch/benchmark/paper_results.h"
-#include "missions/batch/benchmark/trial_json.h"
 #include "missions/evaluation/coverage.h"
+#include "missions/scene/scene_source.h"
 #include "missions/support/json_text.h"
-#include "missions/support/number_text.h"
+#include "missions/support/sha256.h"
 #include "missions/version.h"
-#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::batch {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// One of the figures that trials are compared by.
-struct Figure {
-  const char* name;
-  double (*of)(const Trial&);
-  std::optional<double> config::ReferenceResults::*reference;  ///< or null
-  double PaperResult::*in_table_1;                             ///< or null
-};
-
-constexpr std::array figures{
-    Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
-           &config::ReferenceResults::views, &PaperResult::views},
-    Figure{"coverage", [](const Trial& t) { return t.coverage.all; },
-           &config::ReferenceResults::coverage, &PaperResult::coverage},
-    // No reference: publications do not say which surface cannot be seen.
-    Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
-           nullptr, nullptr},
-    Figure{"distance_m", [](const Trial& t) { return t.distance; },
-           &config::ReferenceResults::distance, &PaperResult::distance},
-    Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
-           &config::ReferenceResults::planning_time, &PaperResult::planning_time}};
-
-/// What the mission says of a publication, or else what the SEE++ paper has of its model.
-std::optional<double> reference_of(const config::MissionSetup& mission, const Figure& figure) {
-  if (figure.reference == nullptr) return std::nullopt;
-  if (const auto& given = mission.reference.*figure.reference) return given;
-  const auto paper =
-      paper_result(mission.name, survey::title_of(mission.survey().planner.name).word);
-  return paper ? std::optional((*paper).*figure.in_table_1) : std::nullopt;
-}
-
-Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
-  std::vector<double> numbers;
-  numbers.reserve(trials.size());
-  for (const Trial& trial : trials) numbers.push_back(figure.of(trial));
-  return statistic(numbers);
-}
 
 std::vector<ObservedTarget> observed_targets(const std::vector<session::JudgedView>& views) {
   std::vector<ObservedTarget> observed;
@@ -84,32 +47,7 @@ std::optional<double> optional_number(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
 
-/// The mean over the trials of a curve at each view; a trial that has ended stays at its end.
-std::vector<double> mean_curve(const std::vector<Trial>& trials,
-                               std::vector<double> Trial::*curve) {
-  std::size_t longest = 0;
-  for (const Trial& trial : trials) longest = std::max(longest, (trial.*curve).size());
-  std::vector<double> means(longest, 0.0);
-  for (std::size_t view = 0; view < longest; ++view) {
-    for (const Trial& trial : trials) {
-      const std::vector<double>& values = trial.*curve;
-      if (!values.empty()) means[view] += values[std::min(view, values.size() - 1)];
-    }
-    means[view] /= static_cast<double>(trials.size());
-  }
-  return means;
-}
-
-Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
-
-std::string csv_of(const std::optional<double>& number) {
-  return number ? support::exact_text(*number) : std::string();
-}
-
-std::size_t completed(const std::vector<Trial>& trials) {
-  return static_cast<std::size_t>(
-      std::ranges::count(trials, survey::StopReason::complete, &Trial::stop_reason));
-}
+Json optional_json(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
 
 }  // namespace
 
@@ -162,14 +100,14 @@ std::string trial_json(const Trial& trial) {
   Json json{{"seed", trial.seed},
             {"stop_reason", session::name_of(trial.stop_reason)},
             {"coverage", trial.coverage.all},
-            {"coverage_visible", json_of(trial.coverage.visible)},
-            {"coverage_ceiling", json_of(trial.coverage.ceiling)},
+            {"coverage_visible", optional_json(trial.coverage.visible)},
+            {"coverage_ceiling", optional_json(trial.coverage.ceiling)},
             {"views", trial.views},
             {"points", trial.points},
             {"planning_time_s", trial.planning_time},
             {"distance_m", trial.distance},
-            {"flown_m", json_of(trial.flown_length)},
-            {"flown_s", json_of(trial.flown_time())},
+            {"flown_m", optional_json(trial.flown_length)},
+            {"flown_s", optional_json(trial.flown_time())},
             {"frontiers_resolved", trial.frontiers_resolved},
             {"coverage_after", trial.coverage_after},
             {"distance_after_m", trial.distance_after},
@@ -210,68 +148,52 @@ Trial parse_trial(const std::string& text) {
   }
 }
 
-std::string trials_csv(const std::vector<Trial>& trials, Times times) {
-  const bool has_times = times == Times::shown;
-  std::string csv =
-      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,flown_m,"
-      "flown_s";
-  csv += has_times ? ",planning_time_s\n" : "\n";
-  for (const Trial& trial : trials) {
-    csv += std::to_string(trial.seed) + "," + session::name_of(trial.stop_reason) + "," +
-           std::to_string(trial.views) + "," + support::exact_text(trial.coverage.all) + "," +
-           csv_of(trial.coverage.visible) + "," + csv_of(trial.coverage.ceiling) + "," +
-           support::exact_text(trial.distance) + "," + std::to_string(trial.points) + "," +
-           csv_of(trial.flown_length) + "," + csv_of(trial.flown_time());
-    csv += has_times ? "," + support::exact_text(trial.planning_time) + "\n" : "\n";
+std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& contestant,
+                              const fs::path& folder) {
+  std::string inputs = std::string(version) + "\n" + contestant;
+  for (const auto& [key, value] : mission.settings) {
+    inputs.append("\n").append(key).append(" ").append(value);
   }
-  return csv;
+  for (const fs::path& file : scene::files_of(mission.scene(), mission.lidar, folder)) {
+    std::error_code ignored;  // what is missing is refused when the scene is made ready
+    const bool is_there = fs::is_regular_file(file, ignored);
+    inputs.append("\n").append(is_there ? support::sha256_of_file(file) : "-");
+  }
+  return support::sha256(std::as_bytes(std::span(inputs)));
 }
 
-std::string trials_json(const config::MissionSetup& mission, const std::vector<Trial>& trials,
-                        std::size_t requested, unsigned threads) {
-  Json json{{"mission", mission.name},
-            {"planner", survey::title_of(mission.survey().planner.name).word},
-            {"title", survey::title_of(mission.survey().planner.name).title},
-            {"preset", mission.text("planner.preset")},
-            {"first_seed", mission.run.seed},
-            {"threads", geometry::thread_count(threads)},
-            {"version", version},
-            {"complete", trials.size() == requested},
-            {"trials_requested", requested},
-            {"trials", trials.size()},
-            {"trials_complete", completed(trials)},
-            {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
-  if (trials.empty()) return support::json_text(json);
-  for (const Figure& figure : figures) {
-    json[figure.name] = statistic_json(statistic_of(trials, figure));
-    if (const auto reference = reference_of(mission, figure)) {
-      json[figure.name]["paper"] = *reference;
-    }
-  }
-  if (std::ranges::all_of(trials, &Trial::is_flown)) {
-    json["flown_s"] = statistic_json(
-        statistic_of(trials, {"", [](const Trial& t) { return *t.flown_time(); }, {}, {}}));
-  }
-  json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
-                             {"distance_m", mean_curve(trials, &Trial::distance_after)}};
-  json["curves"] = curves_json(trials);
-  json["each_trial"] = each_trial_json(trials);
-  return support::json_text(json);
+TrialRun run_here(double wall_time) {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  constexpr std::size_t unit = 1024;  // of ru_maxrss on Linux [byte]
+  return {host.data(), wall_time, unit * static_cast<std::size_t>(usage.ru_maxrss)};
 }
 
-std::string trials_table(const config::MissionSetup& mission, const std::vector<Trial>& trials) {
-  if (trials.empty()) return "";
-  std::string table =
-      fmt::format("{}: {} trials, {} complete\n{:<18} {:>12} {:>10} {:>10} {:>12}\n", mission.name,
-                  trials.size(), completed(trials), "", "mean", "+- (95 %)", "sd", "paper");
-  for (const Figure& figure : figures) {
-    const Statistic statistic = statistic_of(trials, figure);
-    const auto reference = reference_of(mission, figure);
-    table += fmt::format("{:<18} {:12.4g} {:10.2g} {:10.2g} {:>12}\n", figure.name, statistic.mean,
-                         statistic.half_width_95, statistic.deviation,
-                         reference ? fmt::format("{:.4g}", *reference) : "-");
+std::optional<TrialRecord> finished_trial(const fs::path& file, const std::string& fingerprint) {
+  if (!fs::exists(file)) return std::nullopt;
+  try {
+    const Json json = geometry::parse_json<Json>(geometry::read_file(file, geometry::largest_json));
+    if (json.at("fingerprint") != fingerprint) return std::nullopt;
+    const Json& run = json.at("run");
+    return TrialRecord{parse_trial(json.at("trial").dump()),
+                       {run.at("host").get<std::string>(), run.at("wall_time_s").get<double>(),
+                        run.at("peak_memory_bytes").get<std::size_t>()}};
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;  // not ours: it is overwritten
+  } catch (const Error&) {
+    return std::nullopt;
   }
-  return table;
+}
+
+std::string trial_record_json(const std::string& fingerprint, const TrialRecord& record) {
+  return support::json_text({{"fingerprint", fingerprint},
+                             {"run",
+                              {{"host", record.run.host},
+                               {"wall_time_s", record.run.wall_time},
+                               {"peak_memory_bytes", record.run.peak_memory}}},
+                             {"trial", Json::parse(trial_json(record.trial))}});
 }
 
 }  // namespace skycap::missions::batch

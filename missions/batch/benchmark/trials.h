@@ -1,8 +1,10 @@
-/// Many surveys of one mission with different seeds, and what they have in common.
+/// Many surveys of one mission with different seeds, what they have in common, and those that are
+/// finished on disk: what an interrupted run, or another machine, need not run again.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -62,6 +64,34 @@ Trial trial_of(const session::SurveyRecord& record, const SceneTruth& truth);
 std::string trial_json(const Trial& trial);
 Trial parse_trial(const std::string& json);
 
+/// Stands for everything that a trial depends on but its seed: version, planner (`contestant`),
+/// settings, and the contents of the files that they name. `folder` is where relative paths start.
+/// Throws Error{bad_file} if one of them cannot be read.
+std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& contestant,
+                              const std::filesystem::path& folder);
+
+/// Where a trial ran and what that took: of the machine, not of the trial.
+struct TrialRun {
+  std::string host;
+  double wall_time = 0.0;       ///< [s]
+  std::size_t peak_memory = 0;  ///< of the program until then [byte]
+};
+
+/// `wall_time` and what the machine says of this program.
+TrialRun run_here(double wall_time);
+
+struct TrialRecord {
+  Trial trial;
+  TrialRun run;
+};
+
+/// The trial in a file, if it is there, whole, and of that fingerprint.
+std::optional<TrialRecord> finished_trial(const std::filesystem::path& file,
+                                          const std::string& fingerprint);
+
+/// The file's text.
+std::string trial_record_json(const std::string& fingerprint, const TrialRecord& record);
+
 /// Mean of a figure over the trials, and how sure it is.
 struct Statistic {
   double mean = 0.0;
@@ -71,20 +101,5 @@ struct Statistic {
 
 /// Zero deviation and an infinite half width for one number; `numbers` must not be empty.
 Statistic statistic(const std::vector<double>& numbers);
-
-/// Whether a table holds planning times. They are of the machine and of what else it did; all else
-/// is the same wherever a trial ran.
-enum class Times { shown, left_out };
-
-/// trials.csv: a line for each trial.
-std::string trials_csv(const std::vector<Trial>& trials, Times times = Times::shown);
-
-/// trials.json: statistics, mean curves (a finished trial keeps its last coverage), each trial,
-/// and the mission's reference figures beside them.
-std::string trials_json(const config::MissionSetup& mission, const std::vector<Trial>& trials,
-                        std::size_t requested, unsigned threads);
-
-/// The table for the terminal: means and half widths, and the mission's reference figures.
-std::string trials_table(const config::MissionSetup& mission, const std::vector<Trial>& trials);
 
 }  // namespace skycap::missions::batch

@@ -2,39 +2,54 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
-#include <string_view>
+
+#include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "missions/batch/benchmark/contestants.h"
-#include "missions/batch/campaign/key_changes.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/unknown_key.h"
+#include "missions/support/flow_text.h"
 #include "missions/support/key_text.h"
-#include "missions/support/yaml_section.h"
 
 namespace skycap::missions::batch {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using support::YamlNode;
 using support::YamlSection;
 
 constexpr std::size_t largest_file = std::size_t{16} << 20;  // [byte]; 100,000 missions
 constexpr int most_of_a_list = 100'000;
 
+/// What to give instead, for messages.
+const std::string plain_names = "use at most 100 bytes without / \\ , \" | and no leading dot";
+
+/// The name of a mission among the campaign's: its file's, without folder and ending.
+std::string mission_title(const std::string& path) { return fs::path(path).stem().string(); }
+
+[[noreturn]] void fail(const std::string& file, int line, const std::string& key,
+                       const std::string& what) {
+  throw Error(ErrorKind::bad_config,
+              file + ":" + std::to_string(line) + ": key " + support::about_key(key, what));
+}
+
 /// Reads the keys of a campaign in the order of the manual.
 class CampaignReader {
  public:
-  CampaignReader(const support::YamlNode& root, const std::string& name)
+  CampaignReader(const YamlNode& root, const std::string& name)
       : root_(root, "", name), file_(name) {}
 
   CampaignFile read() {
     campaign_.folder = fs::path(file_).parent_path();
-    read_name();
+    campaign_.name = read_name(root_, file_);
     read_missions();
     read_planners();
-    campaign_.seeds = static_cast<std::size_t>(whole_number("seeds", 10, 1, most_of_a_list));
+    campaign_.seeds = static_cast<std::size_t>(root_.integer("seeds", 10, 1, most_of_a_list));
     campaign_.first_seed =
-        static_cast<std::uint64_t>(whole_number("first_seed", 1, 0, 1'000'000'000));
+        static_cast<std::uint64_t>(root_.integer("first_seed", 1, 0, 1'000'000'000));
     read_variants();
     if (root_.has("results")) {
       campaign_.results = root_.choice<ItemResults>(
@@ -46,13 +61,6 @@ class CampaignReader {
   }
 
  private:
-  void read_name() {
-    campaign_.name = root_.text("name", fs::path(file_).stem().string());
-    if (!is_plain(campaign_.name)) {
-      root_.fail_at("name", "is not a valid folder name; " + std::string(plain_names));
-    }
-  }
-
   void read_missions() {
     campaign_.missions = root_.texts("missions");
     if (campaign_.missions.empty()) {
@@ -62,8 +70,8 @@ class CampaignReader {
     for (const std::string& path : campaign_.missions) {
       const std::string title = mission_title(path);
       if (!is_plain(title)) {
-        root_.fail_at("missions", path + " has a name that cannot be used in tables; " +
-                                      std::string(plain_names));
+        root_.fail_at("missions",
+                      path + " has a name that cannot be used in tables; " + plain_names);
       }
       const auto [known, is_new] = path_of.emplace(title, path);
       if (is_new) continue;
@@ -74,7 +82,7 @@ class CampaignReader {
 
   void read_planners() {
     try {
-      for (const auto* contestant : batch::contestants_named(root_.texts("planners"))) {
+      for (const auto* contestant : contestants_named(root_.texts("planners"))) {
         campaign_.planners.push_back(contestant->name);
       }
     } catch (const Error& error) {
@@ -83,26 +91,16 @@ class CampaignReader {
     }
   }
 
-  int whole_number(const std::string& key, int fallback, int least, int most) {
-    const int number = root_.integer(key, fallback);
-    if (number < least || number > most) {
-      root_.fail_at(key, "is " + std::to_string(number) + "; it must be from " +
-                             std::to_string(least) + " to " + std::to_string(most));
-    }
-    return number;
-  }
-
   void read_variants() {
     const std::vector<config::KeyOverride> of_all = changes_in(root_.entries("set"), "set.");
     std::vector<Variant> variants;
     for (const support::YamlEntry& entry : root_.entries("variants")) {
       const std::string key = "variants." + entry.key;
       if (!is_plain(entry.key)) {
-        fail(entry.line, key, "is not a valid folder name; " + std::string(plain_names));
+        fail(file_, entry.line, key, "is not a valid folder name; " + plain_names);
       }
-      if (entry.value.kind == support::YamlNode::Kind::list ||
-          entry.value.kind == support::YamlNode::Kind::scalar) {
-        fail(entry.line, key, "must be a map of mission keys");
+      if (entry.value.kind == YamlNode::Kind::list || entry.value.kind == YamlNode::Kind::scalar) {
+        fail(file_, entry.line, key, "must be a map of mission keys");
       }
       Variant variant{entry.key, of_all};
       for (auto& change : changes_in(entry.value.entries, key + ".")) {
@@ -132,18 +130,45 @@ class CampaignReader {
                                   std::to_string(most_items) + " runs; use fewer");
   }
 
-  std::string place(int line) const { return file_ + ":" + std::to_string(line); }
-
-  [[noreturn]] void fail(int line, const std::string& key, const std::string& what) const {
-    throw Error(ErrorKind::bad_config, place(line) + ": key " + support::about_key(key, what));
-  }
-
   YamlSection root_;
   const std::string& file_;
   CampaignFile campaign_;
 };
 
+const std::string& named(const std::string& planner) {
+  static const std::string own = "own";  // no contestant has this name
+  return planner.empty() ? own : planner;
+}
+
+/// `section` goes before the names of the entries' keys.
+void add_changes(const std::vector<support::YamlEntry>& entries, const std::string& section,
+                 const std::string& path, const std::string& file, const FollowingKeys& following,
+                 std::vector<config::KeyOverride>& changes) {
+  for (const support::YamlEntry& entry : entries) {
+    const std::string key = section + entry.key;
+    if (following.holds(key)) {
+      fail(file, entry.line, path + key, "follows from " + following.instead);
+    }
+    if (config::find_key(key) != nullptr) {
+      changes.push_back(
+          {file + ":" + std::to_string(entry.line), key, support::flow_text(entry.value)});
+    } else if (entry.value.kind == YamlNode::Kind::map) {
+      add_changes(entry.value.entries, key + ".", path, file, following, changes);
+    } else {
+      fail(file, entry.line, path + key, config::unknown_key_message(key, config::mission_keys()));
+    }
+  }
+}
+
 }  // namespace
+
+CampaignFile parse_campaign(const std::string& text, const std::string& name) {
+  return CampaignReader(support::parse_map(text, name, "a campaign"), name).read();
+}
+
+CampaignFile read_campaign(const fs::path& file) {
+  return parse_campaign(geometry::read_file(file, largest_file), file.string());
+}
 
 bool is_plain(std::string_view name) {
   const auto is_special = [](char c) {
@@ -154,19 +179,78 @@ bool is_plain(std::string_view name) {
          std::ranges::none_of(name, is_special);
 }
 
-std::string mission_title(const std::string& path) { return fs::path(path).stem().string(); }
-
-CampaignFile parse_campaign(const std::string& text, const std::string& name) {
-  const support::YamlNode root = support::parse_yaml(text, name);
-  if (root.kind != support::YamlNode::Kind::map) {
-    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
-                                           ": is not a map; a campaign is a list of 'key: value'");
-  }
-  return CampaignReader(root, name).read();
+std::string read_name(YamlSection& root, const std::string& file) {
+  std::string name = root.text("name", fs::path(file).stem().string());
+  if (!is_plain(name)) root.fail_at("name", "is not a valid folder name; " + plain_names);
+  return name;
 }
 
-CampaignFile read_campaign(const fs::path& file) {
-  return parse_campaign(geometry::read_file(file, largest_file), file.string());
+bool FollowingKeys::holds(const std::string& key) const {
+  return std::ranges::any_of(keys, [&](const std::string& own) {
+    return own == key || (own.ends_with('.') && key.starts_with(own));
+  });
+}
+
+std::vector<config::KeyOverride> key_changes(const std::vector<support::YamlEntry>& entries,
+                                             const std::string& path, const std::string& file,
+                                             const FollowingKeys& following) {
+  std::vector<config::KeyOverride> changes;
+  add_changes(entries, "", path, file, following, changes);
+  return changes;
+}
+
+fs::path ManifestLine::folder() const {
+  return fs::path("items") / entry.title / named(entry.planner) / ("seed_" + std::to_string(seed));
+}
+
+std::string ManifestLine::json() const {
+  Json set = Json::object();
+  for (const auto& [origin, path, value] : entry.variant->changes) set[path] = value;
+  const Json line{{"item", number},
+                  {"mission", entry.mission},
+                  {"variant", entry.variant->name},
+                  {"planner", named(entry.planner)},
+                  {"seed", seed},
+                  {"set", set},
+                  {"folder", folder().generic_string()}};
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::size_t Manifest::planners() const { return std::max<std::size_t>(1, file_.planners.size()); }
+
+std::size_t Manifest::entries() const {
+  return file_.missions.size() * file_.variants.size() * planners();
+}
+
+ManifestEntry Manifest::entry(std::size_t index) const {
+  const std::size_t of_mission = file_.variants.size() * planners();
+  const std::string& mission = file_.missions[index / of_mission];
+  const Variant& variant = file_.variants[index % of_mission / planners()];
+  const std::string title = mission_title(mission);
+  return {.mission = mission,
+          .title = variant.name.empty() ? title : title + "/" + variant.name,
+          .planner = file_.planners.empty() ? "" : file_.planners[index % planners()],
+          .variant = &variant};
+}
+
+ManifestLine Manifest::line(std::size_t number) const {
+  return {number, entry(number % entries()), file_.first_seed + number / entries()};
+}
+
+std::vector<std::size_t> Manifest::numbers_of_entry(std::size_t index,
+                                                    const ItemRange& range) const {
+  std::vector<std::size_t> numbers;
+  for (std::size_t round = range.first / entries(); round * entries() < range.end; ++round) {
+    const std::size_t number = round * entries() + index;
+    if (number >= range.first && number < range.end) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+std::string Manifest::text() const {
+  std::string lines;
+  for (std::size_t number = 0; number < size(); ++number) lines += line(number).json() + "\n";
+  return lines;
 }
 
 }  // namespace skycap::missions::batch

@@ -1,8 +1,5 @@
 #include "missions/batch/district/district_file.h"
 
-#include <algorithm>
-#include <array>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,8 +8,6 @@
 #include "geometry/io/file.h"
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/campaign/campaign_file.h"
-#include "missions/batch/campaign/key_changes.h"
-#include "missions/support/flow_text.h"
 #include "missions/support/yaml_section.h"
 
 namespace skycap::missions::batch {
@@ -32,10 +27,7 @@ class DistrictReader {
 
   DistrictFile read() {
     district_.file = file_;
-    district_.name = root_.text("name", fs::path(file_).stem().string());
-    if (!batch::is_plain(district_.name)) {
-      root_.fail_at("name", "is not a valid folder name; " + std::string(batch::plain_names));
-    }
+    district_.name = read_name(root_, file_);
     read_files();
     if (auto targets = root_.section("targets")) read_targets(*targets);
     district_.together = bounded("together", 0.5, 0.0, 100.0);
@@ -95,40 +87,34 @@ class DistrictReader {
     if (section.has("near")) {
       choice.near = click(section, "near", section.text("near"));
       choice.distance = section.number("distance");
-      if (!(choice.distance >= 0.0 && choice.distance <= farthest)) {
-        section.fail_at("distance",
-                        fmt::format("is {:g} m; it must be from 0 to 50000", choice.distance));
-      }
+      section.require_between("distance", choice.distance, 0.0, farthest, "m");
     }
     section.finish();
   }
 
   void read_planner() {
     district_.planner = root_.text("planner", "skycap");
-    if (batch::find_contestant(district_.planner) != nullptr) return;
+    if (find_contestant(district_.planner) != nullptr) return;
     std::string known;
-    for (const batch::Contestant& one : batch::contestants()) {
+    for (const Contestant& one : contestants()) {
       known += (known.empty() ? "" : ", ") + one.name;
     }
     root_.fail_at("planner", "is " + district_.planner + "; it must be one of " + known);
   }
 
   void read_changes() {
-    static const batch::FollowingKeys following{
+    static const FollowingKeys following{
         {"name", "seed", "threads", "planner.name", "planner.scene_box", "prior", "scene.",
          "site.latitude_deg", "site.longitude_deg", "site.ellipsoid_height", "site.geofence",
          "flight.vehicle", "flight.vehicles", "flight.takeoff", "flight.rally",
          "flight.unknown_box", "flight.unknown_beside", "flight.order"},
         "the district's files, targets, pads, vehicle, planner and seed; set those"};
-    district_.set = batch::key_changes(root_.entries("set"), "set.", file_, following);
+    district_.set = key_changes(root_.entries("set"), "set.", file_, following);
   }
 
   double bounded(const std::string& key, double fallback, double least, double most) {
     const double number = root_.number(key, fallback);
-    if (!(number >= least && number <= most)) {
-      root_.fail_at(key,
-                    fmt::format("is {:g} m; it must be from {:g} to {:g}", number, least, most));
-    }
+    root_.require_between(key, number, least, most, "m");
     return number;
   }
 
@@ -154,12 +140,7 @@ class DistrictReader {
 }  // namespace
 
 DistrictFile parse_district(const std::string& text, const std::string& name) {
-  const support::YamlNode root = support::parse_yaml(text, name);
-  if (root.kind != support::YamlNode::Kind::map) {
-    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
-                                           ": is not a map; a district is a list of 'key: value'");
-  }
-  return DistrictReader(root, name).read();
+  return DistrictReader(support::parse_map(text, name, "a district"), name).read();
 }
 
 DistrictFile read_district(const fs::path& file) {

@@ -6,13 +6,17 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "flight/district/measured_union.h"
 #include "flight/district/pad_sorties.h"
 #include "flight/paths/path.h"
 #include "geometry/error.h"
 #include "geometry/interrupted.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
 #include "missions/config/resolve.h"
+#include "missions/package/package.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -20,6 +24,24 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using flight::Station;
+
+/// Of all things of the target together, by their area.
+double coverage_in(const nlohmann::json& targets) {
+  double area = 0.0, covered = 0.0;
+  for (const nlohmann::json& target : targets) {
+    area += target.at("area_m2").get<double>();
+    covered += target.at("area_m2").get<double>() * target.at("coverage").get<double>();
+  }
+  return area > 0.0 ? covered / area : 0.0;
+}
+
+std::size_t bytes_in(const fs::path& folder) {
+  std::size_t bytes = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  return bytes;
+}
 
 /// How many pads a station is tried from.
 constexpr std::size_t most_pads_tried = 3;
@@ -82,7 +104,7 @@ class FlightPlanner {
         spaces.emplace_back(unmeasured.measured_space());
         continue;
       }
-      FlightInput input = flight_input(target.figures->folder);
+      package::PackagedSurvey input = package::read_package(target.figures->folder, {});
       spaces.push_back(std::move(input.measured));
       grounds_.insert(grounds_.end(), input.grounds.begin(), input.grounds.end());
       const std::vector<package::Way> ways(input.views.size());
@@ -218,6 +240,34 @@ class FlightPlanner {
 };
 
 }  // namespace
+
+SurveyFigures figures_of(const fs::path& folder, const TrialRecord& record) {
+  geometry::finish_commit(folder);
+  const fs::path file = folder / package::summary_name;
+  try {
+    const nlohmann::json summary =
+        geometry::parse_json<nlohmann::json>(geometry::read_file(file, geometry::largest_json));
+    SurveyFigures figures{.folder = folder,
+                          .views = summary.at("views"),
+                          .coverage = coverage_in(summary.at("targets")),
+                          .coverage_visible = {},
+                          .planning_time = record.trial.planning_time,
+                          .wall_time = record.run.wall_time,
+                          .peak_memory = record.run.peak_memory,
+                          .file_bytes = bytes_in(folder),
+                          .stop_reason = summary.at("stop_reason")};
+    const nlohmann::json& visible = summary.at("coverage_visible");
+    if (visible.is_number()) figures.coverage_visible = visible.get<double>();
+    if (const auto& flight = summary.at("flight"); flight.contains("route")) {
+      figures.time = flight["route"].at("duration_s");
+      figures.length = flight["route"].at("length_m");
+    }
+    return figures;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorKind::bad_file, file.string() + ": is not a survey's summary (" +
+                                         error.what() + "); remove its folder, and run again");
+  }
+}
 
 std::size_t DistrictFlight::sorties() const {
   std::size_t sum = 0;

@@ -2,19 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "flight/export/geodesy.h"
+#include "flight/flight_options.h"
 #include "flight/route/route.h"
 #include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
 #include "geometry/io/output_folder.h"
 #include "missions/batch/district/city_text.h"
-#include "missions/batch/district/pad_choice.h"
 #include "missions/batch/district/targets.h"
 #include "missions/config/resolve.h"
+#include "missions/site_data/file_reader.h"
+#include "missions/support/json_text.h"
+#include "missions/support/sha256.h"
+#include "missions/version.h"
+#include "missions/wizard/pad_search.h"
 #include "missions/wizard/proposal.h"
 #include "missions/wizard/target.h"
 
@@ -27,7 +39,175 @@ using Eigen::Vector3d;
 using site_data::Object;
 using site_data::Role;
 using site_data::Source;
+using support::json_of;
+using support::vector_of;
 using wizard::MissionValues;
+using Json = nlohmann::ordered_json;
+
+Json box_json(const Eigen::AlignedBox3d& box) {
+  return {{"min", json_of(Eigen::Vector3d(box.min()))},
+          {"max", json_of(Eigen::Vector3d(box.max()))}};
+}
+
+Eigen::AlignedBox3d box_of(const Json& json) {
+  return {vector_of(json.at("min")), vector_of(json.at("max"))};
+}
+
+/// To the centimetre, which is all that a map shows.
+Json rings_json(const std::vector<Ring>& rings) {
+  const auto shown = [](double value) { return std::round(100.0 * value) / 100.0; };
+  Json list = Json::array();
+  for (const Ring& ring : rings) {
+    Json& places = list.emplace_back(Json::array());
+    for (const Eigen::Vector2d& place : ring) {
+      places.push_back({shown(place.x()), shown(place.y())});
+    }
+  }
+  return list;
+}
+
+std::vector<Ring> rings_of(const Json& json) {
+  std::vector<Ring> rings;
+  for (const Json& places : json) {
+    Ring& ring = rings.emplace_back();
+    for (const Json& place : places) {
+      ring.emplace_back(place.at(0).get<double>(), place.at(1).get<double>());
+    }
+  }
+  return rings;
+}
+
+Json json_of(const PreparedTarget& target) {
+  return {{"title", target.title},
+          {"ids", target.ids},
+          {"box", box_json(target.box)},
+          {"unknown", box_json(target.unknown)},
+          {"pad", json_of(target.pad)},
+          {"refusal", target.refusal},
+          {"outlines", rings_json(target.outlines)}};
+}
+
+PreparedTarget target_of(const Json& json) {
+  return {.title = json.at("title"),
+          .ids = json.at("ids"),
+          .outlines = rings_of(json.at("outlines")),
+          .box = box_of(json.at("box")),
+          .unknown = box_of(json.at("unknown")),
+          .pad = vector_of(json.at("pad")),
+          .refusal = json.at("refusal")};
+}
+
+/// Stands for everything that the preparation depends on. Throws Error{bad_file} if a file that the
+/// district names cannot be read.
+std::string digest_of(const DistrictFile& district) {
+  std::string inputs = std::string(version) + "\n" + geometry::read_file(district.file);
+  std::vector<fs::path> files{district.wishes.map};
+  if (district.wishes.terrain) files.push_back(*district.wishes.terrain);
+  files.insert(files.end(), district.wishes.obstacles.begin(), district.wishes.obstacles.end());
+  for (const fs::path& file : files) {
+    geometry::require_regular_file(file);
+    inputs += "\n" + support::sha256_of_file(file);
+  }
+  return support::sha256(std::as_bytes(std::span(inputs)));
+}
+
+/// Of targets from pads [m].
+constexpr double most_to_pad = 300.0;
+
+std::vector<AlignedBox3d> unknown_boxes(std::span<const PreparedTarget> targets) {
+  std::vector<AlignedBox3d> boxes;
+  for (const PreparedTarget& target : targets) boxes.push_back(target.unknown);
+  return boxes;
+}
+
+/// On the map.
+double distance(const Vector3d& pad, const AlignedBox3d& box) {
+  const Eigen::AlignedBox2d base(box.min().head<2>().eval(), box.max().head<2>().eval());
+  return base.exteriorDistance(Eigen::Vector2d(pad.head<2>()));
+}
+
+/// Where the surveys of a district take off from, and the flight of all its targets.
+class PadChoice {
+ public:
+  /// Keeps references to all. Throws Error{bad_config} if a pad that the district gives is none.
+  PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
+            const flight::GeodeticPoint& origin, std::span<const PreparedTarget> targets);
+
+  /// The pad of a target's survey: beside it, or else the nearest that the district gives.
+  std::optional<Vector3d> pad_of(std::size_t target, double top);
+
+  /// Those that the district gives; else of the targets' own as few as leave none of these targets
+  /// farther than 300 m from one: first the one nearest to the middle, then those of the targets
+  /// that are farthest off.
+  std::vector<Vector3d> pads_of_flight() const;
+
+ private:
+  void take_given(const DistrictFile& district, const flight::GeodeticPoint& origin);
+
+  std::span<const PreparedTarget> targets_;
+  wizard::PadSearch search_;
+  std::vector<Vector3d> given_;
+  std::vector<std::optional<Vector3d>> own_;  ///< by target
+};
+
+PadChoice::PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
+                     const flight::GeodeticPoint& origin, std::span<const PreparedTarget> targets)
+    : targets_(targets), search_(draft, unknown_boxes(targets)), own_(targets.size()) {
+  take_given(district, origin);
+}
+
+void PadChoice::take_given(const DistrictFile& district, const flight::GeodeticPoint& origin) {
+  const flight::LocalFrame frame(origin);
+  double top = 0.0;
+  for (const PreparedTarget& target : targets_) top = std::max(top, target.unknown.max().z());
+  for (const wizard::Click& click : district.pads) {
+    const Vector3d place = frame.to_local({click.latitude_deg, click.longitude_deg, origin.height});
+    const auto pad = search_.at(place.head<2>());
+    if (!pad || search_.room_over(*pad, top, 1.0) <= 0.0) {
+      throw Error(ErrorKind::bad_config,
+                  fmt::format("{}: key pads: {:.7f},{:.7f} is not free, level and even ground "
+                              "outside the surveyed objects; use another position",
+                              district.file.string(), click.latitude_deg, click.longitude_deg));
+    }
+    given_.push_back(*pad);
+  }
+}
+
+std::optional<Vector3d> PadChoice::pad_of(std::size_t target, double top) {
+  const AlignedBox3d& unknown = targets_[target].unknown;
+  own_[target] = search_.beside(unknown, top);
+  if (own_[target] || given_.empty()) return own_[target];
+  return *std::ranges::min_element(given_, {},
+                                   [&](const Vector3d& pad) { return distance(pad, unknown); });
+}
+
+std::vector<Vector3d> PadChoice::pads_of_flight() const {
+  if (!given_.empty()) return given_;
+  AlignedBox3d all;
+  for (const PreparedTarget& target : targets_) all.extend(target.unknown);
+  std::vector<Vector3d> pads;
+  const Vector3d* next = nullptr;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& pad : own_) {
+    if (!pad) continue;
+    const double here = (pad->head<2>() - all.center().head<2>()).norm();
+    if (here < nearest) next = &*pad;
+    nearest = std::min(nearest, here);
+  }
+  while (next != nullptr) {
+    pads.push_back(*next);
+    next = nullptr;
+    double farthest = most_to_pad;
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      if (!own_[i]) continue;
+      double off = std::numeric_limits<double>::infinity();
+      for (const Vector3d& pad : pads) off = std::min(off, distance(pad, targets_[i].unknown));
+      if (off > farthest) next = &*own_[i];
+      farthest = std::max(farthest, off);
+    }
+  }
+  return pads;
+}
 
 constexpr const char* sites_folder = "sites";
 constexpr const char* city_name = "district.city.json";
@@ -69,9 +249,7 @@ class Preparer {
     tell_("reading " + district_.wishes.map.filename().string());
     // First, since missions name their files as seen from there.
     geometry::OutputFolder folder(out_);
-    files_ = wizard::files_of(district_.wishes);
-    chosen_ = choose_targets(district_, files_);
-    draft_ = read_draft();
+    read_files();
     take_things();
     group();
     place_pads();
@@ -95,6 +273,13 @@ class Preparer {
   }
 
   bool has_terrain() const { return district_.wishes.terrain.has_value(); }
+
+  void read_files() {
+    const site_data::ReadOnce once;
+    files_ = wizard::files_of(district_.wishes);
+    chosen_ = choose_targets(district_, files_);
+    draft_ = read_draft();
+  }
 
   /// All that the files hold, in the district's frame.
   config::MissionSetup read_draft() const {
@@ -312,6 +497,48 @@ class Preparer {
 };
 
 }  // namespace
+
+std::string pad_name(std::size_t pad) { return "pad_" + std::to_string(pad + 1); }
+
+std::string prepared_json(const Prepared& prepared) {
+  Json json{
+      {"digest", prepared.digest}, {"pads", json_of(prepared.pads)}, {"targets", Json::array()}};
+  for (const PreparedTarget& target : prepared.targets) json["targets"].push_back(json_of(target));
+  json["neighbours"] = rings_json(prepared.neighbours);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Prepared read_prepared(const fs::path& file) {
+  try {
+    const Json json = geometry::parse_json<Json>(geometry::read_file(file, geometry::largest_json));
+    Prepared prepared{.digest = json.at("digest"),
+                      .pads = {},
+                      .targets = {},
+                      .neighbours = rings_of(json.at("neighbours"))};
+    for (const Json& pad : json.at("pads")) prepared.pads.push_back(vector_of(pad));
+    for (const Json& target : json.at("targets")) prepared.targets.push_back(target_of(target));
+    return prepared;
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::bad_file, file.string() + ": is damaged (" + error.what() +
+                                         "); remove it; skycap district creates it again");
+  }
+}
+
+CampaignFile campaign_of(const DistrictFile& district, const Prepared& prepared,
+                         const fs::path& out) {
+  CampaignFile file{.name = district.name,
+                    .folder = out / missions_folder,
+                    .missions = {},
+                    .planners = {district.planner},
+                    .seeds = 1,
+                    .first_seed = district.seed,
+                    .variants = {{"", district.set}},
+                    .results = ItemResults::package};
+  for (const PreparedTarget& target : prepared.targets) {
+    if (target.refusal.empty()) file.missions.push_back(target.title + ".yaml");
+  }
+  return file;
+}
 
 Prepared prepare(const DistrictFile& district, const fs::path& out, const Tell& tell) {
   tell("reading the district's files");

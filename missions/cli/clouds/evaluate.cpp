@@ -1,8 +1,12 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,23 +15,42 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
-#include "missions/cli/clouds/evaluation.h"
+#include "geometry/io/record_log.h"
+#include "geometry/parallel.h"
+#include "geometry/surfaces/mesh.h"
+#include "missions/cli/tasks.h"
+#include "missions/cli/verbs.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/accuracy.h"
+#include "missions/evaluation/cloud_judge.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/evaluation/tally_file.h"
 #include "missions/scene/scene_source.h"
 #include "missions/support/json_text.h"
+#include "missions/version.h"
 
 namespace skycap::missions::cli {
 namespace {
 
-bool is_mission_file(const std::filesystem::path& file) {
+namespace fs = std::filesystem;
+
+/// What a cloud is compared with.
+struct Truth {
+  geometry::Mesh model;
+  geometry::Mesh beside{};  ///< what a mission's sensor sees beside it: ground, neighbours
+  double registration_distance;
+  std::size_t samples;
+  std::vector<std::uint8_t> is_visible{};  ///< for each sample, if a mission says from where
+};
+
+bool is_mission_file(const fs::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
 /// Piece by piece: laser scans are longer than memory.
 evaluation::CloudJudgement judged_cloud(const EvaluateOptions& options, const Truth& truth,
                                         ProgressLine& progress, const Console& console) {
-  const std::filesystem::path& file = options.cloud;
+  const fs::path& file = options.cloud;
   evaluation::CloudJudge judge(truth.model, truth.samples, truth.registration_distance,
                                options.threads, truth.beside);
   const auto take = [&](std::span<const Eigen::Vector3f> piece, double share) {
@@ -62,12 +85,11 @@ std::optional<double> visible_share(const evaluation::CloudJudgement& judged, co
   return evaluation::covered_share(judged.is_covered, truth.is_visible);
 }
 
-}  // namespace
-
+/// Of options.model. What is visible is only looked for if it is asked for. Throws Error.
 Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config::Report& report,
                const std::stop_token& stop) {
   if (is_mission_file(options.model)) {
-    const std::filesystem::path file = options.model;
+    const fs::path file = options.model;
     const config::MissionSetup setup = config::read_mission(file, {}, report);
     const double distance = options.distance.value_or(setup.evaluation().registration_distance);
     const auto beside = [&](const geometry::Mesh& model) {
@@ -93,6 +115,7 @@ Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config:
   }
 }
 
+/// The figures of a judgement.
 nlohmann::ordered_json evaluation_json(const EvaluateOptions& options, const Truth& truth,
                                        const evaluation::CloudJudgement& judged) {
   const evaluation::CloudAccuracy& accuracy = judged.accuracy;
@@ -117,6 +140,7 @@ nlohmann::ordered_json evaluation_json(const EvaluateOptions& options, const Tru
       {"points_per_m2", judged.density()}};
 }
 
+/// The same as options.is_json says.
 void print_evaluation(const EvaluateOptions& options, const Truth& truth,
                       const evaluation::CloudJudgement& judged, std::ostream& out) {
   if (options.is_json) {
@@ -125,7 +149,7 @@ void print_evaluation(const EvaluateOptions& options, const Truth& truth,
   }
   const evaluation::CloudAccuracy& accuracy = judged.accuracy;
   const std::optional<double> visible = visible_share(judged, truth);
-  const std::filesystem::path& file = options.mesh.empty() ? options.cloud : options.mesh;
+  const fs::path& file = options.mesh.empty() ? options.cloud : options.mesh;
   out << fmt::format(
       "{}: {} points against {}{}\n  coverage  {:.2f}% of the surface within {:g} m{}\n  accuracy  "
       "mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95% below {:.4g} m, maximum {:.4g} m\n  "
@@ -140,8 +164,137 @@ void print_evaluation(const EvaluateOptions& options, const Truth& truth,
       accuracy.largest, judged.density(), judged.area);
 }
 
+constexpr const char* evaluation_name = "evaluation.json";
+
+std::string checksum(const geometry::Mesh& mesh) {
+  const auto sum_of = [](const auto& items) {
+    return geometry::crc32_of(
+        {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
+  };
+  return fmt::format("{:08x} {:08x}", sum_of(mesh.vertices), sum_of(mesh.triangles));
+}
+
+/// A cloud whose points are shared out as they follow each other in its file.
+class PiecesOfCloud final : public PieceWork {
+ public:
+  PiecesOfCloud(const EvaluateOptions& options, const Console& console)
+      : options_(options),
+        console_(console),
+        progress_(console, options.is_quiet),
+        truth_(read_truth()),
+        digest_(checksum(truth_.model) + " beside " + checksum(truth_.beside)) {}
+
+  bool do_piece(std::size_t number) override {
+    geometry::OutputFolder folder(piece_folder(number));
+    if (evaluation::has_tally(folder.path(), identity(number))) return true;
+    evaluation::CloudJudge judge(truth_.model, truth_.samples, truth_.registration_distance,
+                                 options_.threads, truth_.beside);
+    double begin = 0.0;  // of what is read next, as a share of the file
+    geometry::read_positions(
+        options_.cloud, [&](std::span<const Eigen::Vector3f> points, double end) {
+          const auto place = static_cast<std::size_t>(begin * static_cast<double>(options_.pieces));
+          begin = end;
+          const bool is_own = std::min(place, options_.pieces - 1) == number;
+          if (!is_own || console_.stop.stop_requested()) return;
+          progress_.show(
+              fmt::format("{}: piece {}, {:.0f}%", options_.cloud.string(), number, 100.0 * end));
+          judge.add(points);
+        });
+    if (console_.stop.stop_requested()) return false;
+    evaluation::stage_tally(identity(number), judge.take_tally(), folder);
+    folder.commit();
+    return true;
+  }
+
+  bool take_piece(std::size_t number) override {
+    if (!evaluation::has_tally(piece_folder(number), identity(number))) return false;
+    all_.add(evaluation::read_tally(piece_folder(number)));
+    return true;
+  }
+
+  int join(geometry::OutputFolder& folder) override {
+    const evaluation::CloudJudgement judged =
+        judgement_of(all_, geometry::surface_area(truth_.model));
+    nlohmann::ordered_json json = evaluation_json(options_, truth_, judged);
+    json["complete"] = true;
+    folder.write(evaluation_name, support::json_text(json));
+    folder.commit();
+    progress_.clear();
+    if (!options_.is_quiet) print_evaluation(options_, truth_, judged, console_.out);
+    return 0;
+  }
+
+ private:
+  Truth read_truth() {
+    progress_.show("loading " + options_.model);
+    const bool wants_visible = !options_.task.index;  // which only the whole cloud is asked for
+    return truth_of(options_, wants_visible, progress_.teller(), console_.stop);
+  }
+
+  fs::path piece_folder(std::size_t number) const {
+    return folder_of_piece(*options_.out, number, options_.pieces);
+  }
+
+  /// What decides a piece.
+  std::string identity(std::size_t number) const {
+    const auto changed = fs::last_write_time(options_.cloud).time_since_epoch().count();
+    return fmt::format("{} {} {} {} model {} distance {} samples {} piece {} of {}", version,
+                       fs::absolute(options_.cloud).string(), fs::file_size(options_.cloud),
+                       changed, digest_, truth_.registration_distance, truth_.samples, number,
+                       options_.pieces);
+  }
+
+  const EvaluateOptions& options_;
+  const Console& console_;
+  ProgressLine progress_;
+  Truth truth_;
+  std::string digest_;
+  evaluation::CloudTally all_;
+};
+
+batch::Words command_of(const EvaluateOptions& options) {
+  std::error_code missing;
+  const bool is_file = fs::exists(options.model, missing);
+  batch::Words words{"evaluate",
+                     "--cloud",
+                     fs::absolute(options.cloud),
+                     "--model",
+                     is_file ? fs::absolute(options.model).string() : options.model,
+                     "--out",
+                     fs::absolute(*options.out),
+                     "--pieces",
+                     std::to_string(options.pieces),
+                     "--samples",
+                     std::to_string(options.samples)};
+  if (options.distance) {
+    words.insert(words.end(), {"--distance", fmt::format("{}", *options.distance)});
+  }
+  return words;
+}
+
+/// Judges a cloud in pieces, as the options say; returns the exit code.
+int evaluate_pieces(const EvaluateOptions& options, const Console& console) {
+  if (!options.mesh.empty() || !options.out) {
+    throw Error(ErrorKind::bad_usage, "--pieces requires --cloud and --out");
+  }
+  if (!fs::is_regular_file(options.cloud)) {
+    throw Error(ErrorKind::bad_file, options.cloud.string() + ": does not exist");
+  }
+  const batch::JobRequest job{.command = command_of(options),
+                              .out = *options.out,
+                              .title = "Evaluation of " + options.cloud.filename().string(),
+                              .name = "evaluate",
+                              .items = options.pieces,
+                              .jobs = geometry::thread_count(options.threads)};
+  return run_pieces(
+      job, options.task, options.is_quiet, evaluation_name,
+      [&] { return std::make_unique<PiecesOfCloud>(options, console); }, console);
+}
+
+}  // namespace
+
 int evaluate(const EvaluateOptions& options, const Console& console) {
-  if (options.pieces > 0) return split_evaluation(options, console);
+  if (options.pieces > 0) return evaluate_pieces(options, console);
   if (options.task.is_given() || options.out) {
     throw Error(ErrorKind::bad_usage,
                 "--out, --index, --chunk, --collect and --submit require --pieces");

@@ -1,17 +1,91 @@
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
 #include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "geometry/error.h"
+#include "geometry/parallel.h"
 #include "missions/cli/clouds/camera_scan.h"
 #include "missions/cli/clouds/laser_scan.h"
-#include "missions/cli/clouds/split_scan.h"
+#include "missions/cli/clouds/scan_results.h"
+#include "missions/cli/tasks.h"
 #include "missions/cli/verbs.h"
 #include "missions/config/preset_files.h"
 #include "missions/config/resolve.h"
 
 namespace skycap::missions::cli {
 namespace {
+
+namespace fs = std::filesystem;
+
+class PiecesOfFlight final : public PieceWork {
+ public:
+  PiecesOfFlight(const ScanVerbOptions& options, const config::MissionSetup& setup,
+                 const config::SensorDescription& sensor, const fs::path& out,
+                 const Console& console)
+      : scan_(options, setup, sensor, console, folder_of_pieces(out) / "tiles.json"),
+        pieces_(options.pieces),
+        out_(out) {}
+
+  bool do_piece(std::size_t number) override { return scan_.run_piece({number, pieces_}, out_); }
+
+  bool take_piece(std::size_t number) override {
+    auto piece = scan_.complete({number, pieces_}, out_);
+    if (!piece) return false;
+    complete_.push_back(std::move(*piece));
+    return true;
+  }
+
+  int join(geometry::OutputFolder& folder) override { return scan_.join(complete_, folder); }
+
+ private:
+  LaserScan scan_;
+  std::size_t pieces_;
+  fs::path out_;
+  std::vector<scan::CompletePiece> complete_;
+};
+
+/// What decides the results, for another program.
+batch::Words command_of(const ScanVerbOptions& options, const fs::path& out) {
+  batch::Words words{"scan",     fs::absolute(options.mission), "--out", fs::absolute(out),
+                     "--pieces", std::to_string(options.pieces)};
+  const auto add = [&](const std::string& option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
+  if (options.route) add("--route", fs::absolute(*options.route));
+  if (options.sensor) {
+    const bool is_file = options.sensor->ends_with(".yaml");
+    add("--sensor", is_file ? fs::absolute(*options.sensor).string() : *options.sensor);
+  }
+  add("--format", fmt::format("{}", fmt::join(options.formats, ",")));
+  if (options.with_truth) words.emplace_back("--with-truth");
+  if (!options.has_report) words.emplace_back("--no-report");
+  for (const config::KeyOverride& key : options.overrides) {
+    if (key.path != "threads") add("--set", key.path + "=" + key.value);  // a task has its own
+  }
+  return words;
+}
+
+int scan_in_pieces(const ScanVerbOptions& options, const config::MissionSetup& setup,
+                   const config::SensorDescription& sensor, const fs::path& out,
+                   const Console& console) {
+  const batch::JobRequest job{.command = command_of(options, out),
+                              .out = out,
+                              .title = "Scan " + setup.name,
+                              .name = setup.name,
+                              .items = options.pieces,
+                              .jobs = geometry::thread_count(setup.run.threads)};
+  return run_pieces(
+      job, options.task, options.is_quiet, scan_name,
+      [&] { return std::make_unique<PiecesOfFlight>(options, setup, sensor, out, console); },
+      console);
+}
 
 config::SensorDescription sensor_of(const ScanVerbOptions& options,
                                     const scan::FlownScanOptions& scan) {
@@ -24,8 +98,7 @@ config::SensorDescription sensor_of(const ScanVerbOptions& options,
 int scan(const ScanVerbOptions& options, const Console& console) {
   const config::MissionSetup setup = read_shown(config::read_mission, options, console);
   const config::SensorDescription sensor = sensor_of(options, setup.scan);
-  const std::filesystem::path out =
-      options.out.value_or(std::filesystem::path("results") / setup.name / "scan");
+  const fs::path out = options.out.value_or(fs::path("results") / setup.name / "scan");
   const bool is_laser = std::holds_alternative<sim::LidarConfig>(sensor.sensor);
   if (options.pieces > 0) {
     if (!is_laser) {
@@ -33,7 +106,7 @@ int scan(const ScanVerbOptions& options, const Console& console) {
           ErrorKind::bad_usage,
           "--pieces: " + sensor.name + " is a camera; only scans of laser scanners can be split");
     }
-    return split_scan(options, setup, sensor, out, console);
+    return scan_in_pieces(options, setup, sensor, out, console);
   }
   if (options.task.is_given()) {
     throw Error(ErrorKind::bad_usage, "--index, --chunk, --collect and --submit require --pieces");

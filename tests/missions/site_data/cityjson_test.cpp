@@ -2,6 +2,7 @@
 
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/site_data/file_reader.h"
 #include "missions/site_data/formats/file_contents.h"
 #include "tests/missions/site_data/cube_files.h"
 #include "tests/support/temporary_folder.h"
@@ -37,6 +38,33 @@ TEST_F(CityJson, NestsBoundariesByType) {
   EXPECT_EQ(read(surface_of("Solid", "[[[[0,1,2,3]]]]")).objects[0].mesh.triangles.size(), 2U);
   EXPECT_EQ(read(surface_of("MultiSolid", "[[[[[0,1,2,3]]]]]")).objects[0].mesh.triangles.size(),
             2U);
+}
+
+TEST_F(CityJson, IsParsedOnceWhileAReadOnceLives) {
+  Source source;
+  source.file = folder_.file("city.json", surface_of("MultiSurface", "[[[0,1,2,3]]]"));
+  source.place = Place{};
+  const SharedContents before = read_contents(source, {});
+  EXPECT_NE(read_contents(source, {}), before);
+  SharedContents kept;
+  {
+    const ReadOnce once;
+    kept = read_contents(source, {});
+    {
+      const ReadOnce inner;
+      EXPECT_EQ(read_contents(source, {}), kept);
+    }
+    EXPECT_EQ(read_contents(source, {}), kept);
+    Source cloud = source;
+    cloud.file = folder_.file("scan.txt", "1 2 3\n4 5 6\n");
+    const SharedContents points = read_contents(cloud, {});
+    EXPECT_NE(read_contents(cloud, {}), points) << "the caller changes its points";
+    EXPECT_EQ(read_contents(source, {}), kept);
+    Source other = source;
+    other.height_attribute = "h";  // which readers of maps use
+    EXPECT_NE(read_contents(other, {}), kept);
+  }
+  EXPECT_NE(read_contents(source, {}), kept);
 }
 
 TEST_F(CityJson, ReadsAFeatureALineWithTheFirstLinesScale) {

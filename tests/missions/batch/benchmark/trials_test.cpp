@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "missions/batch/benchmark/benchmark_report.h"
 #include "missions/config/resolve.h"
 
 namespace skycap::missions {

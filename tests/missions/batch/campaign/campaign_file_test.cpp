@@ -9,8 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
-#include "missions/batch/campaign/manifest.h"
-#include "missions/batch/campaign/manifest_batches.h"
 #include "missions/config/mission_reader.h"
 #include "missions/support/flow_text.h"
 
@@ -88,7 +86,7 @@ TEST(Campaign, RangesAreSharedOutToEntries) {
     for (std::size_t end = first; end <= manifest.size(); ++end) {
       std::vector<std::size_t> numbers;
       for (std::size_t entry = 0; entry < manifest.entries(); ++entry) {
-        for (const std::size_t n : numbers_of_entry(manifest, entry, {first, end})) {
+        for (const std::size_t n : manifest.numbers_of_entry(entry, {first, end})) {
           EXPECT_EQ(n % manifest.entries(), entry);
           numbers.push_back(n);
         }

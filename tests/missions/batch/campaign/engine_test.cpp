@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
-#include "missions/batch/campaign/engine_job.h"
-#include "missions/batch/campaign/task_index.h"
+#include "missions/batch/campaign/task_job.h"
 #include "missions/support/external_program.h"
 
 namespace skycap::missions::batch {

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/batch/district/prepared.h"
+#include "missions/batch/district/preparation.h"
 #include "missions/config/resolve.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/missions/site_data/cube_files.h"
