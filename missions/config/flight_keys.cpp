@@ -5,23 +5,12 @@
 namespace skycap::missions::config {
 namespace {
 
-/// A key whose value is a list; an empty one stands for none.
+/// A list whose numbers are metres.
 template <class Field>
-Key list_key(std::string path, KeyType type, Field field, std::string meaning) {
-  using List = std::remove_reference_t<decltype(field(std::declval<MissionDocument&>()))>;
-  Key key;
-  key.path = std::move(path);
-  key.type = type;
+Key metre_list_key(std::string path, KeyType type, Field field, std::string meaning) {
+  Key key = list_key(std::move(path), type, field, std::move(meaning));
   key.unit = "m";
   key.fallback = "none";
-  key.meaning = std::move(meaning);
-  key.set = [field](MissionDocument& mission, const KeyValue& value) {
-    field(mission) = std::get<List>(value);
-  };
-  key.get = [field](const MissionDocument& mission) -> std::optional<KeyValue> {
-    const List& stored = field(mission);
-    return stored.empty() ? std::nullopt : std::optional<KeyValue>(stored);
-  };
   return key;
 }
 
@@ -37,7 +26,8 @@ auto section(auto member) {
 
 /// The key `flight.rally`: places on the ground.
 Key rally_key() {
-  Key key = list_key("flight.rally", KeyType::vectors, flight(&flight::FlightOptions::rally),
+  Key key =
+      metre_list_key("flight.rally", KeyType::vectors, flight(&flight::FlightOptions::rally),
                      "Rally points [x, y, z] on the ground. On return, the vehicle flies to the "
                      "nearest of these and the take-off point. The pilot must check the airspace "
                      "above each, up to flight.takeoff_climb. Not supported by DJI.");
@@ -65,14 +55,14 @@ Key vehicles_key() {
                      "Several vehicles, each as in flight.vehicle, that share the mission's views. "
                      "A name may be listed twice. The first vehicle flies the survey. A list of "
                      "one is the same as flight.vehicle.");
-  key.unit.clear();
+  key.fallback = "none";
   return key;
 }
 
 /// The key `flight.pads`: a place on the ground for each vehicle.
 Key pads_key() {
-  Key key = list_key("flight.pads", KeyType::vectors, fleet(&flight::FleetOptions::pads),
-                     "Take-off and landing points of flight.vehicles, in the same order.");
+  Key key = metre_list_key("flight.pads", KeyType::vectors, fleet(&flight::FleetOptions::pads),
+                           "Take-off and landing points of flight.vehicles, in the same order.");
   key.range = between(-1e6, 1e6);
   key.fallback = "a row from flight.takeoff along the side of unknown_box";
   return key;
@@ -101,11 +91,11 @@ std::vector<Key> fleet_keys() {
 
 /// The key `flight.unknown_beside`: boxes of neighbours.
 Key unknown_beside_key() {
-  Key key =
-      list_key("flight.unknown_beside", KeyType::vectors, section(&FlightSection::unknown_beside),
-               "Further boxes in which unknown space is treated as occupied, for example around "
-               "neighbours that are surveyed as well: lower and upper corner of each, one after "
-               "the other. The package keeps what was measured in them for the joint flight.");
+  Key key = metre_list_key(
+      "flight.unknown_beside", KeyType::vectors, section(&FlightSection::unknown_beside),
+      "Further boxes in which unknown space is treated as occupied, for example around "
+      "neighbours that are surveyed as well: lower and upper corner of each, one after "
+      "the other. The package keeps what was measured in them for the joint flight.");
   key.range = between(-1e6, 1e6);
   return key;
 }
@@ -217,10 +207,10 @@ std::vector<Key> conduct_keys() {
 
 std::vector<Key> site_keys() {
   return {
-      list_key(
+      metre_list_key(
           "site.geofence", KeyType::polygon, [](auto& m) -> auto& { return m.site.geofence; },
           "Geofence: polygon of [east, north] in the mission frame that contains all views."),
-      list_key(
+      metre_list_key(
           "site.no_fly", KeyType::volumes, [](auto& m) -> auto& { return m.site.no_fly; },
           "No-fly volumes: upright prisms that contain no view; bottom and top are z in the "
           "mission frame."),

@@ -1,4 +1,7 @@
 // The key `prior`, and those of each map in its list.
+#include <algorithm>
+
+#include "geometry/angle.h"
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 #include "missions/site_data/prior_text.h"
@@ -24,23 +27,6 @@ auto source(auto member) {
 }
 auto selection(auto member) {
   return [member](auto& m) -> auto& { return m.prior.back().select.*member; };
-}
-
-/// A key whose value is a list or map; an empty one stands for none.
-template <class Field>
-Key list_key(std::string path, KeyType type, Field field, std::string meaning) {
-  Key key = key_for(std::move(path), type, field, std::move(meaning));
-  key.get = [get = key.get](const MissionDocument& mission) -> std::optional<KeyValue> {
-    auto value = get(mission);
-    const bool is_empty = std::visit(
-        [](const auto& list) {
-          if constexpr (requires { list.empty(); }) return list.empty();
-          return false;
-        },
-        *value);
-    return is_empty ? std::nullopt : value;
-  };
-  return key;
 }
 
 /// A text that may be left out.

@@ -1,4 +1,5 @@
 // The keys that belong to no section, and those of `scene`.
+#include "geometry/angle.h"
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 #include "sim/models/models.h"
