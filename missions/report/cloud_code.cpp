@@ -1,12 +1,9 @@
 #include "missions/report/cloud_code.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <numeric>
-#include <utility>
 
 #include "geometry/place/space_curve.h"
 #include "missions/report/script_text.h"
@@ -22,11 +19,12 @@ void thin(std::vector<geometry::CurveEntry>& entries, std::size_t most) {
   entries.resize(most);
 }
 
-std::string planes_of(std::span<const std::uint64_t> values, int planes) {
+template <class Values>
+std::string planes_of(const Values& values, int planes) {
   std::string bytes(values.size() * static_cast<std::size_t>(planes), '\0');
   auto next = bytes.begin();
   for (int plane = 0; plane < planes; ++plane) {
-    for (const std::uint64_t value : values) *next++ = static_cast<char>(value >> (8 * plane));
+    for (const auto value : values) *next++ = static_cast<char>(value >> (8 * plane));
   }
   return bytes;
 }
@@ -55,33 +53,6 @@ double spacing_in(const geometry::CurveGrid& grid, std::span<const geometry::Cur
 int bits_of(std::span<const std::uint64_t> keys) {
   const int width = keys.empty() ? 0 : static_cast<int>(std::bit_width(keys.back()));
   return std::max(1, (width + 2) / 3);
-}
-
-/// The places that the values stand at, each moved to the front of the list when it is met.
-std::vector<std::uint64_t> places_in_list(std::span<const std::uint16_t> values,
-                                          std::size_t different) {
-  std::vector<std::uint16_t> list(different);
-  std::iota(list.begin(), list.end(), std::uint16_t{0});
-  std::vector<std::uint64_t> places;
-  places.reserve(values.size());
-  for (const std::uint16_t value : values) {
-    const auto found = std::ranges::find(list, value);
-    places.push_back(static_cast<std::uint64_t>(found - list.begin()));
-    std::rotate(list.begin(), found, found + 1);
-  }
-  return places;
-}
-
-/// The values in the order of `first`, points that are alike there in the order that they have.
-std::vector<std::uint16_t> ordered_by(std::span<const std::uint16_t> first,
-                                      std::span<const std::uint16_t> values) {
-  std::vector<std::size_t> begin(std::size_t{1} << 16, 0);
-  for (const std::uint16_t value : first) ++begin[value];
-  std::size_t sum = 0;
-  for (std::size_t& count : begin) sum += std::exchange(count, sum);
-  std::vector<std::uint16_t> ordered(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) ordered[begin[first[i]]++] = values[i];
-  return ordered;
 }
 
 std::vector<std::uint16_t> values_of(const CloudAttribute& attribute,
@@ -137,15 +108,12 @@ CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
   const std::vector<std::uint64_t> keys = keys_of(entries);
   code.bits = bits_of(keys);
   std::string bytes = planes_of(differences(keys), (3 * code.bits + 7) / 8);
-  std::vector<std::uint16_t> first;
   for (const CloudAttribute& attribute : attributes) {
-    std::vector<std::uint16_t> values = values_of(attribute, entries);
-    if (first.empty()) first = values;
-    if (attribute.follows_first) values = ordered_by(first, values);
+    const std::vector<std::uint16_t> values = values_of(attribute, entries);
     const std::size_t different =
         values.empty() ? 1 : std::size_t{*std::ranges::max_element(values)} + 1;
-    code.attributes.push_back({attribute.name, different, attribute.follows_first});
-    bytes += planes_of(places_in_list(values, different), different > 256 ? 2 : 1);
+    code.attributes.push_back({attribute.name, different});
+    bytes += planes_of(values, different > 256 ? 2 : 1);
   }
   code.bytes = deflated(bytes, Repetition::runs);
   return code;

@@ -1,13 +1,10 @@
-/// Points as the few bytes that a page can hold: about two for a point.
+/// Clouds as whole numbers that deflate to two or three bytes per point.
 ///
 /// Positions fall into the cells of a cubic grid; a cell's three indices, bit by bit in turn, are
-/// its key (Morton, "A computer oriented geodetic data base", 1966). Sorted by key, neighbours in
-/// space are neighbours in the list and keys grow by little: the differences are written byte plane
-/// by byte plane, lowest first, the attributes behind them, and all of it is deflated (zlib), by
-/// runs and frequencies alone: longer repetitions are chance here. An attribute's values are
-/// written as places in a list of them in which the one written last moves to the front (Bentley,
-/// Sleator, Tarjan and Wei, "A locally adaptive data compression scheme", 1986).
-/// missions/report/page/cloud.js reads it back.
+/// its key (Morton, "A computer oriented geodetic data base", 1966). Points are sorted by key, so
+/// that neighbours in space follow each other and keys grow by little. Written are the differences
+/// of the keys, then the values of each attribute, as byte planes, lowest byte first; the whole is
+/// deflated (zlib) by runs and frequencies. missions/report/page/cloud.js reads it.
 #pragma once
 
 #include <cstddef>
@@ -24,9 +21,6 @@ namespace skycap::missions::report {
 struct CloudAttribute {
   std::string name;
   std::span<const std::uint16_t> values;
-  /// Written point by point of the first attribute's smallest value, then of the next one's: for
-  /// what neighbours have in common only if they have that.
-  bool follows_first = false;
 };
 
 /// A coded cloud and what it takes to read it.
@@ -40,7 +34,6 @@ struct CloudCode {
   struct Attribute {
     std::string name;
     std::size_t values = 1;  ///< they are 0, 1, ...; more than 256 take two byte planes
-    bool follows_first = false;
   };
   std::vector<Attribute> attributes;
   std::string bytes;  ///< deflated

@@ -16,9 +16,7 @@ using Json = nlohmann::ordered_json;
 Json json_of(const CloudCode& code) {
   Json attributes = Json::array();
   for (const CloudCode::Attribute& attribute : code.attributes) {
-    attributes.push_back({{"name", attribute.name},
-                          {"values", attribute.values},
-                          {"follows_first", attribute.follows_first}});
+    attributes.push_back({{"name", attribute.name}, {"values", attribute.values}});
   }
   return {
       {"points", code.points},   {"of", code.of},
@@ -37,7 +35,7 @@ std::string data_block(std::string_view type, const std::string& id, std::string
 /// A library, deflated: it is a third of the page otherwise.
 std::string library_block(const PageLibrary& library) {
   return data_block("application/octet-stream", "library-" + std::string(library.name),
-                    base93(deflated(library.text, Repetition::any)));
+                    base64(deflated(library.text, Repetition::any)));
 }
 
 std::string policy() {
@@ -73,7 +71,7 @@ std::string page_text(const std::string& title, Json data, const std::vector<Pag
   for (const PageCloud& cloud : clouds) {
     data["clouds"][cloud.name] = json_of(cloud.code);
     blocks +=
-        data_block("application/octet-stream", "cloud-" + cloud.name, base93(cloud.code.bytes));
+        data_block("application/octet-stream", "cloud-" + cloud.name, base64(cloud.code.bytes));
   }
   std::string page;
   const std::string_view frame = page_frame();

@@ -202,7 +202,7 @@ std::string scan_page(const ResultFinder& results, std::size_t most_points) {
     data["files"] = files_json(file_names(summary), results, summary.value("complete", false));
     std::vector<CloudAttribute> attributes;
     if (!shown.views.empty()) {
-      attributes = {{"view", shown.views}, {"incidence", shown.incidence, true}};
+      attributes = {{"view", shown.views}, {"incidence", shown.incidence}};
     }
     return page_text(summary.at("mission").get<std::string>(), data,
                      {{"measured", encode_cloud(cloud.positions, attributes, most_points)}});

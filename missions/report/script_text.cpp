@@ -1,9 +1,7 @@
 #include "missions/report/script_text.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cstdint>
 #include <new>
 #include <span>
 #include <stdexcept>
@@ -85,31 +83,6 @@ std::string base64(std::string_view bytes) {
                   reinterpret_cast<const unsigned char*>(bytes.data()),
                   static_cast<int>(bytes.size()));
   text.pop_back();
-  return text;
-}
-
-std::string base93(std::string_view bytes) {
-  constexpr std::uint32_t base = 93, spare = base * base - (1U << 13);
-  const auto character = [](std::uint32_t digit) {
-    const auto c = static_cast<char>('!' + digit);
-    return c < '<' ? c : static_cast<char>(c + 1);
-  };
-  std::string text;
-  text.reserve(bytes.size() * 5 / 4 + 2);
-  std::uint32_t bits = 0;
-  int count = 0;  // of bits that are not written yet
-  for (const char byte : bytes) {
-    bits |= std::uint32_t{static_cast<unsigned char>(byte)} << count;
-    count += 8;
-    if (count <= 13) continue;
-    const int taken = (bits & 0x1fff) < spare ? 14 : 13;
-    const std::uint32_t number = bits & ((1U << taken) - 1);
-    text += {character(number % base), character(number / base)};
-    bits >>= taken;
-    count -= taken;
-  }
-  if (count > 0) text += character(bits % base);
-  if (count > 6) text += character(bits / base);
   return text;
 }
 

@@ -25,12 +25,6 @@ std::string deflated(std::string_view bytes, Repetition repetition);
 /// Of at most a gigabyte.
 std::string base64(std::string_view bytes);
 
-/// Bytes as text of 0.82 bytes a character, where base64 has 0.75: the scheme of basE91 (J. Henke,
-/// 2006) with all 93 characters between space and DEL but '<'. From the lowest bit on, 13 bits make
-/// a number of two digits, the lower one first; 14 bits if those 13 are less than 93 * 93 - 2^13.
-/// Of at most six bits at the end there is one digit. page/cloud.js reads it back.
-std::string base93(std::string_view bytes);
-
 /// What a content security policy calls a script or style by: 'sha256-...'.
 std::string policy_hash(std::string_view text);
 

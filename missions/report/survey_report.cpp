@@ -86,8 +86,7 @@ PageCloud measured_cloud(const geometry::AttributedCloud& cloud,
   std::vector<CloudAttribute> attributes;
   if (!views.empty()) attributes.push_back({"view", views});
   attributes.push_back({"state", states});
-  // A view looks at a surface from one side.
-  if (!incidence.empty()) attributes.push_back({"incidence", incidence, !views.empty()});
+  if (!incidence.empty()) attributes.push_back({"incidence", incidence});
   return {"measured", encode_cloud(cloud.positions, attributes, most_points)};
 }
 

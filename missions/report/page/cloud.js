@@ -1,28 +1,10 @@
 // Clouds as missions/report/cloud_code.h writes them.
 
-/// Bytes of the text that base93() in missions/report/script_text.h writes.
-function bytes_of_base93(text) {
-  const base = 93, spare = base * base - (1 << 13), less = "<".charCodeAt(0);
-  const digit = (i) => {
-    const code = text.charCodeAt(i);
-    return code - 33 - (code > less ? 1 : 0);
-  };
-  const bytes = new Uint8Array(Math.ceil(text.length * 7 / 8));
-  let size = 0, bits = 0, count = 0;
-  for (let i = 0; i < text.length; i += 2) {
-    const is_pair = i + 1 < text.length;
-    const number = digit(i) + (is_pair ? base * digit(i + 1) : 0);
-    bits |= number << count;
-    // A single digit at the end completes the byte that is begun.
-    count += !is_pair ? 8 - count : (number & 0x1fff) < spare ? 14 : 13;
-    for (; count >= 8; count -= 8, bits >>>= 8) bytes[size++] = bits & 255;
-  }
-  return bytes.subarray(0, size);
-}
-
+/// The bytes that a block of the page holds: deflated, in base64.
 async function inflated(id) {
   const block = document.getElementById(id);
-  const packed = bytes_of_base93(block.textContent);
+  const text = atob(block.textContent), packed = new Uint8Array(text.length);
+  for (let i = 0; i < packed.length; ++i) packed[i] = text.charCodeAt(i);
   block.remove();  // its text is no longer needed
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
@@ -65,44 +47,17 @@ function decode_positions(header, bytes) {
   return { positions, end: planes * count };
 }
 
-/// The values at places of a list in which what is met moves to the front.
-function values_at_places(place, count, different) {
-  const list = Uint16Array.from({ length: different }, (_, i) => i);
-  const values = different > 256 ? new Uint16Array(count) : new Uint8Array(count);
-  for (let i = 0; i < count; ++i) {
-    const at = place(i), value = list[at];
-    for (let k = at; k > 0; --k) list[k] = list[k - 1];
-    list[0] = value;
-    values[i] = value;
-  }
-  return values;
-}
-
-/// Of values in the order of `first` those of the points.
-function in_order_of_points(first, ordered) {
-  const begin = new Uint32Array(1 << 16), values = new ordered.constructor(ordered.length);
-  for (const value of first) ++begin[value];
-  let sum = 0;
-  for (let value = 0; value < begin.length; ++value) {
-    const count = begin[value];
-    begin[value] = sum;
-    sum += count;
-  }
-  for (let i = 0; i < first.length; ++i) values[i] = ordered[begin[first[i]]++];
-  return values;
-}
-
-/// Adds the attributes whose planes begin there.
+/// Adds the attributes whose byte planes begin there.
 function decode_attributes(cloud, attributes, bytes, begin) {
   const count = cloud.count;
-  let first = null;
-  for (const { name, values: different, follows_first } of attributes) {
-    const low = begin, high = begin + count, is_wide = different > 256;
-    const values = values_at_places(
-      (i) => bytes[low + i] | (is_wide ? bytes[high + i] << 8 : 0), count, different);
-    begin += (is_wide ? 2 : 1) * count;
-    cloud[name] = follows_first ? in_order_of_points(first, values) : values;
-    first = first || cloud[name];
+  for (const { name, values: different } of attributes) {
+    const low = bytes.subarray(begin, begin + count);
+    begin += count;
+    cloud[name] = low;
+    if (different <= 256) continue;
+    const high = bytes.subarray(begin, begin + count);
+    begin += count;
+    cloud[name] = Uint16Array.from(low, (value, i) => value | high[i] << 8);
   }
 }
 

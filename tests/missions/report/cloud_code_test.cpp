@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -50,26 +48,10 @@ Decoded decode(const CloudCode& code) {
   }
   std::size_t at = planes * code.points;
   for (const auto& attribute : code.attributes) {
-    std::vector<std::size_t> places(code.points, 0);
+    std::vector<std::uint16_t> values(code.points, 0);
     for (int byte = 0; byte < (attribute.values > 256 ? 2 : 1); ++byte) {
-      for (auto& place : places) place |= std::size_t{bytes[at++]} << 8 * byte;
-    }
-    std::deque<std::uint16_t> list;
-    for (std::size_t value = 0; value < attribute.values; ++value) {
-      list.push_back(static_cast<std::uint16_t>(value));
-    }
-    std::vector<std::size_t> order(code.points);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    if (attribute.follows_first) {
-      const auto& first = decoded.attributes.front();
-      std::ranges::stable_sort(order, {}, [&](std::size_t i) { return first[i]; });
-    }
-    std::vector<std::uint16_t> values(code.points);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const std::uint16_t value = list.at(places[i]);
-      list.erase(list.begin() + static_cast<std::ptrdiff_t>(places[i]));
-      list.push_front(value);
-      values[order[i]] = value;
+      for (auto& value : values)
+        value = static_cast<std::uint16_t>(value | bytes[at++] << 8 * byte);
     }
     decoded.attributes.push_back(std::move(values));
   }
@@ -102,13 +84,12 @@ TEST(CloudCode, ReadsBackToHalfAStep) {
   const auto ids = numbers(points.size());
   std::vector<std::uint16_t> small;
   for (const auto id : ids) small.push_back(id % 4);
-  const CloudAttribute attributes[] = {{"id", ids}, {"small", small}, {"again", small, true}};
+  const CloudAttribute attributes[] = {{"id", ids}, {"small", small}};
   const CloudCode code = encode_cloud(points, attributes, 10'000);
   ASSERT_EQ(code.points, points.size());
   EXPECT_EQ(code.attributes[0].values, 1000U);
   EXPECT_EQ(code.attributes[1].values, 4U);
   const Decoded decoded = decode(code);
-  EXPECT_EQ(decoded.attributes[2], decoded.attributes[1]);
   std::vector<bool> is_found(points.size(), false);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(decoded.attributes[1][i], decoded.attributes[0][i] % 4);
@@ -177,9 +158,9 @@ TEST(CloudCode, TakesLittleRoom) {
   const auto points = sphere(200'000, 20.0, 0.01);
   const auto values = survey_attributes(points);
   const CloudAttribute attributes[] = {
-      {"view", values[0]}, {"state", values[1]}, {"incidence", values[2], true}};
+      {"view", values[0]}, {"state", values[1]}, {"incidence", values[2]}};
   const CloudCode code = encode_cloud(points, attributes, 1'000'000);
-  EXPECT_LT(static_cast<double>(base93(code.bytes).size()) / 200'000.0, 2.6);
+  EXPECT_LT(static_cast<double>(base64(code.bytes).size()) / 200'000.0, 3.6);
 }
 
 TEST(CloudCode, HoldsNothingOneAndTheSame) {
