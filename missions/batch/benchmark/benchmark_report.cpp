@@ -113,7 +113,7 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
   if (figures.coverage_visible)
     json["coverage_visible"] = statistic_json(*figures.coverage_visible);
   if (figures.flown_time) json["flown_s"] = statistic_json(*figures.flown_time);
-  json["coverage_ceiling"] = figures.ceiling ? Json(*figures.ceiling) : Json();
+  json["attainable_coverage"] = figures.ceiling ? Json(*figures.ceiling) : Json();
   const ViewFigures per_view = view_figures(cell.trials);
   json["frontiers_per_view"] = statistic_json(per_view.frontiers);
   json["coverage_per_view"] = statistic_json(per_view.coverage);
@@ -320,7 +320,7 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times) {
       csv += std::string(",") + column.key + part;
     }
   }
-  csv += ",coverage_visible,coverage_ceiling\n";
+  csv += ",coverage_visible,attainable_coverage\n";
   for (const BenchmarkCell& cell : cells) {
     if (cell.trials.empty()) continue;
     const CellFigures figures = figures_of(cell);
@@ -361,7 +361,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
   std::string text =
       "# " + title +
       "\n\nMeans over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width "
-      "of the 95% interval of the mean, sd the standard deviation over the trials, and × the ratio "
+      "of the 95% interval of the mean, sd the standard deviation over the trials. × is the ratio "
       "to the paper. Definitions: docs/howto/compare-planners.md.\n\n## Table 1\n\n" +
       table_1(cells, times);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {

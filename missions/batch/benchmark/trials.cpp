@@ -15,6 +15,7 @@
 #include "missions/batch/benchmark/paper_results.h"
 #include "missions/batch/benchmark/trial_json.h"
 #include "missions/evaluation/coverage.h"
+#include "missions/package/former_fields.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"
 #include "missions/version.h"
@@ -163,7 +164,7 @@ std::string trial_json(const Trial& trial) {
             {"stop_reason", session::name_of(trial.stop_reason)},
             {"coverage", trial.coverage.all},
             {"coverage_visible", json_of(trial.coverage.visible)},
-            {"coverage_ceiling", json_of(trial.coverage.ceiling)},
+            {"attainable_coverage", json_of(trial.coverage.ceiling)},
             {"views", trial.views},
             {"points", trial.points},
             {"planning_time_s", trial.planning_time},
@@ -184,13 +185,14 @@ std::string trial_json(const Trial& trial) {
 
 Trial parse_trial(const std::string& text) {
   try {
-    const Json json = geometry::parse_json<Json>(text);
+    Json json = geometry::parse_json<Json>(text);
+    package::use_current_fields(json);
     Trial trial;
     trial.seed = json.at("seed").get<std::uint64_t>();
     trial.stop_reason = session::stop_reason_named(json.at("stop_reason").get<std::string>());
     trial.coverage = {json.at("coverage").get<double>(),
                       optional_number(json.at("coverage_visible")),
-                      optional_number(json.at("coverage_ceiling"))};
+                      optional_number(json.at("attainable_coverage"))};
     trial.views = json.at("views").get<std::size_t>();
     trial.points = json.at("points").get<std::size_t>();
     trial.planning_time = json.at("planning_time_s").get<double>();
@@ -213,7 +215,8 @@ Trial parse_trial(const std::string& text) {
 std::string trials_csv(const std::vector<Trial>& trials, Times times) {
   const bool has_times = times == Times::shown;
   std::string csv =
-      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,flown_m,"
+      "seed,stop_reason,views,coverage,coverage_visible,attainable_coverage,distance_m,points,"
+      "flown_m,"
       "flown_s";
   csv += has_times ? ",planning_time_s\n" : "\n";
   for (const Trial& trial : trials) {
@@ -240,7 +243,7 @@ std::string trials_json(const config::MissionSetup& mission, const std::vector<T
             {"trials_requested", requested},
             {"trials", trials.size()},
             {"trials_complete", completed(trials)},
-            {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
+            {"attainable_coverage", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
   if (trials.empty()) return support::json_text(json);
   for (const Figure& figure : figures) {
     json[figure.name] = statistic_json(statistic_of(trials, figure));

@@ -9,6 +9,7 @@
 #include "geometry/io/file.h"
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/campaign/key_changes.h"
+#include "missions/config/former_names.h"
 #include "missions/support/key_text.h"
 #include "missions/support/yaml_section.h"
 
@@ -157,11 +158,12 @@ bool is_plain(std::string_view name) {
 std::string mission_title(const std::string& path) { return fs::path(path).stem().string(); }
 
 CampaignFile parse_campaign(const std::string& text, const std::string& name) {
-  const support::YamlNode root = support::parse_yaml(text, name);
+  support::YamlNode root = support::parse_yaml(text, name);
   if (root.kind != support::YamlNode::Kind::map) {
     throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
                                            ": is not a map; a campaign is a list of 'key: value'");
   }
+  config::replace_former_batch_names(root, name);
   return CampaignReader(root, name).read();
 }
 

@@ -12,6 +12,7 @@
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/batch/campaign/key_changes.h"
+#include "missions/config/former_names.h"
 #include "missions/support/flow_text.h"
 #include "missions/support/yaml_section.h"
 
@@ -38,7 +39,7 @@ class DistrictReader {
     }
     read_files();
     if (auto targets = root_.section("targets")) read_targets(*targets);
-    district_.together = bounded("together", 0.5, 0.0, 100.0);
+    district_.merge_distance = bounded("merge_distance", 0.5, 0.0, 100.0);
     district_.pads = clicks(root_, "pads");
     std::string& vehicle = district_.wishes.vehicle;
     vehicle = root_.text("vehicle", "generic");
@@ -118,7 +119,7 @@ class DistrictReader {
         {"name", "seed", "threads", "planner.name", "planner.scene_box", "prior", "scene.",
          "site.latitude_deg", "site.longitude_deg", "site.ellipsoid_height", "site.geofence",
          "flight.vehicle", "flight.vehicles", "flight.takeoff", "flight.rally",
-         "flight.unknown_box", "flight.unknown_beside", "flight.order"},
+         "flight.unknown_box", "flight.extra_unknown_boxes", "flight.order"},
         "the district's files, targets, pads, vehicle, planner and seed; set those"};
     district_.set = batch::key_changes(root_.entries("set"), "set.", file_, following);
   }
@@ -154,11 +155,12 @@ class DistrictReader {
 }  // namespace
 
 DistrictFile parse_district(const std::string& text, const std::string& name) {
-  const support::YamlNode root = support::parse_yaml(text, name);
+  support::YamlNode root = support::parse_yaml(text, name);
   if (root.kind != support::YamlNode::Kind::map) {
     throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
                                            ": is not a map; a district is a list of 'key: value'");
   }
+  config::replace_former_batch_names(root, name);
   return DistrictReader(root, name).read();
 }
 

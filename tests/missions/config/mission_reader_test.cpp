@@ -21,7 +21,7 @@ using testing::HasSubstr;
 constexpr double degree = geometry::radians_per_degree;
 
 const std::string smallest =
-    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+    "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.005}\n";
 
 config::MissionDocument parsed(const std::string& more,
                                const std::vector<config::KeyOverride>& overrides = {}) {
@@ -132,7 +132,7 @@ TEST(MissionReader, PutsKeysOfSensorAndPlannerIntoTheirOwnFields) {
       "planner: {density: 300, resolution_radius: 0.3, spacing: 0.04, view_distance: 5,\n"
       "          scene_box: {min: [1, 2, 3], max: [4, 5, 6]}, occlusion_radius: 0.6,\n"
       "          occlusion_search_distance: 7, occluder_spacing: 0.8, frontier_spacing: 0.9,\n"
-      "          wanted_coverage: 0.7, least_gain: 0.002}\n"
+      "          target_coverage: 0.7, min_gain: 0.002}\n"
       "volumetric: {window_begin: 0.1, window_end: 0.8, ray_depth: 11, shadow_length: 12}\n");
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   EXPECT_EQ(sensor.camera.camera.width, 30);
@@ -167,8 +167,8 @@ TEST(MissionReader, PutsKeysOfPlaceAndLimitsIntoTheirOwnFields) {
   const config::MissionDocument document = parsed(
       "start: {position: [1, 1, 1], look_at: [2, 2, 2], direction: [3, 3, 3]}\n"
       "limits: {max_distance: 100, max_minutes: 20, stand_off: 3, ground_clearance: 4,\n"
-      "         lowest_pitch_deg: -60, highest_pitch_deg: 30, speed: 6, time_per_view: 8}\n"
-      "site: {lowest_height: 1, highest_height: 99, latitude_deg: 51, longitude_deg: -1,\n"
+      "         min_pitch_deg: -60, max_pitch_deg: 30, speed: 6, time_per_view: 8}\n"
+      "site: {min_height: 1, max_height: 99, latitude_deg: 51, longitude_deg: -1,\n"
       "       ellipsoid_height: 120, geoid_undulation: 47}\n"
       "live: {pose_sigma: 0.3, pose_sigma_deg: 2}\n"
       "paper: {views: 1, coverage: 0.5, planning_time: 3, distance: 4}\n");
@@ -202,9 +202,10 @@ TEST(MissionReader, PutsKeysOfFlightsIntoTheirOwnFields) {
   const config::MissionDocument document = parsed(
       "flight: {clearance: 3, position_error: 0.2, tracking_error: 0.4, map_error: 0.6,\n"
       "         unknown_box: {min: [1, 2, 3], max: [4, 5, 6]}, takeoff: [7, 8, 9],\n"
-      "         takeoff_climb: 10, pad_slope_deg: 2, steepest_pad_deg: 12, cruise_speed: 5,\n"
+      "         takeoff_climb: 10, pad_slope_deg: 2, max_pad_slope_deg: 12, cruise_speed: 5,\n"
       "         hold: 0.7, hold_after: 0.9, wind_speed: 6, wind_from_deg: 270,\n"
-      "         temperature: -5, reserve: 0.3, vehicles: [generic, m350_rtk], separation: 14,\n"
+      "         battery_temperature: -5, reserve: 0.3, vehicles: [generic, m350_rtk], separation: "
+      "14,\n"
       "         timing_tolerance: 16}\n");
   const flight::FlightOptions& flight = document.flight.options;
   EXPECT_EQ(flight.clearance, 3.0);
@@ -231,7 +232,8 @@ TEST(MissionReader, PutsKeysOfFlightsIntoTheirOwnFields) {
 TEST(MissionReader, PutsKeysOfScansIntoTheirOwnFields) {
   const config::MissionDocument document = parsed(
       "scan:\n"
-      "  orbit: {centre: [1, 2, 3], radius: 40, lowest: 5, highest: 60, circles: 7, speed: 8,\n"
+      "  orbit: {centre: [1, 2, 3], radius: 40, min_height: 5, max_height: 60, circles: 7, speed: "
+      "8,\n"
       "          start_deg: 90}\n"
       "  speed: 9\n"
       "  mount: {position: [0.1, 0.2, 0.3], rotation_deg: [10, 20, 30]}\n"
@@ -295,7 +297,7 @@ TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
 TEST(MissionReader, RefusesDamagedFilesInOneLine) {
   const std::string whole =
       "scene:\n  model: builtin:teapot  # a comment\n  position: [1, 2.5, -3e1]\n"
-      "evaluation: {registration_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";
+      "evaluation: {coverage_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";
   std::size_t refused = 0;
   const auto try_text = [&](const std::string& text) {
     const std::string message = complaint(text);
