@@ -14,13 +14,14 @@
 
 #include "geometry/error.h"
 #include "geometry/instruction_set.h"
+#include "missions/cli/build_text.h"
+#include "missions/cli/completion.h"
 #include "missions/cli/printable.h"
 #include "missions/cli/rewrite.h"
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
 #include "missions/config/mission_keys.h"
 #include "missions/scan/cloud_formats.h"
-#include "missions/version.h"
 #include "survey/planners/planner_names.h"
 
 namespace skycap::missions::cli {
@@ -287,6 +288,21 @@ void add_view(CLI::App& app, const Console& console, Action& action) {
   run_with_keys(*verb, options, keys, view, console, action);
 }
 
+void add_completion(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("completion", "Print a shell script that completes commands and options");
+  const auto shell = std::make_shared<std::string>();
+  verb->add_option("shell", *shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  verb->callback([=, &app, &console, &action] {
+    action = [=, &app, &console] {
+      console.out << completion_script(app, *shell) << std::flush;
+      return 0;
+    };
+  });
+}
+
 /// One line for the user, whatever the message holds.
 int report_failure(const Console& console, const std::string& message, int exit_code) {
   console.err << "skycap: error: " << printable_line(message) << "\n" << std::flush;
@@ -295,7 +311,7 @@ int report_failure(const Console& console, const std::string& message, int exit_
 
 int parse_and_run(const std::vector<std::string>& arguments, const Console& console) {
   CLI::App app("Skycap plans aerial surveys of buildings and simulates them.", "skycap");
-  app.set_version_flag("--version", std::string("skycap ") + version);
+  app.set_version_flag("--version", build_text(), "Print version, commit, compiler and build");
   app.require_subcommand(0, 1);
   app.get_formatter()->column_width(28);
   Action action;
@@ -307,6 +323,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     }
     add_plan(app, console, action);
     add_site(app, console, action);
+    add_init(app, console, action);
     add_live(app, console, action);
     add_benchmark(app, console, action);
     add_campaign(app, console, action);
@@ -321,6 +338,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_model(app, console, action);
     add_report(app, console, action);
     add_view(app, console, action);
+    add_presets(app, console, action);
+    add_completion(app, console, action);
     const auto known = app.get_subcommands({});
     std::string verbs;
     for (const CLI::App* verb : known) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();

@@ -47,6 +47,8 @@ void add_campaign(CLI::App& app, const Console& console, Action& action);
 void add_district(CLI::App& app, const Console& console, Action& action);
 void add_model(CLI::App& app, const Console& console, Action& action);
 void add_export(CLI::App& app, const Console& console, Action& action);
+void add_init(CLI::App& app, const Console& console, Action& action);
+void add_presets(CLI::App& app, const Console& console, Action& action);
 
 /// The files with keys that a verb is given.
 template <class Options>
