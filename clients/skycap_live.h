@@ -146,7 +146,7 @@ class Survey {
   std::string add(const std::string& fields, const Pose& pose, const PoseError& error,
                   const std::string& payload, From from) {
     std::string header = "{\"type\":\"scan\",\"number\":" + std::to_string(scans_) + "," + fields;
-    if (from == From::way) header += ",\"on_way\":" + std::to_string(on_way_);
+    if (from == From::way) header += ",\"en_route\":" + std::to_string(on_way_);
     header += row("pose", pose);
     if (const auto* sigma = std::get_if<PoseSigma>(&error)) header += row("pose_sigma", *sigma);
     if (const auto* covariance = std::get_if<PoseCovariance>(&error)) {
@@ -163,7 +163,7 @@ class Survey {
     const auto number = [&](std::size_t place) {
       return std::stoul(answer.substr(answer.find(':', place) + 1));
     };
-    const std::size_t scans = at("scans"), on_way = at("on_way");
+    const std::size_t scans = at("scans"), on_way = at("en_route");
     if (scans == std::string::npos)
       throw std::runtime_error("the answer contains no number of scans");
     scans_ = number(scans);

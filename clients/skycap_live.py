@@ -6,7 +6,7 @@ Python 3.8.
         while answer["view"]:
             depth, pose = my_drone.measure(answer["view"])
             answer = survey.add_depth(depth, width, height, unit=0.001, pose=pose)
-            # en-route scans (answer["frames"]) are added with on_way=True
+            # en-route scans (answer["frames"]) are added with en_route=True
             if answer.get("warning") == "pose":
                 my_drone.hold_position()
         print(survey.finish())
@@ -48,33 +48,33 @@ class Survey:
         return self._ask({"type": "next"})
 
     def add_points(self, xyz, pose, pixels=None, pose_sigma=None, pose_covariance=None,
-                   on_way=False):
+                   en_route=False):
         """Adds a scan of points in the mission frame: bytes of float32 x y z, row by row. `pose` of the
         sensor's optical frame: x y z qx qy qz qw, or 12 numbers of a row-major matrix. `pixels`:
         bytes of ascending uint32, row * width + column of the mission's camera, for each point.
         Uncertainty of the pose: `pose_sigma`, standard deviations (metres, degrees) along and about
-        each axis, or `pose_covariance`, 36 numbers row by row, or the 21 of the upper triangle, of
-        x y z rx ry rz along and about the axes of the mission frame [m, rad], as in ROS. `on_way`:
-        the scan was taken en route to the proposed view."""
+        each axis; or `pose_covariance` of x y z rx ry rz along and about the axes of the mission
+        frame [m, rad], as in ROS: 36 numbers row by row, or the 21 of the upper triangle.
+        `en_route`: the scan was taken en route to the proposed view."""
         header = {"format": "points", "points": len(xyz) // 12, "has_pixels": pixels is not None}
         return self._add(header, pose, bytes(xyz) + bytes(pixels or b""), pose_sigma,
-                         pose_covariance, on_way)
+                         pose_covariance, en_route)
 
-    def add_cloud(self, xyz, pose, pose_sigma=None, pose_covariance=None, on_way=False):
+    def add_cloud(self, xyz, pose, pose_sigma=None, pose_covariance=None, en_route=False):
         """Adds a scan of points in the sensor's optical frame: bytes of float32 x y z, in any order.
         The server projects each point into a pixel of the mission's camera."""
         header = {"format": "cloud", "points": len(xyz) // 12}
-        return self._add(header, pose, bytes(xyz), pose_sigma, pose_covariance, on_way)
+        return self._add(header, pose, bytes(xyz), pose_sigma, pose_covariance, en_route)
 
     def add_depth(self, depth, width, height, unit, pose, lens=None, pose_sigma=None,
-                  pose_covariance=None, on_way=False):
+                  pose_covariance=None, en_route=False):
         """Adds a depth image: bytes of uint16, row by row, in steps of `unit` metres; 0 and 65535 are
         no-return pixels. `lens`: camera intrinsics fx fy cx cy, optionally followed by k1 k2 p1 p2
         k3 (default: the mission's camera)."""
         header = {"format": "depth", "width": width, "height": height, "unit": unit}
         if lens is not None:
             header["lens"] = list(lens)
-        return self._add(header, pose, bytes(depth), pose_sigma, pose_covariance, on_way)
+        return self._add(header, pose, bytes(depth), pose_sigma, pose_covariance, en_route)
 
     def refuse(self, answer, reason):
         """Rejects the view in `answer` and returns another."""
@@ -86,12 +86,12 @@ class Survey:
 
     def _count(self, answer):
         self._scans = answer["scans"]
-        self._on_way = answer.get("on_way", 0)
+        self._en_route = answer.get("en_route", 0)
 
-    def _add(self, header, pose, payload, pose_sigma, pose_covariance, on_way):
+    def _add(self, header, pose, payload, pose_sigma, pose_covariance, en_route):
         header = {"type": "scan", "number": self._scans, "pose": list(pose), **header}
-        if on_way:
-            header["on_way"] = self._on_way
+        if en_route:
+            header["en_route"] = self._en_route
         if pose_sigma is not None:
             header["pose_sigma"] = list(pose_sigma)
         if pose_covariance is not None:

@@ -139,7 +139,7 @@ Obstacles FlightOptions::rules() const {
     // The fence must not hold the vehicle up on its way from and to the pad.
     if (airspace.highest_height) fence.ceiling = *airspace.highest_height;
     if (fence.footprint.empty()) {
-      fence.name = "site.highest_height";
+      fence.name = "site.max_height";
       constexpr double far = 1e5;
       fence.footprint = {{-far, -far}, {far, -far}, {far, far}, {-far, far}};
     }

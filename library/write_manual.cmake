@@ -12,21 +12,21 @@ endfunction()
 execute_process(COMMAND ${PROGRAM} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
 string(FIND "${help}" "Subcommands" place)
 string(SUBSTRING "${help}" ${place} -1 list)
-string(REGEX MATCHALL "\n  [a-z-]+ " verbs "${list}")
+string(REGEX MATCHALL "\n  [a-z-]+ " commands "${list}")
 ask(overview)
 set(page ".TH SKYCAP 1 \"\" \"Skycap ${VERSION}\" \"User Commands\"
 .SH NAME
 skycap \\- plan, simulate and export aerial surveys of buildings
 .SH SYNOPSIS
 .B skycap
-.I VERB
+.I COMMAND
 [\\fIOPTIONS\\fR]
 .SH DESCRIPTION
 ${overview}")
-foreach(verb IN LISTS verbs)
-  string(STRIP "${verb}" verb)
-  ask(text ${verb})
-  string(APPEND page ".SH \"SKYCAP ${verb}\"\n${text}")
+foreach(command IN LISTS commands)
+  string(STRIP "${command}" command)
+  ask(text ${command})
+  string(APPEND page ".SH \"SKYCAP ${command}\"\n${text}")
 endforeach()
 string(APPEND page ".SH ENVIRONMENT
 .TP
@@ -38,22 +38,35 @@ folder of the plug-ins, where they are not with the program
 .SH EXIT STATUS
 .TP
 .B 0
-done
+Done. skycap next: a view is proposed.
 .TP
 .B 1
-negative result, incomplete or interrupted
+Negative result (the mission cannot work, the route violates the clearance), incomplete, or
+interrupted by a signal.
 .TP
 .B 2
-bad input
+Bad input: command line, mission file, other file, or a full disk.
 .TP
 .B 3
-failed
+Internal failure, lack of memory, or standard output cannot be written.
 .TP
-.B 10, 11, 12
-skycap next: the survey is over; no view is left; the scan is rejected
+.B 10
+skycap next: the survey is over.
+.TP
+.B 11
+skycap next: every useful view is rejected or unreachable.
+.TP
+.B 12
+skycap next: the last scan is rejected.
 .TP
 .B 143
-a task was ended by SIGTERM
+A task of campaign, district, scan or evaluate ended by SIGTERM.
+.SH FILES
+.TP
+.I /usr/share/skycap/missions
+example missions
+.SH SEE ALSO
+bash, zsh and fish complete commands and options: skycap completion SHELL prints their scripts.
 ")
 string(REGEX REPLACE "\\.gz$" "" plain ${PAGE})
 file(WRITE ${plain} "${page}")

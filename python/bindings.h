@@ -15,4 +15,7 @@ void bind_surveys(pybind11::module_& module);
 void bind_scans(pybind11::module_& module);
 void bind_certificates(pybind11::module_& module);
 
+/// Emits a DeprecationWarning for a name of version 0.1; throws if warnings are errors.
+void warn_of_former_name(const char* former, const char* current);
+
 }  // namespace skycap::python

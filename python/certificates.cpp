@@ -68,10 +68,17 @@ void bind_certificate(py::module_& module) {
     if (certificate.proof.closest.kind == flight::ObstacleKind::none) return py::none();
     return array_of(at);
   };
-  py::class_<Certificate>(module, "LegProof", "Result of the clearance check of a straight leg.")
+  py::class_<Certificate>(module, "LegCheck", "Result of the clearance check of a straight leg.")
       .def_property_readonly(
-          "is_proven", [](const Certificate& c) { return c.proof.is_proven; },
+          "is_clear", [](const Certificate& c) { return c.proof.is_proven; },
           "Whether no point of the leg violates the clearance.")
+      .def_property_readonly(
+          "is_proven",
+          [](const Certificate& c) {
+            warn_of_former_name("is_proven", "is_clear");
+            return c.proof.is_proven;
+          },
+          "The former name of is_clear.")
       .def_property_readonly(
           "clearance", [](const Certificate& c) { return c.proof.clearance; },
           "Verified lower bound of the distance over the leg, in metres; at most 10 m above "
@@ -103,14 +110,15 @@ void bind_certificates(py::module_& module) {
       .def_readonly("ceiling", &Prism::ceiling, "Upper limit, in metres.");
   bind_certificate(module);
   module.def(
-      "certify", &certify, py::arg("route"), py::arg("clearance"),
+      "verify_route", &certify, py::arg("route"), py::arg("clearance"),
       py::arg("mesh") = static_cast<const geometry::Mesh*>(nullptr), py::arg("cloud") = py::none(),
       py::arg("cloud_radius") = 0.0, py::arg("no_fly") = std::vector<Prism>{},
       py::arg("fence") = py::none(), py::arg("ground_height") = py::none(),
-      "certify(route, clearance, mesh=None, cloud=None, cloud_radius=0.0, no_fly=(), fence=None, "
+      "verify_route(route, clearance, mesh=None, cloud=None, cloud_radius=0.0, no_fly=(), "
+      "fence=None, "
       "ground_height=None)\n--\n\nVerifies for each straight leg of a route, (N, 3) float64 in "
       "metres, that it keeps\n`clearance` metres from all obstacles. Returns a list of N - 1 "
-      "LegProof, or one for a\nsingle point. Distances are exact minima over all points of a leg, "
+      "LegCheck, or one for a\nsingle point. Distances are exact minima over all points of a leg, "
       "not samples.\n\nmesh: a Mesh; the inside of a closed mesh is occupied. cloud: (N, 3) "
       "float32, each\npoint a ball of `cloud_radius`. no_fly: Prisms to stay out of. fence: a "
       "Prism to stay\ninside. ground_height: z below which space is occupied.");

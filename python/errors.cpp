@@ -47,4 +47,9 @@ void bind_errors(py::module_& module) {
   });
 }
 
+void warn_of_former_name(const char* former, const char* current) {
+  const std::string text = std::string(former) + " is now " + current;
+  if (PyErr_WarnEx(PyExc_DeprecationWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 }  // namespace skycap::python

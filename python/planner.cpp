@@ -127,7 +127,7 @@ void bind_step(py::module_& module) {
 void bind_clouds(py::module_& module) {
   const char* xyz = "World frame, in metres: float32, shape (N, 3); read-only, not copied.";
   const char* views = "0-based number of the scan of each point: uint32, shape (N,); read-only.";
-  py::class_<ShownCloud>(module, "KeptPoints",
+  py::class_<ShownCloud>(module, "PlannerCloud",
                          "The measurements kept by a planner. While this or an array of it is "
                          "alive, the planner\naccepts no scan.")
       .def_property_readonly(
@@ -182,11 +182,18 @@ void bind_planner(py::module_& module) {
           "shape\n(N,), strictly ascending; all others are no-return pixels. None: the sensor has "
           "no\nimage.\n\nRaises Error for an unusable scan, and BufferError while arrays of "
           "cloud() are alive.\nOther threads must not modify the arrays during the call.")
-      .def("next_view_instead", &Planner::next_view_instead,
-           "next_view_instead($self)\n--\n\nAnother view instead of the last one, which is "
+      .def("replacement_view", &Planner::next_view_instead,
+           "replacement_view($self)\n--\n\nAnother view instead of the last one, which is "
            "unreachable; None when there is none left.")
+      .def(
+          "next_view_instead",
+          [](Planner& planner) {
+            warn_of_former_name("next_view_instead", "replacement_view");
+            return planner.next_view_instead();
+          },
+          "next_view_instead($self)\n--\n\nFormer name of replacement_view.")
       .def("cloud", &Planner::cloud,
-           "cloud($self)\n--\n\nThe measurements kept so far, as KeptPoints, without a copy.")
+           "cloud($self)\n--\n\nThe measurements kept so far, as PlannerCloud, without a copy.")
       .def_property_readonly("last_step", &Planner::last_step,
                              "Statistics of the last next_view().");
 }

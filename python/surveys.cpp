@@ -58,7 +58,7 @@ void bind_surveys(py::module_& module) {
       .def_property_readonly(
           "end", [](const Survey& whole) { return survey::name_of(whole.end); },
           "Stop reason: 'complete', 'view_limit', 'distance_limit', 'time_limit' "
-          "or\n'nowhere_to_go'.")
+          "or\n'no_reachable_view'.")
       .def_readonly("views", &Survey::views, "The views in order.")
       .def_property_readonly("coverage", &Survey::coverage,
                              "Covered fraction of the surface at the end, in [0, 1].")

@@ -22,8 +22,8 @@ class CoverageEstimator {
   /// All that the planner estimates of the surface.
   virtual skycap::SurveyBelief belief() const = 0;
 
-  /// The rule by which the planner ended the survey, as files name it: "wanted_coverage",
-  /// "little_gain" and so on; "running" if it did not.
+  /// The rule by which the planner ended the survey, as files name it: "target_coverage",
+  /// "min_gain" and so on; "running" if it did not.
   virtual std::string_view stop_rule() const = 0;
 
   /// What views would cover of all that was measured, from an empty cloud, by so many targets at

@@ -16,7 +16,7 @@ constexpr auto reasons = std::to_array<NamedReason>({
     {StopReason::view_limit, "view_limit"},
     {StopReason::distance_limit, "distance_limit"},
     {StopReason::time_limit, "time_limit"},
-    {StopReason::nowhere_to_go, "nowhere_to_go"},
+    {StopReason::nowhere_to_go, "no_reachable_view"},
     {StopReason::interrupted, "interrupted"},
 });
 
@@ -27,6 +27,7 @@ const char* name_of(StopReason reason) {
 }
 
 std::optional<StopReason> stop_reason_named(std::string_view name) {
+  if (name == "nowhere_to_go") return StopReason::nowhere_to_go;  // as version 0.1 has it
   const auto* const found =
       std::ranges::find_if(reasons, [&](const NamedReason& known) { return name == known.name; });
   return found == reasons.end() ? std::nullopt : std::optional(found->reason);

@@ -236,7 +236,7 @@ void Bridge::proceed(double now) {
 
 /// Whether the survey takes scans from the way that the robot is on.
 bool Bridge::measures_on_way() const {
-  return answer_.contains("on_way") && view_ && answer_.at("scans").get<std::size_t>() > 0;
+  return answer_.contains("en_route") && view_ && answer_.at("scans").get<std::size_t>() > 0;
 }
 
 void Bridge::take(const Waiting& waiting, const Whereabouts& whereabouts, double now) {
@@ -336,8 +336,8 @@ void Bridge::publish_status() {
               {"taken", taken_},
               {"warnings", complaints_.count()},
               {"last_warning", complaints_.last()}};
-  for (const char* key : {"id", "state", "scans", "points", "set_aside", "view", "clearance_m",
-                          "on_way", "believed_coverage", "pose"}) {
+  for (const char* key : {"id", "state", "scans", "points", "rejected", "view", "clearance_m",
+                          "en_route", "estimated_coverage", "pose"}) {
     if (answer_.contains(key)) status[key] = answer_[key];
   }
   const std::string text = status.dump(-1, ' ', true, Json::error_handler_t::replace);

@@ -7,6 +7,8 @@
 #include <iostream>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -53,9 +55,9 @@ void add_topics(CLI::App& app, Options& options) {
                  "Topic of depth images (sensor_msgs/Image), instead of point clouds");
   app.add_option("--camera-info", node.camera_info,
                  "Topic of the image's CameraInfo (default: camera_info beside the image)");
-  app.add_option("--world", node.bridge.world,
+  app.add_option("--fixed-frame", node.bridge.world,
                  "Fixed frame of TF, for example map: poses come from TF instead of odometry");
-  app.add_option("--body", node.bridge.body, "Base frame of the robot, with --world")
+  app.add_option("--base-frame", node.bridge.body, "Base frame of the robot, with --fixed-frame")
       ->capture_default_str();
   app.add_option("--tf", node.transforms, "tf2_msgs/TFMessage")->capture_default_str();
   app.add_option("--tf-static", node.static_transforms,
@@ -66,7 +68,7 @@ void add_topics(CLI::App& app, Options& options) {
 
 void add_rules(CLI::App& app, Options& options) {
   auto& bridge = options.node.bridge;
-  app.add_option("--sensor", options.sensor,
+  app.add_option("--sensor-pose", options.sensor,
                  "Pose of the sensor in the base frame: x y z qx qy qz qw (default: from TF)");
   app.add_option("--axes", options.axes,
                  "Axes of the points' frame (REP 103): optical or flu (default: optical)")
@@ -75,24 +77,24 @@ void add_rules(CLI::App& app, Options& options) {
       ->option_text("optical|flu");
   app.add_flag("--rectified", bridge.is_rectified,
                "The image is rectified (use P of its CameraInfo, ignore D)");
-  app.add_option("--take", bridge.taking,
-                 "Which scans are used: arrived, every or command (default: arrived)")
+  app.add_option("--trigger", bridge.taking,
+                 "Which scans are used: arrival, always or command (default: arrival)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Taking>{
-          {"arrived", Taking::arrived}, {"every", Taking::every}, {"command", Taking::command}}))
-      ->option_text("arrived|every|command");
+          {"arrival", Taking::arrived}, {"always", Taking::every}, {"command", Taking::command}}))
+      ->option_text("arrival|always|command");
   app.add_option("--position-tolerance", bridge.position_tolerance,
                  "Position tolerance for arrival, in metres")
       ->check(CLI::Range(0.001, 100.0));
   app.add_option("--direction-tolerance-deg", options.direction_tolerance_deg,
                  "Direction tolerance for arrival, in degrees")
       ->check(CLI::Range(0.1, 180.0));
-  app.add_option("--settling", bridge.settling,
+  app.add_option("--settling-time", bridge.settling,
                  "Time within both tolerances before a scan is accepted, in seconds")
       ->check(CLI::Range(0.0, 60.0));
-  app.add_option("--pose-gap", bridge.history.longest_gap,
+  app.add_option("--max-pose-gap", bridge.history.longest_gap,
                  "Maximum gap between a scan and the odometry before and after it, in seconds")
       ->check(CLI::Range(0.001, 10.0));
-  app.add_option("--patience", bridge.patience,
+  app.add_option("--odometry-timeout", bridge.patience,
                  "Maximum time that a scan waits for its odometry, in seconds")
       ->check(CLI::Range(0.0, 60.0));
   app.add_flag("--ignore-covariance", options.ignores_covariance,
@@ -113,13 +115,13 @@ void require_effect(const CLI::App& app, const Options& options) {
                           name + " has no effect " + condition + "; remove it");
     }
   };
-  require(has_world, {"--body"}, "without --world");
-  require(!has_world, {"--odometry", "--ignore-covariance"}, "with --world");
+  require(has_world, {"--base-frame"}, "without --fixed-frame");
+  require(!has_world, {"--odometry", "--ignore-covariance"}, "with --fixed-frame");
   require(has_image, {"--camera-info", "--rectified"}, "without --image");
   require(!has_image, {"--cloud"}, "with --image");
-  require(asks_transforms, {"--tf", "--tf-static"}, "with --sensor and without --world");
-  require(asks_arrival, {"--position-tolerance", "--direction-tolerance-deg", "--settling"},
-          "with --take every or command");
+  require(asks_transforms, {"--tf", "--tf-static"}, "with --sensor-pose and without --fixed-frame");
+  require(asks_arrival, {"--position-tolerance", "--direction-tolerance-deg", "--settling-time"},
+          "with --trigger always or command");
 }
 
 /// What options say in words or degrees.
@@ -128,7 +130,7 @@ NodeConfig node_of(const Options& options) {
   node.bridge.uses_transforms = options.sensor.empty();
   node.bridge.mount = {options.sensor.empty()
                            ? Eigen::Isometry3d::Identity()
-                           : skycap::ros2::parse_extrinsic(options.sensor, "--sensor"),
+                           : skycap::ros2::parse_extrinsic(options.sensor, "--sensor-pose"),
                        options.axes};
   node.bridge.direction_tolerance =
       options.direction_tolerance_deg * skycap::geometry::radians_per_degree;
@@ -138,12 +140,51 @@ NodeConfig node_of(const Options& options) {
 
 }  // namespace
 
+namespace {
+
+/// The arguments with the options of version 0.1 by their current names, in the reverse order that
+/// CLI11 takes; warns of each that was replaced.
+std::vector<std::string> current_arguments(int argc, char** argv) {
+  static const std::map<std::string, std::string> former{
+      {"--world", "--fixed-frame"},         {"--body", "--base-frame"},
+      {"--sensor", "--sensor-pose"},        {"--take", "--trigger"},
+      {"--patience", "--odometry-timeout"}, {"--pose-gap", "--max-pose-gap"},
+      {"--settling", "--settling-time"}};
+  static const std::map<std::string, std::string> former_triggers{{"arrived", "arrival"},
+                                                                  {"every", "always"}};
+  std::vector<std::string> arguments;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string argument = argv[i];
+    const auto equals = argument.find('=');
+    const auto option = former.find(argument.substr(0, equals));
+    if (option != former.end()) {
+      std::cerr << "skycap_ros2: warning: " << option->first << " is now " << option->second
+                << "; version 0.3 will not accept former names\n";
+      std::string value = equals == std::string::npos ? "" : argument.substr(equals + 1);
+      std::string& trigger =
+          equals == std::string::npos && !arguments.empty() ? arguments.back() : value;
+      if (option->first == "--take" && former_triggers.contains(trigger)) {
+        trigger = former_triggers.at(trigger);
+      }
+      argument = option->second + (equals == std::string::npos ? "" : "=" + value);
+    }
+    arguments.push_back(std::move(argument));
+  }
+  return arguments;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app("Live survey for ROS 2 robots (docs/reference/ros2-topics.md)", "skycap_ros2");
   Options options;
   add_topics(app, options);
   add_rules(app, options);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(current_arguments(argc, argv));
+  } catch (const CLI::ParseError& failure) {
+    return app.exit(failure);
+  }
   try {
     require_effect(app, options);
     end_on_signals();

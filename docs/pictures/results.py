@@ -214,18 +214,18 @@ def coverage_over_views(folder):
     for i, (x, y) in enumerate(truth[1:]):
         svg.circle(*plot.at(x, y), 3.2, fill="green")
         del i
-    estimate = summary["belief"]["predicted_coverage"]
+    estimate = summary["estimate"]["estimated_coverage"]
     x, y = plot.at(count, estimate)
     svg.circle(x, y, 6, fill="violet")
     end = plot.at(count, truth[-1][1])[1]
     svg.text(578, end + 4, f"ground truth: {100 * truth[-1][1]:.1f}% of the visible surface", 12.5, "green")
     svg.text(578, min(y, end - 18) + 4, f"planner estimate at the end: {100 * estimate:.1f}%", 12.5, "violet")
-    stop = summary["belief"]["stop"]
-    gain, least = summary["belief"]["next_gain"], float(setting(summary, "planner.least_gain", 0.0))
+    stop = summary["estimate"]["stop"]
+    gain, least = summary["estimate"]["next_gain"], float(setting(summary, "planner.min_gain", 0.0))
     svg.text(80, 36, f"A survey of the Radcliffe Camera ends after {count} views", 14, "ink", bold=True)
     svg.text(80, 56, f"Stop reason {stop}: the best remaining view would add {100 * gain:.2f}% of the known surface.",
              12.5, "soft")
-    svg.text(578, 300, f"planner.least_gain: {100 * least:.2f}%", 12.5, "soft")
+    svg.text(578, 300, f"planner.min_gain: {100 * least:.2f}%", 12.5, "soft")
     return svg
 
 
@@ -288,7 +288,7 @@ def coverage_classes(folder):
         svg.circle(x, y - 4, 6, fill=colour)
         svg.text(x + 14, y, f"{100 * counts[colour] / total:.1f}%  {label}", 12.5)
     svg.text(40, 408, f"Planner {summary['planner']}, {summary['views']} views; coverage distance "
-             f"{1000 * float(setting(summary, 'evaluation.registration_distance')):g} mm.", 12, "soft")
+             f"{1000 * float(setting(summary, 'evaluation.coverage_distance')):g} mm.", 12, "soft")
     return svg
 
 

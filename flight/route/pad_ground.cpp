@@ -89,7 +89,7 @@ std::string why_unfit(const PadGround& ground, const PadLimits& limits) {
   const std::string by = name_of(ground.source);
   if (ground.slope > limits.steepest) {
     return "has a slope of " + degrees_text(ground.slope) + " " + by + "; the maximum is " +
-           degrees_text(limits.steepest) + " (flight.steepest_pad_deg): move it";
+           degrees_text(limits.steepest) + " (flight.max_pad_slope_deg): move it";
   }
   if (ground.unevenness > pad_roughness) {
     return "has an unevenness of " + length_text(ground.unevenness) + " " + by +

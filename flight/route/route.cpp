@@ -162,7 +162,7 @@ class RoutePlanner {
       throw Error(ErrorKind::bad_config,
                   "no safe return altitude: " + search.why + "; move flight.takeoff" +
                       (has_rally ? ", add a rally point (flight.rally)" : "") +
-                      " or raise site.highest_height");
+                      " or raise site.max_height");
     }
     route_.returns = std::move(search.found);
     for (const Segment& leg : legs) {

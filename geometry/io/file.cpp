@@ -176,8 +176,8 @@ void cut_file(const fs::path& path, std::uintmax_t bytes) {
   std::error_code failure;
   const std::uintmax_t size = fs::file_size(path, failure);
   if (!failure && size < bytes) {
-    fail(path, "contains " + std::to_string(size) + " bytes, less than the " + std::to_string(bytes) +
-                   " that were written");
+    fail(path, "contains " + std::to_string(size) + " bytes, less than the " +
+                   std::to_string(bytes) + " that were written");
   }
   if (!failure) fs::resize_file(path, bytes, failure);
   if (failure) fail(path, "cannot be truncated: " + failure.message());

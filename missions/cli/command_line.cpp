@@ -15,12 +15,14 @@
 #include "geometry/error.h"
 #include "geometry/instruction_set.h"
 #include "geometry/interrupted.h"
+#include "missions/cli/build_text.h"
+#include "missions/cli/completion.h"
 #include "missions/cli/printable.h"
+#include "missions/cli/rewrite.h"
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
 #include "missions/config/mission_keys.h"
 #include "missions/scan/cloud_formats.h"
-#include "missions/version.h"
 #include "survey/planners/planner_names.h"
 
 namespace skycap::missions::cli {
@@ -54,8 +56,8 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
                  "Resume an interrupted survey in the results folder");
   verb->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
   verb->add_flag("--quiet", options->is_quiet, "Print errors only");
-  verb->add_option("--dry-run", keys->dry_run, "prior: use the target prior data as ground truth")
-      ->check(CLI::IsMember({"prior"}));
+  verb->add_flag("--use-prior-as-truth", keys->uses_prior_as_truth,
+                 "Simulate with the target prior data as ground truth");
   verb->add_flag("--verbose", options->is_verbose,
                  "Print the planning time of each view by part, and lower bounds");
   add_set_option(*verb, *keys);
@@ -73,7 +75,7 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
       ->delimiter(',');
   verb->add_option("--scenes", options->scenes,
                    "all scene families, or names such as garage,church. Each replaces the scenes "
-                   "of the missions and is generated anew for each seed")
+                   "of the missions and is generated for each seed")
       ->delimiter(',');
   verb->add_option("--trials", options->trials,
                    "Number of seeds for each planner and mission (default: 10)")
@@ -131,11 +133,12 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
   const auto keys = std::make_shared<KeyOptions>();
   const auto prints_schema = std::make_shared<bool>(false);
   const auto prints_keys = std::make_shared<bool>(false);
+  const auto rewritten = std::make_shared<std::filesystem::path>();
   verb->add_option("mission", options->mission, "Mission file");
   verb->add_option("--route", options->route,
                    "Verify that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
                    "keeps flight.clearance from the scene");
-  verb->add_option("--return-height", options->return_height,
+  verb->add_option("--return-altitude", options->return_height,
                    "Return (RTL/RTH) altitude set on the vehicle, in metres above take-off")
       ->check(CLI::Range(0.0, 10'000.0));
   add_set_option(*verb, *keys);
@@ -143,6 +146,8 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
   verb->add_flag("--keys", *prints_keys, "Print the table of all keys");
   verb->add_flag("--setup", options->prints_setup,
                  "Print all keys, with defaults and derived values, as YAML");
+  verb->add_option("--rewrite", *rewritten,
+                   "Write the mission with the current names of keys and values to this file");
   verb->callback([=, &console, &action] {
     options->overrides = keys->overrides();
     action = [=, &console] {
@@ -151,6 +156,8 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
       if (options->mission.empty()) {
         throw Error(ErrorKind::bad_usage, "check: missing argument: mission file");
       }
+      if (!rewritten->empty()) return rewrite(options->mission, *rewritten, console);
+      warn_of_former_names(files_of(*options), options->overrides, console);
       return check(*options, console);
     };
   });
@@ -174,7 +181,7 @@ void add_fly_test(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--position-error", options->position_error,
                    "Maximum position error of the receiver in metres (default: from the mission)")
       ->check(number_between(0.0, 1000.0));
-  verb->add_option("--return-height", options->return_height,
+  verb->add_option("--return-altitude", options->return_height,
                    "Return (RTL/RTH) altitude set on the vehicle, in metres above take-off")
       ->check(number_between(0.0, 10'000.0));
   verb->add_option("--truth", options->truth,
@@ -282,6 +289,21 @@ void add_view(CLI::App& app, const Console& console, Action& action) {
   run_with_keys(*verb, options, keys, view, console, action);
 }
 
+void add_completion(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("completion", "Print a shell script that completes commands and options");
+  const auto shell = std::make_shared<std::string>();
+  verb->add_option("shell", *shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  verb->callback([=, &app, &console, &action] {
+    action = [=, &app, &console] {
+      console.out << completion_script(app, *shell) << std::flush;
+      return 0;
+    };
+  });
+}
+
 /// One line for the user, whatever the message holds.
 int report_failure(const Console& console, const std::string& message, int exit_code) {
   console.err << "skycap: error: " << printable_line(message) << "\n" << std::flush;
@@ -290,7 +312,7 @@ int report_failure(const Console& console, const std::string& message, int exit_
 
 int parse_and_run(const std::vector<std::string>& arguments, const Console& console) {
   CLI::App app("Skycap plans aerial surveys of buildings and simulates them.", "skycap");
-  app.set_version_flag("--version", std::string("skycap ") + version);
+  app.set_version_flag("--version", build_text(), "Print version, commit, compiler and build");
   app.require_subcommand(0, 1);
   app.get_formatter()->column_width(28);
   Action action;
@@ -302,6 +324,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     }
     add_plan(app, console, action);
     add_site(app, console, action);
+    add_init(app, console, action);
     add_live(app, console, action);
     add_benchmark(app, console, action);
     add_campaign(app, console, action);
@@ -316,6 +339,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_model(app, console, action);
     add_report(app, console, action);
     add_view(app, console, action);
+    add_presets(app, console, action);
+    add_completion(app, console, action);
     const auto known = app.get_subcommands({});
     std::string verbs;
     for (const CLI::App* verb : known) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
@@ -324,7 +349,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
       throw Error(ErrorKind::bad_usage,
                   "unknown command '" + arguments[0] + "'; expected one of: " + verbs);
     }
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
+    std::vector<std::string> reversed = with_current_options(arguments, console);
+    std::ranges::reverse(reversed);  // as CLI11 wants it
     app.parse(reversed);
     if (!action) {
       throw Error(ErrorKind::bad_usage,

@@ -194,14 +194,14 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--pose-covariance", options->pose_covariance,
                    "Covariance of the pose, instead of --pose-sigma: 36 numbers, row by row, of x "
                    "y z rx ry rz in the mission frame [m, rad], or the 21 of its upper triangle");
-  verb->add_option("--lens", options->lens,
+  verb->add_option("--intrinsics", options->lens,
                    "Camera intrinsics of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 "
                    "p2 k3\" (default: the mission's camera)");
   verb->add_option("--depth-unit", options->depth_unit,
                    "Depth of one step of a 16-bit image, in metres (default: 0.001)")
       ->check(number_between(1e-6, 1.0));
   verb->add_flag("--world", options->is_in_world, "The cloud is already in the mission frame");
-  verb->add_flag("--on-way", options->is_on_way,
+  verb->add_flag("--en-route", options->is_on_way,
                  "The scan was taken en route to the proposed view");
   verb->add_option("--id", options->id,
                    "Identifier of the scan. A scan with a known identifier is not added again");
@@ -212,7 +212,7 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--sensor", options->sensor, "Label of the sensor in a rawlog with several");
   verb->add_option("--poses", options->poses,
                    "TUM trajectory of the optical frame, instead of the rawlog's poses");
-  verb->add_option("--until", options->until, "Maximum number of frames of the recording")
+  verb->add_option("--max-frames", options->until, "Maximum number of frames of the recording")
       ->check(CLI::Range(1, 1'000'000));
   verb->add_option("--refuse", options->refusal,
                    "Reject the proposed view for this reason and request another");
@@ -247,7 +247,7 @@ int next(const NextOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage, "--scan, --dataset and --refuse exclude each other; use one");
   }
   if (options.is_on_way && !options.scan) {
-    throw Error(ErrorKind::bad_usage, "--on-way requires --scan");
+    throw Error(ErrorKind::bad_usage, "--en-route requires --scan");
   }
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
@@ -380,7 +380,7 @@ void add_fly(CLI::App& app, const Console& console, Action& action) {
                    "hold (default): hold position until a pilot takes control; return: return "
                    "along the verified path where possible")
       ->check(CLI::IsMember({"hold", "return"}));
-  verb->add_option("--lens", options->lens, "Camera intrinsics of depth images, as for next");
+  verb->add_option("--intrinsics", options->lens, "Camera intrinsics of depth images, as for next");
   verb->add_option("--depth-unit", options->depth_unit,
                    "Depth of one step of 16-bit images, in metres (default: 0.001)")
       ->check(number_between(1e-6, 1.0));

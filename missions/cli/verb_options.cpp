@@ -13,7 +13,7 @@ std::vector<config::KeyOverride> KeyOptions::overrides() const {
   add("--seed", "seed", seed);
   add("--threads", "threads", threads);
   add("--max-views", "limits.max_views", max_views);
-  add("--dry-run", "scene.model", dry_run);
+  if (uses_prior_as_truth) add("--use-prior-as-truth", "scene.model", "prior");
   for (const std::string& pair : set) {
     const auto equals = pair.find('=');
     if (equals == std::string::npos) {

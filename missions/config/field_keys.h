@@ -26,8 +26,8 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     {"noise.sigma", "sensor.noise.sigma"},
     // survey::ViewLimits
     {"stand_off", "limits.stand_off"},
-    {"least_height", "site.highest_height"},
-    {"least_pitch", "limits.highest_pitch_deg"},
+    {"least_height", "site.max_height"},
+    {"least_pitch", "limits.max_pitch_deg"},
     {"geofence", "site.geofence"},
     {"no_fly", "site.no_fly"},
     // what several planners use
@@ -49,10 +49,10 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     {"core_threshold", "planner.core_threshold"},
     {"max_evaluations", "planner.cap.max_evaluations"},
     // survey::skycap::SkycapConfig
-    {"coverage_radius", "evaluation.registration_distance"},
+    {"coverage_radius", "evaluation.coverage_distance"},
     {"view_price", "planner.goal"},
-    {"stop.wanted_coverage", "planner.wanted_coverage"},
-    {"stop.least_gain", "planner.least_gain"},
+    {"stop.wanted_coverage", "planner.target_coverage"},
+    {"stop.least_gain", "planner.min_gain"},
     {"stop.most_length", "limits.max_distance"},
     {"stop.most_time", "limits.max_minutes"},
     {"stop.speed", "limits.speed"},

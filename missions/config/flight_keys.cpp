@@ -73,7 +73,7 @@ std::vector<Key> fleet_keys() {
   return {
       vehicles_key(),
       pads_key(),
-      of_fleet("makespan", choice_key("flight.fleet_goal", {"makespan", "flown"},
+      of_fleet("makespan", choice_key("flight.fleet_goal", {"makespan", "total_time"},
                                       fleet(&flight::FleetOptions::goal),
                                       "Goal of the distribution of views over flight.vehicles: the "
                                       "earliest last landing, or the least total flight time.")),
@@ -89,10 +89,10 @@ std::vector<Key> fleet_keys() {
   };
 }
 
-/// The key `flight.unknown_beside`: boxes of neighbours.
+/// The key `flight.extra_unknown_boxes`: boxes of neighbours.
 Key unknown_beside_key() {
   Key key = metre_list_key(
-      "flight.unknown_beside", KeyType::vectors, section(&FlightSection::unknown_beside),
+      "flight.extra_unknown_boxes", KeyType::vectors, section(&FlightSection::unknown_beside),
       "Further boxes in which unknown space is treated as occupied, for example around "
       "neighbours that are surveyed as well: lower and upper corner of each, one after "
       "the other. The package keeps what was measured in them for the joint flight.");
@@ -133,7 +133,7 @@ std::vector<Key> safety_keys() {
                 box_corner("flight.unknown_box.max", section(&FlightSection::unknown_box), true,
                            "Upper corner of the unknown box.")),
       unknown_beside_key(),
-      number_key("flight.free_without_return", "m", between(0, 1e4),
+      number_key("flight.no_return_free_range", "m", between(0, 1e4),
                  flight(&flight::FlightOptions::free_without_return),
                  "Depth up to which no-return pixels count as free space. 0: they do not; right "
                  "for sensors that may miss dark, shiny or thin surfaces."),
@@ -158,7 +158,7 @@ std::vector<Key> conduct_keys() {
                     flight(&flight::FlightOptions::pad_slope),
                     "Slope of the ground at the take-off point and the rally points, as inspected "
                     "by the pilot. Slopes that the survey measures take precedence.")),
-      angle_key("flight.steepest_pad_deg", between(0, 60),
+      angle_key("flight.max_pad_slope_deg", between(0, 60),
                 flight(&flight::FlightOptions::steepest_pad),
                 "Maximum slope of the ground for take-off and landing."),
       number_key("flight.cruise_speed", "m/s", above(0, 100),
@@ -174,7 +174,7 @@ std::vector<Key> conduct_keys() {
                  "Steady wind speed, used for time and energy estimates."),
       angle_key("flight.wind_from_deg", between(0, 360), flight(&flight::FlightOptions::wind_from),
                 "Direction from which the wind blows, clockwise from north."),
-      number_key("flight.temperature", "degrees Celsius", between(-40, 60),
+      number_key("flight.battery_temperature", "degrees Celsius", between(-40, 60),
                  flight(&flight::FlightOptions::temperature),
                  "Battery temperature. Cold batteries hold less energy."),
       number_key("flight.reserve", "share", between(0, 0.9),
@@ -183,20 +183,22 @@ std::vector<Key> conduct_keys() {
       otherwise(
           "orbit or strips with sensor.lidar, otherwise none",
           choice_key(
-              "flight.opening", {"none", "orbit", "strips"}, section(&FlightSection::opening),
+              "flight.initial_pattern", {"none", "orbit", "strips"},
+              section(&FlightSection::opening),
               "Flight pattern flown outside unknown_box before view planning starts: orbits around "
               "the box, or strips above it (for boxes wider than twice their height).")),
-      choice_key("flight.views", {"survey", "anew"}, flight(&flight::FlightOptions::views),
-                 "Views of the exported mission. survey: the surveyed views. anew: new views and a "
-                 "new tour, optimised together to cover the measured surface in less time (planner "
-                 "skycap only)."),
+      choice_key(
+          "flight.views", {"survey", "replanned"}, flight(&flight::FlightOptions::views),
+          "Views of the exported mission. survey: the surveyed views. replanned: new views and a "
+          "new tour, optimised together to cover the measured surface in less time (planner "
+          "skycap only)."),
       choice_key("flight.order", {"shortest", "survey"}, flight(&flight::FlightOptions::order),
                  "Order of the views in the exported mission: shortest tour found, or order of the "
                  "survey."),
-      choice_key("flight.style", {"stop", "blend", "smooth", "pass"},
+      choice_key("flight.style", {"stop", "blend", "smooth", "fly-through"},
                  flight(&flight::FlightOptions::style),
                  "Flight through corners of a leg. stop: stop in each corner. blend: round the "
-                 "corners. smooth: one smooth curve, where it is verified and faster. pass: "
+                 "corners. smooth: one smooth curve, where it is verified and faster. fly-through: "
                  "fly-through capture, past the views without a stop, at a speed at which images "
                  "stay sharp (sensor.exposure). Trajectories (csv, ned-csv, tum) and KML hold "
                  "curves; the other files stop in corners and at views."),
@@ -212,14 +214,14 @@ std::vector<Key> site_keys() {
           "Geofence: polygon of [east, north] in the mission frame that contains all views."),
       metre_list_key(
           "site.no_fly", KeyType::volumes, [](auto& m) -> auto& { return m.site.no_fly; },
-          "No-fly volumes: upright prisms that contain no view; bottom and top are z in the "
+          "No-fly volumes: upright prisms that contain no view; floor and ceiling are z in the "
           "mission frame."),
       otherwise("unlimited", number_key(
-                                 "site.lowest_height", "m", between(-1e6, 1e6),
+                                 "site.min_height", "m", between(-1e6, 1e6),
                                  [](auto& m) -> auto& { return m.site.lowest_height; },
                                  "Minimum z of a view in the mission frame.")),
       otherwise("unlimited", number_key(
-                                 "site.highest_height", "m", between(-1e6, 1e6),
+                                 "site.max_height", "m", between(-1e6, 1e6),
                                  [](auto& m) -> auto& { return m.site.highest_height; },
                                  "Maximum z of a view in the mission frame.")),
       otherwise(

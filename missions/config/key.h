@@ -25,7 +25,7 @@ enum class KeyType {
   choice,
   vector,
   polygon,  ///< corners [x, y], three or more
-  volumes,  ///< a list of {corners, bottom, top}
+  volumes,  ///< a list of {corners, floor, ceiling}
   vectors,  ///< a list of lists of three numbers
   texts,    ///< a list of texts
   integers,

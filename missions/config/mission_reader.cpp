@@ -13,6 +13,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "missions/config/former_names.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/unknown_key.h"
 #include "missions/support/key_text.h"
@@ -51,6 +52,15 @@ struct KnownKeys {
 
 [[noreturn]] void fail(const std::string& place, std::string_view key, const std::string& what) {
   throw Error(ErrorKind::bad_config, place + ": key " + support::about_key(key, what));
+}
+
+/// The current key of an override, and its value with current names.
+std::pair<std::string, Given> given_by(const KeyOverride& change) {
+  std::string path = current_path(change.path);
+  if (!find_key(path)) fail(change.origin, path, unknown_key_message(path, mission_keys()));
+  support::YamlNode value = support::parse_yaml(change.value, change.origin);
+  replace_former_names(value, path, change.origin);
+  return {std::move(path), {change.origin, change.origin, std::move(value)}};
 }
 
 /// Files the values of a map, and of the maps in it, under their keys.
@@ -135,11 +145,11 @@ std::optional<geometry::Prism> volume_in(const support::YamlNode& node) {
     return found == node.entries.end() ? support::YamlNode{} : found->value;
   };
   const auto corners = polygon_in(entry("corners"));
-  const auto bottom = number_in(entry("bottom"), {}), top = number_in(entry("top"), {});
-  if (node.entries.size() != 3 || !corners || !bottom || !top || *bottom >= *top) {
+  const auto floor = number_in(entry("floor"), {}), ceiling = number_in(entry("ceiling"), {});
+  if (node.entries.size() != 3 || !corners || !floor || !ceiling || *floor >= *ceiling) {
     return std::nullopt;
   }
-  return geometry::Prism{.name = "", .footprint = *corners, .floor = *bottom, .ceiling = *top};
+  return geometry::Prism{.name = "", .footprint = *corners, .floor = *floor, .ceiling = *ceiling};
 }
 
 template <typename Item, typename ReadItem>
@@ -281,25 +291,26 @@ void apply_presets(MissionDocument& mission) {
 
 GivenValues collected(const std::string& text, const std::string& name,
                       const std::vector<KeyOverride>& overrides) {
-  const support::YamlNode root = support::parse_yaml(text, name);
+  support::YamlNode root = support::parse_yaml(text, name);
   if (root.kind == support::YamlNode::Kind::null) {
     throw Error(ErrorKind::bad_config, name +
                                            ":1: is empty; a mission requires at least scene.model "
-                                           "and evaluation.registration_distance");
+                                           "and evaluation.coverage_distance");
   }
   if (root.kind != support::YamlNode::Kind::map) {
     throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
                                            ": is not a map; a mission is a list of 'key: value'");
   }
+  replace_former_names(root, "", name);
   GivenValues values;
   collect(root, "", {mission_keys(), "", name}, values);
-  for (const auto& [origin, path, value] : overrides) {
-    if (!find_key(path)) fail(origin, path, unknown_key_message(path, mission_keys()));
+  for (const KeyOverride& change : overrides) {
+    auto [path, given] = given_by(change);
     // What a publication reports is for the planner that the file names.
     if (path == "planner.name") {
       std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("paper."); });
     }
-    values[path] = {origin, origin, support::parse_yaml(value, origin)};
+    values[path] = std::move(given);
   }
   return values;
 }
@@ -352,11 +363,10 @@ MissionDocument parse_mission_document(const std::string& text, const std::strin
 }
 
 void override_keys(MissionDocument& document, const std::vector<KeyOverride>& changes) {
-  for (const auto& [origin, path, value] : changes) {
-    const Key* const key = find_key(path);
-    if (!key) fail(origin, path, unknown_key_message(path, mission_keys()));
-    apply({origin, origin, support::parse_yaml(value, origin)}, *key, document);
-    document.places[path] = origin;
+  for (const KeyOverride& change : changes) {
+    const auto [path, given] = given_by(change);
+    apply(given, *find_key(path), document);
+    document.places[path] = change.origin;
   }
 }
 

@@ -11,8 +11,9 @@
 
 namespace skycap::missions::config {
 
-/// Reads a mission. Presets come first, keys override them wherever they stand. Every value is
-/// checked to be of its key's type and in its range.
+/// Reads a mission. Names of version 0.1 are accepted (former_names.h). Presets come first, keys
+/// override them wherever they stand. Every value is checked to be of its key's type and in its
+/// range.
 ///
 /// Throws Error{bad_file} if the file cannot be read, and Error{bad_config} with one line,
 /// "FILE:LINE: key PATH WHAT IS WRONG; what would be right", for the first thing that is unknown,

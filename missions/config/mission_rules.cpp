@@ -34,12 +34,13 @@ void check_views(const MissionDocument& given) {
   if (given.flight.options.views != flight::MissionViews::anew) return;
   if (given.planner.name != survey::PlannerName::skycap) {
     given.refuse("flight.views",
-                 "anew requires the planner skycap; the planner " +
+                 "replanned requires the planner skycap; the planner " +
                      std::string(survey::title_of(given.planner.name).word) +
                      " keeps no surface model. Set planner.name: skycap or remove flight.views");
   }
   if (given.flight.options.order == flight::VisitOrder::survey) {
-    given.refuse("flight.views", "anew conflicts with flight.order: survey; remove one of the two");
+    given.refuse("flight.views",
+                 "replanned conflicts with flight.order: survey; remove one of the two");
   }
 }
 
@@ -166,13 +167,13 @@ void check_sensor(const MissionDocument& given) {
 void check_boxes_beside(const MissionDocument& given) {
   const std::vector<Eigen::Vector3d>& corners = given.flight.unknown_beside;
   if (corners.size() % 2 != 0) {
-    given.refuse("flight.unknown_beside",
+    given.refuse("flight.extra_unknown_boxes",
                  "has " + std::to_string(corners.size()) +
                      " corners; list the lower and the upper corner of each box");
   }
   for (std::size_t i = 0; i < corners.size(); i += 2) {
     if ((corners[i].array() < corners[i + 1].array()).all()) continue;
-    given.refuse("flight.unknown_beside",
+    given.refuse("flight.extra_unknown_boxes",
                  "an upper corner must be greater than its lower corner on every axis; swap or "
                  "widen the corners");
   }
@@ -209,7 +210,7 @@ void check_flight(const MissionDocument& given) {
   check_views(given);
   if (flight.style == flight::FlightStyle::pass && given.sensor.options.settle > 0.0) {
     given.refuse("flight.style",
-                 "pass conflicts with a sensor that must rest before each capture "
+                 "fly-through conflicts with a sensor that must rest before each capture "
                  "(sensor.settle); choose stop, blend or smooth");
   }
   if (const double climb = flight.climb(); climb <= flight.clearance) {
@@ -291,12 +292,11 @@ void check_view_limits(const MissionDocument& given) {
   const survey::ViewLimits limits = view_limits(given);
   if (limits.least_height && limits.most_height && *limits.least_height >= *limits.most_height) {
     given.refuse(
-        "site.highest_height",
-        "must be greater than site.lowest_height and limits.ground_clearance; no airspace is left");
+        "site.max_height",
+        "must be greater than site.min_height and limits.ground_clearance; no airspace is left");
   }
   if (limits.least_pitch >= limits.most_pitch) {
-    given.refuse("limits.highest_pitch_deg",
-                 "must be greater than limits.lowest_pitch_deg; raise it");
+    given.refuse("limits.max_pitch_deg", "must be greater than limits.min_pitch_deg; raise it");
   }
 }
 

@@ -71,11 +71,11 @@ Json polygon_schema() {
 Json volumes_schema() {
   const Json volume{{"type", "object"},
                     {"additionalProperties", false},
-                    {"required", {"corners", "bottom", "top"}},
+                    {"required", {"corners", "floor", "ceiling"}},
                     {"properties",
                      {{"corners", polygon_schema()},
-                      {"bottom", {{"type", "number"}}},
-                      {"top", {{"type", "number"}}}}}};
+                      {"floor", {{"type", "number"}}},
+                      {"ceiling", {{"type", "number"}}}}}};
   return {{"type", "array"}, {"items", volume}};
 }
 
@@ -97,8 +97,8 @@ std::string volumes_text(const std::vector<geometry::Prism>& volumes) {
   std::string text;
   for (const geometry::Prism& volume : volumes) {
     text += (text.empty() ? "" : ", ") + std::string("{corners: ") +
-            polygon_text(volume.footprint) + ", bottom: " + number_text(volume.floor) +
-            ", top: " + number_text(volume.ceiling) + "}";
+            polygon_text(volume.footprint) + ", floor: " + number_text(volume.floor) +
+            ", ceiling: " + number_text(volume.ceiling) + "}";
   }
   return "[" + text + "]";
 }
@@ -198,7 +198,7 @@ std::string expected_value(const Key& key) {
     case KeyType::polygon:
       return "three or more corners [x, y]" + unit;
     case KeyType::volumes:
-      return "a list of {corners, bottom, top}" + unit;
+      return "a list of {corners, floor, ceiling}" + unit;
     case KeyType::vectors:
       return "a list of lists of three numbers" + range_text(key.range) + unit;
     case KeyType::texts:

@@ -21,7 +21,7 @@ auto sampling(auto member) {
 Key idea(const std::string& name, bool survey::skycap::SkycapIdeas::*member,
          const std::string& meaning) {
   return boolean_key(
-      "planner.ideas." + name,
+      "planner.ablation." + name,
       [member](auto& m) -> auto& { return m.planner.skycap_ideas.*member; }, "skycap: " + meaning);
 }
 
@@ -40,7 +40,7 @@ std::vector<Key> which_planner() {
           choice_key(
               "planner.name", planner_words(), [](auto& m) -> auto& { return m.planner.name; },
               "Planner. skycap: the planner of this program; uses spacing, view_distance, "
-              "scene_box, wanted_coverage and least_gain of the keys below. see++: SEE++. see: "
+              "scene_box, target_coverage and min_gain of the keys below. see++: SEE++. see: "
               "see++ without optimise_views and visibility_graph. The others are volumetric and "
               "use resolution_radius as voxel width, spacing, view_distance, scene_box and the "
               "section volumetric.")),
@@ -80,7 +80,7 @@ std::vector<Key> density_keys() {
                     "planner.core_threshold", "points", between(1, 1e6), see(&See::core_threshold),
                     "k: minimum number of points within r, including itself, of a core point.")),
       otherwise(
-          "rho^(-1/2), or 0.8 evaluation.registration_distance if smaller, but at least the "
+          "rho^(-1/2), or 0.8 evaluation.coverage_distance if smaller, but at least the "
           "distance between a camera's rays at the view distance",
           number_key("planner.spacing", "m", above(0, 1e3), sampling(&SamplingSection::spacing),
                      "epsilon: minimum spacing of stored measurements.")),
@@ -136,11 +136,11 @@ std::vector<Key> occlusion_keys() {
                  "Observing direction of a point: its ray or the optical axis."),
       number_key("planner.occluder_spacing", "m", above(0, 1e3), see(&See::occluder_spacing),
                  "Spacing of the sparse cloud used to find the unoccluded direction."),
-      otherwise("give_up; in preset building put_off",
-                choice_key("planner.still_occluded", {"give_up", "put_off", "keep"},
+      otherwise("give_up; in preset building defer",
+                choice_key("planner.still_occluded", {"give_up", "defer", "keep"},
                            see(&See::still_occluded),
-                           "What to do with frontiers that are still occluded after view "
-                           "optimisation: give_up (discard), put_off (observe last, from where "
+                           "Treatment of frontiers that are still occluded after view "
+                           "optimisation: give_up (discard), defer (observe last, from where "
                            "they were first seen) or keep (observe anyway).")),
   };
 }
@@ -183,13 +183,13 @@ std::vector<Key> skycap_keys() {
   };
   return {
       number_key(
-          "planner.wanted_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),
+          "planner.target_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),
           "The survey ends when skycap estimates that this fraction of the surface is covered."),
-      number_key("planner.least_gain", "share", between(0, 1), stop(&Stop::least_gain),
+      number_key("planner.min_gain", "share", between(0, 1), stop(&Stop::least_gain),
                  "The survey ends when no view is predicted to add at least this fraction of the "
-                 "known surface (or of seven times the largest area that one view has covered, if "
-                 "smaller). Planner skycap only."),
-      idea("dose", &Ideas::dose,
+                 "known surface. If seven times the largest area that one view has covered is "
+                 "smaller, the fraction is of that area. Planner skycap only."),
+      idea("coverage_model", &Ideas::dose,
            "weight observations of a surface by the noise; off: one observation covers it."),
       idea("unseen_surface", &Ideas::unseen_surface, "predict where the surface continues."),
       idea("free_space", &Ideas::free_space,

@@ -145,7 +145,7 @@ void derive_scanner_flight(MissionDocument& document) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   if (!sensor.mount) return;
   flight::FlightOptions& flight = document.flight.options;
-  if (!document.gives("flight.opening")) {
+  if (!document.gives("flight.initial_pattern")) {
     document.flight.opening = session::usual_opening(unknown_box_of(document));
   }
   // What is measured on the ways is measured on those of the survey.
@@ -454,7 +454,7 @@ MissionSetup read_mission(const std::filesystem::path& file,
         "scene.model",
         std::string("is missing; set a model, for example builtin:teapot") +
             (has_target(document)
-                 ? ", or plan with --dry-run prior, which uses the targets as ground truth"
+                 ? ", or plan with --use-prior-as-truth, which uses the targets as ground truth"
                  : "") +
             ". A mission without a scene is a live survey: skycap next, serve and finish");
   }

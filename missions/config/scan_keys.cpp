@@ -17,12 +17,12 @@ std::vector<Key> orbit_keys() {
   };
   return {
       vector_key("scan.orbit.centre", "m", between(-1e6, 1e6), orbit(&Orbit::centre),
-                 "Centre of the platform's circles; heights count from its z."),
+                 "Centre of the platform's circles; heights are relative to its z."),
       number_key("scan.orbit.radius", "m", above(0, 1e4), orbit(&Orbit::radius),
                  "Radius of the circles."),
-      number_key("scan.orbit.lowest", "m", between(-1e4, 1e4), orbit(&Orbit::lowest),
+      number_key("scan.orbit.min_height", "m", between(-1e4, 1e4), orbit(&Orbit::lowest),
                  "Height of the first circle."),
-      number_key("scan.orbit.highest", "m", between(-1e4, 1e4), orbit(&Orbit::highest),
+      number_key("scan.orbit.max_height", "m", between(-1e4, 1e4), orbit(&Orbit::highest),
                  "Height of the last circle."),
       integer_key("scan.orbit.circles", "", between(1, 1000), orbit(&Orbit::circles),
                   "Number of circles, evenly spaced in height; a single one is the lowest."),

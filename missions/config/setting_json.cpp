@@ -22,8 +22,8 @@ Json list_json(const std::vector<geometry::Prism>& volumes) {
   Json list = Json::array();
   for (const geometry::Prism& volume : volumes) {
     list.push_back({{"corners", list_json(volume.footprint)},
-                    {"bottom", volume.floor},
-                    {"top", volume.ceiling}});
+                    {"floor", volume.floor},
+                    {"ceiling", volume.ceiling}});
   }
   return list;
 }

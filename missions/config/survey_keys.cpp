@@ -49,11 +49,11 @@ std::vector<Key> limits_keys() {
           "Minimum distance from a view to any measured surface. With the planner skycap, inside "
           "planner.scene_box, also to unknown space."),
       angle_key(
-          "limits.lowest_pitch_deg", between(-right_angle, right_angle),
+          "limits.min_pitch_deg", between(-right_angle, right_angle),
           [](auto& m) -> auto& { return m.limits.lowest_pitch; },
           "Minimum pitch of the gimbal; straight down is -90."),
       angle_key(
-          "limits.highest_pitch_deg", between(-right_angle, right_angle),
+          "limits.max_pitch_deg", between(-right_angle, right_angle),
           [](auto& m) -> auto& { return m.limits.highest_pitch; }, "Maximum pitch of the gimbal."),
       otherwise("unlimited",
                 number_key(
@@ -74,7 +74,7 @@ std::vector<Key> limits_keys() {
 std::vector<Key> evaluation_keys() {
   return {
       required(number_key(
-          "evaluation.registration_distance", "m", between(1e-6, 1e3),
+          "evaluation.coverage_distance", "m", between(1e-6, 1e3),
           [](auto& m) -> auto& { return m.evaluation.registration_distance; },
           "r_d: coverage distance. A surface sample is covered if a stored measurement is within "
           "this distance.")),
@@ -88,12 +88,12 @@ std::vector<Key> evaluation_keys() {
           "Number of directions on the sphere from which visibility of a sample at the view "
           "distance is tested. A sample without a free direction is not visible surface."),
       integer_key(
-          "evaluation.ceiling_views", "", between(0, 1e4),
+          "evaluation.attainable_views", "", between(0, 1e4),
           [](auto& m) -> auto& { return m.evaluation.ceiling_views; },
           "Number of views used to compute the attainable coverage; 0: not computed."),
       otherwise("with a vehicle flight.clearance, otherwise limits.stand_off",
                 number_key(
-                    "evaluation.radius", "m", between(0, 1e3),
+                    "evaluation.passage_radius", "m", between(0, 1e3),
                     [](auto& m) -> auto& { return m.evaluation.radius; },
                     "Radius of the sphere that must fit through a passage for a place behind it to "
                     "count as reachable. 0: any gap is passable.")),

@@ -177,10 +177,11 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   if (!opening.empty()) return opening.front();
   if (const auto& start = begins.view) {
     if (!reachable().is_empty()) return *start;
-    throw Error(ErrorKind::bad_config,
-                "start.position is inside the model, or enclosed by it: a sphere of radius " +
-                    metres_text(radius_ + reachable().cell()) +
-                    " m does not fit through any opening; move it, or lower evaluation.radius");
+    throw Error(
+        ErrorKind::bad_config,
+        "start.position is inside the model, or enclosed by it: a sphere of radius " +
+            metres_text(radius_ + reachable().cell()) +
+            " m does not fit through any opening; move it, or lower evaluation.passage_radius");
   }
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;
@@ -194,11 +195,11 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
       return view;
     }
   }
-  throw Error(
-      ErrorKind::bad_config,
-      "no random start at the view distance of " + metres_text(view_distance_) +
-          " m satisfies limits.ground_clearance, the gimbal's pitch limits, evaluation.radius, the "
-          "site and flight.unknown_box; relax them or set start.position");
+  throw Error(ErrorKind::bad_config,
+              "no random start at the view distance of " + metres_text(view_distance_) +
+                  " m satisfies limits.ground_clearance, the gimbal's pitch limits, "
+                  "evaluation.passage_radius, the "
+                  "site and flight.unknown_box; relax them or set start.position");
 }
 
 Admissible SurveyScene::admissible() const {

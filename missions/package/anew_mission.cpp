@@ -21,7 +21,7 @@ Json json_of(const MissionFigures& figures) {
           {"length_m", figures.length},
           {"views", figures.views},
           {"pieces", figures.pieces},
-          {"promised_coverage", figures.promised}};
+          {"predicted_coverage", figures.promised}};
 }
 
 Json stations_json(const StationPlan& stations) {
@@ -118,10 +118,10 @@ AnewMission anew_mission(const session::SurveyOptions& options, const ChoiceOpti
 Json anew_json(const AnewMission& mission) {
   Json json{{"is_flown", mission.choice.is_anew},
             {"survey", json_of(mission.choice.survey)},
-            {"anew", json_of(mission.choice.anew)},
+            {"replanned", json_of(mission.choice.anew)},
             {"computing_time_s", mission.choice.computing}};
-  if (mission.again) json["flown_again"] = again_json(*mission.again);
-  if (mission.survey_again) json["survey_flown_again"] = again_json(*mission.survey_again);
+  if (mission.again) json["reflight"] = again_json(*mission.again);
+  if (mission.survey_again) json["survey_reflight"] = again_json(*mission.survey_again);
   if (mission.choice.is_anew) json["stations"] = stations_json(mission.choice.stations);
   return json;
 }
@@ -131,7 +131,7 @@ std::optional<StationPlan> anew_stations(const Json& json, const std::string& na
   StationPlan plan;
   for (const Json& station : json["stations"]) {
     const std::string place =
-        name + ": flight.anew.stations[" + std::to_string(plan.views.size()) + "].";
+        name + ": flight.replanned.stations[" + std::to_string(plan.views.size()) + "].";
     plan.views.push_back(
         {support::vector_of(station.at("position")), support::vector_of(station.at("direction"))});
     geometry::require_place(plan.views.back().position, place + "position");

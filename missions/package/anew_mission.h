@@ -37,7 +37,7 @@ FlownAgain flown_again(const CoverageFigures& coverage,
 nlohmann::ordered_json again_json(const FlownAgain& again);
 std::string again_text(const FlownAgain& again);
 
-/// `flight.anew` of the summary.
+/// `flight.replanned` of the summary.
 nlohmann::ordered_json anew_json(const AnewMission& mission);
 
 /// The stations that it has; nothing if the mission takes the survey's views. Throws what

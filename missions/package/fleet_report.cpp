@@ -90,7 +90,7 @@ Json fleet_json(const FleetMission& fleet, const std::string& goal,
             {"proven_m", fleet.distance}}},
           {"vehicles", vehicles},
           {"timetable", timetable},
-          {"unreached", unreached_json(fleet.unreached)}};
+          {"skipped_views", unreached_json(fleet.unreached)}};
 }
 
 }  // namespace skycap::missions::package

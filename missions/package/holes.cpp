@@ -163,9 +163,9 @@ std::vector<BelievedPatch> true_patches(const geometry::SurfaceSamples& samples,
 const char* name_of(MissingReason reason) {
   switch (reason) {
     case MissingReason::seen_too_thinly:
-      return "seen_too_thinly";
+      return "undersampled";
     case MissingReason::never_seen:
-      return "never_seen";
+      return "unobserved";
     case MissingReason::unreachable:
       return "unreachable";
     case MissingReason::none:

@@ -22,6 +22,7 @@
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/fleet_mission.h"
+#include "missions/package/former_fields.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/settings.h"
@@ -47,6 +48,7 @@ constexpr const char* true_coverage_name = "true_coverage.ply";
 /// Throws Error{bad_file}.
 Json json_of_summary(const std::string& text, const std::string& name) {
   Json summary = geometry::parse_json<Json>(text);
+  use_current_fields(summary);
   if (summary.is_object()) return summary;
   fail(name,
        "is not a package's summary: not JSON, or nested too deep; give the folder of a mission "
@@ -322,9 +324,9 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
       if (json["flight"].contains("grounds")) {
         summary.grounds = measured_grounds(json["flight"]["grounds"], name);
       }
-      summary.has_choice = json["flight"].contains("anew");
+      summary.has_choice = json["flight"].contains("replanned");
       if (summary.has_choice && summary.mission.flight().views == flight::MissionViews::anew) {
-        summary.anew = anew_stations(json["flight"]["anew"], name);
+        summary.anew = anew_stations(json["flight"]["replanned"], name);
       }
     }
     for (const Json& view : json.at("per_view")) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "missions/config/former_names.h"
 #include "missions/config/mission_document.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/resolve.h"
@@ -18,10 +19,11 @@ using Json = nlohmann::ordered_json;
 /// Settings as a mission file has them. JSON is YAML, but keys are nested there.
 std::string mission_text(const Json& settings) {
   Json nested = Json::object();
-  for (const auto& [path, value] : settings.items()) {
+  for (const auto& [former, value] : settings.items()) {
+    const std::string path = config::current_path(former);
     // A pointer with a number in it would grow a list; no key of ours has one.
     if (!config::find_key(path)) {
-      throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
+      throw Error(ErrorKind::bad_file, "settings." + former + " is unknown");
     }
     std::string pointer = "/" + path;
     std::ranges::replace(pointer, '.', '/');

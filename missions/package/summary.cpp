@@ -42,7 +42,7 @@ Json reliability_summary(const survey::skycap::SurveyBelief& belief,
   Json bands = Json::array();
   for (const evaluation::Reliability::Band& band : found.bands) {
     bands.push_back(
-        {{"believed", band.believed}, {"covered", band.covered}, {"share", band.share}});
+        {{"estimated", band.believed}, {"covered", band.covered}, {"share", band.share}});
   }
   return {{"error", found.error},
           {"bands", bands},
@@ -58,11 +58,11 @@ Json belief_summary(const session::SurveyRecord& record, const CoverageFigures& 
   const std::string stop =
       record.is_complete() ? record.stop_rule : session::name_of(record.stop_reason);
   return {{"stop", stop},
-          {"predicted_coverage", belief.coverage},
+          {"estimated_coverage", belief.coverage},
           {"area_m2", belief.area},
           {"missing",
-           {{"seen_too_thinly", belief.seen_too_thinly},
-            {"never_seen", belief.never_seen},
+           {{"undersampled", belief.seen_too_thinly},
+            {"unobserved", belief.never_seen},
             {"unreachable", belief.unreachable}}},
           {"next_gain", belief.next_gain},
           {"noise_m", belief.noise},
@@ -182,7 +182,7 @@ Json flight_summary(const session::FlownSurvey& flown, const SurveyMission& flig
             {"energy_wh", route.energy / 3600.0},
             {"min_clearance_m", route.min_clearance},
             {"sorties", sorties_json(route)},
-            {"unreached", unreached_json(route.unreached)}}},
+            {"skipped_views", unreached_json(route.unreached)}}},
           {"return", return_summary(flight)},
           {"pictures", pictures_summary(flight)},
           {"files", files},
@@ -194,7 +194,7 @@ Json view_summary(std::size_t number, const session::JudgedView& judged) {
   return {{"view", number},
           {"position", json_of(view.view.position)},
           {"direction", json_of(view.view.direction)},
-          {"frames_on_way", view.on_way.views.size()},
+          {"en_route_frames", view.on_way.views.size()},
           {"returns", view.returns},
           {"points_new", view.step.points_new},
           {"points", view.points},
@@ -239,12 +239,12 @@ std::string summary_json(const config::MissionSetup& setup, const session::Surve
       {"points", record.cloud.size()},
       {"coverage", coverage.all},
       {"coverage_visible", json_of(coverage.visible)},
-      {"coverage_ceiling", json_of(coverage.ceiling)},
+      {"attainable_coverage", json_of(coverage.ceiling)},
       {"planning_time_s", record.planning_time()},
       {"planning_time_parts_s", json_of(planning_time_by_part(record))},
       {"sensing_time_s", record.sensing_time()},
       {"distance_m", record.distance()},
-      {"belief", belief_summary(record, coverage, setup.survey().planner.resolution_radius)},
+      {"estimate", belief_summary(record, coverage, setup.survey().planner.resolution_radius)},
       {"surface", surface_summary(record, coverage)}};
   if (has_target(setup.scene())) {
     summary["targets"] = targets_summary(target_coverage(
@@ -254,8 +254,8 @@ std::string summary_json(const config::MissionSetup& setup, const session::Surve
     summary["route_length_m"] = flight->route.length;
     summary["min_clearance_m"] = flight->route.min_clearance;
     summary["flight"] = flight_summary(*record.flown, *flight);
-    if (flight->anew) summary["flight"]["anew"] = anew_json(*flight->anew);
-    if (flight->again) summary["flight"]["flown_again"] = again_json(*flight->again);
+    if (flight->anew) summary["flight"]["replanned"] = anew_json(*flight->anew);
+    if (flight->again) summary["flight"]["reflight"] = again_json(*flight->again);
     if (flight->fleet) {
       summary["flight"]["fleet"] =
           fleet_json(*flight->fleet, setup.text("flight.fleet_goal"), setup.flight().fleet.rule());

@@ -7,6 +7,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
+#include "missions/package/former_fields.h"
 #include "missions/support/sha256.h"
 
 namespace skycap::missions::report {
@@ -29,6 +30,7 @@ std::string results_text(const fs::path& file) {
 
 Json read_results(const fs::path& file) {
   Json json = geometry::parse_json<Json>(results_text(file));
+  package::use_current_fields(json);
   if (json.is_object()) return json;
   throw Error(
       ErrorKind::bad_file,

@@ -127,8 +127,8 @@ std::vector<std::string> file_names(const Json& summary) {
   std::vector<std::string> names;
   const Json files = summary.value("files", Json::array());
   for (const Json& file : files) names.push_back(file.at("name").get<std::string>());
-  for (const char* name : {"preview.ply", "trajectory.tum", "trajectory_believed.tum", "depth.txt",
-                           "groundtruth.txt", "believed.txt", "camera.json", "frames.rawlog"}) {
+  for (const char* name : {"preview.ply", "trajectory.tum", "trajectory_estimated.tum", "depth.txt",
+                           "groundtruth.txt", "estimated.txt", "camera.json", "frames.rawlog"}) {
     names.emplace_back(name);
   }
   return names;
@@ -177,6 +177,13 @@ Json page_data(const Json& summary, const fs::path& file) {
 
 }  // namespace
 
+/// The poses by the navigation solution; version 0.1 had other names for the file.
+fs::path estimated_poses(const ResultFinder& results, bool is_laser) {
+  const fs::path file = results(is_laser ? "trajectory_estimated.tum" : "estimated.txt");
+  if (is_there(file)) return file;
+  return results(is_laser ? "trajectory_believed.tum" : "believed.txt");
+}
+
 std::string scan_page(const ResultFinder& results, std::size_t most_points) {
   const fs::path file = results("scan.json");
   const Json summary = read_results(file);
@@ -185,7 +192,7 @@ std::string scan_page(const ResultFinder& results, std::size_t most_points) {
     geometry::AttributedCloud cloud;
     if (is_there(results("preview.ply"))) cloud = geometry::read_cloud(results("preview.ply"));
     const bool is_laser = summary.contains("shots");
-    const auto believed = poses_in(results(is_laser ? "trajectory_believed.tum" : "believed.txt"));
+    const auto believed = poses_in(estimated_poses(results, is_laser));
     const auto flown = poses_in(results(is_laser ? "trajectory.tum" : "groundtruth.txt"));
     const std::vector<std::size_t> counts = counts_of(cloud.views);
     const auto poses = piece_poses(preview, believed, counts.size());

@@ -16,6 +16,7 @@
 #include "geometry/parallel.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/fleet/timetable_file.h"
+#include "missions/package/former_fields.h"
 #include "missions/package/package.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
@@ -72,7 +73,7 @@ Json hole_places(const Json& summary, const flight::FlightOptions& options) {
 
 /// As the planner has learnt it, else as the mission says.
 PointNoise noise_of(const Json& summary, const sim::NoiseConfig& stated) {
-  const Json::json_pointer learnt("/belief/noise_m");
+  const Json::json_pointer learnt("/estimate/noise_m");
   const bool is_learnt = summary.contains(learnt) && summary[learnt].is_number() &&
                          summary[learnt].get<double>() > 0.0;
   return {is_learnt ? summary[learnt].get<double>() : stated.sigma,
@@ -165,7 +166,8 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
   try {
     const package::PackageSummary survey =
         package::parse_package_summary(text, summary_file.string());
-    const Json summary = geometry::parse_json<Json>(text);
+    Json summary = geometry::parse_json<Json>(text);
+    package::use_current_fields(summary);
     const geometry::AttributedCloud cloud = cloud_if_there(results("cloud.ply"));
     const geometry::AttributedCloud map = cloud_if_there(results("coverage.ply"));
     const std::vector<std::uint16_t> incidence = incidence_steps(cloud, survey.views);

@@ -39,9 +39,9 @@ Light coverage(const std::string& name, const std::string& figure, const Json& v
 }
 
 void add_coverage(const Json& summary, std::vector<Light>& lights) {
-  if (const Json believed = at(summary, "/belief/predicted_coverage"); believed.is_number()) {
+  if (const Json believed = at(summary, "/estimate/estimated_coverage"); believed.is_number()) {
     lights.push_back(
-        coverage("Coverage (planner estimate)", "belief.predicted_coverage", believed));
+        coverage("Coverage (planner estimate)", "estimate.estimated_coverage", believed));
   }
   if (const Json visible = at(summary, "/coverage_visible"); visible.is_number()) {
     lights.push_back(
@@ -79,9 +79,9 @@ void add_flight(const Json& summary, std::vector<Light>& lights) {
                       sorties.size(), left >= 0.0 ? "green" : "red",
                       "green: every sortie keeps its battery reserve"});
   }
-  const std::size_t missed = at(summary, "/flight/route/unreached").size();
-  lights.push_back({"Views not in the mission", "flight.route.unreached.length", "count", missed,
-                    missed == 0 ? "green" : "amber", "green: none, otherwise amber"});
+  const std::size_t missed = at(summary, "/flight/route/skipped_views").size();
+  lights.push_back({"Views not in the mission", "flight.route.skipped_views.length", "count",
+                    missed, missed == 0 ? "green" : "amber", "green: none, otherwise amber"});
 }
 
 }  // namespace

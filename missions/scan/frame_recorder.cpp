@@ -157,7 +157,7 @@ class FrameRecording {
     journal_.stage(preview_name, folder);
     folder.write("depth.txt", list);
     folder.write("groundtruth.txt", flight::write_tum(truth));
-    folder.write("believed.txt", flight::write_tum(believed));
+    folder.write("estimated.txt", flight::write_tum(believed));
     folder.write("camera.json",
                  support::json_text(camera_json(camera_.camera(), options_.depth_unit)));
   }

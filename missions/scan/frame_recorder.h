@@ -41,7 +41,7 @@ struct FrameResult {
 
 /// Takes the images into `journal`, in which the recording can be gone on with, and stages in
 /// `folder`, whose caller commits: the images, depth.txt (`time file` of each),
-/// groundtruth.txt and believed.txt (TUM poses of the camera), camera.json (intrinsics, unit),
+/// groundtruth.txt and estimated.txt (TUM poses of the camera), camera.json (intrinsics, unit),
 /// preview.ply (preview.h), and on demand frames.rawlog: for each image a CObservationRobotPose
 /// "CARRIER", where the camera is believed to be, with x forward, and a CObservation3DRangeScan
 /// "DEPTH". Throws Error{bad_file} if a file cannot be written or MRPT is not there.

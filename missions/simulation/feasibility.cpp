@@ -78,7 +78,7 @@ class Inspection {
     const double radius = options_.evaluation.registration_distance;
     if (longest_ < 2.0 * radius) {
       problem(
-          "the model ({:.4g} m long) must be at least twice evaluation.registration_distance "
+          "the model ({:.4g} m long) must be at least twice evaluation.coverage_distance "
           "({:.4g} m); check its unit (scene.scale), or lower the distance",
           longest_, radius);
     }
@@ -153,7 +153,7 @@ class Inspection {
     if (gap > radius) {
       warn(
           "at the view distance ({:.4g} m) rays hit a wall {:.3g} m apart, so that a view covers "
-          "only part of what it sees within evaluation.registration_distance ({:.4g} m); lower "
+          "only part of what it sees within evaluation.coverage_distance ({:.4g} m); lower "
           "planner.view_distance to {:.4g} m",
           distance_, std::sqrt(1.0 / rays), radius, distance_ * radius / gap);
     }
@@ -161,7 +161,7 @@ class Inspection {
     if (spacing > std::sqrt(3.0) * radius) {  // even points in a hexagonal lattice leave holes
       warn(
           "the spacing of stored points ({:.4g} m) must be at most "
-          "evaluation.registration_distance ({:.4g} m) for gapless coverage; lower planner.spacing "
+          "evaluation.coverage_distance ({:.4g} m) for gapless coverage; lower planner.spacing "
           "to {:.4g} m",
           spacing, radius, 0.8 * radius);
     }
@@ -176,7 +176,7 @@ class Inspection {
         evaluation::visible_samples(some, scene_.scene(), scene_.admissible(), run_.threads));
     const char* remedy =
         "widen the height limits, the geofence and the gimbal limits, or lower limits.stand_off, "
-        "flight.clearance or evaluation.radius";
+        "flight.clearance or evaluation.passage_radius";
     if (share == 0.0) {
       problem("no part of the model is visible from {:.4g} m away within the limits; {}", distance_,
               remedy);

@@ -11,8 +11,9 @@ namespace skycap::missions::support {
 
 /// Format of the records of a survey, simulated or live, as the "format" of their identity. Since
 /// format 2 a planner keeps the limits of views itself, so that views that they refuse are not
-/// counted as unreachable; earlier journals have no format.
-inline constexpr int journal_format = 2;
+/// counted as unreachable. Since format 3 keys and fields have the names of version 0.2. Earlier
+/// journals have no format.
+inline constexpr int journal_format = 3;
 
 /// Names that are not UTF-8 are shown with a replacement character.
 std::string journal_line(const nlohmann::ordered_json& json);

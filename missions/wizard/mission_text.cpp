@@ -72,7 +72,7 @@ std::string site_section(const MissionValues& values) {
       " # WGS84, north\n  longitude_deg: {:.7f}  # east\n  ellipsoid_height: {:.2f}  # metres "
       "above the WGS84 ellipsoid, not above mean sea level\n  # Views and legs stay inside this "
       "geofence; set the area in which you are allowed to fly.\n  geofence: [[{:g}, {:g}], [{:g}, "
-      "{:g}], [{:g}, {:g}], [{:g}, {:g}]]\n  highest_height: {:g}  # z; above the ground here\n",
+      "{:g}], [{:g}, {:g}], [{:g}, {:g}]]\n  max_height: {:g}  # z; above the ground here\n",
       values.origin_is, values.origin.latitude_deg, values.origin.longitude_deg,
       values.origin.height, low.x(), low.y(), high.x(), low.y(), high.x(), high.y(), low.x(),
       high.y(), high.z());
@@ -105,7 +105,7 @@ std::string flight_section(const MissionValues& values) {
   if (!corners.empty()) {
     text +=
         "  # The same for neighbours that are surveyed as well: the corners of each box.\n  "
-        "unknown_beside: [" +
+        "extra_unknown_boxes: [" +
         corners + "]\n";
   }
   return text;
@@ -129,7 +129,7 @@ std::string planner_section(const MissionValues& values) {
              "  view_distance: {:g}  # metres, distance of views from the surface\n  density: "
              "{:.3g}  # required points per square metre\n  resolution_radius: {:g}  # metres, "
              "radius in which points are counted\n  spacing: {:g}  # metres, minimum spacing of "
-             "stored points\nevaluation:\n  registration_distance: {:g}  # coverage distance: a "
+             "stored points\nevaluation:\n  coverage_distance: {:g}  # coverage distance: a "
              "surface within it of a point is covered\nlimits:\n  max_views: 150  # the survey "
              "ends earlier when it is complete\n",
              values.view_distance, 0.36 / (distance * distance), 3.0 * distance, 0.5 * distance,

@@ -385,15 +385,15 @@ StopReason SkycapPlanner::stop_reason() const {
 std::string_view SkycapPlanner::stop_rule() const {
   switch (impl_->stop) {
     case SkycapStop::wanted_coverage:
-      return "wanted_coverage";
+      return "target_coverage";
     case SkycapStop::little_gain:
-      return "little_gain";
+      return "min_gain";
     case SkycapStop::most_length:
-      return "most_length";
+      return "max_length";
     case SkycapStop::most_time:
-      return "most_time";
+      return "max_time";
     case SkycapStop::nothing_in_reach:
-      return "nothing_in_reach";
+      return "no_reachable_view";
     case SkycapStop::running:
       break;
   }

@@ -55,7 +55,7 @@ std::string mission_of(const Options& options) {
       "planner: {{name: skycap, preset: building, density: {}, resolution_radius: 0.25,\n"
       "          view_distance: 14, scene_box: {{min: [-6, -5, 0.3], max: [6, 5, 11]}}}}\n"
       "start: {{position: [0, -20, 6], look_at: [0, 0, 5]}}\n"
-      "evaluation: {{registration_distance: 0.1}}\n{}",
+      "evaluation: {{coverage_distance: 0.1}}\n{}",
       options.width, options.height, horizontal_fov_deg, vertical_fov_deg, farthest,
       options.density, options.circles > 0 ? "" : vehicle);
 }

@@ -19,7 +19,7 @@ planner:
   scene_box: {{min: [-9, -9, 1], max: [9, 9, 9]}}
   density: 4000
   resolution_radius: 0.1
-evaluation: {{registration_distance: 0.05}}
+evaluation: {{coverage_distance: 0.05}}
 """
 
 

@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
     return argc > place ? static_cast<std::size_t>(std::atol(argv[place])) : fallback;
   };
   const std::string common =
-      "evaluation: {registration_distance: 0.05, samples: 20000, ceiling_views: 0}\n";
+      "evaluation: {coverage_distance: 0.05, samples: 20000, attainable_views: 0}\n";
   if (which == "building") {
     run(which,
         common +

@@ -32,10 +32,10 @@ scene: {model: 'builtin:teapot', longest_side: 10.0}
 sensor: {width: 160, height: 100, noise: {sigma: 0.03}}
 planner: {name: skycap, preset: building, density: 100, resolution_radius: 0.3,
           view_distance: 12}
-evaluation: {registration_distance: 0.2, samples: 3000, visible_directions: 30, ceiling_views: 0}
+evaluation: {coverage_distance: 0.2, samples: 3000, visible_directions: 30, attainable_views: 0}
 flight: {vehicle: m350_rtk, clearance: 2.0, unknown_box: {min: [-7, -7, 0], max: [7, 7, 7]}}
 site: {latitude_deg: 51.75, longitude_deg: -1.25, ellipsoid_height: 100, geoid_undulation: 47,
-       no_fly: [{corners: [[20, 20], [24, 20], [24, 24]], bottom: 0, top: 30}]}
+       no_fly: [{corners: [[20, 20], [24, 20], [24, 24]], floor: 0, ceiling: 30}]}
 limits: {max_views: 12}
 """
 

@@ -179,7 +179,7 @@ class OtherPagesTest(unittest.TestCase):
         results = plan(self.folder, MISSION % "nothing", "--max-views", "2")
         summary = json.loads((results / "summary.json").read_text())
         summary.update(views=0, points=0, per_view=[], stop_reason="interrupted", complete=False)
-        for key in ("flight", "surface", "belief"):
+        for key in ("flight", "surface", "estimate"):
             summary.pop(key)
         (results / "summary.json").write_text(json.dumps(summary))
         for name in ("cloud.ply", "coverage.ply"):
@@ -241,10 +241,10 @@ class OtherPagesTest(unittest.TestCase):
         town = subprocess.run([sys.executable, script, "3"], check=True, capture_output=True).stdout
         (self.folder / "town.city.json").write_bytes(town)
         quarter = self.folder / "quarter.yaml"
-        quarter.write_text("map: town.city.json\nvertical: ellipsoid\ntogether: 0\n"
+        quarter.write_text("map: town.city.json\nvertical: ellipsoid\nmerge_distance: 0\n"
                            "targets: {id: [house_0000, house_0001]}\n"
                            "set: {limits.max_views: 2, evaluation.samples: 2000,\n"
-                           "      evaluation.visible_directions: 20, evaluation.ceiling_views: 0}\n")
+                           "      evaluation.visible_directions: 20, evaluation.attainable_views: 0}\n")
         out = self.folder / "out"
         run("district", str(quarter), "--quiet", "--out", str(out))
         summary = json.loads((out / "district.json").read_text())
@@ -277,10 +277,10 @@ class OtherPagesTest(unittest.TestCase):
             mission.write_text("""
 name: %s
 scene: {model: 'builtin:teapot', longest_side: 10.0}
-evaluation: {registration_distance: 0.2}
+evaluation: {coverage_distance: 0.2}
 scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
        mount: {rotation_deg: [0, 0, %d]},
-       orbit: {radius: 12, lowest: 3, circles: 1, speed: 20}}
+       orbit: {radius: 12, min_height: 3, circles: 1, speed: 20}}
 """ % (sensor, sensor, turned))
             run("scan", str(mission), "--out", str(out), "--quiet")
             summary = {**json.loads((out / "scan.json").read_text()), "mission": HOSTILE}

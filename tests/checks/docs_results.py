@@ -22,7 +22,7 @@ scene: {model: 'builtin:teapot', longest_side: 10.0}
 sensor: {width: 160, height: 100, noise: {sigma: 0.03}}
 planner: {name: skycap, preset: building, density: 100, resolution_radius: 0.3,
           view_distance: 12}
-evaluation: {registration_distance: 0.2, samples: 2000, visible_directions: 20, ceiling_views: 0}
+evaluation: {coverage_distance: 0.2, samples: 2000, visible_directions: 20, attainable_views: 0}
 flight: {vehicle: m350_rtk, clearance: 2.0, pad_slope_deg: 1,
          unknown_box: {min: [-7, -7, 0], max: [7, 7, 7]}}
 site: {latitude_deg: 51.75, longitude_deg: -1.25, ellipsoid_height: 100, geoid_undulation: 47}
@@ -42,14 +42,14 @@ HOUSE = {
                       "values": [0, 0, 0, 0, 1, 2]}}]}}}
 # What each survey is there for.
 SURVEYS = {
-    "fly-through": (TEAPOT, ["--set", "flight.views=anew", "--set", "flight.style=pass",
+    "fly-through": (TEAPOT, ["--set", "flight.views=replanned", "--set", "flight.style=fly-through",
                              "--set", "sensor.exposure=0.001"]),
     "fleet": (TEAPOT, ["--set", "flight.vehicles=[m350_rtk, m350_rtk]",
                        "--set", "flight.pads=[[-16, -14, 0], [16, 14, 0]]"]),
-    "re-flight": (TEAPOT, ["--set", "flight.style=pass", "--set", "sensor.exposure=0.001",
+    "re-flight": (TEAPOT, ["--set", "flight.style=fly-through", "--set", "sensor.exposure=0.001",
                            "--set", "sensor.capture=moving"]),
     "target": (TEAPOT + TARGET, ["--set", "limits.max_views=2"]),
-    "no route": (TEAPOT, ["--set", "site.highest_height=9"]),
+    "no route": (TEAPOT, ["--set", "site.max_height=9"]),
     "SEE++": (TEAPOT, ["--set", "flight.vehicle=none", "--planner", "see++"]),
 }
 

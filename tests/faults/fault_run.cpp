@@ -193,8 +193,8 @@ const char* const quick =
     "scene: {model: 'builtin:teapot', longest_side: 1.0}\n"
     "sensor: {width: 160, height: 100, noise: {sigma: 0.03}}\n"
     "planner: {density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03}\n"
-    "evaluation: {registration_distance: 0.03, samples: 3000, visible_directions: 30,\n"
-    "             ceiling_views: 0}\n"
+    "evaluation: {coverage_distance: 0.03, samples: 3000, visible_directions: 30,\n"
+    "             attainable_views: 0}\n"
     "limits: {max_views: 3}\n"
     "scan: {orbit: {radius: 2, circles: 1, speed: 100}}\n";
 
@@ -203,8 +203,8 @@ const char* const flown =
     "sensor: {width: 80, height: 60, max_range: 60, horizontal_fov_deg: 70, vertical_fov_deg: 55}\n"
     "planner: {name: skycap, density: 20, resolution_radius: 1.0, occluder_spacing: 0.6,\n"
     "          scene_box: {min: [-15, -15, -1], max: [15, 15, 15]}}\n"
-    "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
-    "             ceiling_views: 0}\n"
+    "evaluation: {coverage_distance: 0.6, samples: 3000, visible_directions: 30,\n"
+    "             attainable_views: 0}\n"
     "site: {latitude_deg: 51.7, longitude_deg: -1.25, geoid_undulation: 46}\n"
     "limits: {max_views: 3, ground_clearance: 3}\n"
     "flight: {vehicle: generic, unknown_box: {min: [-12, -12, 0], max: [12, 12, 12]},\n"

@@ -98,7 +98,7 @@ const missions::config::MissionSetup& live_setup(bool has_scanner) {
   constexpr const char* rest =
       "planner: {name: see++, density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03,\n"
       "          view_distance: 1, scene_box: {min: [-1, -1, -1], max: [1, 1, 1]}}\n"
-      "evaluation: {registration_distance: 0.03}\n"
+      "evaluation: {coverage_distance: 0.03}\n"
       "live: {remove_flying_pixels: true, registration: true, pose_sigma: 0.01}\n"
       "limits: {max_views: 4}\n";
   static const missions::config::MissionSetup camera = missions::config::parse_mission(

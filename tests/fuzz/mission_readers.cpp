@@ -102,7 +102,8 @@ int run_district(const std::uint8_t* bytes, std::size_t size) {
     require(missions::batch::is_plain(given.name), "no name of a folder: " + given.name);
     require(missions::batch::find_contestant(given.planner) != nullptr,
             "no planner: " + given.planner);
-    require(given.together >= 0.0 && given.together <= 100.0, "together is out of its range");
+    require(given.merge_distance >= 0.0 && given.merge_distance <= 100.0,
+            "merge_distance is out of its range");
     const batch::TargetChoice& targets = given.targets;
     require(targets.within.empty() || targets.within.size() == 2, "a box without two corners");
     require(targets.distance >= 0.0 && targets.distance <= 50'000.0,

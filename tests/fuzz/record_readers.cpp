@@ -54,8 +54,8 @@ int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
   static const config::MissionSetup setup = config::parse_mission(
       "scene: {model: 'builtin:teapot', detail: coarse, longest_side: 1.0}\n"
       "planner: {density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03}\n"
-      "evaluation: {registration_distance: 0.03, samples: 100, visible_directions: 10,\n"
-      "             ceiling_views: 0}\n",
+      "evaluation: {coverage_distance: 0.03, samples: 100, visible_directions: 10,\n"
+      "             attainable_views: 0}\n",
       "m.yaml");
   static const evaluation::SurveyScene scene(setup.simulation, ".", setup.run.threads);
   static const std::string identity = support::identity_text(

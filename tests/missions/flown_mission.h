@@ -22,15 +22,15 @@ inline std::string flown_mission_round(const std::string& scene, const std::stri
          "  scene_box: {min: [" +
          south_west + ", 0.3], max: [" + north_east_top +
          "]}\n"
-         "  least_gain: 0.02\n"
+         "  min_gain: 0.02\n"
          "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
          "         unknown_box: {min: [" +
          south_west + ", 0], max: [" + north_east_top +
          "]}}\n"
          "site: {latitude_deg: 47.1, longitude_deg: 8.2, ellipsoid_height: 480,\n"
          "       geoid_undulation: 48}\n"
-         "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
-         "             ceiling_views: 0}\n"
+         "evaluation: {coverage_distance: 0.6, samples: 3000, visible_directions: 30,\n"
+         "             attainable_views: 0}\n"
          "limits: {max_views: 14}\n";
 }
 

@@ -54,8 +54,8 @@ inline std::string quick_mission(const std::string& more = "") {
   return "scene: {model: 'builtin:teapot', longest_side: 1.0}\n"
          "sensor: {width: 160, height: 100, noise: {sigma: 0.03}}\n"
          "planner: {density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03}\n"
-         "evaluation: {registration_distance: 0.03, samples: 3000, visible_directions: 30,\n"
-         "             ceiling_views: 0}\n"
+         "evaluation: {coverage_distance: 0.03, samples: 3000, visible_directions: 30,\n"
+         "             attainable_views: 0}\n"
          "limits: {max_views: 40}\n" +
          more;
 }

@@ -19,8 +19,8 @@ planner: {name: skycap, density: 1000, resolution_radius: 0.2}
 limits: {max_views: 3}
 scan:
   sensor: velodyne_vlp16
-  orbit: {radius: 5, lowest: 1, circles: 1, speed: 100}
-evaluation: {registration_distance: 0.1, samples: 1000, ceiling_views: 0}
+  orbit: {radius: 5, min_height: 1, circles: 1, speed: 100}
+evaluation: {coverage_distance: 0.1, samples: 1000, attainable_views: 0}
 """
 
 

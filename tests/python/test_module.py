@@ -147,8 +147,8 @@ class Certificates(unittest.TestCase):
     def test_know_how_near_a_leg_comes(self):
         tower = box(5, 5, 30)
         route = [(-20, -12, 10), (20, -12, 10), (20, -12, 31), (-20, 8, 31), (-20, 12, 5)]
-        legs = skycap.certify(route, 2.0, mesh=tower, ground_height=0.0)
-        self.assertEqual([leg.is_proven for leg in legs], [True, True, False, True])
+        legs = skycap.verify_route(route, 2.0, mesh=tower, ground_height=0.0)
+        self.assertEqual([leg.is_clear for leg in legs], [True, True, False, True])
         self.assertAlmostEqual(legs[0].clearance, 7.0, places=5)   # south of the wall at y = -5
         self.assertAlmostEqual(legs[2].clearance, 1.0, places=5)   # above the roof
         self.assertAlmostEqual(legs[2].on_obstacle[2], 30.0)
@@ -164,16 +164,26 @@ class Certificates(unittest.TestCase):
                 ({"fence": skycap.Prism("fence", square, 0, 12)}, 2.0),
                 ({"ground_height": 4.0}, 6.0),
                 ({"no_fly": [column], "ground_height": 9.0}, 1.0)):
-            (proof,) = skycap.certify(leg, 0.5, **obstacles)
+            (proof,) = skycap.verify_route(leg, 0.5, **obstacles)
             self.assertAlmostEqual(proof.clearance, distance, places=5, msg=str(obstacles))
-        (proof,) = skycap.certify(leg, 0.5, no_fly=[column])
+        (proof,) = skycap.verify_route(leg, 0.5, no_fly=[column])
         self.assertIn("mast", proof.obstacle)
-        (proof,) = skycap.certify(leg, 0.5)
-        self.assertEqual((proof.is_proven, proof.obstacle, proof.on_leg), (True, "", None))
+        (proof,) = skycap.verify_route(leg, 0.5)
+        self.assertEqual((proof.is_clear, proof.obstacle, proof.on_leg), (True, "", None))
+
+    def test_have_their_former_names_for_one_version(self):
+        with self.assertWarnsRegex(DeprecationWarning, "skycap.certify is now skycap.verify_route"):
+            (check,) = skycap.certify([(0, 0, 10), (10, 0, 10)], 0.5)
+        with self.assertWarnsRegex(DeprecationWarning, "is_proven is now is_clear"):
+            self.assertTrue(check.is_proven)
+        with self.assertWarns(DeprecationWarning):
+            self.assertIs(skycap.LegProof, skycap.LegCheck)
+        with self.assertRaises(AttributeError):
+            skycap.certified
 
     def test_refuse_places_that_are_none(self):
         with self.assertRaisesRegex(skycap.Error, "point 1 of the route is not a finite position"):
-            skycap.certify([(0, 0, 0), (np.inf, 0, 0)], 1.0)
+            skycap.verify_route([(0, 0, 0), (np.inf, 0, 0)], 1.0)
 
 
 class Evaluations(unittest.TestCase):

@@ -16,7 +16,7 @@ planner:
   scene_box: {min: [-2, -2, -2], max: [2, 2, 2]}
   density: 4000
   resolution_radius: 0.1
-evaluation: {registration_distance: 0.05}
+evaluation: {coverage_distance: 0.05}
 """
 
 
@@ -127,7 +127,7 @@ class Arrays(SmallMission):
         with self.assertRaisesRegex(BufferError, "still in use"):
             self.planner.next_view(*self.scan)
         with self.assertRaises(BufferError):
-            self.planner.next_view_instead()
+            self.planner.replacement_view()
         del points
         self.planner.next_view(*self.scan)
 

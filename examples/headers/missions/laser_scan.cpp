@@ -6,7 +6,7 @@
 const Example laser_scan_example("missions/laser_scan", [] {
   const auto mission = skycap::missions::library::Mission::parse(
       "scene: {model: builtin:teapot, longest_side: 20}\n"
-      "evaluation: {registration_distance: 0.1}\n"
+      "evaluation: {coverage_distance: 0.1}\n"
       "scan: {orbit: {radius: 25, speed: 40}}\n",
       "orbit.yaml");
   skycap::missions::library::LaserScan scan(mission, {.sensor = "velodyne_vlp16"});

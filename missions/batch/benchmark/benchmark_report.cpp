@@ -223,7 +223,7 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
   if (figures.coverage_visible)
     json["coverage_visible"] = statistic_json(*figures.coverage_visible);
   if (figures.flown_time) json["flown_s"] = statistic_json(*figures.flown_time);
-  json["coverage_ceiling"] = figures.ceiling ? Json(*figures.ceiling) : Json();
+  json["attainable_coverage"] = figures.ceiling ? Json(*figures.ceiling) : Json();
   const ViewFigures per_view = view_figures(cell.trials);
   json["frontiers_per_view"] = statistic_json(per_view.frontiers);
   json["coverage_per_view"] = statistic_json(per_view.coverage);
@@ -420,7 +420,8 @@ std::string figure_6(const std::vector<BenchmarkCell>& cells) {
 std::string trials_csv(const std::vector<Trial>& trials, Times times) {
   const bool has_times = times == Times::shown;
   std::string csv =
-      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,flown_m,"
+      "seed,stop_reason,views,coverage,coverage_visible,attainable_coverage,distance_m,points,"
+      "flown_m,"
       "flown_s";
   csv += has_times ? ",planning_time_s\n" : "\n";
   for (const Trial& trial : trials) {
@@ -447,7 +448,7 @@ std::string trials_json(const config::MissionSetup& mission, const std::vector<T
             {"trials_requested", requested},
             {"trials", trials.size()},
             {"trials_complete", completed(trials)},
-            {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
+            {"attainable_coverage", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
   if (trials.empty()) return support::json_text(json);
   for (const Figure& figure : trial_figures) {
     json[figure.name] = statistic_json(statistic_of(trials, figure));
@@ -494,7 +495,7 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times) {
       csv += std::string(",") + column.key + part;
     }
   }
-  csv += ",coverage_visible,coverage_ceiling\n";
+  csv += ",coverage_visible,attainable_coverage\n";
   for (const BenchmarkCell& cell : cells) {
     if (cell.trials.empty()) continue;
     const CellFigures figures = figures_of(cell);
@@ -535,7 +536,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
   std::string text =
       "# " + title +
       "\n\nMeans over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width "
-      "of the 95% interval of the mean, sd the standard deviation over the trials, and × the ratio "
+      "of the 95% interval of the mean, sd the standard deviation over the trials. × is the ratio "
       "to the paper. Definitions: docs/howto/compare-planners.md.\n\n## Table 1\n\n" +
       table_1(cells, times);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {

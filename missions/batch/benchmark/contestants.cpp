@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "missions/config/former_names.h"
 #include "missions/simulation/omniscient.h"
 #include "missions/simulation/survey_runner.h"
 #include "survey/planners/planner_names.h"
@@ -25,13 +26,13 @@ Contestant contestant_of(const survey::PlannerTitle& planner) {
 }
 
 /// The reference that knows the scene.
-Contestant omniscient() {
+Contestant oracle() {
   const auto survey = [](const evaluation::SimulationOptions& options,
                          const evaluation::SurveyScene& scene, std::uint64_t seed,
                          std::stop_token stop) {
     return simulation::survey_omnisciently(options, scene, seed, 1, {}, std::move(stop));
   };
-  return {.name = "omniscient", .title = "Omniscient", .is_in_all = false, .survey = survey};
+  return {.name = "oracle", .title = "Oracle", .is_in_all = false, .survey = survey};
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ const std::vector<Contestant>& contestants() {
     }
     // clang 14 does not compile the ranges' own.
     std::stable_partition(list.begin(), list.end(), std::mem_fn(&Contestant::is_in_all));
-    list.push_back(omniscient());
+    list.push_back(oracle());
     return list;
   }();
   return all;
@@ -56,7 +57,8 @@ std::vector<const Contestant*> contestants_named(const std::vector<std::string>&
   const bool has_all = std::ranges::find(names, "all") != names.end();
   for (const Contestant& contestant : contestants()) {
     known += (known.empty() ? "" : ", ") + contestant.name;
-    const bool is_named = std::ranges::find(names, contestant.name) != names.end();
+    const bool is_named =
+        std::ranges::find(names, contestant.name, config::current_planner) != names.end();
     if (is_named || (has_all && contestant.is_in_all)) chosen.push_back(&contestant);
   }
   for (const std::string& name : names) {
@@ -68,7 +70,8 @@ std::vector<const Contestant*> contestants_named(const std::vector<std::string>&
 }
 
 const Contestant* find_contestant(std::string_view name) {
-  const auto found = std::ranges::find(contestants(), name, &Contestant::name);
+  const auto found =
+      std::ranges::find(contestants(), config::current_planner(name), &Contestant::name);
   return found == contestants().end() ? nullptr : &*found;
 }
 

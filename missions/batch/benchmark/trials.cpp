@@ -14,6 +14,7 @@
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "missions/evaluation/coverage.h"
+#include "missions/package/former_fields.h"
 #include "missions/scene/scene_source.h"
 #include "missions/support/json_text.h"
 #include "missions/support/sha256.h"
@@ -101,7 +102,7 @@ std::string trial_json(const Trial& trial) {
             {"stop_reason", session::name_of(trial.stop_reason)},
             {"coverage", trial.coverage.all},
             {"coverage_visible", optional_json(trial.coverage.visible)},
-            {"coverage_ceiling", optional_json(trial.coverage.ceiling)},
+            {"attainable_coverage", optional_json(trial.coverage.ceiling)},
             {"views", trial.views},
             {"points", trial.points},
             {"planning_time_s", trial.planning_time},
@@ -122,13 +123,14 @@ std::string trial_json(const Trial& trial) {
 
 Trial parse_trial(const std::string& text) {
   try {
-    const Json json = geometry::parse_json<Json>(text);
+    Json json = geometry::parse_json<Json>(text);
+    package::use_current_fields(json);
     Trial trial;
     trial.seed = json.at("seed").get<std::uint64_t>();
     trial.stop_reason = session::stop_reason_named(json.at("stop_reason").get<std::string>());
     trial.coverage = {json.at("coverage").get<double>(),
                       optional_number(json.at("coverage_visible")),
-                      optional_number(json.at("coverage_ceiling"))};
+                      optional_number(json.at("attainable_coverage"))};
     trial.views = json.at("views").get<std::size_t>();
     trial.points = json.at("points").get<std::size_t>();
     trial.planning_time = json.at("planning_time_s").get<double>();

@@ -8,6 +8,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "missions/batch/benchmark/contestants.h"
+#include "missions/config/former_names.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/unknown_key.h"
 #include "missions/support/flow_text.h"
@@ -163,7 +164,9 @@ void add_changes(const std::vector<support::YamlEntry>& entries, const std::stri
 }  // namespace
 
 CampaignFile parse_campaign(const std::string& text, const std::string& name) {
-  return CampaignReader(support::parse_map(text, name, "a campaign"), name).read();
+  support::YamlNode root = support::parse_map(text, name, "a campaign");
+  config::replace_former_batch_names(root, name);
+  return CampaignReader(root, name).read();
 }
 
 CampaignFile read_campaign(const fs::path& file) {

@@ -8,6 +8,7 @@
 #include "geometry/io/file.h"
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/campaign/campaign_file.h"
+#include "missions/config/former_names.h"
 #include "missions/support/yaml_section.h"
 
 namespace skycap::missions::batch {
@@ -30,7 +31,7 @@ class DistrictReader {
     district_.name = read_name(root_, file_);
     read_files();
     if (auto targets = root_.section("targets")) read_targets(*targets);
-    district_.together = bounded("together", 0.5, 0.0, 100.0);
+    district_.merge_distance = bounded("merge_distance", 0.5, 0.0, 100.0);
     district_.pads = clicks(root_, "pads");
     std::string& vehicle = district_.wishes.vehicle;
     vehicle = root_.text("vehicle", "generic");
@@ -107,7 +108,7 @@ class DistrictReader {
         {"name", "seed", "threads", "planner.name", "planner.scene_box", "prior", "scene.",
          "site.latitude_deg", "site.longitude_deg", "site.ellipsoid_height", "site.geofence",
          "flight.vehicle", "flight.vehicles", "flight.takeoff", "flight.rally",
-         "flight.unknown_box", "flight.unknown_beside", "flight.order"},
+         "flight.unknown_box", "flight.extra_unknown_boxes", "flight.order"},
         "the district's files, targets, pads, vehicle, planner and seed; set those"};
     district_.set = key_changes(root_.entries("set"), "set.", file_, following);
   }
@@ -140,7 +141,9 @@ class DistrictReader {
 }  // namespace
 
 DistrictFile parse_district(const std::string& text, const std::string& name) {
-  return DistrictReader(support::parse_map(text, name, "a district"), name).read();
+  support::YamlNode root = support::parse_map(text, name, "a district");
+  config::replace_former_batch_names(root, name);
+  return DistrictReader(root, name).read();
 }
 
 DistrictFile read_district(const fs::path& file) {

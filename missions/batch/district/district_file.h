@@ -28,7 +28,7 @@ struct DistrictFile {
   std::filesystem::path file;  ///< itself
   wizard::Wishes wishes;       ///< files, how they are read, vehicle; but no target
   TargetChoice targets;
-  double together = 0.5;            ///< targets nearer to each other are surveyed as one [m]
+  double merge_distance = 0.5;      ///< targets nearer to each other are surveyed as one [m]
   std::vector<wizard::Click> pads;  ///< empty: they are proposed
   std::string planner = "skycap";   ///< of batch::contestants()
   std::uint64_t seed = 1;

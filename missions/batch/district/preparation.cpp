@@ -318,7 +318,7 @@ class Preparer {
 
   void group() {
     Titles titles;
-    for (const Group& group : grouped(*targets_, district_.together)) {
+    for (const Group& group : grouped(*targets_, district_.merge_distance)) {
       const std::size_t first = group.front();
       PreparedTarget target{.title = titles.title_of((*targets_)[first].id, group.size()),
                             .ids = {},

@@ -234,7 +234,7 @@ int LaserScan::finish(const scan::LaserResult& recorded, geometry::OutputFolder&
   const double end =
       is_complete ? carrier.end() : carrier.start() + seconds_of(recorded.scan.progress.firings);
   folder.write("trajectory.tum", sensor_tum(carrier, flown_.mount.real, end));
-  folder.write("trajectory_believed.tum", sensor_tum(flown_.believed, flown_.mount.believed, end));
+  folder.write("trajectory_estimated.tum", sensor_tum(flown_.believed, flown_.mount.believed, end));
   folder.write(scan_name, support::json_text(figures(recorded)));
   write_page(scan_name, options_.has_report, folder, console_);
   commit_scan(folder, is_complete);

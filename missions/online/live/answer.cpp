@@ -97,10 +97,10 @@ std::string answer_json(const LiveSurvey& survey, const flight::FlightOptions& f
             {"state", state_of(proposal)},
             {"scans", survey.views().size()},
             {"points", survey.planner().cloud().size()},
-            {"set_aside", survey.set_aside()},
+            {"rejected", survey.set_aside()},
             {"view", proposal.view ? view_json(*proposal.view, flight) : Json()}};
   if (flight.capture.is_moving) {
-    json["on_way"] = survey.on_way();
+    json["en_route"] = survey.on_way();
     json["frame_period_s"] = flight.capture.frame_period;
   }
   if (proposal.view && !proposal.way.points.empty()) {
@@ -112,7 +112,7 @@ std::string answer_json(const LiveSurvey& survey, const flight::FlightOptions& f
   if (proposal.pose) json["pose"] = finding_json(*proposal.pose);
   if (const survey::CoverageEstimator* estimator = survey.planner().estimator();
       estimator != nullptr && !survey.views().empty()) {
-    json["believed_coverage"] = estimator->predicted_coverage();
+    json["estimated_coverage"] = estimator->predicted_coverage();
   }
   return support::journal_line(json);
 }

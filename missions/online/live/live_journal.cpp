@@ -33,7 +33,7 @@ PoseFinding parse_finding(const Json& json) {
                       .seen_through = json.at("seen_through").get<double>(),
                       .unobservable = json.at("unobservable").get<int>(),
                       .is_checked = json.at("checked").get<bool>(),
-                      .is_wrong = json.at("set_aside").get<bool>(),
+                      .is_wrong = json.at("rejected").get<bool>(),
                       .correction = {}};
   if (json.contains("correction")) {
     finding.correction =
@@ -57,7 +57,7 @@ ScanRecord parse_scan(const Json& json) {
       .sha256 = json.at("sha256").get<std::string>(),
       .world_from_sensor = parse_pose(json.at("pose").get<std::vector<double>>(), "its pose"),
       .pose = {},
-      .is_on_way = json.value("on_way", false)};
+      .is_on_way = json.value("en_route", false)};
   if (json.contains("found")) scan.pose = parse_finding(json["found"]);
   const std::filesystem::path file = scan.file;
   if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
@@ -104,7 +104,7 @@ std::string text_of(const ScanRecord& scan) {
             {"sha256", scan.sha256},
             {"pose", pose_json(scan.world_from_sensor)}};
   if (scan.pose) json["found"] = journal_json(*scan.pose);
-  if (scan.is_on_way) json["on_way"] = true;
+  if (scan.is_on_way) json["en_route"] = true;
   return support::journal_line({{"scan", std::move(json)}});
 }
 
@@ -144,7 +144,7 @@ std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const 
 }
 
 Json finding_json(const PoseFinding& finding) {
-  return {{"set_aside", finding.is_wrong},
+  return {{"rejected", finding.is_wrong},
           {"corrected", finding.correction.has_value()},
           {"checked", finding.is_checked},
           {"matches", finding.matches},

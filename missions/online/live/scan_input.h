@@ -33,7 +33,7 @@ struct Lens {
 };
 
 /// Reads "fx fy cx cy" and, if they are given, "k1 k2 p1 p2 k3". Throws Error{bad_usage}.
-Lens parse_lens(const std::string& text, const std::string& what = "--lens");
+Lens parse_lens(const std::string& text, const std::string& what = "--intrinsics");
 
 /// A pose from 7 numbers "x y z qx qy qz qw", 12 or 16 (a matrix by rows), or 8 (a line of a TUM
 /// trajectory, whose time is passed over); `what` opens messages. Throws Error{bad_file}.

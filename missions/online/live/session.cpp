@@ -65,7 +65,10 @@ std::optional<PoseCovariance> covariance_of(const Json& header) {
 
 ScanNumber number_of(const Json& header) {
   ScanNumber number{count_at(header, "number")};
-  if (header.contains("on_way")) number.on_way = count_at(header, "on_way");
+  // Clients of version 0.1 send "on_way".
+  for (const char* field : {"en_route", "on_way"}) {
+    if (header.contains(field)) number.on_way = count_at(header, field);
+  }
   return number;
 }
 

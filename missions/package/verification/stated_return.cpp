@@ -46,7 +46,7 @@ std::optional<Dialect> dialect_of(const std::filesystem::path& file,
 
 std::optional<StatedHeight> stated_height(const std::filesystem::path& route,
                                           const std::optional<double>& given, Dialect dialect) {
-  if (given) return StatedHeight{*given, "--return-height", {}};
+  if (given) return StatedHeight{*given, "--return-altitude", {}};
   if (const auto height = flight::read_return_height(route)) {
     return StatedHeight{*height, "globalRTHHeight", {}};
   }

@@ -52,8 +52,8 @@ function coverage_chart(data, title, x_of, x_title) {
   const { summary } = data, views = summary.per_view;
   const points = views.map((view, i) => [x_of(view, i), percent(view.coverage)]);
   const lines = [line("covered (ground truth)", points)];
-  if (typeof summary.coverage_ceiling === "number") {
-    lines.push(level("attainable", points[0][0], points[points.length - 1][0], percent(summary.coverage_ceiling), 5));
+  if (typeof summary.attainable_coverage === "number") {
+    lines.push(level("attainable", points[0][0], points[points.length - 1][0], percent(summary.attainable_coverage), 5));
   }
   return chart(title, null, "line", lines, { x: x_title, y: "% of the surface", y_more: { min: 0 } });
 }
@@ -105,12 +105,12 @@ function energy_chart(data) {
 
 // Of the surface that the planner believes covered with probability p, p should be.
 function reliability_chart(data) {
-  const bands = value_at(data, "summary.belief.reliability.bands");
+  const bands = value_at(data, "summary.estimate.reliability.bands");
   if (!bands) return null;
   const seen = bands.filter((band) => band.share > 0);
   return chart("Calibration of the coverage estimate",
     "Share of surface that is covered, by the probability that the planner estimated. On the diagonal the estimate is exact.",
-    "line", [line("covered", seen.map((band) => [percent(band.believed), percent(band.covered)])),
+    "line", [line("covered", seen.map((band) => [percent(band.estimated), percent(band.covered)])),
       line("ideal", [[0, 0], [100, 100]], 4)], { x: "% estimated", y: "% covered", y_more: { min: 0 } });
 }
 

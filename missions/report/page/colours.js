@@ -2,8 +2,8 @@
 
 const states = [
   { name: "covered", key: "covered", colour: [88, 176, 122] },
-  { name: "undersampled", key: "seen_too_thinly", colour: [255, 176, 32] },
-  { name: "unobserved", key: "never_seen", colour: [238, 62, 66] },
+  { name: "undersampled", key: "undersampled", colour: [255, 176, 32] },
+  { name: "unobserved", key: "unobserved", colour: [238, 62, 66] },
   { name: "unreachable", key: "unreachable", colour: [158, 96, 232] },
 ];
 

@@ -49,7 +49,7 @@ function comparison_table(data, cells) {
   const heading = [cells.length > 1 ? "planner" : "", { number: "trials" }, ...known.map(({ name }) => ({ number: name })),
     { number: "of attainable coverage" }];
   return table(heading, cells.map((one) => {
-    const { cell, path } = one, ceiling = cell.coverage_ceiling;
+    const { cell, path } = one, ceiling = cell.attainable_coverage;
     return [planner_name(one), { number: figure(data, path + "trials", "count") },
       ...known.map((what) => compared_figure(data, one, what)),
       { number: ceiling > 0 ? shown(cell.coverage.mean / ceiling, "share") : "–" }];

@@ -140,7 +140,7 @@ function district_flight_section(data) {
 const how_district = [
   ["Covered", "Share of samples, evenly spread over the buildings of a target as mapped, that have a measurement within the coverage distance, in simulation."],
   ["Separate flight", "Flight time of the target's own mission, from its own take-off point."],
-  ["Views in the flight", "Views of this target that are part of the joint flight. Every leg keeps the clearance from all measured points, from unknown space inside the unknown boxes, and from everything on the map, enlarged by its uncertainty."],
+  ["Views in the flight", "Views of this target that are part of the joint flight. Every leg keeps the clearance from all measured points, from unknown space inside the unknown boxes, and from the map, enlarged by its uncertainty."],
 ];
 
 function district_sections(data) {

@@ -81,7 +81,7 @@ class Panel {
         shown(views[number].time_s - views[0].time_s, "clock");
       return;
     }
-    const ceiling = this.data.summary.coverage_ceiling;
+    const ceiling = this.data.summary.attainable_coverage;
     const attainable = typeof ceiling === "number" ? " of " + shown(ceiling, "share") + " attainable" : "";
     const covered = typeof views[number].coverage === "number" ? " · covered " +
       shown(views[number].coverage, "share") + attainable : "";  // of a real place nobody knows
@@ -202,7 +202,7 @@ class Panel {
       ["planning time", figure(this.data, path + "planning_time_s", "seconds")],
       ["path length", figure(this.data, path + "distance_m", "metres")]);
     if (typeof view.coverage === "number") rows.push(["coverage after this view", figure(this.data, path + "coverage", "share")]);
-    const leg = value_at(this.data, "summary.flight.anew.is_flown") ? null // then legs lead to other views
+    const leg = value_at(this.data, "summary.flight.replanned.is_flown") ? null // then legs lead to other views
       : legs_of(this.data).find((one) => one.to === number);
     if (leg && leg.clearance !== null) rows.push(["leg clearance", shown(leg.clearance, "metres")]);
     return rows;

@@ -103,18 +103,18 @@ function passage_parts(data) {
 
 /// The mission whose views were chosen anew beside that through the survey's views.
 function anew_parts(data) {
-  const { anew } = data.summary.flight;
+  const { replanned: anew } = data.summary.flight;
   if (!anew) return [];
   const number = (content) => ({ number: content });
-  const f = (path, form) => number(figure(data, "flight.anew." + path, form));
+  const f = (path, form) => number(figure(data, "flight.replanned." + path, form));
   const row = (name, key) => [name, f(key + ".views", "count"), f(key + ".pieces", "count"), f(key + ".length_m", "metres"),
-    f(key + ".duration_s", "minutes"), f(key + ".promised_coverage", "share")];
-  const again = value_at(anew, "flown_again.coverage_visible");
+    f(key + ".duration_s", "minutes"), f(key + ".predicted_coverage", "share")];
+  const again = value_at(anew, "reflight.coverage_visible");
   return [element("h3", {}, "Replanned views"),
     table(["", "Views", "Segments", "Length", "Time", "Predicted coverage"].map((name, i) => (i ? number(name) : name)),
-      [row("Survey views", "survey"), row(anew.is_flown ? "Replanned, in the mission" : "No faster plan found", "anew")]),
+      [row("Survey views", "survey"), row(anew.is_flown ? "Replanned, in the mission" : "No faster plan found", "replanned")]),
     typeof again === "number" ? element("p", {}, "In a simulated re-flight the mission covers ",
-      figure(data, "flight.anew.flown_again.coverage_visible", "share"), " of the visible surface.") : null].filter(Boolean);
+      figure(data, "flight.replanned.reflight.coverage_visible", "share"), " of the visible surface.") : null].filter(Boolean);
 }
 
 /// Several vehicles that fly the mission together.
@@ -135,7 +135,7 @@ function fleet_parts(data) {
   const times = table(["Vehicle", "Sortie", number("Take-off"), number("Landing"), "File"], fleet.timetable.map((row, i) => [
     String(row.vehicle), String(row.sortie), number(f("timetable." + i + ".start_s", "clock")),
     number(f("timetable." + i + ".landing_s", "clock")), row.file]));
-  const missed = fleet.unreached.map((one) => element("li", {}, "view " + one.view + ": " + one.reason));
+  const missed = fleet.skipped_views.map((one) => element("li", {}, "view " + one.view + ": " + one.reason));
   return [element("h3", {}, "Fleet"),
     element("p", {}, "The last landing is ", f("makespan_s", "minutes"), " after the first take-off; the total flight time is ",
       f("flown_s", "minutes"), ". Verified minimum separation ", f("separation.proven_m", "metres"), " at all times (required ",
@@ -146,7 +146,7 @@ function fleet_parts(data) {
 
 /// The flight that measured, before the mission that is written.
 function surveyed_part(data) {
-  const frames = (data.summary.per_view || []).reduce((sum, view) => sum + (view.frames_on_way || 0), 0);
+  const frames = (data.summary.per_view || []).reduce((sum, view) => sum + (view.en_route_frames || 0), 0);
   return element("p", {}, "The survey flew ", figure(data, "flight.survey.length_m", "metres"), " in ",
     figure(data, "flight.survey.duration_s", "minutes"), ", from take-off to the last view" +
     (frames ? ", with " + frames + " en-route frames. The mission captures at its views only, and covers less." : "."));
@@ -186,7 +186,7 @@ function flight_section(data) {
       f("return.clearance_m", "metres"), " to " + (home.nearest.obstacle || "any obstacle") + ". Energy for return (maximum): ",
       f("return.energy_wh", "watt_hours"), "."));
   }
-  const missed = flight.route.unreached || [], listed = 8;
+  const missed = flight.route.skipped_views || [], listed = 8;
   if (missed.length) {
     const why = table(["View", "Reason"], missed.map((one) => [String(one.view), one.reason]));
     section.append(element("h3", {}, "Views not in the mission"), missed.length <= listed ? why
@@ -205,11 +205,11 @@ function accuracy_section(data) {
   const { accuracy } = data;
   if (!accuracy || !Object.keys(accuracy).length) return null;
   const { incidence_deg, range_m, error_m } = accuracy;
-  const is_learnt = value_at(data, "summary.belief.noise_m") > 0;
+  const is_learnt = value_at(data, "summary.estimate.noise_m") > 0;
   const millimetres = error_m && { counts: error_m.counts, low: 0, high: 1000 * error_m.high };
   return element("section", { id: "accuracy" }, element("h2", {}, "Accuracy"),
     is_learnt ? element("p", {}, "Measurement noise at perpendicular incidence, estimated by the planner: ",
-      figure(data, "belief.noise_m", "millimetres"), " (standard deviation).") : null,
+      figure(data, "estimate.noise_m", "millimetres"), " (standard deviation).") : null,
     element("div", { class: "charts" },
       error_m ? histogram_chart("Predicted error of the surface", "Standard error if the points within the coverage distance are averaged, with the " +
         (is_learnt ? "noise estimated by the planner." : "noise of the mission (sensor.noise)."), millimetres, "mm", 3) : null,
@@ -239,7 +239,7 @@ const how_surveyed = [
   ["Coverage (planner estimate)", "Area of measured and predicted surface, each piece weighted by the probability that it has a measurement within the coverage distance, divided by the total area."],
   ["Coverage (ground truth)", "Share of samples, evenly spread over the surface of the simulated model, that have a measurement within the coverage distance. The planner does not use it. Visible surface: samples that a sensor can see from an admissible view."],
   ["Uncovered surface", "Pieces of surface that are more likely uncovered than covered, grouped by neighbourhood and reason. The area of a gap is the uncovered part of its pieces. Scattered gaps are the expected uncovered part of covered surface. The total is the surface area times (1 - coverage)."],
-  ["Verified clearance", "Lower bound of the distance from the vehicle centre to any measured point, no-fly volume or unknown space, over the whole leg and not only its ends."],
+  ["Verified clearance", "Lower bound of the distance from the vehicle centre to any measured point, no-fly volume or unknown space, over the whole leg."],
   ["Times and energy", "Estimates from the vehicle file, with stops, turns and hovering, at the wind and battery temperature of the mission."],
   ["Predicted error", "Standard error of the mean, at a sample of the points, if all points within the coverage distance are averaged. Uses the noise estimated by the planner, otherwise sensor.noise; noise along a ray is multiplied by the cosine of the incidence. Correlated errors, such as a wrong sensor position, are not included."],
   ["Incidence and range", "Computed from the normal of each point (plane through its neighbours) and the sensor position of its scan."],

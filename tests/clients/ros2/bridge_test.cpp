@@ -56,7 +56,7 @@ TEST_F(BridgedRobot, GivesAScanOnceItIsAtTheView) {
 }
 
 TEST_F(BridgedRobot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
-  const std::string begun = R"({"on_way": 0, "frame_period_s": 1.0, )";
+  const std::string begun = R"({"en_route": 0, "frame_period_s": 1.0, )";
   answer_ = begun + std::string(wanted).substr(1);
   begin();
   for (int step = 0; step <= 40; ++step) odometry(8.0 + 0.05 * step, {2.5 * 0.05 * step, 0, 0});

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 /// A survey that wants a view at (5, 0, 0), along z of the world: the robot does not have to turn.
 inline constexpr const char* wanted =
-    R"({"id": 3, "state": "view", "scans": 2, "points": 9, "set_aside": 0,
+    R"({"id": 3, "state": "view", "scans": 2, "points": 9, "rejected": 0,
         "view": {"position": [5, 0, 0], "direction": [0, 0, 1], "quaternion_xyzw": [0, 0, 0, 1]},
         "path": [[0, 0, 0], [5, 0, 0]], "clearance_m": 2})";
 

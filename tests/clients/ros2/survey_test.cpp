@@ -99,11 +99,11 @@ class LiveRobot : public testing::Test {
       std::this_thread::sleep_for(100ms);
     }
   }
-  void start_bridge(const std::vector<std::string>& more = {"--sensor", "0 0 0 0 0 0 1"}) {
+  void start_bridge(const std::vector<std::string>& more = {"--sensor-pose", "0 0 0 0 0 0 1"}) {
     std::vector<std::string> words{
-        SKYCAP_ROS2_PROGRAM, "unix:" + (folder_ / "s"), "--domain",   std::to_string(domain_),
-        "--odometry",        topics_ + "/odom",         "--cloud",    topics_ + "/points",
-        "--prefix",          topics_ + "/skycap",       "--settling", "0.2"};
+        SKYCAP_ROS2_PROGRAM, "unix:" + (folder_ / "s"), "--domain",        std::to_string(domain_),
+        "--odometry",        topics_ + "/odom",         "--cloud",         topics_ + "/points",
+        "--prefix",          topics_ + "/skycap",       "--settling-time", "0.2"};
     words.insert(words.end(), more.begin(), more.end());
     bridge_.emplace(words, folder_ / "bridge.log");
   }
@@ -247,7 +247,7 @@ TEST_F(LiveRobot, WhoseMessagesAreSpoiledOnTheWireEndsNothing) {
         words.end(),
         {SKYCAP_ROS2_PROGRAM, "unix:" + (folder_ / "s"), "--domain", std::to_string(domain_),
          "--odometry", topics_ + "/odom", "--tf", topics_ + "/tf", "--tf-static",
-         topics_ + "/tf_static", "--prefix", topics_ + "/skycap", "--take", "every",
+         topics_ + "/tf_static", "--prefix", topics_ + "/skycap", "--trigger", "always",
          has_images ? "--image" : "--cloud", topics_ + (has_images ? "/depth" : "/points")});
     bridge_.emplace(words, folder_ / "bridge.log");
     const Participant participant(domain_);
@@ -270,14 +270,15 @@ TEST_F(LiveRobot, WhoseMessagesAreSpoiledOnTheWireEndsNothing) {
 }
 
 TEST_F(LiveRobot, IsGivenNoOptionThatOthersLeaveWithoutEffect) {
-  const std::vector<std::vector<std::string>> idle = {{"--body", "base"},
-                                                      {"--rectified"},
-                                                      {"--camera-info", "/info"},
-                                                      {"--odometry", "/odom", "--world", "map"},
-                                                      {"--ignore-covariance", "--world", "map"},
-                                                      {"--cloud", "/points", "--image", "/depth"},
-                                                      {"--tf", "/tf", "--sensor", "0 0 0 0 0 0 1"},
-                                                      {"--settling", "1", "--take", "every"}};
+  const std::vector<std::vector<std::string>> idle = {
+      {"--base-frame", "base"},
+      {"--rectified"},
+      {"--camera-info", "/info"},
+      {"--odometry", "/odom", "--fixed-frame", "map"},
+      {"--ignore-covariance", "--fixed-frame", "map"},
+      {"--cloud", "/points", "--image", "/depth"},
+      {"--tf", "/tf", "--sensor-pose", "0 0 0 0 0 0 1"},
+      {"--settling-time", "1", "--trigger", "always"}};
   for (const std::vector<std::string>& options : idle) {
     std::vector<std::string> words{SKYCAP_ROS2_PROGRAM, "unix:s"};
     words.insert(words.end(), options.begin(), options.end());

@@ -32,8 +32,8 @@ constexpr const char* cube_mission =
     "limits: {max_views: 3}\n"
     "scan:\n"
     "  sensor: velodyne_vlp16\n"
-    "  orbit: {radius: 5, lowest: 1, circles: 1, speed: 100}\n"
-    "evaluation: {registration_distance: 0.1, samples: 1000, ceiling_views: 0}\n";
+    "  orbit: {radius: 5, min_height: 1, circles: 1, speed: 100}\n"
+    "evaluation: {coverage_distance: 0.1, samples: 1000, attainable_views: 0}\n";
 
 class Library : public testing::Test {
  protected:

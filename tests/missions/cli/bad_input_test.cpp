@@ -31,7 +31,7 @@ struct BadInput {
 void PrintTo(const BadInput& input, std::ostream* stream) { *stream << input.name; }
 
 const std::string model = "scene: {model: 'builtin:teapot'}\n";
-const std::string judged = "evaluation: {registration_distance: 0.005}\n";
+const std::string judged = "evaluation: {coverage_distance: 0.005}\n";
 const std::string whole = model + judged;  // lines 1 and 2
 
 std::string with_mesh(const std::string& file) { return "scene: {model: " + file + "}\n" + judged; }
@@ -65,7 +65,7 @@ std::vector<BadInput> bad_inputs() {
       {"HugeFile", std::string((1 << 20) + 1, '#'), "MISSION: is larger than 1 MiB"},
       {"MissingModel", judged, "MISSION:1: key scene.model is missing; set a model"},
       {"MissingDistance", model,
-       "MISSION:1: key evaluation.registration_distance is missing; it must be a number from "
+       "MISSION:1: key evaluation.coverage_distance is missing; it must be a number from "
        "1e-06"},
       {"MisspeltKey", whole + "planner:\n  densty: 3\n",
        "MISSION:4: key planner.densty is unknown; did you mean planner.density?"},
@@ -148,10 +148,11 @@ std::vector<BadInput> bad_inputs() {
       {"NoVehicleFile", whole + "flight: {vehicle: kite.yaml}\n", "kite.yaml"},
       {"EmptyUnknownBox", whole + flown("min: [0, 0, 0], max: [0, 1, 1]"),
        "key flight.unknown_box.max must be greater than flight.unknown_box.min"},
-      {"HalfABoxBeside", whole + flown(around, "unknown_beside: [[0, 0, 0]]"),
-       "key flight.unknown_beside has 1 corners; list the lower and the upper corner of each box"},
-      {"EmptyBoxBeside", whole + flown(around, "unknown_beside: [[0, 0, 0], [1, 1, 0]]"),
-       "key flight.unknown_beside: an upper corner must be greater than its lower corner"},
+      {"HalfABoxBeside", whole + flown(around, "extra_unknown_boxes: [[0, 0, 0]]"),
+       "key flight.extra_unknown_boxes has 1 corners; list the lower and the upper corner of each "
+       "box"},
+      {"EmptyBoxBeside", whole + flown(around, "extra_unknown_boxes: [[0, 0, 0], [1, 1, 0]]"),
+       "key flight.extra_unknown_boxes: an upper corner must be greater than its lower corner"},
       {"ClearanceBelowItsTerms", whole + flown(around, "clearance: 0.5"),
        "MISSION:3: key flight.clearance must be at least the sum of the vehicle's radius (0.5 m) "
        "and the position, tracking and map errors: 1 m"},

@@ -255,7 +255,7 @@ TEST_F(CampaignVerb, GoesOnWithoutWhatCannotBeRun) {
                               "seeds: 1\nset: {limits.max_views: 3}\n";
   const ProgramRun result = run("out");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, HasSubstr("broken.yaml:1: key evaluation.registration_distance is miss"));
+  EXPECT_THAT(result.err, HasSubstr("broken.yaml:1: key evaluation.coverage_distance is miss"));
   EXPECT_THAT(result.err, HasSubstr("lost.ply"));
   EXPECT_THAT(result.out, HasSubstr("1 of 3 runs"));
   const ProgramRun alone = run("out", {"--index", "0"});

@@ -46,8 +46,8 @@ class CubeScan : public testing::Test {
                   "scene: {model: cube.obj}\n"
                   "scan:\n"
                   "  sensor: laser.yaml\n"
-                  "  orbit: {radius: 5, lowest: 1, circles: 1, speed: 20}\n"
-                  "evaluation: {registration_distance: 0.1}\n");
+                  "  orbit: {radius: 5, min_height: 1, circles: 1, speed: 20}\n"
+                  "evaluation: {coverage_distance: 0.1}\n");
   }
 
   std::vector<std::string> scan(const std::string& out,

@@ -113,10 +113,10 @@ TEST(FaultClasses, ACacheThatSaysNonsenseIsNotBelieved) {
   const std::string mission = folder.write("m.yaml", tests::quick_mission());
   const auto could_be_covered = [&] {
     const auto run = run_skycap({"plan", mission, "--max-views", "2", "--set",
-                                 "evaluation.ceiling_views=5", "--out", folder / "out"});
+                                 "evaluation.attainable_views=5", "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     const auto summary = nlohmann::json::parse(content_of(folder / "out/summary.json"));
-    return std::array{summary.at("coverage_ceiling").get<double>(),
+    return std::array{summary.at("attainable_coverage").get<double>(),
                       summary.at("coverage_visible").get<double>()};
   };
   const auto first = could_be_covered();

@@ -43,7 +43,7 @@ std::string refusal(const std::vector<std::string>& arguments) {
 
 std::string summary_with(const std::string& settings, const std::string& rest) {
   return "{\"settings\": {\"scene.model\": \"builtin:teapot\", "
-         "\"evaluation.registration_distance\": 0.03" +
+         "\"evaluation.coverage_distance\": 0.03" +
          settings + "}, " + rest + "}";
 }
 
@@ -135,7 +135,7 @@ TEST(HostileInput, WorkWithoutEndIsRefusedBeforeItBegins) {
               HasSubstr("scan.frame_period: "));
   const std::string gap = folder.write("gap.tum", "0 0 0 1 0 0 0 1\n1e9 0 0 1 0 0 0 1\n");
   EXPECT_THAT(message({"--route", gap}), HasSubstr("firings"));
-  EXPECT_THAT(refusal({"plan", mission, "--set", "evaluation.registration_distance=1e-300"}),
+  EXPECT_THAT(refusal({"plan", mission, "--set", "evaluation.coverage_distance=1e-300"}),
               HasSubstr("registration_distance"));
 }
 
@@ -167,7 +167,7 @@ TEST(HostileInput, PlacesOfEveryRouteAreWithinTheWorld) {
 TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
   const TestFolder folder;
   const std::string mission = folder.write(
-      "m.yaml", "scene: {model: 'builtin:nope'}\nevaluation: {registration_distance: 1}\n");
+      "m.yaml", "scene: {model: 'builtin:nope'}\nevaluation: {coverage_distance: 1}\n");
   EXPECT_THAT(refusal({"check", mission}),
               HasSubstr("m.yaml:1: key scene.model is builtin:nope; there are builtin:bridge, "));
   const std::string cloud = folder.write("c.xyz", "0 0 0\n");
@@ -181,7 +181,7 @@ TEST(HostileInput, CopiesThatNoMemoryHoldsAreRefused) {
   for (int i = 0; i < 1000; ++i) copies += "[0, 0, 0], ";
   const std::string mission =
       folder.write("m.yaml", "scene: {model: 'builtin:teapot', copies: [" + copies +
-                                 "[1, 1, 1]]}\nevaluation: {registration_distance: 1}\n");
+                                 "[1, 1, 1]]}\nevaluation: {coverage_distance: 1}\n");
   EXPECT_THAT(
       refusal({"check", mission}),
       HasSubstr("m.yaml: scene.copies: 1002 times 16256 triangles exceed the limit of 1e+07"));
@@ -237,7 +237,7 @@ TEST(HostileInput, CtrlCEndsTheMeasureOfWhatIsAttainable) {
   const TestFolder folder;
   const std::string file = folder.write("m.yaml", quick_mission());
   const config::MissionSetup mission = config::read_mission(
-      file, {{"--set", "evaluation.ceiling_views", "7"}});  // whose ceiling no cache holds
+      file, {{"--set", "evaluation.attainable_views", "7"}});  // whose ceiling no cache holds
   const evaluation::SurveyScene scene(mission.simulation, folder.path(), 0);
   std::stop_source stopped;
   stopped.request_stop();

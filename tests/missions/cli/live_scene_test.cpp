@@ -61,7 +61,7 @@ TEST(OpenSurvey, BeginsWithTheGivenViewWithoutAScene) {
   const std::string rest =
       "planner: {density: 5200, resolution_radius: 0.0525,\n"
       "          scene_box: {min: [-1, -1, -1], max: [1, 1, 1]}}\n"
-      "evaluation: {registration_distance: 0.03}\n";
+      "evaluation: {coverage_distance: 0.03}\n";
   const tests::TestFolder given, left_open;
   const auto survey = open_survey(
       setup_of(rest + "start: {position: [3, 0, 0], look_at: [0, 0, 0]}\n"), "", given.path());

@@ -30,7 +30,7 @@ constexpr const char* live_mission =
     "         max_range: 8}\n"
     "planner: {name: skycap, density: 5200, resolution_radius: 0.0525,\n"
     "          scene_box: {min: [-1, -1, -0.2], max: [1, 1, 1.5]}}\n"
-    "evaluation: {registration_distance: 0.03}\n";
+    "evaluation: {coverage_distance: 0.03}\n";
 
 /// A metre long.
 geometry::Mesh small_teapot() {
@@ -158,13 +158,13 @@ TEST_F(LiveVerbs, SayWhatIsMissing) {
   EXPECT_THAT(refusal(verb("finish")), HasSubstr("contains no scan yet"));
   EXPECT_THAT(refusal(verb("next", {"--scan", "x.ply"})), HasSubstr("--pose"));
   EXPECT_THAT(refusal(verb("next", {"--refuse", "no"})), HasSubstr("no view to reject"));
-  EXPECT_THAT(refusal(verb("next", {"--on-way"})), HasSubstr("--on-way requires --scan"));
+  EXPECT_THAT(refusal(verb("next", {"--en-route"})), HasSubstr("--en-route requires --scan"));
   std::vector<std::string> on_way =
       measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
-  on_way.emplace_back("--on-way");
+  on_way.emplace_back("--en-route");
   EXPECT_THAT(refusal(verb("next", on_way)),
               HasSubstr("en-route scans require sensor.capture: moving"));
-  const std::string bare = folder_.write("bare.yaml", "evaluation: {registration_distance: 1}\n");
+  const std::string bare = folder_.write("bare.yaml", "evaluation: {coverage_distance: 1}\n");
   EXPECT_THAT(refusal({"next", bare, "--survey", folder_ / "s"}), HasSubstr("planner.scene_box"));
 }
 

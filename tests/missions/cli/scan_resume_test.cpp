@@ -45,7 +45,7 @@ class ResumedScan : public tests::CubeScan {
 TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
   ASSERT_EQ(run_skycap(scan("whole", with(clouds_, {"--threads", "2"}))).exit_code, 0);
   interrupt_at("% flown", clouds_);
-  for (const char* name : {"scan.las", "trajectory.tum", "trajectory_believed.tum"}) {
+  for (const char* name : {"scan.las", "trajectory.tum", "trajectory_estimated.tum"}) {
     EXPECT_LT(fs::file_size(folder_.path() / "part" / name),
               fs::file_size(folder_.path() / "whole" / name));
   }

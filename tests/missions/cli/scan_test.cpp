@@ -40,8 +40,8 @@ class ScanVerb : public testing::Test {
                            "scene: {model: cube.obj}\n"
                            "scan:\n"
                            "  sensor: laser.yaml\n"
-                           "  orbit: {radius: 5, lowest: 1, circles: 1, speed: 100}\n"
-                           "evaluation: {registration_distance: 0.1}\n");
+                           "  orbit: {radius: 5, min_height: 1, circles: 1, speed: 100}\n"
+                           "evaluation: {coverage_distance: 0.1}\n");
   }
 
   ProgramRun scan(std::vector<std::string> options = {}, std::stop_token stop = {}) const {
@@ -89,7 +89,7 @@ TEST_F(ScanVerb, LeavesTheCloudBothTrajectoriesAndASummary) {
   EXPECT_EQ(run.err, "");
   EXPECT_THAT(run.out, HasSubstr("cube: Test laser, 0.3 s of flight"));
   EXPECT_THAT(files(), testing::ElementsAre("preview.ply", "scan.html", "scan.json", "scan.las",
-                                            "trajectory.tum", "trajectory_believed.tum"));
+                                            "trajectory.tum", "trajectory_estimated.tum"));
   const nlohmann::json json = summary();
   // 2 pi 5 m at 100 m/s, 16 shots each 100 microseconds.
   EXPECT_EQ(json["shots"], 16 * 3141);
@@ -109,7 +109,7 @@ TEST_F(ScanVerb, WritesMeasuredAndTruePointsSideBySide) {
   EXPECT_LT(largest_error(truth), 1e-5F);    // single precision at 5 m
   EXPECT_GT(largest_error(measured), 0.1F);  // the position is wrong by some 0.2 m
   EXPECT_NE(tests::content_of(folder / "out/trajectory.tum"),
-            tests::content_of(folder / "out/trajectory_believed.tum"));
+            tests::content_of(folder / "out/trajectory_estimated.tum"));
 }
 
 // Without errors of the carrier, what is left is the noise of the range: 0.01 m.
@@ -119,7 +119,7 @@ TEST_F(ScanVerb, AFaultlessCarrierLeavesTheSensorsNoiseOnly) {
   EXPECT_LT(largest_error(measured), 0.067F);  // no normal is beyond 6.7 sigma
   EXPECT_GT(largest_error(measured), 0.02F);
   EXPECT_EQ(tests::content_of(folder / "out/trajectory.tum"),
-            tests::content_of(folder / "out/trajectory_believed.tum"));
+            tests::content_of(folder / "out/trajectory_estimated.tum"));
 }
 
 // So few shots are all in the preview; the flight of 0.314 s has six turns of 50 ms and a part.
@@ -228,10 +228,9 @@ TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
                                "--set", "scan.depth_unit=0.002", "--set", "scan.speed=4"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("2 depth images"));
-  EXPECT_THAT(files(),
-              testing::ElementsAre("believed.txt", "camera.json", "depth.txt", "depth_000000.png",
-                                   "depth_000001.png", "groundtruth.txt", "preview.ply",
-                                   "scan.html", "scan.json"));
+  EXPECT_THAT(files(), testing::ElementsAre("camera.json", "depth.txt", "depth_000000.png",
+                                            "depth_000001.png", "estimated.txt", "groundtruth.txt",
+                                            "preview.ply", "scan.html", "scan.json"));
   EXPECT_THAT(tests::content_of(folder / "out/depth.txt"),
               HasSubstr("0.000000 depth_000000.png\n0.500000 depth_000001.png\n"));
   EXPECT_THAT(geometry::read_depth_png(folder / "out/depth_000000.png").values,
@@ -289,12 +288,13 @@ TEST_F(ScanVerb, LasFilesAreOnTheMapOnDemand) {
 
 // A second cube, 6 m to the east and turned, is scanned and is part of what is evaluated.
 TEST_F(ScanVerb, AModelCanStandAtSeveralPlaces) {
-  const std::string both = folder.write("both.yaml",
-                                        "scene: {model: cube.obj, copies: [[6, 1, 45]]}\n"
-                                        "scan:\n"
-                                        "  sensor: laser.yaml\n"
-                                        "  orbit: {radius: 12, lowest: 1, circles: 1, speed: 100}\n"
-                                        "evaluation: {registration_distance: 0.1}\n");
+  const std::string both =
+      folder.write("both.yaml",
+                   "scene: {model: cube.obj, copies: [[6, 1, 45]]}\n"
+                   "scan:\n"
+                   "  sensor: laser.yaml\n"
+                   "  orbit: {radius: 12, min_height: 1, circles: 1, speed: 100}\n"
+                   "evaluation: {coverage_distance: 0.1}\n");
   const auto run = run_skycap({"scan", both, "--out", folder / "both", "--format", "xyz"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   std::size_t first = 0, second = 0;

@@ -97,7 +97,7 @@ TEST_F(SplitEvaluation, TellsGroundFromTheModel) {
                 "scene: {model: sphere.ply, ground: true}\n"
                 "planner: {view_distance: 5, density: 100, resolution_radius: 0.5, scene_box: "
                 "{min: [-3, -3, 0.1], max: [3, 3, 5]}}\n"
-                "evaluation: {registration_distance: 0.1, visible_directions: 20}\n");
+                "evaluation: {coverage_distance: 0.1, visible_directions: 20}\n");
   const std::vector<std::string> words{"evaluate", "--cloud", folder_ / "cloud.ply", "--model",
                                        folder_ / "m.yaml"};
   const auto json_of = [&](const std::vector<std::string>& more) {

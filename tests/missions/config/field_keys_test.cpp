@@ -70,11 +70,11 @@ TEST(FieldKeys, KnowEveryFieldThatLibrariesComplainOf) {
 TEST(FieldKeys, PutTheKeyAndItsLineIntoTheMessage) {
   const std::string message = testing_support::complaint_of([] {
     config::parse_mission(
-        "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n"
-        "planner:\n  name: skycap\n  ideas: {dose: true}\n  least_gain: 1\n",
+        "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.005}\n"
+        "planner:\n  name: skycap\n  ablation: {coverage_model: true}\n  min_gain: 1\n",
         "m.yaml");
   });
-  EXPECT_THAT(message, HasSubstr("m.yaml:6: key planner.least_gain is 1; it must be"));
+  EXPECT_THAT(message, HasSubstr("m.yaml:6: key planner.min_gain is 1; it must be"));
   EXPECT_THAT(message, Not(HasSubstr("stop.least_gain")));
 }
 

@@ -50,7 +50,7 @@ std::string mission_text(const Values& values) {
 
 /// What a key needs beside it to mean anything.
 Values around(const Key& key) {
-  Values values{{"scene.model", "builtin:teapot"}, {"evaluation.registration_distance", "0.03"}};
+  Values values{{"scene.model", "builtin:teapot"}, {"evaluation.coverage_distance", "0.03"}};
   if (key.path.starts_with("flight.")) {
     values["flight.vehicle"] = "generic";
     values["flight.unknown_box.min"] = "[-20, -20, 0]";
@@ -104,9 +104,9 @@ const std::vector<std::string> hostile = {
     "1.5",
     "-0",
     "[[0, 0]]",
-    "[{corners: [[0, 0], [1, 0], [1, 1]], bottom: 0, top: nan}]",
+    "[{corners: [[0, 0], [1, 0], [1, 1]], floor: 0, ceiling: nan}]",
     "[[1e999, 0], [1, 0], [1, 1]]",
-    "[{corners: [], bottom: 0, top: 1}]",
+    "[{corners: [], floor: 0, ceiling: 1}]",
     std::string(70'000, 'x'),
     "[" + std::string(30'000, '[')};
 
@@ -234,7 +234,7 @@ TEST(HostileKeys, AreNotTakenForOtherKeys) {
        {"__proto__", "scene", "planner.densty", "a.b.c.d", "Name", "name "}) {
     try {
       config::parse_mission(mission_text({{"scene.model", "builtin:teapot"},
-                                          {"evaluation.registration_distance", "0.03"},
+                                          {"evaluation.coverage_distance", "0.03"},
                                           {name, "1"}}),
                             "m.yaml");
       if (name != "name ") ADD_FAILURE() << name << " is taken";

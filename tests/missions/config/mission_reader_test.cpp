@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 
 const std::string smallest =
-    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+    "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.005}\n";
 
 config::MissionDocument parsed(const std::string& more,
                                const std::vector<config::KeyOverride>& overrides = {}) {
@@ -73,7 +73,7 @@ TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
 TEST(MissionReader, RefusesDamagedFilesInOneLine) {
   const std::string whole =
       "scene:\n  model: builtin:teapot  # a comment\n  position: [1, 2.5, -3e1]\n"
-      "evaluation: {registration_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";
+      "evaluation: {coverage_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";
   std::size_t refused = 0;
   const auto try_text = [&](const std::string& text) {
     const std::string message = complaint(text);

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 const std::string mission =
-    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+    "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.005}\n";
 
 config::MissionDocument parsed(const std::string& more) {
   return config::parse_mission_document(mission + more, "m.yaml");

@@ -173,12 +173,12 @@ class ResolvePurity : public testing::Test {
   static Texts missions() {
     const std::string scene =
         "scene: {model: 'builtin:teapot', longest_side: 10}\n"
-        "evaluation: {registration_distance: 0.2}\n";
+        "evaluation: {coverage_distance: 0.2}\n";
     const std::string sparse = "planner: {density: 100, resolution_radius: 0.2}\n";
     const std::string flown =
         sparse + "flight: {vehicle: m350_rtk, unknown_box: {min: [-8, -8, 0], max: [8, 8, 9]}}\n";
     const std::string prior =
-        "evaluation: {registration_distance: 0.2}\n" + flown +
+        "evaluation: {coverage_distance: 0.2}\n" + flown +
         "prior: [{file: house.obj, role: target, place: {heading_deg: 30}}]\n";
     return {
         {"camera", scene + sparse},
@@ -214,7 +214,7 @@ TEST_F(ResolvePurity, GivesTheSameForTheSameArguments) {
     const Inputs inputs(document(text));
     const MissionSetup first = inputs.resolved();
     config::parse_mission(
-        "scene: {model: 'builtin:teapot', scale: 3}\nevaluation: {registration_distance: 0.01}\n",
+        "scene: {model: 'builtin:teapot', scale: 3}\nevaluation: {coverage_distance: 0.01}\n",
         "other.yaml");
     const MissionSetup second = inputs.resolved();
     EXPECT_THAT(texts_of(second), testing::ContainerEq(texts_of(first)));

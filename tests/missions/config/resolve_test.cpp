@@ -19,7 +19,7 @@ using survey::skycap::SkycapConfig;
 using testing::HasSubstr;
 
 const std::string smallest =
-    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+    "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.005}\n";
 
 config::MissionSetup parsed(const std::string& more) {
   return config::parse_mission(smallest + more, "some/folder/vase.yaml");
@@ -78,7 +78,7 @@ TEST(Resolve, StoresPointsSoThatTheyCanCover) {
     return config::parse_mission(
                "scene: {model: 'builtin:teapot'}\n"
                "planner: {density: 400, resolution_radius: 0.15" +
-                   more + "}\nevaluation: {registration_distance: " + distance + "}\n",
+                   more + "}\nevaluation: {coverage_distance: " + distance + "}\n",
                "m.yaml")
         .survey()
         .planner.spacing;
@@ -125,10 +125,10 @@ TEST(Resolve, ReadsTheSitesAirspace) {
       "site:\n"
       "  geofence: [[-50, -40], [50, -40], [50.5, 40]]\n"
       "  no_fly:\n"
-      "    - {corners: [[0, 0], [5, 0], [0, 5]], bottom: 0, top: 30}\n"
-      "  lowest_height: 3\n"
-      "  highest_height: 120\n"
-      "limits: {ground_clearance: 5, stand_off: 2, lowest_pitch_deg: -90, highest_pitch_deg: "
+      "    - {corners: [[0, 0], [5, 0], [0, 5]], floor: 0, ceiling: 30}\n"
+      "  min_height: 3\n"
+      "  max_height: 120\n"
+      "limits: {ground_clearance: 5, stand_off: 2, min_pitch_deg: -90, max_pitch_deg: "
       "30}\n");
   const survey::ViewLimits& limits = mission.survey().planner.limits;
   ASSERT_EQ(limits.geofence.size(), 3U);
@@ -147,22 +147,21 @@ TEST(Resolve, RefusesAirspacesThatCannotBe) {
   EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0]]}"), HasSubstr("three or more corners"));
   EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0], [1, x]]}"), HasSubstr("site.geofence"));
   const std::string corners = "corners: [[0, 0], [1, 0], [0, 1]]";
-  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 3, top: 3}]}"),
+  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", floor: 3, ceiling: 3}]}"),
               HasSubstr("site.no_fly"));
-  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 0, roof: 3}]}"),
+  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", floor: 0, roof: 3}]}"),
               HasSubstr("a list of {corners, bottom, top}"));
   EXPECT_THAT(parsed("site: {no_fly: []}").flight().airspace.no_fly, testing::IsEmpty());
-  EXPECT_THAT(complaint(std::string(smallest) + "site: {lowest_height: 5, highest_height: 5}"),
-              HasSubstr("site.highest_height must be greater than"));
-  EXPECT_THAT(
-      complaint(std::string(smallest) + "limits: {lowest_pitch_deg: 9, highest_pitch_deg: -9}"),
-      HasSubstr("limits.highest_pitch_deg must be greater than"));
+  EXPECT_THAT(complaint(std::string(smallest) + "site: {min_height: 5, max_height: 5}"),
+              HasSubstr("site.max_height must be greater than"));
+  EXPECT_THAT(complaint(std::string(smallest) + "limits: {min_pitch_deg: 9, max_pitch_deg: -9}"),
+              HasSubstr("limits.max_pitch_deg must be greater than"));
 }
 
 TEST(Resolve, MeasuresTheGroundClearanceFromTheScenesBase) {
   const config::MissionSetup mission = config::parse_mission(
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
-      "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
+      "evaluation: {coverage_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
       "m.yaml");
   EXPECT_EQ(see_of(mission).least_height, 62.0);
   EXPECT_EQ(mission.survey().planner.limits.least_height, 62.0);
@@ -215,8 +214,8 @@ TEST(Resolve, ChecksEachPlannersOwnSettingsWithTheirPlace) {
   const std::vector<RefusedSetting> settings{
       {"see", "planner:\n  core_threshold: 3\n",
        "m.yaml:4: key planner.core_threshold is 3; it must be at least 4"},
-      {"skycap", "planner:\n  least_gain: 1\n",
-       "m.yaml:4: key planner.least_gain is 1; it must be at least 0 and below 1"},
+      {"skycap", "planner:\n  min_gain: 1\n",
+       "m.yaml:4: key planner.min_gain is 1; it must be at least 0 and below 1"},
       {"oa", "volumetric:\n  thinned: true\n  shadow_length: 1e3\n",
        "m.yaml:5: key volumetric.shadow_length is 1000; it must be positive and less than"},
       {"ae", "volumetric: {window_begin: 0.6, window_end: 0.5}\n",

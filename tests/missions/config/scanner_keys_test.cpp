@@ -17,7 +17,7 @@ TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
     try {
       config::parse_mission("scene: {model: builtin:teapot}\nsensor: " + sensor +
                                 "\nplanner: {density: 100, resolution_radius: 0.2}\n"
-                                "evaluation: {registration_distance: 0.2}\n" +
+                                "evaluation: {coverage_distance: 0.2}\n" +
                                 more,
                             "m.yaml");
     } catch (const Error& error) {

@@ -35,8 +35,8 @@ class WindowedRoom {
         "sensor: {width: 160, height: 100, noise: {sigma: 0.05}}\n"
         "planner: {density: 25, resolution_radius: 0.7, view_distance: 6, occluder_spacing: 0.4,\n"
         "          max_attempts: 2, occlusion_search_distance: 6}\n"
-        "evaluation: {registration_distance: 0.4, samples: 4000, visible_directions: 60,\n"
-        "             ceiling_views: 60}\n"
+        "evaluation: {coverage_distance: 0.4, samples: 4000, visible_directions: 60,\n"
+        "             attainable_views: 60}\n"
         "limits: {max_views: 40}\n",
         "m.yaml", more);
   }
@@ -86,7 +86,8 @@ TEST(SurveyScene, CountsNothingInSealedRooms) {
 TEST(SurveyScene, CountsRoomsThatTheRadiusFitsInto) {
   const WindowedRoom room(3.0);
   const auto seen_inside = [&](const char* radius) {
-    const evaluation::SurveyScene scene = room.scene({{"--set", "evaluation.radius", radius}});
+    const evaluation::SurveyScene scene =
+        room.scene({{"--set", "evaluation.passage_radius", radius}});
     const std::vector<std::uint8_t> visible = scene.visible(2);
     std::size_t seen = 0, inside = 0;
     for (std::size_t i = 0; i < visible.size(); ++i) {
@@ -107,7 +108,7 @@ TEST(SurveyScene, RefusesAStartInsideOfAWall) {
   const WindowedRoom room(3.0);
   const evaluation::SurveyScene scene = room.scene({{"--set", "start.position", "[10.25, 0, 5]"},
                                                     {"--set", "start.look_at", "[0, 0, 5]"},
-                                                    {"--set", "evaluation.radius", "1"}});
+                                                    {"--set", "evaluation.passage_radius", "1"}});
   EXPECT_THAT(complaint_of([&] { scene.first_view(1); }),
               HasSubstr("start.position is inside the model"));
 }
@@ -117,13 +118,15 @@ TEST(SurveyScene, KeepsWhatCanBeReachedInAFile) {
   const WindowedRoom room(3.0);
   const TestFolder folder;
   const std::filesystem::path kept = folder.path() / "reached";
-  const std::vector<config::KeyOverride> wide{{"--set", "evaluation.radius", "1"}};
+  const std::vector<config::KeyOverride> wide{{"--set", "evaluation.passage_radius", "1"}};
   EXPECT_TRUE(room.scene(wide, kept).is_reachable({0, 0, 5}));
   ASSERT_TRUE(std::filesystem::exists(kept));
   // As it is kept, whatever would be found.
-  EXPECT_TRUE(room.scene({{"--set", "evaluation.radius", "2"}}, kept).is_reachable({0, 0, 5}));
+  EXPECT_TRUE(
+      room.scene({{"--set", "evaluation.passage_radius", "2"}}, kept).is_reachable({0, 0, 5}));
   folder.write("reached", "spoiled");
-  EXPECT_FALSE(room.scene({{"--set", "evaluation.radius", "2"}}, kept).is_reachable({0, 0, 5}));
+  EXPECT_FALSE(
+      room.scene({{"--set", "evaluation.passage_radius", "2"}}, kept).is_reachable({0, 0, 5}));
   EXPECT_GT(std::filesystem::file_size(kept), 100U);
 }
 
@@ -137,7 +140,7 @@ std::string two_cubes(const TestFolder& folder, const char* neighbours) {
          "}\nprior:\n  - {file: '" + folder / "cube.obj" + "', role: target, " + near +
          "\n  - {file: '" + folder / "cube.obj" + "', role: obstacle, " + near + "\n  - {file: '" +
          folder / "beside.obj" + "', role: obstacle, " + near +
-         "\nevaluation: {registration_distance: 0.1, samples: 2000, radius: 0.5}\n";
+         "\nevaluation: {coverage_distance: 0.1, samples: 2000, passage_radius: 0.5}\n";
 }
 
 // Rays end on what stands beside the target, the sensor keeps off it, and none of it is judged.

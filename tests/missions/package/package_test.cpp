@@ -56,7 +56,7 @@ session::SurveyRecord two_views() {
 /// A mission of few words.
 config::MissionSetup mission_of(const std::string& model = "builtin:teapot") {
   return config::parse_mission(
-      "scene: {model: '" + model + "'}\nevaluation: {registration_distance: 0.01}\n", "m.yaml");
+      "scene: {model: '" + model + "'}\nevaluation: {coverage_distance: 0.01}\n", "m.yaml");
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -111,8 +111,8 @@ TEST(Package, SummaryHasTheContractsFields) {
       nlohmann::json::parse(package::summary_json(mission_of(), two_views(), coverage));
   for (const char* field :
        {"mission", "planner", "preset", "seed", "threads", "version", "views", "points", "coverage",
-        "coverage_visible", "coverage_ceiling", "planning_time_s", "sensing_time_s", "distance_m",
-        "complete", "stop_reason", "per_view"}) {
+        "coverage_visible", "attainable_coverage", "planning_time_s", "sensing_time_s",
+        "distance_m", "complete", "stop_reason", "per_view"}) {
     EXPECT_TRUE(summary.contains(field)) << field;
   }
   EXPECT_EQ(summary["planner"], "see++");
@@ -121,7 +121,7 @@ TEST(Package, SummaryHasTheContractsFields) {
   EXPECT_EQ(summary["planning_time_s"], 0.875);
   EXPECT_EQ(summary["planning_time_parts_s"]["insert"], 0.75);
   EXPECT_EQ(summary["planning_time_parts_s"]["select"], 0.125);
-  EXPECT_TRUE(summary["coverage_ceiling"].is_null());
+  EXPECT_TRUE(summary["attainable_coverage"].is_null());
   EXPECT_FALSE(summary.contains("route_length_m"));  // nothing was flown
   ASSERT_EQ(summary["per_view"].size(), 2U);
   for (const char* field : {"view", "position", "direction", "points_new", "points", "frontiers",
@@ -173,7 +173,7 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
   package::stage_package(mission, record, {}, 1, out);
   out.commit();
 
-  const Json belief = Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"];
+  const Json belief = Json::parse(tests::content_of(folder.path() / "summary.json"))["estimate"];
   double missing = 0.0;
   for (const auto& [reason, share] : belief["missing"].items()) {
     EXPECT_GE(share, 0.0) << reason;
@@ -228,7 +228,7 @@ TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
   package::stage_package(mission_of(), two_views(), {}, 1, out);
   out.commit();
   EXPECT_FALSE(std::filesystem::exists(folder / "coverage.ply"));
-  EXPECT_TRUE(Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"].is_null());
+  EXPECT_TRUE(Json::parse(tests::content_of(folder.path() / "summary.json"))["estimate"].is_null());
 }
 
 // On a sphere the normal at a point is the point itself; on its inside, seen from the centre, the

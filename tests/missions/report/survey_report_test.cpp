@@ -86,7 +86,7 @@ TEST(SurveyReport, HolesSumToTheMissingShare) {
     const bool believes = std::string(planner) == "skycap";
     EXPECT_EQ(surface["known_by"], believes ? "planner" : "simulator");
     const double coverage =
-        (believes ? summary["belief"]["predicted_coverage"] : summary["coverage"]).get<double>();
+        (believes ? summary["estimate"]["estimated_coverage"] : summary["coverage"]).get<double>();
     EXPECT_NEAR(missing / surface["area_m2"].get<double>(), 1.0 - coverage, 1e-5) << planner;
   }
 }
@@ -117,8 +117,8 @@ TEST(SurveyReport, OfALidarIsWrittenToo) {
       "scene: {model: 'builtin:teapot', longest_side: 10.0}\n"
       "sensor: {lidar: velodyne_vlp16}\n"
       "planner: {name: skycap, density: 20, resolution_radius: 0.5, view_distance: 12}\n"
-      "evaluation: {registration_distance: 0.3, samples: 1000, visible_directions: 30,\n"
-      "             ceiling_views: 0}\n",
+      "evaluation: {coverage_distance: 0.3, samples: 1000, visible_directions: 30,\n"
+      "             attainable_views: 0}\n",
       {"--max-views", "1"});
   const std::string page = survey.page();
   ASSERT_FALSE(page.empty()) << survey.run.err;
@@ -225,7 +225,7 @@ TEST(View, WritesAPageOfACloudAndSaysWhere) {
 TEST(View, ShowsAMissionBeforeItsSurvey) {
   const tests::TestFolder folder;
   const std::string mission = tests::quick_mission(
-      "site: {no_fly: [{corners: [[5, 5], [9, 5], [9, 9]], bottom: 0, top: 30}]}\n");
+      "site: {no_fly: [{corners: [[5, 5], [9, 5], [9, 9]], floor: 0, ceiling: 30}]}\n");
   const auto run =
       tests::run_skycap({"view", folder.write("m.yaml", mission), "--out", folder / "m.html"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -278,7 +278,7 @@ TEST(Verdict, LightsFollowTheirRules) {
   EXPECT_EQ(light(0.9499), "amber");
   EXPECT_EQ(light(0.8499), "red");
   EXPECT_EQ(verdict({{"stop_reason", "view_limit"}})["light"], "amber");
-  const Json route = {{"min_clearance_m", 1.9}, {"sorties", Json::array()}, {"unreached", {1}}};
+  const Json route = {{"min_clearance_m", 1.9}, {"sorties", Json::array()}, {"skipped_views", {1}}};
   const Json lights =
       verdict({{"flight", {{"clearance_m", {{"total", 2.0}}}, {"route", route}}}})["lights"];
   EXPECT_EQ(lights[0]["light"], "red");    // less than was asked for

@@ -46,7 +46,7 @@ class TileScan : public tests::CubeScan {
   void write_mission(const std::string& model, const std::string& more = "") const {
     folder_.write("m.yaml", "scene: {model: '" + model + "'" + more +
                                 "}\nscan: {sensor: laser.yaml, route: flight.tum}\n"
-                                "evaluation: {registration_distance: 0.1}\n");
+                                "evaluation: {coverage_distance: 0.1}\n");
   }
   void write_tiles(const std::string& tiles) const {
     folder_.write("scene.tiles", "tiles: " + tiles + "\n");

@@ -22,7 +22,7 @@ config::MissionSetup mission_of(const std::string& box, const std::string& more 
       "scene: {model: builtin:teapot, longest_side: 20}\n"
       "sensor: {lidar: ouster_os1_128}\n"
       "planner: {density: 100, resolution_radius: 0.5, view_distance: 20}\n"
-      "evaluation: {registration_distance: 0.1}\n"
+      "evaluation: {coverage_distance: 0.1}\n"
       "flight: {vehicle: m350_rtk, unknown_box: " +
           box + more + "}\n",
       "m.yaml");
@@ -105,8 +105,8 @@ TEST(OpeningFlight, StripsLieOverAFlatBoxNoFartherApartThanTheyAreHigh) {
 }
 
 TEST(OpeningFlight, IsLeftOutWhereNobodyAsksForIt) {
-  EXPECT_TRUE(opening_of(mission_of(tower, ", opening: none")).empty());
-  EXPECT_EQ(opening_of(mission_of(tower, ", opening: strips")).size() % 2, 0U);
+  EXPECT_TRUE(opening_of(mission_of(tower, ", initial_pattern: none")).empty());
+  EXPECT_EQ(opening_of(mission_of(tower, ", initial_pattern: strips")).size() % 2, 0U);
 }
 
 // The speed that a scanner's density allows grows with its turns; half the vehicle's is the most.

@@ -122,12 +122,12 @@ TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
   package().write("behind.waypoints",
                   route_there_and_back({{-22, -22, 6}, {22, -22, 6}, {22, 0, 6}}));
   const auto check_return = [](const std::string& height) {
-    return check({"--return-height", height}, "behind.waypoints");
+    return check({"--return-altitude", height}, "behind.waypoints");
   };
   const auto low = check_return("5");
   EXPECT_EQ(low.exit_code, 1);
   EXPECT_THAT(low.out, HasSubstr(": verified, 0 of "));  // the mission itself is
-  EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-height) "));
+  EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-altitude) "));
   EXPECT_THAT(low.out, HasSubstr(" of the scene"));
   const std::string least = "the lowest safe return altitude is ";
   ASSERT_THAT(low.out, HasSubstr(least));
@@ -143,7 +143,7 @@ TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err,
               HasSubstr("the landing point at (-75.00, 0.00, 0.00) has a slope of 12.0 degrees as "
-                        "declared; the maximum is 10.0 degrees (flight.steepest_pad_deg)"));
+                        "declared; the maximum is 10.0 degrees (flight.max_pad_slope_deg)"));
   EXPECT_FALSE(std::filesystem::exists(folder / "steep/summary.json"));
 
   const auto exported = [&](const std::vector<std::string>& more) {
@@ -154,7 +154,7 @@ TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
     return run_skycap(arguments);
   };
   EXPECT_EQ(exported({}).exit_code, 2);
-  const auto allowed = exported({"--set", "flight.steepest_pad_deg=15"});
+  const auto allowed = exported({"--set", "flight.max_pad_slope_deg=15"});
   EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
   EXPECT_THAT(allowed.out, HasSubstr("  pad       slope 12.0 degrees as declared\n"));
 }

@@ -141,7 +141,7 @@ TEST(FlownPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth)
   }
   EXPECT_NEAR(terms, 2.0, 1e-12);
   EXPECT_EQ(flight.at("route").at("stations").get<std::size_t>() +
-                flight.at("route").at("unreached").size(),
+                flight.at("route").at("skipped_views").size(),
             summary.at("views").get<std::size_t>());
 
   for (const char* ending : {"plan", "waypoints", "kmz", "kml", "geojson", "csv"}) {

@@ -140,7 +140,7 @@ TEST(WayFrames, TimesAreThoseOfTheVehicle) {
 TEST(MovingSurvey, CoversAsMuchInLessTime) {
   const config::MissionSetup stops = config::parse_mission(flown_mission(), "m.yaml");
   // At a stop less is left to gain: the way has shown much of it.
-  const config::MissionSetup moving = mission_with("planner.least_gain", "0.01");
+  const config::MissionSetup moving = mission_with("planner.min_gain", "0.01");
   const evaluation::SurveyScene scene(moving.simulation, "", 0);
   double standing_time = 0.0, moving_time = 0.0, standing_coverage = 0.0, moving_coverage = 0.0;
   const std::vector<std::uint64_t> seeds{1, 2, 3};
@@ -199,8 +199,8 @@ TEST(MovingSurvey, PackageNamesTheViewThatEachPointWasTakenOnTheWayTo) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr(" en-route frames, motion blur up to "));
   const auto summary = nlohmann::json::parse(tests::content_of(folder / "out/summary.json"));
-  EXPECT_EQ(summary["per_view"][0]["frames_on_way"], 0);
-  EXPECT_GT(summary["per_view"][1]["frames_on_way"], 0);
+  EXPECT_EQ(summary["per_view"][0]["en_route_frames"], 0);
+  EXPECT_GT(summary["per_view"][1]["en_route_frames"], 0);
   EXPECT_GT(summary["flight"]["survey"]["duration_s"],
             summary["flight"]["survey"]["length_m"].get<double>() / 4.0);
   const auto cloud = geometry::read_cloud(folder / "out/cloud.ply");
@@ -217,7 +217,7 @@ TEST(MovingSurvey, NeedsAVehicleAndAPlannerThatLearnsOnTheWay) {
   EXPECT_THAT(refusal_of(flown_mission(), {moving, {"--planner", "planner.name", "see++"}}),
               HasSubstr("sensor.capture: moving requires a planner that uses"));
   EXPECT_THAT(refusal_of("scene: {model: 'builtin:teapot'}\n"
-                         "evaluation: {registration_distance: 0.005}\n",
+                         "evaluation: {coverage_distance: 0.005}\n",
                          {moving}),
               HasSubstr("sensor.capture: moving requires a vehicle"));
   EXPECT_THAT(refusal_of(flown_mission(), {{"--set", "sensor.frame_period", "2"}}),

@@ -109,7 +109,7 @@ TEST(CarriedSensor, PosesAreOffAsTheNavigationIsAndAtMomentsNearEachOtherAlike) 
 
 TEST(CarriedSensor, WithoutAVehicleNavigationIsThatOfScansAlone) {
   const std::string text =
-      "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.05}\n"
+      "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.05}\n"
       "planner: {name: skycap, density: 100, resolution_radius: 0.2}\n"
       "scan: {navigation: {horizontal_sigma: 0.5}}\n";
   const config::MissionSetup mission = config::parse_mission(text, "m.yaml");
@@ -120,7 +120,7 @@ TEST(CarriedSensor, WithoutAVehicleNavigationIsThatOfScansAlone) {
 
 // A survey whose poses are off by as much as points may be covers less than it would, and knows it.
 TEST(CarriedSensor, ASurveyWithErrorsOfItsPosesBelievesLess) {
-  const Keys few{{"limits.max_views", "5"}, {"planner.wanted_coverage", "1"}};
+  const Keys few{{"limits.max_views", "5"}, {"planner.target_coverage", "1"}};
   const config::MissionSetup exact = mission_with(few);
   Keys keys = few;
   keys.insert(keys.end(), {{"scan.navigation.horizontal_sigma", "0.5"},

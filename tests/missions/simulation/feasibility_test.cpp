@@ -54,7 +54,7 @@ TEST(Feasibility, SaysWhatCannotWork) {
       {{{"limits.stand_off", "100"}},
        "limits.stand_off (100 m) must be smaller than the view dist"},
       {{{"scene.longest_side", "5000"}}, "in millimetres, set scene.scale: 0.001"},
-      {{{"scene.longest_side", "0.05"}}, "must be at least twice evaluation.registration_distance"},
+      {{{"scene.longest_side", "0.05"}}, "must be at least twice evaluation.coverage_distance"},
       {{{"sensor.max_range", "0.1"}}, "the maximum range of the sensor (0.1 m)"},
       {{{"sensor.min_range", "50"}}, "the minimum range of the sensor (50 m)"},
       {{{box_min, "[8, 8, 8]"}, {box_max, "[9, 9, 9]"}},

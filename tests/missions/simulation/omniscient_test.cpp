@@ -40,7 +40,7 @@ TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
 
 TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
   const config::MissionSetup mission =
-      config::parse_mission(quick_mission("site: {lowest_height: 0.3}\n"), "m.yaml");
+      config::parse_mission(quick_mission("site: {min_height: 0.3}\n"), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord record =
       simulation::survey_omnisciently(mission.simulation, scene, 1, 1, quick);

@@ -238,9 +238,9 @@ TEST(PriorSurvey, ADryRunTakesTheTargetsForTheTruth) {
   const std::string path = folder.path().string();
   const auto refused = run_skycap("plan " + path + "/m.yaml --quiet --out " + path + "/none");
   EXPECT_NE(refused.exit_code, 0);
-  EXPECT_THAT(refused.err, HasSubstr("--dry-run prior"));
+  EXPECT_THAT(refused.err, HasSubstr("--use-prior-as-truth"));
   const auto plan = run_skycap("plan " + path +
-                               "/m.yaml --dry-run prior --set flight.vehicle=none "
+                               "/m.yaml --use-prior-as-truth --set flight.vehicle=none "
                                "--out " +
                                path + "/dry");
   ASSERT_EQ(plan.exit_code, 0) << plan.err;

@@ -30,7 +30,7 @@ config::MissionSetup mission_of(const std::string& lidar, const std::string& mor
           lidar +
           "}\n"
           "planner: {density: 100, resolution_radius: 0.5, view_distance: 10}\n"
-          "evaluation: {registration_distance: 0.1}\n"
+          "evaluation: {coverage_distance: 0.1}\n"
           "flight: {vehicle: m350_rtk, cruise_speed: 4, map_error: 0.2,\n"
           "         unknown_box: {min: [-30, -30, 0], max: [30, 30, 30]}}\n" +
           more,

@@ -25,8 +25,8 @@ config::MissionSetup mission_by(const std::string& lidar) {
           "          scene_box: {min: [-11, -9, 0.3], max: [11, 9, 11]}}\n"
           "flight: {vehicle: m350_rtk, takeoff: [-60, 0, 0], cruise_speed: 5,\n"
           "         unknown_box: {min: [-11, -9, 0], max: [11, 9, 11]}}\n"
-          "evaluation: {registration_distance: 0.4, samples: 3000, visible_directions: 30,\n"
-          "             ceiling_views: 0}\n"
+          "evaluation: {coverage_distance: 0.4, samples: 3000, visible_directions: 30,\n"
+          "             attainable_views: 0}\n"
           "limits: {max_views: 40}\n",
       "m.yaml");
 }
@@ -78,7 +78,7 @@ TEST(ScannerSurvey, IsTakenByEveryPlanner) {
             "}\nplanner: {name: " + name +
             ", density: 20000, resolution_radius: 0.08, spacing: 0.02, view_distance: 1.5}\n"
             "limits: {max_views: 30}\n"
-            "evaluation: {registration_distance: 0.03, samples: 2000, ceiling_views: 0}\n",
+            "evaluation: {coverage_distance: 0.03, samples: 2000, attainable_views: 0}\n",
         "m.yaml");
     const session::SurveyRecord record = simulation::run_survey(
         mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), 1, 1);

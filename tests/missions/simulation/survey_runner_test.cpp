@@ -109,16 +109,16 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
   const std::string site =
       "site:\n"
       "  geofence: [[-9, -9], [9, -9], [9, 0.5], [-9, 0.5]]\n"
-      "  no_fly: [{corners: [[1, -3], [3, -3], [3, 1], [1, 1]], bottom: -5, top: 1.5}]\n"
-      "  lowest_height: 0.2\n"
-      "  highest_height: 1.9\n";
+      "  no_fly: [{corners: [[1, -3], [3, -3], [3, 1], [1, 1]], floor: -5, ceiling: 1.5}]\n"
+      "  min_height: 0.2\n"
+      "  max_height: 1.9\n";
   for (const std::string& name : testing_support::not_empty(planner_names())) {
     const config::MissionSetup mission =
         config::parse_mission(quick_mission(site), "m.yaml",
                               {{"--planner", "planner.name", name},
                                {"--set", "volumetric.view_limit", "8"},
                                {"--set", "limits.stand_off", "0.4"},
-                               {"--set", "limits.highest_pitch_deg", "0"}});
+                               {"--set", "limits.max_pitch_deg", "0"}});
     const evaluation::SurveyScene scene(mission.simulation, "", 0);
     const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, 1, 1);
     const geometry::MeshDistance truth(scene.model());
@@ -181,7 +181,7 @@ TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
         evaluation::SurveyScene(mission.simulation, "", 0).visible(1);
     return static_cast<double>(std::ranges::count(visible, 1)) / double(visible.size());
   };
-  const double anywhere = share(""), above = share("site: {lowest_height: 1.0}");
+  const double anywhere = share(""), above = share("site: {min_height: 1.0}");
   const double south = share("site: {geofence: [[-9, -9], [9, -9], [9, -1.5], [-9, -1.5]]}");
   EXPECT_GT(anywhere, 0.75);  // the rest is inside the pot
   EXPECT_LT(above, 0.9 * anywhere);

@@ -239,13 +239,15 @@ TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
            {"select.classes", [](Source& s) { s.select.classes = {6}; }},
            {"select.layer", [](Source& s) { s.select.layer = "a"; }},
            {"up_axis", [](Source& s) { s.is_y_up = true; }}}) {
-    EXPECT_THAT(complaint("cube.gml", gml, change), HasSubstr(key + std::string(" does not apply")));
+    EXPECT_THAT(complaint("cube.gml", gml, change),
+                HasSubstr(key + std::string(" does not apply")));
   }
   for (const auto& [key, change] : std::initializer_list<std::pair<const char*, Change>>{
            {"select.id", [](Source& s) { s.select.ids = {"cube"}; }},
            {"select.attribute", [](Source& s) { s.select.attributes["a"] = "b"; }},
            {"select.lod", [](Source& s) { s.select.lod = 2.0; }}}) {
-    EXPECT_THAT(complaint("cube.las", las, change), HasSubstr(key + std::string(" does not apply")));
+    EXPECT_THAT(complaint("cube.las", las, change),
+                HasSubstr(key + std::string(" does not apply")));
   }
   EXPECT_THAT(complaint("cube.obj", obj_of(cube_),
                         [](Source& s) {

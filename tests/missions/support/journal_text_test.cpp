@@ -44,7 +44,9 @@ TEST(JournalText, SaysWhichVersionWroteAJournalOfAnotherFormat) {
   const std::string end = ", whose journals this version cannot continue; " + cure;
   EXPECT_EQ(complaint(R"({"version": "0.1.0", "seed": 7})", identity_of(run)),
             "j: was written by version 0.1.0" + end);
-  EXPECT_EQ(complaint(R"({"version": "9.0.0", "seed": 7, "format": 3})", identity_of(run)),
+  EXPECT_EQ(complaint(R"({"version": "0.1.0", "seed": 7, "format": 2})", identity_of(run)),
+            "j: was written by version 0.1.0" + end);
+  EXPECT_EQ(complaint(R"({"version": "9.0.0", "seed": 7, "format": 4})", identity_of(run)),
             "j: was written by version 9.0.0" + end);
   EXPECT_EQ(complaint(R"({"version": 3, "seed": 7})", identity_of(run)),
             "j: was written by version (unknown)" + end);

@@ -46,7 +46,7 @@ std::vector<batch::Trial> two_trials() {
 config::MissionSetup mission_called(const std::string& name, const std::string& more = "") {
   return config::parse_mission("name: " + name +
                                    "\nscene: {model: 'builtin:teapot'}\n"
-                                   "evaluation: {registration_distance: 0.005}\n" +
+                                   "evaluation: {coverage_distance: 0.005}\n" +
                                    more,
                                "m.yaml");
 }
@@ -92,11 +92,12 @@ TEST(Trials, TableHoldsNamesOfAnyLength) {
 }
 
 TEST(Trials, CsvHasALineForEach) {
-  EXPECT_EQ(batch::trials_csv(two_trials()),
-            "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,"
-            "flown_m,flown_s,planning_time_s\n"
-            "1,complete,2,0.8,0.9,0.99,3,0,7,12.5,0\n"
-            "2,view_limit,4,1,,,5,0,,,0\n");
+  EXPECT_EQ(
+      batch::trials_csv(two_trials()),
+      "seed,stop_reason,views,coverage,coverage_visible,attainable_coverage,distance_m,points,"
+      "flown_m,flown_s,planning_time_s\n"
+      "1,complete,2,0.8,0.9,0.99,3,0,7,12.5,0\n"
+      "2,view_limit,4,1,,,5,0,,,0\n");
 }
 
 TEST(Trials, AreReadBackAsTheyWereWritten) {

@@ -155,7 +155,7 @@ TEST(Campaign, ChangesKnowTheirLine) {
   const CampaignFile file =
       parse_campaign("missions: [a.yaml]\nvariants:\n  v:\n    planner.density: much\n", "c.yaml");
   const std::string mission =
-      "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.03}\n";
+      "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.03}\n";
   try {
     config::parse_mission_document(mission, "m.yaml", file.variants.at(0).changes);
     FAIL() << "was taken";

@@ -29,7 +29,7 @@ TEST(DistrictFile, OfAMapAloneHasDefaults) {
   EXPECT_EQ(district.wishes.vehicle, "generic");
   EXPECT_EQ(district.planner, "skycap");
   EXPECT_EQ(district.seed, 1U);
-  EXPECT_EQ(district.together, 0.5);
+  EXPECT_EQ(district.merge_distance, 0.5);
   EXPECT_THAT(district.targets.ids, IsEmpty());
   EXPECT_THAT(district.pads, IsEmpty());
   EXPECT_THAT(district.set, IsEmpty());
@@ -41,7 +41,7 @@ TEST(DistrictFile, SaysWhatIsSurveyedAndHow) {
       "terrain: dtm.tif\nobstacles: [trees.las]\n"
       "targets: {id: [a, b], attribute: {use: school}, within: ['48.1,11.1', '48.2, 11.3'],\n"
       "          near: '48.15,11.2', distance: 250}\n"
-      "together: 0\npads: ['48.15,11.21', '48.16,11.22']\nvehicle: m350_rtk\nplanner: see++\n"
+      "merge_distance: 0\npads: ['48.15,11.21', '48.16,11.22']\nvehicle: m350_rtk\nplanner: see++\n"
       "seed: 7\nset: {limits.max_views: 9, flight: {clearance: 3}}\n",
       "quarter.yaml");
   EXPECT_EQ(district.name, "old_town");
@@ -58,7 +58,7 @@ TEST(DistrictFile, SaysWhatIsSurveyedAndHow) {
   EXPECT_EQ(targets.within[1].longitude_deg, 11.3);
   EXPECT_EQ(targets.near.value().latitude_deg, 48.15);
   EXPECT_EQ(targets.distance, 250.0);
-  EXPECT_EQ(district.together, 0.0);
+  EXPECT_EQ(district.merge_distance, 0.0);
   ASSERT_EQ(district.pads.size(), 2U);
   EXPECT_EQ(district.pads[1].latitude_deg, 48.16);
   EXPECT_EQ(district.wishes.vehicle, "m350_rtk");
@@ -90,7 +90,8 @@ TEST(DistrictFile, SaysWhatIsWrongAndWhatWouldBeRight) {
       {"map: a\ntargets: {ids: [b]}\n", ":2: key targets.ids is unknown"},
       {"map: a\npads: [[48, 11]]\n", ":2: key pads"},
       {"map: a\npads: ['91,0']\n", ":2: key pads has 91,0; it must be LATITUDE,LONGITUDE"},
-      {"map: a\ntogether: 200\n", ":2: key together is 200 m; it must be from 0 to 100"},
+      {"map: a\nmerge_distance: 200\n",
+       ":2: key merge_distance is 200 m; it must be from 0 to 100"},
       {"map: a\nplanner: best\n", ":2: key planner is best; it must be one of see++"},
       {"map: a\nseed: -1\n", ":2: key seed is -1; it must be 0 or more"},
       {"map: a\nset: {flight.takeoff: [0, 0, 0]}\n",

@@ -61,7 +61,7 @@ const std::vector<Vector3d> places{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 30, 0
 
 constexpr const char* few_views =
     "set: {limits.max_views: 3, evaluation: {samples: 2000, visible_directions: 20, "
-    "ceiling_views: 0}}\n";
+    "attainable_views: 0}}\n";
 
 class District : public testing::Test {
  protected:

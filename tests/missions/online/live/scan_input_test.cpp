@@ -33,7 +33,7 @@ config::MissionSetup setup_of(const std::string& more = "") {
       "         max_range: 20}\n"
       "planner: {density: 5200, resolution_radius: 0.0525,\n"
       "          scene_box: {min: [-1, -1, -1], max: [1, 1, 1]}}\n"
-      "evaluation: {registration_distance: 0.03}\n" +
+      "evaluation: {coverage_distance: 0.03}\n" +
           more,
       "m.yaml");
 }

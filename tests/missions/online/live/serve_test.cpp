@@ -49,8 +49,8 @@ std::string scanner_mission() {
          "          scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}}\n"
          "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
          "         unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
-         "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
-         "             ceiling_views: 0}\n"
+         "evaluation: {coverage_distance: 0.6, samples: 3000, visible_directions: 30,\n"
+         "             attainable_views: 0}\n"
          "limits: {max_views: 6}\n";
 }
 
@@ -209,7 +209,7 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
                                   {"format", "points"},
                                   {"points", scan.points.size()},
                                   {"has_pixels", true}};
-    if (on_way) header["on_way"] = *on_way;
+    if (on_way) header["en_route"] = *on_way;
     const std::vector<float> numbers = numbers_of(scan);
     std::string payload(reinterpret_cast<const char*>(numbers.data()),
                         numbers.size() * sizeof(float));
@@ -222,7 +222,7 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
               HasSubstr("en-route scans require a scan from the first view"));
   nlohmann::ordered_json answer = ask(first, 0, {});
   ASSERT_GT(answer.at("frames").size(), 2U);
-  EXPECT_EQ(answer.at("on_way"), 0);
+  EXPECT_EQ(answer.at("en_route"), 0);
   Carrier carrier(rehearsal);
   const geometry::Scan frame = carrier.next(survey).scan;
   EXPECT_THAT(
@@ -231,7 +231,7 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
   const std::size_t frames = answer.at("frames").size();
   answer = ask(frame, 1, 0);
   EXPECT_EQ(answer.at("is_new"), true);
-  EXPECT_EQ(answer.at("on_way"), 1);
+  EXPECT_EQ(answer.at("en_route"), 1);
   EXPECT_EQ(answer.at("scans"), 1);
   EXPECT_EQ(answer.at("frames").size(), frames - 1);
   EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
@@ -239,7 +239,7 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
   // Frames are left out as one likes: the view may come at any time.
   answer = ask(rehearsal.scan(survey), 1, {});
   EXPECT_EQ(answer.at("scans"), 2);
-  EXPECT_EQ(answer.at("on_way"), 0);
+  EXPECT_EQ(answer.at("en_route"), 0);
   EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
 }
 

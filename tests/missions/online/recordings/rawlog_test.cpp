@@ -198,7 +198,7 @@ TEST_F(Rawlog, IsTakenInAsItsImagesWouldBe) {
       "         max_range: 8}\n"
       "planner: {density: 100, resolution_radius: 0.4,\n"
       "          scene_box: {min: [-6, -6, -6], max: [6, 6, 6]}}\n"
-      "evaluation: {registration_distance: 0.1}\n"
+      "evaluation: {coverage_distance: 0.1}\n"
       "live: {pose_check: false}\n");
   const std::string rawlog =
       write({robot_pose(1.0, {}), range_scan(1.0), robot_pose(2.0, {}), range_scan(2.0)});
@@ -221,7 +221,7 @@ TEST_F(Rawlog, IsTakenInAsItsImagesWouldBe) {
     std::ostringstream text;
     text.precision(17);
     for (int i = 0; i < 16; ++i) text << pose.data()[i] << " ";
-    EXPECT_LE(next("one", {"--scan", folder_ / "image.png", "--pose", text.str(), "--lens",
+    EXPECT_LE(next("one", {"--scan", folder_ / "image.png", "--pose", text.str(), "--intrinsics",
                            "30 31 15.2 12.1", "--depth-unit", "0.0005"})
                   .exit_code,
               11);

@@ -94,7 +94,7 @@ TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
   for (const json& vehicle : fleet["vehicles"]) {
     for (const int view : vehicle["order"]) shared.push_back(view);
   }
-  for (const json& missed : fleet["unreached"]) shared.push_back(missed["view"]);
+  for (const json& missed : fleet["skipped_views"]) shared.push_back(missed["view"]);
   std::ranges::sort(shared);
   std::ranges::sort(alone);
   EXPECT_EQ(shared, alone);
@@ -243,7 +243,7 @@ TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
               HasSubstr("key flight.pads requires flight.vehicles"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], separation: 1"),
               HasSubstr("key flight.separation must be at least the sum of"));
-  EXPECT_THAT(complaint("vehicles: [generic, generic], style: pass"),
+  EXPECT_THAT(complaint("vehicles: [generic, generic], style: fly-through"),
               HasSubstr("key flight.style conflicts with flight.vehicles"));
 }
 

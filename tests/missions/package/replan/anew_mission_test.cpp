@@ -29,7 +29,7 @@ const TestFolder& packages() {
   static const bool are_made = [] {
     const std::string mission = folder.write("m.yaml", flown_mission());
     const auto anew = run_skycap({"plan", mission, "--out", folder / "anew", "--threads", "1",
-                                  "--set", "flight.views=anew"});
+                                  "--set", "flight.views=replanned"});
     EXPECT_EQ(anew.exit_code, 0) << anew.err;
     EXPECT_THAT(anew.out, HasSubstr("  coverage  "));
     const auto survey = run_skycap({"plan", mission, "--out", folder / "survey"});
@@ -46,29 +46,30 @@ json summary_of(const std::string& package) {
 
 TEST(AnewMission, IsFasterAndPromisesNoLess) {
   const json flight = summary_of("anew").at("flight");
-  const json& anew = flight.at("anew");
+  const json& anew = flight.at("replanned");
   ASSERT_TRUE(anew.at("is_flown").get<bool>());
   const auto figure = [&](const char* whose, const char* name) {
     return anew.at(whose).at(name).get<double>();
   };
-  EXPECT_LT(figure("anew", "duration_s"), figure("survey", "duration_s"));
-  EXPECT_GE(figure("anew", "promised_coverage"), figure("survey", "promised_coverage") - 5e-4);
-  EXPECT_EQ(flight.at("route").at("duration_s"), anew.at("anew").at("duration_s"));
-  EXPECT_EQ(flight.at("route").at("length_m"), anew.at("anew").at("length_m"));
+  EXPECT_LT(figure("replanned", "duration_s"), figure("survey", "duration_s"));
+  EXPECT_GE(figure("replanned", "predicted_coverage"),
+            figure("survey", "predicted_coverage") - 5e-4);
+  EXPECT_EQ(flight.at("route").at("duration_s"), anew.at("replanned").at("duration_s"));
+  EXPECT_EQ(flight.at("route").at("length_m"), anew.at("replanned").at("length_m"));
   EXPECT_EQ(flight.at("route").at("stations"), anew.at("stations").size());
-  EXPECT_TRUE(flight.at("route").at("unreached").empty());
+  EXPECT_TRUE(flight.at("route").at("skipped_views").empty());
   std::size_t pieces = 0;
   for (const json& sortie : flight.at("route").at("sorties")) {
     for (const json& leg : sortie.at("legs")) pieces += leg.at("points").size() - 1;
   }
-  EXPECT_EQ(anew.at("anew").at("pieces").get<std::size_t>(), pieces);
+  EXPECT_EQ(anew.at("replanned").at("pieces").get<std::size_t>(), pieces);
 }
 
 // What it is compared with is the mission that the survey leaves without it.
 TEST(AnewMission, IsComparedWithTheSurveysOwn) {
   const json own = summary_of("survey").at("flight");
   EXPECT_FALSE(own.contains("anew"));
-  const json compared = summary_of("anew").at("flight").at("anew").at("survey");
+  const json compared = summary_of("anew").at("flight").at("replanned").at("survey");
   EXPECT_EQ(compared.at("duration_s"), own.at("route").at("duration_s"));
   EXPECT_EQ(compared.at("length_m"), own.at("route").at("length_m"));
   EXPECT_EQ(compared.at("views"), own.at("route").at("stations"));
@@ -88,7 +89,7 @@ TEST(AnewMission, LeavesTheSurveyAsItIs) {
 TEST(AnewMission, KeepsItsPromiseWhenItIsFlownAgain) {
   const json summary = summary_of("anew");
   const double again =
-      summary.at("flight").at("anew").at("flown_again").at("coverage_visible").get<double>();
+      summary.at("flight").at("replanned").at("reflight").at("coverage_visible").get<double>();
   EXPECT_GT(again, summary.at("coverage_visible").get<double>() - 0.1);
   EXPECT_LE(again, 1.0);
 }
@@ -97,20 +98,20 @@ TEST(AnewMission, KeepsItsPromiseWhenItIsFlownAgain) {
 TEST(AnewMission, CoversWhatTheFramesOnTheSurveysWaysHaveSeen) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "moving", "--set",
-                               "flight.views=anew", "--set", "sensor.capture=moving"});
+                               "flight.views=replanned", "--set", "sensor.capture=moving"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json anew = summary_of("moving").at("flight").at("anew");
+  const json anew = summary_of("moving").at("flight").at("replanned");
   ASSERT_TRUE(anew.at("is_flown").get<bool>());
-  EXPECT_GT(anew.at("anew").at("promised_coverage").get<double>(),
-            anew.at("survey").at("promised_coverage").get<double>() + 0.01);
-  EXPECT_GT(anew.at("flown_again").at("coverage_visible_unthinned").get<double>(),
-            anew.at("survey_flown_again").at("coverage_visible_unthinned").get<double>() - 0.005);
+  EXPECT_GT(anew.at("replanned").at("predicted_coverage").get<double>(),
+            anew.at("survey").at("predicted_coverage").get<double>() + 0.01);
+  EXPECT_GT(anew.at("reflight").at("coverage_visible_unthinned").get<double>(),
+            anew.at("survey_reflight").at("coverage_visible_unthinned").get<double>() - 0.005);
 }
 
 TEST(AnewMission, DoesNotDependOnThreads) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "threads", "--threads",
-                               "4", "--set", "flight.views=anew"});
+                               "4", "--set", "flight.views=replanned"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::vector<std::string> timed = {"summary.json", "report.html"};
   EXPECT_EQ(tests::results_in(folder / "anew", timed),
@@ -132,8 +133,8 @@ TEST(AnewMission, FilesKeepTheClearanceFromTheTruth) {
 TEST(AnewMission, IsFlownPastItsViews) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "passing", "--threads",
-                               "1", "--set", "flight.views=anew", "--set", "flight.style=pass",
-                               "--set", "sensor.exposure=0.0005"});
+                               "1", "--set", "flight.views=replanned", "--set",
+                               "flight.style=fly-through", "--set", "sensor.exposure=0.0005"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("  passing   "));
   const json stopping = summary_of("anew").at("flight"),
@@ -167,14 +168,15 @@ TEST(AnewMission, IsFlownPastItsViews) {
 TEST(AnewMission, SaysWhyNothingIsPassed) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "blurred", "--set",
-                               "flight.style=pass", "--set", "sensor.exposure=1", "--set",
+                               "flight.style=fly-through", "--set", "sensor.exposure=1", "--set",
                                "limits.max_views=2"});
   EXPECT_THAT(run.out, HasSubstr("  passing   none: ")) << run.err;
   EXPECT_THAT(run.out, HasSubstr("shorten sensor.exposure"));
-  const auto resting = run_skycap(
-      {"check", folder / "m.yaml", "--set", "flight.style=pass", "--set", "sensor.settle=1"});
+  const auto resting = run_skycap({"check", folder / "m.yaml", "--set", "flight.style=fly-through",
+                                   "--set", "sensor.settle=1"});
   EXPECT_EQ(resting.exit_code, 2);
-  EXPECT_THAT(resting.err, HasSubstr("flight.style: pass conflicts with a sensor that must rest"));
+  EXPECT_THAT(resting.err,
+              HasSubstr("flight.style: fly-through conflicts with a sensor that must rest"));
 }
 
 TEST(AnewMission, IsExportedAgainAsItWasPlanned) {
@@ -203,7 +205,7 @@ TEST(AnewMission, GivesBackTheSurveysMission) {
 TEST(AnewMission, IsNotMadeOfASurveyThatDidNotAskForIt) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"export", folder / "survey", "--format", "csv", "--set",
-                               "flight.views=anew", "--out", folder / "refused"});
+                               "flight.views=replanned", "--out", folder / "refused"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("summary.json: contains no replanned views; plan the mission "
                                  "again, or set flight.views=survey"));
@@ -226,7 +228,7 @@ TEST(AnewMission, NeedsAPlannerThatKnowsTheSurface) {
     });
   };
   EXPECT_THAT(complaint("planner.name", "see++"),
-              HasSubstr("flight.views: anew requires the planner skycap; the planner see++"));
+              HasSubstr("flight.views: replanned requires the planner skycap; the planner see++"));
   EXPECT_THAT(complaint("flight.order", "survey"),
               HasSubstr("conflicts with flight.order: survey"));
   EXPECT_EQ(complaint("flight.vehicle", "none"), "") << "nothing is flown, and nothing chosen";

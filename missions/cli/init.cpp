@@ -1,0 +1,274 @@
+// skycap init: a commented mission for a sensor, a vehicle and a target without a georeference.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/surfaces/mesh.h"
+#include "missions/cli/verb_options.h"
+#include "missions/config/resolve.h"
+#include "missions/config/sensor_reader.h"
+#include "missions/config/vehicle_reader.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/support/flow_text.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using support::yaml_quoted;
+
+struct InitOptions {
+  std::string target;  ///< a mesh file, builtin:NAME, model:NAME, or "room"
+  std::string sensor = "intel_d435", vehicle = "none";
+  std::vector<double> size = {6.0, 4.0, 2.8};  ///< of a room [m]
+  fs::path out = "mission.yaml";
+
+  bool is_room() const { return target == "room"; }
+  bool is_flown() const { return vehicle != "none"; }
+};
+
+/// What the mission is made for; lengths in metres.
+struct Proposal {
+  AlignedBox3d target;  ///< in the mission's frame
+  double coverage_distance = 0.0, view_distance = 0.0, clearance = 0.0;
+  config::SensorDescription sensor;
+};
+
+std::string vector_text(const Vector3d& place) {
+  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", place.x(), place.y(), place.z());
+}
+
+std::string box_text(const AlignedBox3d& box) {
+  return fmt::format("{{min: {}, max: {}}}", vector_text(box.min()), vector_text(box.max()));
+}
+
+/// Rounded to two digits.
+double rounded(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return unit * std::round(value / unit);
+}
+
+/// As from the mission file's folder; names of models stay.
+std::string model_text(const std::string& model, const fs::path& mission) {
+  if (model.starts_with("builtin:") || model.starts_with("model:")) return yaml_quoted(model);
+  const fs::path folder = fs::absolute(mission).lexically_normal().parent_path();
+  return yaml_quoted(fs::absolute(model).lexically_normal().lexically_proximate(folder).string());
+}
+
+AlignedBox3d target_of(const InitOptions& options) {
+  if (!options.is_room()) {
+    return geometry::bounding_box(evaluation::placed_model({.model = options.target}, ""));
+  }
+  const Vector3d half(0.5 * options.size[0], 0.5 * options.size[1], 0.0);
+  return {-half, half + options.size[2] * Vector3d::UnitZ()};
+}
+
+double max_range(const config::SensorDescription& sensor) {
+  if (const auto* camera = std::get_if<sim::DepthCameraConfig>(&sensor.sensor)) {
+    return camera->camera.max_range;
+  }
+  return std::get<sim::LidarConfig>(sensor.sensor).max_range;
+}
+
+/// Vehicle radius, errors and a margin, to the next half metre.
+double clearance_of(const std::string& name) {
+  constexpr double margin = 0.5, unit = 0.5;
+  const flight::FlightOptions usual;
+  const flight::Vehicle vehicle = config::find_vehicle(name);
+  const double least =
+      vehicle.radius + vehicle.position_error + usual.tracking_error + usual.map_error + margin;
+  return unit * std::ceil(least / unit);
+}
+
+Proposal proposal_for(const InitOptions& options) {
+  Proposal proposal{.target = target_of(options), .sensor = config::find_sensor(options.sensor)};
+  const double side = proposal.target.sizes().maxCoeff();
+  const double farthest = 0.5 * max_range(proposal.sensor);
+  proposal.coverage_distance = rounded(side / (options.is_room() ? 300.0 : 200.0));
+  proposal.view_distance = rounded(std::min(options.is_room() ? 0.3 * side : side, farthest));
+  if (!options.is_flown()) return proposal;
+  proposal.clearance = clearance_of(options.vehicle);
+  if (!options.is_room()) {
+    proposal.view_distance =
+        std::clamp(proposal.view_distance, rounded(1.5 * proposal.clearance), 25.0);
+  } else if (proposal.target.sizes().minCoeff() <= 2.0 * proposal.clearance) {
+    throw Error(ErrorKind::bad_usage,
+                fmt::format("--size: the room must be larger than twice the clearance of {:g} m on "
+                            "each side; raise --size or use --vehicle none",
+                            proposal.clearance));
+  }
+  return proposal;
+}
+
+std::string head_text(const InitOptions& options) {
+  const std::string name = yaml_quoted(options.out.stem().string());
+  if (options.is_room()) {
+    return "# Live survey of a room, written by `skycap init`. Read each line and adapt it to "
+           "your\n"
+           "# room. Then: skycap next " +
+           options.out.string() +
+           " --survey survey\n"
+           "name: " +
+           name + "  # of the results\n";
+  }
+  return "# Survey of a model, written by `skycap init`. Read each line and adapt it. Then:\n"
+         "# skycap check " +
+         options.out.string() + " and skycap plan " + options.out.string() + "\nname: " + name +
+         "  # of the results\n"
+         "scene:\n"
+         "  model: " +
+         model_text(options.target, options.out) +
+         "  # in metres, z up; else set scene.scale and scene.up_axis\n"
+         "  ground: true  # the sensor also sees the ground\n";
+}
+
+std::string sensor_text(const InitOptions& options, const Proposal& proposal) {
+  const auto* const camera = std::get_if<sim::DepthCameraConfig>(&proposal.sensor.sensor);
+  if (camera == nullptr) {
+    return fmt::format("sensor:\n  lidar: {}  # {}\n", yaml_quoted(options.sensor),
+                       proposal.sensor.name);
+  }
+  const double degree = geometry::radians_per_degree;
+  return fmt::format(
+      "sensor:  # {}\n"
+      "  width: {}  # pixels\n"
+      "  height: {}  # pixels\n"
+      "  horizontal_fov_deg: {:.6g}\n"
+      "  vertical_fov_deg: {:.6g}\n"
+      "  min_range: {:g}  # metres\n"
+      "  max_range: {:g}  # metres; use the range in which the sensor is accurate\n",
+      proposal.sensor.name, camera->camera.width, camera->camera.height,
+      camera->camera.horizontal_fov / degree, camera->camera.vertical_fov / degree,
+      camera->camera.min_range, camera->camera.max_range);
+}
+
+std::string planner_text(const InitOptions& options, const Proposal& proposal) {
+  AlignedBox3d scene = proposal.target;
+  const double beside = 0.05 * scene.sizes().maxCoeff();
+  scene.min().array() -= beside;
+  scene.max().array() += beside;
+  if (!options.is_room()) scene.min().z() = 0.005 * proposal.target.sizes().z();
+  const double distance = proposal.coverage_distance;
+  return fmt::format(
+      "planner:\n"
+      "  name: skycap\n"
+      "  scene_box: {}  # region of interest{}\n"
+      "  view_distance: {:g}  # metres from a view to the surface\n"
+      "  density: {:.3g}  # required points per cubic metre\n"
+      "  resolution_radius: {:g}  # metres, in which points are counted\n"
+      "  spacing: {:g}  # metres, minimum distance of stored points\n"
+      "evaluation:\n"
+      "  coverage_distance: {:g}  # metres; a surface point with a measurement within it is "
+      "covered\n",
+      box_text(scene), options.is_room() ? "" : ", without the ground", proposal.view_distance,
+      0.36 / (distance * distance), 3.0 * distance, 0.5 * distance, distance);
+}
+
+std::string limits_text(const InitOptions& options, const Proposal& proposal) {
+  const AlignedBox3d& room = proposal.target;
+  std::string text = "limits:\n  max_views: 150  # the survey ends earlier if nothing is missing\n";
+  if (!options.is_flown()) {
+    text +=
+        fmt::format("  stand_off: {:g}  # metres, minimum distance of a view from any surface\n",
+                    rounded(0.2 * proposal.view_distance));
+  }
+  if (!options.is_room()) return text;
+  const double wall = options.is_flown() ? proposal.clearance : 0.0;
+  return text +
+         fmt::format(
+             "site:  # keeps views inside the room; the frame's origin is the middle of the floor\n"
+             "  geofence: [[{0:.4g}, {1:.4g}], [{2:.4g}, {1:.4g}], [{2:.4g}, {3:.4g}], "
+             "[{0:.4g}, {3:.4g}]]\n"
+             "  min_height: {4:.4g}  # z in metres\n"
+             "  max_height: {5:.4g}  # z in metres\n",
+             room.min().x(), room.min().y(), room.max().x(), room.max().y(), std::max(0.2, wall),
+             room.max().z() - wall);
+}
+
+std::string flight_text(const InitOptions& options, const Proposal& proposal) {
+  if (!options.is_flown()) return "";
+  AlignedBox3d unknown = proposal.target;
+  if (!options.is_room()) {
+    const double beside = std::ceil(proposal.clearance + 1.0);
+    unknown.min().head<2>().array() -= beside;
+    unknown.max().array() += beside;
+    unknown.min().z() = 0.0;
+  }
+  const bool is_file = fs::path(options.vehicle).extension() == ".yaml";
+  std::string text = fmt::format(
+      "flight:\n"
+      "  vehicle: {}  # a preset (skycap presets) or a description NAME.yaml\n"
+      "  clearance: {:g}  # metres from the vehicle's centre to anything not known to be free\n"
+      "  # Unknown space in this box is treated as occupied. Outside, the airspace above the "
+      "ground\n"
+      "  # is assumed free: the pilot must check it.\n"
+      "  unknown_box: {}\n",
+      is_file ? model_text(options.vehicle, options.out) : yaml_quoted(options.vehicle),
+      proposal.clearance, box_text(unknown));
+  if (options.is_room()) {
+    const double height = 0.5 * proposal.target.sizes().z();
+    text += fmt::format(
+        "  takeoff: [0, 0, 0]  # take-off and landing point\n"
+        "  takeoff_climb: {:.4g}  # metres straight up before the first leg\n"
+        "start:  # pose of the first scan\n"
+        "  position: {}\n"
+        "  direction: [1, 0, 0]\n",
+        height, vector_text({0.0, 0.0, height}));
+  }
+  return text;
+}
+
+int init(const InitOptions& options, const Console& console) {
+  if (options.out.extension() != ".yaml" && options.out.extension() != ".yml") {
+    throw Error(ErrorKind::bad_usage, "--out must end in .yaml");
+  }
+  if (fs::exists(options.out)) {
+    throw Error(ErrorKind::bad_usage,
+                options.out.string() + " exists; choose another --out, or remove it");
+  }
+  const Proposal proposal = proposal_for(options);
+  const std::string text = head_text(options) + sensor_text(options, proposal) +
+                           planner_text(options, proposal) + limits_text(options, proposal) +
+                           flight_text(options, proposal);
+  config::parse_mission(text, options.out.string());  // what it says must go together
+  geometry::write_file(options.out, text);
+  console.out << options.out.string() << ": mission for " << options.target << "; next: skycap "
+              << (options.is_room() ? "next " + options.out.string() + " --survey survey"
+                                    : "check " + options.out.string())
+              << "\n"
+              << std::flush;
+  return 0;
+}
+
+}  // namespace
+
+void add_init(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "init", "Create a commented mission file for a model or a room, without a georeference");
+  const auto options = std::make_shared<InitOptions>();
+  verb->add_option("target", options->target,
+                   "Mesh file, builtin:NAME, model:NAME, or room for a live survey")
+      ->required();
+  verb->add_option("--sensor", options->sensor,
+                   "Sensor preset (skycap presets) or description NAME.yaml (default: intel_d435)");
+  verb->add_option("--vehicle", options->vehicle,
+                   "Vehicle preset (skycap presets), description NAME.yaml, or none (default)");
+  verb->add_option("--size", options->size, "Size of a room in metres: X Y Z (default: 6 4 2.8)")
+      ->expected(3)
+      ->check(number_between(0.5, 1000.0));
+  verb->add_option("--out", options->out, "Mission file (default: mission.yaml)");
+  run(*verb, options, init, console, action);
+}
+
+}  // namespace skycap::missions::cli

@@ -1,0 +1,139 @@
+// skycap presets: the vehicles and sensors that the program knows.
+#include <memory>
+#include <string>
+#include <variant>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/angle.h"
+#include "missions/cli/verb_options.h"
+#include "missions/config/sensor_reader.h"
+#include "missions/config/vehicle_reader.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PresetsOptions {
+  bool is_json = false;
+};
+
+double degrees(double radians) { return radians / geometry::radians_per_degree; }
+
+const char* autopilot_of(const flight::Vehicle& vehicle) {
+  switch (vehicle.dialect) {
+    case flight::Dialect::px4:
+      return "PX4";
+    case flight::Dialect::ardupilot:
+      return "ArduPilot";
+    case flight::Dialect::dji:
+      break;
+  }
+  return "DJI";
+}
+
+Json json_of(const flight::Vehicle& vehicle) {
+  return {{"name", vehicle.name},
+          {"autopilot", autopilot_of(vehicle)},
+          {"mass_kg", vehicle.mass},
+          {"radius_m", vehicle.radius},
+          {"max_speed_m_s", vehicle.max_speed},
+          {"max_wind_m_s", vehicle.max_wind},
+          {"position_error_m", vehicle.position_error},
+          {"battery_wh", vehicle.battery_wh},
+          {"endurance_min", vehicle.endurance_min}};
+}
+
+/// The horizontal and vertical angles that a scanner covers, as far as channels and rotation say.
+Json json_of(const sim::LidarConfig& scanner) {
+  Json json{{"kind", scanner.prisms.empty() ? "spinning LiDAR" : "rosette LiDAR"},
+            {"min_range_m", scanner.min_range},
+            {"max_range_m", scanner.max_range},
+            {"channels", scanner.channels.size()},
+            {"pulses_per_s", static_cast<double>(scanner.channels.size()) / scanner.firing_period}};
+  if (scanner.prisms.empty()) json["horizontal_fov_deg"] = degrees(scanner.field_of_view);
+  return json;
+}
+
+Json json_of(const sim::DepthCameraConfig& camera) {
+  return {{"kind", "depth camera"},
+          {"min_range_m", camera.camera.min_range},
+          {"max_range_m", camera.camera.max_range},
+          {"width_px", camera.camera.width},
+          {"height_px", camera.camera.height},
+          {"horizontal_fov_deg", degrees(camera.camera.horizontal_fov)},
+          {"vertical_fov_deg", degrees(camera.camera.vertical_fov)}};
+}
+
+Json all_presets() {
+  Json vehicles = Json::array(), sensors = Json::array();
+  for (const std::string_view name : config::vehicle_presets()) {
+    Json vehicle = json_of(config::find_vehicle(std::string(name)));
+    vehicle["name"] = name;
+    vehicles.push_back(std::move(vehicle));
+  }
+  for (const std::string_view name : config::sensor_presets()) {
+    const config::SensorDescription found = config::find_sensor(std::string(name));
+    Json sensor{{"name", name}, {"title", found.name}};
+    sensor.update(std::visit([](const auto& config) { return json_of(config); }, found.sensor));
+    sensors.push_back(std::move(sensor));
+  }
+  return {{"vehicles", vehicles}, {"sensors", sensors}};
+}
+
+std::string vehicle_line(const Json& vehicle) {
+  return fmt::format(
+      "  {:<20} {:<10} {:>6.3g} kg  {:>5.3g} m  {:>5.3g} m/s  {:>5.3g} m/s  "
+      "{:>6.4g} Wh  {:>4.3g} min\n",
+      vehicle["name"].get<std::string>(), vehicle["autopilot"].get<std::string>(),
+      vehicle["mass_kg"].get<double>(), vehicle["radius_m"].get<double>(),
+      vehicle["max_speed_m_s"].get<double>(), vehicle["max_wind_m_s"].get<double>(),
+      vehicle["battery_wh"].get<double>(), vehicle["endurance_min"].get<double>());
+}
+
+std::string sensor_line(const Json& sensor) {
+  const std::string resolution =
+      sensor.contains("width_px")
+          ? fmt::format("{} x {} px, {:.3g} x {:.3g} degrees", sensor["width_px"].get<int>(),
+                        sensor["height_px"].get<int>(), sensor["horizontal_fov_deg"].get<double>(),
+                        sensor["vertical_fov_deg"].get<double>())
+          : fmt::format("{} channels, {:.4g} pulses/s", sensor["channels"].get<std::size_t>(),
+                        sensor["pulses_per_s"].get<double>());
+  return fmt::format("  {:<20} {:<14} {:>5.3g} to {:<5.4g} m  {}\n",
+                     sensor["name"].get<std::string>(), sensor["kind"].get<std::string>(),
+                     sensor["min_range_m"].get<double>(), sensor["max_range_m"].get<double>(),
+                     resolution);
+}
+
+int presets(const PresetsOptions& options, const Console& console) {
+  const Json all = all_presets();
+  if (options.is_json) {
+    console.out << all.dump(2) << "\n" << std::flush;
+    return 0;
+  }
+  std::string text = fmt::format(
+      "Vehicles (flight.vehicle)\n  {:<20} {:<10} {:>9}  {:>7}  {:>9}  "
+      "{:>9}  {:>9}  {:>8}\n",
+      "name", "autopilot", "mass", "radius", "max speed", "max wind", "battery", "endurance");
+  for (const Json& vehicle : all["vehicles"]) text += vehicle_line(vehicle);
+  text +=
+      fmt::format("Sensors (scan.sensor; LiDARs also sensor.lidar)\n  {:<20} {:<14} {:<16}  {}\n",
+                  "name", "kind", "range", "resolution");
+  for (const Json& sensor : all["sensors"]) text += sensor_line(sensor);
+  console.out << text << std::flush;
+  return 0;
+}
+
+}  // namespace
+
+void add_presets(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("presets", "List vehicle and sensor presets with their main properties");
+  const auto options = std::make_shared<PresetsOptions>();
+  verb->add_flag("--json", options->is_json, "Print the list as JSON");
+  run(*verb, options, presets, console, action);
+}
+
+}  // namespace skycap::missions::cli

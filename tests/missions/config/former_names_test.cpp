@@ -1,0 +1,145 @@
+#include "missions/config/former_names.h"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/io/file.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/resolve.h"
+#include "missions/config/setup_text.h"
+#include "missions/package/former_fields.h"
+#include "missions/package/package.h"
+#include "tests/missions/former_names/former_mission.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+using tests::former_mission;
+
+const std::filesystem::path source = SKYCAP_SOURCE_DIR;
+const std::string smallest =
+    "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.03}\n";
+const std::filesystem::path former_missions = source / "tests/missions/former_names/missions";
+
+std::string content_of(const std::filesystem::path& file) {
+  return geometry::read_file(file, 1 << 24);
+}
+
+config::MissionSetup setup_of(const std::string& text) {
+  return config::parse_mission(text, "m.yaml");
+}
+
+TEST(FormerNames, OfShippedMissionsMeanTheSame) {
+  std::size_t missions = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(former_missions)) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(config::setup_text(config::read_mission(entry.path())),
+              config::setup_text(config::read_mission(source / "missions" / name)))
+        << name;
+    ++missions;
+  }
+  EXPECT_EQ(missions, 9U);
+}
+
+TEST(FormerNames, OfShippedMissionsAreRewrittenToTheShippedFiles) {
+  for (const auto& entry : std::filesystem::directory_iterator(former_missions)) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(config::with_current_names(content_of(entry.path()), name),
+              content_of(source / "missions" / name));
+  }
+}
+
+TEST(FormerNames, AreAllRewrittenAndNothingElse) {
+  const std::string current = config::with_current_names(former_mission, "m.yaml");
+  EXPECT_EQ(config::setup_text(setup_of(current)), config::setup_text(setup_of(former_mission)));
+  EXPECT_EQ(config::with_current_names(current, "m.yaml"), current);
+  EXPECT_THAT(current, HasSubstr("  target_coverage: 0.9   # least_gain: 0.5 is not it\n"
+                                 "  'min_gain' : 0.01\n"
+                                 "  ablation:\n"
+                                 "    coverage_model: true\n"
+                                 "    batch: false\n"
+                                 "  still_occluded: defer  # put_off\n"));
+  EXPECT_THAT(current, HasSubstr("      floor: -1\n      ceiling: 3\n"));
+  EXPECT_THAT(current, HasSubstr("# A tower.  Its planner.least_gain stays in this comment.\n"));
+}
+
+TEST(FormerNames, OfValuesAreRead) {
+  const auto value = [](const std::string& key, const std::string& text) {
+    return config::parse_mission_document(
+        smallest, "m.yaml",
+        {{"--set", "flight.vehicles", "[generic, generic]"}, {"--set", key, text}});
+  };
+  const std::pair<const char*, std::pair<const char*, const char*>> values[] = {
+      {"planner.still_occluded", {"put_off", "defer"}},
+      {"flight.views", {"anew", "replanned"}},
+      {"flight.fleet_goal", {"flown", "total_time"}},
+      {"flight.style", {"pass", "fly-through"}}};
+  for (const auto& [key, names] : values) {
+    const config::Key& known = *config::find_key(key);
+    EXPECT_EQ(known.get(value(key, names.first)), known.get(value(key, names.second))) << key;
+    EXPECT_EQ(known.get(value(key, names.first)), config::KeyValue(std::string(names.second)));
+  }
+}
+
+TEST(FormerNames, AreRefusedBesideTheCurrentOnes) {
+  const auto complaint = [](const std::string& section) {
+    return testing_support::complaint_of(
+        [&] { setup_of("scene: {model: 'builtin:teapot'}\nevaluation:\n" + section); });
+  };
+  EXPECT_THAT(complaint("  coverage_distance: 0.03\n  registration_distance: 0.03\n"),
+              HasSubstr("m.yaml:4: key evaluation.registration_distance is now "
+                        "evaluation.coverage_distance, which is set, too; remove one of them"));
+}
+
+TEST(FormerNames, ThatCannotBeToldApartAreNotRewritten) {
+  EXPECT_THAT(testing_support::complaint_of([] {
+                config::with_current_names(
+                    "{scan: {orbit: {radius: 3}}, evaluation: {radius: 1}}\n", "m.yaml");
+              }),
+              HasSubstr("write each key in a line of its own"));
+}
+
+// A summary that version 0.1 wrote, as the corpora of the readers keep it.
+TEST(FormerFields, OfPackagesAreRead) {
+  const std::filesystem::path file = source / "tests/fuzz/corpus/summary/package.json";
+  ASSERT_THAT(content_of(file), HasSubstr("\"version\": \"0.1.0\""));
+  const package::PackageSummary summary =
+      package::parse_package_summary(content_of(file), file.string());
+  EXPECT_FALSE(summary.views.empty());
+  EXPECT_GT(summary.mission.evaluation().registration_distance, 0.0);
+}
+
+TEST(FormerFields, HaveCurrentNamesAndWords) {
+  using Json = nlohmann::ordered_json;
+  Json former = Json::parse(R"({
+    "coverage_ceiling": 0.9, "stop_reason": "nowhere_to_go", "planner": "anew",
+    "belief": {"stop": "little_gain", "predicted_coverage": 0.8, "missing": {"never_seen": 0.1},
+               "reliability": {"bands": [{"believed": 0.1}]}},
+    "surface": {"holes": [{"reason": "seen_too_thinly"}]},
+    "flight": {"anew": {"anew": {"promised_coverage": 0.7}}, "route": {"unreached": []}},
+    "settings": {"planner.ideas.dose": true}})");
+  package::use_current_fields(former);
+  const Json current = Json::parse(R"({
+    "attainable_coverage": 0.9, "stop_reason": "no_reachable_view", "planner": "anew",
+    "estimate": {"stop": "min_gain", "estimated_coverage": 0.8, "missing": {"unobserved": 0.1},
+                 "reliability": {"bands": [{"estimated": 0.1}]}},
+    "surface": {"holes": [{"reason": "undersampled"}]},
+    "flight": {"replanned": {"replanned": {"predicted_coverage": 0.7}},
+               "route": {"skipped_views": []}},
+    "settings": {"planner.ablation.coverage_model": true}})");
+  EXPECT_EQ(former.dump(), current.dump());
+  Json again = current;
+  package::use_current_fields(again);
+  EXPECT_EQ(again.dump(), current.dump());
+}
+
+}  // namespace
+}  // namespace skycap::missions
