@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include <ceres/dynamic_numeric_diff_cost_function.h>
+#include <ceres/cost_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
@@ -141,43 +141,87 @@ bool is_hover(const LogWindow& window) {
                              [](const Vector3d& v) { return v.norm() < hover_speed; });
 }
 
-/// The weighted errors of all windows, and of the wind [W].
-struct Errors {
+struct Problem {
   std::span<const LogWindow> windows;
   const Vehicle& vehicle;
   double air_density;
   const std::vector<double>& weights;
 
-  /// False if no vehicle is like that.
-  bool operator()(double const* const* parameters, double* errors) const {
+  /// Throws an Error if the vehicle does not fly in such wind.
+  Basis basis(double east, double north) const { return {vehicle, {east, north}, air_density}; }
+};
+
+/// The weighted errors of all windows, and of the wind [W]. Derivatives are exact where the model
+/// is linear; those by the wind are central differences.
+class Errors final : public ceres::CostFunction {
+ public:
+  explicit Errors(const Problem& problem) : problem_(problem) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(Unknowns{}.size()));
+    set_num_residuals(static_cast<int>(problem.windows.size()) + 2);
+  }
+
+  bool Evaluate(double const* const* parameters, double* errors,
+                double** jacobians) const override {
     Unknowns x;
     std::copy_n(parameters[0], x.size(), x.begin());
+    const auto& windows = problem_.windows;
     try {
-      const Basis basis(vehicle, {x[wind_east], x[wind_north]}, air_density);
+      const Basis basis = problem_.basis(x[wind_east], x[wind_north]);
+      double* const rows = jacobians != nullptr ? jacobians[0] : nullptr;
       for (std::size_t i = 0; i < windows.size(); ++i) {
-        errors[i] = weights[i] * (power_of(x, basis.of(windows[i])) - windows[i].power);
+        const double weight = problem_.weights[i];
+        const std::array<double, 2> parts = basis.of(windows[i]);
+        errors[i] = weight * (power_of(x, parts) - windows[i].power);
+        if (rows == nullptr) continue;
+        double* const row = rows + i * x.size();
+        row[rotors] = weight * parts[0];
+        row[avionics] = weight;
+        row[drag] = weight * parts[1];
       }
-      errors[windows.size()] = wind_weight * x[wind_east];
-      errors[windows.size() + 1] = wind_weight * x[wind_north];
-      return true;
+      if (rows != nullptr) {
+        add_wind(x, wind_east, rows);
+        add_wind(x, wind_north, rows);
+      }
     } catch (const Error&) {
       return false;
     }
+    errors[windows.size()] = wind_weight * x[wind_east];
+    errors[windows.size() + 1] = wind_weight * x[wind_north];
+    return true;
   }
+
+ private:
+  void add_wind(const Unknowns& x, std::size_t axis, double* rows) const {
+    constexpr double step = 1e-4;  // [m/s]
+    Unknowns less = x, more = x;
+    less[axis] -= step;
+    more[axis] += step;
+    const Basis before = problem_.basis(less[wind_east], less[wind_north]);
+    const Basis after = problem_.basis(more[wind_east], more[wind_north]);
+    const std::size_t count = problem_.windows.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const LogWindow& window = problem_.windows[i];
+      const double change = power_of(x, after.of(window)) - power_of(x, before.of(window));
+      rows[i * x.size() + axis] = problem_.weights[i] * change / (2.0 * step);
+    }
+    for (const std::size_t of : {wind_east, wind_north}) {
+      double* const row = rows + (count + of - wind_east) * x.size();
+      row[rotors] = row[avionics] = row[drag] = 0.0;
+      row[axis] = of == axis ? wind_weight : 0.0;
+    }
+  }
+
+  const Problem& problem_;
 };
 
 /// One weighted least-squares fit within the bounds, from `x` on.
-Unknowns solved(Unknowns x, const Errors& errors) {
-  ceres::Problem problem;
-  auto cost = std::make_unique<ceres::DynamicNumericDiffCostFunction<Errors, ceres::CENTRAL>>(
-      new Errors(errors));
-  cost->AddParameterBlock(static_cast<int>(x.size()));
-  cost->SetNumResiduals(static_cast<int>(errors.windows.size()) + 2);
-  problem.AddResidualBlock(cost.release(), nullptr, x.data());
-  problem.SetParameterLowerBound(x.data(), rotors,
-                                 least_rotor_share * min_rotor_power(errors.vehicle));
-  problem.SetParameterLowerBound(x.data(), avionics, least_avionics);
-  problem.SetParameterLowerBound(x.data(), drag, least_drag);
+Unknowns solved(Unknowns x, const Problem& problem) {
+  ceres::Problem fit;
+  fit.AddResidualBlock(std::make_unique<Errors>(problem).release(), nullptr, x.data());
+  fit.SetParameterLowerBound(x.data(), rotors,
+                             least_rotor_share * min_rotor_power(problem.vehicle));
+  fit.SetParameterLowerBound(x.data(), avionics, least_avionics);
+  fit.SetParameterLowerBound(x.data(), drag, least_drag);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.dense_linear_algebra_library_type = ceres::EIGEN;
@@ -188,7 +232,7 @@ Unknowns solved(Unknowns x, const Errors& errors) {
   options.parameter_tolerance = 1e-9;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  ceres::Solve(options, &fit, &summary);
   if (!summary.IsSolutionUsable()) {
     throw Error(ErrorKind::bad_file, "no power model fits the log (" + summary.message + ")");
   }
@@ -196,8 +240,8 @@ Unknowns solved(Unknowns x, const Errors& errors) {
 }
 
 /// Huber's weights of the windows' errors, whose deviation is by their median.
-void reweight(std::vector<double>& weights, const Errors& problem, const Unknowns& x) {
-  const Basis basis(problem.vehicle, {x[wind_east], x[wind_north]}, problem.air_density);
+void reweight(std::vector<double>& weights, const Problem& problem, const Unknowns& x) {
+  const Basis basis = problem.basis(x[wind_east], x[wind_north]);
   std::vector<double> errors;
   for (const LogWindow& window : problem.windows) {
     errors.push_back(std::abs(power_of(x, basis.of(window)) - window.power));
@@ -212,13 +256,13 @@ void reweight(std::vector<double>& weights, const Errors& problem, const Unknown
 
 /// The nearest that is possible, at the same wind and hover power: rotors with their least power,
 /// and the drag that fits best then.
-Unknowns with_possible_rotors(Unknowns x, const Errors& problem) {
+Unknowns with_possible_rotors(Unknowns x, const Problem& problem) {
   const double least = least_rotors(problem.vehicle);
   if (x[rotors] >= least) return x;
   x[avionics] = std::max(least_avionics, x[rotors] + x[avionics] - least);
   x[rotors] = least;
   x[drag] = 0.0;
-  const Basis basis(problem.vehicle, {x[wind_east], x[wind_north]}, problem.air_density);
+  const Basis basis = problem.basis(x[wind_east], x[wind_north]);
   double products = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < problem.windows.size(); ++i) {
     const LogWindow& window = problem.windows[i];
@@ -318,15 +362,15 @@ PowerFit fit_power(std::span<const LogWindow> windows, const Vehicle& vehicle, d
   x[avionics] = std::max(2.0 * least_avionics, hover_power - x[rotors]);
   x[drag] = x[rotors] * std::max(2.0 * least_drag, vehicle.drag_area);
   std::vector<double> weights(windows.size(), 1.0);
-  const Errors errors{windows, vehicle, air_density, weights};
+  const Problem problem{windows, vehicle, air_density, weights};
   for (int i = 0; i < reweightings; ++i) {
-    x = solved(x, errors);
-    reweight(weights, errors, x);
+    x = solved(x, problem);
+    reweight(weights, problem, x);
   }
   for (std::size_t i = 0; i < windows.size(); ++i) {
     if (is_hover(windows[i])) weights[i] *= hover_weight;
   }
-  x = with_possible_rotors(solved(x, errors), errors);
+  x = with_possible_rotors(solved(x, problem), problem);
   PowerFit fit = fit_of(x, vehicle);
   fit.at_bound = bounds_met(x, vehicle);
   return fit;

@@ -181,6 +181,12 @@ flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
   return vehicle;
 }
 
+std::vector<std::string_view> vehicle_presets() {
+  std::vector<std::string_view> names;
+  for (const PresetFile& preset : vehicle_preset_files()) names.push_back(preset.name);
+  return names;
+}
+
 flight::Vehicle find_vehicle(const std::string& name_or_file) {
   const PresetText found = preset_text("vehicle", name_or_file, vehicle_preset_files());
   return read_vehicle(found.text, found.file);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "flight/motion/vehicle.h"
 
@@ -13,6 +15,9 @@ namespace skycap::missions::config {
 /// Error{bad_config} in the form "FILE:LINE: key KEY WHAT IS WRONG", for unknown, missing and
 /// mistyped keys and values out of range.
 flight::Vehicle read_vehicle(const std::string& text, const std::string& file);
+
+/// The names of the presets, such as "m350_rtk", in alphabetical order.
+std::vector<std::string_view> vehicle_presets();
 
 /// The vehicle of that name, or that the file of that path holds if it ends in .yaml. Throws
 /// Error{bad_config} with the known names, or Error{bad_file}.

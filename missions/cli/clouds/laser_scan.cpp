@@ -11,7 +11,7 @@
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
 #include "missions/cli/clouds/scan_results.h"
-#include "missions/cli/clouds/split_work.h"
+#include "missions/cli/tasks.h"
 #include "missions/cli/write_page.h"
 #include "missions/package/settings.h"
 #include "missions/scan/cloud_formats.h"
