@@ -52,10 +52,10 @@ std::vector<Station> RouteLegs::allowed(std::vector<Station> stations) {
 std::string RouteLegs::why_not_allowed(const Station& station) const {
   const Vehicle& vehicle = motion_.vehicle();
   if (!can_look(vehicle, station.view)) {
-    return "the gimbal of \"" + vehicle.name + "the gimbal of \"";
+    return "the gimbal of \"" + vehicle.name + "\" cannot look in that direction";
   }
   const Segment place{station.view.position, station.view.position};
-  if (space_.is_free(place, clearance_)) return "\" cannot look in that direction";
+  if (space_.is_free(place, clearance_)) return "";
   const Closest closest = space_.closest(place, clearance_ + 1.0);
   return "it is " + length_text(closest.distance) + " from " + space_.name(closest);
 }

@@ -39,7 +39,7 @@ geometry::Mesh mesh_of(const std::string& model, const std::optional<std::string
     }
     scene.detail = level_of_detail(*detail);
   }
-  return scene::load_model(scene, " has the detail of its file");
+  return scene::load_model(scene, "");
 }
 
 void obtain_if_missing(const std::string& name, const Console& console) {

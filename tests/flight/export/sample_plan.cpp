@@ -35,7 +35,8 @@ FlightPlan plan_for(const Vehicle& vehicle, const std::vector<Eigen::Vector3d>& 
   options.returns = ReturnOptions{{Dialect::ardupilot, Dialect::px4}, 40.0};
   const Route route = plan_route(stations, vehicle, space, &pad_space, options);
   if (route.sorties.size() != 1 || !route.unreached.empty()) {
-    throw std::logic_error("the sample flight must be one sortie through all stations");
+    throw std::logic_error("the sample flight must be one sortie through all stations" +
+                           (route.unreached.empty() ? "" : ": " + route.unreached[0].reason));
   }
   const Site site{{51.753458, -1.254022, 111.5}, 46.7};
   return flight_plan(route, 0, "sample", site, obstacles, Corners::flown_round);
