@@ -24,9 +24,9 @@ void require_limit(bool holds, const std::string& what) {
 
 void ViewLimits::validate() const {
   require_limit(stand_off >= 0.0 && std::isfinite(stand_off),
-          "stand_off is " + std::to_string(stand_off) + "; it must be zero or more metres");
+                "stand_off is " + std::to_string(stand_off) + "; it must be zero or more metres");
   require_limit(!least_height || !most_height || *least_height < *most_height,
-          "least_height must be less than most_height; no airspace is left");
+                "least_height must be less than most_height; no airspace is left");
   require_limit(
       least_pitch < most_pitch && std::abs(least_pitch) < 1.5708 && std::abs(most_pitch) < 1.5708,
       "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
@@ -35,10 +35,10 @@ void ViewLimits::validate() const {
       "geofence has " + std::to_string(geofence.size()) + " corners; at least three are required");
   for (const geometry::Prism& prism : no_fly) {
     require_limit(prism.footprint.size() >= 3, "no_fly has a volume of " +
-                                             std::to_string(prism.footprint.size()) +
-                                             " corners; at least three are required");
+                                                   std::to_string(prism.footprint.size()) +
+                                                   " corners; at least three are required");
     require_limit(prism.floor < prism.ceiling,
-            "no_fly has a volume whose floor is not below its ceiling");
+                  "no_fly has a volume whose floor is not below its ceiling");
   }
 }
 

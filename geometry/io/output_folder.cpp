@@ -135,7 +135,7 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   is_new_ = fs::create_directories(folder_, failure);
   if (failure) {
     fail_at(folder_,
-         "cannot be created (" + failure.message() + "); use a folder that you can write to");
+            "cannot be created (" + failure.message() + "); use a folder that you can write to");
   }
   lock_and_clean();
 }

@@ -104,7 +104,7 @@ void run_step(const std::vector<std::string>& command, const fs::path& folder) {
   }
   std::string line = result.output.substr(0, result.output.find('\n'));
   fail(command[0] + " " + command[1] + " failed with code " + std::to_string(result.exit_code) +
-       (line.empty() ? "" : " (" + line + ")") + "); check the network connection");
+       (line.empty() ? "" : " (" + line + ")") + "; check the network connection");
 }
 
 }  // namespace

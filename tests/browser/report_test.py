@@ -64,7 +64,7 @@ class ReportTest(unittest.TestCase):
     def test_5_holes_sum_to_what_is_missing(self):
         total = float(self.page.all("#missing-sum")[0].get_attribute("data-area"))
         surface, belief = self.summary["surface"], self.summary["estimate"]
-        self.assertAlmostEqual(total / surface["area_m2"], 1 - belief["predicted_coverage"], 4)
+        self.assertAlmostEqual(total / surface["area_m2"], 1 - belief["estimated_coverage"], 4)
 
     def test_5b_a_click_on_a_hole_shows_it(self):
         page = self.page

@@ -59,7 +59,7 @@ endforeach()
 file(WRITE ${FOLDER}/alone/CMakeLists.txt "
   cmake_minimum_required(VERSION 3.25)
   project(headers LANGUAGES CXX)
-  find_package(Skycap 0.1 REQUIRED COMPONENTS geometry sim survey flight missions)
+  find_package(Skycap 0.2 REQUIRED COMPONENTS geometry sim survey flight missions)
   file(GLOB sources *.cpp)
   add_library(headers OBJECT \${sources})
   target_link_libraries(headers PRIVATE Skycap::missions)

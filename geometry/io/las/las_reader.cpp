@@ -212,7 +212,8 @@ std::string LasReader::compression_record() {
     if (id == las::compression_id && user.starts_with(las::compression_user)) record = content;
     return !record;
   });
-  if (!record) fail_cloud(file_->path(), "is compressed (LAZ), but the record of its compression is missing");
+  if (!record)
+    fail_cloud(file_->path(), "is compressed (LAZ), but the record of its compression is missing");
   return *record;
 }
 

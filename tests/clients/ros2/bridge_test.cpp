@@ -172,7 +172,7 @@ TEST_F(BridgedRobot, ScansWaitForOdometryButNotForever) {
   EXPECT_NEAR(poses_[0][3], 1.0 + 0.75 * 2 / 3, 1e-9);
   cloud(11.0);
   proceed(0.6);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is not known: nothing within 0.1 s")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is unknown: nothing within 0.1 s")));
   EXPECT_THAT(poses_, SizeIs(1));
 }
 
@@ -187,7 +187,7 @@ TEST_F(BridgedRobot, NothingThatIsWrongGetsIntoTheSurvey) {
   arrive();
   odometry(2e9, {700, 0, 0});  // from the future
   odometry(10.0, {9, 9, 9});   // another one at 10.0
-  EXPECT_THAT(warnings_.back(), HasSubstr("another pose with the same stamp"));
+  EXPECT_THAT(warnings_.back(), HasSubstr("another pose has the same stamp"));
   now_ += 10.0;
   {
     SampleOdometry other(seconds(10.01), {8, 8, 8});
@@ -209,7 +209,7 @@ TEST_F(BridgedRobot, NothingThatIsWrongGetsIntoTheSurvey) {
   now_ += 10.0;
   cloud(1.5e9);  // from the future
   proceed(1.0);
-  EXPECT_THAT(warnings_.back(), HasSubstr("its pose is not known"));
+  EXPECT_THAT(warnings_.back(), HasSubstr("its pose is unknown"));
   now_ += 10.0;
   SampleCloud spoiled(seconds(10.5), {{1, 2, 3}});
   spoiled.message.row_step = 1;

@@ -87,8 +87,8 @@ TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
          c.data.push_back(0);
        }},
       {"4 times 17 require more", [](SampleCloud& c) { c.message.point_step = 17; }},
-      {"points; at most", [](SampleCloud& c) { c.message.height = c.message.width = 0xFFFFFFFF; }},
-      {"points; at most", [](SampleCloud& c) { c.message.width = 0x80000000; }},
+      {"points; the maximum is", [](SampleCloud& c) { c.message.height = c.message.width = 0xFFFFFFFF; }},
+      {"points; the maximum is", [](SampleCloud& c) { c.message.width = 0x80000000; }},
       {"times 16 require more", [](SampleCloud& c) { c.message.width = 0x01000001; }},
       {"0 rows of 4294967280 are a different number",
        [](SampleCloud& c) {
@@ -176,7 +176,7 @@ TEST(DepthScan, RefusesLensesThatItCannotGoBy) {
   EXPECT_THAT(complaint([](SampleInfo& i) { i.message.roi.width = 2; }), HasSubstr("region"));
   EXPECT_THAT(complaint([](SampleInfo& i) { i.message.roi.y_offset = 1; }), HasSubstr("region"));
   EXPECT_THAT(complaint(nothing, {0, 0, 0, 0, 0, 0.1, 0, 0}), HasSubstr("plumb_bob"));
-  EXPECT_THAT(complaint(nothing, {none}), HasSubstr("none"));
+  EXPECT_THAT(complaint(nothing, {none}), HasSubstr("D is not finite"));
   EXPECT_EQ(complaint(nothing, {0, 0, 0, 0, 0, 0, 0, 0}), "");
   std::string fisheye = "equidistant";
   EXPECT_THAT(complaint([&](SampleInfo& i) { i.message.distortion_model = fisheye.data(); }, {0.1}),

@@ -39,7 +39,7 @@ class BothAutopilots : public testing::TestWithParam<Dialect> {
   static auto names(const MissionFile& file, std::size_t index, const std::string& what) {
     return Contains(AllOf(testing::StartsWith(name_of(file.items[index]) + " "), HasSubstr(what)));
   }
-};  // namespace skycap::flight
+};
 
 INSTANTIATE_TEST_SUITE_P(Interpreter, BothAutopilots,
                          testing::Values(Dialect::px4, Dialect::ardupilot),

@@ -83,7 +83,7 @@ class UnprovableGate : public KnownSpace {
     Closest closest = KnownSpace::closest(leg, up_to);
     if (crosses(leg)) closest.distance = std::min(closest.distance, 1.5);
     return closest;
-  }  // namespace
+  }
 
   static bool crosses(const Segment& leg) {
     const double from = leg.from.x(), to = leg.to.x();
@@ -91,7 +91,7 @@ class UnprovableGate : public KnownSpace {
     const double share = from / (from - to);
     return leg.from.y() + share * (leg.to.y() - leg.from.y()) > 0.0;
   }
-};  // namespace skycap::flight
+};
 
 TEST(Route, LeavesOutLegsThatAreNotProven) {
   const UnprovableGate space;
@@ -279,7 +279,7 @@ TEST(Route, AViewThatCannotBeReachedIsReportedAndTheRestIsFlown) {
 // The bar: a small battery, no sortie below its reserve, at most 15 % over the printed bound.
 TEST(Route, SplitsIntoSortiesThatKeepTheirReserve) {
   Vehicle small;
-  small.battery_wh = 21.6, small.endurance_min = 6.48;
+  small.battery_wh = 12.0, small.endurance_min = 3.6;
   const Route route = plan(ring(60, 18, 8), site(), options(), small);
   EXPECT_EQ(route.stations.size(), 60U);
   EXPECT_GT(route.sorties.size(), 2U);

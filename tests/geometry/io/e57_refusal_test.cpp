@@ -57,7 +57,7 @@ TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
       {with_bytes(whole, 16, std::string(8, '\0')), "says to have 0 bytes"},
       {with_bytes(whole, 40, std::string("\x00\x03\0\0", 4)), "has pages of 768 bytes"},
       {with_bytes(whole, 40, eight), "has pages of 18446744073709551615 bytes"},
-      {with_bytes(whole, 24, eight), "its XML is at byte 18446744073709551615, which is behind"},
+      {with_bytes(whole, 24, eight), "its XML is at byte 18446744073709551615, which is after its end"},
       {with_bytes(whole, 24, std::string("\xFD\x03\0\0", 4)), "byte 1021, which is in a checksum"},
       {with_bytes(whole, 32, eight), "has XML of 18446744073709551615 bytes"},
       {with_bytes(whole, 32, std::string("\x10\0\0\0", 4)), "has XML that is damaged at its byte"},

@@ -299,7 +299,7 @@ TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
       {"list.ply", ply("element face 1\nproperty list float int vertex_indices\nend_header\n"),
        "the length of a list must be of an integer type"},
       {"huge.ply", ply("element vertex 30000000\nproperty float x\nend_header\n1\n"),
-       "promises 30000000 of element 'vertex', but the file is too short"},
+       "declares 30000000 of element 'vertex', but the file is too short"},
       {"vertices.ply", ply("element vertex 120000001\nproperty float x\nend_header\n1\n"),
        "contains more than 40000000 faces, 120000000 corners of faces or 120000000 vertices"},
       {"faces.ply",

@@ -99,7 +99,7 @@ TEST(OutputFolder, LetsOneWriterInAtATime) {
   const TemporaryFolder folder;
   const OutputFolder first(folder.path());
   EXPECT_THAT([&] { OutputFolder(folder.path()); },
-              ThrowsMessage<Error>(HasSubstr("is being written to by another skycap")));
+              ThrowsMessage<Error>(HasSubstr("is in use by another skycap")));
 }
 
 TEST(OutputFolder, CommitsWhatIsOnTheDiskAlready) {

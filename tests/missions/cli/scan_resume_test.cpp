@@ -140,12 +140,12 @@ TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
     return run.err;
   };
   EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed changed from 1 to 2"));
-  EXPECT_THAT(refusal({"--format", "las"}), HasSubstr("formats was "));
+  EXPECT_THAT(refusal({"--format", "las"}), HasSubstr("formats changed from "));
   EXPECT_THAT(refusal(with(clouds_, {"--set", "scan.orbit.speed=21"})),
               HasSubstr("cannot resume: "));
   folder_.write("cube.obj",
                 content_of(folder_ / "cube.obj") + "v 2 2 0\nv 2 3 0\nv 2 3 3\n" + "f 9 10 11\n");
-  EXPECT_THAT(refusal(clouds_), HasSubstr("scene_digest was "));
+  EXPECT_THAT(refusal(clouds_), HasSubstr("scene_digest changed from "));
 }
 
 // Of files that a key names, what they hold counts.
@@ -162,8 +162,8 @@ TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
     folder_.write(file, kept);
     return run.err;
   };
-  EXPECT_THAT(refusal_with("camera.yaml", "_deg: 5", "_deg: 5.1"), HasSubstr("sensor_digest was "));
-  EXPECT_THAT(refusal_with("views.csv", "2,3,0,1", "2,3,0,1.001"), HasSubstr("route_digest was "));
+  EXPECT_THAT(refusal_with("camera.yaml", "_deg: 5", "_deg: 5.1"), HasSubstr("sensor_digest changed from "));
+  EXPECT_THAT(refusal_with("views.csv", "2,3,0,1", "2,3,0,1.001"), HasSubstr("route_digest changed from "));
   EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
 }
 

@@ -150,7 +150,7 @@ TEST(Resolve, RefusesAirspacesThatCannotBe) {
   EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", floor: 3, ceiling: 3}]}"),
               HasSubstr("site.no_fly"));
   EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", floor: 0, roof: 3}]}"),
-              HasSubstr("a list of {corners, bottom, top}"));
+              HasSubstr("a list of {corners, floor, ceiling}"));
   EXPECT_THAT(parsed("site: {no_fly: []}").flight().airspace.no_fly, testing::IsEmpty());
   EXPECT_THAT(complaint(std::string(smallest) + "site: {min_height: 5, max_height: 5}"),
               HasSubstr("site.max_height must be greater than"));

@@ -179,7 +179,7 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
     EXPECT_GE(share, 0.0) << reason;
     missing += share.get<double>();
   }
-  EXPECT_NEAR(missing + belief["predicted_coverage"].get<double>(), 1.0, 1e-5);  // float areas
+  EXPECT_NEAR(missing + belief["estimated_coverage"].get<double>(), 1.0, 1e-5);  // float areas
   EXPECT_EQ(belief["stop"], "view_limit");
   EXPECT_GT(belief["next_gain"], 0.0);
   EXPECT_EQ(belief["noise_m"], record.belief->noise);

@@ -68,7 +68,7 @@ TEST(Feasibility, SaysWhatCannotWork) {
   }
   const Settings small_box{{"flight.unknown_box.max", "[0, 11, 13]"}};
   EXPECT_THAT(of(flown_mission(), small_box).problems,
-              Contains(HasSubstr("flight.unknown_box leaves")));
+              Contains(HasSubstr("flight.unknown_box excludes")));
 }
 
 TEST(Feasibility, WarnsOfWhatIsHardlyMeant) {

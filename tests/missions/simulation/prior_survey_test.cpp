@@ -116,7 +116,7 @@ TEST(PriorSurvey, SaysAtWhichKeyASourceIsWrong) {
   EXPECT_THAT(complaint("{file: a.obj, role: target, crs: 'EPSG:25832', place: {heading_deg: 1}}"),
               HasSubstr("key prior[0].crs conflicts with place"));
   EXPECT_THAT(complaint("{file: a.obj, role: terrain, base: terrain}"),
-              HasSubstr("key prior[0].base of the terrain"));
+              HasSubstr("the base of terrain must be a number"));
   const TestFolder folder;
   geometry::write_mesh(folder.path() / "a.obj", flight::scenes::box({0, 0, 0}, {1, 1, 1}));
   const std::string file = "{file: '" + (folder.path() / "a.obj").string() + "', role: obstacle, ";

@@ -260,7 +260,7 @@ TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
                           s.base_on_terrain = true;
                           s.height = 1.0;
                         }),
-              HasSubstr("vertical requires a coordinate reference system"));
+              HasSubstr("vertical does not apply to this file"));
 }
 
 TEST_F(OneBox, OfPlacesInTheSitesFrame) {

@@ -130,7 +130,7 @@ TEST(Campaign, RefusesWhatItDoesNotUnderstandWhereItStands) {
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  v: {seed: 3}\n"),
               HasSubstr("c.yaml:3: key variants.v.seed follows from the campaign"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  ../v: {}\n"),
-              HasSubstr("c.yaml:3: key variants.../v: is not a valid folder name"));
+              HasSubstr("c.yaml:3: key variants.../v is not a valid folder name"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  v: 3\n"),
               HasSubstr("c.yaml:3: key variants.v must be a map"));
   EXPECT_THAT(refusal_of("missions: [a.yaml, b/a.yaml]\n"),

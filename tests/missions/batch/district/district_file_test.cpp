@@ -97,7 +97,7 @@ TEST(DistrictFile, SaysWhatIsWrongAndWhatWouldBeRight) {
       {"map: a\nset: {flight.takeoff: [0, 0, 0]}\n",
        ":2: key set.flight.takeoff follows from the district's files, targets, pads"},
       {"map: a\nset: {scene: {model: x}}\n", ":2: key set.scene.model follows from the district"},
-      {"map: a\nset: {limits.most_views: 3}\n", ":2: key set.limits.most_views: "},
+      {"map: a\nset: {limits.most_views: 3}\n", ":2: key set.limits.most_views is unknown"},
       {"map: a\nfleet: 2\n", ":2: key fleet is unknown"},
       {"[a, b]\n", ":1: is not a map; a district is a list of 'key: value'"}};
   for (const Complaint& one : complaints) {

@@ -197,7 +197,7 @@ TEST_F(District, OnASlopeNeedsATerrain) {
   folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}, {120, 0, 3}}));
   const auto refused = run();
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("differ by 7.0 m, and the ground between them is not known"));
+  EXPECT_THAT(refused.err, HasSubstr("differ by 7.0 m, and the ground between them is unknown"));
 }
 
 /// Cells of 6 m whose ground rises from 380 m in the west to 387 m in the east.

@@ -176,7 +176,7 @@ TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
     survey.refuse("elsewhere");
     answer = answer_json(survey, rehearsal.setup().flight());
     EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
-    EXPECT_THAT(answer, HasSubstr("\"set_aside\":1"));
+    EXPECT_THAT(answer, HasSubstr("\"rejected\":1"));
   }
   LiveSurvey survey = rehearsal.open(folder.path());
   EXPECT_EQ(answer_json(survey, rehearsal.setup().flight()), answer);

@@ -352,7 +352,7 @@ TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
   EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
   header["format"] = "mp3";
   EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("expected points, cloud or depth"));
-  EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("the type 'dance' is unknown"));
+  EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("unknown type 'dance'"));
   EXPECT_THAT(ask({{"number", 1}}), HasSubstr("error"));
   EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("no scan yet"));
   nlohmann::ordered_json depth{{"type", "scan"},    {"number", 0}, {"pose", pose_of(scan)},
