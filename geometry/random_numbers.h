@@ -31,13 +31,13 @@ class RandomNumbers {
 
   /// In [0, 1).
   double uniform() { return unit_number(engine_()); }
-  /// In [least, most).
+  /// Draws a number in [least, most).
   double between(double least, double most) { return least + (most - least) * uniform(); }
-  /// From least to most, both included.
+  /// Draws an integer from `least` to `most`, both included.
   int integer(int least, int most) {
     return least + static_cast<int>(engine_() % static_cast<std::uint64_t>(most - least + 1));
   }
-  /// Of mean 0 and standard deviation 1.
+  /// Draws from the normal distribution with mean 0 and standard deviation 1.
   double normal();
 
  private:

@@ -76,7 +76,7 @@ class OtherPagesTest(unittest.TestCase):
             legend = page.all(".legend")[0].text
             self.assertIn("prior: obstacle", legend)
             self.assertNotIn("prior: terrain", legend)
-            self.assertIn("many.obj has too many triangles to be drawn", legend)
+            self.assertIn("many.obj has too many triangles to display", legend)
             page.click("[data-layer='priors']")
             self.assertEqual(page.get("window.shown.panel.viewer.layers.priors.visible"), False)
             self.assertEqual(page.complaints(), [])
@@ -173,7 +173,7 @@ class OtherPagesTest(unittest.TestCase):
         subprocess.run([os.environ["PROGRAM"], "report", str(self.folder / "out")], check=True,
                        stdout=subprocess.DEVNULL)
         page = self.shows(self.folder / "out" / "report.html")
-        self.assertIn("it was interrupted", page)
+        self.assertIn("incomplete: interrupted", page)
 
     def test_an_empty_survey(self):
         results = plan(self.folder, MISSION % "nothing", "--max-views", "2")
@@ -185,7 +185,7 @@ class OtherPagesTest(unittest.TestCase):
         for name in ("cloud.ply", "coverage.ply"):
             (results / name).unlink()
         run("report", str(results))
-        self.assertIn("it was interrupted", self.shows(results / "report.html"))
+        self.assertIn("incomplete: interrupted", self.shows(results / "report.html"))
 
     def test_many_views_and_points(self):
         """Of 2 million points the page shows one; 200 views can be replayed."""
@@ -346,7 +346,7 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                 self.wait_for(page, f"document.body.innerText.includes('{number + 1} scan')")
                 answer = json.loads(run(*call).stdout)
             self.assertEqual(answer["state"], "view_limit")
-            self.wait_for(page, "document.body.innerText.includes('skycap finish makes the package')")
+            self.wait_for(page, "document.body.innerText.includes('skycap finish writes the package')")
             self.assertEqual(page.get("""["ground", "views"].map((name) =>
                 window.shown.panel.viewer.layers[name].visible)"""), [False, True])
             self.assertEqual(page.get("document.getElementById('colour').value"), "height")

@@ -10,7 +10,7 @@ namespace skycap::geometry::las {
 
 using ReturnRow = std::array<std::uint8_t, 16>;
 
-/// Of points of format 0 to 5, whose numbers have 3 bits.
+/// Contexts of points of formats 0 to 5, whose return numbers have 3 bits.
 inline constexpr std::array<std::array<std::uint8_t, 8>, 8> old_return_contexts = {{
     {15, 14, 13, 12, 11, 10, 9, 8},
     {14, 0, 1, 3, 6, 10, 10, 9},
@@ -22,7 +22,7 @@ inline constexpr std::array<std::array<std::uint8_t, 8>, 8> old_return_contexts 
     {8, 9, 10, 11, 12, 13, 14, 15},
 }};
 
-/// Of points of format 6 and more, whose numbers have 4 bits.
+/// Contexts of points of format 6 and above, whose return numbers have 4 bits.
 inline constexpr std::array<ReturnRow, 16> return_contexts = {{
     {0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
     {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},

@@ -1,6 +1,6 @@
 /// GPS times of compressed points of format 1 and 3: four sequences of times, one of which goes on
 /// by a multiple of its last step (LAZ specification 1.4, section 8.2). Times are the bits of
-/// doubles, taken for whole numbers.
+/// doubles, read as integers.
 #pragma once
 
 #include <array>

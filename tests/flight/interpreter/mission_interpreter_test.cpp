@@ -261,7 +261,7 @@ TEST_P(BothAutopilots, RallyPointsAreTheMissions) {
   EXPECT_THAT(with({{place.latitude_deg, place.longitude_deg, 0.0}}), IsEmpty());
   EXPECT_THAT(with({{place.latitude_deg, place.longitude_deg, 15.0}}),
               Contains(HasSubstr("points[0] is 15.0 m above home")));
-  EXPECT_THAT(with({}), Contains(HasSubstr("lacks 1 of the mission's 1 rally points")));
+  EXPECT_THAT(with({}), Contains(HasSubstr("does not contain 1 of the mission's 1 rally points")));
 }
 
 TEST_P(BothAutopilots, WhatFollowsMustBeFlown) {

@@ -156,7 +156,7 @@ TEST_F(ForeignMesh, ReadsBinaryStlByItsLengthWhereTheCountIsUnknown) {
     expect_box("a.stl", binary_stl(header, unknown, "ab"));
   }
   EXPECT_THAT(complaint("a.stl", binary_stl("solid box", 13, "")),
-              HasSubstr("promises 13 triangles in binary STL"));
+              HasSubstr("declares 13 triangles in binary STL"));
 }
 
 TEST_F(ForeignMesh, NamesMaterialsByTheirWholeLine) {
@@ -197,7 +197,7 @@ TEST_F(ForeignMesh, ReadsObjOfCadPrograms) {
   EXPECT_THAT(complaint("a.obj", replaced(v, " 4", " 4,0")),
               HasSubstr("line 2: '4,0' has a comma for the decimal point"));
   EXPECT_THAT(complaint("a.obj", v + "surf 0 1 0 1 1 2 3 4\n"),
-              HasSubstr("line 9: free-form surfaces (surf) are not read"));
+              HasSubstr("line 9: free-form surfaces (surf) are not supported"));
   EXPECT_THAT(complaint("a.obj", "call other.obj\n"), HasSubstr("includes another file"));
 }
 

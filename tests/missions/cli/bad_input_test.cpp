@@ -54,7 +54,7 @@ std::vector<BadInput> bad_inputs() {
        "MISSION:1: key scene.detail requires a builtin model; a.ply has the detail of its file"},
       {"DuplicateKey", whole + "seed: 1\nseed: 2\n",
        "MISSION:4: key seed is given twice, first in line 3; keep one"},
-      {"Alias", "a: &x 1\nb: *x\n", "MISSION:1: anchors ('&name') are not used"},
+      {"Alias", "a: &x 1\nb: *x\n", "MISSION:1: anchors ('&name') are not supported"},
       {"AliasBomb", "a: &a [1,1]\nb: &b [*a,*a]\nc: [*b,*b]\n", "MISSION:1: anchors"},
       {"Tag", whole + "seed: !!int 3\n", "MISSION:3: tags"},
       {"BinaryFile",

@@ -27,6 +27,7 @@ using tests::run_skycap;
 
 TEST(FormerNames, GiveTheSameResults) {
   const tests::TestFolder folder;
+  for (const char* name : {"former", "current"}) std::filesystem::create_directory(folder / name);
   const std::string former = folder.write("former/m.yaml", former_mission);
   const std::string current =
       folder.write("current/m.yaml", config::with_current_names(former_mission, "m.yaml"));

@@ -427,7 +427,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
               HasSubstr("free_space.bin: is not a free-space file"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "out/cloud.ply"}),
-              HasSubstr("cloud.ply is no route file: its name must end in .plan"));
+              HasSubstr("cloud.ply is not a route file: its name must end in .plan"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "no.plan"}),
               HasSubstr("no.plan: does not exist"));
 }

@@ -222,7 +222,7 @@ TEST_F(FlySurvey, FliesHomeWithoutAPlanner) {
   const FlightEnd end = fly({}, options);
   ASSERT_TRUE(end.trouble);
   EXPECT_EQ(end.trouble->kind, TroubleKind::planner);
-  EXPECT_THAT(end.trouble->what, HasSubstr("longer than 60 s"));
+  EXPECT_THAT(end.trouble->what, HasSubstr("planning the next view took more than 60 s"));
   EXPECT_TRUE(end.has_landed);
   EXPECT_GT(nearest_of(autopilot_->set_points(), rehearsal_.setup().scene()), 1.88);
 }

@@ -68,7 +68,7 @@ TEST(AnewMission, IsFasterAndPromisesNoLess) {
 // What it is compared with is the mission that the survey leaves without it.
 TEST(AnewMission, IsComparedWithTheSurveysOwn) {
   const json own = summary_of("survey").at("flight");
-  EXPECT_FALSE(own.contains("anew"));
+  EXPECT_FALSE(own.contains("replanned"));
   const json compared = summary_of("anew").at("flight").at("replanned").at("survey");
   EXPECT_EQ(compared.at("duration_s"), own.at("route").at("duration_s"));
   EXPECT_EQ(compared.at("length_m"), own.at("route").at("length_m"));
@@ -144,8 +144,8 @@ TEST(AnewMission, IsFlownPastItsViews) {
   const json passage = sorties[0].at("passage");
   ASSERT_FALSE(passage.is_null());
   EXPECT_LT(passage.at("duration_s").get<double>(), sorties[0].at("duration_s").get<double>());
-  EXPECT_LT(passing.at("anew").at("anew").at("duration_s").get<double>(),
-            stopping.at("anew").at("anew").at("duration_s").get<double>());
+  EXPECT_LT(passing.at("replanned").at("replanned").at("duration_s").get<double>(),
+            stopping.at("replanned").at("replanned").at("duration_s").get<double>());
   EXPECT_GE(passage.at("clearance_m").get<double>(),
             passing.at("clearance_m").at("total").get<double>());
   const std::string csv = content_of(folder / "passing/mission.csv");
@@ -214,10 +214,10 @@ TEST(AnewMission, IsNotMadeOfASurveyThatDidNotAskForIt) {
 
 TEST(AnewMission, RefusesStationsThatAreNowhere) {
   json summary = summary_of("anew");
-  summary["flight"]["anew"]["stations"][1]["way"][0][2] = 1e300;
+  summary["flight"]["replanned"]["stations"][1]["way"][0][2] = 1e300;
   EXPECT_THAT(testing_support::complaint_of(
                   [&] { package::parse_package_summary(summary.dump(), "summary.json"); }),
-              HasSubstr("summary.json: flight.anew.stations[1].way"));
+              HasSubstr("summary.json: flight.replanned.stations[1].way"));
 }
 
 TEST(AnewMission, NeedsAPlannerThatKnowsTheSurface) {
