@@ -87,7 +87,8 @@ TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
          c.data.push_back(0);
        }},
       {"4 times 17 require more", [](SampleCloud& c) { c.message.point_step = 17; }},
-      {"points; the maximum is", [](SampleCloud& c) { c.message.height = c.message.width = 0xFFFFFFFF; }},
+      {"points; the maximum is",
+       [](SampleCloud& c) { c.message.height = c.message.width = 0xFFFFFFFF; }},
       {"points; the maximum is", [](SampleCloud& c) { c.message.width = 0x80000000; }},
       {"times 16 require more", [](SampleCloud& c) { c.message.width = 0x01000001; }},
       {"0 rows of 4294967280 are a different number",

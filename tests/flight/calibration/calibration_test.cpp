@@ -106,7 +106,8 @@ TEST(Calibration, RefusesLogsThatHoldTooLittle) {
   brief.samples.resize(600);
   const auto says = [](const char* what) { return ThrowsMessage<Error>(HasSubstr(what)); };
   EXPECT_THAT(tried(brief), says("s of steady flight; required: at least 120 s"));
-  EXPECT_THAT(tried(hovering), says("s of level flight faster than 2.5 m/s; required: at least 30 s"));
+  EXPECT_THAT(tried(hovering),
+              says("s of level flight faster than 2.5 m/s; required: at least 30 s"));
   EXPECT_THAT(tried(level), says("s of hovering; required: at least 20 s"));
 }
 

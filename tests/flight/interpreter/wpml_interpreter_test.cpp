@@ -138,8 +138,9 @@ TEST(WpmlInterpreter, TheWayToTheFirstWaypointIsProven) {
   EXPECT_TRUE(route.pieces[0].is_over_pad);
   bool comes_level = false;
   for (const FlownPiece& piece : route.pieces) {
-    comes_level = comes_level || (piece.from_item == "the take-off point" && piece.to_item == "waypoint 0" &&
-                                  (piece.to - Eigen::Vector3d(14, -16, 8)).norm() < 0.02);
+    comes_level =
+        comes_level || (piece.from_item == "the take-off point" && piece.to_item == "waypoint 0" &&
+                        (piece.to - Eigen::Vector3d(14, -16, 8)).norm() < 0.02);
   }
   EXPECT_TRUE(comes_level);
 }

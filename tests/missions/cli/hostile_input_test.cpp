@@ -104,7 +104,8 @@ TEST(HostileInput, SensorsBeyondAnyInstrumentAreRefused) {
   EXPECT_THAT(message(rate + "firing_period_us: 1e-9\n"), HasSubstr("firing_period"));
   EXPECT_THAT(message(rate + columns + "errors: {angle_sigma_deg: 1e300}\n"),
               HasSubstr("errors.angle_sigma"));
-  EXPECT_THAT(refusal({"scan", mission, "--sensor", "/dev/zero.yaml"}), HasSubstr("does not exist"));
+  EXPECT_THAT(refusal({"scan", mission, "--sensor", "/dev/zero.yaml"}),
+              HasSubstr("does not exist"));
   std::filesystem::create_directory(folder.path() / "folder.yaml");
   EXPECT_THAT(refusal({"scan", mission, "--sensor", folder / "folder.yaml"}),
               HasSubstr("folder.yaml: is a directory"));
@@ -169,7 +170,8 @@ TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
   const std::string mission = folder.write(
       "m.yaml", "scene: {model: 'builtin:nope'}\nevaluation: {coverage_distance: 1}\n");
   EXPECT_THAT(refusal({"check", mission}),
-              HasSubstr("m.yaml:1: key scene.model: unknown model builtin:nope; expected one of: builtin:bridge, "));
+              HasSubstr("m.yaml:1: key scene.model: unknown model builtin:nope; expected one of: "
+                        "builtin:bridge, "));
   const std::string cloud = folder.write("c.xyz", "0 0 0\n");
   EXPECT_THAT(refusal({"evaluate", "--cloud", cloud, "--model", "builtin:nope", "--distance", "1"}),
               HasSubstr("--model: unknown builtin model 'nope'"));

@@ -162,8 +162,10 @@ TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
     folder_.write(file, kept);
     return run.err;
   };
-  EXPECT_THAT(refusal_with("camera.yaml", "_deg: 5", "_deg: 5.1"), HasSubstr("sensor_digest changed from "));
-  EXPECT_THAT(refusal_with("views.csv", "2,3,0,1", "2,3,0,1.001"), HasSubstr("route_digest changed from "));
+  EXPECT_THAT(refusal_with("camera.yaml", "_deg: 5", "_deg: 5.1"),
+              HasSubstr("sensor_digest changed from "));
+  EXPECT_THAT(refusal_with("views.csv", "2,3,0,1", "2,3,0,1.001"),
+              HasSubstr("route_digest changed from "));
   EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
 }
 

@@ -211,7 +211,8 @@ TEST_F(ScanVerb, IntensitiesAreThoseOfTheMaterials) {
   EXPECT_LE(brightest_side, 0.9F);
 
   folder.write("materials.yaml", "lead: 0.1\nglass: 0.9\n");
-  EXPECT_THAT(scan(options).err, HasSubstr("no material glass; its materials are (none), lead, chalk"));
+  EXPECT_THAT(scan(options).err,
+              HasSubstr("no material glass; its materials are (none), lead, chalk"));
   folder.write("materials.yaml", "lead: 1.1\n");
   EXPECT_THAT(scan(options).err,
               HasSubstr("materials.yaml:1: material lead is '1.1'; it must be a "));

@@ -41,8 +41,8 @@ std::vector<std::filesystem::path> packages(const tests::TestFolder& folder) {
                                         "--no-report", "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     // plan writes only what the vehicle reads.
-    const auto exported = tests::run_skycap(
-        {"export", folder / "out", "--format", "kmz", "--out", folder / "kmz"});
+    const auto exported =
+        tests::run_skycap({"export", folder / "out", "--format", "kmz", "--out", folder / "kmz"});
     EXPECT_EQ(exported.exit_code, 0) << exported.err;
     std::filesystem::copy_file(folder / "kmz/mission.kmz", folder / "out/mission.kmz");
     return {folder / "out"};

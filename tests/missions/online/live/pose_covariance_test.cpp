@@ -140,7 +140,8 @@ TEST(PoseCovariance, ThatIsNoneIsRefusedInOneLine) {
   EXPECT_THAT(with(0, 0, 1e6, 1e6), HasSubstr("the variance of x is 1e+06; it must be from 0 to"));
   EXPECT_THAT(with(5, 5, 9.0, 9.0), HasSubstr("rad^2"));
   EXPECT_THAT(with(0, 1, 0.001, 0.002), HasSubstr("is not symmetric: x,y is 0.001, y,x is 0.002"));
-  EXPECT_THAT(with(3, 5, 0.011, 0.011), HasSubstr("rx,rz is 0.011, beyond the limit set by the variances"));
+  EXPECT_THAT(with(3, 5, 0.011, 0.011),
+              HasSubstr("rx,rz is 0.011, beyond the limit set by the variances"));
   Matrix impossible = Matrix::Identity() * 0.01;  // each pair alone would do
   for (const auto& [row, column, value] :
        {std::tuple(0, 1, 0.009), {1, 2, 0.009}, {0, 2, -0.009}}) {

@@ -24,7 +24,8 @@ TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
   EXPECT_THAT(complaint(write({robot_pose(1.0, {})})), HasSubstr("contains no usable scan"));
   const std::string two = write({robot_pose(1.0, {}), range_scan(1.0, "L"), range_scan(1.0, "R")});
   EXPECT_THAT(complaint(two), AllOf(HasSubstr("'L', 'R'"), HasSubstr("--sensor")));
-  EXPECT_THAT(complaint(two, {.sensor = "M", .poses = {}}), HasSubstr("'M'; its sensors are 'L', 'R'"));
+  EXPECT_THAT(complaint(two, {.sensor = "M", .poses = {}}),
+              HasSubstr("'M'; its sensors are 'L', 'R'"));
   EXPECT_EQ(frames(two, {.sensor = "R", .poses = {}}).at(0).id, "R 2");
 }
 
