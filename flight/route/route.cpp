@@ -160,7 +160,7 @@ class RoutePlanner {
       const bool has_rally =  // DJI vehicles return to their take-off point only
           std::ranges::find(law.dialects, Dialect::dji) == law.dialects.end();
       throw Error(ErrorKind::bad_config,
-                  "no safe return altitude: " + search.why + "; move flight.takeoff" +
+                  "no verified return altitude: " + search.why + "; move flight.takeoff" +
                       (has_rally ? ", add a rally point (flight.rally)" : "") +
                       " or raise site.max_height");
     }

@@ -67,7 +67,7 @@ void RouteLegs::keep_with_return(std::vector<Station>& stations) {
   planner_.require_returns(planning_law(options_, top), home_);
   std::erase_if(stations, [&](const Station& station) {
     const std::string why = returns()->why_none(station.view.position);
-    if (!why.empty()) refuse(station, "no safe return: " + why);
+    if (!why.empty()) refuse(station, "no verified return: " + why);
     return !why.empty();
   });
 }

@@ -8,10 +8,9 @@
 namespace skycap::missions::config {
 namespace {
 
-/// A field's value; fields are found in missions that may be changed, and only read here.
 std::optional<KeyValue> value_of(const BoundField& field, const MissionDocument& mission,
                                  double factor) {
-  return field.access->read(field.place(const_cast<MissionDocument&>(mission)), factor);
+  return field.access->read(field.find(mission), factor);
 }
 
 }  // namespace
@@ -114,31 +113,6 @@ Key otherwise(std::string fallback, Key key) {
 
 Key required(Key key) {
   key.is_required = true;
-  return key;
-}
-
-Key box_corner(std::string path,
-               std::function<std::optional<Eigen::AlignedBox3d>&(MissionDocument&)> field,
-               bool is_upper, std::string meaning) {
-  Key key;
-  key.path = std::move(path);
-  key.type = KeyType::vector;
-  key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
-  key.range = between(-far_away, far_away);
-  key.meaning = std::move(meaning);
-  key.set = [field, is_upper](MissionDocument& mission, const KeyValue& value) {
-    std::optional<Eigen::AlignedBox3d>& box = field(mission);
-    if (!box) {
-      box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-far_away),
-                                Eigen::Vector3d::Constant(far_away));
-    }
-    (is_upper ? box->max() : box->min()) = std::get<Eigen::Vector3d>(value);
-  };
-  key.get = [field, is_upper](const MissionDocument& mission) -> std::optional<KeyValue> {
-    const auto& box = field(const_cast<MissionDocument&>(mission));
-    if (!box) return std::nullopt;
-    return is_upper ? box->max() : box->min();
-  };
   return key;
 }
 

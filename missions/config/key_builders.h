@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "missions/config/key.h"
@@ -87,11 +88,13 @@ struct BoundField {
   template <class Field, class Reference = std::invoke_result_t<Field, MissionDocument&>>
   BoundField(Field field)  // implicit, so that tables name fields alone
       : place([field](MissionDocument& mission) -> void* { return &field(mission); }),
+        find([field](const MissionDocument& mission) -> const void* { return &field(mission); }),
         access(&detail::access_to<std::remove_reference_t<Reference>>) {
     static_assert(std::is_lvalue_reference_v<Reference>);
   }
 
   std::function<void*(MissionDocument&)> place;
+  std::function<const void*(const MissionDocument&)> find;
   const FieldAccess* access;
 };
 
@@ -135,9 +138,29 @@ Key otherwise(std::string fallback, Key key);
 Key required(Key key);
 
 /// A key for one corner of an optional box, which the first of the two keys brings about.
-Key box_corner(std::string path,
-               std::function<std::optional<Eigen::AlignedBox3d>&(MissionDocument&)> field,
-               bool is_upper, std::string meaning);
+template <class Field>
+Key box_corner(std::string path, Field field, bool is_upper, std::string meaning) {
+  Key key;
+  key.path = std::move(path);
+  key.type = KeyType::vector;
+  key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
+  key.range = between(-far_away, far_away);
+  key.meaning = std::move(meaning);
+  key.set = [field, is_upper](MissionDocument& mission, const KeyValue& value) {
+    std::optional<Eigen::AlignedBox3d>& box = field(mission);
+    if (!box) {
+      box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-far_away),
+                                Eigen::Vector3d::Constant(far_away));
+    }
+    (is_upper ? box->max() : box->min()) = std::get<Eigen::Vector3d>(value);
+  };
+  key.get = [field, is_upper](const MissionDocument& mission) -> std::optional<KeyValue> {
+    const std::optional<Eigen::AlignedBox3d>& box = field(mission);
+    if (!box) return std::nullopt;
+    return is_upper ? box->max() : box->min();
+  };
+  return key;
+}
 
 /// One list of several.
 std::vector<Key> joined(std::initializer_list<std::vector<Key>> lists);

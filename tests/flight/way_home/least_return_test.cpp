@@ -178,8 +178,9 @@ TEST(WaysHome, StationsUnderUnknownSpaceAreLeftOut) {
   ASSERT_EQ(route.stations.size(), 1U);
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_EQ(route.unreached[0].station.view_index, 6U);
-  EXPECT_THAT(route.unreached[0].reason, AllOf(HasSubstr("no safe return"), HasSubstr("the climb"),
-                                               HasSubstr("unobserved space")));
+  EXPECT_THAT(route.unreached[0].reason,
+              AllOf(HasSubstr("no verified return"), HasSubstr("the climb"),
+                    HasSubstr("unobserved space")));
   ASSERT_TRUE(route.returns);
   EXPECT_GE(route.returns->clearance, route.clearance - return_slack);
   options.returns.reset();
@@ -255,7 +256,7 @@ TEST(WaysHome, RefusesARouteWithoutASafeHeightOfReturn) {
   EXPECT_TRUE(route.sorties.empty());
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_THAT(route.unreached[0].reason,
-              AllOf(HasSubstr("no safe return"), HasSubstr("the level flight")));
+              AllOf(HasSubstr("no verified return"), HasSubstr("the level flight")));
 }
 
 // A way that is pulled tight ends where a rule begins: at the 50 m within which DJI's vehicles fly
