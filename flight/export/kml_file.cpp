@@ -31,7 +31,7 @@ std::string moment(double seconds) {
          two(total / 60 % 60) + ":" + two(total % 60) + "." + fraction + "Z";
 }
 
-void add(pugi::xml_node parent, const char* name, const std::string& value) {
+void add_element(pugi::xml_node parent, const char* name, const std::string& value) {
   parent.append_child(name).text().set(value.c_str());
 }
 
@@ -46,10 +46,10 @@ class KmlWriter {
     pugi::xml_document document;
     pugi::xml_node kml = begin_kml(document, "xmlns:gx", google_namespace);
     pugi::xml_node root = kml.append_child("Document");
-    add(root, "name", plan_.name);
-    add(root, "description",
-        "Heights above mean sea level; every leg is verified with a clearance of " +
-            fixed(plan_.clearance, 2) + " m.");
+    add_element(root, "name", plan_.name);
+    add_element(root, "description",
+                "Heights above mean sea level; every leg is verified with a clearance of " +
+                    fixed(plan_.clearance, 2) + " m.");
     add_style(root, "path", "LineStyle", "ff00aaff");
     add_style(root, "no_fly", "PolyStyle", "600000ff");
     add_path(root);
@@ -68,8 +68,8 @@ class KmlWriter {
     pugi::xml_node style = root.append_child("Style");
     style.append_attribute("id") = id;
     pugi::xml_node part = style.append_child(kind);
-    add(part, "color", colour);  // alpha, blue, green, red
-    if (std::string(kind) == "LineStyle") add(part, "width", "3");
+    add_element(part, "color", colour);  // alpha, blue, green, red
+    if (std::string(kind) == "LineStyle") add_element(part, "width", "3");
   }
 
   std::string tuple(const Eigen::Vector3d& position, const char* separator) const {
@@ -80,10 +80,11 @@ class KmlWriter {
 
   void add_path(pugi::xml_node root) {
     pugi::xml_node mark = root.append_child("Placemark");
-    add(mark, "name", "path");
-    add(mark, "styleUrl", "#path");
+    add_element(mark, "name", "path");
+    add_element(mark, "styleUrl", "#path");
     pugi::xml_node line = mark.append_child("LineString");
-    add(line, "extrude", "0"), add(line, "tessellate", "0"), add(line, "altitudeMode", "absolute");
+    add_element(line, "extrude", "0"), add_element(line, "tessellate", "0"),
+        add_element(line, "altitudeMode", "absolute");
     std::string coordinates;
     for (const Waypoint& waypoint : plan_.waypoints) {
       for (const double time : moments_on(waypoint)) {
@@ -91,7 +92,7 @@ class KmlWriter {
       }
       coordinates += (coordinates.empty() ? "" : " ") + tuple(waypoint.position, ",");
     }
-    add(line, "coordinates", coordinates);
+    add_element(line, "coordinates", coordinates);
   }
 
   /// Between the ends of the curve that leads there; none on a straight way.
@@ -104,51 +105,51 @@ class KmlWriter {
 
   void add_station(pugi::xml_node root, const Waypoint& station) {
     pugi::xml_node mark = root.append_child("Placemark");
-    add(mark, "name", "view " + std::to_string(station.view_index));
+    add_element(mark, "name", "view " + std::to_string(station.view_index));
     pugi::xml_node camera = mark.append_child("Camera");  // double click flies there and looks
     const GeodeticPoint place = frame_.to_geodetic(station.position);
-    add(camera, "longitude", degrees(place.longitude_deg));
-    add(camera, "latitude", degrees(place.latitude_deg));
-    add(camera, "altitude", fixed(place.height - undulation_, 3));
-    add(camera, "heading", fixed(station.yaw * degrees_per_radian, 4));
-    add(camera, "tilt", fixed(90.0 + station.pitch * degrees_per_radian, 4));
-    add(camera, "roll", "0"), add(camera, "altitudeMode", "absolute");
+    add_element(camera, "longitude", degrees(place.longitude_deg));
+    add_element(camera, "latitude", degrees(place.latitude_deg));
+    add_element(camera, "altitude", fixed(place.height - undulation_, 3));
+    add_element(camera, "heading", fixed(station.yaw * degrees_per_radian, 4));
+    add_element(camera, "tilt", fixed(90.0 + station.pitch * degrees_per_radian, 4));
+    add_element(camera, "roll", "0"), add_element(camera, "altitudeMode", "absolute");
     pugi::xml_node data = mark.append_child("ExtendedData");
     const auto add_data = [&](const char* name, const std::string& value) {
       pugi::xml_node entry = data.append_child("Data");
       entry.append_attribute("name") = name;
-      add(entry, "value", value);
+      add_element(entry, "value", value);
     };
     add_data("hold_s", fixed(station.hold, 2));
     add_data("shots", std::to_string(station.shots));
     add_data("clearance_m", fixed(station.clearance, 3));
     pugi::xml_node point = mark.append_child("Point");
-    add(point, "altitudeMode", "absolute");
-    add(point, "coordinates", tuple(station.position, ","));
+    add_element(point, "altitudeMode", "absolute");
+    add_element(point, "coordinates", tuple(station.position, ","));
   }
 
   /// Drawn as its outline at the ceiling, extruded to the ground as viewers do.
   void add_volume(pugi::xml_node root, const Prism& prism) {
     pugi::xml_node mark = root.append_child("Placemark");
-    add(mark, "name", prism.name);
-    add(mark, "styleUrl", "#no_fly");
+    add_element(mark, "name", prism.name);
+    add_element(mark, "styleUrl", "#no_fly");
     pugi::xml_node polygon = mark.append_child("Polygon");
-    add(polygon, "extrude", "1"), add(polygon, "altitudeMode", "absolute");
+    add_element(polygon, "extrude", "1"), add_element(polygon, "altitudeMode", "absolute");
     const double top = std::isfinite(prism.ceiling) ? prism.ceiling : plan_.pad.z() + drawn_height;
     std::string coordinates;
     for (std::size_t i = 0; i <= prism.footprint.size(); ++i) {  // the first corner closes the ring
       const Eigen::Vector2d& corner = prism.footprint[i % prism.footprint.size()];
       coordinates += (i == 0 ? "" : " ") + tuple({corner.x(), corner.y(), top}, ",");
     }
-    add(polygon.append_child("outerBoundaryIs").append_child("LinearRing"), "coordinates",
-        coordinates);
+    add_element(polygon.append_child("outerBoundaryIs").append_child("LinearRing"), "coordinates",
+                coordinates);
   }
 
   void add_track(pugi::xml_node root) {
     pugi::xml_node mark = root.append_child("Placemark");
-    add(mark, "name", "flight");
+    add_element(mark, "name", "flight");
     pugi::xml_node track = mark.append_child("gx:Track");
-    add(track, "altitudeMode", "absolute");
+    add_element(track, "altitudeMode", "absolute");
     const std::vector<StopTime> times = stop_times(plan_);
     double left = 0.0;
     std::vector<std::string> moments, places, angles;
@@ -172,9 +173,9 @@ class KmlWriter {
       add_place(times[i].departure, waypoint.position, last);
       left = times[i].departure;
     }
-    for (const std::string& text : moments) add(track, "when", text);
-    for (const std::string& text : places) add(track, "gx:coord", text);
-    for (const std::string& text : angles) add(track, "gx:angles", text);
+    for (const std::string& text : moments) add_element(track, "when", text);
+    for (const std::string& text : places) add_element(track, "gx:coord", text);
+    for (const std::string& text : angles) add_element(track, "gx:angles", text);
   }
 
   const FlightPlan& plan_;

@@ -83,7 +83,7 @@ std::string extract(zip_t* archive, zip_uint64_t index) {
   return content;
 }
 
-void add(zip_t* archive, const char* name, const std::string& content) {
+void add_entry(zip_t* archive, const char* name, const std::string& content) {
   zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
   const zip_int64_t index = zip_file_add(archive, name, source, ZIP_FL_ENC_UTF_8);
   if (index < 0) fail(zip_strerror(archive));
@@ -117,8 +117,8 @@ std::string pack_kmz(const KmzContent& content) {
   zip_source_keep(source.get());  // to read what was written after the archive is closed
   Archive archive(zip_open_from_source(source.get(), ZIP_TRUNCATE, &error));
   if (!archive) fail(zip_error_strerror(&error));
-  add(archive.get(), template_name, content.template_kml);
-  add(archive.get(), waylines_name, content.waylines_wpml);
+  add_entry(archive.get(), template_name, content.template_kml);
+  add_entry(archive.get(), waylines_name, content.waylines_wpml);
   if (zip_close(archive.get()) != 0) fail(zip_strerror(archive.get()));
   static_cast<void>(archive.release());
 
