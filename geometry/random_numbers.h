@@ -33,7 +33,7 @@ class RandomNumbers {
   double uniform() { return unit_number(engine_()); }
   /// Draws a number in [least, most).
   double between(double least, double most) { return least + (most - least) * uniform(); }
-  /// Draws an integer in [least, most].
+  /// Draws an integer from `least` to `most`, both inclusive.
   int integer(int least, int most) {
     return least + static_cast<int>(engine_() % static_cast<std::uint64_t>(most - least + 1));
   }

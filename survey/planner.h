@@ -30,8 +30,8 @@ struct PartTime {
 
 /// Effects of the last scan on the planner.
 struct PlanningStep {
-  std::size_t points_new = 0;           ///< points kept from the scan
-  std::size_t frontiers = 0;            ///< open frontiers
+  std::size_t points_new = 0;  ///< points kept from the scan
+  std::size_t frontiers = 0;   ///< open frontiers; for Skycap's own planner unobserved patches
   std::size_t frontiers_resolved = 0;   ///< frontiers that this scan resolved
   std::optional<bool> target_resolved;  ///< whether the frontier of the proposed view was resolved
   std::vector<PartTime> times;          ///< in order of execution; the sum is the planning time [s]

@@ -17,8 +17,8 @@ struct Candidate {
   std::vector<Vector3d> supports;
 };
 
-// The following functions replace `best` by the foot of the origin on the affine hull of some
-// corners, if that foot lies between the corners and is nearer. Degenerate sets are skipped,
+// The following functions project the origin onto the affine hull of some corners. They replace
+// `best` by this foot if it lies between the corners and is nearer. Degenerate sets are skipped,
 // because their subsets are tested, too.
 void offer(Candidate& best, const Vector3d& foot, std::vector<Vector3d> supports) {
   if (foot.squaredNorm() < best.point.squaredNorm()) best = {foot, std::move(supports)};

@@ -8,8 +8,8 @@
 
 namespace skycap::geometry {
 
-/// Maximum absolute coordinate of a position [m]. A quarter of a meridian, so that map coordinates
-/// such as UTM are valid, too.
+/// Maximum absolute coordinate of a position [m]. It is a quarter of a meridian, so that map
+/// coordinates such as UTM are valid.
 inline constexpr double farthest_place = 1e7;
 
 /// Maximum absolute coordinate of a mesh vertex before scaling, because mesh files may be in

@@ -72,10 +72,10 @@ struct Packet {
   Floats at[3][float_parts], slack[3][float_parts];
   float low[3], high[3];
   Doubles exactly[3][double_parts];
-  Doubles squared[double_parts];  // squared distances of the nearest facet so far
+  Doubles squared[double_parts];  // squared distances from the nearest facet so far
   Floats bound[float_parts];      // upper bounds of `squared` in single precision
   float farthest;                 // maximum of `bound`
-  std::uint32_t nearest;          // nearest facet of a point; not updated for every point
+  std::uint32_t nearest;  // facet found nearest most recently; first candidate of the next packet
 };
 
 struct Place {

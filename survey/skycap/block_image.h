@@ -1,10 +1,11 @@
 /// Scan reduced to blocks of neighbouring rays, on which the planner operates.
 ///
-/// With B = 4, the mean of a block of B x B pixels has a quarter of the noise of a pixel and is
-/// processed two hundred times faster. The spread within a block shows the noise. A pinhole image
-/// is converted to one block image. A sweep without an image, such as that of a LiDAR, is converted
-/// to a range image of the sphere. It consists of six faces of a cube around the sensor, each a
-/// pinhole image with an angle of 90 degrees. Blocks are numbered in row-major order.
+/// With B = 4, the mean of a block of B x B pixels has a quarter of the noise of a pixel.
+/// Processing blocks is two hundred times faster than processing their pixels. The spread within a
+/// block shows the noise. A pinhole image is converted to one block image. A sweep without an
+/// image, such as that of a LiDAR, is converted to a range image of the sphere. It consists of six
+/// faces of a cube around the sensor, each a pinhole image with an angle of 90 degrees. Blocks are
+/// numbered in row-major order.
 #pragma once
 
 #include <cmath>
