@@ -52,7 +52,7 @@ std::string e57_bytes(const CloudColumns& cloud);
 /// Maximum number of points per piece.
 inline constexpr std::size_t piece_size = 1'000'000;
 
-/// Read the positions only, as specified by read_positions().
+/// Reads only the positions, as specified by read_positions().
 std::size_t read_las_positions(const std::filesystem::path& path, const TakePositions& take);
 std::size_t read_e57_positions(const std::filesystem::path& path, const TakePositions& take);
 

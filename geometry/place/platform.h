@@ -35,7 +35,7 @@ struct Stretch {
 /// are those of mission files [rad].
 Eigen::Quaterniond rotation_of(const Eigen::Vector3d& angles);
 
-/// Convert between the view of the scanner and the level view of the vehicle's nose.
+/// Converts a view of the scanner to the level view of the vehicle's nose, or vice versa.
 View nose_view(const ScannerMount& mount, const View& view);
 View scanner_view(const ScannerMount& mount, const View& nose);
 

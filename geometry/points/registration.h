@@ -1,9 +1,9 @@
 /// Rigid registration of a scan with the points measured before.
 ///
 /// Point-to-plane error: the sum over the patches of the scan of w (n . (C p - q))^2. q and n are
-/// the nearest patch of the map (Chen and Medioni, "Object modelling by registration of multiple
-/// range images", 1992). The weights w are Tukey's biweights, divided by the variances of the
-/// patches.
+/// the mean and the normal of the nearest patch of the map (Chen and Medioni, "Object modelling by
+/// registration of multiple range images", 1992). The weights w are Tukey's biweights, divided by
+/// the variances of the patches.
 ///
 /// The solver is Gauss-Newton over SE(3). A step is a displacement t of the centre m of the patches
 /// and a rotation u / L about m. L is the root mean square distance of the patches from m, so that

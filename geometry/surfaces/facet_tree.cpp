@@ -67,7 +67,7 @@ Vector3d on_plane(const Vector3d& point, const Corners& facet) {
   return facet.corner + (b * ab + c * ac) / (a + b + c);
 }
 
-/// Round to the nearest float that is not above, or not below, the number.
+/// Rounds to the nearest float that is not above, or not below, the number.
 float below(double x) {
   const auto rounded = static_cast<float>(x);
   return rounded > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;

@@ -26,7 +26,7 @@ namespace skycap::survey::skycap {
 enum class SkycapStop {
   running,
   wanted_coverage,
-  little_gain,  ///< the predicted gain is too small, or the last four views covered almost nothing
+  little_gain,  ///< the predicted gain is too small, or the last eight scans covered almost nothing
   most_length,
   most_time,
   nothing_in_reach,  ///< no admissible view sees uncovered surface

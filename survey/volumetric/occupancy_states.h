@@ -53,8 +53,8 @@ class OccupancyStates {
   /// existing one.
   explicit OccupancyStates(const OccupancyModel& model, std::size_t capacity = most_states);
 
-  /// Return the code of a voxel after one more hit, or one more ray through it. An unmeasured voxel
-  /// starts with log-odds of zero.
+  /// Returns the code of a voxel after one more hit, or after one more ray through it. An
+  /// unmeasured voxel starts with log-odds of zero.
   Code after_hit(Code code) { return successor(code, hit_, &Value::after_hit); }
   Code after_miss(Code code) { return successor(code, miss_, &Value::after_miss); }
 

@@ -16,8 +16,8 @@ namespace skycap::survey::volumetric {
 /// step must be cheap: it only writes and never depends on an earlier write.
 class ScanVoxels {
  public:
-  /// Mark of a voxel: `passed`, `hit`, or the number of voxels between it and the nearest surface
-  /// in front of it.
+  /// Mark of a voxel: `passed`, `hit`, or its depth behind the nearest surface in front of it
+  /// [voxels].
   using Mark = std::uint16_t;
   static constexpr Mark passed = 0xfffe, hit = 0xffff;
   static bool is_shadow(Mark mark) { return mark < passed; }
