@@ -27,8 +27,8 @@ namespace skycap::geometry {
 enum class PointLabel : std::uint8_t { core, frontier, outlier };
 
 struct DensityConfig {
-  double radius = 0.017;    ///< r [m]
-  int core_threshold = 4;   ///< k, including the point itself
+  double radius = 0.017;    ///< r: neighbourhood radius [m]
+  int core_threshold = 4;   ///< k: minimum neighbours of a core point, including itself
   double spacing = 0.0026;  ///< epsilon [m]: points closer than this to a kept point are dropped
   OutlierRule rule = OutlierRule::non_core;
 };

@@ -44,9 +44,10 @@ struct Registration {
   double first_error = 0.0;           ///< median |n . (p - q)| before the correction [m]
   double error = 0.0;                 ///< median |n . (p - q)| after the correction [m]
   double deviation = 0.0;             ///< median deviation of the partners [m]
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, before the correction [m]
-  double size = 0.0;                                 ///< L [m]
-  std::array<RigidDirection, 6> directions{};        ///< ascending by information
+  Eigen::Vector3d middle =
+      Eigen::Vector3d::Zero();  ///< m: centre of the patches before the correction [m]
+  double size = 0.0;            ///< L: root mean square distance of the patches from m [m]
+  std::array<RigidDirection, 6> directions{};  ///< ascending by information
 };
 
 /// Registers the patches of a scan with a map. The search radius for partners decreases from

@@ -20,7 +20,7 @@ struct Frontier {
   Eigen::Vector3d observed_along;  ///< unit vector: optical axis of that sensor
   geometry::SurfaceFrame frame;
   geometry::View view;
-  double clear_offset = 0.0;                  ///< zeta; see OcclusionTest
+  double clear_offset = 0.0;  ///< zeta: start of the occlusion test; see OcclusionTest [m]
   std::optional<std::size_t> offset_of_scan;  ///< number of scans when `clear_offset` was computed
   bool was_put_off =
       false;  ///< deferred before; the view is on the line from which the point was measured

@@ -13,7 +13,7 @@ namespace skycap::survey::see {
 
 struct OcclusionConfig {
   double radius = 0.017;         ///< r: radius of the marched ball and step size [m]
-  double search_distance = 1.0;  ///< psi [m]
+  double search_distance = 1.0;  ///< psi: length of the march [m]
   MarchEnd end = MarchEnd::search_distance;
 };
 

@@ -16,8 +16,8 @@ namespace skycap::survey::see {
 /// one-metre models. A default of nullopt is derived as stated.
 struct SeeConfig {
   double density = 146'000.0;                 ///< rho: required points per m^3
-  double resolution_radius = 0.017;           ///< r [m]
-  double occlusion_search_distance = 1.0;     ///< psi [m]
+  double resolution_radius = 0.017;           ///< r: radius of the density test [m]
+  double occlusion_search_distance = 1.0;     ///< psi: length of the occlusion test [m]
   std::size_t visibility_update_limit = 100;  ///< tau: number of views
 
   std::optional<int>

@@ -19,7 +19,7 @@ namespace skycap::survey::see {
 /// Attempts to resolve a frontier. Kept when the point loses its label, so that a frontier that
 /// appears again does not get more attempts.
 struct AttemptRecord {
-  double gain = 1.0;  ///< s
+  double gain = 1.0;  ///< s: gain of the next adjustment
   double best_distance =
       std::numeric_limits<double>::infinity();  ///< minimum distance of a scan centroid from the
                                                 ///< frontier so far [m]

@@ -25,7 +25,8 @@ class VisibilityGraph {
   bool has_edge(std::uint32_t from, std::uint32_t to) const;
 
  private:
-  std::map<std::uint32_t, std::vector<std::uint32_t>> edges_;  // ascending
+  std::map<std::uint32_t, std::vector<std::uint32_t>>
+      edges_;  // outgoing edges by vertex, ascending
 };
 
 /// Returns the index of the next view in `vertices`. The candidates see the frontier of the nearest

@@ -87,7 +87,7 @@ struct BlockImage {
 };
 
 struct BlockSettings {
-  int block_px = 4;      ///< B [px]
+  int block_px = 4;      ///< B: block width [px]
   float jump = 0.05F;    ///< J: depth spread above which a block is an edge [m]
   unsigned threads = 1;  ///< zero: all processors
 };
@@ -95,7 +95,7 @@ struct BlockSettings {
 /// Resolution of the scene model.
 struct Scale {
   double surfel;      ///< h: distance between surfels [m]
-  int block_px;       ///< B
+  int block_px;       ///< B: block width [px]
   double least_jump;  ///< minimum J, independent of the noise [m]
 };
 

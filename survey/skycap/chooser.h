@@ -18,7 +18,7 @@
 namespace skycap::survey::skycap {
 
 struct ChooserSettings {
-  double view_distance = 2.0;  ///< d [m]
+  double view_distance = 2.0;  ///< d: distance of views from their targets [m]
   double view_price = 4.0;     ///< fixed cost of a view, in metres of path
   int clusters = 40;           ///< number of target clusters for which candidates are generated
   int global_directions =

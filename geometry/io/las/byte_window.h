@@ -17,7 +17,7 @@ using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t c
 
 class ByteWindow {
  public:
-  ByteWindow() = default;  ///< empty
+  ByteWindow() = default;  ///< Creates an empty window.
 
   /// Range [begin, end) of the file. `read` must outlive the window.
   ByteWindow(const ReadBytes& read, std::uint64_t begin, std::uint64_t end)
