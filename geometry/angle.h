@@ -1,4 +1,5 @@
-/// Angles are in radians, but for those of readers and writers whose names end in _deg.
+/// Conversion factors between degrees and radians. Angles are in radians unless a reader or writer
+/// name ends in `_deg`.
 #pragma once
 
 #include <numbers>

@@ -1,4 +1,4 @@
-/// Little-endian values among a file's bytes.
+/// Access to little-endian values in the bytes of a file.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@
 
 namespace skycap::geometry {
 
-/// The value at a place of a file's bytes, all of which are known to be there.
+/// Returns the value stored at byte offset `place`. The caller guarantees that all its bytes exist.
 template <typename Value>
 Value value_at(const char* bytes, std::size_t place) {
   static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
@@ -18,7 +18,7 @@ Value value_at(const char* bytes, std::size_t place) {
   return value;
 }
 
-/// Puts the value at a place of bytes, all of which are there.
+/// Writes `value` at byte offset `place`. The caller guarantees that the buffer is large enough.
 template <typename Value>
 void put_value(char* bytes, std::size_t place, Value value) {
   static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
@@ -29,7 +29,7 @@ void put_value(std::uint8_t* bytes, std::size_t place, Value value) {
   put_value(reinterpret_cast<char*>(bytes), place, value);
 }
 
-/// Appends a number, or numbers without padding between them, to bytes.
+/// Appends the bytes of a number, or of an array of numbers without padding, to `bytes`.
 template <typename Value>
 void append_value(std::string& bytes, const Value& value) {
   static_assert(std::endian::native == std::endian::little, "values in files are little-endian");

@@ -5,16 +5,16 @@
 
 namespace skycap {
 
-/// Why an operation could not be carried out; `missions/` maps each kind to an exit code.
+/// Category of a failure. `missions/` maps each category to an exit code.
 enum class ErrorKind {
-  bad_usage,     ///< command line
-  bad_config,    ///< a key of a mission file or a field of a configuration
-  bad_file,      ///< a file that cannot be read or written, or does not hold what it should
-  bad_geometry,  ///< a mesh, cloud or scan that cannot be worked with
+  bad_usage,     ///< invalid command line
+  bad_config,    ///< invalid key of a mission file or field of a configuration
+  bad_file,      ///< file that cannot be read or written, or whose content is invalid
+  bad_geometry,  ///< mesh, cloud or scan that cannot be processed
 };
 
-/// The one exception type that Skycap throws. `what()` is a sentence for the user:
-/// it names the value, says what is wrong with it, and what would be right.
+/// The only exception type for failures in Skycap. `what()` is a message for the user: it names the
+/// value, states what is wrong, and states the rule.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}

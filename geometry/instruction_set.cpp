@@ -12,7 +12,7 @@ namespace {
 
 InstructionSet widest_of_processor() {
 #if defined(__x86_64__)
-  // What -march=x86-64-v3 and -v4 let the compiler use, of which these imply the rest.
+  // These features imply all others that -march=x86-64-v3 and -v4 enable in the compiler.
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2") ||
       !__builtin_cpu_supports("fma")) {
     return InstructionSet::baseline;

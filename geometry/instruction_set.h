@@ -1,23 +1,24 @@
-/// Vector instructions, for which the innermost loops are compiled several times. All give the same
-/// bits: which are used decides how long something takes, never what comes out.
+/// Selection of the vector instruction set. The innermost loops are compiled once per set. All sets
+/// give bit-identical results, so the selection only affects speed.
 #pragma once
 
 #include <string_view>
 
 namespace skycap::geometry {
 
-/// From the narrowest to the widest: what every processor of the kind has (SSE2 or NEON), and what
-/// x86-64-v3 and x86-64-v4 add.
+/// Instruction sets in ascending width: the minimum of the architecture (SSE2 or NEON), x86-64-v3
+/// and x86-64-v4.
 enum class InstructionSet { baseline, avx2, avx512 };
 
-/// The widest that this processor has and limit_instruction_set() allows.
+/// Returns the widest set that both the processor and limit_instruction_set() allow.
 InstructionSet instruction_set();
 
-/// Lets everything that is asked to do something from now on use `widest` at most, as an older
-/// processor would. Before threads are started.
+/// Restricts subsequent computations to `widest`, to emulate an older processor. Must be called
+/// before threads are started.
 void limit_instruction_set(InstructionSet widest);
 
-/// The same by its name. Throws Error{bad_usage} if it has none of them.
+/// Restricts subsequent computations to the set named `widest`. Throws Error{bad_usage} if the name
+/// is unknown.
 void limit_instruction_set(std::string_view widest);
 
 }  // namespace skycap::geometry

@@ -5,8 +5,8 @@
 
 namespace skycap {
 
-/// Thrown by work that was told to stop, such as a search for a path. It is not an
-/// Error: nothing is wrong, and there is nothing for the user to correct.
+/// Thrown by cancelled work, such as a path search. Not derived from Error, because a cancellation
+/// is not a failure that the user has to correct.
 class Interrupted : public std::exception {
  public:
   const char* what() const noexcept override { return "interrupted"; }

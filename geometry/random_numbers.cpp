@@ -5,7 +5,7 @@
 
 namespace skycap::geometry {
 
-// Box and Muller 1958.
+// Box-Muller transform (1958).
 double RandomNumbers::normal() {
   if (has_spare_) {
     has_spare_ = false;

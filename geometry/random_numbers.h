@@ -1,5 +1,5 @@
-/// Random numbers that are the same with every compiler: the standard prescribes those of the
-/// engine, not those of its distributions.
+/// Random numbers that are identical with every compiler. The standard specifies the results of its
+/// engines, but not of its distributions.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace skycap::geometry {
 
-/// A number in [0, 1) from the upper 53 of 64 random bits.
+/// Converts the upper 53 of 64 random bits to a number in [0, 1).
 constexpr double unit_number(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-/// A sequence of random numbers: the Mersenne Twister of 64 bits. Also an engine, for std::shuffle
-/// and the distributions.
+/// Random number generator based on the 64-bit Mersenne Twister. It is also a standard engine, for
+/// std::shuffle and the distributions.
 class RandomNumbers {
  public:
   using result_type = std::uint64_t;
 
   explicit RandomNumbers(std::uint64_t seed) : engine_(seed) {}
-  /// Sequences of different seeds or streams are unrelated.
+  /// Creates an independent sequence for each pair of seed and stream.
   RandomNumbers(std::uint64_t seed, std::uint64_t stream)
       : engine_(split_mix(split_mix(seed) ^ stream)) {}
 
@@ -29,11 +29,11 @@ class RandomNumbers {
   static constexpr result_type max() { return std::mt19937_64::max(); }
   result_type operator()() { return engine_(); }
 
-  /// In [0, 1).
+  /// Draws a number in [0, 1).
   double uniform() { return unit_number(engine_()); }
   /// Draws a number in [least, most).
   double between(double least, double most) { return least + (most - least) * uniform(); }
-  /// Draws an integer from `least` to `most`, both included.
+  /// Draws an integer from `least` to `most`, both inclusive.
   int integer(int least, int most) {
     return least + static_cast<int>(engine_() % static_cast<std::uint64_t>(most - least + 1));
   }
@@ -46,13 +46,15 @@ class RandomNumbers {
   bool has_spare_ = false;
 };
 
-/// A short sequence that costs nothing to begin, such as one for each pixel: SplitMix64.
+/// SplitMix64 generator for short sequences, such as one per pixel. Construction takes almost no
+/// time.
 class ShortRandomNumbers {
  public:
-  /// Mixes the seed: seeds that follow each other must not give the same sequence, shifted.
+  /// Hashes the seed, because consecutive seeds would otherwise give shifted copies of the same
+  /// sequence.
   explicit ShortRandomNumbers(std::uint64_t seed) : state_(split_mix(seed)) {}
 
-  /// In [0, 1).
+  /// Draws a number in [0, 1).
   double uniform() {
     const std::uint64_t bits = split_mix(state_);
     state_ += split_mix_step;

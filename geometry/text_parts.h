@@ -1,4 +1,4 @@
-/// Parts of texts that other programs wrote: without blanks and marks that carry no meaning.
+/// Splitting and trimming of text from external sources.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace skycap::geometry {
 
-/// The text without the UTF-8 byte-order mark at its beginning, if it has one.
+/// Returns the text without a leading UTF-8 byte-order mark.
 std::string_view without_mark(std::string_view text);
 
-/// The text without blanks, tabs and line ends at its beginning and end.
+/// Returns the text without leading and trailing spaces, tabs and line ends.
 std::string_view trimmed(std::string_view text);
 
-/// The parts between blanks, tabs and line ends, of which there may be several in a row.
+/// Splits the text at sequences of spaces, tabs and line ends.
 std::vector<std::string> words_of(std::string_view text);
 
 }  // namespace skycap::geometry

@@ -1,5 +1,5 @@
-# Writes each public header as skycap/LIBRARY/NAME.h, and what it includes of ours as
-# skycap/LIBRARY/detail/NAME.h, with includes to match. Fails if one includes anything else of ours.
+# Installs each public header as skycap/LIBRARY/NAME.h and its supporting headers as
+# skycap/LIBRARY/detail/NAME.h, with adapted includes. Fails if one includes any other Skycap header.
 cmake_minimum_required(VERSION 3.25)
 function(public_name header result)
   string(REGEX REPLACE "^([^/]+)/.*" "\\1" library ${header})

@@ -1,6 +1,5 @@
-# The Debian packages that `cpack` makes, one of each component that is installed: the program, the
-# libraries for development, and the module of Python if it is built. tests/checks/packages tries
-# them in a bare root.
+# Debian packages created by `cpack`, one per install component: the program, the development
+# libraries, and the Python module if it is built. tests/checks/packages tests them in a minimal root.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "Skycap maintainers <maintainers@skycap.invalid>")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -27,7 +26,7 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "plans and simulates aerial surveys of b
 Decides where to look from next by the points measured so far, proves that
 every leg keeps its distance, and writes the flight for autopilots.")
 
-# Static libraries: who links one needs what it was made with. Planners need the first list alone.
+# Dependencies of programs that link the static libraries. Planners need only the first list.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libskycap-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS libdraco-dev libeigen3-dev libgmp-dev
@@ -38,11 +37,11 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "libraries of Skycap, for aerial sur
 Planners, proofs of clearance, simulated sensors, and files that CMake finds
 them by. What the components beyond survey are linked with is recommended.")
 
-# A module is for one minor version of Python's interpreter.
+# A module supports exactly one minor version of the Python interpreter.
 if(TARGET skycap_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-skycap)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS skycap)  # whose plug-ins read maps and city models
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS skycap)  # its plug-ins read maps and city models
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS python3-numpy
     "python3 (>= ${python_version})" "python3 (<< ${next_python_version})")
@@ -56,7 +55,7 @@ endif()
 
 include(CPack)
 
-# What every package of Debian's has beside its files.
+# Copyright and changelog, which are required in every Debian package.
 configure_file(changelog.in changelog @ONLY)
 execute_process(COMMAND gzip -9nkf changelog WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}
                 COMMAND_ERROR_IS_FATAL ANY)

@@ -1,4 +1,4 @@
-# The public headers (docs/reference/cpp-api.md). They keep their meaning within a minor version.
+# Public headers (docs/reference/cpp-api.md). Their interface is stable within a minor version.
 set(public_headers
   geometry/error.h
   geometry/io/cloud_io.h
@@ -39,7 +39,7 @@ set(public_headers
   missions/api/simulation.h
   missions/api/survey.h)
 
-# What those include: installed under skycap/LIBRARY/detail, not for others, may change any day.
+# Headers included by public headers: installed under skycap/LIBRARY/detail, internal and unstable.
 set(supporting_headers
   flight/autopilot/mission_mode.h
   flight/export/text.h

@@ -1,9 +1,9 @@
-# Writes the manual page of PROGRAM, from what it says of itself, to PAGE, compressed.
+# Writes the compressed manual page PAGE from the help text of PROGRAM.
 cmake_minimum_required(VERSION 3.25)
 function(ask result)
   execute_process(COMMAND ${PROGRAM} ${ARGN} --help OUTPUT_VARIABLE text
                   COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX REPLACE "\\\\" "\\\\\\\\" text "${text}")   # roff's own characters
+  string(REGEX REPLACE "\\\\" "\\\\\\\\" text "${text}")   # escapes roff's special characters
   string(REGEX REPLACE "-" "\\\\-" text "${text}")
   string(REGEX REPLACE "(^|\n)([.'])" "\\1\\\\&\\2" text "${text}")
   set(${result} ".nf\n${text}.fi\n" PARENT_SCOPE)

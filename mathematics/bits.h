@@ -1,4 +1,4 @@
-/// The fields of a double.
+/// Access to the bit fields of a double.
 #pragma once
 
 #include <bit>
@@ -22,22 +22,22 @@ constexpr double with_sign_of(double x, double sign) {
 constexpr bool is_nan(double x) { return x != x; }
 constexpr bool is_finite(double x) { return magnitude(x) < infinity; }
 
-/// Of a normal number: the e of 2^e <= |x| < 2^(e + 1).
+/// Returns e of a normal number x with 2^e <= |x| < 2^(e + 1).
 constexpr int exponent_of(double x) {
   return static_cast<int>(bits_of(x) >> mantissa_bits & 0x7FF) - exponent_bias;
 }
-/// 2^e, e in [-1022, 1023].
+/// Returns 2^e for e in [-1022, 1023].
 constexpr double power_of_two(int e) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(e + exponent_bias) << mantissa_bits);
 }
 
-/// x * 2^e, rounded once unless the result is subnormal. e in [-2044, 2046].
+/// Returns x * 2^e for e in [-2044, 2046], rounded once unless the result is subnormal.
 constexpr double scaled(double x, int e) {
   const int half = e / 2;
   return x * power_of_two(half) * power_of_two(e - half);
 }
 
-/// The nearest whole number, |x| < 2^51.
+/// Returns the nearest integer for |x| < 2^51.
 constexpr double rounded(double x) {
   constexpr double shift = 0x1.8p52;
   return (x + shift) - shift;

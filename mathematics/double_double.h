@@ -1,4 +1,4 @@
-/// Numbers of twice the precision as sums of two doubles, without fused multiply-add.
+/// Double-double arithmetic (numbers as sums of two doubles) without fused multiply-add.
 ///
 /// Source of the error-free sums and products: T. J. Dekker, A floating-point technique for
 /// extending the available precision, Numerische Mathematik 18 (1971); D. E. Knuth, The Art of
@@ -7,25 +7,25 @@
 
 namespace skycap::mathematics {
 
-/// The number high + low, |low| at most half an ulp of high but for rounding.
+/// The number high + low. |low| is at most half an ulp of high, except for rounding errors.
 struct DoubleDouble {
   double high, low;
 };
 
-/// a + b exactly.
+/// Returns a + b exactly.
 constexpr DoubleDouble exact_sum(double a, double b) {
   const double sum = a + b, b_in_sum = sum - a;
   return {sum, (a - (sum - b_in_sum)) + (b - b_in_sum)};
 }
 
-/// a + b exactly, |a| >= |b| or a zero.
+/// Returns a + b exactly. Requires |a| >= |b|, or that one of them is zero.
 constexpr DoubleDouble exact_sum_of_ordered(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
 }
 
-/// a * b exactly, unless the product or what is to be added to it is out of a double's range, or a
-/// or b is beyond 2^995.
+/// Returns a * b exactly. Requires |a|, |b| <= 2^995 and that the product and its error term are in
+/// the range of double.
 constexpr DoubleDouble exact_product(double a, double b) {
   constexpr double splitter = 0x1p27 + 1.0;
   const double a_scaled = splitter * a, b_scaled = splitter * b;
@@ -35,7 +35,7 @@ constexpr DoubleDouble exact_product(double a, double b) {
   return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
 
-/// To some 2^-104 of the result, if the summands do not cancel.
+/// Returns the sum with a relative error of about 2^-104, if the summands do not cancel.
 constexpr DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble high = exact_sum(a.high, b.high), low = exact_sum(a.low, b.low);
   const DoubleDouble both = exact_sum_of_ordered(high.high, high.low + low.high);
@@ -44,7 +44,7 @@ constexpr DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
 constexpr DoubleDouble operator-(const DoubleDouble& a) { return {-a.high, -a.low}; }
 constexpr DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
 
-/// To some 2^-102 of the result.
+/// Returns the product with a relative error of about 2^-102.
 constexpr DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble product = exact_product(a.high, b.high);
   return exact_sum_of_ordered(product.high, product.low + (a.high * b.low + a.low * b.high));

@@ -1,15 +1,17 @@
-/// The elementary functions of <cmath>, the same bits everywhere.
+/// Elementary functions of <cmath> with bit-identical results on all platforms.
 ///
-/// What a library's sin() or exp() returns in the last bit depends on the library and, in glibc, on
-/// the processor, which it asks for fused multiply-adds. A survey is a long chain of decisions, so
-/// one such bit can become another survey. These functions use nothing but IEEE 754 additions,
-/// multiplications, divisions and square roots in double precision, in one order, and so give the
-/// same on every processor and with every compiler that keeps to the standard. Results are within
-/// 0.6 ulp of the true value, those of sin, cos and tan within 0.8, of expm1, erf and the
-/// hyperbolic functions within 2.
+/// The last bit of sin() or exp() of a standard library depends on the library. In glibc, it also
+/// depends on whether the processor supports fused multiply-add. A survey is a long chain of
+/// decisions, so that one such bit can change the whole survey. The functions in this header use
+/// only IEEE 754 additions, multiplications, divisions and square roots in double precision, in a
+/// fixed order. Hence they give the same results on every processor and with every
+/// standard-conforming compiler.
 ///
-/// A program that links skycap::mathematics gets them under their names in C, for itself and for
-/// all libraries it uses: elementary_c.cpp. Special values are those of the C standard, annex F.
+/// Results are within 0.6 ulp of the exact value; those of sin, cos and tan within 0.8 ulp, of
+/// expm1, erf and the hyperbolic functions within 2 ulp.
+///
+/// A program that links skycap::mathematics uses these functions under their C names, both directly
+/// and in all its libraries (elementary_c.cpp). Special values comply with the C standard, annex F.
 /// errno is not set.
 #pragma once
 

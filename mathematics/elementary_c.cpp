@@ -1,5 +1,5 @@
-/// The elementary functions under their names in C, for whatever is linked into the same program:
-/// the linker and the loader take the program's own definitions before those of a library.
+/// Elementary functions under their C names, for all code linked into the same program. The linker
+/// and the loader prefer definitions of the program to those of a library.
 
 #include <cmath>
 
@@ -26,7 +26,7 @@ double acos(double x) noexcept { return math::acos(x); }
 double atan(double x) noexcept { return math::atan(x); }
 double atan2(double y, double x) noexcept { return math::atan2(y, x); }
 void sincos(double x, double* sine, double* cosine) noexcept {
-  const double of = x;  // may lie where the results go
+  const double of = x;  // `x` may be overwritten by the results
   *sine = math::sin(of);
   *cosine = math::cos(of);
 }
@@ -40,7 +40,7 @@ double atanh(double x) noexcept { return math::atanh(x); }
 
 double erf(double x) noexcept { return math::erf(x); }
 
-// Rounded twice, which is seen in one of some 2^28 results.
+// Double rounding affects about one in 2^28 results.
 float expf(float x) noexcept { return static_cast<float>(math::exp(x)); }
 float exp2f(float x) noexcept { return static_cast<float>(math::exp2(x)); }
 float expm1f(float x) noexcept { return static_cast<float>(math::expm1(x)); }

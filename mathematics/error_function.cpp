@@ -8,10 +8,10 @@ namespace {
 
 constexpr DoubleDouble inverse_root_pi = {0x1.20dd750429b6dp-1, 0x1.1ae3a914fed80p-57};
 
-/// e^(-x^2), x^2 taken exactly.
+/// Returns e^(-x^2) with an exact x^2.
 double gaussian(double x) { return exp(-exact_product(x, x)); }
 
-/// erf of x in (0, 2.5] by its series of positive terms (Abramowitz and Stegun, 7.1.6).
+/// Returns erf(x) for x in (0, 2.5] by its series of positive terms (Abramowitz and Stegun, 7.1.6).
 double by_series(double x) {
   const DoubleDouble twice_square = DoubleDouble{2.0, 0.0} * exact_product(x, x);
   DoubleDouble term = {x, 0.0}, sum = term;
@@ -23,8 +23,8 @@ double by_series(double x) {
   return gaussian(x) * result.high + gaussian(x) * result.low;
 }
 
-/// 1 - erf of x > 2.5 by its continued fraction (Abramowitz and Stegun, 7.1.14). It is below 2^-11,
-/// so that double precision is enough for the difference from 1.
+/// Returns 1 - erf(x) for x > 2.5 by its continued fraction (Abramowitz and Stegun, 7.1.14). The
+/// result is below 2^-11, so double precision is sufficient for subtracting it from 1.
 double rest(double x) {
   double fraction = x;
   for (int n = 48; n > 0; --n) fraction = x + 0.5 * n / fraction;
@@ -38,7 +38,7 @@ double erf(double x) {
   const double a = magnitude(x);
   if (a > 6.0) return with_sign_of(1.0, x);
   if (a > 2.5) return with_sign_of(1.0 - rest(a), x);
-  // Before products of subnormal numbers lose digits, the first term is all there is.
+  // The first term is sufficient for small x, and products of subnormal numbers would lose digits.
   if (a < 0x1p-300) return 2.0 * inverse_root_pi.high * x;
   return with_sign_of(by_series(a), x);
 }

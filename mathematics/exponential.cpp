@@ -8,7 +8,8 @@
 namespace skycap::mathematics {
 namespace {
 
-// x = (k / 64) ln 2 + r: e^x is 2^(k / 64), of which the fractional part is in a table, times e^r.
+// x = (k / 64) ln 2 + r. e^x is 2^(k / 64) times e^r, with a table for the fractional part of the
+// exponent.
 constexpr int steps = 64;
 
 constexpr auto fractional_powers = [] {
@@ -24,14 +25,14 @@ constexpr auto fractional_powers = [] {
   return powers;
 }();
 
-// 2^(k / 64) e^r, |r| < ln 2 / 128: 2^exponent times a power of the table times 1 + rest.
+// 2^(k / 64) e^r for |r| < ln 2 / 128: 2^exponent * power of the table * (1 + rest).
 struct Exponential {
   int exponent;
   DoubleDouble power;
   double rest;
 };
 
-// e^r - 1 by its series, which ends below 2^-68 of it.
+// Returns e^r - 1 by its series, with a truncation error below 2^-68 of the result.
 double small_expm1(double r) {
   const double tail = 1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0 + r / 5040.0));
   return r + r * r * (0.5 + r * (1.0 / 6.0 + r * tail));
@@ -42,7 +43,7 @@ Exponential split(int k, double r) {
 }
 
 Exponential exponential(const DoubleDouble& x) {
-  // ln 2 / 64: the first part has 32 bits, so that its product with k is exact.
+  // ln 2 / 64. The first part has 32 bits, so that its product with k is exact.
   constexpr DoubleDouble step = {0x1.62e42feep-7, 0x1.a39ef35793c76p-39};
   const double k = rounded(x.high * (steps * inverse_ln_2.high));
   const double r = ((x.high - k * step.high) - k * step.low) + x.low;

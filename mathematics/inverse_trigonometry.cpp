@@ -7,10 +7,11 @@
 namespace skycap::mathematics {
 namespace {
 
-// atan(y / x) of 0 <= y <= x: a step c = n / 16 near y / x, and the rest of the angle.
+// atan(y / x) for 0 <= y <= x: the angle of a table step c = n / 16 near y / x, plus the remaining
+// angle.
 constexpr int steps = 16;
 
-// Euler's series, whose terms fall by half or more: with q = c^2 / (1 + c^2), atan(c) is q / c
+// Euler's series, whose terms decrease by at least half. With q = c^2 / (1 + c^2), atan(c) is q / c
 // times 1 + 2/3 q (1 + 4/5 q (1 + ...)).
 constexpr auto angle_of_step = [] {
   std::array<DoubleDouble, steps + 1> angles = {};
@@ -26,7 +27,7 @@ constexpr auto angle_of_step = [] {
   return angles;
 }();
 
-// Of |t| < 1/30: ends below 2^-64 of t.
+// Returns atan(t) - t for |t| < 1/30, with a truncation error below 2^-64 of t.
 double atan_tail(double t) {
   const double square = t * t;
   const double tail = 1.0 / 9.0 - square * (1.0 / 11.0 - square / 13.0);
@@ -47,7 +48,8 @@ DoubleDouble atan_of_ratio(const DoubleDouble& y, const DoubleDouble& x) {
   return exact_sum_of_ordered(angle.high, angle.low + rest);
 }
 
-// Of y >= 0, x of any sign; not both zero, none infinite or so great or small that squares matter.
+// Returns the angle for y >= 0 and any x. Requires that not both are zero, both are finite, and
+// their squares neither overflow nor underflow.
 double angle_above_axis(const DoubleDouble& y, const DoubleDouble& x) {
   const bool is_behind = x.high < 0.0;
   const DoubleDouble across = is_behind ? -x : x;
@@ -57,7 +59,7 @@ double angle_above_axis(const DoubleDouble& y, const DoubleDouble& x) {
   return angle.high + angle.low;
 }
 
-// Root of 1 - x^2, |x| <= 1.
+// Returns the square root of 1 - x^2 for |x| <= 1.
 DoubleDouble complement(double x) {
   const DoubleDouble square = exact_product(x, x);
   const DoubleDouble rest = DoubleDouble{1.0, 0.0} - square;
@@ -67,7 +69,7 @@ DoubleDouble complement(double x) {
   return exact_sum_of_ordered(root, error.high / (2.0 * root));
 }
 
-// The angle of a direction along an axis or with an infinite coordinate.
+// Returns the angle of a direction along an axis or with an infinite coordinate.
 double special_angle(double y, double x) {
   if (is_nan(x) || is_nan(y)) return x + y;
   const bool is_behind = is_negative(x);
@@ -84,7 +86,8 @@ double atan2(double y, double x) {
   if (!is_finite(x) || !is_finite(y) || x == 0.0 || y == 0.0) return special_angle(y, x);
   const double a = magnitude(y), b = magnitude(x);
   if (x > 0.0 && a / b < 0x1p-100) return y / x;
-  // Away from the ends of the range, where products would be lost.
+  // Scales the arguments away from the limits of the range, where products would overflow or
+  // underflow.
   const double greater = a > b ? a : b;
   const int up = greater < 0x1p-900 ? 200 : 0;
   const int shift = up - exponent_of(scaled(greater, up));

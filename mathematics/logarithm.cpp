@@ -7,14 +7,15 @@
 namespace skycap::mathematics {
 namespace {
 
-// x = 2^e m, m in [1, 2) or, from the step on whose end is beyond the root of 2, in [0.7, 1). A
-// factor near 1 / m, of few bits, brings m near 1; its logarithm is in a table.
+// x = 2^e m, with m in [1, 2), or in [0.7, 1) from the step on whose end exceeds the square root of
+// 2. Multiplication by a short factor close to 1 / m brings m near 1; the logarithm of the factor
+// is in a table.
 constexpr int steps = 128;
 constexpr int first_halved = 53;
 
 struct Step {
   double factor;
-  DoubleDouble log;  // of 1 / factor
+  DoubleDouble log;  // logarithm of 1 / factor
 };
 
 // log((1 + z) / (1 - z)) = 2 (z + z^3 / 3 + ...), |z| < 0.2.
@@ -39,14 +40,14 @@ constexpr auto table = [] {
   return made;
 }();
 
-// 1 / 3, -1 / 4, ... ends below 2^-66 of r.
+// 1 / 3, -1 / 4, ...; the truncation error is below 2^-66 of r.
 constexpr auto log_tail = [] {
   std::array<double, 9> coefficients = {};
   for (int i = 0; i < 9; ++i) coefficients[i] = (i % 2 == 0 ? 1.0 : -1.0) / (i + 3);
   return coefficients;
 }();
 
-// log(1 + r), |r| < 2^-6.5.
+// Returns log(1 + r) for |r| < 2^-6.5.
 DoubleDouble log_near_one(const DoubleDouble& r) {
   const DoubleDouble square = exact_product(r.high, r.high);
   double tail = 0.0;
@@ -62,7 +63,7 @@ struct NormalNumber {
   double mantissa;  // in [1, 2)
 };
 NormalNumber normal_number(double x) {
-  constexpr int up = 54;  // of a subnormal number
+  constexpr int up = 54;  // exponent shift of subnormal numbers
   const bool is_subnormal = x < 0x1p-1022;
   const double normal = is_subnormal ? x * 0x1p54 : x;
   const std::uint64_t mantissa = bits_of(normal) & ((1ULL << mantissa_bits) - 1);
@@ -70,7 +71,7 @@ NormalNumber normal_number(double x) {
           std::bit_cast<double>(mantissa | bits_of(1.0))};
 }
 
-// Zero, negative and not finite numbers have the logarithm of special_log().
+// Returns whether special_log() applies: zero, negative and non-finite numbers.
 bool is_special(double x) { return !(x > 0.0 && x < infinity); }
 double special_log(double x) {
   if (x == 0.0) return -infinity;
@@ -94,7 +95,8 @@ DoubleDouble log_of_positive(double x) {
     mantissa *= 0.5;
   }
   const auto& [factor, log_of_step] = table[step];
-  const double mantissa_high = (mantissa + 0x1p12) - 0x1p12;  // 40 bits: times the factor, exact
+  const double mantissa_high =
+      (mantissa + 0x1p12) - 0x1p12;  // 40 bits; its product with the factor is exact
   const DoubleDouble r =
       exact_sum_of_ordered(mantissa_high * factor - 1.0, (mantissa - mantissa_high) * factor);
   const DoubleDouble near_one = log_near_one(r);

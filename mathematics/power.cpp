@@ -14,7 +14,7 @@ bool is_odd(double y) {
   return a < 0x1p53 && is_whole(y) && static_cast<std::uint64_t>(a) % 2 == 1;
 }
 
-// Annex F, F.10.4.4, for what is neither finite nor different from zero.
+// Returns the power for arguments that are NaN, infinite or zero (C standard, annex F, F.10.4.4).
 double special_power(double x, double y) {
   if (is_nan(x) || is_nan(y)) return x + y;
   if (!is_finite(y)) {
@@ -26,9 +26,9 @@ double special_power(double x, double y) {
   return is_odd(y) ? with_sign_of(limit, x) : limit;
 }
 
-// x positive, and both finite.
+// Requires a positive x, and that both are finite.
 double power_of_positive(double x, double y) {
-  // Beyond, x^y is out of range unless x is 1; and y would not fit an exact product.
+  // Beyond the bound, x^y is out of range unless x is 1, and the product would not be exact.
   const double bounded = magnitude(y) < 0x1p65 ? y : with_sign_of(0x1p65, y);
   const DoubleDouble log = log_of_positive(x);
   const DoubleDouble product = exact_product(bounded, log.high);

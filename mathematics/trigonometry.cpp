@@ -9,7 +9,7 @@
 namespace skycap::mathematics {
 namespace {
 
-// 2 / pi: sixty-four bits after the point, and so on.
+// 2 / pi in words of 64 bits after the binary point.
 constexpr std::uint64_t inverse_half_pi[] = {
     0xA2F9836E4E441529, 0xFC2757D1F534DDC0, 0xDB6295993C439041, 0xFE5163ABDEBBC561,
     0xB7246E3A424DD2E0, 0x06492EEA09D1921C, 0xFE1DEB1CB129A73E, 0xE88235F52EBB4484,
@@ -17,24 +17,25 @@ constexpr std::uint64_t inverse_half_pi[] = {
     0xEF2F118B5A0A6D1F, 0x6D367ECF27CB09B7, 0x4F463F669E5FEA2D, 0x7527BAC7EBE5F17B,
     0x3D0739F78A5292EA, 0x6BFB5FB11F8D5D08, 0x56033046FC7B6BAB, 0xF0CFBC209AF4361D};
 
-// The 64 bits of 2 / pi from the one of weight 2^-first on; before the point there are zeros.
+// Returns 64 bits of 2 / pi, starting with the bit of weight 2^-first. Bits before the binary point
+// are zero.
 std::uint64_t bits_of_inverse_half_pi(int first) {
   const auto word = [](int i) { return i < 0 ? std::uint64_t{0} : inverse_half_pi[i]; };
-  const int position = first - 1 + 64;  // of the bits, from a word of zeros on
+  const int position = first - 1 + 64;  // bit position, counted from a leading word of zeros
   const int i = position / 64 - 1, shift = position % 64;
   return shift == 0 ? word(i) : word(i) << shift | word(i + 1) >> (64 - shift);
 }
 
-// A number of 192 bits, its words from the most significant on.
+// Number of 192 bits; most significant word first.
 struct WideNumber {
   std::uint64_t words[3];
 };
 
-// m (2 / pi) 2^e modulo 4, times 2^190, of m < 2^53 and e in [-60, 971]. What is cut off 2 / pi
-// makes it too small by less than m.
+// Returns m (2 / pi) 2^e modulo 4, times 2^190, for m < 2^53 and e in [-60, 971]. Truncation of 2 /
+// pi makes the result too small by less than m.
 WideNumber quarter_turns(std::uint64_t m, int e) {
   __extension__ using Product = unsigned __int128;
-  const int first = e - 1;  // of the bit of weight 2 in the product with 2^e
+  const int first = e - 1;  // bit with weight 2 in the product with 2^e
   const Product low = Product{m} * bits_of_inverse_half_pi(first + 128);
   const Product middle = Product{m} * bits_of_inverse_half_pi(first + 64) + (low >> 64);
   const std::uint64_t high =
@@ -59,14 +60,14 @@ WideNumber shifted_left(const WideNumber& n, int by) {
            n.words[2] << by}};
 }
 
-// The number times 2^-192, to 2^-106 of itself.
+// Returns the number times 2^-192, with a relative error of at most 2^-106.
 DoubleDouble fraction(const WideNumber& n) {
   int zeros = 0;
   for (const std::uint64_t word : n.words) {
     zeros += std::countl_zero(word);
     if (word != 0) break;
   }
-  if (zeros >= 128) return {0.0, 0.0};  // no double is so near to a multiple of pi / 2
+  if (zeros >= 128) return {0.0, 0.0};  // no double is that close to a multiple of pi / 2
   const WideNumber leading = shifted_left(n, zeros);
   constexpr int kept = 53;
   const auto high = static_cast<double>(leading.words[0] >> (64 - kept));
@@ -75,7 +76,7 @@ DoubleDouble fraction(const WideNumber& n) {
                               low * 0x1p-117 * power_of_two(-zeros));
 }
 
-// An angle as quarter turns and a rest of at most an eighth turn.
+// Angle as quarter turns and a remainder of at most an eighth turn.
 struct Angle {
   unsigned quarters;
   DoubleDouble rest;
@@ -97,7 +98,7 @@ Angle angle(double x) {
   return {x < 0.0 ? 4U - quarters : quarters, radians};
 }
 
-// 1 / n! of n = first, first + 2, ... with alternating signs.
+// Returns 1 / n! for n = first, first + 2, ... with alternating signs.
 template <int count>
 constexpr std::array<double, count> series(int first) {
   std::array<double, count> coefficients = {};
@@ -117,7 +118,7 @@ double sum(const std::array<double, count>& coefficients, double x) {
   return result;
 }
 
-// The series end below 2^-60 of the result.
+// The truncation errors of the series are below 2^-60 of the result.
 DoubleDouble sine_of_rest(const DoubleDouble& x) {
   static constexpr auto tail = series<8>(3);  // x^3 / 6 - x^5 / 120 + ...
   const double square = x.high * x.high;
@@ -135,7 +136,7 @@ DoubleDouble cosine_of_rest(const DoubleDouble& x) {
 
 double nearest(const DoubleDouble& x) { return x.high + x.low; }
 
-// sin(x + quarters of a turn)
+// Returns the sine of the angle plus `further_quarters` quarter turns.
 double sine(const Angle& of, unsigned further_quarters) {
   const unsigned quarters = of.quarters + further_quarters;
   const double value = nearest(quarters % 2 == 0 ? sine_of_rest(of.rest) : cosine_of_rest(of.rest));

@@ -21,7 +21,7 @@ void require_rows_of_three(const py::array& array, const std::string& name) {
 
 }  // namespace
 
-// Eigen's fixed vectors are their numbers and nothing else.
+// Eigen's fixed-size vectors contain only their coefficients.
 static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
 static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
 

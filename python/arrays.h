@@ -1,5 +1,5 @@
-/// Arrays of numpy on both sides of the border. What is right as it is, is looked at where it lies;
-/// what comes out is read-only and keeps alive whatever holds it. numpy is imported by the first
+/// Conversion between numpy arrays and C++ types. Input arrays of the right type are used without a
+/// copy. Output arrays are read-only and keep their owner alive. numpy is imported with the first
 /// array, not by `import skycap`.
 #pragma once
 
@@ -18,30 +18,32 @@ namespace skycap::python {
 
 namespace py = pybind11;
 
-/// Arrays of this type are taken as they lie in memory if they are aligned; others are converted,
-/// which copies.
+/// Contiguous, aligned arrays of this type are used in place. Other arrays are converted, which
+/// makes a copy.
 template <typename Number>
 using Array = py::array_t<Number, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
-/// Rows of three as points; `name` opens messages. Throws py::value_error for any other shape.
+/// Converts rows of three numbers to points. Messages begin with `name`. Throws py::value_error for
+/// any other shape.
 std::span<const Eigen::Vector3f> points_in(const Array<float>& array, const std::string& name);
 std::vector<Eigen::Vector3d> places_in(const Array<double>& array, const std::string& name);
-/// Throws py::value_error also for numbers that are not finite.
+/// Also throws py::value_error for non-finite numbers.
 Eigen::Vector3d vector_in(const Array<double>& array, const std::string& name);
 
-/// From an array or what numpy makes one of. Throws py::value_error unless the numbers are whole
-/// and fit 32 bits.
+/// Converts an array, or an object that numpy can convert to one. Throws py::value_error unless all
+/// numbers are integers that fit into 32 bits.
 Array<std::uint32_t> indices_in(const py::object& numbers, const std::string& name);
 
-/// From a 4 x 4 matrix. Throws py::value_error unless it turns and shifts and does nothing else, to
+/// Converts a 4 x 4 matrix. Throws py::value_error unless the matrix is a rigid transformation, to
 /// 1e-6.
 Eigen::Isometry3d pose_in(const Array<double>& matrix, const std::string& name);
 
 py::array_t<double> array_of(const Eigen::Vector3d& vector);
 py::array_t<double> array_of(const Eigen::Isometry3d& pose);
 
-/// An array of so many rows and columns (none: one axis) over memory that `keeper` keeps alive.
+/// Returns an array of `rows` x `columns` numbers (0 columns: one-dimensional) over memory that
+/// `keeper` owns.
 template <typename Number>
 py::array_t<Number> view_of(const Number* numbers, py::ssize_t rows, py::ssize_t columns,
                             const py::object& keeper) {
@@ -55,7 +57,7 @@ py::array_t<Number> view_of(const Number* numbers, py::ssize_t rows, py::ssize_t
 py::array_t<float> view_of(const std::vector<Eigen::Vector3f>& points, const py::object& keeper);
 py::array_t<double> view_of(const std::vector<Eigen::Vector3d>& points, const py::object& keeper);
 
-/// Puts a value where Python counts the references to it.
+/// Moves a value into an object with a Python reference count. Returns its address and the owner.
 template <typename Value>
 std::pair<const Value*, py::capsule> kept(Value&& value) {
   using Kept = std::remove_cvref_t<Value>;

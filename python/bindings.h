@@ -1,5 +1,5 @@
-/// The parts of the module, one source each. Each adds its classes and functions; those before it
-/// are there already.
+/// Parts of the module, one per source file. Each adds classes and functions and may use those of
+/// the preceding parts.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -15,7 +15,8 @@ void bind_surveys(pybind11::module_& module);
 void bind_scans(pybind11::module_& module);
 void bind_certificates(pybind11::module_& module);
 
-/// Emits a DeprecationWarning for a name of version 0.1; throws if warnings are errors.
+/// Emits a DeprecationWarning for a name of version 0.1. Throws if warnings are configured as
+/// errors.
 void warn_of_former_name(const char* former, const char* current);
 
 }  // namespace skycap::python

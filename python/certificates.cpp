@@ -1,4 +1,4 @@
-// Proofs that straight legs keep their distance.
+// Verification that straight legs keep their clearance.
 #include <limits>
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-// skycap.Error, with the messages of the program.
+// skycap.Error, with the same messages as the program.
 #include "geometry/error.h"
 #include "python/bindings.h"
 

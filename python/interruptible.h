@@ -1,4 +1,4 @@
-/// Long work while other threads of Python go on and Ctrl-C is heard.
+/// Execution of long operations while other Python threads run and Ctrl-C is handled.
 #pragma once
 
 #include <functional>
@@ -6,10 +6,12 @@
 
 namespace skycap::python {
 
-/// Runs `work` on a thread of its own, without Python's lock, and waits for it. Signals are looked
-/// for meanwhile: one that raises (Ctrl-C does) stops the token, and is raised once `work` has
-/// returned. What `work` throws is thrown on. It may take Python's lock; an exception of Python's
-/// that it lets out is raised, too. Call with Python's lock held.
+/// Runs `work` on a separate thread without the GIL and waits for it. Signals are checked
+/// meanwhile. If a signal handler raises an exception, as for Ctrl-C, the token is stopped, and the
+/// exception is raised after `work` has returned.
+///
+/// Exceptions of `work` are rethrown. `work` may acquire the GIL, and its Python exceptions are
+/// raised, too. Must be called with the GIL held.
 void run_interruptibly(const std::function<void(const std::stop_token&)>& work);
 
 }  // namespace skycap::python

@@ -1,4 +1,4 @@
-// Mission files, the sensors they name, and the simulation that stands for the world.
+// Mission files, their sensors, and the simulation.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,7 +21,8 @@ using missions::api::Simulation;
 
 std::string yaml_of(const py::handle& value);
 
-/// Inside of a list or table a text stands in quotes: it may hold what parts entries.
+/// Converts a value inside a list or table. Strings are quoted, because they may contain
+/// separators.
 std::string entry_of(const py::handle& value) {
   if (!py::isinstance<py::str>(value)) return yaml_of(value);
   std::string text = "'";
@@ -30,8 +31,9 @@ std::string entry_of(const py::handle& value) {
   return text + "'";
 }
 
-/// As a mission file says it: numbers, truth, lists and tables of Python are those of YAML's flow
-/// style but for a few words. A text is what would stand behind `--set KEY=`.
+/// Converts a Python value to YAML for a mission file. Numbers, booleans, lists and tables of
+/// Python are valid YAML flow style, except for a few words. A string is used like the value of
+/// `--set KEY=`.
 std::string yaml_of(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (value.is_none()) return "null";
@@ -44,7 +46,8 @@ std::string yaml_of(const py::handle& value) {
     }
     return "{" + text + "}";
   }
-  if (py::hasattr(value, "tolist")) return yaml_of(value.attr("tolist")());  // numpy's
+  if (py::hasattr(value, "tolist"))
+    return yaml_of(value.attr("tolist")());  // numpy array or scalar
   if (py::isinstance<py::sequence>(value)) {
     for (const py::handle entry : value) text += (text.empty() ? "" : ", ") + entry_of(entry);
     return "[" + text + "]";
@@ -74,7 +77,8 @@ Mission parse(const std::string& text, const std::string& name,
   return Mission::parse(text, name, settings);
 }
 
-/// The points, pose and pixels of a scan, in the order in which Planner.next_view takes them.
+/// Returns the points, pose and pixels of a scan in the order of the parameters of
+/// Planner.next_view.
 py::tuple arrays_of(geometry::Scan&& measured) {
   const auto [scan, keeper] = kept(std::move(measured));
   py::object pixels = py::none();

@@ -1,4 +1,4 @@
-// The planner in the hands of a sensor loop: scans in, next view out.
+// Planner for a sensor loop: receives scans and returns the next view.
 #include "survey/planner.h"
 
 #include <atomic>
@@ -21,7 +21,8 @@ using missions::api::Mission;
 using survey::PlanningStep;
 using Lock = std::unique_lock<std::mutex>;
 
-/// One thread at a time; the points that arrays look at stay where they are.
+/// Planner with a lock, which allows one thread at a time and keeps the points in place while
+/// arrays refer to them.
 struct GuardedPlanner {
   explicit GuardedPlanner(const Mission& mission)
       : camera(mission.camera()), planner(mission.planner()) {}
@@ -32,7 +33,8 @@ struct GuardedPlanner {
   std::atomic<int> clouds_shown = 0;
 };
 
-/// What Python holds of the kept points. While it lives, the planner takes in nothing.
+/// Reference of a Python array to the kept points. While it exists, the planner does not process
+/// scans.
 class ShownCloud {
  public:
   explicit ShownCloud(std::shared_ptr<GuardedPlanner> planner) : planner_(std::move(planner)) {

@@ -1,4 +1,4 @@
-// The flight of a laser scanner as a generator of structured arrays.
+// Flight of a laser scanner as a generator of structured arrays.
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -18,7 +18,7 @@ namespace {
 using missions::api::LaserScan;
 using missions::api::Mission;
 
-/// One return as numpy sees it. Without gaps: the fields come by their size.
+/// Return as a numpy record. Fields are ordered by size, so that there is no padding.
 struct Return {
   double xyz[3];
   double time;
@@ -54,7 +54,7 @@ void append(const sim::LidarReturns& part, Return*& next) {
   }
 }
 
-/// One thread at a time.
+/// Scan generator for use by one thread at a time.
 class ScanPieces {
  public:
   ScanPieces(const Mission& mission, const missions::api::ScanRequest& request)

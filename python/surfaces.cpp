@@ -1,4 +1,4 @@
-// Meshes: built-in models, files, arrays; and clouds against them.
+// Meshes from models, files and arrays, and comparison of clouds with them.
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-// Whole surveys, as `skycap plan` makes them.
+// Complete surveys, like `skycap plan`.
 #include <filesystem>
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-/// What some planners can say besides their views: how much of the surface they take to be covered.
+/// Optional interface of planners that estimate the covered fraction of the surface.
 #pragma once
 
 #include <cstddef>
@@ -16,18 +16,18 @@ class CoverageEstimator {
  public:
   virtual ~CoverageEstimator() = default;
 
-  /// Expected covered share of the surface, seen and guessed.
+  /// Returns the expected covered fraction of the measured and predicted surface.
   virtual double predicted_coverage() const = 0;
 
-  /// All that the planner estimates of the surface.
+  /// Returns the complete estimate of the surface.
   virtual skycap::SurveyBelief belief() const = 0;
 
-  /// The rule by which the planner ended the survey, as files name it: "target_coverage",
-  /// "min_gain" and so on; "running" if it did not.
+  /// Returns the name of the stop rule that ended the survey, as used in files, such as
+  /// "target_coverage" or "min_gain". Returns "running" if no stop rule has ended it.
   virtual std::string_view stop_rule() const = 0;
 
-  /// What views would cover of all that was measured, from an empty cloud, by so many targets at
-  /// most; null before the first scan.
+  /// Returns a gain field that predicts how views would cover the measured surface from an empty
+  /// cloud. It has at most `most_targets` targets. Returns null before the first scan.
   virtual std::shared_ptr<const skycap::GainField> known_surface(
       std::size_t most_targets) const = 0;
 

@@ -1,5 +1,5 @@
-/// A planner that knows nothing of limits, kept from breaking them: what it proposes outside of
-/// them is refused in its name, until it proposes a view within them.
+/// Adds limits to a planner that does not support them. Rejects its proposals until one of them is
+/// within the limits.
 #pragma once
 
 #include <cstddef>
@@ -35,11 +35,11 @@ class LimitedPlanner final : public Planner {
 
   std::unique_ptr<Planner> planner_;
   ViewLimits limits_;
-  geometry::PointGrid measured_;  ///< the planner's points so far, if the stand-off asks for them
+  geometry::PointGrid measured_;  ///< cloud of the planner, only if the limits have a stand-off
   std::size_t points_known_ = 0;
   PlanningStep step_;
   std::stop_token stop_;
-  bool has_refused_ = false;  ///< a view since the last next_view()
+  bool has_refused_ = false;  ///< a proposal was rejected since the last next_view()
 };
 
 }  // namespace skycap::survey

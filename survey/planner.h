@@ -1,5 +1,5 @@
-/// The interface of every planner: it takes what the sensor measured and says where to look next.
-/// Nothing behind it knows whether the sensor is real or simulated.
+/// Interface of all planners: a planner receives scans and proposes the next view. Real and
+/// simulated sensors are treated alike.
 #pragma once
 
 #include <cstddef>
@@ -19,25 +19,25 @@ namespace skycap::survey {
 
 class CoverageEstimator;
 
-/// Whether views may be at a place; must be safe to call from several threads.
+/// Returns whether views at a position are allowed. Must be thread-safe.
 using PlaceCheck = std::function<bool(const Eigen::Vector3d&)>;
 
-/// Time one part of the planner took for one view.
+/// Computing time of one part of the planner for one view.
 struct PartTime {
   std::string part;  ///< such as "insert"
   double seconds;
 };
 
-/// What a planner did with the last scan.
+/// Effects of the last scan on the planner.
 struct PlanningStep {
-  std::size_t points_new = 0;           ///< points kept of the scan
-  std::size_t frontiers = 0;            ///< places still worth looking at
-  std::size_t frontiers_resolved = 0;   ///< that are no longer worth it because of this scan
-  std::optional<bool> target_resolved;  ///< whether the place that the view was for is among them
-  std::vector<PartTime> times;          ///< in the order of execution; their sum is the planning
+  std::size_t points_new = 0;  ///< points kept from the scan
+  std::size_t frontiers = 0;   ///< open frontiers; for Skycap's own planner unobserved patches
+  std::size_t frontiers_resolved = 0;   ///< frontiers that this scan resolved
+  std::optional<bool> target_resolved;  ///< whether the frontier of the proposed view was resolved
+  std::vector<PartTime> times;          ///< in order of execution; the sum is the planning time [s]
 };
 
-/// Thrown by a planner that was told to stop while it looked for a view.
+/// Thrown by a planner when a stop request ends the search for a view.
 class Interrupted : public std::exception {
  public:
   const char* what() const noexcept override { return "interrupted"; }
@@ -47,45 +47,46 @@ class Planner {
  public:
   virtual ~Planner() = default;
 
-  /// Takes in a scan and proposes the next view; nothing when the survey is complete. The scan may
-  /// be from another pose than was proposed. Throws Error{bad_geometry} if the first scan holds no
-  /// point of the scene: then there is nothing to plan from.
+  /// Processes a scan and returns the next view, or nullopt if the survey is complete. The pose of
+  /// the scan may differ from the proposed view. Throws Error{bad_geometry} if the first scan
+  /// contains no point of the scene, because planning needs at least one.
   virtual std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) = 0;
 
-  /// Takes in a scan that was made on the way to the view that was proposed last, after the first
-  /// next_view(). Planners that learn only from the views that they asked for leave it out.
+  /// Processes a scan taken en route to the last proposed view. Must not be called before the first
+  /// next_view(). Planners that learn only from proposed views ignore such scans.
   virtual void pass(const geometry::ScanSpan& /*scan*/) {}
 
-  /// Proposes another view in place of the last one, which cannot be reached; nothing when there
-  /// is none left. May be called repeatedly.
+  /// Returns another view instead of the last one, which is unreachable, or nullopt if there are no
+  /// more. May be called repeatedly.
   virtual std::optional<geometry::View> next_view_instead() = 0;
 
-  /// Tells the planner where views may be, by what is known when they are proposed. A planner that
-  /// does not ask learns it from next_view_instead(), view by view.
+  /// Restricts proposals to positions allowed by `may_be_at` at the time of the proposal. Planners
+  /// that ignore it receive next_view_instead() for each rejected view.
   virtual void keep_to(PlaceCheck /*may_be_at*/) {}
 
-  /// Whether the limits that the planner keeps its own views to allow a view that the survey asks
-  /// for, such as one of its opening. A planner without such limits allows any.
+  /// Returns whether the planner's own limits allow a view chosen by the survey, such as one of the
+  /// initial pattern. A planner without limits allows all views.
   virtual bool allows(const geometry::View& /*view*/) { return true; }
 
-  /// Lets a stop end next_view() wherever it is: it then throws Interrupted, and may not be called
-  /// again. Planners whose views take no time to speak of need not listen.
+  /// Sets the token of stop requests. A stop request lets next_view() throw Interrupted; the
+  /// planner must not be used afterwards. Planners with negligible computing time may ignore it.
   virtual void stop_on(const std::stop_token& /*stop*/) {}
 
-  /// The measurements kept so far.
+  /// Returns all points kept so far.
   virtual const geometry::PointCloud& cloud() const = 0;
 
-  /// Hands them over at the end of the survey. Nothing may be asked of the planner afterwards.
+  /// Moves the cloud out of the planner at the end of the survey. No other member function may be
+  /// called afterwards.
   virtual geometry::PointCloud release_cloud() = 0;
 
-  /// What the last next_view() did.
+  /// Returns the effects of the last next_view().
   virtual const PlanningStep& last_step() const = 0;
 
-  /// Why the last call proposed nothing. A planner that knows limits of the survey says which of
-  /// them it would break.
+  /// Returns why the last call proposed no view. A planner with limits of its own names the limit
+  /// that another view would exceed.
   virtual StopReason stop_reason() const { return StopReason::complete; }
 
-  /// What the planner estimates of the surface; null if it does not.
+  /// Returns the coverage estimator, or null if the planner has none.
   virtual const CoverageEstimator* estimator() const { return nullptr; }
 
  protected:

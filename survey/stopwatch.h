@@ -1,4 +1,4 @@
-/// Splits the time of a planner's update into its parts.
+/// Measures the time of the parts of a planner update.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace skycap::survey {
 
-/// Adds to what a part took, which comes last if it is new.
+/// Adds `seconds` to the time of `part`, which is appended if it is new.
 inline void add_time(std::vector<PartTime>& times, const char* part, double seconds) {
   const auto known = std::ranges::find(times, part, &PartTime::part);
   if (known == times.end()) {
@@ -23,8 +23,7 @@ class Stopwatch {
  public:
   explicit Stopwatch(std::vector<PartTime>& times) : times_(times) {}
 
-  /// Books the time since the last call, or since construction, under `part`, in addition to what
-  /// stands there.
+  /// Adds the time since the last call, or since construction, to the time of `part`.
   void lap(const char* part) {
     const auto now = std::chrono::steady_clock::now();
     add_time(times_, part, std::chrono::duration<double>(now - last_).count());

@@ -27,7 +27,7 @@ const char* name_of(StopReason reason) {
 }
 
 std::optional<StopReason> stop_reason_named(std::string_view name) {
-  if (name == "nowhere_to_go") return StopReason::nowhere_to_go;  // as version 0.1 has it
+  if (name == "nowhere_to_go") return StopReason::nowhere_to_go;  // name in version 0.1
   const auto* const found =
       std::ranges::find_if(reasons, [&](const NamedReason& known) { return name == known.name; });
   return found == reasons.end() ? std::nullopt : std::optional(found->reason);

@@ -1,5 +1,5 @@
-/// When a survey ends: the rules that a user sets, and the reasons. A new rule is a field here, a
-/// line in broken_limit(), and a key of the mission file.
+/// Limits of a survey and reasons for its end. A new limit needs a field here, a line in
+/// broken_limit(), and a key of the mission file.
 #pragma once
 
 #include <cstddef>
@@ -8,37 +8,37 @@
 
 namespace skycap::survey {
 
-/// Why a survey ended.
+/// Reason for the end of a survey.
 enum class StopReason {
-  complete,  ///< the planner has nowhere left to look
+  complete,  ///< no views left to propose
   view_limit,
   distance_limit,
   time_limit,
-  nowhere_to_go,  ///< every view the planner still wanted was refused
-  interrupted,    ///< the user asked to stop
+  nowhere_to_go,  ///< all remaining proposals were unreachable
+  interrupted,    ///< stopped by the user
 };
 
-/// "complete", "view_limit" and so on, as the enumerators are called.
+/// Returns the name of the enumerator, such as "complete" or "view_limit".
 const char* name_of(StopReason reason);
 
-/// The reason of that name; nothing if none has it.
+/// Returns the reason with this name, or nullopt.
 std::optional<StopReason> stop_reason_named(std::string_view name);
 
 struct SurveyLimits {
   std::size_t max_views = 1000;
-  std::optional<double> max_distance;  ///< straight lines between views [m]
-  std::optional<double> max_time;      ///< of the flight [s], by the two below
+  std::optional<double> max_distance;  ///< sum of the straight lines between views [m]
+  std::optional<double> max_time;      ///< flight time [s], from `speed` and `time_per_view`
   double speed = 5.0;                  ///< between views [m/s]
-  double time_per_view = 5.0;          ///< to stop, turn and measure [s]
+  double time_per_view = 5.0;          ///< stop, rotation and measurement [s]
 };
 
-/// How far a survey has come.
+/// Progress of a survey.
 struct SurveyExtent {
-  std::size_t views = 0;  ///< taken
-  double distance = 0.0;  ///< straight lines between them, and to the view that is next [m]
+  std::size_t views = 0;  ///< number of views taken
+  double distance = 0.0;  ///< sum of the straight lines between views, including the next view [m]
 };
 
-/// The limit that one more view would break; nothing if none.
+/// Returns the limit that one more view would exceed, or nullopt.
 std::optional<StopReason> broken_limit(const SurveyLimits& limits, const SurveyExtent& progress);
 
 }  // namespace skycap::survey

@@ -12,7 +12,7 @@ namespace {
 
 using geometry::View;
 
-/// Runs `work` and adds the seconds it took to `elapsed`.
+/// Runs `work` and adds its duration to `elapsed` [s].
 template <typename Work>
 auto timed(double& elapsed, Work work) {
   const auto start = std::chrono::steady_clock::now();
@@ -21,14 +21,14 @@ auto timed(double& elapsed, Work work) {
   return result;
 }
 
-/// [s] that this thread kept a processor busy.
+/// Returns the processor time of this thread [s].
 double processor_time() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Has the planner do something, and adds the time that it took.
+/// Runs a planner function and adds its duration to the planning times.
 template <typename Work>
 auto planned(SurveyedView& taken, Work work) {
   const double begun = processor_time();
@@ -37,7 +37,7 @@ auto planned(SurveyedView& taken, Work work) {
   return result;
 }
 
-/// Adds what the planning time has and its parts have not to one of them.
+/// Adds the planning time that is not assigned to any part to `part`.
 void book_rest(SurveyedView& taken, const char* part) {
   double rest = taken.planning_time;
   for (const PartTime& time : taken.step.times) rest -= time.seconds;
@@ -129,8 +129,8 @@ std::optional<View> SurveySteps::within_limits(std::optional<View> next) {
 
 namespace {
 
-/// Flies from the last view to `next` and takes the scans on the way; the memory of `recycled` is
-/// used again. False if a stop came first.
+/// Takes the en-route scans between the last view and `next`, and reuses the memory of `recycled`.
+/// Returns false if a stop was requested.
 bool scanned_on_way(SurveySteps& steps, const View& next, const SurveyPorts& ports,
                     geometry::Scan& recycled, const std::stop_token& stop) {
   if (!ports.views_on_way || steps.views().empty()) return true;
@@ -158,13 +158,13 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
     scan = timed(sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
     try {
       next = steps.take_in(scan, sensing_time);
-    } catch (const Interrupted&) {  // as if the last scan had not been taken
+    } catch (const Interrupted&) {  // the last scan is not counted
       return {StopReason::interrupted, std::move(steps).views()};
     }
     if (next && stop.stop_requested()) {
       return {StopReason::interrupted, std::move(steps).views()};
     }
-    steps.stop_on(stop);  // from now on there is something to come back with
+    steps.stop_on(stop);  // from here on, an interrupted survey has results
   }
   const StopReason reason = steps.stop_reason();
   return {reason, std::move(steps).views()};

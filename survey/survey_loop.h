@@ -1,4 +1,5 @@
-/// Planner and sensor in turn, until the planner is done or a limit is met.
+/// Survey loop that alternates between planner and sensor until the planner ends the survey or a
+/// limit is reached.
 #pragma once
 
 #include <cstddef>
@@ -15,22 +16,22 @@
 
 namespace skycap::survey {
 
-/// Scans that were taken on the way to a view.
+/// Scans taken en route to a view.
 struct ScansOnWay {
-  std::vector<geometry::View> views;  ///< where they were taken, in order
-  std::size_t returns = 0;            ///< points of all of them
+  std::vector<geometry::View> views;  ///< views of the scans, in order
+  std::size_t returns = 0;            ///< total number of points
 };
 
-/// One view of a survey: where the sensor was, and what the planner made of the scan.
+/// View of a survey with its measurement and planning results.
 struct SurveyedView {
   geometry::View view;
-  ScansOnWay on_way{};                   ///< to it
-  double distance = 0.0;                 ///< travelled up to and including this view
-  std::size_t points = 0;                ///< kept so far
-  std::size_t returns = 0;               ///< points of the scan
-  double sensing_time = 0.0;             ///< [s], of the sensor function, on the way too
-  double planning_time = 0.0;            ///< [s], of the planner's update, on the way too
-  double planning_processor_time = 0.0;  ///< [s], of this thread alone
+  ScansOnWay on_way{};         ///< en-route scans before this view
+  double distance = 0.0;       ///< path length up to and including this view [m]
+  std::size_t points = 0;      ///< points kept so far
+  std::size_t returns = 0;     ///< points of the scan
+  double sensing_time = 0.0;   ///< time of the sensor functions, including en-route scans [s]
+  double planning_time = 0.0;  ///< time of the planner's update, including en-route scans [s]
+  double planning_processor_time = 0.0;  ///< processor time of this thread [s]
   PlanningStep step;
 };
 
@@ -39,58 +40,60 @@ struct SurveyResult {
   std::vector<SurveyedView> views;
 };
 
-/// Who has a say while a survey goes on.
+/// Callbacks of a survey.
 struct SurveyPorts {
-  /// Views that are taken before the planner is asked for any, after the first: those that it
-  /// allows and that can be reached. The planner learns from them as from its own.
+  /// Initial pattern: views taken after the first view and before the planner's proposals. Views
+  /// that the planner does not allow and unreachable views are skipped. The planner also learns
+  /// from these views.
   std::vector<geometry::View> opening{};
-  /// Takes a scan from a view (or as near to it as it could). The memory of `recycled`, the scan
-  /// before it, may be used again. For run_survey() alone.
+  /// Takes a scan from a view, or from a nearby pose. May reuse the memory of `recycled`, the
+  /// previous scan. Used only by run_survey().
   std::function<geometry::Scan(const geometry::View&, geometry::Scan recycled)> sense;
-  /// Views of the scans that are taken on the way from one view to the next, in order; they are
-  /// sensed by `sense_on_way`, and `sensed_on_way` is told of each before the planner. For
-  /// run_survey() alone. Empty: none.
+  /// Returns the views of the en-route scans between two views, in order. `sense_on_way` takes the
+  /// scans, and `sensed_on_way` receives each of them before the planner. Used only by
+  /// run_survey(). Empty: no en-route scans.
   std::function<std::vector<geometry::View>(const geometry::View& from, const geometry::View& to)>
       views_on_way;
   std::function<geometry::Scan(const geometry::View&, geometry::Scan recycled)> sense_on_way;
   std::function<void(const geometry::Scan&)> sensed_on_way;
-  /// Told of each scan before the next view is planned. May be empty.
+  /// Receives each scan before the next view is planned. May be empty.
   std::function<void(const geometry::Scan&)> sensed;
-  /// Whether the sensor can get from one place to a view. Empty: it always can.
+  /// Returns whether the sensor can move from a position to a view. Empty: always.
   std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)> can_reach;
-  /// Told after each view. May be empty.
+  /// Called after each view. May be empty.
   std::function<void(const SurveyedView&, const geometry::Scan&)> report;
-  /// Lets a stop end `can_reach` wherever it is: it then throws Interrupted. May be empty.
+  /// Sets the token of stop requests, which let `can_reach` throw Interrupted. May be empty.
   std::function<void(std::stop_token)> stop_on;
 };
 
-/// A survey scan by scan, for whoever moves the sensor.
+/// Survey controlled scan by scan, for callers that move the sensor themselves.
 class SurveySteps {
  public:
   /// Keeps a reference to the planner.
   SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports);
 
-  /// Takes in a scan from the way to the view that was proposed last, which took so long [s].
+  /// Processes a scan taken en route to the last proposed view. `sensing_time` is its duration [s].
   void pass(const geometry::Scan& scan, double sensing_time = 0.0);
 
-  /// Takes in a scan, which took so long [s], and says where the next one is to be taken; nothing
-  /// when the survey is over. Throws what the planner throws.
+  /// Processes a scan and returns the next view, or nullopt at the end of the survey.
+  /// `sensing_time` is the duration of the scan [s]. Throws the errors of the planner.
   std::optional<geometry::View> take_in(const geometry::Scan& scan, double sensing_time = 0.0);
 
-  /// Another view in place of the one that was proposed last; nothing when there is none left.
+  /// Rejects the last proposed view and returns another one, or nullopt if there are no more.
   std::optional<geometry::View> refuse();
 
-  /// Lets a stop end take_in() wherever it is: it then throws Interrupted, and nothing but views()
-  /// may be asked for. The scan counts as not taken, though the planner may have learnt from it.
+  /// Sets the token of stop requests. A stop request lets take_in() throw Interrupted; afterwards
+  /// only views() may be called. The interrupted scan is not counted, although the planner may have
+  /// learnt from it.
   void stop_on(const std::stop_token& stop);
 
-  /// Scans from the way to the view that was proposed last.
+  /// Returns the number of en-route scans to the last proposed view.
   std::size_t passed() const { return coming_.on_way.views.size(); }
 
   const std::vector<SurveyedView>& views() const& { return views_; }
   std::vector<SurveyedView> views() && { return std::move(views_); }
 
-  /// Why the survey is over, once no view is proposed.
+  /// Returns the reason for the end of the survey, after no view was proposed.
   StopReason stop_reason() const { return stop_reason_; }
 
  private:
@@ -103,13 +106,14 @@ class SurveySteps {
   SurveyLimits limits_;
   SurveyPorts ports_;
   std::vector<SurveyedView> views_;
-  std::size_t opened_ = 0;  ///< views of the opening that were taken or cannot be reached
-  SurveyedView coming_;     ///< what is known of the next view: the scans on the way to it
+  std::size_t opened_ =
+      0;  ///< number of views of the initial pattern that were taken or are unreachable
+  SurveyedView coming_;  ///< data of the next view: its en-route scans
   std::stop_token stop_;
   StopReason stop_reason_ = StopReason::complete;
 };
 
-/// Runs a survey from `first_view`. Throws what planner and sensor throw.
+/// Runs a survey from `first_view`. Throws the errors of planner and sensor.
 SurveyResult run_survey(Planner& planner, const geometry::View& first_view,
                         const SurveyLimits& limits, const SurveyPorts& ports,
                         std::stop_token stop = {});

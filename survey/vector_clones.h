@@ -1,9 +1,9 @@
-/// For the functions that most of the planning time is spent in: compiled twice, for every
-/// processor and for AVX2. Contraction is off (see CMakeLists.txt), so that both give the same
-/// bits.
+/// Support for functions compiled twice, for the baseline instruction set and for AVX2. Used for
+/// the functions that dominate the planning time. Floating-point contraction is off (see
+/// CMakeLists.txt), so that both versions give the same bits.
 ///
-/// Such a function is a body that is always inlined, and two functions that do nothing but call it,
-/// one of them with SKYCAP_FOR_AVX2 before it.
+/// Such a function consists of an always-inlined body and two functions that only call it, one of
+/// them marked SKYCAP_FOR_AVX2.
 #pragma once
 
 #include "geometry/instruction_set.h"

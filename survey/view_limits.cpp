@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Rounding in the sine and cosine of a pitch, generously.
+/// Tolerance of rounding errors in the sine and cosine of a pitch.
 constexpr double angle_tolerance = 1e-6;
 
 void require_limit(bool holds, const std::string& what) {
@@ -59,9 +59,9 @@ bool ViewLimits::allow(const geometry::View& view) const {
 std::optional<geometry::View> ViewLimits::turned_view(const Vector3d& target,
                                                       const Vector3d& towards_view, double distance,
                                                       const std::optional<double>& least) const {
-  // Elevation of the view as seen from the target: the view looks down by as much.
+  // Elevation of the view as seen from the target; equal to the downward pitch of the view.
   double lowest = -most_pitch, highest = -least_pitch;
-  // A hair inside the limits, so that rounding does not carry the view across them.
+  // Margin inside the limits, so that rounding errors do not violate them.
   const double margin = 1e-6 * distance;
   if (least) {
     const double sine = (*least + margin - target.z()) / distance;
@@ -91,7 +91,7 @@ std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,
                                                          const Vector3d& towards_view,
                                                          double distance) const {
   std::optional<geometry::View> view = turned_view(target, towards_view, distance, least_height);
-  // A view that is raised over a slope stands over other ground: a few times are near enough.
+  // Raising a view over a slope changes the ground below it. A few iterations are sufficient.
   constexpr int most_raises = 4;
   for (int i = 0; least_height_over && view && i < most_raises; ++i) {
     const double least = least_height_over(view->position.head<2>());

@@ -1,4 +1,4 @@
-/// Where the pilot allows the sensor to be and which way it can look. World frame, z up.
+/// Limits of the sensor's position and direction, set by the pilot. World frame, z up.
 #pragma once
 
 #include <functional>
@@ -12,29 +12,30 @@
 
 namespace skycap::survey {
 
-/// All limits hold at once; those not given do not limit. Heights are world z.
+/// All limits apply at the same time. Unset limits have no effect. Heights are world z [m].
 struct ViewLimits {
   std::optional<double> least_height;  ///< ground plus clearance
   std::optional<double> most_height;
-  /// Simple polygon to stay inside of, its border included; empty: none.
+  /// Simple polygon that contains all views, border included; empty: no geofence.
   std::vector<Eigen::Vector2d> geofence;
-  std::vector<geometry::Prism> no_fly;  ///< to stay outside of, their boundaries included
-  double stand_off = 0.0;  ///< least distance from everything measured and from unknown space
-  double least_pitch = -1.5707963267948966;  ///< of the viewing direction, down is negative [rad]
-  double most_pitch = 1.5707963267948966;    ///< [rad]
-  /// Least height over a place, where the ground is not level; must be safe to call from several
-  /// threads. Null: least_height alone.
+  std::vector<geometry::Prism> no_fly;  ///< volumes that exclude all views, boundary included
+  double stand_off = 0.0;  ///< minimum distance from all measured points and from unknown space [m]
+  double least_pitch =
+      -1.5707963267948966;                 ///< pitch of the view direction, negative is down [rad]
+  double most_pitch = 1.5707963267948966;  ///< [rad]
+  /// Returns the minimum height above a position on uneven ground. Must be thread-safe. Null:
+  /// least_height applies everywhere.
   std::function<double(const Eigen::Vector2d&)> least_height_over{};
 
-  /// Throws Error{bad_config} naming the first field that is not usable.
+  /// Throws Error{bad_config} that names the first invalid field.
   void validate() const;
 
-  /// Whether the view obeys every limit but the stand-off, which needs a map.
+  /// Returns whether the view complies with all limits except the stand-off, which requires a map.
   bool allow(const geometry::View& view) const;
 
-  /// The view of `target` from `distance` in the direction `towards_view` (unit), turned up or down
-  /// about the target as little as height and pitch limits need; nothing if they leave no view at
-  /// that distance and azimuth, or if it breaks another limit.
+  /// Returns the view of `target` from `distance` in the direction of the unit vector
+  /// `towards_view`. The view is rotated vertically about the target by the minimum angle that the
+  /// height and pitch limits require. Returns nullopt if no such view complies with all limits.
   std::optional<geometry::View> view_of_target(const Eigen::Vector3d& target,
                                                const Eigen::Vector3d& towards_view,
                                                double distance) const;

@@ -14,29 +14,30 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int margin_cells = 2;            // of a face of the grid beyond its edges
-constexpr double members_per_cell = 1.35;  // in the middle of a face, if all are spread evenly
-constexpr int probe_stride = 3;            // in squares
-constexpr int most_cells = 4096;           // along an edge of the cube
-constexpr std::size_t few_parts = 16;      // not worth cutting further
-constexpr std::size_t many_parts = 300;    // no longer worth a look at each for every facet
-constexpr double least_progress = 0.7;     // of the parts of one round, left of them by the next
-constexpr int most_rounds = 10;            // each halves the parts
-constexpr std::size_t squares_per_member = 12;  // looked at, at most
-constexpr double rounding_of_parts = 1e-7;      // of sums of square roots of differences of cosines
+constexpr int margin_cells = 2;            // margin beyond the edges of a face of the grid
+constexpr double members_per_cell = 1.35;  // at the centre of a face, for an even distribution
+constexpr int probe_stride = 3;            // squares between probes
+constexpr int most_cells = 4096;           // per edge of the cube
+constexpr std::size_t few_parts = 16;      // fewer parts are not subdivided further
+constexpr std::size_t many_parts =
+    300;  // with more parts, testing each of them per facet is too slow
+constexpr double least_progress = 0.7;  // maximum fraction of parts remaining after a useful round
+constexpr int most_rounds = 10;         // each round halves the parts
+constexpr std::size_t squares_per_member = 12;  // maximum number of evaluated squares
+constexpr double rounding_of_parts = 1e-7;      // for sums of square roots of cosine differences
 
-// Of directions, which are of unit length to this.
+// Tolerance of the unit length of directions.
 constexpr double length_tolerance = 1e-6;
 constexpr double largest_length = 1.0 + 1.1 * length_tolerance;
 constexpr double smallest_length = 1.0 - 1.1 * length_tolerance;
 
-/// A place on one of the six faces of the cube [-1, 1]^3. A face has coordinates of its own, in
-/// which it lies at z = 1.
+/// Position on one of the six faces of the cube [-1, 1]^3. In the local coordinates of a face, the
+/// face lies at z = 1.
 struct Place {
   int face;
   double x, y;
 
-  Vector3d on_cube() const { return {x, y, 1.0}; }  // in the coordinates of the face
+  Vector3d on_cube() const { return {x, y, 1.0}; }  // in local coordinates of the face
 };
 
 Vector3d world_from_face(int face, const Vector3d& on_face) {
@@ -54,20 +55,21 @@ Vector3d face_from_world(int face, const Vector3d& in_world) {
   return {in_world[(axis + 1) % 3], in_world[(axis + 2) % 3], height};
 }
 
-/// The members in square cells on the faces of the cube, and once more for each face beyond whose
-/// edges they are by at most the margin.
+/// Members sorted into square cells on the faces of the cube. A member within the margin beyond the
+/// edges of another face is also stored there.
 class CubeGrid {
  public:
   CubeGrid(std::span<const Vector3d> members, int cells_per_edge);
 
-  /// Whether a member is in a cell that lies on the face itself.
+  /// Returns whether a cell inside the face contains a member.
   bool holds_any(int face, int column, int row) const {
     const std::size_t cell = cell_at(face, column + margin_cells, row + margin_cells);
     return cell_begin_[cell + 1] > cell_begin_[cell];
   }
 
-  /// Whether `look` says so of a member near the place; all within `radius` are asked, but for some
-  /// beyond the margin, near ones early. Members are in the coordinates of the face.
+  /// Returns whether `look` returns true for a member near `place`. Tests all members within
+  /// `radius`, except for some beyond the margin, and tests close members early. `look` receives
+  /// local coordinates of the face.
   template <typename Look>
   bool any_around(const Place& place, double radius, Look look) const;
 
@@ -79,9 +81,9 @@ class CubeGrid {
     return static_cast<std::size_t>((face * slots_ + row) * slots_ + column);
   }
 
-  int slots_;     // along the edge of a face with its margins
-  double reach_;  // largest coordinate on a face
-  double scale_;  // slots a unit of it
+  int slots_;     // per edge of a face, including margins
+  double reach_;  // maximum coordinate on a face, including the margin
+  double scale_;  // slots per unit length
   std::vector<Vector3d> members_;
   std::vector<std::uint32_t> cell_begin_;
 };
@@ -121,7 +123,8 @@ CubeGrid::CubeGrid(std::span<const Vector3d> members, int cells_per_edge)
 
 template <typename Look>
 bool CubeGrid::any_around(const Place& place, double radius, Look look) const {
-  // A small circle is at most so much larger on the face than on the sphere.
+  // Upper bound of the magnification of a small circle by the projection from the sphere to the
+  // face.
   const double half = radius * (1.0 + place.x * place.x + place.y * place.y);
   const int left = slot(place.x - half), right = slot(place.x + half);
   const auto any_in_row = [&](int row) {
@@ -152,8 +155,8 @@ class Search {
 
   double cosine() const { return cosine_; }
 
-  /// Looks for a clear direction at some places all over the sphere: the clearer the best one is,
-  /// the sooner squares are given up.
+  /// Evaluates directions distributed over the sphere. A better initial direction lets more squares
+  /// be discarded early.
   void probe() {
     visit_squares(probe_stride, [this](const Place& middle) { try_direction(middle); });
   }
@@ -175,8 +178,8 @@ class Search {
     }
   }
 
-  std::size_t size() const { return clear_.size(); }  ///< of the squares that are left
-  std::size_t squares() const { return squares_; }    ///< that were looked at
+  std::size_t size() const { return clear_.size(); }  ///< remaining squares
+  std::size_t squares() const { return squares_; }    ///< evaluated squares
 
   std::vector<SpherePart> parts() const {
     std::vector<SpherePart> parts;
@@ -199,8 +202,9 @@ class Search {
     is_cell_too_near_ = too_near2 > 0.0 && cell_diagonal_ + length_tolerance < std::sqrt(too_near2);
   }
 
-  // How far parts of a square are from its middle at most, once both are on the sphere: half its
-  // diagonal over their distance from the origin. `norm` is that of the middle.
+  // Returns the maximum distance of points of a square from its centre, after projection to the
+  // sphere: half the diagonal divided by the distance from the origin. `norm` is the norm of the
+  // centre.
   double radius_of_square(double norm) const {
     const double half_diagonal = edge_ / std::numbers::sqrt2;
     return half_diagonal / (norm - half_diagonal);
@@ -219,7 +223,8 @@ class Search {
     }
   }
 
-  // Whether a member q near the place, all within the radius among them, has place.q above this.
+  // Returns whether place.q exceeds `product` for a member q near `place`. Tests at least all
+  // members within `radius`.
   bool is_any_above(double product, const Place& place, double radius) const {
     const Vector3d on_cube = place.on_cube();
     return grid_.any_around(place, radius,
@@ -237,9 +242,9 @@ class Search {
   void keep_if_clear(const Place& middle) {
     ++squares_;
     const double norm = middle.on_cube().norm(), radius = radius_of_square(norm);
-    // The s of the square are within the angle b of its middle, so a member q at the angle c from
-    // that has s.q >= |q| cos(c + b). This is above the limit if the middle's product with q is
-    // above the next one. The radius is more than sin b, and next to it.
+    // All s of the square are within the angle b of its centre. Hence a member q at the angle c
+    // from the centre satisfies s.q >= |q| cos(c + b). This exceeds the limit if the product of the
+    // centre and q exceeds the following value. The radius is slightly larger than sin b.
     const double cos_b = 1.0 - 0.5 * radius * radius;
     const double enough = limit_ * cos_b + limit_sine_ * radius;
     if (is_any_above(enough * norm, middle, std::max(0.0, clear_radius_ - radius))) return;
@@ -249,15 +254,15 @@ class Search {
 
   DirectionIndex& occluded_;
   CubeGrid grid_;
-  double edge_;                    // of the squares
-  double cell_diagonal_;           // of the grid
-  double cosine_;                  // h of the clearest direction so far
-  double clear_radius_ = 0.0;      // of the cap of that angle
-  double limit_ = 0.0;             // where h is above it, squares are given up
-  double limit_sine_ = 0.0;        // of a member as long as any: its part across, at that cosine
-  bool is_cell_too_near_ = false;  // each member is, for every s in its cell of the grid
+  double edge_;                    // edge length of the squares
+  double cell_diagonal_;           // diagonal of the grid cells
+  double cosine_;                  // h of the clearest direction found
+  double clear_radius_ = 0.0;      // radius of its cap
+  double limit_ = 0.0;             // squares with h above this limit are discarded
+  double limit_sine_ = 0.0;        // sine that belongs to limit_ for a member of maximum length
+  bool is_cell_too_near_ = false;  // each member violates the limit for every s in its grid cell
   std::size_t squares_ = 0;
-  std::vector<Place> clear_;  // middles of the squares that were kept
+  std::vector<Place> clear_;  // centres of the kept squares
 };
 
 }  // namespace
@@ -271,7 +276,8 @@ bool Clearings::meet(const Vector3d& normal, double cap_cosine) const {
 }
 
 Clearings find_clearings(DirectionIndex& occluded, double cosine) {
-  // A cell as wide as the cap that is known, or with a member or two if these are spread evenly.
+  // The cell size is the radius of the known cap, or larger so that evenly distributed members give
+  // one or two per cell.
   const auto count = static_cast<double>(occluded.members().size());
   const double radius = std::sqrt(std::max(0.0, 2.0 - 2.0 * cosine));
   const double edge =

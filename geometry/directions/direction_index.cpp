@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double slot_tolerance = 1e-5;  // how far a direction may stand out of its cell
+constexpr double slot_tolerance = 1e-5;  // maximum distance of a direction outside its cell
 
-// About 1.5 pi R^2 of the R^3 cells touch the sphere. A query passes over all of these, and over
-// the members of the few that can hold the answer: this R balances the two.
+// About 1.5 pi R^2 of the R^3 cells intersect the sphere. A query reads all of these cells and the
+// members of the few that can contain the result. This R balances both costs.
 int cells_per_edge(std::size_t count) {
   return std::clamp(static_cast<int>(std::sqrt(static_cast<double>(count) / 47.0)), 2, 32);
 }
@@ -24,7 +24,7 @@ DirectionIndex::DirectionIndex(std::span<const Vector3d> directions) {
   assert(!directions.empty());
   const int edge = cells_per_edge(directions.size());
   half_edge_ = 1.0 / edge;
-  // Slightly less than edge / 2, so that a coordinate of 1, rounded up, stays in the last slot.
+  // Slightly less than edge / 2, so that a coordinate rounded up from 1 stays in the last slot.
   const double scale = 0.5 * edge * (1.0 - slot_tolerance);
   std::vector<std::uint16_t> cell_of(directions.size());  // edge^3 <= 2^15
   std::vector<std::uint32_t> place(static_cast<std::size_t>(edge * edge * edge), 0);
@@ -78,7 +78,7 @@ void DirectionIndex::look_into_cell(std::size_t cell, const Vector3d& s, double&
 
 DirectionIndex::Nearest DirectionIndex::nearest(const Vector3d& s) {
   assert(std::abs(s.squaredNorm() - 1.0) < 2e-6);
-  // Squared distance of s from each box, and the box whose nearest point is nearest to it.
+  // Squared distance of s from each box, and the box nearest to s.
   const double half = half_edge_ + slot_tolerance;
   cell_distance2_ = ((cell_x_ - s.x()).abs() - half).max(0.0).square() +
                     ((cell_y_ - s.y()).abs() - half).max(0.0).square() +
@@ -90,7 +90,7 @@ DirectionIndex::Nearest DirectionIndex::nearest(const Vector3d& s) {
   std::size_t best_member = 0;
   look_into_cell(static_cast<std::size_t>(likely), s, best, best_member);
   for (Eigen::Index cell = 0; cell < cell_distance2_.size(); ++cell) {
-    // |s - q|^2 = 2 - 2 s.q for unit vectors; the surplus covers their rounding.
+    // |s - q|^2 = 2 - 2 s.q for unit vectors; 1e-5 covers rounding errors.
     if (cell_distance2_[cell] > 2.0 - 2.0 * best + 1e-5 || cell == likely) continue;
     look_into_cell(static_cast<std::size_t>(cell), s, best, best_member);
   }

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The part of `direction` at right angles to the unit vector `axis`, of unit length; any, if it has
-// none.
+// Returns the normalised component of `direction` orthogonal to the unit vector `axis`, or an
+// arbitrary orthogonal vector if the component is zero.
 Vector3d orthogonal_part(const Vector3d& direction, const Vector3d& axis) {
   const Vector3d part = direction - direction.dot(axis) * axis;
   return part.norm() > cap_tolerance ? Vector3d(part.normalized()) : any_orthogonal(axis);
@@ -32,9 +32,9 @@ Vector3d farthest_from_line(std::span<const Vector3d> directions, const Vector3d
   return farthest;
 }
 
-// The origin lies on the boundary of conv(Q), or the search for it ended on a face inside: an
-// antipodal pair, a great circle, a hemisphere, or a symmetric body. Nothing is returned for a body
-// that holds the origin; `seeds` then are members of it that do not lie in one plane.
+// Handles an origin on the boundary of conv(Q), or a search that ended on an inner face: an
+// antipodal pair, a great circle, a hemisphere, or a symmetric body. Returns nullopt for a body
+// that contains the origin. `seeds` are then members that are not coplanar.
 std::optional<SphericalCap> cap_at_right_angles(std::span<const Vector3d> occluded,
                                                 DirectionIndex& index, const Vector3d& known_clear,
                                                 std::vector<Vector3d>& seeds) {

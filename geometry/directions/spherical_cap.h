@@ -1,22 +1,24 @@
-/// The direction that is farthest from all occluded ones: maximin on the unit sphere.
+/// Finds the direction with the largest angular distance from all occluded directions (maximin on
+/// the unit sphere).
 ///
-/// Source: SEE++ §III-B "Proactively Handling Occlusions". Q are the unit directions in which a
-/// frontier is known to be occluded; the answer s* maximises the distance to the nearest q, that is
-/// it minimises h(s) = max_q s.q. The cap around s* of the angle acos(h(s*)) is the empty one.
+/// Source: SEE++ §III-B "Proactively Handling Occlusions". Q is the set of unit directions in which
+/// a frontier is known to be occluded. The result s* maximises the distance to the nearest q, which
+/// means that it minimises h(s) = max_q s.q. The cap around s* with the half-angle acos(h(s*))
+/// contains no member of Q.
 ///
-/// What is true of h, and used here: if conv(Q) does not hold the origin, all of Q lies in an open
-/// hemisphere, and s* = -m/|m| with m the point of conv(Q) nearest to the origin; it is the only
-/// minimum, and h = -|m|. Otherwise the minima of h are the normals of those facets of conv(Q)
-/// that the ray along their normal passes through, and h is the facet's distance from the origin.
-/// There are many; the policy says which.
+/// Two properties of h are used. If conv(Q) does not contain the origin, all of Q lies in an open
+/// hemisphere. Then s* = -m/|m| is the only minimum and h = -|m|, where m is the point of conv(Q)
+/// nearest to the origin. Otherwise the minima of h are facet normals of conv(Q): those whose ray
+/// from the origin intersects the facet. At such a normal, h equals the distance of the facet from
+/// the origin. CapPolicy selects one of the minima.
 ///
-/// Degenerate sets, for all but `nonlinear_program`:
+/// Degenerate sets, for all policies except `nonlinear_program`:
 /// - empty: known_clear, cosine -1;
 /// - one direction (or copies): its antipode;
-/// - an antipodal pair: the direction at right angles to it that is nearest to known_clear;
+/// - an antipodal pair: the direction orthogonal to it that is nearest to known_clear;
 /// - on a great circle: the pole nearest to known_clear, cosine 0;
 /// - fills a closed hemisphere: its pole, cosine 0;
-/// - covers the sphere: some direction, cosine near 1; there is no clear direction.
+/// - covers the sphere: an arbitrary direction, cosine near 1; no clear direction exists.
 #pragma once
 
 #include <optional>
@@ -27,34 +29,37 @@
 namespace skycap::geometry {
 
 enum class CapPolicy {
-  local,              ///< downhill from the known clear direction in finite steps, as the paper's
-                      ///< solver goes, and over to larger caps next to the one found; ends in an
-                      ///< exact local minimum of h
-  global,             ///< the largest empty cap there is
-  nonlinear_program,  ///< the paper's two programs, solved by NLopt, for comparison
+  local,   ///< Descends from `known_clear` in finite steps, as the paper's solver does, then moves
+           ///< to adjacent larger caps. The result is an exact local minimum of h.
+  global,  ///< Returns the largest empty cap.
+  nonlinear_program,  ///< Solves the two nonlinear programs of the paper with NLopt, for
+                      ///< comparison.
 };
 
 struct CapConfig {
   CapPolicy policy = CapPolicy::local;
-  /// For `nonlinear_program`: evaluations of the objective in each of its two programs, at least 1.
-  /// The authors' code limits the wall clock (10 ms) instead, which no two runs repeat.
+  /// Maximum number of objective evaluations in each program of `nonlinear_program`, at least 1.
+  /// The authors' code limits the wall-clock time to 10 ms instead, which makes results
+  /// irreproducible.
   int max_evaluations = 100;
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} that names the first field outside its interval.
   void validate() const;
 };
 
 struct SphericalCap {
-  Eigen::Vector3d direction;  ///< s*, of unit length
-  double cosine;  ///< h(s*), of the angle to the nearest occluded direction; negative if all of
-                  ///< these fit into an open hemisphere
+  Eigen::Vector3d direction;  ///< s*, unit vector
+  double cosine;  ///< h(s*): cosine of the angle to the nearest occluded direction; negative if all
+                  ///< occluded directions lie in an open hemisphere
 };
 
-/// The clearest direction. `occluded` and `known_clear` are of unit length (to 1e-6). Nothing is
-/// returned only under `nonlinear_program`, when both of its programs fail. Deterministic. With
-/// 30,000 directions `local` and `global` take about 0.5 ms; where these cover the sphere evenly,
-/// so that there is no clear direction, `global` takes 3 ms, and 300 ms if hundreds of its gaps are
-/// as large as the largest. Cosines are exact to 1e-6.
+/// Returns the clearest direction. `occluded` and `known_clear` must have unit length (to 1e-6).
+/// Returns nullopt only with `nonlinear_program`, if both of its programs fail. The result is
+/// deterministic. Cosines are exact to 1e-6.
+///
+/// With 30,000 directions, `local` and `global` take about 0.5 ms. If the directions cover the
+/// sphere evenly, so that no clear direction exists, `global` takes 3 ms. It takes 300 ms if
+/// hundreds of gaps are as large as the largest gap.
 std::optional<SphericalCap> clearest_direction(std::span<const Eigen::Vector3d> occluded,
                                                const Eigen::Vector3d& known_clear,
                                                const CapConfig& config = {});

@@ -14,23 +14,25 @@
 #include "geometry/directions/clearings.h"
 #include "geometry/directions/spherical_cap_methods.h"
 
-// The largest empty cap by an expanding polytope. The convex hull of a small part W of Q has, in
-// its facet nearest to the origin, the largest cap that is empty of W: a bound on the answer. The
-// member of Q deepest inside that cap joins W, and the hull grows there; when there is none, the
-// cap is empty of Q. What is outside of which facet is decided by CGAL's exact predicates, so that
-// the hull stays one whatever the directions are.
+// Finds the largest empty cap with an expanding polytope. The polytope is the convex hull of a
+// small subset W of Q. Its facet nearest to the origin bounds the largest cap that contains no
+// member of W, which is an upper bound of the result. The member of Q deepest inside that cap is
+// added to W, and the hull grows there. If there is no such member, the cap contains no member of
+// Q. CGAL's exact predicates decide on which side of a facet a point is, so that the hull is valid
+// for all inputs.
 //
-// Where there are holes in Q, W stays small. Where there are none, it would become most of Q before
-// no facet of the hull promises more than the best cap. So from some size on, the hull grows only
-// where a grid cannot rule out (clearings.h) that a cap as large is centred.
+// If Q has holes, W stays small. Otherwise, W would grow to most of Q before no facet can improve
+// the best cap. From a certain size on, the hull therefore grows only where clearings.h cannot
+// exclude the centre of a larger cap.
 namespace skycap::geometry {
 namespace {
 
 using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-constexpr double proof_tolerance = 1e-9;  // a cap is empty if no direction is deeper inside
-constexpr std::size_t members_without_clearings = 100;  // holes are found with about 60
+constexpr double proof_tolerance = 1e-9;  // depth inside a cap up to which it counts as empty
+constexpr std::size_t members_without_clearings =
+    100;  // holes are usually found with about 60 members
 
 Kernel::Point_3 to_cgal(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -39,16 +41,19 @@ class Polytope {
   struct Facet {
     std::array<std::uint32_t, 3> corners;     // counter-clockwise seen from outside
     std::array<std::uint32_t, 3> neighbours;  // [i] is across the edge from corner i to i + 1
-    Vector3d normal;                          // outward, of unit length
-    double distance;                          // of its plane from the origin, inside is positive
+    Vector3d normal;                          // outward unit vector
+    double
+        distance;  // signed distance of the plane from the origin; positive if the origin is inside
     bool is_alive;
   };
 
-  /// The hull of `points`, of which some four do not lie in one plane.
+  /// Computes the hull of `points`, which must contain four points that are not coplanar.
   explicit Polytope(const std::vector<Vector3d>& points);
 
   const Facet& facet(std::uint32_t f) const { return facets_[f]; }
-  std::size_t size() const { return facets_.size(); }  ///< dead facets included; these only grow
+  std::size_t size() const {
+    return facets_.size();
+  }  ///< including dead facets, so that it never decreases
   std::size_t members() const { return points_.size(); }
 
   bool is_outside(const Vector3d& point, std::uint32_t f) const {
@@ -57,7 +62,7 @@ class Polytope {
                              to_cgal(point)) == CGAL::POSITIVE;
   }
 
-  /// Grows by a point that is outside of the live facet `seen`.
+  /// Adds a point outside of the live facet `seen`.
   void add(const Vector3d& point, std::uint32_t seen);
 
  private:
@@ -71,7 +76,8 @@ class Polytope {
 std::uint32_t Polytope::add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   Facet facet{{a, b, c}, {}, Vector3d::Zero(), std::numeric_limits<double>::infinity(), true};
   const Vector3d normal = normal_of({points_[a], points_[b], points_[c]});
-  // Thinner than double precision tells: infinitely far, for no such facet bounds a largest cap.
+  // Facets too thin for double precision are assigned an infinite distance, because they never
+  // bound a largest cap.
   if (normal.squaredNorm() > 0.0) {
     facet.normal = normal.normalized();
     facet.distance = facet.normal.dot(points_[a]);
@@ -91,7 +97,7 @@ Polytope::Polytope(const std::vector<Vector3d>& points) : points_(points) {
   }
 }
 
-// Any four points that do not lie in one plane: the first, one that differs, one off their line,
+// Finds four points that are not coplanar: the first one, a different one, one off their line, and
 // one off their plane.
 void Polytope::start_with_tetrahedron() {
   const auto count = static_cast<std::uint32_t>(points_.size());
@@ -115,10 +121,10 @@ void Polytope::start_with_tetrahedron() {
 }
 
 void Polytope::add(const Vector3d& point, std::uint32_t seen) {
-  // The facets that the point is outside of hang together. Round them runs one closed line of
+  // The facets visible from the point are connected, and their border is a single closed line of
   // edges.
   struct Edge {
-    std::uint32_t from, to, beyond;  // corners, and the facet that stays
+    std::uint32_t from, to, beyond;  // corners, and the adjacent facet that stays
   };
   std::vector<Edge> horizon;
   std::vector<std::uint32_t> front{seen};
@@ -126,7 +132,7 @@ void Polytope::add(const Vector3d& point, std::uint32_t seen) {
   for (std::size_t i = 0; i < front.size(); ++i) {
     for (std::size_t side = 0; side < 3; ++side) {
       const std::uint32_t beyond = facets_[front[i]].neighbours[side];
-      if (!facets_[beyond].is_alive) continue;  // in the front already
+      if (!facets_[beyond].is_alive) continue;  // already in the front
       if (is_outside(point, beyond)) {
         facets_[beyond].is_alive = false;
         front.push_back(beyond);
@@ -150,7 +156,7 @@ void Polytope::add(const Vector3d& point, std::uint32_t seen) {
       }
     }
   }
-  // The new facets' sides at the apex: the next one begins where this one ends.
+  // Connects the sides of the new facets at the apex: each begins where the previous one ends.
   for (std::size_t i = 0; i < horizon.size(); ++i) {
     for (std::size_t next = 0; next < horizon.size(); ++next) {
       if (horizon[next].from != horizon[i].to) continue;
@@ -160,7 +166,7 @@ void Polytope::add(const Vector3d& point, std::uint32_t seen) {
   }
 }
 
-// Among equal caps: nearest to `known_clear`; if these are equal too, the smaller coordinates.
+// Orders equal caps by distance from `known_clear`, then by coordinates.
 bool is_preferred(const Vector3d& a, const Vector3d& b, const Vector3d& known_clear) {
   const double difference = a.dot(known_clear) - b.dot(known_clear);
   if (std::abs(difference) > cap_tolerance) return difference > 0.0;
@@ -198,8 +204,8 @@ std::optional<SphericalCap> largest_empty_cap(DirectionIndex& occluded,
   };
   std::priority_queue<Task, std::vector<Task>, std::greater<>> nearest_facets;
   std::uint32_t queued = 0;
-  std::vector<SphericalCap> caps;  // empty ones, the largest first
-  double bound = largest_cosine;   // or h at the best direction so far
+  std::vector<SphericalCap> caps;  // empty caps, largest first
+  double bound = largest_cosine;   // or h in the best direction found
   std::optional<Clearings> clearings;
   while (true) {
     for (; queued < polytope.size(); ++queued) {

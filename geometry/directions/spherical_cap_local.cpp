@@ -14,13 +14,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Every gap between neighbouring members of Q is a minimum of h, so a descent must start with
-// steps larger than such gaps. What a failed step leaves of it, and where that ends:
+// Every gap between neighbouring members of Q is a minimum of h, so the first steps of a descent
+// must be larger than such gaps. A failed step reduces the step size by `step_shrinkage`; the
+// descent ends at `last_step`.
 constexpr double small_step = 0.3;  // [rad]
 constexpr double large_step = 1.0;  // [rad]
 constexpr double step_shrinkage = 0.7;
 constexpr double last_step = 0.01;  // [rad]
-constexpr int max_hops = 10;        // from cap to neighbouring cap; a few are usual
+constexpr int max_hops = 10;        // from a cap to an adjacent cap; usually only a few
 
 struct Probe {
   Vector3d direction;  // s
@@ -28,7 +29,8 @@ struct Probe {
   double cosine;       // h(s)
 };
 
-// Answers from the members of Q met before where these suffice, which spares most of the queries.
+// Evaluates h. Uses the members of Q found before where they are sufficient, which avoids most
+// queries of the index.
 class Prober {
  public:
   explicit Prober(DirectionIndex& index) : index_(index) {}
@@ -39,14 +41,15 @@ class Prober {
     return {s, member, cosine};
   }
 
-  // The same where h(s) is below `cosine`, otherwise nothing.
+  // Evaluates h at s. Returns nullopt unless h(s) < `cosine`.
   std::optional<Probe> at_if_below(const Vector3d& s, double cosine) {
     if (nearest_known(s).cosine >= cosine) return std::nullopt;
     const Probe probe = at(s);
     return probe.cosine < cosine ? std::optional(probe) : std::nullopt;
   }
 
-  // A member with s.q above `cosine`, not always the nearest to s; nothing if there is none.
+  // Returns a member with s.q > `cosine`, not necessarily the nearest to s, or nullopt if none
+  // exists.
   std::optional<Vector3d> beyond(const Vector3d& s, double cosine) {
     const auto [known, known_cosine] = nearest_known(s);
     if (known_cosine > cosine) return known;
@@ -74,7 +77,7 @@ Vector3d turned_away(const Vector3d& s, const Vector3d& from, double angle) {
   return (std::cos(angle) * s + std::sin(angle) * away).normalized();
 }
 
-// From `best` straight away from the nearest member of Q, again and again, in shrinking steps.
+// Moves from `best` repeatedly away from the nearest member of Q, in decreasing steps.
 Probe descend(Prober& occluded, Probe best, double step) {
   while (step > last_step) {
     const Vector3d ahead = turned_away(best.direction, best.active, step);
@@ -87,7 +90,8 @@ Probe descend(Prober& occluded, Probe best, double step) {
   return best;
 }
 
-// The n with n.q = 1 at each corner: the facet's normal over its distance from the origin.
+// Returns n with n.q = 1 at each corner: the normal of the facet divided by its distance from the
+// origin.
 std::optional<Vector3d> polar_of(const Triangle& facet) {
   const Vector3d normal = normal_of(facet);
   const double height = normal.dot(facet[0]);
@@ -95,7 +99,7 @@ std::optional<Vector3d> polar_of(const Triangle& facet) {
   return normal / height;
 }
 
-// l with s = l0 a + l1 b + l2 c.
+// Returns l with s = l0 a + l1 b + l2 c.
 std::optional<Vector3d> coordinates(const Triangle& facet, const Vector3d& s) {
   const Vector3d bc = facet[1].cross(facet[2]);
   const double determinant = facet[0].dot(bc);
@@ -104,16 +108,17 @@ std::optional<Vector3d> coordinates(const Triangle& facet, const Vector3d& s) {
          determinant;
 }
 
-// The facet of conv(Q) that the ray along s passes through, by the dual simplex method: of all
-// triangles with corners in Q around the ray, the one that no member of Q lies outside of. It
-// solves the linear program max n.s with n.q <= 1 for all q, whose solution is the facet's polar.
-// Nothing is returned if rounding gets in the way.
+// Finds the facet of conv(Q) that intersects the ray along s with the dual simplex method. Among
+// the triangles with corners in Q around the ray, this is the one with no member of Q outside. It
+// solves the linear program max n.s with n.q <= 1 for all q, whose solution is the polar of the
+// facet. Returns nullopt if rounding errors prevent a solution.
 std::optional<Triangle> facet_around(Prober& occluded, const Vector3d& s) {
-  // Three stand-ins near the origin, on the axes about s, make the first triangle. As the origin
-  // lies deeper inside conv(Q) than they do, members of Q replace them all.
+  // Three artificial corners on the axes around s, near the origin, form the initial triangle. The
+  // origin is deeper inside conv(Q), so that members of Q replace all of them.
   constexpr double tiny = 0.1 * cap_tolerance;
-  constexpr double pivot_tolerance = 1e-12;  // above the rounding of the corners' own distance
-  constexpr int max_pivots = 500;            // some ten are usual
+  constexpr double pivot_tolerance =
+      1e-12;                       // larger than the rounding error of the corners' own distance
+  constexpr int max_pivots = 500;  // usually about ten
   Triangle facet;
   for (int axis = 0; axis < 3; ++axis) {
     facet[axis] = std::copysign(tiny, s[axis]) * Vector3d::Unit(axis);
@@ -142,12 +147,12 @@ std::optional<Triangle> facet_around(Prober& occluded, const Vector3d& s) {
 
 struct Minimum {
   Probe probe;
-  std::optional<Triangle> facet;  // none if rounding ended the search for it
+  std::optional<Triangle> facet;  // nullopt if rounding errors ended the search
 };
 
-// Replaces s by the normal of the facet around it until that is the same: the published program
-// with its one non-convex constraint e <= n.n linearised at s, solved exactly, again and again. h
-// falls with every round.
+// Replaces s repeatedly by the normal of the facet around it, until it does not change. This solves
+// the published program exactly, with its only non-convex constraint e <= n.n linearised at s in
+// each iteration. h decreases in every iteration.
 Minimum settle_on_facet(Prober& occluded, const Probe& start) {
   Minimum best{start, std::nullopt};
   while (true) {
@@ -158,12 +163,12 @@ Minimum settle_on_facet(Prober& occluded, const Probe& start) {
     if (!next) return best;
     best = {*next, facet};
     const auto foot = coordinates(*facet, next->direction);
-    if (foot && foot->minCoeff() >= 0.0) return best;  // the facet is around its own normal
+    if (foot && foot->minCoeff() >= 0.0) return best;  // the facet contains its own normal
   }
 }
 
-// Steps over each side of the facet, away from the opposite corner, and settles beyond: into the
-// larger cap, if there is one.
+// Steps across each side of the facet, away from the opposite corner, and settles there. Returns
+// the largest cap found.
 Minimum best_neighbour(Prober& occluded, const Minimum& minimum) {
   Minimum best = minimum;
   if (!minimum.facet) return best;

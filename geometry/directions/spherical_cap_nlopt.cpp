@@ -7,20 +7,21 @@
 
 #include "geometry/directions/spherical_cap_methods.h"
 
-// The two programs of SEE++ §III-B in the unknowns (n, e), solved as the authors' released code
-// solves them: sequential quadratic programming, one constraint for each direction, the tolerances
-// below. As printed, e is bounded by n.n, so at the optimum |n| = h and e = h^2.
+// Solves the two programs of SEE++ §III-B in the unknowns (n, e) like the authors' released code:
+// sequential quadratic programming with one constraint per direction and the tolerances below. As
+// published, e is bounded by n.n, so that |n| = h and e = h^2 at the optimum.
 namespace skycap::geometry {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr double constraint_tolerance = 1e-3;
-constexpr double unknown_tolerance = 1e-3;  // of each unknown, absolute
-constexpr double smallest_plane = 1e-3;     // an e up to this means: the program found no cap
+constexpr double unknown_tolerance = 1e-3;  // absolute, for each unknown
+constexpr double smallest_plane =
+    1e-3;  // results with e up to this value mean that no cap was found
 
-// Both programs have the constraints sign (e - n.n) <= 0 and sign (n.q - e) <= 0. The sign is +1
-// where the directions surround the origin, and -1 where they fit into a hemisphere.
+// Both programs have the constraints sign (e - n.n) <= 0 and sign (n.q - e) <= 0. The sign is +1 if
+// the directions surround the origin and -1 if they lie in a hemisphere.
 struct Program {
   std::span<const Vector3d> occluded;
   double sign;
@@ -45,7 +46,7 @@ void constraints(unsigned, double* values, unsigned, const double* unknowns, dou
   }
 }
 
-// The normal n of the plane found from `start`, if there is one.
+// Returns the normal n of the plane found from `start_normal`, or nullopt.
 std::optional<Vector3d> solve(Program program, const Vector3d& start_normal, double start_distance,
                               int max_evaluations) {
   constexpr double free = HUGE_VAL;
@@ -68,7 +69,7 @@ std::optional<Vector3d> solve(Program program, const Vector3d& start_normal, dou
   double distance = 0.0;
   try {
     solver.optimize(unknowns, distance);
-  } catch (const std::runtime_error&) {  // the solver's own failures, rounding included
+  } catch (const std::runtime_error&) {  // failures of the solver, including rounding
     return std::nullopt;
   }
   const Vector3d normal(unknowns[0], unknowns[1], unknowns[2]);

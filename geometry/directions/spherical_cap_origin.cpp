@@ -5,8 +5,8 @@
 
 #include "geometry/directions/spherical_cap_methods.h"
 
-// The distance of a convex hull from the origin, after Gilbert, Johnson & Keerthi, "A fast
-// procedure for computing the distance between complex objects in three-dimensional space", 1988.
+// Distance of a convex hull from the origin, after Gilbert, Johnson & Keerthi, "A fast procedure
+// for computing the distance between complex objects in three-dimensional space", 1988.
 namespace skycap::geometry {
 namespace {
 
@@ -17,8 +17,9 @@ struct Candidate {
   std::vector<Vector3d> supports;
 };
 
-// The offers below replace `best` by the foot of the origin on the span of some corners, if that
-// foot lies between them and is nearer. Spans without extent offer nothing: their corners do.
+// The following functions project the origin onto the affine hull of some corners. They replace
+// `best` by this foot if it lies between the corners and is nearer. Degenerate sets are skipped,
+// because their subsets are tested, too.
 void offer(Candidate& best, const Vector3d& foot, std::vector<Vector3d> supports) {
   if (foot.squaredNorm() < best.point.squaredNorm()) best = {foot, std::move(supports)};
 }
@@ -53,7 +54,8 @@ Candidate nearest_of_simplex(const std::vector<Vector3d>& corners) {
   return best;
 }
 
-// Distance of the origin from the nearest face of a tetrahedron; not positive if it is outside.
+// Returns the distance of the origin from the nearest face of a tetrahedron; not positive if the
+// origin is outside.
 double depth_in_tetrahedron(const std::vector<Vector3d>& corners) {
   double depth = 1.0;
   for (std::size_t apex = 0; apex < 4; ++apex) {
@@ -72,7 +74,8 @@ double depth_in_tetrahedron(const std::vector<Vector3d>& corners) {
 }  // namespace
 
 Vector3d normal_of(const Triangle& facet) {
-  // From the corner between the two shorter edges, because the difference of near points is exact.
+  // Starts from the corner between the two shorter edges, because the difference of close points is
+  // exact.
   std::size_t apex = 0;
   double longest = -1.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -86,7 +89,7 @@ Vector3d normal_of(const Triangle& facet) {
 OriginInHull locate_origin(DirectionIndex& occluded) {
   const Vector3d first = occluded.nearest(Vector3d::UnitX()).direction;
   Candidate best{first, {first}};
-  // The distance falls with every round, so no set of supports comes twice.
+  // The distance decreases in every iteration, so no set of supports occurs twice.
   while (true) {
     const double distance = best.point.norm();
     if (distance <= cap_tolerance) return {best.point, best.supports, false};
@@ -102,7 +105,7 @@ OriginInHull locate_origin(DirectionIndex& occluded) {
       if (depth >= 0.0) return {Vector3d::Zero(), corners, depth > cap_tolerance};
     }
     Candidate next = nearest_of_simplex(corners);
-    // Rounding: the support was no nearer to the origin after all.
+    // Due to rounding, the new support is not nearer to the origin.
     if (next.point.norm() >= distance) return {best.point, best.supports, false};
     best = std::move(next);
   }

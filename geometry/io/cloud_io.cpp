@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Takes a piece of a cloud; with it so many points of the file are read, of all that it has.
+/// Receives a piece of a cloud, the number of points of the file read so far, and the total number.
 using TakePiece =
     std::function<void(const AttributedCloud& piece, std::size_t read, std::size_t all)>;
 
 constexpr std::array<std::string_view, 10> ply_names{"x",  "y",    "z",   "nx",    "ny",
                                                      "nz", "view", "red", "green", "blue"};
 
-/// What a PLY file's colours are in.
+/// Number format of the colours of a PLY file.
 enum class ColourScale { none, bytes, words, reals };
 
 ColourScale colour_scale_of(const PlyElement& element) {
@@ -44,7 +44,7 @@ ColourScale colour_scale_of(const PlyElement& element) {
   return scale;
 }
 
-/// A colour in bytes; nothing if its numbers are none in that scale.
+/// Converts a colour to bytes. Returns nullopt if a number is outside the scale.
 std::optional<std::array<std::uint8_t, 3>> colour_of(const std::array<double, 3>& numbers,
                                                      ColourScale scale) {
   const double most = scale == ColourScale::bytes   ? 255.0
@@ -72,7 +72,7 @@ std::uint32_t view_of(const fs::path& path, std::size_t point, double value) {
                        "; it must be an integer from 0 to 4294967295");
 }
 
-/// Without colours if one of them is in no known scale: nothing is told from them.
+/// Returns no colours if any of them is outside the scale, because the scale is then unknown.
 AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, ColourScale scale,
                           std::size_t first, std::size_t count) {
   const auto& columns = table.columns;
@@ -162,13 +162,13 @@ bool is_text_cloud(const fs::path& path) {
   return std::ranges::find(endings, ending_of(path)) != endings.end();
 }
 
-/// All bytes; text of 16 bits as UTF-8.
+/// Returns all bytes of a file; 16-bit text is converted to UTF-8.
 std::string whole_file(const fs::path& path) {
   std::string bytes = read_file(path, largest_whole_file, largest_unpacked_cloud);
   return is_text_cloud(path) ? as_utf8(std::move(bytes)) : bytes;
 }
 
-/// Readers of formats that are not read whole before they are parsed.
+/// Reader of a format that is parsed in pieces.
 struct PiecewiseReader {
   AttributedCloud (*cloud)(const fs::path& path);
   std::size_t (*positions)(const fs::path& path, const TakePositions& take);
@@ -236,7 +236,7 @@ AttributedCloud read_cloud(const fs::path& path) {
 
 namespace {
 
-/// Of files that are read whole, but whose points are not held at once.
+/// Reads files that are loaded whole, but whose points are parsed in pieces.
 std::size_t read_file_positions(const fs::path& path, const TakePositions& take) {
   const std::string bytes = whole_file(path);
   bool has_points = false;

@@ -1,4 +1,5 @@
-/// Readers of single cloud formats, for the source of cloud_io.h. `path` opens every message.
+/// Readers of individual cloud formats, for the source of cloud_io.h. Every message begins with
+/// `path`.
 #pragma once
 
 #include <cstddef>
@@ -13,54 +14,57 @@
 
 namespace skycap::geometry {
 
-/// Throws Error{bad_file} in one line that begins with the path.
+/// Throws Error{bad_file} with a one-line message that begins with `path`.
 [[noreturn]] void fail_cloud(const std::filesystem::path& path, const std::string& what);
 
-/// Finite coordinates of a file in single precision. Throws Error{bad_file} if one is so large that
-/// single precision would move the point by a millimetre.
+/// Converts finite coordinates of a file to single precision. Throws Error{bad_file} if the
+/// conversion would move the point by 1 mm.
 Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t point, double x,
                                double y, double z);
 
-/// Appends the next points of a file, whose first one is number `first`, as cloud_position() does.
+/// Converts `positions` with cloud_position() and appends them to `to`. `first` is the index of the
+/// first point in the file.
 void add_positions(const std::filesystem::path& path, std::size_t first,
                    std::span<const Eigen::Vector3d> positions, std::vector<Eigen::Vector3f>& to);
 
-/// What a cloud may unpack to from fewer bytes, so that it and what is made of it on the way take
-/// less than 2 GiB.
+/// Maximum decompressed size of a cloud. It limits the memory of the cloud and its intermediate
+/// results to less than 2 GiB.
 inline constexpr std::size_t largest_unpacked_cloud = std::size_t{384} << 20,  // [bytes]
     most_whole_points = std::size_t{1} << 26;
 
-/// Throws Error{bad_file} if so many points are too many.
+/// Throws Error{bad_file} if `points` exceeds the limit.
 void require_few_points(const std::filesystem::path& path, std::size_t points);
 
-/// The Point Cloud Library's PCD 0.7, text, binary or compressed: x y z and normal_x normal_y
-/// normal_z. PCL marks pixels without a measurement by NaN: they are skipped and counted.
+/// Parses PCD 0.7 of the Point Cloud Library: text, binary or compressed. Reads x y z and normal_x
+/// normal_y normal_z. PCL marks no-return pixels by NaN; these points are skipped and counted.
 AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_view bytes);
 
-/// LAS 1.0 to 1.4 and LAZ (las/las_reader.h). Withheld points are passed over.
+/// Reads LAS 1.0 to 1.4 and LAZ (las/las_reader.h). Withheld points are ignored.
 AttributedCloud read_las_cloud(const std::filesystem::path& path);
 
-/// E57 (e57_reader.h), all scans of it; with several `views` is the scan.
+/// Reads all scans of an E57 file (e57_reader.h). If there are several scans, `views` contains
+/// their indices.
 AttributedCloud read_e57_cloud(const std::filesystem::path& path);
 
-/// An E57 file of one scan, as write_cloud() writes it.
+/// Returns the bytes of an E57 file with one scan, as written by write_cloud().
 std::string e57_bytes(const CloudColumns& cloud);
 
-/// Points of a piece.
+/// Maximum number of points per piece.
 inline constexpr std::size_t piece_size = 1'000'000;
 
-/// The positions alone, as read_positions() hands them out.
+/// Reads only the positions, as specified by read_positions().
 std::size_t read_las_positions(const std::filesystem::path& path, const TakePositions& take);
 std::size_t read_e57_positions(const std::filesystem::path& path, const TakePositions& take);
 
-/// Takes a piece of a text's points, and how many of its bytes are read with them.
+/// Receives consecutive points of text and the number of bytes that have been read with them.
 using TakeTextPiece = std::function<void(std::span<const Eigen::Vector3f>, std::size_t)>;
 
-/// Points as text, a line each, as read_cloud() describes them. Returns how many were skipped.
+/// Parses text with one point per line, as specified by read_cloud(). Returns the number of skipped
+/// points.
 std::size_t take_text_cloud(const std::filesystem::path& path, std::string_view text,
                             const TakeTextPiece& take);
 
-/// Throws Error{bad_file}: a file without points, or with skipped ones alone.
+/// Throws Error{bad_file} for a file without points, or in which all points were skipped.
 [[noreturn]] void fail_without_points(const std::filesystem::path& path, std::size_t skipped);
 
 }  // namespace skycap::geometry

@@ -30,7 +30,7 @@ Mesh decode_draco(std::string_view name, std::string_view bytes) {
   if (positions == nullptr || positions->num_components() != 3) {
     fail("has no positions of three coordinates");
   }
-  // Draco reads any byte of a file as such a one.
+  // Draco reads any byte as a valid value of this type.
   if (positions->data_type() == draco::DT_BOOL) fail("has positions of an unknown type");
 
   Mesh mesh;

@@ -11,7 +11,7 @@
 namespace skycap::geometry {
 namespace {
 
-/// Appends fields of three values each, interleaved in `triples`, to a scan and its columns.
+/// Adds three fields with the interleaved values `triples` to a scan and its columns.
 template <typename Value, typename Triple>
 void add_fields(const std::array<const char*, 3>& names, const e57::Field& kind,
                 std::span<const Triple> triples, e57::WrittenScan& scan,

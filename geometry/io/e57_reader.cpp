@@ -14,7 +14,7 @@ using Names = std::array<const char*, 3>;
 constexpr Names cartesian{"cartesianX", "cartesianY", "cartesianZ"};
 constexpr Names spherical{"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
 constexpr Names colours{"colorRed", "colorGreen", "colorBlue"};
-constexpr Names normals{"nor:normalX", "nor:normalY", "nor:normalZ"};  // E57_NOR, an extension
+constexpr Names normals{"nor:normalX", "nor:normalY", "nor:normalZ"};  // extension E57_NOR
 
 bool has(const e57::ScanDescription& scan, const Names& names) {
   return std::ranges::all_of(names, [&](const char* name) {
@@ -34,7 +34,7 @@ Eigen::Vector3d cartesian_of(const Eigen::Vector3d& range_azimuth_elevation) {
   return {level * std::cos(azimuth), level * std::sin(azimuth), range * std::sin(elevation)};
 }
 
-/// From black to white of its channel.
+/// Returns the values of black and white of a channel.
 e57::Interval limits_of(const e57::ScanDescription& scan, std::size_t channel,
                         const e57::Field& field) {
   if (scan.colour_limits[channel]) return *scan.colour_limits[channel];
@@ -50,7 +50,7 @@ std::uint8_t byte_of(double value, const e57::Interval& limits) {
 }
 
 e57::Description read_description(e57::Pages& pages, const e57::FileHeader& header) {
-  pages.bytes(0, e57::header::size);  // what was read of it agrees with its checksum
+  pages.bytes(0, e57::header::size);  // verifies the checksum of the header page
   const std::uint64_t place = pages.logical(header.description, "its XML");
   if (header.description_size > e57::longest_description ||
       header.description_size > pages.size() - place) {

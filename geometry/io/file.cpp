@@ -46,7 +46,7 @@ std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size
   while (status == Z_OK || (status == Z_STREAM_END && !bytes.empty())) {
     if (status == Z_STREAM_END) inflateReset(&stream);  // gzip files may be concatenated
     const auto given = std::min<std::size_t>(bytes.size(), std::numeric_limits<uInt>::max());
-    // zlib does not write to its input, but its C interface says so only on request.
+    // zlib does not modify its input, but its C interface is const only if ZLIB_CONST is defined.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream.avail_in = static_cast<uInt>(given);
     stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
@@ -67,11 +67,11 @@ std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size
   return inflated;
 }
 
-/// A file that this process alone writes to, beside the one that it is to replace.
+/// Exclusively locked temporary file in the folder of the target.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target) {
-    // Another writer may be at it, or have renamed its file between our opening and locking it.
+    // Another writer may have locked the file, or renamed it between open() and flock().
     for (int number = 0; handle_ < 0; ++number) {
       path_ = target.parent_path() /
               (".part-" + std::to_string(number) + "-" + target.filename().string());
@@ -89,7 +89,7 @@ class TemporaryFile {
     ::close(handle_);
   }
 
-  /// False, with errno set, if the bytes are not on the disk under the new name.
+  /// Writes the bytes to disk and renames the file. Returns false and sets errno if that fails.
   bool put(std::string_view bytes, const fs::path& name) {
     if (::ftruncate(handle_, 0) != 0) return false;
     while (!bytes.empty()) {
@@ -167,7 +167,7 @@ std::string read_file(const fs::path& path, std::size_t most_bytes, std::size_t 
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
-  std::error_code unmade;  // a folder that is not there says so when the file is opened
+  std::error_code unmade;  // a missing folder is reported when the file is opened
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), unmade);
   if (!TemporaryFile(path).put(bytes, path)) fail(path, "cannot be written: " + last_error());
 }
@@ -185,7 +185,7 @@ void cut_file(const fs::path& path, std::uintmax_t bytes) {
 
 void sync_to_disk(const fs::path& path) {
   const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  // Some file systems cannot synchronise folders; they need not, either.
+  // Some file systems do not support syncing folders, and do not require it.
   const bool is_done = handle >= 0 && (::fsync(handle) == 0 || errno == EINVAL);
   const std::string why = is_done ? "" : last_error();
   if (handle >= 0) ::close(handle);

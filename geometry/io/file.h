@@ -1,4 +1,4 @@
-/// Whole files in and out.
+/// Reads and writes whole files.
 #pragma once
 
 #include <cstddef>
@@ -10,38 +10,39 @@
 
 namespace skycap::geometry {
 
-/// Throws Error{bad_file} unless it is a regular file: devices and pipes may never end.
+/// Throws Error{bad_file} unless `path` is a regular file, because devices and pipes may never end.
 void require_regular_file(const std::filesystem::path& path);
 
-/// A stream of the file's bytes, which has failed if the file cannot be opened. Throws
-/// std::bad_alloc if memory is what is missing: then nothing is wrong with the file.
+/// Opens a file for reading. The stream is in a failed state if the file cannot be opened. Throws
+/// std::bad_alloc if memory is exhausted, to distinguish it from a file error.
 std::ifstream open_stream(const std::filesystem::path& path);
 
-/// The name's ending in lower case with its dot, not counting ".gz"; empty if it has none.
+/// Returns the file extension in lower case with its dot, ignoring ".gz". Empty if the name has no
+/// extension.
 std::string ending_of(std::filesystem::path path);
 
-/// What is read whole if nothing else is said; what is larger has to be read piece by piece.
+/// Default limit of read_file() [bytes]. Larger files must be read in pieces.
 inline constexpr std::size_t largest_whole_file = std::size_t{1} << 30;
 
-/// The bytes of a file; one that gzip has compressed comes back decompressed, whatever its name.
-/// Throws Error{bad_file} if it is no regular file, unreadable, damaged, or larger than
-/// `most_bytes`, decompressed or not, or decompressed than `most_decompressed`: a few bytes may
-/// unpack to as much.
+/// Returns the content of a file. Decompresses gzip files independent of their name. Throws
+/// Error{bad_file} if the file is not a regular file, unreadable, damaged, larger than
+/// `most_bytes`, or decompresses to more than `most_decompressed` bytes. The second limit exists
+/// because a few bytes can decompress to a very large size.
 std::string read_file(const std::filesystem::path& path,
                       std::size_t most_bytes = largest_whole_file,
                       std::size_t most_decompressed = largest_whole_file);
 
-/// Replaces the file by one with these bytes: they are written under a temporary name beside it,
-/// brought to the disk, and renamed when complete, so that no reader ever finds half a file, not
-/// even after a power cut. Makes the folder if need be. What a killed program left under the
-/// temporary name is used up. Throws Error{bad_file}.
+/// Replaces a file atomically: writes a temporary file in the same folder, syncs it to disk, and
+/// renames it. Readers never find an incomplete file, not even after a power failure. Creates the
+/// folder if it does not exist. Overwrites a temporary file left by a killed program. Throws
+/// Error{bad_file}.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// Cuts a file to the length that it once had. Throws Error{bad_file} if that fails, or if the file
-/// is shorter.
+/// Truncates a file to a previous length. Throws Error{bad_file} if that fails or the file is
+/// shorter.
 void cut_file(const std::filesystem::path& path, std::uintmax_t bytes);
 
-/// Brings a file's content, or a folder's names, to the disk. Throws Error{bad_file}.
+/// Syncs the content of a file, or the entries of a folder, to disk. Throws Error{bad_file}.
 void sync_to_disk(const std::filesystem::path& path);
 
 }  // namespace skycap::geometry

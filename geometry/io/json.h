@@ -1,4 +1,4 @@
-/// The one way in for JSON of foreign origin.
+/// Parser for JSON from external sources. All such JSON must be parsed with it.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,11 @@
 
 namespace skycap::geometry {
 
-/// Of JSON that is read whole [byte]: its tree takes up to twenty times as much.
+/// Maximum size of a JSON file [bytes]. The parsed tree needs up to twenty times as much memory.
 inline constexpr std::size_t largest_json = std::size_t{64} << 20;
 
-/// Whether lists and objects in a JSON text are nested deeper than anything we read needs. Parsers
-/// and destructors of JSON call themselves for each level: a long row of brackets is a crash.
+/// Returns whether lists and objects are nested deeper than any supported format requires. JSON
+/// parsers and destructors are recursive, so that deeply nested brackets would overflow the stack.
 inline bool is_nested_too_deep(std::string_view json) {
   constexpr int deepest = 64;
   int depth = 0;
@@ -31,8 +31,8 @@ inline bool is_nested_too_deep(std::string_view json) {
   return false;
 }
 
-/// The value of a JSON text, of whichever of nlohmann's types; `is_discarded()` if the text is not
-/// JSON or is nested deeper than 64.
+/// Parses JSON into one of the types of nlohmann/json. `is_discarded()` is true if the text is not
+/// valid JSON or is nested deeper than 64 levels.
 template <typename Json>
 Json parse_json(std::string_view text) {
   if (is_nested_too_deep(text)) return Json(Json::value_t::discarded);

@@ -1,4 +1,4 @@
-// Meshes in PLY files: faces, or strips of triangles as scanners once wrote them.
+// Meshes in PLY files: faces, or triangle strips as written by older scanners.
 #include "geometry/io/mesh_formats.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr std::uint64_t ply_piece_size = 1'000'000;  // rows whose numbers are held at once
+constexpr std::uint64_t ply_piece_size = 1'000'000;  // maximum rows in memory at a time
 
 void read_ply_vertices(std::string_view name, PlyReader& reader, std::uint64_t count,
                        BoundedSoup& soup) {
@@ -29,7 +29,7 @@ void read_ply_vertices(std::string_view name, PlyReader& reader, std::uint64_t c
   }
 }
 
-/// The name of an element's list of corners: one that is usual, else its only list.
+/// Returns the name of the corner list of an element: a common name, otherwise its only list.
 std::string corner_list_of(std::string_view name, const PlyElement& element) {
   constexpr std::array<std::string_view, 4> usual{"vertex_indices", "vertex_index",
                                                   "vertex_indexes", "vertices"};
@@ -48,7 +48,7 @@ std::string corner_list_of(std::string_view name, const PlyElement& element) {
                       "; the one of its corners must be called vertex_indices");
 }
 
-/// The triangles of a strip, all turned the same way; -1 begins another strip.
+/// Converts strips to triangles with uniform orientation; -1 begins a new strip.
 class StripReader {
  public:
   explicit StripReader(BoundedSoup& soup) : soup_(soup) {}
@@ -75,7 +75,7 @@ class StripReader {
   Strip strip_;
 };
 
-/// Of the elements 'face' or 'tristrips'.
+/// Reads the element 'face' or 'tristrips'.
 void read_ply_faces(std::string_view name, PlyReader& reader, const PlyElement& element,
                     std::uint64_t vertex_count, BoundedSoup& soup) {
   const bool is_strip = element.name == "tristrips";

@@ -1,5 +1,5 @@
-/// The parsers behind read_mesh(), one for each format; for the sources of mesh_io and their tests.
-/// Each takes a file's name (which opens every message) and its bytes, and throws Error{bad_file}.
+/// Parsers of the formats of read_mesh(), for the sources of mesh_io and their tests. Each parser
+/// reads the bytes of a file and throws Error{bad_file}. Every message begins with the file name.
 #pragma once
 
 #include <cstddef>
@@ -15,38 +15,39 @@
 
 namespace skycap::geometry {
 
-/// How large a mesh in a file may be; tests want it smaller.
+/// Maximum sizes of a mesh in a file. Tests use smaller limits.
 struct MeshLimits {
   std::size_t faces = 40'000'000;
-  std::size_t vertices = 120'000'000, corners = 120'000'000;  ///< corners: of all faces
-  std::size_t face_corners = 1'000'000;                       ///< of one
+  std::size_t vertices = 120'000'000,
+              corners = 120'000'000;     ///< corners: total number over all faces
+  std::size_t face_corners = 1'000'000;  ///< corners of a single face
   std::size_t materials = 1'000'000;
 };
 
-/// Polygons as a file lists them: nothing of it is checked but that indices are those of vertices.
+/// Unchecked polygons of a file. Only vertex indices are guaranteed to be in range.
 struct PolygonSoup {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::uint32_t> corners;         ///< vertex indices of all polygons
   std::vector<std::size_t> polygon_begin{0};  ///< polygon i is corners [begin[i], begin[i + 1])
-  std::vector<std::string> materials;  ///< names; empty: the file has none, or it is not an OBJ
-  std::vector<std::uint32_t> polygon_materials;  ///< of each polygon, if there are materials
+  std::vector<std::string> materials;  ///< names; empty unless the file is an OBJ with materials
+  std::vector<std::uint32_t> polygon_materials;  ///< one index per polygon, if there are materials
 };
 
 PolygonSoup parse_ply(std::string_view name, std::string_view bytes, const MeshLimits& limits = {});
 PolygonSoup parse_obj(std::string_view name, std::string_view text, const MeshLimits& limits = {});
 PolygonSoup parse_off(std::string_view name, std::string_view text, const MeshLimits& limits = {});
-/// Ascii or binary.
+/// Parses an ASCII or binary STL file.
 PolygonSoup parse_stl(std::string_view name, std::string_view bytes, const MeshLimits& limits = {});
 
-/// A mesh without polygons that have a corner which is not finite, and how many there were.
+/// Removes polygons with a non-finite corner and returns their number.
 std::size_t drop_infinite_polygons(PolygonSoup& soup);
 
-/// The polygons cut into triangles of the same orientation, along the plane they are nearest to;
-/// polygons of fewer than three corners are left out. Throws Error{bad_file} if a polygon has a
-/// corner that is not finite, or is not convex and has more than 1000 corners.
+/// Triangulates the polygons in their best-fitting planes and keeps their orientation. Polygons
+/// with fewer than three corners are skipped. Throws Error{bad_file} if a corner is not finite, or
+/// if a non-convex polygon has more than 1000 corners.
 Mesh triangulate(std::string_view name, PolygonSoup soup);
 
-/// Throws Error{bad_file} in one line that begins with the name.
+/// Throws Error{bad_file} with a one-line message that begins with `name`.
 [[noreturn]] inline void fail_mesh(std::string_view name, const std::string& what) {
   throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
 }
@@ -56,7 +57,7 @@ inline std::string no_such_vertex(std::int64_t vertex, std::size_t count) {
          " vertices, counted from 0";
 }
 
-/// Polygons that do not grow past the limits.
+/// Polygon soup with enforced size limits.
 class BoundedSoup {
  public:
   BoundedSoup(std::string_view name, const MeshLimits& limits) : name_(name), limits_(limits) {}
@@ -64,7 +65,8 @@ class BoundedSoup {
   const PolygonSoup& soup() const { return soup_; }
   PolygonSoup& soup() { return soup_; }
 
-  /// What a file promises, before memory is taken for it.
+  /// Checks declared sizes before memory is allocated. Throws Error{bad_file} if they exceed the
+  /// limits.
   void require(std::uint64_t vertices, std::uint64_t faces) const {
     if (vertices > limits_.vertices || faces > limits_.faces) fail_of_size();
   }
@@ -74,7 +76,7 @@ class BoundedSoup {
     soup_.vertices.push_back(vertex);
   }
 
-  /// Of the polygon that is closed next.
+  /// Adds a corner to the current polygon, which close_polygon() completes.
   void add_corner(std::uint32_t vertex) {
     if (soup_.corners.size() == limits_.corners) fail_of_size();
     if (soup_.corners.size() - soup_.polygon_begin.back() == limits_.face_corners) {

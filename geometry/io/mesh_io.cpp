@@ -25,8 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-// Of a file that unpacks to far more than its own bytes: with what is made of it on the way less
-// than 2 GiB. A plain file takes memory by its size, which is the user's to give.
+// Limits for files that decompress to a much larger size, so that less than 2 GiB are used,
+// including intermediate results. Uncompressed files are not limited, because their size is known
+// to the user.
 constexpr std::size_t largest_unpacked_mesh = std::size_t{256} << 20, most_unpacked = 10'000'000;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
@@ -39,7 +40,7 @@ PolygonSoup parse(const fs::path& path) {
     const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
     const Mesh mesh = decode_draco(path.string(), bytes);
     if (mesh.triangles.size() > most_unpacked) fail(path, "contains more than 1e7 triangles");
-    PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
+    PolygonSoup soup{mesh.vertices, {}};  // checked like the polygons of other formats
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
       soup.polygon_begin.push_back(soup.corners.size());
@@ -61,8 +62,8 @@ PolygonSoup parse(const fs::path& path) {
   return parser(path.string(), bytes, {});
 }
 
-/// The polygons of each material, each with the vertices that they use; one part if there are no
-/// materials. Takes time in proportion to the file, however many materials it has.
+/// Splits the polygons by material, each part with its own vertices. Returns one part if there are
+/// no materials. The time is proportional to the file size, independent of the number of materials.
 std::vector<PolygonSoup> parts_by_material(PolygonSoup soup) {
   if (soup.materials.empty()) {
     std::vector<PolygonSoup> whole;

@@ -21,9 +21,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::size_t most_ear_corners = 1000;  // clipping ears takes cubic time at worst
+constexpr std::size_t most_ear_corners = 1000;  // ear clipping takes cubic time in the worst case
 
-// The polygon seen along its area vector (Newell's normal), from where it is counter-clockwise.
+// Projects the polygon along its area vector (Newell's normal), so that it is counter-clockwise.
 std::vector<Vector2d> flattened(const Mesh& mesh, std::span<const std::uint32_t> polygon) {
   const Vector3d& origin = mesh.vertices[polygon[0]];
   Vector3d normal = Vector3d::Zero();
@@ -68,7 +68,7 @@ std::size_t drop_infinite_polygons(PolygonSoup& soup) {
     const bool is_finite =
         std::all_of(first, last, [&](std::uint32_t v) { return soup.vertices[v].allFinite(); });
     if (is_finite && dropped == 0) continue;
-    if (dropped == 0) {  // only a file with such a polygon is copied
+    if (dropped == 0) {  // copies only if such a polygon exists
       kept.corners.assign(soup.corners.begin(), first);
       kept.polygon_begin.assign(soup.polygon_begin.begin(),
                                 soup.polygon_begin.begin() + static_cast<std::ptrdiff_t>(i) + 1);

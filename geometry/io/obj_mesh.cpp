@@ -1,4 +1,4 @@
-// Wavefront OBJ: polygons and their materials.
+// Wavefront OBJ: polygons and materials.
 #include <limits>
 #include <optional>
 #include <string>
@@ -12,7 +12,8 @@ namespace {
 
 using std::string_view;
 
-/// A name up to a comment, whose sign has blanks around it. "Glass #2" is a name.
+/// Returns the name without a comment. The comment sign must be surrounded by blanks: "Glass #2" is
+/// a name.
 string_view without_comment(string_view name) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   for (std::size_t i = 1; i + 1 < name.size(); ++i) {
@@ -52,7 +53,7 @@ class ObjReader {
     }
   }
 
-  /// The next word of a statement, which goes on in the next line behind a backslash.
+  /// Returns the next word of a statement. A backslash continues the statement on the next line.
   std::optional<string_view> next() {
     while (true) {
       auto word = scanner_.word_in_line();
@@ -74,7 +75,7 @@ class ObjReader {
   }
 
   void read_material() {
-    // Faces before the first one have the material without a name.
+    // Faces before the first usemtl get the unnamed material.
     if (soup_.materials.empty() && !lines_.empty()) use_material("");
     soup_.polygon_materials.resize(lines_.size(), 0);
     use_material(std::string(without_comment(scanner_.rest_of_line())));
@@ -100,7 +101,7 @@ class ObjReader {
   std::uint32_t vertex_of(string_view corner) {
     const auto position = corner.substr(0, corner.find('/'));
     const auto index = scanner_.number<std::int64_t>(position, "a vertex index");
-    // Counted from 1, or backwards from the latest vertex.
+    // Indices are one-based, or negative relative to the latest vertex.
     const auto count = static_cast<std::int64_t>(soup_.vertices.size());
     const std::int64_t vertex = index > 0 ? index - 1 : index + count;
     if (index == 0 || vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max()) {
@@ -111,7 +112,7 @@ class ObjReader {
     return static_cast<std::uint32_t>(vertex);
   }
 
-  /// Faces may come before their vertices.
+  /// Checks all corners at the end, because faces may precede their vertices.
   void check_corners() const {
     for (std::size_t polygon = 0; polygon < lines_.size(); ++polygon) {
       for (std::size_t i = soup_.polygon_begin[polygon]; i < soup_.polygon_begin[polygon + 1];
@@ -129,9 +130,9 @@ class ObjReader {
   std::size_t most_materials_;
   BoundedSoup polygons_;
   PolygonSoup& soup_ = polygons_.soup();
-  std::vector<std::uint32_t> lines_;  // of each polygon, for the check of its corners
+  std::vector<std::uint32_t> lines_;  // line of each polygon, for messages of check_corners()
   std::uint32_t material_ = 0;
-  std::unordered_map<std::string, std::uint32_t> materials_;  // numbers by names
+  std::unordered_map<std::string, std::uint32_t> materials_;  // material numbers by name
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// OFF of Geomview and ModelNet: free-form, or a line for each vertex and face.
+// OFF of Geomview and ModelNet: free-form, or one line per vertex and face.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -11,13 +11,14 @@ namespace {
 
 using std::string_view;
 
-/// What stands before the counts.
+/// Header before the counts.
 struct OffHeader {
-  std::size_t more_of_vertex = 0;  ///< numbers behind the coordinates: normal, colour, texture
-  std::string_view glued;          ///< the first count, if it stands in one word with the format
+  std::size_t more_of_vertex =
+      0;                   ///< numbers per vertex after the coordinates: normal, colour, texture
+  std::string_view glued;  ///< first count, if it directly follows the format in the same word
 };
 
-/// The first word, such as "OFF", "COFF", "STNOFF" or ModelNet's "OFF8".
+/// Parses the first word, such as "OFF", "COFF", "STNOFF" or ModelNet's "OFF8".
 std::optional<OffHeader> header_of(string_view word) {
   OffHeader header;
   const auto take = [&](string_view prefix, std::size_t numbers) {
@@ -48,7 +49,7 @@ class OffReader {
   }
 
  private:
-  /// The next word anywhere that belongs to no comment.
+  /// Returns the next word outside comments, on any line.
   std::optional<string_view> next() {
     while (true) {
       const auto word = scanner_.word();
@@ -57,7 +58,8 @@ class OffReader {
     }
   }
 
-  /// The next word, of this line where each thing has one of its own.
+  /// Returns the next word, limited to the current line if each vertex and face has a separate
+  /// line.
   std::optional<string_view> next_of_thing() {
     if (!has_own_lines_) return next();
     const auto word = scanner_.word_in_line();
@@ -77,7 +79,7 @@ class OffReader {
     }
     vertices_ = scanner_.number<std::uint64_t>(count, "the number of vertices");
     faces_ = scanner_.number<std::uint64_t>(next(), "the number of faces");
-    // A vertex takes 6 characters or more, a face 2.
+    // A vertex needs at least 6 characters, a face 2.
     if (vertices_ > scanner_.remaining() / 6 + 1 || faces_ > scanner_.remaining() / 2 + 1) {
       scanner_.fail(std::to_string(vertices_) + " vertices and " + std::to_string(faces_) +
                     " faces are declared, but the file is too short");
@@ -87,13 +89,13 @@ class OffReader {
     soup_.soup().vertices.reserve(vertices_);
   }
 
-  /// The number of edges, which is mostly wrong and may be left out.
+  /// Skips the number of edges, which is optional and often wrong.
   void skip_edges() {
     TextScanner ahead = scanner_;
     const auto edges = ahead.word_in_line();
     if (edges && !edges->starts_with('#')) scanner_ = ahead;
     if (edges) return;
-    // In a line of its own only if nothing else is there.
+    // The count may also be on a separate line that contains nothing else.
     ahead = scanner_;
     ahead.next_line();
     const auto first = ahead.word_in_line();
@@ -101,7 +103,7 @@ class OffReader {
     if (is_count && !ahead.word_in_line()) scanner_ = ahead;
   }
 
-  /// Whether there are as many lines as vertices and faces, of which the first is a vertex's.
+  /// Returns whether there is a line for each vertex and face. The first of them must be a vertex.
   bool has_line_for_each() const {
     TextScanner ahead = scanner_;
     std::uint64_t lines = 0, numbers_of_first = 0;
@@ -117,12 +119,12 @@ class OffReader {
       }
       if (lines == vertices_ + faces_) break;
     }
-    // What is cut short is to be told so by its line.
+    // Truncated files in line format must be detected, so that the message names the line.
     const bool is_short = lines < vertices_ + faces_;
     return numbers_of_first >= 3 && (!is_short || numbers_of_first < 6);
   }
 
-  /// Goes to the next line that holds something, where each thing has one of its own.
+  /// Advances to the next line with content if each vertex and face has a separate line.
   void begin_thing() {
     if (!has_own_lines_) return;
     while (scanner_.next_line()) {

@@ -23,9 +23,9 @@ constexpr std::size_t largest_journal = std::size_t{64} << 20;
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
 }
 
-/// One name that a commit changes.
+/// One name changed by a commit.
 struct Change {
-  std::string part;  ///< what gets the name; empty: nothing, the file is removed
+  std::string part;  ///< file to be renamed; empty: the file `name` is removed
   std::string name;
 };
 
@@ -44,18 +44,18 @@ bool is_there(const fs::path& path) {
   return fs::symlink_status(path, ignored).type() != fs::file_type::not_found;
 }
 
-/// A name without folders that a commit could have written down.
+/// Returns whether the name is a valid file name without folders.
 bool is_plain(std::string_view name) {
   return !name.empty() && name.find('/') == std::string_view::npos && name != "." && name != "..";
 }
 
 std::string journal_of(const std::vector<Change>& changes) {
-  std::string text;  // NUL ends each name: names may hold anything else
+  std::string text;  // Each name ends with NUL, the only character that names cannot contain
   for (const Change& change : changes) text += change.part + '\0' + change.name + '\0';
   return text;
 }
 
-/// Those of a journal; names that a commit of ours cannot have written are left out.
+/// Parses a journal. Names that a commit cannot have written are ignored.
 std::vector<Change> changes_of(std::string_view text) {
   std::vector<Change> changes;
   const auto next = [&] {
@@ -72,9 +72,9 @@ std::vector<Change> changes_of(std::string_view text) {
   return changes;
 }
 
-/// First everything old goes aside, what was staged last first, then everything new comes: whoever
-/// finds the file that was staged last finds the others of its run. Repeated after an interruption
-/// it goes on where it was.
+/// Moves all old files away, starting with the file staged last, then renames all new files. A
+/// reader who finds the file staged last thus finds all files of its run. Can be repeated after an
+/// interruption.
 void carry_out(const fs::path& folder, const std::vector<Change>& changes) {
   for (auto change = changes.rbegin(); change != changes.rend(); ++change) {
     const auto& [part, name] = *change;
@@ -86,7 +86,7 @@ void carry_out(const fs::path& folder, const std::vector<Change>& changes) {
   }
 }
 
-/// As it was before carry_out(); false if that fails, too.
+/// Restores the state before carry_out(). Returns false if that fails.
 bool undo(const fs::path& folder, const std::vector<Change>& changes) {
   bool is_undone = true;
   const auto move_back = [&](const fs::path& from, const fs::path& to) {
@@ -104,7 +104,7 @@ bool undo(const fs::path& folder, const std::vector<Change>& changes) {
 }
 
 void remove_file(const fs::path& path) {
-  std::error_code ignored;  // a leftover at worst, for the next program to remove
+  std::error_code ignored;  // a remaining file is removed by the next program
   fs::remove(path, ignored);
 }
 
@@ -116,7 +116,8 @@ void finish_journal(const fs::path& folder) {
   remove_file(journal);
 }
 
-/// A handle that keeps others out, or -1. On file systems without locks everyone gets in.
+/// Returns a file descriptor that holds the lock, or -1. On file systems without locks, the call
+/// always succeeds.
 int locked(const fs::path& folder) {
   const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (handle < 0) fail_at(folder, "cannot be opened; use a folder that you can write to");
@@ -151,10 +152,10 @@ void OutputFolder::lock_and_clean() {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
       const std::string name = entry.path().filename().string();
       const bool is_part = name.starts_with(part_prefix), is_old = name.starts_with(old_prefix);
-      if (is_part) fs::remove_all(entry.path(), ignored);  // may be a folder for scratch files
+      if (is_part) fs::remove_all(entry.path(), ignored);  // may be a folder for temporary files
       if (is_old && !entry.is_directory(ignored)) remove_file(entry.path());
     }
-    // Better to find out now than after the survey.
+    // Detects an unwritable folder before the survey instead of after it.
     const fs::path probe = temporary("probe");
     write_file(probe, "\n");
     remove_file(probe);
@@ -166,11 +167,11 @@ void OutputFolder::lock_and_clean() {
 }
 
 OutputFolder::~OutputFolder() {
-  // What an unfinished commit still needs stays for the next program to finish it.
+  // The files of an unfinished commit are kept for the next program to complete it.
   if (!is_there(folder_ / journal_name)) {
     for (const Staged& file : staged_) remove_file(temporary(file.name));
   }
-  if (is_new_) remove_file(folder_);  // does nothing if there are files in it
+  if (is_new_) remove_file(folder_);  // has no effect if the folder contains files
   ::close(lock_);
 }
 
@@ -241,7 +242,7 @@ void OutputFolder::commit() {
   const fs::path journal = folder_ / journal_name;
   write_file(journal, journal_of(changes));
   try {
-    sync_to_disk(folder_);  // the journal's name, before anything is moved
+    sync_to_disk(folder_);  // syncs the journal's name before any file is moved
     carry_out(folder_, changes);
     sync_to_disk(folder_);
   } catch (const Error&) {

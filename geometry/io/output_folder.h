@@ -1,4 +1,4 @@
-/// Files that appear under their names only when all of them are whole.
+/// Atomic creation of several files in a folder.
 #pragma once
 
 #include <filesystem>
@@ -9,18 +9,19 @@
 
 namespace skycap::geometry {
 
-/// Files are staged under temporary names beside their final ones; commit() gives all of them
-/// their names, or none. What is not committed is removed again, if the program is killed by the
-/// next one that opens the folder.
+/// Stages files under temporary names in the folder. commit() renames either all of them or none.
+/// Uncommitted files are removed by the destructor, or after a kill by the next program that opens
+/// the folder.
 ///
-/// A commit brings the files to the disk, writes down what it will do (a journal), moves what it
-/// replaces aside, and renames. A failure on the way is undone. After a kill or a power cut the
-/// journal stands, and the next program that opens or finishes the folder completes the commit.
+/// A commit syncs the files to disk, writes a journal of its steps, moves replaced files to
+/// temporary names, and renames the new files. An error undoes the commit. After a kill or a power
+/// failure, the next program that opens the folder or calls finish_commit() completes the commit
+/// from the journal.
 class OutputFolder {
  public:
-  /// Makes the folder if need be, finishes what a killed program left there, and keeps other
-  /// writers out. Throws Error{bad_file} if the folder cannot be written to or another program
-  /// (or object) is at it.
+  /// Opens and locks the folder for writing. Creates it if it does not exist and completes an
+  /// interrupted commit. Throws Error{bad_file} if the folder is not writable or is locked by
+  /// another program or object.
   explicit OutputFolder(std::filesystem::path folder);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -28,26 +29,28 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  /// Where to write the file that is to become `name`. Keeps its extension.
+  /// Returns the path to which the file with the final name `name` must be written. It has the same
+  /// extension.
   std::filesystem::path stage(const std::string& name);
-  /// The same of a file whose bytes are on the disk before commit(), which then need not wait for
-  /// it: for thousands of files.
+  /// Returns the path for a file that the caller syncs to disk before commit(). This avoids waiting
+  /// in commit() for thousands of files.
   std::filesystem::path stage_on_disk(const std::string& name);
-  /// Where stage(name) has put the file; an empty path if nothing is staged under that name.
+  /// Returns the path returned by stage(name), or an empty path if `name` is not staged.
   std::filesystem::path staged(const std::string& name) const;
-  /// Takes back stage(name).
+  /// Removes `name` from the staged files.
   void drop(const std::string& name);
-  /// Stages a file with that content. Throws Error{bad_file} if it cannot be written whole.
+  /// Stages a file with this content. Throws Error{bad_file} if it cannot be written completely.
   void write(const std::string& name, std::string_view content);
 
-  /// Has commit() remove files of an earlier run of which `is_old(name)` says that they belong to
-  /// what is staged here, unless they are staged again.
+  /// Selects files of an earlier run that commit() removes: those for which `is_old(name)` is true
+  /// and that are not staged again.
   void replace(const std::function<bool(std::string_view)>& is_old);
 
-  /// Has commit() put the files into a folder within this one. What replace() was told is void.
+  /// Sets the subfolder into which commit() moves the files. Cancels replace().
   void move_to(const std::string& subfolder);
 
-  /// Gives the staged files their names. Throws Error{bad_file}: then the folder is as it was.
+  /// Renames the staged files to their final names. If it throws Error{bad_file}, the folder is
+  /// unchanged.
   void commit();
 
  private:
@@ -63,12 +66,12 @@ class OutputFolder {
   std::filesystem::path folder_;
   std::vector<Staged> staged_;
   std::vector<std::string> old_;
-  int lock_ = -1;        ///< a handle of the folder; others cannot lock it while it is open
-  bool is_new_ = false;  ///< the folder was made here
+  int lock_ = -1;        ///< file descriptor of the folder, which holds the lock
+  bool is_new_ = false;  ///< true if the constructor created the folder
 };
 
-/// Completes a commit that a kill or a power cut has interrupted, for whoever is about to read the
-/// folder. Does nothing while a program is writing there. Throws Error{bad_file}.
+/// Completes a commit that a kill or a power failure has interrupted. To be called before reading
+/// the folder. Does nothing while another program is writing to the folder. Throws Error{bad_file}.
 void finish_commit(const std::filesystem::path& folder);
 
 }  // namespace skycap::geometry

@@ -1,5 +1,5 @@
-// PCD, read here and not by PCL: its io library loads 67 others, VTK among them, at every start of
-// a program.
+// Reader of PCD without PCL, because PCL's io library loads 67 other libraries, including VTK, at
+// program start.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -21,16 +21,16 @@ struct PcdField {
   std::string name;
   std::size_t size = 0, count = 1;
   char type = 'F';         // F, I or U
-  std::size_t before = 0;  // bytes of a point before it
-  std::size_t column = 0;  // words of a line before it
+  std::size_t before = 0;  // bytes of a point before this field
+  std::size_t column = 0;  // words of a line before this field
 };
 
 enum class PcdData { text, binary, compressed };
 
 struct PcdHeader {
   std::vector<PcdField> fields;
-  std::size_t points = 0, point_size = 0, end = 0;  // `end`: where the data begin
-  std::size_t first_line = 1;                       // of the data, for messages
+  std::size_t points = 0, point_size = 0, end = 0;  // `end`: offset of the data
+  std::size_t first_line = 1;                       // first line of the data, for messages
   PcdData data = PcdData::text;
 };
 
@@ -40,7 +40,7 @@ std::vector<std::string> words_of_line(TextScanner& scanner) {
   return words;
 }
 
-// Gives each field its word; their number must be that of the fields.
+// Calls `set` for each field with its word. The number of words must equal the number of fields.
 template <typename Set>
 void for_each_field(TextScanner& scanner, PcdHeader& header, const std::string& key, Set set) {
   const std::vector<std::string> words = words_of_line(scanner);
@@ -70,7 +70,7 @@ void lay_out(TextScanner& scanner, PcdHeader& header) {
   }
 }
 
-/// Behind the line of DATA. Bytes that follow a bare \r belong to the data.
+/// Advances to the data after the DATA line. Bytes after a bare \r belong to the data.
 void go_to_data(TextScanner& scanner, std::string_view bytes, PcdHeader& header) {
   const std::size_t end = bytes.size() - scanner.remaining();
   scanner.next_line();
@@ -90,7 +90,7 @@ PcdHeader header_of(const fs::path& path, const std::string& name, std::string_v
   do {
     const auto key_word = scanner.word_in_line();
     if (!key_word || key_word->starts_with('#')) continue;
-    // Version 0.5 has COLUMNS for FIELDS.
+    // Version 0.5 uses COLUMNS instead of FIELDS.
     const std::string key = *key_word == "COLUMNS" ? "FIELDS" : std::string(*key_word);
     const auto count = [&](const std::string& word) {
       return scanner.number<std::size_t>(std::string_view(word), "a number of " + key);
@@ -132,10 +132,10 @@ PcdHeader header_of(const fs::path& path, const std::string& name, std::string_v
   fail_cloud(path, "is not a PCD file: its header has no DATA");
 }
 
-// M. Lehmann's LZF: runs of literals, and copies of up to 264 bytes from up to 8 KiB back.
+// LZF of M. Lehmann: literal runs, and copies of up to 264 bytes with offsets of up to 8 KiB.
 std::string decompressed(const fs::path& path, std::string_view from, std::size_t size) {
   const auto damaged = [&]() { fail_cloud(path, "has compressed data that are damaged"); };
-  constexpr std::size_t most_per_byte = 132;  // a copy of 264 bytes takes two or more
+  constexpr std::size_t most_per_byte = 132;  // a copy of 264 bytes needs at least two bytes
   if (size / most_per_byte > from.size()) damaged();
   std::string to;
   to.reserve(size);
@@ -183,7 +183,7 @@ double number_at(std::string_view bytes, std::size_t place, const PcdField& fiel
   }
 }
 
-using Values = std::array<double, 6>;  // x y z and the normal
+using Values = std::array<double, 6>;  // x y z and normal
 
 class Points {
  public:
@@ -221,7 +221,7 @@ class Points {
     require(point);
   }
 
-  // Point after point, or field after field.
+  // Reads the data by point or by field.
   void read_binary(std::string_view bytes, bool is_by_field) {
     require(bytes.size() / std::max<std::size_t>(1, header_.point_size));
     require_few_points(path_, header_.points);
@@ -278,7 +278,7 @@ AttributedCloud parse_pcd_cloud(const fs::path& path, std::string_view bytes) {
   } else if (header.data == PcdData::binary) {
     points.read_binary(data, false);
   } else {
-    std::array<std::uint32_t, 2> sizes{};  // compressed and not
+    std::array<std::uint32_t, 2> sizes{};  // compressed and decompressed
     if (data.size() < sizeof sizes) fail_cloud(path, "ends before its compressed data");
     std::memcpy(sizes.data(), data.data(), sizeof sizes);
     if (data.size() - sizeof sizes < sizes[0]) fail_cloud(path, "ends within its compressed data");

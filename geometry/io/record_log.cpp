@@ -36,7 +36,7 @@ struct Record {
   std::string_view text;
 };
 
-/// What a line without its end holds; nothing unless it is as it was written.
+/// Parses a line without its line end. Returns nullopt if the record is damaged.
 std::optional<Record> record_of(std::string_view line) {
   const auto stated = whole_number_in<std::uint32_t>(line.substr(0, digits), 16);
   if (!stated || line.size() < digits + 1 || line[digits] != ' ') return std::nullopt;
@@ -55,7 +55,7 @@ std::string line_of(const Record& record) {
   return std::string(head.data()).append(" ").append(text).append("\n");
 }
 
-/// Whether one of the lines is sound.
+/// Returns whether any of the lines is a valid record.
 bool has_record(std::string_view lines) {
   while (!lines.empty()) {
     const std::size_t end = lines.find('\n');

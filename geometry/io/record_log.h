@@ -1,9 +1,9 @@
-/// A file that only ever grows, record by record, and survives a kill or a power cut at any moment:
-/// what append() has returned from is there for good, and what it has not is not there at all.
+/// Append-only record file that survives kills and power failures. A record is durable once
+/// append() has returned. An interrupted append leaves no record.
 ///
-/// A record is a line: eight hexadecimal digits, a blank, the record's number, counted from one, a
-/// blank, its text. The digits are the CRC-32 (IEEE 802.3) of number, blank and text, so that a
-/// record that was changed, moved or taken out is noticed.
+/// Each record is a line: eight hexadecimal digits, a space, the one-based record number, a space
+/// and the text. The digits are the CRC-32 (IEEE 802.3) of the rest of the line, so that changed,
+/// moved and missing records are detected.
 #pragma once
 
 #include <cstddef>
@@ -15,36 +15,38 @@
 
 namespace skycap::geometry {
 
-/// What a file of records holds.
+/// Content of a record file.
 struct RecordedLines {
   std::vector<std::string> records;
-  std::size_t whole_bytes = 0;  ///< of the file, that the records take
-  std::size_t torn_bytes = 0;   ///< behind them: what a kill has left of a record
+  std::size_t whole_bytes = 0;  ///< bytes of complete records
+  std::size_t torn_bytes = 0;   ///< bytes of an incomplete record at the end
 };
 
-/// CRC-32 as in zlib and PNG.
+/// Returns the CRC-32 used by zlib and PNG.
 std::uint32_t crc32_of(std::string_view bytes);
 
-/// Reads the records of a file; none if there is no such file. Throws Error{bad_file} naming the
-/// line if a record is damaged and sound ones follow: that is no interrupted writing.
+/// Reads the records of a file. Returns no records if the file does not exist. Throws
+/// Error{bad_file} that names the line if a damaged record precedes valid ones, because an
+/// interrupted write cannot cause that.
 RecordedLines read_records(const std::filesystem::path& file);
 
-/// The one writer of a file of records.
+/// Exclusive writer of a record file.
 class RecordLog {
  public:
-  /// Opens the file, or makes it, reads what it holds and cuts off what is torn. Throws
-  /// Error{bad_file} if that fails, as read_records() does, or if another program is at it.
+  /// Opens or creates the file, reads its records and truncates an incomplete last record. Throws
+  /// Error{bad_file} if that fails, if read_records() does, or if another program has opened the
+  /// file.
   explicit RecordLog(std::filesystem::path file);
   RecordLog(const RecordLog&) = delete;
   RecordLog& operator=(const RecordLog&) = delete;
   ~RecordLog();
 
   const std::filesystem::path& file() const { return file_; }
-  /// Those that were there when the file was opened.
+  /// Returns the records that existed when the file was opened.
   const std::vector<std::string>& records() const { return found_.records; }
 
-  /// Brings a record to the disk before it returns. The text must not hold a line end. Throws
-  /// Error{bad_file} if it cannot; the file is then as before.
+  /// Appends a record and syncs it to disk. `text` must not contain line ends. If it throws
+  /// Error{bad_file}, the file is unchanged.
   void append(std::string_view text);
 
  private:
@@ -54,8 +56,8 @@ class RecordLog {
   std::filesystem::path file_;
   RecordedLines found_;
   int handle_ = -1;
-  std::size_t size_ = 0;   ///< of the file [byte]
-  std::size_t count_ = 0;  ///< records in it
+  std::size_t size_ = 0;   ///< file size [bytes]
+  std::size_t count_ = 0;  ///< number of records
 };
 
 }  // namespace skycap::geometry

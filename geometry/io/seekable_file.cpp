@@ -15,7 +15,8 @@ SeekableFile::SeekableFile(std::filesystem::path path) : path_(std::move(path)) 
   const auto beginning = [&] { return bytes(0, 2); };
   if (!is_file || !stream_ || with_name(beginning) == "\x1F\x8B") {
     decompressed_ =
-        read_file(path_, std::size_t{512} << 20);  // says what is wrong with what is no file
+        read_file(path_, std::size_t{512}
+                             << 20);  // throws a specific Error if the path is not a regular file
     size_ = decompressed_.size();
   }
 }

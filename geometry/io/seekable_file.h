@@ -1,4 +1,4 @@
-/// A file of any size that is read from place to place, also one that gzip has compressed.
+/// File of any size with random read access. The file may be gzip-compressed.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@ namespace skycap::geometry {
 
 class SeekableFile {
  public:
-  /// Throws Error{bad_file} if it is no regular file, or cannot be opened.
+  /// Throws Error{bad_file} if the file is not a regular file or cannot be opened.
   explicit SeekableFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
-  std::uint64_t size() const { return size_; }  ///< [bytes], when decompressed
+  std::uint64_t size() const { return size_; }  ///< decompressed size [bytes]
 
-  /// Bytes from a place, fewer if the file ends. Throws Error{bad_file}, whose sentence lacks the
-  /// file's name: for decoders that know none, inside with_name().
+  /// Returns `count` bytes from offset `place`, or fewer at the end of the file. Throws
+  /// Error{bad_file} without the file name in the message, for decoders called inside with_name().
   std::string bytes(std::uint64_t place, std::uint64_t count);
 
-  /// What `read` gives; the file's name is put before the sentences of its errors.
+  /// Returns the result of `read`. Prepends the file name to the message of any Error.
   template <typename Read>
   auto with_name(const Read& read) const {
     try {
@@ -35,7 +35,7 @@ class SeekableFile {
  private:
   std::filesystem::path path_;
   std::ifstream stream_;
-  std::string decompressed_;  ///< all bytes, if gzip had compressed them
+  std::string decompressed_;  ///< content of a gzip-compressed file
   std::uint64_t size_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// STL, ascii and binary, as its many writers have it.
+// ASCII and binary STL, including common deviations of writers.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t stl_header = 84;    // 80 bytes of anything, and the count
-constexpr std::size_t stl_triangle = 50;  // normal, three corners, two bytes of anything
+constexpr std::size_t stl_header = 84;    // 80 arbitrary bytes and the count
+constexpr std::size_t stl_triangle = 50;  // normal, three corners, two arbitrary bytes
 
 std::uint32_t stl_count(std::string_view bytes) {
   std::uint32_t count = 0;
@@ -46,7 +46,8 @@ PolygonSoup parse_binary_stl(std::string_view name, std::string_view bytes, std:
   return std::move(soup.soup());
 }
 
-/// The words of ascii STL, in capitals or not, one or two words for the ends of things.
+/// Parser of ASCII STL. Keywords may be in upper or lower case, and end keywords may be one or two
+/// words.
 class AsciiStl {
  public:
   AsciiStl(std::string_view name, std::string_view text, const MeshLimits& limits)
@@ -72,7 +73,7 @@ class AsciiStl {
     } else if (word == "endloop") {
       soup_.close_polygon();
     } else if (word == "facet" || word == "solid" || word == "endsolid" || word == "color") {
-      scanner_.next_line();  // the normal, the name or the colour
+      scanner_.next_line();  // normal, name or colour
     } else if (word != "outer" && word != "loop" && word != "endfacet") {
       scanner_.fail("'" + std::string(as_written.substr(0, 40)) + "' is not an STL keyword");
     }
@@ -82,7 +83,8 @@ class AsciiStl {
   BoundedSoup soup_;
 };
 
-/// Binary files may begin with 'solid', too; text has no zeros, and goes on with facets.
+/// Returns whether the file is ASCII STL. Binary files may begin with 'solid', too. ASCII files
+/// contain no zero bytes, and facets follow.
 bool is_ascii_stl(std::string_view bytes) {
   const std::string_view text = without_mark(bytes);
   const std::string beginning = lower_case(trimmed(text.substr(0, 1 << 12)));
@@ -104,7 +106,8 @@ PolygonSoup parse_stl(std::string_view name, std::string_view bytes, const MeshL
   if (!has_count) {
     fail_mesh(name, "is neither ascii STL, which begins with 'solid', nor binary STL");
   }
-  // Of writers that could not go back to the count: as many as there are.
+  // Writers without random access cannot set the count; such files contain as many triangles as
+  // fit.
   const std::uint64_t room = (bytes.size() - stl_header) / stl_triangle;
   const bool is_unknown = count == 0 || count == std::numeric_limits<std::uint32_t>::max();
   if (is_unknown && room > 0) return parse_binary_stl(name, bytes, room, limits);

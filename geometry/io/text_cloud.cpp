@@ -1,4 +1,4 @@
-// Clouds as text: what CloudCompare, laser scanners and spreadsheets write.
+// Clouds as text, as written by CloudCompare, laser scanners and spreadsheets.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,14 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 using std::string_view;
 
-/// More numbers than any point has: the ends of the lines are lost.
+/// A line with more numbers than any point has lost its line ends.
 constexpr std::size_t most_columns = 200;
 
-/// How the lines of a file are made up.
+/// Line format of a file.
 struct Layout {
-  char separator = ' ';  ///< ' ', ',' or ';'; blanks may stand beside it
+  char separator = ' ';  ///< ' ', ',' or ';', optionally surrounded by blanks
   bool has_decimal_commas = false;
-  std::array<std::size_t, 3> columns{0, 1, 2};  ///< of x, y and z
+  std::array<std::size_t, 3> columns{0, 1, 2};  ///< indices of x, y and z
 
   bool is_plain() const {
     return separator == ' ' && !has_decimal_commas &&
@@ -59,7 +59,7 @@ std::vector<string_view> fields_of(string_view line, char separator) {
   return fields;
 }
 
-/// By a line of a point or of a header.
+/// Detects the layout from a line with a point or a header.
 Layout layout_of(string_view line) {
   Layout layout;
   if (line.find(';') != string_view::npos) {
@@ -80,7 +80,7 @@ Layout layout_of(string_view line) {
   return layout;
 }
 
-/// The name of a column without its unit: "x" of "//X[m]".
+/// Returns the name of a column without its unit, such as "x" for "//X[m]".
 std::string column_name(string_view field) {
   const std::size_t begin = field.find_first_not_of("/#");
   field = without_quotes(field.substr(std::min(begin, field.size())));
@@ -133,7 +133,7 @@ class TextCloud {
   }
 
  private:
-  /// A comment before the first point may name the columns.
+  /// Reads a comment before the first point, which may name the columns.
   void read_comment(string_view first) {
     if (layout_) return;
     const string_view line = whole_line(first);
@@ -167,7 +167,7 @@ class TextCloud {
     if (!layout_) {
       if (read_header(line)) return;
       layout_ = layout_of(line);
-      // A comment that names x, y and z is a header only if it has a name for each column.
+      // A comment that names x, y and z is a header only if it names every column.
       const std::size_t count = fields_of(line, layout_->separator).size();
       const bool is_named = named_columns_ && (has_header_ || named_fields_ == count);
       if (is_named) layout_->columns = *named_columns_;
@@ -192,7 +192,7 @@ class TextCloud {
     add(place);
   }
 
-  /// Whether the line, the first that holds something, names the columns.
+  /// Returns whether the first line with content names the columns.
   bool read_header(string_view line) {
     if (has_header_) return false;
     const std::vector<string_view> fields = fields_of(line, layout_of(line).separator);
@@ -235,7 +235,7 @@ class TextCloud {
       fail_cloud(path_, "ends after " + std::to_string(points_ + skipped_) + " of its " +
                             std::to_string(declared_) + " points");
     }
-    // A whole cloud in one line.
+    // The whole cloud is on one line.
     constexpr std::size_t three_points = 9;
     if (points_ == 1 && columns_of_last_ > three_points && columns_of_last_ % 3 == 0) {
       fail_cloud(path_, "has " + std::to_string(columns_of_last_) +
@@ -248,9 +248,9 @@ class TextCloud {
   string_view text_;
   TextScanner scanner_;
   const TakeTextPiece& take_;
-  std::optional<Layout> layout_;  ///< once a point was read
+  std::optional<Layout> layout_;  ///< set after the first point
   std::optional<std::array<std::size_t, 3>> named_columns_;
-  std::size_t named_fields_ = 0;  ///< of the comment that names them
+  std::size_t named_fields_ = 0;  ///< number of columns named by the comment
   bool has_header_ = false, has_count_ = false;
   std::size_t declared_ = 0, points_ = 0, skipped_ = 0, columns_of_last_ = 0;
   std::vector<Eigen::Vector3f> piece_;

@@ -37,9 +37,9 @@ Camera::Camera(const CameraConfig& config) : config_(config) {
 std::optional<Eigen::Vector2d> Camera::project(const Eigen::Vector3d& point_in_camera) const {
   const double depth = point_in_camera.z();
   if (!(depth > 0.0 && depth >= config_.min_range && depth <= config_.max_range)) {
-    return std::nullopt;  // NaN too
+    return std::nullopt;  // also for NaN
   }
-  // HZ (6.1), moved to the principal point.
+  // HZ (6.1), translated by the principal point.
   const Eigen::Vector2d pixel =
       point_in_camera.head<2>().cwiseProduct(focal_length_px_) / depth + principal_point_px_;
   const bool inside = pixel.x() >= -0.5 && pixel.x() < config_.width - 0.5 && pixel.y() >= -0.5 &&

@@ -1,6 +1,6 @@
-/// How a vehicle carries a sensor that is fixed to it, and when a camera exposes its images.
+/// Mounting of a sensor on the vehicle, and exposure timing of a camera.
 ///
-/// Body frame: x forward, y left, z up. The vehicle keeps level.
+/// Body frame: x forward, y left, z up. The vehicle is assumed to stay level.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,30 +10,32 @@
 
 namespace skycap::geometry {
 
-/// When a sensor takes its pictures.
+/// Exposure timing of an image.
 struct Shutter {
-  double exposure = 0.0;  ///< of each pixel [s]
-  double readout = 0.0;   ///< from the first row's exposure to the last one's [s]; zero: global
+  double exposure = 0.0;  ///< exposure time of each pixel [s]
+  double readout =
+      0.0;  ///< time between the exposures of the first and the last row [s]; zero: global shutter
 };
 
-/// How a laser scanner is fixed to the vehicle that carries it.
+/// Mounting of a laser scanner on the vehicle.
 struct ScannerMount {
   Eigen::Isometry3d body_from_scanner = Eigen::Isometry3d::Identity();
-  double look_azimuth = 0.0;  ///< where its views look, anticlockwise from the nose [rad]
-  double look_pitch = 0.0;    ///< of a scanner that looks one way only [rad]
+  double look_azimuth =
+      0.0;  ///< azimuth of the view direction, counter-clockwise from the nose [rad]
+  double look_pitch = 0.0;  ///< pitch of a scanner with a single view direction [rad]
 };
 
-/// A piece of way on which a scan is measured, flown evenly.
+/// Straight path segment, flown at constant speed, on which a scan is measured.
 struct Stretch {
-  View from, to;          ///< of the vehicle, its nose level
+  View from, to;          ///< vehicle poses with a level nose
   double duration = 0.0;  ///< [s]
 };
 
-/// Of angles about the x, then the y, then the z axis, as missions give them [rad].
+/// Returns the rotation composed of rotations about the x, then the y, then the z axis. `angles`
+/// are those of mission files [rad].
 Eigen::Quaterniond rotation_of(const Eigen::Vector3d& angles);
 
-/// Where the vehicle's nose points at a view of a scanner, level; and where the scanner looks for a
-/// nose.
+/// Converts a view of the scanner to the level view of the vehicle's nose, or vice versa.
 View nose_view(const ScannerMount& mount, const View& view);
 View scanner_view(const ScannerMount& mount, const View& nose);
 

@@ -1,7 +1,7 @@
-/// Where a sensor is and which way it looks.
+/// Pose and view of a sensor.
 ///
-/// World frame: local east-north-up, metres, z up. Optical frame of a camera: x right, y down,
-/// z forward along the viewing axis.
+/// World frame: local east-north-up [m]. Optical frame of a camera: x right, y down, z forward
+/// along the viewing axis.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,23 +9,25 @@
 
 namespace skycap::geometry {
 
-/// A view as the planners speak of it: five degrees of freedom, the roll is free (SEE++ §III).
+/// View as used by the planners: five degrees of freedom, with arbitrary roll (SEE++ §III).
 struct View {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();    ///< world frame
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit, from the sensor to the scene
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world frame [m]
+  Eigen::Vector3d direction =
+      Eigen::Vector3d::UnitX();  ///< unit vector from the sensor to the scene
 };
 
-/// The pose world_from_camera of a camera that takes `view` with the image's top towards world
-/// +z. A view straight up or down has the image's top towards world +y.
+/// Returns the pose world_from_camera of a camera with the view `view`. The top of the image points
+/// towards world +z, or towards world +y if the view is vertical.
 Eigen::Isometry3d camera_pose(const View& view);
 
-/// The view that a camera at `world_from_camera` takes: inverse of camera_pose() but for the roll.
+/// Returns the view of a camera at `world_from_camera`. Inverse of camera_pose() except for the
+/// roll.
 View view_of(const Eigen::Isometry3d& world_from_camera);
 
-/// The view from `position` to `target`. The two must differ.
+/// Returns the view from `position` to `target`, which must differ.
 View look_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target);
 
-/// Any unit vector orthogonal to the unit vector `axis`; the same one for the same axis.
+/// Returns a unit vector orthogonal to the unit vector `axis`. The result is deterministic.
 Eigen::Vector3d any_orthogonal(const Eigen::Vector3d& axis);
 
 }  // namespace skycap::geometry

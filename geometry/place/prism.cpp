@@ -5,7 +5,7 @@ namespace skycap::geometry {
 using Eigen::Vector2d;
 
 bool contains(std::span<const Vector2d> polygon, const Vector2d& point) {
-  bool inside = false;  // parity of the crossings of a ray towards +x
+  bool inside = false;  // parity of the intersections with a ray towards +x
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
     const double side = turn(a, b, point);

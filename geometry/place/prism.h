@@ -1,5 +1,5 @@
-/// Areas on the map and the upright volumes over them: geofences and no-fly volumes. World frame, z
-/// up. One rule at the border for all who ask: it belongs to the area.
+/// Areas on the map and vertical volumes above them, for geofences and no-fly volumes. World frame,
+/// z up. The border belongs to the area in all queries.
 #pragma once
 
 #include <limits>
@@ -11,24 +11,26 @@
 
 namespace skycap::geometry {
 
-/// An upright prism over a polygon.
+/// Vertical prism over a polygon.
 struct Prism {
-  std::string name;                        ///< for messages
-  std::vector<Eigen::Vector2d> footprint;  ///< simple polygon, either way round, not closed
+  std::string name;  ///< used in messages
+  std::vector<Eigen::Vector2d>
+      footprint;  ///< simple polygon in either orientation, without repeated first corner
   double floor = -std::numeric_limits<double>::infinity();
   double ceiling = std::numeric_limits<double>::infinity();
 };
 
-/// Twice the signed area of the triangle: positive if it turns left from a over b to c.
+/// Returns twice the signed area of the triangle: positive if the path a, b, c turns left.
 inline double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   const Eigen::Vector2d along = b - a, across = c - a;
   return along.x() * across.y() - along.y() * across.x();
 }
 
-/// Whether a point is in a simple polygon or, to the last bit of turn(), on its border.
+/// Returns whether a point is inside a simple polygon or on its border. The border is decided by
+/// the exact floating-point result of turn().
 bool contains(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point);
 
-/// Whether a point is in the prism or on its boundary.
+/// Returns whether a point is inside the prism or on its boundary.
 bool contains(const Prism& prism, const Eigen::Vector3d& point);
 
 }  // namespace skycap::geometry

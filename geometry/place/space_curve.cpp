@@ -7,7 +7,7 @@
 namespace skycap::geometry {
 namespace {
 
-/// The bits of a 16-bit number, each third one: abc becomes a00b00c.
+/// Spreads the bits of a 16-bit number to every third bit: abc becomes a00b00c.
 std::uint64_t spread(std::uint64_t bits) {
   bits = (bits | bits << 32) & 0x1f00000000ffffU;
   bits = (bits | bits << 16) & 0x1f0000ff0000ffU;
@@ -36,13 +36,13 @@ CurveGrid finest_grid(std::span<const Eigen::Vector3f> points) {
     high = high.cwiseMax(point);
   }
   const double side = (high - low).cast<double>().maxCoeff();
-  constexpr double room = 1.0 + 1e-9;  // the farthest point belongs to the last cell
+  constexpr double room = 1.0 + 1e-9;  // keeps the farthest point in the last cell
   return {low.cast<double>(), side > 0.0 ? side * room / (1 << CurveGrid::most_bits) : 1.0};
 }
 
 void sort_along_curve(std::vector<CurveEntry>& entries, std::span<const Eigen::Vector3f> points,
                       const CurveGrid& grid) {
-  // By the bits of the keys, twelve at a time, stable.
+  // Stable radix sort of the keys with twelve bits per pass.
   constexpr int digit_bits = 12, most_passes = 3 * CurveGrid::most_bits / digit_bits;
   constexpr std::size_t digits = std::size_t{1} << digit_bits;
   std::array<std::array<std::uint32_t, digits>, most_passes> begins{};

@@ -1,5 +1,5 @@
-/// A space-filling curve: neighbours on it are neighbours in space (Morton, "A computer oriented
-/// geodetic data base", 1966).
+/// Space-filling curve: neighbours on the curve are neighbours in space (Morton, "A computer
+/// oriented geodetic data base", 1966).
 #pragma once
 
 #include <cstdint>
@@ -10,31 +10,33 @@
 
 namespace skycap::geometry {
 
-/// Cubic cells over all points.
+/// Grid of cubic cells that covers all points.
 struct CurveGrid {
-  static constexpr int most_bits = 16;  ///< of each of a cell's three indices
+  static constexpr int most_bits = 16;  ///< bits per cell index
 
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the lowest corner
-  double step = 1.0;                                 ///< a cell's side
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< minimum corner of the grid [m]
+  double step = 1.0;                                 ///< cell size [m]
 
-  /// The bits of a cell's indices in turn, x lowest; points outside have those of the border.
+  /// Returns the interleaved bits of the cell indices, with x in the lowest bit. Points outside the
+  /// grid are clamped to the border cells.
   std::uint64_t key(const Eigen::Vector3f& point) const;
 };
 
-/// Of 2^16 cells along the longest side of the points' box.
+/// Returns a grid with 2^16 cells along the longest side of the bounding box of `points`.
 CurveGrid finest_grid(std::span<const Eigen::Vector3f> points);
 
-/// A point by its key.
+/// Curve key and index of a point.
 struct CurveEntry {
   std::uint64_t key = 0;
   std::uint32_t index = 0;
 };
 
-/// Gives entries of `points` their keys in a grid and sorts them, those of a cell as they were.
+/// Sets the keys of `entries`, which index `points`, and sorts them by key. The sort is stable
+/// within a cell.
 void sort_along_curve(std::vector<CurveEntry>& entries, std::span<const Eigen::Vector3f> points,
                       const CurveGrid& grid);
 
-/// All points, sorted.
+/// Returns one entry per point, sorted along the curve.
 std::vector<CurveEntry> along_curve(std::span<const Eigen::Vector3f> points, const CurveGrid& grid);
 
 }  // namespace skycap::geometry

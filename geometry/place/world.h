@@ -1,5 +1,5 @@
-/// Where anything can be. Every position that comes from a file passes through here before it is
-/// worked with, so that no sum, square or voxel index of it overflows.
+/// Valid range of positions. Every position from a file is checked here first, so that sums,
+/// squares and voxel indices cannot overflow.
 #pragma once
 
 #include <string>
@@ -8,23 +8,24 @@
 
 namespace skycap::geometry {
 
-/// Distance from the origin on each axis that no place of a survey exceeds [m]: a quarter of a
-/// meridian, so that map coordinates such as UTM's are places, too.
+/// Maximum absolute coordinate of a position [m]. It is a quarter of a meridian, so that map
+/// coordinates such as UTM are valid.
 inline constexpr double farthest_place = 1e7;
 
-/// Mesh files may be in millimetres before they are placed.
+/// Maximum absolute coordinate of a mesh vertex before scaling, because mesh files may be in
+/// millimetres.
 inline constexpr double farthest_vertex = 1e3 * farthest_place;
 
-/// Whether all coordinates are finite and within `farthest` of zero.
+/// Returns whether all coordinates are finite and their absolute values do not exceed `farthest`.
 inline bool is_place(const Eigen::Vector3d& place, double farthest = farthest_place) {
   return (place.array().abs() <= farthest).all();  // false for NaN
 }
 
-/// Throws Error{bad_file} unless is_place(); `what` begins the message, as in "flight.pad".
+/// Throws Error{bad_file} unless is_place(). The message begins with `what`, such as "flight.pad".
 void require_place(const Eigen::Vector3d& place, const std::string& what,
                    double farthest = farthest_place);
 
-/// Throws Error{bad_file} unless the vector is finite and has a length to be divided by.
+/// Throws Error{bad_file} unless the vector is finite and can be normalised.
 void require_direction(const Eigen::Vector3d& direction, const std::string& what);
 
 }  // namespace skycap::geometry

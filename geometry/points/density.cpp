@@ -9,7 +9,8 @@ namespace skycap::geometry {
 namespace {
 
 constexpr std::size_t returns_in_part = 1 << 15;
-constexpr std::uint32_t columns_without_image = 32;  // so many points ago
+constexpr std::uint32_t columns_without_image =
+    32;  // a point is first compared with the one this many points before it
 
 /// Calls `visit(number, column)` for the points of one part of a scan.
 template <typename Visit>
@@ -58,9 +59,9 @@ std::uint32_t DensityMap::neighbours_of(std::uint32_t point) const {
       cloud_.positions[point], config_.radius, static_cast<std::size_t>(config_.core_threshold)));
 }
 
-// Counts the neighbours of new points, and of old non-core points that have new neighbours; labels
-// those that have enough as core. Returns the old points among them, whose promotion can change
-// labels farther than r from anything new.
+// Counts the neighbours of new points and of old non-core points with new neighbours, and labels
+// those with enough neighbours as core. Returns the old points among them, because their promotion
+// can change labels farther than r from any new point.
 std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_new,
                                                             unsigned threads) {
   const auto threshold = static_cast<std::uint32_t>(config_.core_threshold);
@@ -92,7 +93,7 @@ std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_
   return promoted;
 }
 
-// The non-core points within r of anything whose being core has changed or begun.
+// Returns the non-core points within r of a point that is new or was promoted.
 std::vector<std::uint32_t> DensityMap::points_to_relabel(
     const std::vector<std::uint32_t>& promoted) const {
   std::vector<std::uint32_t> points;
@@ -142,7 +143,7 @@ DensityUpdate DensityMap::relabel(unsigned threads) {
     labels_[point] = PointLabel::core;
   }
 
-  // The order matters to OutlierRule::labelled alone, which labels new points first.
+  // The order affects only OutlierRule::labelled, which labels new points first.
   std::vector<std::uint32_t> points = points_to_relabel(promoted);
   const auto first_new = std::lower_bound(points.begin(), points.end(), update.first_new);
   std::rotate(points.begin(), first_new, points.end());

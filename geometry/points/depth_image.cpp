@@ -38,7 +38,7 @@ void write_depth_png(const DepthImage& image, const std::filesystem::path& path)
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
-  png.format = PNG_FORMAT_LINEAR_Y;  // 16 bits, as they are
+  png.format = PNG_FORMAT_LINEAR_Y;  // 16 bits without gamma
   png.flags = PNG_IMAGE_FLAG_FAST;
   if (png_image_write_to_file(&png, path.c_str(), 0, image.values.data(), 0, nullptr) == 0) {
     fail(path, "cannot be written", png.message);

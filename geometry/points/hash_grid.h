@@ -1,5 +1,6 @@
-/// A map from the cells of a sparse grid to values, for inner loops: open addressing with linear
-/// probing, at most half full. Cells are named by keys of up to 63 bits, such as 21 bits an axis.
+/// Hash map from the cells of a sparse grid to values, for inner loops. It uses open addressing
+/// with linear probing and a maximum load factor of one half. Keys of up to 63 bits identify cells,
+/// for example 21 bits per axis.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +12,12 @@
 
 namespace skycap::geometry {
 
-/// `Value` is cheap to copy; large ones are kept elsewhere, and their index or pointer here.
+/// `Value` should be cheap to copy. Store large values elsewhere and keep their index or pointer in
+/// the map.
 template <typename Value>
 class HashGrid {
  public:
-  /// With room for so many cells, after which it grows.
+  /// Reserves space for `cells` cells. The map grows beyond that automatically.
   explicit HashGrid(std::size_t cells = 512) {
     set_slots(std::bit_ceil(std::max<std::size_t>(2 * cells, 2)));
   }
@@ -23,7 +25,7 @@ class HashGrid {
   std::size_t size() const { return size_; }
   std::size_t memory() const { return slots_.capacity() * sizeof(Slot); }  ///< [bytes]
 
-  /// The value of a key, or null. The pointer is valid until the next insert().
+  /// Returns the value of a key, or null. The pointer is valid until the next insert().
   const Value* find(std::uint64_t key) const {
     const Slot& slot = slots_[slot_of(key)];
     return slot.key == key ? &slot.value : nullptr;
@@ -34,7 +36,7 @@ class HashGrid {
     Value& value;  ///< valid until the next insert()
     bool is_new = false;
   };
-  /// Gives a key this value unless it has one; returns the value that it has then.
+  /// Sets the value of a key unless the key exists. Returns the stored value.
   Inserted insert(std::uint64_t key, const Value& value = {}) {
     std::size_t slot = slot_of(key);
     if (slots_[slot].key == key) return {slots_[slot].value, false};
@@ -54,13 +56,13 @@ class HashGrid {
     [[no_unique_address]] Value value{};
   };
 
-  void set_slots(std::size_t count) {  // a power of two
+  void set_slots(std::size_t count) {  // `count` must be a power of two
     slots_.assign(count, Slot{});
     shift_ = 64 - std::countr_zero(count);
   }
 
-  /// The slot of a key, or the empty one where it would be. Fibonacci hashing: the high bits of the
-  /// product depend on all bits of the key.
+  /// Returns the slot of a key, or the empty slot for its insertion. Uses Fibonacci hashing: the
+  /// high bits of the product depend on all bits of the key.
   std::size_t slot_of(std::uint64_t key) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = static_cast<std::size_t>(key * 0x9E3779B97F4A7C15U >> shift_);

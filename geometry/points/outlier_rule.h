@@ -1,13 +1,13 @@
-/// A choice of the density labels (density.h).
+/// Variants of the density labels (density.h).
 #pragma once
 
 namespace skycap::geometry {
 
-/// Which neighbour, besides a core one, makes a point a frontier.
+/// Neighbour that, in addition to a core point, makes a point a frontier.
 enum class OutlierRule {
-  non_core,  ///< any other non-core point. The labels follow from the cloud alone.
-  labelled,  ///< a point now labelled outlier, perhaps the point itself. The labels depend on the
-             ///< order of points and updates, as in the authors' released code.
+  non_core,  ///< Any other non-core point. The labels depend on the cloud alone.
+  labelled,  ///< A point currently labelled as an outlier, possibly the point itself. The labels
+             ///< depend on the order of points and updates, as in the authors' released code.
 };
 
 }  // namespace skycap::geometry

@@ -1,4 +1,4 @@
-/// The measurements that a planner keeps, structure of arrays; a point's index never changes.
+/// Point cloud of a planner as a structure of arrays. Point indices never change.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 namespace skycap::geometry {
 
 struct PointCloud {
-  std::vector<Eigen::Vector3f> positions;  ///< world frame
-  std::vector<std::uint32_t> views;        ///< for each point, the scan (counted from 0) it is from
+  std::vector<Eigen::Vector3f> positions;  ///< world frame [m]
+  std::vector<std::uint32_t> views;        ///< zero-based index of the scan of each point
 
   std::size_t size() const { return positions.size(); }
 };

@@ -20,7 +20,8 @@ PointGrid::PointGrid(double cell_size)
 }
 
 inline PointGrid::Cell PointGrid::cell_at(const Eigen::Vector3f& point) const {
-  // Clamped so that even absurd coordinates have a cell; such cells are merely crowded.
+  // Clamps the indices, so that arbitrarily large coordinates have a cell. Clamped cells only
+  // contain more points.
   constexpr float limit = (1 << 20) - 64;
   const auto along = [&](float coordinate) {
     const float scaled = std::clamp(coordinate * inverse_cell_size_, -limit, limit);
@@ -67,9 +68,9 @@ void PointGrid::start_batch_in(Brick& brick) const {
   brick.new_points = {};
 }
 
-// Splits a box of cells into the bricks it reaches. Calls `visit` with a cell of each, the first
-// and last x there, and the pattern of the box in every CellSet word of these, until it returns
-// true; whether it did.
+// Divides a box of cells among the bricks that it intersects. Calls `visit` for each brick with one
+// of its cells, the first and last x, and the bit pattern of the box in each CellSet word. Stops
+// and returns true when `visit` returns true.
 template <typename Visit>
 bool PointGrid::visit_bricks(const Cell& lowest, const Cell& highest, Visit visit) {
   const auto end_in_brick = [](std::int32_t from, std::int32_t last) {
@@ -136,8 +137,8 @@ bool PointGrid::is_near_batch(const Eigen::Vector3f& point) const {
 }
 
 // Calls `visit` with the squared distance and index of each point within `radius` until it returns
-// true: first the points of the query's own cell, which most often decide, then those of the other
-// cells that the ball reaches, with a margin for the rounding of the cells' bounds.
+// true. Starts with the cell of the query, which usually decides. The other cells include a margin
+// for the rounding of cell bounds.
 template <typename Visit>
 void PointGrid::visit_near(const Eigen::Vector3f& query, double radius, Visit visit) const {
   const auto squared_radius = static_cast<float>(radius * radius);
@@ -199,7 +200,7 @@ std::size_t PointGrid::count_within(const Eigen::Vector3f& query, double radius,
   return count;
 }
 
-// The same for balls of any size, and all points within them.
+// Calls `visit` for all points within a ball of any size.
 template <typename Visit>
 void PointGrid::visit_within(const Eigen::Vector3f& query, double radius, Visit visit) const {
   const double bricks_across = 2.0 * radius / (brick_width * cell_size_) + 1.0;
@@ -210,7 +211,7 @@ void PointGrid::visit_within(const Eigen::Vector3f& query, double radius, Visit 
     });
     return;
   }
-  // A ball wider than the cloud's bricks: comparing every point is the shorter way.
+  // The ball is larger than the bricks of the cloud, so comparing all points is faster.
   const auto squared_radius = static_cast<float>(radius * radius);
   for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
     const float distance = squared_distance(query, point(index));
@@ -234,7 +235,7 @@ double PointGrid::empty_length(const Eigen::Vector3f& origin,
                                const Eigen::Vector3f& direction) const {
   const Cell cell = cell_at(origin);
   if (find_brick(cell) != nullptr) return 0.0;
-  // Nothing occupied is in the brick or beside it: free to the brick's far side.
+  // The brick and its neighbours are empty, so the ray is free up to the far side of the brick.
   const double width = cell_size_ * brick_width;
   double length = std::numeric_limits<double>::infinity();
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-/// Where a few points lie and which way they spread: the fit of a line or a plane.
+/// Mean and principal axes of a few points, for fitting a line or a plane.
 #pragma once
 
 #include <span>
@@ -7,14 +7,14 @@
 
 namespace skycap::geometry {
 
-/// Mean and principal axes of points; spreads ascend.
+/// Mean and principal axes of points, by ascending variance.
 struct PrincipalAxes {
   Eigen::Vector3d mean;
-  Eigen::Vector3d spreads;  ///< variances along the axes
-  Eigen::Matrix3d axes;     ///< unit columns; the first is the normal of the plane that fits best
+  Eigen::Vector3d spreads;  ///< variances along the axes [m^2]
+  Eigen::Matrix3d axes;     ///< unit columns; the first is the normal of the best-fitting plane
 };
 
-/// Of at least one point.
+/// Requires at least one point.
 PrincipalAxes principal_axes(std::span<const Eigen::Vector3f> points);
 
 }  // namespace skycap::geometry

@@ -15,12 +15,12 @@ using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// A patch where it is now, and its partner.
+/// Patch in its current position, with its partner.
 struct Match {
   Vector3d point, normal;
   double error;      // n . (p - q)
-  double deviation;  // the partner's
-  double variance;   // of both
+  double deviation;  // deviation of the partner
+  double variance;   // variance of both
 };
 
 std::vector<Match> matches_of(std::span<const SurfacePatch> patches, const Isometry3d& correction,
@@ -34,7 +34,7 @@ std::vector<Match> matches_of(std::span<const SurfacePatch> patches, const Isome
     if (there == nullptr) continue;
     const Vector3d way = moved.mean - there->mean;
     const double error = there->normal.dot(way);
-    // Beside what is known its planes go on as far as they were seen, and not farther.
+    // Planes are valid only up to the border of the measured surface.
     if ((way - error * there->normal).norm() > map.radius()) continue;
     matches.push_back({moved.mean, there->normal, error, there->deviation,
                        patch.deviation * patch.deviation + there->deviation * there->deviation});
@@ -56,7 +56,7 @@ double median_error(const std::vector<Match>& matches) {
   return median(matches, [](const Match& match) { return std::abs(match.error); });
 }
 
-/// Middle and size of what is matched: the units of a step.
+/// Centre and size of the matches: the units of a step.
 struct Frame {
   Vector3d middle = Vector3d::Zero();
   double size = 0.0;
@@ -73,16 +73,16 @@ Frame frame_of(const std::vector<Match>& matches) {
   return frame;
 }
 
-/// The normal equations, divided by the sum of the weights.
+/// Normal equations, divided by the sum of the weights.
 struct Equations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d pull = Vector6d::Zero();
 };
 
-/// What makes a match an outlier, and what flat is [m].
+/// Noise scales of errors and flatness [m].
 struct Scales {
-  double error;     // standard deviation that errors have at least
-  double flatness;  // and patches
+  double error;     // minimum standard deviation of errors
+  double flatness;  // minimum standard deviation of patches
 };
 
 Scales fine_scales(const SurfaceMap& map) { return {0.01 * map.radius(), 0.03 * map.radius()}; }
@@ -96,7 +96,7 @@ Equations equations_of(const std::vector<Match>& matches, const Frame& frame,
   for (const Match& match : matches) {
     const double share = match.error / scale;
     if (std::abs(share) >= 1.0) continue;
-    // A patch round an edge is no plane, though it may be flat enough for one.
+    // A patch across an edge is not planar, although it may be flat enough to pass the test.
     const double flatness = 1.0 / (match.variance + scales.flatness * scales.flatness);
     const double weight = flatness * (1.0 - share * share) * (1.0 - share * share);
     Vector6d row;
@@ -119,7 +119,7 @@ RigidDirection direction_of(const Eigenvectors& axes, int k, const Frame& frame)
           .information = axes.eigenvalues()[k]};
 }
 
-/// A displacement of `frame.middle` and a turn about it.
+/// Returns a displacement of `frame.middle` with a rotation about it.
 Isometry3d motion(const Vector6d& step, const Frame& frame) {
   const Vector3d turn = step.tail<3>() / frame.size;
   const double angle = turn.norm();
@@ -129,7 +129,7 @@ Isometry3d motion(const Vector6d& step, const Frame& frame) {
   return motion;
 }
 
-/// The Gauss-Newton step along what the surface shows.
+/// Returns the Gauss-Newton step along the observable directions.
 Vector6d step_of(const Equations& equations) {
   const Eigenvectors axes(equations.information);
   Vector6d step = Vector6d::Zero();
@@ -141,7 +141,7 @@ Vector6d step_of(const Equations& equations) {
   return step;
 }
 
-/// How far the correction goes along each direction.
+/// Computes the component of the correction along each direction.
 void measure(Registration& found, const Equations& equations, const Frame& frame) {
   const Eigenvectors axes(equations.information);
   const Eigen::AngleAxisd turn(found.correction.linear());
@@ -154,19 +154,19 @@ void measure(Registration& found, const Equations& equations, const Frame& frame
   }
 }
 
-/// A correction, and what of the scan has a partner then.
+/// Correction and the resulting matches.
 struct Alignment {
   Isometry3d correction = Isometry3d::Identity();
   std::vector<Match> matches;
 };
 
-/// Moves a scan, whose partners `given` are as it is said to be, to what is known: with partners
-/// ever nearer and then with ever less error. While they are looked for at a distance d, errors of
-/// so many d are noise.
+/// Aligns a scan with the map, starting from the matches `given` at its initial pose. Reduces first
+/// the search radius of partners, then the error scale. At the search radius d, the noise scale is
+/// `noise_of_reach` * d.
 Alignment aligned(std::span<const SurfacePatch> patches, SurfaceMap& map,
                   const std::vector<Match>& given, double reach, std::size_t least_matches,
                   double noise_of_reach) {
-  constexpr int most_rounds = 12;  // of each stage
+  constexpr int most_rounds = 12;  // per stage
   const double radius = map.radius(), last = std::min(reach, 2.0 * radius), flat = 0.03 * radius;
   Alignment found{.matches = given};
   const auto settle = [&](const Scales& scales) {
@@ -184,8 +184,8 @@ Alignment aligned(std::span<const SurfacePatch> patches, SurfaceMap& map,
   return found;
 }
 
-/// How badly an alignment fits: what has no partner, or one a quarter of a radius off, counts
-/// whole.
+/// Returns the misfit of an alignment in [0, 1]. Patches without a partner, or with an error of at
+/// least a quarter of the radius, count as 1.
 double misfit_of(const Alignment& alignment, std::size_t patches, double radius) {
   double sum = static_cast<double>(patches - alignment.matches.size());
   for (const Match& match : alignment.matches) {
@@ -203,8 +203,9 @@ Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& ma
   const std::vector<Match> given = matches_of(patches, Isometry3d::Identity(), map, reach);
   if (given.size() < least_matches) return {.matches = given.size()};
   Registration found{.first_error = median_error(given)};
-  // Narrow, most of a surface that fits holds the rest in place, also a wall that is far off though
-  // it should move; wide, all of it pulls, also what was never seen before.
+  // With a narrow noise scale, surface that already fits keeps the rest in place, even a distant
+  // wall that should move. With a wide scale, all surface contributes, including surface that was
+  // not measured before. The better alignment is used.
   constexpr double narrow = 1.0 / 16.0, wide = 1.0 / 4.0, clearly = 0.8;
   Alignment best = aligned(patches, map, given, reach, least_matches, narrow);
   Alignment other = aligned(patches, map, given, reach, least_matches, wide);

@@ -1,14 +1,19 @@
-/// The rigid motion that brings a scan onto what was measured before.
+/// Rigid registration of a scan with the points measured before.
 ///
-/// Point to plane: sum over the scan's patches of w (n . (C p - q))^2, with q and n the nearest
-/// patch of the map (Chen and Medioni, "Object modelling by registration of multiple range images",
-/// 1992), the weights w Tukey's over the patches' variances. Gauss-Newton over SE(3): a step is a
-/// displacement t of the middle m of the patches and a turn u / L about it, L being their root mean
-/// square distance from m, so that both are lengths and the information matrix, the mean of w J^T J
-/// with J = [n, (p - m) x n / L], has no unit. Its eigenvalues say how much of a motion along each
-/// eigenvector the surface shows: 1 if all of it faces that way, 0 if the surface slides along
-/// itself (Gelfand et al., "Geometrically stable sampling for the ICP algorithm", 2003). Along
-/// those below a twentieth nothing is corrected.
+/// Point-to-plane error: the sum over the patches of the scan of w (n . (C p - q))^2. q and n are
+/// the mean and the normal of the nearest patch of the map (Chen and Medioni, "Object modelling by
+/// registration of multiple range images", 1992). The weights w are Tukey's biweights, divided by
+/// the variances of the patches.
+///
+/// The solver is Gauss-Newton over SE(3). A step is a displacement t of the centre m of the patches
+/// and a rotation u / L about m. L is the root mean square distance of the patches from m, so that
+/// t and u are both lengths. The information matrix is the mean of w J^T J with J = [n, (p - m) x n
+/// / L] and has no unit.
+///
+/// Each eigenvalue states how well the surface constrains a motion along its eigenvector. It is 1
+/// if all of the surface faces that direction, and 0 if the surface slides along itself. Source:
+/// Gelfand et al., "Geometrically stable sampling for the ICP algorithm", 2003. Directions with an
+/// eigenvalue below 0.025 are not corrected.
 #pragma once
 
 #include <array>
@@ -22,30 +27,32 @@
 
 namespace skycap::geometry {
 
-/// A way to move: m + displacement, and a turn about m, for each metre of the motion.
+/// Motion direction: displacement of m, and rotation about m, per metre of motion.
 struct RigidDirection {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< [rad/m]
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< rotation [rad/m]
   double information = 0.0;                        ///< eigenvalue, 0 to 1
-  double amount = 0.0;                             ///< of the correction along it [m]
+  double amount = 0.0;                             ///< component of the correction [m]
 
   bool is_observable() const { return information >= 0.025; }
 };
 
 struct Registration {
-  Eigen::Isometry3d correction = Eigen::Isometry3d::Identity();  ///< true from given, in the world
-  std::size_t matches = 0;                           ///< patches with a partner at the end
-  double first_error = 0.0;                          ///< median |n . (p - q)| as given
-  double error = 0.0;                                ///< and as corrected
-  double deviation = 0.0;                            ///< median of the partners' own
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, as given
-  double size = 0.0;                                 ///< L
-  std::array<RigidDirection, 6> directions{};        ///< ascending by information
+  Eigen::Isometry3d correction =
+      Eigen::Isometry3d::Identity();  ///< corrected from given, in the world frame
+  std::size_t matches = 0;            ///< patches with a partner in the last iteration
+  double first_error = 0.0;           ///< median |n . (p - q)| before the correction [m]
+  double error = 0.0;                 ///< median |n . (p - q)| after the correction [m]
+  double deviation = 0.0;             ///< median deviation of the partners [m]
+  Eigen::Vector3d middle =
+      Eigen::Vector3d::Zero();  ///< m: centre of the patches before the correction [m]
+  double size = 0.0;            ///< L: root mean square distance of the patches from m [m]
+  std::array<RigidDirection, 6> directions{};  ///< ascending by information
 };
 
-/// Registers a scan's patches with a map. Partners are looked for within `reach` at first and
-/// within twice the map's radius at the end. With fewer than `least_matches` at any time the result
-/// has their number and nothing else. Deterministic.
+/// Registers the patches of a scan with a map. The search radius for partners decreases from
+/// `reach` to twice the radius of the map. If fewer than `least_matches` partners are found in any
+/// iteration, only `matches` is set. The result is deterministic.
 Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& map, double reach,
                            std::size_t least_matches);
 

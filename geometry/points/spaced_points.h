@@ -1,5 +1,5 @@
-/// Clouds at a least spacing: which points of a scan have room beside those kept before is the
-/// first thing every planner asks.
+/// Downsampling to a minimum spacing. Selecting the points of a scan that are far enough from all
+/// kept points is the first step of every planner.
 #pragma once
 
 #include <algorithm>
@@ -18,20 +18,21 @@
 
 namespace skycap::geometry {
 
-/// Asks a grid whether it has a point within a radius, for queries in the order of a scan: what was
-/// near to one is often near to the next, and is tried first. The grid may grow meanwhile.
+/// Tests whether a grid has a point within a radius, for queries in scan order. Recently found
+/// points are tested first, because consecutive queries are often close to the same point. The grid
+/// may grow between queries.
 class NearbyPoints {
  public:
-  /// For queries of a radius up to the grid's cell_size().
+  /// `radius` must not exceed the cell_size() of the grid.
   NearbyPoints(const PointGrid& grid, double radius)
       : grid_(grid), radius_(radius), squared_radius_(static_cast<float>(radius * radius)) {
-    constexpr float far_away = 1e18F;  // its square is finite, and no query reaches it
+    constexpr float far_away = 1e18F;  // The square is finite, and no query is within the radius.
     x_.fill(far_away);
     y_.fill(far_away);
     z_.fill(far_away);
   }
 
-  /// Whether the grid has a point within the radius of `query`.
+  /// Returns whether the grid has a point within the radius of `query`.
   bool any_near(const Eigen::Vector3f& query) {
     int near = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -50,27 +51,28 @@ class NearbyPoints {
   }
 
  private:
-  static constexpr std::size_t count = 8;  // a vector of floats
+  static constexpr std::size_t count = 8;  // one vector register of floats
 
   const PointGrid& grid_;
   double radius_;
   float squared_radius_;
-  std::array<float, count> x_, y_, z_;  // the last points found
+  std::array<float, count> x_, y_, z_;  // most recently found points
   std::size_t next_ = 0;
 };
 
-/// The same for the pixels of an image, row by row: what was near to the pixel above or to the one
-/// on the left is mostly near to this one, too.
+/// Tests whether a grid has a point within a radius, for the pixels of an image in row-major order.
+/// The points found for the pixels above and to the left are tested first.
 class RowNeighbours {
  public:
-  /// For images of so many columns, and a radius up to the grid's cell_size().
+  /// `columns` is the image width. `radius` must not exceed the cell_size() of the grid.
   RowNeighbours(const PointGrid& grid, double radius, std::size_t columns)
       : grid_(grid),
         radius_(radius),
         squared_radius_(static_cast<float>(radius * radius)),
         found_(columns + 2, Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity())) {}
 
-  /// Whether the grid has a point within the radius of `query`, which is of that column.
+  /// Returns whether the grid has a point within the radius of `query`, which is in column
+  /// `column`.
   bool any_near(const Eigen::Vector3f& query, std::size_t column) {
     Eigen::Vector3f* const above = &found_[column + 1];
     if (squared_distance(*above, query) <= squared_radius_) return true;
@@ -85,45 +87,45 @@ class RowNeighbours {
     return true;
   }
 
-  /// A point that is now in the grid, of that column.
+  /// Records a point of column `column` that was inserted into the grid.
   void remember(const Eigen::Vector3f& point, std::size_t column) { found_[column + 1] = point; }
 
  private:
   const PointGrid& grid_;
   double radius_;
   float squared_radius_;
-  std::vector<Eigen::Vector3f> found_;  // by column; one more before them and one behind
+  std::vector<Eigen::Vector3f> found_;  // by column, with one more element at either end
 };
 
-/// Points of which none is nearer to an earlier one than a spacing. What is kept depends on the
-/// order of the points alone, not on the cells of the grid.
+/// Point set with a minimum distance between points. The kept points depend only on the order of
+/// insertion, not on the grid cells.
 class SpacedPoints {
  public:
-  /// Cells twice as wide as the spacing by default: a ball of that radius then reaches eight of
-  /// them. Points nearer together than the spacing do not exist, however small the cells.
+  /// The default cell size is twice the spacing, so that a ball with that radius intersects eight
+  /// cells. Smaller cells do not change the spacing.
   explicit SpacedPoints(double spacing) : SpacedPoints(spacing, 2.0 * spacing) {}
   SpacedPoints(double spacing, double cell_size)
       : spacing_(spacing), grid_(cell_size), nearby_(grid_, spacing) {}
   SpacedPoints(const SpacedPoints&) = delete;
   SpacedPoints& operator=(const SpacedPoints&) = delete;
 
-  /// Keeps the point if none that was kept is within the spacing; says whether it did.
+  /// Keeps the point if no kept point is within the spacing. Returns whether the point was kept.
   bool keep(const Eigen::Vector3f& point) {
     if (nearby_.any_near(point)) return false;
     grid_.insert(point);
     return true;
   }
 
-  /// The same for all points of a scan, in the order in which `visit_part(part, visit)`, for one
-  /// part of it after the other, calls `visit(number, column)`; columns are less than `columns`,
-  /// and points that follow each other in one are neighbours (an image's, say). `on_kept(number)`
-  /// is told of those that are kept, in that order. With several threads parts are visited at the
-  /// same time, which changes nothing of what is kept.
+  /// Keeps the points of a scan that are far enough from all kept points. For each part in turn,
+  /// `visit_part(part, visit)` calls `visit(number, column)` for its points. Columns are less than
+  /// `columns`, and consecutive points of a column should be neighbours, as in an image.
+  /// `on_kept(number)` is called for each kept point, in order. With several threads, parts are
+  /// visited concurrently; the result does not change.
   template <typename VisitPart, typename OnKept>
   void keep_all(std::span<const Eigen::Vector3f> points, std::size_t columns, std::size_t parts,
                 unsigned threads, VisitPart visit_part, OnKept on_kept);
 
-  /// The points that were kept, in that order.
+  /// Returns the kept points in order of insertion.
   const PointGrid& grid() const { return grid_; }
   double spacing() const { return spacing_; }
 
@@ -167,9 +169,9 @@ void SpacedPoints::keep_all(std::span<const Eigen::Vector3f> points, std::size_t
   });
 }
 
-// Which points have room depends on their order, but whether one is too near to an earlier scan's
-// does not: that is found out on all threads and turns most away, while those of the parts before
-// that it left are compared with each other.
+// The selection depends on the order of the points. The comparison with points of earlier scans
+// does not, so it runs on all threads and rejects most points. Meanwhile, one thread compares the
+// remaining points of the previous parts with each other.
 template <typename VisitPart>
 std::vector<std::uint32_t> SpacedPoints::with_room(std::span<const Eigen::Vector3f> points,
                                                    std::size_t columns, std::size_t parts,

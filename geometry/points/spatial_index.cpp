@@ -18,7 +18,7 @@ namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 
-/// Lets CGAL's trees hold indices instead of points.
+/// Property map with which CGAL's trees store indices instead of points.
 struct PointOfIndex {
   using value_type = Kernel::Point_3;
   using reference = value_type;
@@ -41,8 +41,8 @@ using Ball = CGAL::Fuzzy_sphere<Traits>;
 
 }  // namespace
 
-/// Trees over consecutive ranges of points, each at least twice as large as the next one; the last
-/// few points, not worth a tree, are compared one by one.
+/// Trees over consecutive ranges of points, each at least twice as large as the next one. The last
+/// few points, which do not justify a tree, are compared one by one.
 struct SpatialIndex::Forest {
   static constexpr std::size_t smallest_tree = 256;
 
@@ -60,14 +60,14 @@ struct SpatialIndex::Forest {
     }
     std::vector<std::uint32_t> indices(points.size() - first);
     std::iota(indices.begin(), indices.end(), static_cast<std::uint32_t>(first));
-    // The tree keeps the address of the grid: that is why an index cannot be moved.
+    // The tree stores the address of the grid, so an index cannot be moved.
     auto tree = std::make_unique<Tree>(indices.begin(), indices.end(), Tree::Splitter(),
                                        Traits(PointOfIndex{&points}));
     tree->build();
     trees.push_back({first, points.size(), std::move(tree)});
   }
 
-  /// Calls `visit` with every point that may be within `radius`, and perhaps some a little farther.
+  /// Calls `visit` with all points within `radius`, and possibly some slightly farther ones.
   template <typename Visit>
   void visit_ball(const PointGrid& points, const Eigen::Vector3f& query, double radius,
                   Visit visit) {
@@ -97,7 +97,7 @@ std::uint32_t SpatialIndex::insert(const Eigen::Vector3f& point) {
   return static_cast<std::uint32_t>(size() - 1);
 }
 
-// The grid answers balls of a few bricks, and small clouds by comparing all points.
+// The grid is used for balls of a few bricks, and for small clouds by comparing all points.
 bool SpatialIndex::suits_grid(double radius) const {
   return radius <= 16.0 * grid_.cell_size() || size() <= 1U << 14;
 }
@@ -136,7 +136,8 @@ std::vector<Neighbour> SpatialIndex::nearest(const Eigen::Vector3f& query,
   count = std::min(count, size());
   std::vector<Neighbour> found;
   if (count == 0) return found;
-  // Near the cloud: balls of one, two, three cells. What lies within the ball is complete.
+  // Near the cloud: tests balls of one, two and three cells. A ball with enough points contains the
+  // result.
   for (const double radius : {1.0, 2.0, 3.0}) {
     found.clear();
     grid_.find_within(query, radius * grid_.cell_size(), found);
@@ -147,7 +148,8 @@ std::vector<Neighbour> SpatialIndex::nearest(const Eigen::Vector3f& query,
     return found;
   }
 
-  // Far away: the forest says how far the last one is, and then who is within that distance.
+  // Far from the cloud: the forest returns the distance of the last neighbour, then all points
+  // within that distance.
   const std::lock_guard lock(forest_->mutex);
   forest_->bring_up_to_date(grid_);
   const Kernel::Point_3 centre(query.x(), query.y(), query.z());

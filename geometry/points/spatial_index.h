@@ -1,9 +1,10 @@
 /// Exact neighbour queries of any size over a growing cloud.
 ///
-/// Two structures answer, each where it is the faster (tests/benchmarks/spatial_index_benchmark):
-/// a PointGrid for balls of a few cells, and for everything larger or far from the cloud a forest
-/// of CGAL kd-trees whose sizes are powers of two (Bentley and Saxe's logarithmic method), so that
-/// an insertion never rebuilds the whole. The forest is built when it is first asked.
+/// Combines two structures and uses the faster one for each query
+/// (tests/benchmarks/spatial_index_benchmark). A PointGrid answers queries for balls of a few
+/// cells. A forest of CGAL kd-trees answers larger queries and queries far from the cloud. The
+/// sizes of the trees are powers of two (Bentley and Saxe's logarithmic method), so that an
+/// insertion never rebuilds all of them. The forest is built by the first query that needs it.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +18,11 @@
 
 namespace skycap::geometry {
 
-/// Deterministic: the same insertions give the same answers in the same order. Queries may run in
-/// several threads at once, but those that reach for the forest wait for each other.
+/// Deterministic: the same insertions give the same results in the same order. Concurrent queries
+/// are allowed, but queries of the forest are serialised.
 class SpatialIndex {
  public:
-  /// An index that is fastest for queries of radius up to `typical_radius`.
+  /// Creates an index that is fastest for queries with a radius of up to `typical_radius` [m].
   explicit SpatialIndex(double typical_radius);
   SpatialIndex(const SpatialIndex&) = delete;
   SpatialIndex& operator=(const SpatialIndex&) = delete;
@@ -32,15 +33,16 @@ class SpatialIndex {
   const PointGrid& grid() const { return grid_; }
   PointGrid& grid() { return grid_; }
 
-  /// Adds a point; returns its index, the number of points before it. Points must be finite.
+  /// Adds a finite point. Returns its index, which is the number of points before the insertion.
   std::uint32_t insert(const Eigen::Vector3f& point);
 
   bool any_within(const Eigen::Vector3f& query, double radius) const;
-  /// The number of points within `radius`.
+  /// Returns the number of points within `radius`.
   std::size_t count_within(const Eigen::Vector3f& query, double radius) const;
-  /// The points within `radius`, ascending by index.
+  /// Returns the points within `radius`, ascending by index.
   std::vector<std::uint32_t> within(const Eigen::Vector3f& query, double radius) const;
-  /// The `count` nearest points, nearest first, equally near ones by index; all if there are fewer.
+  /// Returns the `count` nearest points, or all points if there are fewer. They are sorted by
+  /// distance, then by index.
   std::vector<Neighbour> nearest(const Eigen::Vector3f& query, std::size_t count) const;
 
  private:

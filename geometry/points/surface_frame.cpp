@@ -13,13 +13,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The unit vector across `axis` nearest to `wanted`, or any across it if `wanted` is along it.
+/// Returns the unit vector orthogonal to `axis` that is nearest to `wanted`, or an arbitrary one if
+/// both are parallel.
 Vector3d across(const Vector3d& axis, const Vector3d& wanted) {
   const Vector3d rejected = wanted - wanted.dot(axis) * axis;
   return rejected.norm() > 1e-9 * wanted.norm() ? rejected.normalized() : any_orthogonal(axis);
 }
 
-/// The frame with the given normal, whose outward axis is as near as can be to `wanted_outward`.
+/// Returns the frame with the given normal whose outward axis is nearest to `wanted_outward`.
 SurfaceFrame frame_of(const Vector3d& normal, const Vector3d& wanted_outward) {
   const Vector3d outward = across(normal, wanted_outward);
   return {normal, outward, normal.cross(outward)};
@@ -33,7 +34,7 @@ SurfaceFrame surface_frame(const Vector3d& point, std::span<const Eigen::Vector3
   assert(to_sensor.allFinite());
   if (neighbours.size() < 3) return frame_of(to_sensor, Vector3d::Zero());
 
-  // Rounding of single-precision coordinates; spreads below it are zero.
+  // Rounding error of single-precision coordinates; spreads below it are zero.
   const double rounding = std::pow(1e-6 * (1.0 + point.cwiseAbs().maxCoeff()), 2);
   const auto [mean, spreads, axes] = principal_axes(neighbours);
   const Vector3d from_mean = point - mean;

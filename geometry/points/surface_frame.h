@@ -1,7 +1,7 @@
-/// The surface around a point, from its nearest neighbours alone.
+/// Estimation of the local surface geometry from the nearest neighbours of a point.
 ///
-/// Source: the geometry estimation of SEE as its authors released it; SEE++ §III says only that
-/// "the local geometry" is estimated and the view placed along the normal.
+/// Source: the geometry estimation of the authors' released SEE code. SEE++ §III only states that
+/// "the local geometry" is estimated and that the view is placed along the normal.
 #pragma once
 
 #include <span>
@@ -10,21 +10,22 @@
 
 namespace skycap::geometry {
 
-/// An orthonormal, right-handed frame at a boundary point of the measured surface.
+/// Orthonormal, right-handed frame at a boundary point of the measured surface.
 struct SurfaceFrame {
-  Eigen::Vector3d normal;    ///< n: unit, on the side of the sensor that measured the point
-  Eigen::Vector3d outward;   ///< e_f: unit, along the surface, from the measured side outwards
-  Eigen::Vector3d boundary;  ///< e_b = n x e_f: unit, along the boundary
+  Eigen::Vector3d normal;    ///< n: unit vector, towards the sensor that measured the point
+  Eigen::Vector3d outward;   ///< e_f: unit vector along the surface, away from the measured side
+  Eigen::Vector3d boundary;  ///< e_b = n x e_f: unit vector along the boundary
 };
 
-/// The frame at `point`, whose nearest neighbours (itself included) are `neighbours`: the principal
-/// axes of the neighbours, outwards being where the point lies from their mean. `sensor` is where
-/// the point was measured from.
+/// Returns the frame at `point` from its nearest `neighbours`, which include the point itself. The
+/// axes are the principal axes of the neighbours. The outward direction leads from the mean of the
+/// neighbours to the point. `sensor` is the sensor position of the measurement and must differ from
+/// `point`.
 ///
-/// Where the neighbours leave a choice: of a neighbourhood centred on the point, e_f is the axis of
-/// the middle spread; neighbours on one line have as normal the direction to the sensor made
-/// orthogonal to the line; of fewer than three or of identical neighbours the normal is the
-/// direction to the sensor. The sensor must not be at the point.
+/// Ambiguous cases are resolved as follows. If the neighbours are centred on the point, e_f is the
+/// axis of the middle spread. If they are collinear, the normal is the direction to the sensor,
+/// made orthogonal to the line. With fewer than three or identical neighbours, the normal is the
+/// direction to the sensor.
 SurfaceFrame surface_frame(const Eigen::Vector3d& point,
                            std::span<const Eigen::Vector3f> neighbours,
                            const Eigen::Vector3d& sensor);

@@ -14,8 +14,8 @@ using Eigen::Vector3f;
 constexpr std::size_t least_points = 8;
 constexpr double same_way = 0.5;  // cosine
 
-/// The points within two standard deviations of the plane: where it meets another one, those of
-/// that one are farther.
+/// Returns the points within two standard deviations of the plane, which excludes points of an
+/// adjoining plane.
 std::vector<Vector3f> near_plane(std::span<const Vector3f> points, const PrincipalAxes& fit) {
   const double most = 4.0 * fit.spreads[0];
   const Vector3d normal = fit.axes.col(0);
@@ -35,13 +35,14 @@ std::optional<SurfacePatch> fit_patch(std::span<const Vector3f> points, const Ve
   const std::vector<Vector3f> near = near_plane(points, principal_axes(points));
   if (near.size() < least_points) return std::nullopt;
   const PrincipalAxes fit = principal_axes(near);
-  constexpr double flat = 0.25, thin = 0.05;  // of variances
+  constexpr double flat = 0.25, thin = 0.05;  // ratios of variances
   const bool is_plane =
       fit.spreads[0] <= flat * fit.spreads[1] && fit.spreads[1] >= thin * fit.spreads[2];
   if (!is_plane) return std::nullopt;
   const Vector3d normal = fit.axes.col(0);
   const double side = normal.dot(sensor - fit.mean) < 0.0 ? -1.0 : 1.0;
-  constexpr double cut_deviation = 0.8796;  // of a normal variable within two standard deviations
+  constexpr double cut_deviation =
+      0.8796;  // standard deviation of a normal variable truncated at two standard deviations
   return SurfacePatch{fit.mean, side * normal,
                       std::sqrt(std::max(0.0, fit.spreads[0])) / cut_deviation};
 }
@@ -97,7 +98,7 @@ const std::optional<SurfacePatch>& SurfaceMap::patch_at(std::uint32_t number) {
   points_.grid().find_within(seeds_.grid().point(number), radius_, near);
   seed.patch = fit(near, sensor);
   if (!seed.patch) return seed.patch;
-  // The other side of a thin wall is another surface.
+  // The other side of a thin wall is a different surface.
   const auto is_behind = [&](const Neighbour& point) {
     const Vector3d& from = sensors_[sensor_of_point_[point.index]];
     return (from - seed.patch->mean).dot(seed.patch->normal) < 0.0;

@@ -1,7 +1,8 @@
-/// What was measured as a surface to be compared with: small planes in which noise averages out.
+/// Measured surface as a set of small planes, in which noise averages out, for comparison with new
+/// scans.
 ///
-/// A patch is the plane that fits the points of a neighbourhood best (principal_axes.h), if they
-/// are flat enough for one.
+/// A patch is the best-fitting plane of the points of a neighbourhood (principal_axes.h), if they
+/// are sufficiently flat.
 #pragma once
 
 #include <cstddef>
@@ -19,22 +20,22 @@
 namespace skycap::geometry {
 
 struct SurfacePatch {
-  Eigen::Vector3d mean;    ///< world frame, as all here
-  Eigen::Vector3d normal;  ///< unit, towards where it was measured from
-  double deviation;        ///< standard deviation of its points across the plane
+  Eigen::Vector3d mean;    ///< world frame [m]
+  Eigen::Vector3d normal;  ///< unit vector towards the sensor
+  double deviation;        ///< standard deviation of the points across the plane [m]
 };
 
-/// The plane of points that were measured from `sensor`; of what lies within two standard
-/// deviations of a first one. Nothing if they are fewer than eight, lie along a line, or spread
-/// across the plane by more than half as far as along it.
+/// Fits a plane to points that were measured from `sensor`. Points farther than two standard
+/// deviations from a first plane are excluded. Returns nullopt if fewer than eight points remain,
+/// if they are collinear, or if their spread across the plane exceeds half of that along it.
 std::optional<SurfacePatch> fit_patch(std::span<const Eigen::Vector3f> points,
                                       const Eigen::Vector3d& sensor);
 
-/// The patches of a growing cloud.
+/// Patches of a growing cloud.
 class SurfaceMap {
  public:
-  /// A patch is the plane of the points within `radius` of a point, measured from the same side;
-  /// points a quarter of it apart are enough.
+  /// A patch is the plane of the points within `radius` [m] of a point that were measured from the
+  /// same side. A point spacing of a quarter of the radius is sufficient.
   explicit SurfaceMap(double radius);
 
   double radius() const { return radius_; }
@@ -42,14 +43,15 @@ class SurfaceMap {
   /// Adds points that were measured from `sensor`.
   void add(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& sensor);
 
-  /// Points of the cloud, half a radius apart.
+  /// Returns points of the cloud with a spacing of half the radius.
   const PointGrid& spread_points() const { return seeds_.grid(); }
 
-  /// The patch round one of them, if the surface is flat there; made when it is first asked for.
+  /// Returns the patch around a spread point, or nullopt if the surface is not flat there. The
+  /// patch is computed on first use.
   const std::optional<SurfacePatch>& patch_at(std::uint32_t spread_point);
 
-  /// The nearest patch of the map, of those within `reach` of the patch's mean that face about the
-  /// same way (60 degrees). Not for several threads at once: patches are made on the way.
+  /// Returns the nearest patch of the map within `reach` of the mean of `patch`, or null. Normals
+  /// may differ by up to 60 degrees. Not thread-safe, because patches are computed on first use.
   const SurfacePatch* nearest(const SurfacePatch& patch, double reach);
 
  private:
@@ -66,19 +68,19 @@ class SurfaceMap {
   SpacedPoints seeds_;
   std::vector<std::uint32_t> sensor_of_point_;
   std::vector<Eigen::Vector3d> sensors_;
-  std::vector<Seed> patches_;        // by number of the seed
-  std::vector<std::uint32_t> made_;  // seeds with patches since the last add()
-  std::vector<Neighbour> found_;     // scratch
+  std::vector<Seed> patches_;        // by seed index
+  std::vector<std::uint32_t> made_;  // seeds whose patches were computed since the last add()
+  std::vector<Neighbour> found_;     // scratch array
 };
 
-/// A scan as patches.
+/// Patches of a scan.
 struct ScanPatches {
   std::vector<SurfacePatch> patches;
-  std::size_t tried = 0;  ///< places, flat or not
+  std::size_t tried = 0;  ///< number of evaluated positions, flat or not
 };
 
-/// The patches of radius `radius` at up to `most_patches` places, of about `most_points` points;
-/// both are spread evenly over the scan.
+/// Returns the patches with radius `radius` [m] at up to `most_patches` positions, computed from
+/// about `most_points` points. Positions and points are distributed evenly over the scan.
 ScanPatches scan_patches(const ScanSpan& scan, double radius, std::size_t most_points,
                          std::size_t most_patches);
 

@@ -12,7 +12,7 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr int farthest = 16384;  // [m]: beyond, single precision moves by a millimetre
+constexpr int farthest = 16384;  // [m]; beyond it, single precision moves points by 1 mm
 constexpr float farthest_point = farthest;
 
 bool is_usable(const Eigen::Vector3f& point) {

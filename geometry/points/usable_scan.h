@@ -1,4 +1,4 @@
-/// What is asked of a scan that comes from outside before a planner sees it.
+/// Validation of scans from external sources.
 #pragma once
 
 #include "geometry/place/camera.h"
@@ -6,10 +6,10 @@
 
 namespace skycap::geometry {
 
-/// Throws Error{bad_geometry}, saying what would be right, unless a planner can take in the scan:
-/// points and a sensor that are finite and so near the origin that single precision keeps half a
-/// millimetre;
-/// pixels, if there are any, one for each point, ascending, of that camera. One pass over memory.
+/// Throws Error{bad_geometry}, which states the rule, unless a planner can process the scan. Points
+/// and sensor position must be finite and close enough to the origin for a single-precision
+/// resolution of half a millimetre. Pixels, if present, must be in ascending order, one per point,
+/// and inside the image of `camera`. Needs one pass over the points.
 void require_usable(const ScanSpan& scan, const CameraConfig& camera);
 
 }  // namespace skycap::geometry

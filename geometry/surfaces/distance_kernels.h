@@ -1,5 +1,5 @@
-/// Distances of many points that are near each other, several at a time: compiled for each
-/// instruction set, and the same bits with all of them.
+/// Distances of nearby points from a mesh, computed several at a time. The kernels are compiled for
+/// each instruction set and give bit-identical results.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 namespace skycap::geometry {
 
 struct DistanceKernels {
-  /// Points are taken in packets of that many: those of a packet should be near each other.
+  /// Number of points per packet. The points of a packet should be close to each other.
   static constexpr std::size_t packet = 16;
 
-  /// Of `count` points, a multiple of `packet`, their squared distances from the facets.
-  /// `of_sliver` says those of a point and a facet without a plane of its own.
+  /// Computes the squared distances [m^2] of `count` points, a multiple of `packet`, from the
+  /// facets. `of_sliver` returns the squared distance of a point from a facet that is too thin to
+  /// define a plane.
   void (*squared_distances)(const FacetNode* nodes, const Facet* facets,
                             double (*of_sliver)(const Facet& facet, const double* point),
                             std::size_t count, const double* const* points, double* squared);
@@ -22,7 +23,7 @@ struct DistanceKernels {
 extern const DistanceKernels baseline_distance_kernels, avx2_distance_kernels,
     avx512_distance_kernels;
 
-/// The widest that may be used.
+/// Returns the kernels of the widest allowed instruction set.
 const DistanceKernels& distance_kernels();
 
 }  // namespace skycap::geometry

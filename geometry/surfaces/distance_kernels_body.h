@@ -1,10 +1,10 @@
-/// The kernels of distance_kernels.h, for the sources that are compiled for one instruction set
-/// each. All is internal to them, and nothing of the standard library or of Eigen is called, whose
-/// functions the linker would share with sources for lesser processors.
+/// Implementation of distance_kernels.h, included by one source per instruction set. All functions
+/// have internal linkage. No function of the standard library or Eigen is called, because the
+/// linker could share it with sources for older processors.
 ///
-/// A packet of points goes through the tree together. What is looked at depends on bounds in single
-/// precision that are never too large; the distances are those of on_plane() in facet_tree.cpp,
-/// operation by operation.
+/// A packet of points traverses the tree together. Pruning uses conservative single-precision
+/// bounds. The distances equal those of on_plane() in facet_tree.cpp bit for bit, because the
+/// operations are the same.
 #include <cstdint>
 
 #if defined(__x86_64__)
@@ -32,7 +32,7 @@ using Doubles [[gnu::vector_size(register_bytes), gnu::may_alias]] = double;
 using FloatMask = decltype(Floats{} < Floats{});
 using DoubleMask = decltype(Doubles{} < Doubles{});
 
-// One bit for each lane of which a comparison holds.
+// Returns one bit per lane, set where the comparison is true.
 inline std::uint32_t bits(FloatMask mask) {
 #if defined(__AVX512F__)
   return _mm512_movepi32_mask((__m512i)mask);
@@ -61,20 +61,21 @@ inline bool any(DoubleMask mask) {
 #endif
 }
 
-constexpr float unit = 1.1920929e-7F;  // of rounding in single precision
+constexpr float unit = 1.1920929e-7F;  // single-precision machine epsilon
 constexpr float sum_rounding = 1.0F - 4.0F * unit;
 constexpr float infinity = __builtin_inff();
 
-// Points, and what is known of them.
+// Packet of points with their current nearest distances.
 struct Packet {
-  // In single precision, with the rounding of their distance from a side; and the box of them all.
+  // Single-precision points, rounding errors of their distance from a box side, and their bounding
+  // box.
   Floats at[3][float_parts], slack[3][float_parts];
   float low[3], high[3];
   Doubles exactly[3][double_parts];
-  Doubles squared[double_parts];  // distances of the nearest facet so far
-  Floats bound[float_parts];      // the same, never too small
-  float farthest;                 // the largest of them
-  std::uint32_t nearest;          // of some point that is not the last found
+  Doubles squared[double_parts];  // squared distances from the nearest facet so far
+  Floats bound[float_parts];      // upper bounds of `squared` in single precision
+  float farthest;                 // maximum of `bound`
+  std::uint32_t nearest;  // facet found nearest most recently; first candidate of the next packet
 };
 
 struct Place {
@@ -87,8 +88,8 @@ inline Place minus(const Place& a, const double (&b)[3]) {
   return {a.x - b[0], a.y - b[1], a.z - b[2]};
 }
 
-// Squared distances of points from a facet that is no sliver: all regions of its plane are worked
-// out, and each point takes its own.
+// Computes the squared distances of points from a facet that is not a sliver. All regions of the
+// plane are evaluated, and each lane selects its own result.
 inline Doubles squared_distances(const Facet& facet, const Place& point) {
   const double(&ab)[3] = facet.to_second, (&ac)[3] = facet.to_third, (&corner)[3] = facet.corner;
   const Doubles zero{};
@@ -121,7 +122,7 @@ inline Doubles squared_distances(const Facet& facet, const Place& point) {
   return (away[0] * away[0] + away[1] * away[1]) + away[2] * away[2];
 }
 
-// The bounds anew, after a facet was found nearer.
+// Recomputes the bounds after a nearer facet was found.
 inline void tighten(Packet& packet) {
   alignas(register_bytes) float bounds[packet_size];
   packet.farthest = 0.0F;
@@ -137,7 +138,8 @@ inline void tighten(Packet& packet) {
 
 using OfSliver = double (*)(const Facet& facet, const double* point);
 
-// Holds the packet's points against a facet: those of a part where at least one may be near.
+// Updates the distances of the packet with a facet. Only groups of lanes with at least one
+// candidate point are evaluated.
 inline void look_at(const Facet& facet, std::uint32_t slot, std::uint32_t lanes, OfSliver of_sliver,
                     Packet& packet) {
   bool is_nearer = false;
@@ -162,7 +164,7 @@ inline void look_at(const Facet& facet, std::uint32_t slot, std::uint32_t lanes,
   tighten(packet);
 }
 
-// The points that a child's box may hold something nearer for.
+// Returns the lanes whose points may have a nearer facet in the box of a child.
 inline std::uint32_t lanes_near(const FacetNode& node, int child, const Packet& packet) {
   const Floats zero{};
   std::uint32_t near = 0;
@@ -181,7 +183,7 @@ inline std::uint32_t lanes_near(const FacetNode& node, int child, const Packet& 
   return near;
 }
 
-// Children that may hold something nearer, by the distance of their boxes from the packet's.
+// Stack of unvisited children with the distances of their boxes from the box of the packet.
 struct Waiting {
   struct Entry {
     float bound;
@@ -191,7 +193,7 @@ struct Waiting {
   Entry entries[most_waiting];
   std::size_t size = 0;
 
-  // The nearest last, so that it is taken first.
+  // Pushes the nearest child last, so that it is visited first.
   void add_children(const FacetNode* nodes, std::uint32_t index, const Packet& packet) {
     const FacetNode& node = nodes[index];
     float bounds[FacetNode::lanes];

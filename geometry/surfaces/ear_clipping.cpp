@@ -14,13 +14,14 @@ namespace {
 using Eigen::Vector2d;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
-/// 1 for an equilateral triangle, 0 for a collapsed one, negative for a clockwise one.
+/// Returns 1 for an equilateral triangle, 0 for a degenerate one, and a negative value for a
+/// clockwise one.
 double roundness(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
   return 2.0 * std::sqrt(3.0) * turn(a, b, c) / squares;
 }
 
-/// Cuts ears off a polygon, the roundest first, until a triangle is left.
+/// Cuts ears off a polygon, the roundest first, until a triangle remains.
 class EarClipper {
  public:
   explicit EarClipper(std::span<const Vector2d> polygon)
@@ -45,14 +46,14 @@ class EarClipper {
   }
 
  private:
-  /// Of the ear at a corner; negative if it cannot be cut off.
+  /// Returns the roundness of the ear at a corner, or a negative value if it cannot be cut.
   double ear_quality(std::size_t i) const {
     const Vector2d &a = polygon_[before_[i]], &b = polygon_[i], &c = polygon_[after_[i]];
     const double quality = roundness(a, b, c);
     if (!(quality > 1e-12)) return -1.0;
     for (std::size_t j = after_[after_[i]]; j != before_[i]; j = after_[j]) {
       const Vector2d& p = polygon_[j];
-      if (p == a || p == b || p == c) continue;  // of a bridge to a hole
+      if (p == a || p == b || p == c) continue;  // corner of a bridge to a hole
       if (std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)}) >= touching_) return -1.0;
     }
     return quality;
@@ -62,14 +63,14 @@ class EarClipper {
     return turn(polygon_[before_[i]], polygon_[i], polygon_[after_[i]]);
   }
 
-  /// Without any ear, as in a polygon that crosses itself or a flat remainder, returns a corner
-  /// that is left: any cut is as good.
+  /// Returns the best ear. Without any ear, as in a self-intersecting polygon or a flat remainder,
+  /// returns an arbitrary remaining corner.
   std::size_t best_ear() {
     const auto best = [&] {
       return static_cast<std::size_t>(std::ranges::max_element(qualities_) - qualities_.begin());
     };
     std::size_t ear = best();
-    // An ear that leaves nothing but corners in one line must wait for its last neighbour.
+    // An ear that would leave only collinear corners must be cut after its last neighbour.
     if (area_ - area_of_ear(ear) < nothing_) {
       qualities_[ear] = -1.0;
       ear = best();
@@ -86,7 +87,7 @@ class EarClipper {
     qualities_[ear] = -std::numeric_limits<double>::infinity();
     qualities_[a] = ear_quality(a);
     qualities_[c] = ear_quality(c);
-    // What was cut off may have been all that stood in the way of another ear.
+    // Cutting may have removed the only obstacle of another ear.
     for (std::size_t j = after_[c]; j != a; j = after_[j]) {
       if (qualities_[j] < 0.0) qualities_[j] = ear_quality(j);
     }
@@ -99,11 +100,11 @@ class EarClipper {
   }
 
   std::span<const Vector2d> polygon_;
-  std::vector<std::size_t> before_, after_;  ///< neighbours among the corners that are left
+  std::vector<std::size_t> before_, after_;  ///< neighbours among the remaining corners
   std::vector<double> qualities_;
-  double area_ = 0.0, nothing_ = 0.0;  ///< twice the area that is left, and what counts as none
-  double touching_ =
-      0.0;  ///< a turn from here on up: a corner may be on the side, but for rounding
+  double area_ = 0.0,
+         nothing_ = 0.0;   ///< twice the remaining area, and the threshold below which it is zero
+  double touching_ = 0.0;  ///< turns of at least this value count as on the side, due to rounding
   std::size_t corner_left_ = 0;
   Triangles triangles_;
 };

@@ -1,5 +1,5 @@
-/// How a tree of triangles lies in memory: plain numbers, which the kernels of every instruction
-/// set read alike.
+/// Memory layout of a triangle tree. Plain numbers, so that the kernels of all instruction sets can
+/// read it.
 #pragma once
 
 #include <cstddef>
@@ -7,25 +7,26 @@
 
 namespace skycap::geometry {
 
-/// A triangle, ready to be projected onto.
+/// Triangle with its edge vectors, prepared for the projection of points.
 struct Facet {
   double corner[3], to_second[3], to_third[3];
-  std::uint32_t index;  ///< in the mesh
-  bool is_sliver;       ///< too thin for its plane to be known
+  std::uint32_t index;  ///< triangle index in the mesh
+  bool is_sliver;       ///< too thin to define a plane
 };
 
-/// Up to four children and their boxes, side by side so that one instruction asks all four. A child
-/// that is not there has a box that is infinitely far away.
+/// Up to four children and their bounding boxes in structure-of-arrays layout, so that one
+/// instruction tests all four. Missing children have boxes at infinite distance.
 struct alignas(64) FacetNode {
   static constexpr int lanes = 4;
-  static constexpr std::uint32_t is_facet = 1U << 31;  ///< of a child: a facet's slot, not a node
+  static constexpr std::uint32_t is_facet =
+      1U << 31;  ///< flag of a child: the index is a facet, not a node
 
   float low[3][lanes], high[3][lanes];
   std::uint32_t child[lanes];
 };
 
-/// Children that wait in a search: 12 levels of cuts and 16 of quarters hold any mesh, and each
-/// leaves three behind.
+/// Capacity of the stack of a search. Any mesh has at most 12 levels of binary splits and 16 levels
+/// of four-way splits, and each level adds at most three children.
 inline constexpr std::size_t most_waiting = 96;
 
 }  // namespace skycap::geometry

@@ -17,7 +17,7 @@ using Node = FacetNode;
 
 constexpr int lanes = FacetNode::lanes;
 
-/// Of a facet, as vectors.
+/// Corner and edge vectors of a facet.
 struct Corners {
   explicit Corners(const Facet& facet)
       : corner(facet.corner), to_second(facet.to_second), to_third(facet.to_third) {}
@@ -25,7 +25,7 @@ struct Corners {
   Vector3d corner, to_second, to_third;
 };
 
-/// Foot of a point on the line from `corner` along `edge`, cut at its ends.
+/// Returns the foot of a point on the segment from `corner` along `edge`.
 Vector3d on_edge(const Vector3d& point, const Vector3d& corner, const Vector3d& edge) {
   const double along = (point - corner).dot(edge) / edge.squaredNorm();
   return corner + std::clamp(along, 0.0, 1.0) * edge;
@@ -41,9 +41,9 @@ Vector3d on_border(const Vector3d& point, const Corners& facet) {
   return nearest;
 }
 
-/// The point of a facet nearest to `point`: by the regions of the plane that are nearest to a
-/// corner, to an edge or to the inside (Ericson, Real-Time Collision Detection, 2005,
-/// section 5.1.5).
+/// Returns the point of a facet nearest to `point`. Distinguishes the regions of the plane nearest
+/// to a corner, an edge or the interior (Ericson, Real-Time Collision Detection, 2005, section
+/// 5.1.5).
 Vector3d on_plane(const Vector3d& point, const Corners& facet) {
   const Vector3d &ab = facet.to_second, &ac = facet.to_third;
   const Vector3d from_a = point - facet.corner;
@@ -67,14 +67,14 @@ Vector3d on_plane(const Vector3d& point, const Corners& facet) {
   return facet.corner + (b * ab + c * ac) / (a + b + c);
 }
 
-/// The next float that is not above, or not below, the number.
+/// Rounds to the nearest float that is not above, or not below, the number.
 float below(double x) {
   const auto rounded = static_cast<float>(x);
   return rounded > x ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
 }
 float above(double x) { return -below(-x); }
 
-/// Thinner than this in parts of its longest edge, the plane of a triangle is not known well.
+/// Height of a triangle, as a fraction of its longest edge, below which its plane is inaccurate.
 constexpr double sliver = 1e-6;
 
 Facet facet_of(const Mesh& mesh, std::uint32_t triangle) {
@@ -94,7 +94,7 @@ bool has_area(const Facet& facet) {
   return of.to_second.cross(of.to_third).norm() != 0.0;
 }
 
-/// Boxes end there as long as the tree is made, so that their middles are numbers.
+/// Limit of box coordinates while the tree is built, so that box centres are finite.
 constexpr float far_off = 1e37F;
 constexpr float endless = std::numeric_limits<float>::infinity();
 
@@ -105,7 +105,7 @@ float high_end(float x) {
 }
 float low_end(float x) { return -high_end(-x); }
 
-/// What the tree is made of: the box around a triangle, in floats that leave nothing outside.
+/// Input of the tree: conservative single-precision bounding box of a triangle.
 struct Item {
   AlignedBox3f box;
   std::uint32_t triangle = 0;
@@ -120,11 +120,11 @@ struct Item {
       box.max()[axis] = within(above(exact.max()[axis]));
     }
   }
-  /// Twice its middle.
+  /// Returns twice the centre of the box.
   float middle(Eigen::Index axis) const { return box.min()[axis] + box.max()[axis]; }
 };
 
-/// Of the triangles that have an area, in the mesh's order.
+/// Returns the items of all triangles with an area, in mesh order.
 std::vector<Item> items_of(const Mesh& mesh, unsigned threads) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<Item> items(mesh.triangles.size());
@@ -137,9 +137,9 @@ std::vector<Item> items_of(const Mesh& mesh, unsigned threads) {
   return items;
 }
 
-/// A tree of four-fold nodes, each made by parting twice. What is below the root's four parts is
-/// made by threads of its own; nodes stand in the order in which one thread would make them, and
-/// items are brought into theirs.
+/// Builds a tree of four-way nodes, each made by two binary splits. The four subtrees of the root
+/// are built by separate threads. Nodes have the order in which a single thread would create them,
+/// and items are sorted into tree order.
 class TreeBuilder {
  public:
   TreeBuilder(std::vector<Item>& items, unsigned threads) : items_(items) {
@@ -203,7 +203,7 @@ class TreeBuilder {
         end - begin > 1 ? build(begin, end, depth + 1, made) : begin | FacetNode::is_facet;
   }
 
-  /// Sorts slots into two parts, neither empty, and returns where the second begins.
+  /// Sorts the slots into two non-empty parts and returns the start of the second part.
   std::uint32_t part(std::uint32_t begin, std::uint32_t end, int depth) {
     if (end - begin < 2) return end;
     AlignedBox3f middles;
@@ -226,7 +226,7 @@ class TreeBuilder {
     return middle;
   }
 
-  /// Slots to be parted along an axis, of which `slabs` equal parts are looked at.
+  /// Slots to be split along an axis that is divided into `slabs` equal parts.
   struct Range {
     std::uint32_t begin, end;
     Eigen::Index axis;
@@ -241,7 +241,7 @@ class TreeBuilder {
       box.extend(other);
       count += how_many;
     }
-    /// How often it is met, by the surface of its box, times what is in it.
+    /// Returns the traversal cost: surface area of the box times number of items.
     double cost() const {
       if (count == 0) return 0.0;
       const Vector3d side = box.sizes().cast<double>();
@@ -254,7 +254,7 @@ class TreeBuilder {
         slabs - 1, static_cast<std::size_t>((item.middle(range.axis) - range.low) * range.scale));
   }
 
-  /// Between the two slabs where the parts cost least.
+  /// Splits between the two slabs with the minimum total cost.
   std::uint32_t cut(const Range& range) {
     std::array<Group, slabs> groups;
     for (std::uint32_t slot = range.begin; slot < range.end; ++slot) {
@@ -268,7 +268,7 @@ class TreeBuilder {
     }
     sum = {};
     double least = std::numeric_limits<double>::infinity();
-    std::size_t last = 0;  // of the first part
+    std::size_t last = 0;  // last slab of the first part
     for (std::size_t i = 0; i + 1 < slabs; ++i) {
       sum.add(groups[i].box, groups[i].count);  // the first and the last slab are never empty
       if (const double cost = sum.cost() + cost_from[i + 1]; cost < least) {
@@ -283,7 +283,8 @@ class TreeBuilder {
   }
 
   static constexpr std::size_t slabs = 16;
-  static constexpr int most_cuts = 12;  ///< levels; below them parts are halved by count
+  static constexpr int most_cuts =
+      12;  ///< levels with cost-based splits; below them, parts are halved by count
 
   std::vector<Item>& items_;
 };

@@ -1,4 +1,4 @@
-/// The triangles of a mesh in a tree of boxes, for searches of the nearest.
+/// Bounding volume hierarchy of the triangles of a mesh, for nearest-triangle queries.
 #pragma once
 
 #include <vector>
@@ -11,14 +11,14 @@
 namespace skycap::geometry {
 
 struct FacetTree {
-  std::vector<Facet> facets;     ///< in the order of the tree
-  std::vector<FacetNode> nodes;  ///< the first one is the root
+  std::vector<Facet> facets;     ///< in tree order
+  std::vector<FacetNode> nodes;  ///< root first
 };
 
-/// Triangles without area are passed over. The tree does not depend on `threads`.
+/// Builds the tree. Triangles without area are skipped. The result does not depend on `threads`.
 FacetTree facet_tree(const Mesh& mesh, unsigned threads);
 
-/// The facet's point nearest to `point`.
+/// Returns the point of the facet that is nearest to `point`.
 Eigen::Vector3d nearest_on(const Facet& facet, const Eigen::Vector3d& point);
 
 }  // namespace skycap::geometry

@@ -23,7 +23,7 @@ constexpr std::size_t things_in_block = 1 << 14;
 
 std::size_t blocks_of(std::size_t count) { return (count + things_in_block - 1) / things_in_block; }
 
-/// Calls `work(block, first, end)` for each block of so many things.
+/// Calls `work(block, first, end)` for each block of indices.
 template <typename Work>
 void for_each_block(std::size_t count, unsigned threads, Work work) {
   parallel_for(blocks_of(count), threads, [&](std::size_t block) {
@@ -31,7 +31,7 @@ void for_each_block(std::size_t count, unsigned threads, Work work) {
   });
 }
 
-/// The first of so many numbers that is bad; `count` if none is.
+/// Returns the first index below `count` for which `is_bad` is true, or `count`.
 template <typename IsBad>
 std::size_t first_bad(std::size_t count, unsigned threads, IsBad is_bad) {
   std::vector<std::size_t> found(blocks_of(count), count);
@@ -121,14 +121,14 @@ SurfaceSamples sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t
   samples.points.reserve(count);
   samples.normals.reserve(count);
   samples.triangles.reserve(count);
-  double area_before = 0.0;  // of the triangles passed so far
+  double area_before = 0.0;  // total area of the preceding triangles
   double next_sample = share * random.uniform();
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& triangle = mesh.triangles[t];
     const Vector3d normal = area_vector(mesh, triangle);
     const double area_after = area_before + normal.norm();
     while (next_sample < area_after && samples.points.size() < count) {
-      // Uniform in the triangle: fold the unit square over its diagonal.
+      // Uniform sampling of a triangle: folds the unit square over its diagonal.
       double u = random.uniform(), v = random.uniform();
       if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
       const Vector3d& a = mesh.vertices[triangle[0]];

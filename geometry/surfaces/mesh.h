@@ -1,5 +1,5 @@
-/// Triangle meshes: the truth that the simulator measures and the evaluation compares with.
-/// Planners never include this header.
+/// Triangle meshes: the ground truth for the simulator and the evaluation. Planners never include
+/// this header.
 #pragma once
 
 #include <array>
@@ -12,37 +12,39 @@
 
 namespace skycap::geometry {
 
-/// Vertices and the triangles between them, counter-clockwise seen from outside. Plain data: it
-/// need not be closed, connected or consistently oriented.
+/// Vertices [m] and triangles, counter-clockwise seen from outside. The mesh need not be closed,
+/// connected or consistently oriented.
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Throws Error{bad_geometry} if a mesh has no triangle of positive area, a triangle names a vertex
-/// that does not exist, or a coordinate is not finite; the message says which is the first.
+/// Throws Error{bad_geometry} if no triangle has a positive area, a vertex index is out of range,
+/// or a coordinate is not finite. The message names the first defect.
 void validate(const Mesh& mesh, unsigned threads = 1);
 
-/// The smallest axis-aligned box around the vertices that triangles use.
+/// Returns the smallest axis-aligned box around the vertices that triangles use.
 Eigen::AlignedBox3d bounding_box(const Mesh& mesh, unsigned threads = 1);
 
 double surface_area(const Mesh& mesh);
 
-/// Adds `addition` to `mesh` as further vertices and triangles.
+/// Appends the vertices and triangles of `addition` to `mesh`.
 void append(Mesh& mesh, const Mesh& addition);
 
-/// Moves every vertex; a reflection also turns the triangles round, so that they stay outward.
+/// Transforms every vertex. After a reflection, the triangles are reversed, so that they still face
+/// outward.
 void transform(Mesh& mesh, const Eigen::Affine3d& target_from_source);
 
-/// Points spread over the surface with equal probability for equal area, and the triangle of each.
+/// Points distributed uniformly over the surface area, with their triangles.
 struct SurfaceSamples {
   std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;  ///< unit, by the triangles' orientation
+  std::vector<Eigen::Vector3f> normals;  ///< unit vectors, by triangle orientation
   std::vector<std::uint32_t> triangles;
 };
 
-/// `count` stratified area-uniform samples: one from each of `count` equal shares of the area,
-/// which keeps the density even. The same seed gives the same samples.
+/// Returns `count` stratified area-uniform samples. One sample is drawn from each of `count` equal
+/// parts of the area, which makes the density even. The result depends only on `mesh`, `count` and
+/// `seed`.
 SurfaceSamples sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t seed);
 
 }  // namespace skycap::geometry

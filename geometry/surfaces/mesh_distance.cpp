@@ -28,7 +28,7 @@ double squared_distance_of_sliver(const Facet& facet, const double* point) {
 struct MeshDistance::Impl {
   FacetTree tree;
 
-  /// The nearest of all facets, of equally near ones the first of the mesh.
+  /// Nearest facet; among equal ones the first of the mesh.
   struct Nearest {
     double squared_distance = std::numeric_limits<double>::infinity();
     std::uint32_t facet = 0;
@@ -48,7 +48,7 @@ struct MeshDistance::Impl {
 
   Nearest find(const Vector3d& point) const;
 
-  /// The distances of points of any type, packet by packet in an order.
+  /// Computes the distances of points of any type, packet by packet in the given order.
   template <typename Points>
   void find_all(const Points& points, std::span<const CurveEntry> order,
                 std::span<double> distances, unsigned threads) const;
@@ -57,7 +57,8 @@ struct MeshDistance::Impl {
 MeshDistance::Impl::Nearest MeshDistance::Impl::find(const Vector3d& point) const {
   Nearest nearest;
   look_at(0, point, nearest);
-  // The rounding of the place, of its distance from a side, and of the sum of their squares.
+  // Bounds of the rounding errors of the coordinates, of the distance from a box side, and of the
+  // sum of squares.
   constexpr float unit = std::numeric_limits<float>::epsilon();
   constexpr float sum_rounding = 1.0F - 4.0F * unit;
   std::array<float, 3> at, slack;
@@ -67,7 +68,7 @@ MeshDistance::Impl::Nearest MeshDistance::Impl::find(const Vector3d& point) cons
   }
   using Lanes = Eigen::Map<const Eigen::Array4f, Eigen::Aligned16>;
   struct Entry {
-    float bound;  ///< of the squared distance
+    float bound;  ///< lower bound of the squared distance
     std::uint32_t child;
   };
   std::array<Entry, most_waiting> stack;
@@ -92,7 +93,7 @@ MeshDistance::Impl::Nearest MeshDistance::Impl::find(const Vector3d& point) cons
     for (int lane = 0; lane < FacetNode::lanes; ++lane) {
       const float bound = bounds[lane];
       if (!(bound <= nearest.squared_distance)) continue;
-      // The nearest last, so that it is taken first.
+      // Pushes the nearest child last, so that it is visited first.
       std::size_t place = size++;
       for (; place > first && stack[place - 1].bound < bound; --place) {
         stack[place] = stack[place - 1];
@@ -110,7 +111,7 @@ void MeshDistance::Impl::find_all(const Points& points, std::span<const CurveEnt
   parallel_for((order.size() + batch - 1) / batch, threads, [&](std::size_t part) {
     const std::size_t begin = part * batch;
     const std::span own = order.subspan(begin, std::min(batch, order.size() - begin));
-    // What is left of the last packet is filled with its last point.
+    // The last packet is padded with its last point.
     const std::size_t count = (own.size() + packet - 1) / packet * packet;
     std::array<std::array<double, batch>, 3> at;
     for (std::size_t i = 0; i < count; ++i) {
@@ -141,7 +142,8 @@ MeshDistance::Closest MeshDistance::closest(const Vector3d& point) const {
           std::sqrt(nearest.squared_distance)};
 }
 
-// Distances change no faster than places do: both ends tell of all between, or else both halves.
+// The distance changes at most as fast as the position. Hence the distances at both ends bound
+// those in between; if they do not suffice, both halves are tested.
 bool MeshDistance::keeps(const Vector3d& from, const Vector3d& to, double distance) const {
   assert(distance > 0.0);
   const double at_from = this->distance(from), at_to = this->distance(to);

@@ -1,4 +1,5 @@
-/// How far points are from a surface: of a cloud from the truth, of a sensor from walls.
+/// Distance of points from a surface, such as of a cloud from the ground truth or of a sensor from
+/// walls.
 #pragma once
 
 #include <cstdint>
@@ -11,34 +12,35 @@
 
 namespace skycap::geometry {
 
-/// A mesh made ready for distance queries. Exact up to rounding. Immutable; safe to query from any
-/// number of threads.
+/// Mesh prepared for distance queries. Exact up to rounding. Immutable and thread-safe.
 class MeshDistance {
  public:
-  /// Built on `threads` threads (zero: all processors). Keeps no reference to `mesh`; triangles
-  /// without area are passed over. Throws what validate() of mesh.h throws.
+  /// Builds the search structure on `threads` threads (zero: all processors). Keeps no reference to
+  /// `mesh`. Triangles without area are skipped. Throws the errors of validate() in mesh.h.
   explicit MeshDistance(const Mesh& mesh, unsigned threads = 0);
   MeshDistance(MeshDistance&&) noexcept;
   MeshDistance& operator=(MeshDistance&&) noexcept;
   ~MeshDistance();
 
   struct Closest {
-    Eigen::Vector3d point;   ///< on the surface
-    std::uint32_t triangle;  ///< that it lies on; the first of them, if it is on an edge
+    Eigen::Vector3d point;  ///< point on the surface
+    std::uint32_t
+        triangle;  ///< triangle that contains `point`; the first one if `point` is on an edge
     double distance;
   };
-  /// The surface point nearest to `point`.
+  /// Returns the surface point nearest to `point`.
   Closest closest(const Eigen::Vector3d& point) const;
 
-  /// Distance of `point` from the surface, never negative.
+  /// Returns the unsigned distance of `point` from the surface [m].
   double distance(const Eigen::Vector3d& point) const { return closest(point).distance; }
 
-  /// Whether every place between two is at least that far, more than nothing, from the surface. A
-  /// way that grazes the distance, to a thousandth of it, is not said to keep it.
+  /// Returns whether every point of the segment is at least `distance` (greater than zero) from the
+  /// surface. The test is conservative: it returns false if the clearance exceeds `distance` by
+  /// less than a thousandth.
   bool keeps(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double distance) const;
 
-  /// The distance of each point, to a place of `distances`. Quick where there are many points near
-  /// each other, in any order: up to a million at once are worth while.
+  /// Writes the distance of each point to `distances`. Fast if many points are close to each other,
+  /// in any order. Speed increases with batch sizes up to about one million points.
   void distances(std::span<const Eigen::Vector3f> points, std::span<double> distances,
                  unsigned threads = 1) const;
   void distances(std::span<const Eigen::Vector3d> points, std::span<double> distances,

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 std::uint64_t hash_of(const Vector3d& p) {
   std::uint64_t hash = 0;
   for (const double coordinate : p) {
-    // The two zeros are equal, so they must have one hash.
+    // Positive and negative zero are equal, so they need the same hash.
     hash ^= std::bit_cast<std::uint64_t>(coordinate == 0.0 ? 0.0 : coordinate);
     hash *= 0x9e3779b97f4a7c15U;
     hash ^= hash >> 29;
@@ -24,11 +24,11 @@ std::uint64_t hash_of(const Vector3d& p) {
   return hash;
 }
 
-// An edge of a triangle: its vertices in ascending order as one key, and where it is.
+// Edge of a triangle: its ascending vertices as a key, and its position.
 struct Edge {
   std::uint64_t key;
   std::uint32_t triangle;
-  bool ascends;  // as the triangle goes round it
+  bool ascends;  // the triangle traverses the edge in ascending order
 };
 
 std::vector<Edge> sorted_edges(const Mesh& mesh) {
@@ -48,10 +48,10 @@ std::vector<Edge> sorted_edges(const Mesh& mesh) {
 
 struct Neighbour {
   std::uint32_t triangle;
-  bool agrees;  // both go round their common edge in opposite senses, as they should
+  bool agrees;  // both traverse their common edge in opposite directions, as required
 };
 
-// For each triangle its neighbours across edges that exactly two triangles share.
+// Returns for each triangle its neighbours across edges of exactly two triangles.
 std::vector<std::vector<Neighbour>> neighbours_of(const Mesh& mesh) {
   std::vector<std::vector<Neighbour>> neighbours(mesh.triangles.size());
   const std::vector<Edge> edges = sorted_edges(mesh);
@@ -73,8 +73,8 @@ void turn_round(Mesh& mesh, std::uint32_t triangle) {
   std::swap(mesh.triangles[triangle][1], mesh.triangles[triangle][2]);
 }
 
-// Six times the volume between the part and its centroid: of a closed part that does not depend on
-// the centroid, and of an open one it tells which way it mostly faces.
+// Returns six times the volume between the part and its centroid. For a closed part, the result is
+// independent of the centroid. For an open part, its sign shows which way the part mostly faces.
 double enclosed_volume(const Mesh& mesh, const std::vector<std::uint32_t>& part) {
   Vector3d weighted = Vector3d::Zero();
   double area = 0.0;
@@ -105,10 +105,10 @@ void weld_vertices(Mesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) is_used[v] = true;
   }
-  // A table of kept vertices, open to the next free slot: a map has nodes of twice their size.
+  // Hash table of kept vertices with linear probing. The nodes of a map would be twice as large.
   std::vector<std::uint32_t> slots(std::bit_ceil(2 * mesh.vertices.size() + 1), unused);
   std::vector<std::uint32_t> renamed(mesh.vertices.size(), unused);
-  std::uint32_t kept = 0;  // they move to the front, where nothing is read any more
+  std::uint32_t kept = 0;  // kept vertices move to the front, which has already been read
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!is_used[v]) continue;
     const Vector3d vertex = mesh.vertices[v];

@@ -1,23 +1,24 @@
-/// What meshes from the field need before they can be worked with.
+/// Repair of meshes from external sources.
 #pragma once
 
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::geometry {
 
-/// Joins vertices of exactly equal coordinates, keeping the first, and drops those that no triangle
-/// uses. The order of the rest stays.
+/// Merges vertices with identical coordinates, keeps the first of them, and removes unused
+/// vertices. The order of the remaining vertices is kept.
 void weld_vertices(Mesh& mesh);
 
-/// Drops triangles without area: corners that coincide or lie on one line.
+/// Removes triangles without area, which have coincident or collinear corners.
 void drop_degenerate_triangles(Mesh& mesh);
 
-/// Turns triangles so that those of each connected part (joined through edges of two triangles)
-/// agree, and that the part faces outward. Outward is away from the inside of a closed part
-/// (positive volume), and on an open one, where the surface mostly faces away from its own
-/// centroid. A closed part inside another one faces outward too. Weld before: parts join at shared
-/// vertices only. A one-sided part (a Moebius strip) cannot agree with itself and is left in
-/// partial agreement.
+/// Orients triangles consistently within each connected part and lets the part face outward. Parts
+/// are connected through edges of exactly two triangles. Vertices must be welded first, because
+/// parts are connected only at shared vertices.
+///
+/// A closed part faces outward if its volume is positive, even inside another part. An open part
+/// faces outward if most of its surface faces away from its centroid. A one-sided part (Moebius
+/// strip) cannot be oriented consistently and remains partially oriented.
 void orient_outward(Mesh& mesh);
 
 }  // namespace skycap::geometry

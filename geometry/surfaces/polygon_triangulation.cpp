@@ -21,11 +21,11 @@ using Eigen::Vector3d;
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
 using PlaneKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-/// A face knows the region between rings that it is in, or -1 before that is known.
+/// Face information: region between rings, or -1 if not yet known.
 struct Region {
   int index = -1;
 };
-/// A vertex knows its vertex of the mesh.
+/// Vertex information: index in the mesh.
 struct MeshVertex {
   std::uint32_t index = no_vertex;
 };
@@ -36,7 +36,7 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     PlaneKernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
     CGAL::Exact_predicates_tag>;
 
-/// The plane of a ring and its two axes, the ring counter-clockwise in them.
+/// Plane of a ring with two axes, in which the ring is counter-clockwise.
 struct Plane {
   Vector3d origin, right, up;
 
@@ -45,7 +45,7 @@ struct Plane {
   }
 };
 
-/// Twice the area vector of a ring.
+/// Returns twice the area vector of a ring.
 Vector3d area_vector(std::span<const Vector3d> ring) {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
@@ -54,7 +54,7 @@ Vector3d area_vector(std::span<const Vector3d> ring) {
   return sum;
 }
 
-/// A ring without the corners that repeat the one before them, first after last.
+/// Returns a ring without repeated consecutive corners; the first corner follows the last.
 std::vector<Vector3d> without_repetition(std::span<const Vector3d> ring) {
   std::vector<Vector3d> result;
   for (const Vector3d& corner : ring) {
@@ -64,7 +64,7 @@ std::vector<Vector3d> without_repetition(std::span<const Vector3d> ring) {
   return result;
 }
 
-/// Whether a ring turns left at every corner, and once round: a pentagram turns twice.
+/// Returns whether a ring turns left at every corner and winds once; a pentagram winds twice.
 bool is_convex(std::span<const Vector2d> ring) {
   const std::size_t n = ring.size();
   std::size_t turns_of_x = 0;
@@ -86,7 +86,7 @@ std::size_t add_fan(Mesh& mesh, const std::vector<Vector3d>& ring) {
   return corners - 2;
 }
 
-/// Whether an odd number of rings surrounds a place.
+/// Returns whether an odd number of rings surrounds a position.
 bool is_inside(const Vector2d& place, const std::vector<std::vector<Vector2d>>& rings) {
   bool is_odd = false;
   for (const std::vector<Vector2d>& ring : rings) {
@@ -114,7 +114,8 @@ double area_of(const Triangulation::Face_handle& face) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Gives all faces that no constraint parts from `start` the region; its largest face.
+/// Assigns the region to all faces connected to `start` without crossing a constraint. Returns
+/// their largest face.
 Triangulation::Face_handle mark_region(const Triangulation& triangulation,
                                        Triangulation::Face_handle start, int region) {
   Triangulation::Face_handle largest = start;
@@ -136,7 +137,7 @@ Triangulation::Face_handle mark_region(const Triangulation& triangulation,
   return largest;
 }
 
-/// The rings as constraints; a vertex of the mesh for each of their corners.
+/// Inserts the rings as constraints and adds a mesh vertex for each corner.
 void insert_rings(Triangulation& triangulation, Mesh& mesh, const Plane& plane,
                   const std::vector<std::vector<Vector3d>>& rings) {
   for (const std::vector<Vector3d>& ring : rings) {
@@ -157,7 +158,7 @@ void insert_rings(Triangulation& triangulation, Mesh& mesh, const Plane& plane,
   }
 }
 
-/// The vertex of the mesh; where rings cross, a new one on the plane.
+/// Returns the mesh vertex; at crossings of rings, adds a new one on the plane.
 std::uint32_t vertex_of(Mesh& mesh, const Plane& plane, Triangulation::Vertex_handle vertex) {
   std::uint32_t& index = vertex->info().index;
   if (index == no_vertex) {
@@ -201,7 +202,7 @@ std::size_t add_polygon(Mesh& mesh, std::span<const Vector3d> corners,
     rings.push_back(without_repetition(corners.subspan(begin[i], begin[i + 1] - begin[i])));
     if (rings.back().size() >= 3) continue;
     rings.pop_back();
-    if (i == 0) return 0;  // the others are its holes
+    if (i == 0) return 0;  // the other rings are its holes
   }
   if (rings.empty()) return 0;
   const Vector3d area = area_vector(rings[0]);

@@ -1,4 +1,4 @@
-/// Flat polygons with holes, cut into triangles: what city models and maps are made of.
+/// Triangulation of planar polygons with holes, as in city models and maps.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,14 @@
 
 namespace skycap::geometry {
 
-/// Adds to `mesh` the triangles of the polygon whose rings are `corners` [begin[i], begin[i + 1]),
-/// on the plane of the first ring's area vector (Newell's normal) and turned as the first ring is.
-/// What an odd number of rings surrounds is inside, whichever way the others turn: a ring within
-/// the first is a hole. Rings may repeat their first corner at the end, touch, or cross: a crossing
-/// adds a vertex. The number of triangles added; zero if the first ring has no area or a corner is
-/// not finite.
+/// Adds the triangles of a polygon to `mesh` and returns their number. Ring i consists of the
+/// corners [begin[i], begin[i + 1]). The plane is orthogonal to the area vector of the first ring
+/// (Newell's normal), and the triangles have the orientation of the first ring.
+///
+/// The even-odd rule defines the inside, independent of the orientation of the other rings: a ring
+/// within the first is a hole. Rings may repeat their first corner at the end, touch, or cross;
+/// each crossing adds a vertex. Returns zero if the first ring has no area or a corner is not
+/// finite.
 std::size_t add_polygon(Mesh& mesh, std::span<const Eigen::Vector3d> corners,
                         std::span<const std::uint32_t> begin);
 

@@ -1,4 +1,4 @@
-/// What planners are called, in files and in tables: the one list of their names.
+/// Names of all planners in files and tables.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@ enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, a
 
 struct PlannerTitle {
   PlannerName name;
-  std::string_view word;   ///< planner.name in mission files and on the command line
-  std::string_view title;  ///< in tables and plots
-  /// The gain that a volumetric planner goes by; nothing for the others.
+  std::string_view word;   ///< value of planner.name in mission files and on the command line
+  std::string_view title;  ///< name in tables and plots
+  /// Gain metric of a volumetric planner; nullopt for other planners.
   std::optional<volumetric::VolumetricMetric> metric = std::nullopt;
 };
 
-/// In the order of PlannerName.
+/// Sorted in the order of PlannerName.
 inline constexpr std::array<PlannerTitle, 10> planner_titles = [] {
   using enum PlannerName;
   using enum volumetric::VolumetricMetric;
@@ -48,7 +48,7 @@ constexpr const PlannerTitle& title_of(PlannerName name) {
   return planner_titles[static_cast<std::size_t>(name)];
 }
 
-/// The planner that files call so; nothing if none is.
+/// Returns the planner with this name in files, or nullopt.
 constexpr std::optional<PlannerName> planner_called(std::string_view word) {
   const auto found = std::ranges::find(planner_titles, word, &PlannerTitle::word);
   return found == planner_titles.end() ? std::nullopt : std::optional(found->name);

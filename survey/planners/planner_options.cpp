@@ -15,14 +15,14 @@ namespace {
 
 using volumetric::VolumetricConfig;
 
-/// Keeps the candidates' random numbers apart from those of the first view.
+/// Separates the random numbers of the candidates from those of the first view.
 constexpr std::uint64_t candidates_stream = 0x766f6c756d657472;
 
 std::unique_ptr<Planner> limited(std::unique_ptr<Planner> planner, const ViewLimits& limits) {
   return std::make_unique<LimitedPlanner>(std::move(planner), limits);
 }
 
-/// Each kind of planner from its settings.
+/// Creates each kind of planner from its settings.
 struct Maker {
   const PlannerOptions& options;
   const PlannerRun& run;
@@ -36,7 +36,7 @@ struct Maker {
   std::unique_ptr<Planner> operator()(skycap::SkycapConfig config) const {
     config.threads = run.threads;
     if (options.prior_surface) config.prior = options.prior_surface();
-    return std::make_unique<skycap::SkycapPlanner>(config, camera);  // it knows the limits
+    return std::make_unique<skycap::SkycapPlanner>(config, camera);  // supports limits itself
   }
 
   std::unique_ptr<Planner> operator()(VolumetricConfig config) const {

@@ -1,4 +1,4 @@
-/// What a survey asks of its planner, whichever it is, and the planner made from that.
+/// Settings common to all planners, and a factory of planners.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,9 @@
 
 namespace skycap::survey {
 
-/// Where the first view, and all views of the volumetric planners, are looked for: around the
-/// surface's centroid, as far as d and the surface's mean distance to it (paper §IV-B).
+/// Sphere that contains the first view and all views of the volumetric planners. Its centre is the
+/// centroid of the surface. Its radius is d plus the mean distance of the surface from the centre
+/// (paper §IV-B).
 struct ViewSphere {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 0.0;
@@ -29,36 +30,37 @@ struct ViewSphere {
 
 struct PlannerOptions {
   PlannerName name = PlannerName::see_plus_plus;
-  geometry::CameraConfig camera;  ///< by which views are chosen
+  geometry::CameraConfig camera;  ///< camera model for view selection
 
-  double spacing = 0.00261711877;                ///< epsilon, least distance of stored points [m]
-  double view_distance = 1.0;                    ///< d, from how far surfaces are looked at [m]
-  double resolution_radius = 0.017;              ///< r: what is smaller is not told apart [m]
-  std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are dropped
-  double max_incidence = 1.5707963267948966;     ///< between ray and normal, for a return [rad]
+  double spacing = 0.00261711877;                ///< epsilon: minimum distance of stored points [m]
+  double view_distance = 1.0;                    ///< d: distance of views from the surface [m]
+  double resolution_radius = 0.017;              ///< r: size of the smallest resolved features [m]
+  std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are ignored
+  double max_incidence =
+      1.5707963267948966;  ///< maximum angle between ray and normal with a return [rad]
   ViewLimits limits;
 
-  /// The settings of the named planner, complete but for seed, threads, prior surface, and the
-  /// sphere of a volumetric planner that the mission does not give.
+  /// Settings of the planner `name`. Complete except for seed, threads and prior surface, and for
+  /// the sphere of a volumetric planner if the mission does not set it.
   std::variant<see::SeeConfig, skycap::SkycapConfig, volumetric::VolumetricConfig> method;
 
-  /// The surfaces that prior data holds of the targets, made when they are asked for; may be empty.
+  /// Returns the prior surface of the targets. Called on demand; may be empty.
   std::function<std::shared_ptr<const skycap::PriorSurface>()> prior_surface;
 
-  /// Throws Error{bad_config}, "FIELD is ...; it must be ...", for the first setting that the named
-  /// planner cannot work with. A sphere that is not given is taken to be fine.
+  /// Throws Error{bad_config} "FIELD is ...; it must be ..." for the first setting that the planner
+  /// does not accept. A missing sphere is accepted.
   void validate() const;
 };
 
-/// What belongs to one run of a planner.
+/// Parameters of one run of a planner.
 struct PlannerRun {
   std::uint64_t seed = 1;
-  unsigned threads = 1;              ///< zero: all processors; does not change the plan
-  std::optional<ViewSphere> sphere;  ///< of volumetric planners, where their settings give none
+  unsigned threads = 1;              ///< zero: all processors; does not affect the plan
+  std::optional<ViewSphere> sphere;  ///< sphere of volumetric planners whose settings have none
 };
 
-/// The planner of these options, kept to their limits. Throws Error{bad_config} if it is volumetric
-/// and nothing says where its sphere is.
+/// Creates the planner and applies the limits. Throws Error{bad_config} for a volumetric planner
+/// without a sphere.
 std::unique_ptr<Planner> make_planner(const PlannerOptions& options, const PlannerRun& run);
 
 }  // namespace skycap::survey

@@ -1,4 +1,4 @@
-/// A frontier and the view proposed for it: the pairs that SEE chooses among.
+/// Frontiers and their proposed views, from which SEE selects the next view.
 #pragma once
 
 #include <cstddef>
@@ -13,36 +13,37 @@
 
 namespace skycap::survey::see {
 
-/// A frontier point, its surroundings when it became one, and where to look at it from.
+/// Frontier point with its local geometry and its proposed view.
 struct Frontier {
   Eigen::Vector3d position;
-  Eigen::Vector3d observed_from;   ///< the sensor's position when the point was measured
-  Eigen::Vector3d observed_along;  ///< unit: the optical axis of that sensor
+  Eigen::Vector3d observed_from;   ///< sensor position when the point was measured
+  Eigen::Vector3d observed_along;  ///< unit vector: optical axis of that sensor
   geometry::SurfaceFrame frame;
   geometry::View view;
-  double clear_offset = 0.0;                  ///< zeta; see OcclusionTest
-  std::optional<std::size_t> offset_of_scan;  ///< the number of scans when it was computed
-  bool was_put_off = false;                   ///< its view is from where it was seen
+  double clear_offset = 0.0;  ///< zeta: start of the occlusion test; see OcclusionTest [m]
+  std::optional<std::size_t> offset_of_scan;  ///< number of scans when `clear_offset` was computed
+  bool was_put_off =
+      false;  ///< deferred before; the view is on the line from which the point was measured
 };
 
-/// By index of the point, so that every loop over them has the same order.
+/// Frontiers by point index. The order is deterministic for all loops.
 using FrontierMap = std::map<std::uint32_t, Frontier>;
 
-/// Where views may be.
+/// Constraints on view positions.
 struct ViewPlacement {
-  double distance = 2.0;               ///< d, from the frontier
-  std::optional<double> least_height;  ///< z of the sensor
+  double distance = 2.0;               ///< d: distance from the frontier [m]
+  std::optional<double> least_height;  ///< minimum z of the sensor [m]
 };
 
-/// The view of `frontier` from `placement.distance` away along the unit vector `direction`. If that
-/// is too low, the view slides up on the sphere around the frontier, keeping its azimuth; if no
-/// place on the sphere is high enough, it is the highest one.
+/// Returns the view of `frontier` from the distance `placement.distance` in the direction of the
+/// unit vector `direction`. A view below the minimum height is moved up on the sphere around the
+/// frontier, with constant azimuth. If the whole sphere is too low, its highest point is used.
 geometry::View place_view(const Eigen::Vector3d& frontier, const Eigen::Vector3d& direction,
                           const ViewPlacement& placement);
 
-/// The view of `frontier` along the line on which it was seen, which was free then: from
-/// `placement.distance` away, or as much farther as it takes to be high enough, but no farther than
-/// it was seen from.
+/// Returns the view of `frontier` on the line from which it was measured, which was free at that
+/// time. The distance is `placement.distance`, increased as needed for the minimum height. It never
+/// exceeds the distance of the measurement.
 geometry::View look_again(const Frontier& frontier, const ViewPlacement& placement);
 
 }  // namespace skycap::survey::see

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A cube of the octree.
+/// Cube of the octree.
 struct Cube {
   Vector3d lowest;
   double edge;
@@ -33,7 +33,8 @@ struct Cube {
   }
 };
 
-/// A leaf around the first position, doubled towards every other one until it is inside.
+/// Starts with a leaf around the first position and doubles it towards each other position until it
+/// contains all.
 Cube grow_root(std::span<const Vector3d> positions, double leaf_size) {
   Cube root{positions[0] - 0.5 * leaf_size * Vector3d::Ones(), leaf_size};
   for (const Vector3d& position : positions) {

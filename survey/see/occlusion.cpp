@@ -27,13 +27,14 @@ bool OcclusionTest::is_occluded(const Vector3d& frontier, double offset,
   const double from = config_.end == MarchEnd::search_distance ? 0.0 : offset;
   const double end = std::min(from + config_.search_distance, length);
 
-  // The samples are at offset + step * radius; a hair of tolerance keeps the last one, at the end.
+  // Samples are at offset + step * radius. The tolerance includes a last sample exactly at the end.
   const double last_step = std::floor((end - offset) / config_.radius + 1e-9);
   double step = 0.0;
   while (step <= last_step) {
     const Vector3d centre = frontier + (offset + step * config_.radius) * direction;
     if (grid_.any_within(centre.cast<float>(), config_.radius)) return true;
-    // Wide empty space is passed in one go. One step is held back for the rounding of positions.
+    // Skips empty space in a single step, except for one step as a margin for rounding errors of
+    // positions.
     const double empty = grid_.empty_length(centre.cast<float>(), direction.cast<float>());
     step += std::max(1.0, std::floor(empty / config_.radius));
   }

@@ -1,5 +1,5 @@
-/// Whether measured points stand between a frontier and a view: the point-based occlusion test of
-/// SEE++ (§III-A).
+/// Point-based occlusion test of SEE++ (§III-A): tests whether measured points block the line of
+/// sight between a frontier and a view.
 #pragma once
 
 #include <vector>
@@ -12,25 +12,26 @@
 namespace skycap::survey::see {
 
 struct OcclusionConfig {
-  double radius = 0.017;         ///< of the ball that is marched, and its step; r
-  double search_distance = 1.0;  ///< psi
+  double radius = 0.017;         ///< r: radius of the marched ball and step size [m]
+  double search_distance = 1.0;  ///< psi: length of the march [m]
   MarchEnd end = MarchEnd::search_distance;
 };
 
-/// A ball marched along sight lines through the measured points. Cheap to construct; the grid must
-/// outlive it and have cells no smaller than the ball's radius.
+/// Marches a ball along lines of sight through the measured points. Cheap to construct. The grid
+/// must outlive the test, and its cells must not be smaller than the radius.
 class OcclusionTest {
  public:
   OcclusionTest(const geometry::PointGrid& grid, const OcclusionConfig& config)
       : grid_(grid), config_(config) {}
 
-  /// zeta: the first multiple of the step at which the ball from `frontier` along the unit vector
-  /// `direction` holds no point. At most min(psi, limit), which is returned where none is clear.
+  /// Returns zeta: the first multiple of the step at which the ball from `frontier` along the unit
+  /// vector `direction` contains no point. Returns min(psi, limit) if no ball is clear up to that
+  /// distance.
   double clear_offset(const Eigen::Vector3d& frontier, const Eigen::Vector3d& direction,
                       double limit) const;
 
-  /// Whether some point is in one of the balls between `offset` (zeta) from `frontier` and the end
-  /// of the march towards `sensor`.
+  /// Returns whether any ball contains a point. The march starts at the distance `offset` (zeta)
+  /// from `frontier` and leads towards `sensor`.
   bool is_occluded(const Eigen::Vector3d& frontier, double offset,
                    const Eigen::Vector3d& sensor) const;
 
@@ -39,8 +40,8 @@ class OcclusionTest {
   OcclusionConfig config_;
 };
 
-/// The unit vectors from `from` to the points that are within `radius` of `place`, but for those
-/// that are at `from` itself.
+/// Returns the unit vectors from `from` to all points within `radius` of `place`, except for points
+/// at `from`.
 std::vector<Eigen::Vector3d> directions_to_near(const geometry::PointGrid& points,
                                                 const Eigen::Vector3f& place, double radius,
                                                 const Eigen::Vector3d& from);

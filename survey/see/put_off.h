@@ -1,4 +1,4 @@
-/// The frontiers that no proposed view sees, kept until nothing else is left to look at.
+/// Frontiers that no proposed view sees. They are deferred until all other frontiers are resolved.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,20 @@
 
 namespace skycap::survey::see {
 
-/// Of SEE++ in the preset `building`: the published method gives these frontiers up.
+/// Part of SEE++ with the preset `building`. The published method discards these frontiers.
 class PutOffFrontiers {
  public:
-  /// Of frontiers nearer to each other than `spacing` one stands for the others.
+  /// Frontiers closer to each other than `spacing` [m] are represented by one of them.
   explicit PutOffFrontiers(double spacing) : spacing_(spacing) {}
 
   void add(FrontierMap::node_type frontier) { frontiers_.insert(std::move(frontier)); }
   std::size_t size() const { return frontiers_.size(); }
   void forget(std::uint32_t point) { frontiers_.erase(point); }
-  /// Forgets those that the frontier at `place` stands for, and says which they were.
+  /// Removes the frontiers represented by the frontier at `place` and returns their points.
   std::vector<std::uint32_t> forget_around(const Eigen::Vector3d& place);
 
-  /// Moves frontiers `spacing` apart to `to`, each with a view along the line that it was seen on.
+  /// Moves frontiers at least `spacing` apart to `to`. Each gets a view on the line from which it
+  /// was measured.
   void take_up_again(const ViewPlacement& placement, FrontierMap& to);
 
  private:

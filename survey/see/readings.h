@@ -1,51 +1,53 @@
-/// Where the SEE++ paper leaves a choice, or its released code does otherwise: each reading by
-/// name. docs/explanation/see.md tells what each does to the results.
+/// Interpretations of the SEE++ paper where it is ambiguous or differs from the released code.
+/// Their effects on the results are described in docs/explanation/see.md.
 #pragma once
 
 namespace skycap::survey::see {
 
-/// What the optimiser calls the observing direction of a point.
+/// Definition of the observing direction of a point in the view optimisation.
 enum class ObservingDirection {
   ray,         ///< from the sensor that measured the point to the point
-  image_axis,  ///< the optical axis of that sensor
+  image_axis,  ///< optical axis of that sensor
 };
 
-/// Whose centroid tells the adjustment on which side of the frontier the surface was seen.
+/// Set of points whose centroid determines the measured side of the frontier during view
+/// adjustment.
 enum class ScanCentroid {
   whole_scan,       ///< all points of the scan
-  accepted_points,  ///< only those that were new at the spacing epsilon
+  accepted_points,  ///< only points that were kept at the spacing epsilon
 };
 
-/// Along which line from a frontier the clear offset (zeta) is looked for.
+/// Line from a frontier along which the clear offset (zeta) is determined.
 enum class OffsetLine {
   sight_line,  ///< towards the sensor that first measured the point (paper §III-A)
   normal,      ///< along the surface normal (released code)
 };
 
-/// Where the occlusion test ends. Never behind the sensor.
+/// End of the occlusion test. Never behind the sensor.
 enum class MarchEnd {
-  search_distance,              ///< at psi from the frontier (paper)
-  search_distance_from_offset,  ///< at zeta + psi (released code)
+  search_distance,              ///< at the distance psi from the frontier (paper)
+  search_distance_from_offset,  ///< at the distance zeta + psi (released code)
 };
 
-/// How the view nearest to the sensor is found.
+/// Method of the search for the view nearest to the sensor.
 enum class NearestSearch {
   exact,
   octree,  ///< approximate, as in the released code
 };
 
-/// What becomes of a frontier that even the view from the clearest direction does not see.
+/// Treatment of a frontier that is occluded even from the clearest direction.
 enum class StillOccluded {
-  give_up,  ///< it is an outlier until something new is measured beside it (paper)
-  put_off,  ///< when nothing else is left it is looked at from where it was seen (ours)
-  keep,     ///< the view is taken all the same
+  give_up,  ///< outlier until a new point is measured nearby (paper)
+  put_off,  ///< deferred, and finally viewed on the line from which it was measured (extension of
+            ///< Skycap)
+  keep,     ///< the view is used unchanged
 };
 
-/// How a view is moved after it failed to resolve its frontier.
+/// Adjustment of a view that did not resolve its frontier.
 enum class Adjustment {
-  rotation,  ///< shifted and turned about the frontier, with a gain that doubles (released code)
-  shift,     ///< shifted without the turn
-  none,      ///< the frontier is given up at the first failure
+  rotation,  ///< shift and rotation about the frontier, with a gain that doubles (released code)
+  shift,     ///< shift without rotation
+  none,      ///< the frontier is discarded after the first failure
 };
 
 }  // namespace skycap::survey::see

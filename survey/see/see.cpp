@@ -66,20 +66,21 @@ struct SeePlanner::Impl {
   const ViewPlacement placement;
 
   geometry::DensityMap map;
-  geometry::SpacedPoints occluders;  // S: a sparse subset of the cloud, for the cap optimiser
+  geometry::SpacedPoints occluders;  // S: sparse subset of the cloud for the cap optimiser
   OcclusionTest occlusion;
-  std::vector<View> scans;                // where each scan was taken from
-  std::uint32_t first_new = 0;            // point of the last scan
-  std::optional<SeenThrough> free_space;  // of the last scan, if the configuration asks for it
+  std::vector<View> scans;                // view of each scan
+  std::uint32_t first_new = 0;            // first point of the last scan
+  std::optional<SeenThrough> free_space;  // lines of sight of the last scan, if configured
 
-  std::set<std::uint32_t> waiting;  // frontiers without a proposal, another one being too near
-  FrontierMap frontiers;            // those with a proposal
-  PutOffFrontiers put_off;          // those that no proposal sees
+  std::set<std::uint32_t>
+      waiting;              // frontiers without a proposal, because another one is too close
+  FrontierMap frontiers;    // frontiers with a proposal
+  PutOffFrontiers put_off;  // deferred frontiers that no proposal sees
   std::map<std::uint32_t, AttemptRecord> attempts;
   VisibilityGraph graph;
-  std::optional<std::uint32_t> target;  // the frontier that the last proposed view is for
+  std::optional<std::uint32_t> target;  // frontier of the last proposed view
 
-  // The proposals as lists, in the order of `frontiers`.
+  // Proposals as lists in the order of `frontiers`.
   std::vector<std::uint32_t> proposal_points;
   std::vector<Vector3d> proposal_positions;
 
@@ -87,7 +88,7 @@ struct SeePlanner::Impl {
   std::stop_token stop;
 };
 
-/// One update, in the order of the released code.
+/// Performs one update in the order of the released code.
 std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   step.times.clear();
   Stopwatch stopwatch(step.times);
@@ -146,7 +147,7 @@ void SeePlanner::Impl::classify() {
   if (target) step.target_resolved = map.label(*target) != geometry::PointLabel::frontier;
 }
 
-// Every waiting frontier that has no proposal nearer than the frontier spacing gets one.
+// Creates proposals for waiting frontiers without a proposal within the frontier spacing.
 void SeePlanner::Impl::propose_for_new_frontiers() {
   const auto& positions = map.cloud().positions;
   const bool spaced = config.frontier_spacing > 0.0;
@@ -184,7 +185,7 @@ geometry::SurfaceFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
   const Vector3d position = positions[point].cast<double>();
   geometry::SurfaceFrame frame =
       geometry::surface_frame(position, neighbours, scans[map.cloud().views[point]].position);
-  // A normal that points to the side which is not free is turned round (released code).
+  // Flips a normal that points to the side that is not free (released code).
   if (free_space && free_space->is_free_behind(position, frame.normal, config.occluder_spacing,
                                                config.occlusion_search_distance)) {
     frame.normal = -frame.normal;
@@ -193,7 +194,7 @@ geometry::SurfaceFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
   return frame;
 }
 
-// The reactive part: the last view was for a frontier that is still one.
+// Reactive part: adjusts the last view if its frontier is not resolved.
 void SeePlanner::Impl::adjust_target(std::span<const Vector3f> points) {
   if (!target) return;
   const auto found = frontiers.find(*target);
@@ -209,7 +210,7 @@ void SeePlanner::Impl::adjust_target(std::span<const Vector3f> points) {
   if (frontiers.empty()) propose_for_new_frontiers();
 }
 
-// The proactive part (§III-B), for the proposals nearest to the sensor, each for itself.
+// Proactive part (§III-B): handles the proposals nearest to the sensor, each independently.
 void SeePlanner::Impl::avoid_occlusions() {
   std::set<std::uint32_t> checked;
   bool dropped = true;
@@ -230,12 +231,12 @@ void SeePlanner::Impl::avoid_occlusions() {
       set_aside(unchecked[i]);
       dropped = true;
     }
-    // What was given up makes room for the frontiers around it.
+    // Discarded frontiers allow proposals for the frontiers around them.
     if (dropped && !waiting.empty()) propose_for_new_frontiers();
   }
 }
 
-/// Moves an occluded view to where it is clearest. False if it is still occluded there.
+/// Moves an occluded view to the clearest direction. Returns false if it is still occluded there.
 bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) {
   if (frontier.was_put_off) return true;
   const double offset = clear_offset(frontier);
@@ -253,7 +254,7 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
          !occlusion.is_occluded(frontier.position, offset, frontier.view.position);
 }
 
-/// zeta of a frontier, which depends on the frontier and the cloud alone.
+/// Returns zeta of a frontier, which depends only on the frontier and the cloud.
 double SeePlanner::Impl::clear_offset(Frontier& frontier) {
   if (frontier.offset_of_scan != scans.size()) {
     frontier.offset_of_scan = scans.size();
@@ -289,7 +290,7 @@ void SeePlanner::Impl::update_graph() {
   }
 }
 
-/// Whether the view of one frontier sees another frontier.
+/// Returns whether the view of a frontier sees another frontier.
 bool SeePlanner::Impl::sees(const Frontier& from, Frontier& to) {
   const Vector3d& sensor = from.view.position;
   if (config.facing_test && to.frame.normal.dot(sensor - to.position) <= 0.0) return false;
@@ -319,7 +320,7 @@ std::optional<View> SeePlanner::Impl::select() {
   return frontiers.at(*target).view;
 }
 
-/// The place in the list of the proposal with the least way to it, SEE's choice.
+/// Returns the list index of the nearest proposal, which SEE selects.
 std::size_t SeePlanner::Impl::nearest_proposal() const {
   const Vector3d& sensor = scans.back().position;
   if (config.nearest == NearestSearch::octree) {
@@ -333,7 +334,8 @@ void SeePlanner::Impl::give_up(std::uint32_t point) {
   frontiers.erase(point);
 }
 
-/// Gives a frontier up, and where views are put off what it stood for: it had the same looks.
+/// Discards a frontier. If views are deferred, also discards the frontiers that it represents,
+/// because they had the same views.
 void SeePlanner::Impl::give_up_cluster(std::uint32_t point) {
   give_up(point);
   if (config.still_occluded != StillOccluded::put_off) return;
@@ -349,7 +351,7 @@ void SeePlanner::Impl::give_up_cluster(std::uint32_t point) {
   }
 }
 
-/// What becomes of a frontier whose view is of no use.
+/// Defers or discards a frontier whose view is not useful.
 void SeePlanner::Impl::set_aside(std::uint32_t point) {
   const auto found = frontiers.find(point);
   const bool may_come_back =
@@ -358,7 +360,7 @@ void SeePlanner::Impl::set_aside(std::uint32_t point) {
   put_off.add(frontiers.extract(found));
 }
 
-// If there are none, what was put off comes back.
+// Lists the proposals. If there are none, resumes the deferred frontiers.
 void SeePlanner::Impl::list_proposals() {
   if (frontiers.empty()) put_off.take_up_again(placement, frontiers);
   proposal_points.clear();

@@ -1,11 +1,11 @@
-/// SEE and SEE++: next best views from the density of the measurements alone, with no mesh and no
-/// voxel grid.
+/// SEE and SEE++: next best views based on the density of the measurements, without mesh or voxel
+/// grid.
 ///
-/// Source: Border and Gammell, "Proactive Estimation of Occlusions and Scene Coverage for Planning
-/// Next Best Views in an Unstructured Representation" (SEE++), and Border, Gammell and Newman,
-/// "Surface Edge Explorer (SEE)", 2018. Symbols of the paper stand beside our names. Where the
-/// paper leaves a choice, each reading is a field of SeeConfig; docs/explanation/see.md tells what
-/// each does to the results.
+/// Sources: Border and Gammell, "Proactive Estimation of Occlusions and Scene Coverage for Planning
+/// Next Best Views in an Unstructured Representation" (SEE++); Border, Gammell and Newman, "Surface
+/// Edge Explorer (SEE)", 2018. Comments relate identifiers to the symbols of the paper. Where the
+/// paper is ambiguous, the interpretation is a field of SeeConfig; docs/explanation/see.md
+/// describes its effect on the results.
 #pragma once
 
 #include <memory>
@@ -17,10 +17,10 @@
 
 namespace skycap::survey::see {
 
-/// SEE++ as configured; with `optimise_views` and `visibility_graph` off it is SEE.
+/// SEE++ planner. With `optimise_views` and `visibility_graph` off, it is SEE.
 class SeePlanner final : public Planner {
  public:
-  /// Throws what config.validate() throws.
+  /// Throws the errors of config.validate().
   SeePlanner(const SeeConfig& config, const geometry::Camera& camera);
   ~SeePlanner() override;
 
@@ -31,7 +31,7 @@ class SeePlanner final : public Planner {
   geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;
 
-  /// d, the distance from a frontier to the view proposed for it.
+  /// Returns d, the distance between a frontier and its proposed view [m].
   double view_distance() const;
 
  private:

@@ -22,7 +22,7 @@ int SeeConfig::effective_core_threshold() const {
 }
 
 int SeeConfig::half_disc_threshold() const {
-  // Discs of diameter epsilon put down at random fill this share of a plane (Feder 1980).
+  // Fraction of a plane that randomly placed discs of diameter epsilon cover (Feder 1980).
   constexpr double filled = 0.547;
   const double radii = 2.0 * resolution_radius / effective_spacing();
   const double half = 0.5 * filled * radii * radii;

@@ -1,4 +1,5 @@
-/// Whether a measured sight line passes a place: SEE's test of which side of a surface is free.
+/// Tests whether measured lines of sight pass a position. SEE uses this to find the free side of a
+/// surface.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 
 namespace skycap::survey::see {
 
-/// All points of a scan, as directions from the sensor.
+/// Points of a scan, indexed by their direction from the sensor.
 class SeenThrough {
  public:
   SeenThrough(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& sensor)
@@ -23,7 +24,8 @@ class SeenThrough {
       ranges_.push_back(ray.norm());
     }
   }
-  /// Whether every measurement along the line to `place` is from behind it. False if there is none.
+  /// Returns whether all measurements in the direction of `place` are behind it. Returns false
+  /// without measurements in that direction.
   bool is_free(const Eigen::Vector3d& place) const {
     const Eigen::Vector3d ray = place - sensor_;
     const auto near = directions_.within(ray.normalized().cast<float>(), chord);
@@ -31,8 +33,8 @@ class SeenThrough {
       return ranges_[index] > ray.norm();
     });
   }
-  /// Whether of the two sides of a surface through `place` the one behind is free. Both are probed,
-  /// the front first, every `step` as far as `limit`, until one turns out to be.
+  /// Returns whether the side of a surface at `place` opposite to `normal` is free. Tests both
+  /// sides, the front side first, every `step` up to `limit`, until one is found to be free.
   bool is_free_behind(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double step,
                       double limit) const {
     double along = step;
@@ -45,7 +47,7 @@ class SeenThrough {
   }
 
  private:
-  static constexpr double chord = 0.01;  // between unit directions that count as the same line
+  static constexpr double chord = 0.01;  // maximum chord between unit directions on the same line
   Eigen::Vector3d sensor_;
   geometry::SpatialIndex directions_;
   std::vector<double> ranges_;

@@ -10,7 +10,7 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
-/// The direction from the frontier to the adjusted sensor position.
+/// Returns the direction from the frontier to the adjusted sensor position.
 Vector3d adjusted_direction(const Frontier& frontier, const Vector3d& from_centroid, double gain,
                             double distance, Adjustment adjustment) {
   const auto& [n, e_f, e_b] = frontier.frame;
@@ -20,7 +20,8 @@ Vector3d adjusted_direction(const Frontier& frontier, const Vector3d& from_centr
   if (adjustment == Adjustment::shift) {
     return (u + (s + 1.0) * (a1 * e_f + a2 * e_b)).normalized();
   }
-  // theta is the difference of the angles that the shifted view and the centroid subtend at d.
+  // theta is the difference between the angles of the shifted view and of the centroid at the
+  // distance d.
   const double theta1 = std::atan(s * a1 * d / (d * d + (s + 1.0) * a1 * a1));
   const double theta2 = std::atan(s * a2 * d / (d * d + (s + 1.0) * a2 * a2));
   u = AngleAxisd(theta1, e_b) * (u + (s + 1.0) * a1 * e_f);

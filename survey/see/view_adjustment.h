@@ -1,7 +1,8 @@
-/// How SEE moves a view that did not resolve its frontier: the reactive handling of occlusions.
+/// Adjustment of views that did not resolve their frontiers: the reactive handling of occlusions in
+/// SEE.
 ///
-/// Source: the authors' released code, which SEE++ keeps from SEE; the paper says only that
-/// "incremental view adjustments" are applied. Letters as in docs/explanation/see.md.
+/// Source: the authors' released code, which SEE++ inherits from SEE. The paper only states that
+/// "incremental view adjustments" are applied. Symbols as in docs/explanation/see.md.
 #pragma once
 
 #include <limits>
@@ -15,24 +16,28 @@
 
 namespace skycap::survey::see {
 
-/// What has been tried for a frontier. Kept when the point loses its label, so that a frontier
-/// that comes back has only the attempts left that it had.
+/// Attempts to resolve a frontier. Kept when the point loses its label, so that a frontier that
+/// appears again does not get more attempts.
 struct AttemptRecord {
-  double gain = 1.0;                                               ///< s
-  double best_distance = std::numeric_limits<double>::infinity();  ///< of scan centroids so far
-  bool may_switch = true;  ///< whether the second start, from the observing line, is still to come
-  int views = 0;           ///< aimed at the frontier
+  double gain = 1.0;  ///< s: gain of the next adjustment
+  double best_distance =
+      std::numeric_limits<double>::infinity();  ///< minimum distance of a scan centroid from the
+                                                ///< frontier so far [m]
+  bool may_switch = true;  ///< the second start, from the observing line, is still available
+  int views = 0;           ///< number of views aimed at the frontier
 };
 
 Eigen::Vector3d centroid(std::span<const Eigen::Vector3f> points);
-/// Those of the points that lie in a box, in their order.
+/// Returns the points inside a box, in the same order.
 std::vector<Eigen::Vector3f> points_inside(std::span<const Eigen::Vector3f> points,
                                            const Eigen::AlignedBox3d& box);
 
-/// Moves the view of a frontier that a scan with the centroid `scan_centroid` failed to resolve.
-/// While the centroids come nearer to the frontier, the view is shifted away from them, over the
-/// edge of the measured surface; once they do not, it starts again on the line that the point was
-/// first seen along; then there is nothing more to try. Whether there was something to try.
+/// Adjusts the view of a frontier after a scan with the centroid `scan_centroid` did not resolve
+/// it. Returns false if no adjustment is left.
+///
+/// While the centroids approach the frontier, the view is shifted away from them, beyond the edge
+/// of the measured surface. When they stop approaching, the adjustment restarts on the line from
+/// which the point was first measured. After that, no adjustment is left.
 bool adjust_view(Frontier& frontier, AttemptRecord& record, const Eigen::Vector3d& scan_centroid,
                  const ViewPlacement& placement, Adjustment adjustment);
 

@@ -34,7 +34,8 @@ std::size_t select_by_coverage(const VisibilityGraph& graph,
                                const std::vector<std::uint32_t>& vertices,
                                const std::vector<Eigen::Vector3d>& positions, std::size_t nearest,
                                const Eigen::Vector3d& sensor) {
-  constexpr double least_way = 1e-3;  // a proposal where the sensor already is costs nothing
+  constexpr double least_way =
+      1e-3;  // minimum path length; avoids division by zero at the sensor position
   const std::size_t degree_of_nearest = graph.out_degree(vertices[nearest]);
   std::size_t best = nearest;
   double best_ratio = -1.0, best_way = 0.0;

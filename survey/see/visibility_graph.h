@@ -1,4 +1,5 @@
-/// Which views see which frontiers, and the view that sees most for the way (SEE++ §III-C).
+/// Visibility of frontiers from views, and selection of the view with the largest coverage per path
+/// length (SEE++ §III-C).
 #pragma once
 
 #include <cstddef>
@@ -10,28 +11,31 @@
 
 namespace skycap::survey::see {
 
-/// A directed graph over frontier-view pairs, each named by its frontier's point: an edge from j to
-/// k says that the view proposed for j sees the frontier k.
+/// Directed graph whose vertices are frontier-view pairs, identified by the frontier's point. An
+/// edge from j to k means that the view proposed for j sees frontier k.
 class VisibilityGraph {
  public:
-  /// Replaces the outgoing edges of `from`; none may lead to itself.
+  /// Replaces the outgoing edges of `from`. Loops are not allowed.
   void set_edges(std::uint32_t from, std::vector<std::uint32_t> to);
-  /// Drops every vertex that is not in `vertices` (ascending), and the edges to it.
+  /// Removes all vertices that are not in `vertices` (ascending) and their edges.
   void keep_only(const std::vector<std::uint32_t>& vertices);
 
-  /// deg+: how many other frontiers a view sees.
+  /// Returns deg+: the number of other frontiers that a view sees.
   std::size_t out_degree(std::uint32_t vertex) const;
   bool has_edge(std::uint32_t from, std::uint32_t to) const;
 
  private:
-  std::map<std::uint32_t, std::vector<std::uint32_t>> edges_;  // ascending
+  std::map<std::uint32_t, std::vector<std::uint32_t>>
+      edges_;  // outgoing edges by vertex, ascending
 };
 
-/// The view to take next: of those that see the frontier whose proposal is nearest to the sensor,
-/// and more frontiers than that proposal does, the one with the most frontiers a metre of way; the
-/// nearest proposal itself if there is none. `vertices` (ascending, not empty) have their views at
-/// `positions`; `nearest` is the place in both lists of the proposal nearest to `sensor`. Returns a
-/// place in the lists. Ties go to the shorter way, then to the lower vertex.
+/// Returns the index of the next view in `vertices`. The candidates see the frontier of the nearest
+/// proposal and more frontiers than that proposal does. The candidate with the most frontiers per
+/// metre of path wins. Without candidates, the nearest proposal is returned. Ties are resolved by
+/// the shorter path, then by the lower vertex.
+///
+/// `vertices` must be ascending and not empty, and `positions` contains their view positions.
+/// `nearest` is the index of the proposal nearest to `sensor`.
 std::size_t select_by_coverage(const VisibilityGraph& graph,
                                const std::vector<std::uint32_t>& vertices,
                                const std::vector<Eigen::Vector3d>& positions, std::size_t nearest,

@@ -16,8 +16,8 @@ using Eigen::Matrix3f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Sums over the returns of a block, in the sensor frame. Raw moments, so that those of neighbours
-/// can be pooled; double precision, since they are subtracted from one another.
+/// Sums over the returns of a block in the sensor frame. Raw moments allow pooling with
+/// neighbouring blocks. They need double precision, because they are subtracted from each other.
 struct Moments {
   double count = 0.0;
   Vector3d sum = Vector3d::Zero();
@@ -49,7 +49,7 @@ struct Moments {
   }
 };
 
-/// A return in the sensor frame and the block it belongs to.
+/// Return in the sensor frame and the number of its block.
 struct Return {
   std::uint32_t block;
   Vector3f point;
@@ -60,8 +60,8 @@ class Reducer {
   Reducer(BlockImage& image, const BlockSettings& settings)
       : image_(image), settings_(settings), moments_(image.blocks.size()) {}
 
-  /// `returns_of(row)` gives the returns of a row of blocks; called from several threads, each of
-  /// which is done with a row before it asks for the next.
+  /// `returns_of(row)` provides the returns of a row of blocks. It is called from several threads;
+  /// each thread finishes a row before it requests the next one.
   template <typename ReturnsOf>
   void reduce(ReturnsOf returns_of) {
     const std::size_t rows = static_cast<std::size_t>(image_.projection.rows);
@@ -92,7 +92,7 @@ class Reducer {
       block.is_edge = farthest_depth - block.least_depth > settings_.jump;
       const float behind = block.is_edge ? 0.5F * (block.least_depth + farthest_depth)
                                          : std::numeric_limits<float>::infinity();
-      // Successive returns of a block are summed up in registers.
+      // Consecutive returns of a block are summed in registers.
       Moments moments = moments_[number];
       for (; i < returns.size() && returns[i].block == number; ++i) {
         if (returns[i].point.z() <= behind) moments.add(returns[i].point);
@@ -122,8 +122,8 @@ class Reducer {
     }
   }
 
-  /// The smallest principal axis of the returns of the window of 5 x 5 blocks that are about as far
-  /// away as the block itself.
+  /// Fits the normal of a block: the smallest principal axis of the returns in a window of 5 x 5
+  /// blocks with a similar depth.
   void fit_normal(int row, int column, std::size_t i) {
     const BlockProjection& projection = image_.projection;
     Block& block = image_.blocks[i];
@@ -164,14 +164,14 @@ class Reducer {
   std::vector<Moments> moments_;
 };
 
-/// Tangents of half the angles of view.
+/// Returns the tangents of half the field of view.
 Eigen::Vector2f half_slopes(const geometry::Camera& camera) {
   return (0.5 * Eigen::Vector2d(camera.width(), camera.height()))
       .cwiseQuotient(camera.focal_length_px())
       .cast<float>();
 }
 
-/// Marks the blocks that lie wholly within these slopes about the optical axis.
+/// Marks the blocks completely within these slopes around the optical axis.
 void mark_shots(BlockImage& image, const Eigen::Vector2f& half_slopes) {
   const BlockProjection& p = image.projection;
   const auto is_within = [&](int number, int axis) {
@@ -190,8 +190,8 @@ void mark_shots(BlockImage& image, const Eigen::Vector2f& half_slopes) {
 
 float BlockImage::ray_density(const Block& block, const Eigen::Vector3f& point,
                               float cos_incidence) const {
-  // Rays per unit of the plane at unit depth, over the square metres of that surface which one unit
-  // of it sees: lambda = f_x f_y n cos(theta) / (z^2 cos(alpha)).
+  // Rays per unit area of the image plane at unit depth, divided by the surface area that is
+  // projected to it: lambda = f_x f_y n cos(theta) / (z^2 cos(alpha)).
   const Vector3f in_sensor = projection.sensor_from_world * (point - projection.sensor_position);
   const float depth = in_sensor.z();
   const float cos_off_axis = depth / in_sensor.norm();
@@ -200,14 +200,15 @@ float BlockImage::ray_density(const Block& block, const Eigen::Vector3f& point,
 }
 
 Scale scale_of(double extent, double pixel, std::optional<double> surfel) {
-  // So many surfels across the scene; and of pixels to a surfel between a block's and what still
-  // shows the relief that a view must see.
+  // Target number of surfels across the scene, and limits of the surfel size in pixels. The lower
+  // limit is the size of a block; up to the upper limit, the relief that matters for a view is
+  // resolved.
   constexpr double surfels_across = 150.0, least_pixels = 4.0, most_pixels = 25.0;
-  // A block is a little narrower than a surfel, so that no surfel falls between blocks, and of at
-  // least so many pixels each way: fewer would not tell the noise.
+  // A block is slightly smaller than a surfel, so that no surfel falls between blocks. It has a
+  // minimum width in pixels, below which the noise cannot be estimated.
   constexpr double blocks_to_surfel = 0.8;
   constexpr int least_block_px = 4;
-  constexpr double jump_slope = 4.0;  // what a slope of 76 degrees drops over a block
+  constexpr double jump_slope = 4.0;  // depth difference of a slope of 76 degrees over a block
   const double h = surfel.value_or(
       std::clamp(extent / surfels_across, least_pixels * pixel, most_pixels * pixel));
   const int block_px = std::max(least_block_px, static_cast<int>(blocks_to_surfel * h / pixel));
@@ -225,7 +226,8 @@ BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Came
   projection.sensor_from_world = scan.world_from_sensor.linear().transpose().cast<float>();
   projection.sensor_position = scan.sensor_position().cast<float>();
   projection.focal_length = (camera.focal_length_px() / block_px).cast<float>();
-  // Pixel (0, 0) is the centre of a pixel; block coordinates start at the pixel's outer corner.
+  // Pixel (0, 0) is the centre of a pixel, but block coordinates start at the outer corner of the
+  // pixel.
   projection.principal_point =
       ((camera.principal_point_px().array() + 0.5) / block_px).matrix().cast<float>();
   image.blocks.resize(static_cast<std::size_t>(projection.columns) *
@@ -240,7 +242,7 @@ BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Came
     returns.clear();
     const auto first_block =
         static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(projection.columns);
-    // Pixels ascend, so the returns of a row of blocks are consecutive.
+    // Pixels are ascending, so the returns of a row of blocks are consecutive.
     auto first_pixel = static_cast<std::uint32_t>(row) * b * width;
     auto i = static_cast<std::size_t>(std::ranges::lower_bound(scan.pixels, first_pixel) -
                                       scan.pixels.begin());
@@ -269,7 +271,8 @@ std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
     const float sign = face % 2 == 0 ? 1.0F : -1.0F;
-    Matrix3f face_from_sensor = Matrix3f::Zero();  // right-handed, z along the face's axis
+    Matrix3f face_from_sensor =
+        Matrix3f::Zero();  // right-handed, with z along the axis of the face
     face_from_sensor(2, axis) = sign;
     face_from_sensor(0, (axis + 1) % 3) = sign;
     face_from_sensor(1, (axis + 2) % 3) = 1.0F;
@@ -314,7 +317,7 @@ std::vector<BlockImage> make_block_images(const geometry::ScanSpan& scan,
                                           const geometry::Camera& camera,
                                           const BlockSettings& settings) {
   if (!scan.pixels.empty()) return {make_block_image(scan, camera, settings)};
-  // A face's focal length is half its width.
+  // The focal length of a face is half its width.
   const double spacing = 1.0 / camera.focal_length_px().minCoeff();
   const double focal_length = 1.0 / (spacing * settings.block_px);
   const int face = std::clamp(static_cast<int>(2.0 * focal_length), 16, 512);

@@ -1,10 +1,11 @@
-/// A scan reduced to blocks of neighbouring rays: the unit in which the planner thinks.
+/// Scan reduced to blocks of neighbouring rays, on which the planner operates.
 ///
-/// A block of B x B pixels measures a place a quarter as noisily (B = 4) and two hundred times
-/// faster than its pixels would, and its spread tells the noise. A pinhole image gives one block
-/// image; a sweep without an image (a LiDAR's) becomes a range image of the whole sphere: the six
-/// faces of a cube about the sensor, each of which is a pinhole image of a right angle. Blocks are
-/// numbered row by row.
+/// With B = 4, the mean of a block of B x B pixels has a quarter of the noise of a pixel.
+/// Processing blocks is two hundred times faster than processing their pixels. The spread within a
+/// block shows the noise. A pinhole image is converted to one block image. A sweep without an
+/// image, such as that of a LiDAR, is converted to a range image of the sphere. It consists of six
+/// faces of a cube around the sensor, each a pinhole image with an angle of 90 degrees. Blocks are
+/// numbered in row-major order.
 #pragma once
 
 #include <cmath>
@@ -23,26 +24,26 @@
 
 namespace skycap::survey::skycap {
 
-/// Where a point falls in a grid of blocks.
+/// Projection of a point onto a grid of blocks.
 struct BlockHit {
   std::uint32_t block;
-  float depth;  ///< along the optical axis
+  float depth;  ///< along the optical axis [m]
 };
 
-/// The pinhole projection onto blocks. A block's coordinates run from 0 at its left or upper edge.
+/// Pinhole projection onto blocks. The coordinates of a block start at 0 at its left or upper edge.
 struct BlockProjection {
   int columns = 0, rows = 0;
   Eigen::Matrix3f sensor_from_world = Eigen::Matrix3f::Identity();  ///< rotation only
-  Eigen::Vector3f sensor_position = Eigen::Vector3f::Zero();        ///< world frame
+  Eigen::Vector3f sensor_position = Eigen::Vector3f::Zero();        ///< world frame [m]
   Eigen::Vector2f focal_length = Eigen::Vector2f::Ones();           ///< [blocks]
   Eigen::Vector2f principal_point = Eigen::Vector2f::Zero();        ///< [blocks]
 
-  /// The number of a block, row by row.
+  /// Returns the row-major number of a block.
   std::size_t number_of(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(column);
   }
-  /// The block that a point in the world falls into; nothing outside the image.
+  /// Returns the block of a point in the world frame, or nullopt if the point is outside the image.
   std::optional<BlockHit> project(const Eigen::Vector3f& point) const {
     const Eigen::Vector3f in_sensor = sensor_from_world * (point - sensor_position);
     if (!(in_sensor.z() > 0.0F)) return std::nullopt;
@@ -59,19 +60,20 @@ struct BlockProjection {
   }
 };
 
-/// The returns of one block. Depths are along the optical axis.
+/// Returns of one block. Depths are along the optical axis [m].
 struct Block {
-  std::uint32_t returns = 0;  ///< of the nearer group if the block straddles a jump in depth
-  bool is_edge = false;       ///< straddles a jump: what lies behind is left out
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< world frame
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, towards the sensor
-  float depth = 0.0F;                                ///< mean
+  std::uint32_t returns = 0;  ///< number of returns; for an edge, those of the nearer group only
+  bool is_edge = false;       ///< contains a depth discontinuity; farther returns are ignored
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< world frame [m]
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit vector towards the sensor
+  float depth = 0.0F;                                ///< mean depth
   float least_depth = std::numeric_limits<float>::infinity();
   float depth_deviation = 0.0F;  ///< standard deviation of the depths
-  /// How far the normal can be relied on, 0 to 1: head-on, in the middle of a surface, no edge.
+  /// Reliability of the normal, from 0 to 1. High for frontal views of the interior of a surface
+  /// without edges.
   float quality = 0.0F;
-  float residual = 0.0F;  ///< standard deviation across the surface; 0 if not known
-  /// Whether rays are known to have gone all over it, so that no return means a miss.
+  float residual = 0.0F;  ///< standard deviation across the surface [m]; 0 if unknown
+  /// Whether rays are known to cover the whole block, so that a missing return is a miss.
   bool is_shot_at = true;
 };
 
@@ -79,41 +81,42 @@ struct BlockImage {
   BlockProjection projection;
   std::vector<Block> blocks;
 
-  /// Rays per square metre of a surface that block returns met at the given cosine of incidence.
+  /// Returns the ray density [rays per m^2] on a surface that the returns of `block` hit at the
+  /// given cosine of incidence.
   float ray_density(const Block& block, const Eigen::Vector3f& point, float cos_incidence) const;
 };
 
 struct BlockSettings {
-  int block_px = 4;      ///< B [px]
-  float jump = 0.05F;    ///< J: a larger spread of depths in a block is an edge
+  int block_px = 4;      ///< B: block width [px]
+  float jump = 0.05F;    ///< J: depth spread above which a block is an edge [m]
   unsigned threads = 1;  ///< zero: all processors
 };
 
-/// How finely a scene is told.
+/// Resolution of the scene model.
 struct Scale {
-  double surfel;      ///< h, from one to the next [m]
-  int block_px;       ///< B
-  double least_jump;  ///< that is an edge whatever the noise [m]
+  double surfel;      ///< h: distance between surfels [m]
+  int block_px;       ///< B: block width [px]
+  double least_jump;  ///< minimum J, independent of the noise [m]
 };
 
-/// Of a scene of that extent whose pixels are so far apart at the view distance [m]; `surfel`, if
-/// given, is what the user wants.
+/// Derives the resolution from the extent of the scene [m] and the pixel spacing at the view
+/// distance [m]. `surfel` is the user's value of h, if any.
 Scale scale_of(double extent, double pixel, std::optional<double> surfel);
 
-/// The block image of an organised scan.
+/// Converts an organised scan to a block image.
 BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Camera& camera,
                             const BlockSettings& settings);
 
-/// The face in front, and those others that hold a return, of a scan without an image;
-/// `face_blocks` x `face_blocks` blocks each. The sensor is known to shoot everywhere into the view
-/// of `camera`, whose axis is that of the face in front, and that no less densely than once a
-/// block; of what is beside, nothing is known but the returns.
+/// Converts a scan without an image to the front face and all other faces that contain a return.
+/// Each face has `face_blocks` x `face_blocks` blocks. The sensor is assumed to sample the field of
+/// view of `camera` with at least one ray per block; the axis of `camera` is that of the front
+/// face. Outside this field of view, only the returns are used.
 std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
                                          const geometry::Camera& camera, int face_blocks,
                                          const BlockSettings& settings);
 
-/// Of any scan: its image, or without one the faces of a cube, whose blocks are as wide as those of
-/// the camera's image.
+/// Converts any scan: an organised scan to one image, another scan to cube faces whose blocks have
+/// the width of the camera's blocks.
 std::vector<BlockImage> make_block_images(const geometry::ScanSpan& scan,
                                           const geometry::Camera& camera,
                                           const BlockSettings& settings);

@@ -21,15 +21,16 @@ using geometry::View;
 
 const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
-/// The directions in which a cluster is looked at: along its normal and tilted off it.
+/// Tilt angles of the view directions of a cluster, relative to its normal [rad].
 constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
-/// How far refinement turns a view about its target, round by round [rad].
+/// Rotation angles of a view about its target in each refinement round [rad].
 constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
-constexpr int refined = 3;  // candidates that a round starts from
+constexpr int refined = 3;  // number of candidates refined per round
 constexpr int turned_directions = 6;
-constexpr std::size_t pool_size = 40;         // candidates that a batch is picked from
-constexpr std::size_t most_frames = 3;        // that stand for all of a way's
-constexpr std::size_t most_line_frames = 16;  // the same of lines, whose frames are narrow
+constexpr std::size_t pool_size = 40;   // number of candidates for the batch
+constexpr std::size_t most_frames = 3;  // maximum number of frames that represent a path
+constexpr std::size_t most_line_frames =
+    16;  // maximum for sensors that measure lines, whose frames are narrow
 
 struct Candidate {
   View view;
@@ -47,12 +48,13 @@ Vector3d tilted(const Vector3d& axis, double tilt, double azimuth) {
   return std::cos(tilt) * axis + std::sin(tilt) * (std::cos(azimuth) * u + std::sin(azimuth) * v);
 }
 
-/// Targets by coarse cell and main axis of their normal, the heaviest first.
+/// Groups targets by coarse cell and main axis of their normal. Returns the groups with the largest
+/// weight first.
 std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count) {
   Eigen::AlignedBox3f box;
   for (const auto& target : field.targets()) box.extend(target.position);
   const float cell = std::max(box.sizes().maxCoeff() / 7.0F, 1e-6F);
-  // Ordered, so that equal weights keep their order on every platform.
+  // std::map, so that the order of equal weights does not depend on the platform.
   std::map<std::array<int, 4>, Cluster> clusters;
   for (const auto& target : field.targets()) {
     const Eigen::Vector3i at = ((target.position - box.min()) / cell).array().floor().cast<int>();
@@ -151,7 +153,7 @@ class Chooser {
       weight += target.weight;
     }
     if (weight <= 0.0) return;
-    for (int i = 0; i < settings_.global_directions; ++i) {  // a Fibonacci lattice on the sphere
+    for (int i = 0; i < settings_.global_directions; ++i) {  // Fibonacci lattice on the sphere
       const double z = 1.0 - 2.0 * (i + 0.5) / settings_.global_directions;
       const double level = std::sqrt(1.0 - z * z);
       const double azimuth = golden_angle * i;
@@ -180,8 +182,8 @@ class Chooser {
     }
   }
 
-  /// That guessed gains count for beside known surface. What guesses are the beginning of is no
-  /// reason to leave it for later.
+  /// Returns the weight of predicted gains relative to known surface. It is at most 1, because
+  /// predictions that lead to larger surfaces are no reason to defer known surface.
   double guess_weight() const { return std::min(1.0, settings_.unseen_yield); }
 
   double score(const Candidate& c) const {
@@ -189,7 +191,7 @@ class Chooser {
     return gain / (settings_.view_price + (c.view.position - position_).norm());
   }
 
-  /// Indices of the candidates, best first.
+  /// Returns the indices of the candidates, best first.
   std::vector<std::size_t> ranking() const {
     std::vector<std::size_t> order(candidates_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -199,8 +201,8 @@ class Chooser {
     return order;
   }
 
-  /// Turns the best candidates about what they look at, in every other round about the middle of
-  /// what they would gain.
+  /// Rotates the best candidates about their target. In every other round, the target is the
+  /// centroid of their gain.
   void refine(int round) {
     const std::size_t first = candidates_.size();
     const std::vector<std::size_t> order = ranking();
@@ -216,7 +218,8 @@ class Chooser {
                   : Vector3d(best.view.position + settings_.view_distance * best.view.direction);
       const Vector3d towards = re_aims ? Vector3d((best.view.position - gained).normalized())
                                        : Vector3d(-best.view.direction);
-      // What a view of a whole object gains is nearer than the object's middle that it is aimed at.
+      // The gain of a view of a whole object is closer than the object centre at which the view is
+      // aimed.
       const double distance =
           std::min(settings_.view_distance, (best.view.position - target).norm());
       for (int i = 0; i < turned_directions; ++i) {
@@ -227,7 +230,7 @@ class Chooser {
     evaluate(first);
   }
 
-  /// The best candidates that differ from one another.
+  /// Returns the best candidates that differ from each other.
   std::vector<std::size_t> diverse_pool() const {
     std::vector<std::size_t> pool;
     for (const std::size_t i : ranking()) {
@@ -243,7 +246,7 @@ class Chooser {
     return pool;
   }
 
-  /// What the views of the pool have in sight; takes what is remembered of the last one.
+  /// Returns the sights of the views in the pool. Reuses cached sights of the last selection.
   std::vector<BatchView> seen_from(const std::vector<std::size_t>& pool) {
     std::map<ChoiceMemory::Key, std::vector<Sight>> known = std::exchange(memory_.pool, {});
     std::vector<BatchView> views(pool.size());
@@ -264,7 +267,7 @@ class Chooser {
                            settings_.view_distance);
   }
 
-  /// The most that any of the views and the way to it would cover, as Choice counts it.
+  /// Returns the maximum gain of a view with its path, as defined in Choice.
   double best_on_ways(const std::vector<BatchView>& views) const {
     double best = 0.0;
     for (const BatchView& view : views) {
@@ -278,7 +281,7 @@ class Chooser {
     return best;
   }
 
-  /// Index into the views of the first stop of a batch of them.
+  /// Returns the index in `views` of the first stop of a batch.
   std::size_t first_of_batch(const std::vector<BatchView>& views) const {
     std::vector<float> weights;
     const auto guess = static_cast<float>(guess_weight());
@@ -288,7 +291,7 @@ class Chooser {
     const BatchSettings batch{.size = static_cast<std::size_t>(settings_.batch),
                               .view_price = settings_.view_price};
     const std::vector<Stop> stops = pick_batch(views, std::move(weights), position_, batch);
-    // Lines may sweep nothing on any way: then to the best place by itself.
+    // Lines may sweep nothing on any path. In that case, the best single position is used.
     return stops.empty() ? 0 : stops[first_stop(views, stops, position_, batch.impatience)].view;
   }
 
@@ -327,7 +330,7 @@ std::vector<View> views_between(const View& from, const View& to, std::size_t co
 
 namespace {
 
-/// What several looks have in sight together.
+/// Combined sights of several observations.
 class JointSights {
  public:
   explicit JointSights(std::size_t targets)
@@ -343,7 +346,8 @@ class JointSights {
   std::vector<Sight> all() const {
     std::vector<Sight> sights;
     for (std::uint32_t t = 0; t < uncovered_.size(); ++t) {
-      if (clearness_[t] == 0.0F) continue;  // unknown space that hides it may hide it from all
+      if (clearness_[t] == 0.0F)
+        continue;  // unknown space that hides the target from one view may hide it from all
       sights.push_back({t, std::min(1.0F - uncovered_[t], clearness_[t]), clearness_[t]});
     }
     return sights;
@@ -381,7 +385,7 @@ std::vector<Sight> sights_of_lines(const GainField& field, const View& from, con
                                      2.0 * std::numbers::pi);
   JointSights joint(field.targets().size());
   for (const View& frame : views_between(from, to, looked_at)) {
-    // The nose is to the right of where lines look; turning left carries them back.
+    // The nose is to the right of the lines, so that a left rotation moves them backwards.
     const Vector3d nose = Vector3d(frame.direction.y(), -frame.direction.x(), 0.0).normalized();
     const double swept = std::abs(way.dot(nose) - view_distance * turn);
     joint.add(field.sights(frame),

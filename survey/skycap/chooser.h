@@ -1,5 +1,5 @@
-/// Which view to fly to next: candidates about the worthiest targets, a batch of views that
-/// complement each other, a short tour through them, of which the first stop is flown.
+/// View selection. Generates candidate views of the most valuable targets, selects a batch of
+/// complementary views, and plans a short tour through them. The first view of the tour is flown.
 #pragma once
 
 #include <array>
@@ -18,65 +18,68 @@
 namespace skycap::survey::skycap {
 
 struct ChooserSettings {
-  double view_distance = 2.0;  ///< d
-  double view_price = 4.0;     ///< what a view costs besides the way to it, in metres of way
-  int clusters = 40;           ///< groups of targets that candidates are made for
-  int global_directions = 40;  ///< candidates spread evenly around all that is missing
-  int refinements = 3;         ///< rounds of moving the best candidates
-  int batch = 5;               ///< views planned ahead, at most 6; 1: the best next view only
-  double unseen_yield = 1.0;   ///< what comes of guessed gains (GuessYield)
-  unsigned threads = 1;        ///< zero: all processors
-  std::stop_token stop{};      ///< has choose_view() throw Interrupted
-  /// Between frames that are taken on the way to a view, in metres of way; zero: none are.
+  double view_distance = 2.0;  ///< d: distance of views from their targets [m]
+  double view_price = 4.0;     ///< fixed cost of a view, in metres of path
+  int clusters = 40;           ///< number of target clusters for which candidates are generated
+  int global_directions =
+      40;               ///< number of candidates distributed evenly around all uncovered surface
+  int refinements = 3;  ///< number of rounds in which the best candidates are moved
+  int batch = 5;        ///< number of views planned ahead, at most 6; 1: only the next best view
+  double unseen_yield = 1.0;  ///< yield of predicted gains (GuessYield)
+  unsigned threads = 1;       ///< zero: all processors
+  std::stop_token stop{};     ///< a stop request lets choose_view() throw Interrupted
+  /// Path length between en-route frames [m]; zero: no en-route frames.
   double frame_spacing = 0.0;
-  bool counts_ways = false, sees_lines = false;  ///< as SkycapConfig says
+  bool counts_ways = false, sees_lines = false;  ///< see SkycapConfig
 };
 
-/// Views on the straight way from one view to another as a camera has them that turns evenly
-/// meanwhile, in yaw and in pitch: `count` of them, none at the ends.
+/// Returns `count` views on the straight path between two views, without its ends. The camera
+/// rotates uniformly in yaw and pitch.
 std::vector<geometry::View> views_between(const geometry::View& from, const geometry::View& to,
                                           std::size_t count);
 
 struct Choice {
   geometry::View view;
   double gain;                  ///< expected newly covered area of this view [m^2]
-  std::vector<Sight> with_way;  ///< what it and the straight way there have in sight
-  /// That of the most rewarding view anywhere in reach, guesses counted by `unseen_yield`: for stop
-  /// rules. With `counts_ways` it is that of a view and the way there.
+  std::vector<Sight> with_way;  ///< targets in sight of the view and of the straight path to it
+  /// Expected gain of the best reachable view, for stop rules. Predicted surface is weighted by
+  /// `unseen_yield`. With `counts_ways`, the path to the view is included.
   double best_gain;
-  /// For each target of the field, the probability that the one of the best views of different
-  /// places that sees it best sees it, if it is there. What none of them sees is hidden.
+  /// Visibility of each target of the field: the probability that the best of several good views at
+  /// different positions sees it, if it exists. Targets that none of these views sees are hidden.
   std::vector<float> chances;
 };
 
-/// What a field said of views, by their positions and directions. After a refusal the next view is
-/// chosen from nearly the same candidates: only the others are asked about. Of one field, one
-/// present view and the same settings but for `unseen_yield`.
+/// Cached gains and sights by view position and direction. After a rejection, the next view is
+/// selected from nearly the same candidates, and only new ones are evaluated. Valid for one field,
+/// one present view and constant settings, except for `unseen_yield`.
 struct ChoiceMemory {
   using Key = std::array<double, 6>;
   std::map<Key, Gain> gains;
-  std::map<Key, std::vector<Sight>> pool;  ///< the last one's views, with the ways to them
+  std::map<Key, std::vector<Sight>>
+      pool;  ///< sights of the last selection, including the paths to the views
 };
 
-/// Whether the sensor can be there; must be safe to call from several threads.
+/// Returns whether the sensor can be at a view. Must be thread-safe.
 using Admission = std::function<bool(const geometry::View&)>;
 
-/// What a view and the frames on the straight way to it have in sight together, ascending: a share
-/// is of what any of them covers. A few frames stand for all; without any it is the view's own.
+/// Returns the combined sights of a view and the frames on the straight path to it, ascending by
+/// target. The covered fraction is that of any of them. A few frames represent all; without frames,
+/// the result is that of the view alone.
 std::vector<Sight> sights_with_way(const GainField& field, const geometry::View& from,
                                    const geometry::View& to, double frame_spacing);
 
-/// The same of a sensor that sees lines only, which stand upright across what it looks along to the
-/// left of its nose: a view shows nothing, and the way there what the lines sweep at the view
-/// distance, by moving across themselves and by turning.
+/// Returns the sights of a sensor that measures only vertical lines, to the left of its nose and
+/// perpendicular to its view direction. The view itself shows nothing. The path shows the surface
+/// that the lines sweep at the view distance, by lateral movement and by rotation.
 std::vector<Sight> sights_of_lines(const GainField& field, const geometry::View& from,
                                    const geometry::View& to, double frame_spacing,
                                    double view_distance);
 
-/// The next view from `present`; nothing if no admissible view has any gain. Views farther away
-/// than `most_way` are left out. With frames on the way the best views by themselves are batched by
-/// what they and the straight ways to them would cover together. The same inputs give the same
-/// choice for any number of threads, whatever is remembered.
+/// Returns the next view from `present`, or nullopt if no admissible view has a gain. Views farther
+/// away than `most_way` [m] are skipped. With en-route frames, the best single views are ranked in
+/// the batch by the combined coverage of view and straight path. The result is independent of the
+/// number of threads and of the cached values.
 std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
                                   const Admission& admits, const geometry::View& present,
                                   double most_way, const ChooserSettings& settings,

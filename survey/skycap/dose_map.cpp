@@ -13,25 +13,27 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Lengths in units of the spacing h; areas in units of its square.
-constexpr float least_distance = 0.9F;     // between surfels
-constexpr float packed_area = 1.16F;       // area per surfel when randomly packed at that distance
-constexpr float largest_area = 3.5F;       // what an oblique block may claim at first
-constexpr float neighbour_reach = 2.5F;    // within which a surfel continues another
-constexpr float neighbour_cosine = 0.75F;  // and within 41 degrees of the direction
+// Lengths are in units of the spacing h, areas in units of its square.
+constexpr float least_distance = 0.9F;     // minimum distance between surfels
+constexpr float packed_area = 1.16F;       // area per surfel for random packing at that distance
+constexpr float largest_area = 3.5F;       // maximum initial area of an oblique block
+constexpr float neighbour_reach = 2.5F;    // maximum distance of a surfel that continues another
+constexpr float neighbour_cosine = 0.75F;  // maximum angle to the direction: 41 degrees
 constexpr float off_plane_tolerance = 0.6F;
-constexpr float sharing_reach = 1.6F;    // within which noise carries measurements over
-constexpr float enlarged_reach = 1.6F;   // newcomers within it take area from enlarged surfels
-constexpr float territory_reach = 2.0F;  // within which an old surfel makes a new one no news
-constexpr float face_depth = 0.55F;      // behind a surfel, where another face may be
-constexpr float face_reach = 2.2F;       // and within which
-constexpr float other_face = 0.3F;       // below this cosine: another face
+constexpr float sharing_reach = 1.6F;  // range in which noise displaces measurements
+constexpr float enlarged_reach =
+    1.6F;  // range in which new surfels take area from enlarged surfels
+constexpr float territory_reach =
+    2.0F;                            // range in which an old surfel makes a new one known territory
+constexpr float face_depth = 0.55F;  // distance behind a surfel at which another face is searched
+constexpr float face_reach = 2.2F;   // search radius of another face
+constexpr float other_face = 0.3F;   // maximum cosine between different faces
 constexpr int most_merges = 8;
-constexpr float opposite_sides = -0.3F;  // below this cosine: two sides of something thin
+constexpr float opposite_sides = -0.3F;  // maximum cosine between both sides of a thin object
 
 constexpr int direction_count = 6;
 
-/// Of sixths of a turn.
+/// Cosines and sines of multiples of a sixth of a turn.
 struct DirectionAngles {
   std::array<float, direction_count> cosines, sines;
 };
@@ -52,7 +54,7 @@ const DirectionAngles& direction_angles() {
 std::array<Vector3f, direction_count> open_directions(const Surfels& surfels, std::size_t i) {
   const Vector3f& normal = surfels.normals[i];
   const Vector3f& first = surfels.first_tangents[i];
-  // The normal may have moved since the tangent was chosen.
+  // Orthogonalises the tangent again, because the normal may have changed.
   const Vector3f u = (first - normal * normal.dot(first)).normalized(), v = normal.cross(u);
   const auto& [cosines, sines] = direction_angles();
   std::array<Vector3f, direction_count> directions;
@@ -78,7 +80,7 @@ void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
                   const IsMeasured& was_measured) {
   add_looks(image, dose, jump);
   add_surfels(image, dose, region, was_measured);
-  // Rays come from all sides: a third of the variance along them is along any one axis.
+  // Rays come from all directions, so each axis gets a third of the variance along the ray.
   blur_hazards(std::hypot(dose.noise().isotropic, dose.noise().along_ray / std::sqrt(3.0)));
 }
 
@@ -111,7 +113,7 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
     if (std::abs(off_plane) > across) return;
     const float agreement = block.normal.dot(surfels_.normals[i]);
     const bool is_better = block.quality > 2.0F * surfels_.qualities[i];
-    // The other side of something thin.
+    // Skips the other side of a thin object.
     if (agreement < opposite_sides && !is_better) return;
     const Vector3f towards_sensor =
         (projection.sensor_position - surfels_.positions[i]).normalized();
@@ -132,7 +134,7 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
     }
     surfels_.qualities[i] = std::max(surfels_.qualities[i], block.quality);
   };
-  constexpr std::size_t some = 1024;  // surfels at a time
+  constexpr std::size_t some = 1024;  // surfels per part
   geometry::parallel_for((surfels_.size() + some - 1) / some, threads_, [&](std::size_t part) {
     const std::size_t end = std::min(surfels_.size(), (part + 1) * some);
     for (std::size_t i = part * some; i < end; ++i) add_look(i);

@@ -1,8 +1,8 @@
-/// The measured surface as small patches ("surfels"), and how well each is covered so far.
+/// Measured surface as small patches ("surfels") with the coverage of each.
 ///
-/// A surfel is made from a block of measurements where there is none yet; later scans add the
-/// hazard of their look to it (dose_model.h). Its covered share is 1 - exp(-hazard), so the
-/// surface's predicted coverage is a sum over surfels.
+/// A surfel is created from a block of measurements where no surfel exists. Later scans add the
+/// hazard of their observation to it (dose_model.h). The covered fraction of a surfel is 1 -
+/// exp(-hazard), so the predicted coverage of the surface is a sum over surfels.
 #pragma once
 
 #include <cstdint>
@@ -19,42 +19,45 @@
 
 namespace skycap::survey::skycap {
 
-/// Structure of arrays; a surfel's index never changes.
+/// Surfels as a structure of arrays. Surfel indices never change.
 struct Surfels {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<Eigen::Vector3f> normals;  ///< unit, towards the free side
+  std::vector<Eigen::Vector3f> normals;  ///< unit vectors towards the free side
   std::vector<float> areas;
-  std::vector<float> hazards;          ///< sum of the hazards of all looks
-  std::vector<float> blurred_hazards;  ///< the same, averaged as noise scatters the measurements
-  std::vector<float> trusts;           ///< in (0, 1]: falls when a look gives far less than hoped
-  std::vector<float> qualities;        ///< best Block::quality of a look
-  std::vector<std::uint8_t> merges;    ///< looks averaged into position and normal, at most 8
-  /// Of the six directions in the surface plane, 60 degrees apart from tangent() on, those in which
-  /// no other surfel follows: bit i set. The surface may go on there, unseen.
+  std::vector<float> hazards;          ///< sum of the hazards of all observations
+  std::vector<float> blurred_hazards;  ///< `hazards`, averaged over the area in which noise
+                                       ///< scatters the measurements
+  std::vector<float>
+      trusts;  ///< in (0, 1]; reduced when an observation yields far less than predicted
+  std::vector<float> qualities;  ///< maximum Block::quality of all observations
+  std::vector<std::uint8_t>
+      merges;  ///< number of observations averaged into position and normal, at most 8
+  /// Bit mask over six tangent directions (60 degrees apart, starting at tangent()). Bit i is set
+  /// if the surfel has no neighbour in direction i, where the surface may continue unobserved.
   std::vector<std::uint8_t> open_directions;
-  std::vector<Eigen::Vector3f> first_tangents;  ///< of the six; unit
+  std::vector<Eigen::Vector3f> first_tangents;  ///< first of the six directions; unit vector
 
   std::size_t size() const { return positions.size(); }
   float covered_share(std::size_t i) const;
-  /// Area that is expected to lack a measurement.
+  /// Returns the area that is expected to lack a measurement [m^2].
   float deficit(std::size_t i) const;
 };
 
-/// Direction `k` (0 to 5) in the plane of surfel `i`.
+/// Returns tangent direction `k` (0 to 5) of surfel `i`.
 Eigen::Vector3f open_direction(const Surfels& surfels, std::size_t i, int k);
 
-/// Whether earlier scans have measured a place already.
+/// Returns whether earlier scans have measured a position.
 using IsMeasured = std::function<bool(const Eigen::Vector3f&)>;
 
 class DoseMap {
  public:
-  /// Surfels lie about `spacing` (h) apart.
+  /// `spacing` (h) is the approximate distance between surfels [m].
   explicit DoseMap(float spacing, unsigned threads = 1);
 
-  /// Adds what the scan's blocks saw: looks at the surfels that are there, then surfels where there
-  /// are none yet. `jump` is the J of BlockSettings. Blocks outside `region`, if given, make no
-  /// surfels. New surfels where it `was_measured`, if that is given, only shape the surface: they
-  /// stand for no area, since surface that was between surfels so far is no new surface.
+  /// Adds the blocks of a scan. First adds observations to existing surfels, then creates surfels
+  /// in uncovered places. `jump` is J of BlockSettings. Blocks outside `region`, if given, create
+  /// no surfels. New surfels at positions for which `was_measured` returns true have no area. They
+  /// only refine the shape, because surface between existing surfels is not new surface.
   void add(const BlockImage& image, const DoseModel& dose, float jump,
            const std::optional<Eigen::AlignedBox3f>& region, const IsMeasured& was_measured = {});
 
@@ -63,18 +66,18 @@ class DoseMap {
 
   bool has_surfel_near(const Eigen::Vector3f& point, float radius) const;
 
-  /// Whether a surfel behind the edge that surfel `i` is at faces another way: as a rule, over a
-  /// convex edge.
+  /// Returns whether a surfel beyond the edge at surfel `i` has a different orientation, which
+  /// usually indicates a convex edge.
   bool has_other_face_near(std::size_t i) const;
 
-  /// Area that the surfels from index `first` on within `radius` of a point stand for [m^2].
+  /// Returns the total area of the surfels with index >= `first` within `radius` of a point [m^2].
   double area_near(const Eigen::Vector3f& point, float radius, std::size_t first) const;
 
-  /// Covered area of the surfels from index `first` on that have none of the earlier ones within
-  /// two spacings: of new territory, and not of gaps in what was known [m^2].
+  /// Returns the covered area of new territory [m^2]: of the surfels with index >= `first` that
+  /// have no earlier surfel within two spacings. Filled gaps in the known surface are excluded.
   double new_territory(std::size_t first) const;
 
-  /// Lowers the trust in surfel `i` by `factor`.
+  /// Multiplies the trust in surfel `i` by `factor`.
   void lower_trust(std::size_t i, float factor) { surfels_.trusts[i] *= factor; }
 
   double area() const;
@@ -91,15 +94,15 @@ class DoseMap {
 
   float spacing_;
   unsigned threads_;
-  geometry::PointGrid grid_;  ///< of the surfels where they were made
+  geometry::PointGrid grid_;  ///< surfel positions at creation
   Surfels surfels_;
-  /// Two surfels near enough to share measurements.
+  /// Two surfels that are close enough to share measurements.
   struct Pair {
     std::uint32_t first, second;
     float squared_distance;
   };
   std::vector<Pair> pairs_;
-  std::vector<geometry::Neighbour> found_;  // kept for its memory
+  std::vector<geometry::Neighbour> found_;  // scratch array
 };
 
 }  // namespace skycap::survey::skycap

@@ -8,9 +8,9 @@
 namespace skycap::survey::skycap {
 namespace {
 
-/// Probability that a point displaced by isotropic noise from a place at distance `offset` from
-/// the centre of a ball ends up in the ball: the non-central chi distribution, 3 degrees of
-/// freedom.
+/// Returns the probability that a point is inside a ball. The point is displaced by isotropic noise
+/// from a position at distance `offset` from the centre. Non-central chi distribution with 3
+/// degrees of freedom.
 double probability_in_ball(double offset, double radius, double sigma) {
   using std::numbers::pi;
   using std::numbers::sqrt2;
@@ -27,7 +27,7 @@ double probability_in_ball(double offset, double radius, double sigma) {
   return std::clamp(probability, 0.0, 1.0);
 }
 
-/// probability_in_ball() by look-up: it is asked for a million times.
+/// Lookup table of probability_in_ball(), which is evaluated a million times.
 class BallTable {
  public:
   BallTable(double radius, double sigma) : reach_(radius + 4.0 * sigma) {
@@ -50,9 +50,9 @@ class BallTable {
   std::array<double, step_count + 1> table_;
 };
 
-/// Probability that the return of a ray meeting the plane at (across, along) from the centre of the
-/// ball falls into it; `along` is in the plane of incidence. Noise along the ray is integrated by
-/// the midpoint rule over 3 standard deviations.
+/// Probability that the return of a ray is inside the ball. The ray hits the plane at (across,
+/// along) from the centre of the ball; `along` is in the plane of incidence. Noise along the ray is
+/// integrated by the midpoint rule over 3 standard deviations.
 class RayTable {
  public:
   RayTable(double radius, const Noise& noise) : ball_(radius, noise.isotropic) {
@@ -60,8 +60,9 @@ class RayTable {
       nodes_.push_back({0.0, 1.0});
       return;
     }
-    // The integrand is a product of two bells of these widths. The rule is all but exact from one
-    // node per width of the product on; without isotropic noise the ball's rim is sharp.
+    // The integrand is the product of two bell curves with these widths. With at least one node per
+    // width of the product, the rule is nearly exact. Without isotropic noise, the border of the
+    // ball is sharp.
     constexpr int least_nodes = 7, most_nodes = 41;
     const double ratio = noise.along_ray / std::max(noise.isotropic, 1e-9 * noise.along_ray);
     const int nodes = static_cast<int>(std::clamp(std::ceil(6.0 * std::hypot(1.0, ratio)),
@@ -75,7 +76,7 @@ class RayTable {
     for (Node& node : nodes_) node.weight /= total;
   }
 
-  /// `lift` is by how much the whole look is displaced across the surface.
+  /// `lift` is the displacement of the whole observation across the surface.
   double operator()(double across, double along, double cosine, double sine, double lift) const {
     double probability = 0.0;
     for (const Node& node : nodes_) {
@@ -102,15 +103,15 @@ class RayTable {
   std::vector<Node> nodes_;
 };
 
-/// 1 - f of the class comment, for a grid of that spacing across the rays and a look that is
-/// displaced by `lift`.
+/// Returns 1 - f of the class comment for a grid of this spacing perpendicular to the rays, and an
+/// observation displaced by `lift`.
 double uncovered_share(const RayTable& ray, double spacing, double cosine, bool even, double lift) {
   const double sine = std::sqrt(1.0 - cosine * cosine);
   const double step_along = spacing / cosine;
   const int reach_across = static_cast<int>(ray.reach_across() / spacing) + 1;
   const int reach_along = static_cast<int>(ray.reach_along(sine) / step_along) + 1;
-  // By symmetry a quarter of the grid's cell stands for all; where noise blurs the grid out, two
-  // offsets each way are plenty.
+  // By symmetry, a quarter of a grid cell represents the whole cell. If noise blurs the grid, two
+  // offsets per axis are sufficient.
   const int offsets = even ? 2 : 8;
   double share = 0.0;
   for (int a = 0; a < offsets; ++a) {
@@ -131,12 +132,13 @@ double uncovered_share(const RayTable& ray, double spacing, double cosine, bool 
   return share;
 }
 
-/// Its mean over displacements of that standard deviation, by the midpoint rule: as many up as
-/// down.
+/// Returns the mean of uncovered_share() over displacements with this standard deviation, by the
+/// midpoint rule. Positive and negative displacements are symmetric.
 double mean_uncovered_share(const RayTable& ray, double spacing, double cosine, bool even,
                             double deviation) {
   if (deviation <= 0.0) return uncovered_share(ray, spacing, cosine, even, 0.0);
-  constexpr int least_nodes = 6, most_nodes = 40;  // four in the reach of the ball, if possible
+  constexpr int least_nodes = 6,
+                most_nodes = 40;  // four nodes within the reach of the ball, if possible
   const int nodes = static_cast<int>(std::clamp(std::ceil(12.0 * deviation / ray.reach_across()),
                                                 double{least_nodes}, double{most_nodes}));
   double share = 0.0, total = 0.0;
@@ -155,7 +157,7 @@ double Noise::across(double cos_incidence) const {
 }
 
 double Noise::across_of_look(double cos_incidence, double z) const {
-  // An angle moves points across the ray.
+  // A rotation moves points perpendicular to the ray.
   const double sine = std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
   return std::hypot(place, angle * z * sine);
 }
@@ -180,11 +182,11 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise, double ray_spac
     : coverage_radius_(coverage_radius), noise_(noise) {
   const RayTable constant(coverage_radius, noise);
   for (int c = 0; c < incidence_count; ++c) {
-    // At grazing incidence the grid degenerates; nothing useful is measured there.
+    // At grazing incidence, the grid degenerates and nothing useful is measured.
     const double cosine = std::max(0.05, static_cast<double>(c) / (incidence_count - 1));
     for (int d = 0; d < density_count; ++d) {
-      // Two nodes an octave, at 1 and 1.5 times its start: hazard() then interpolates in the
-      // density.
+      // Two nodes per octave, at 1 and 1.5 times its start, so that hazard() interpolates linearly
+      // in the density.
       const int octave = d / 2;
       const double rays = std::exp2(double{first_octave} + octave) * (d % 2 == 0 ? 1.0 : 1.5);
       const double spacing = coverage_radius * std::sqrt(cosine / rays);

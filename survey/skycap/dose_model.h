@@ -1,11 +1,14 @@
-/// How much one look at a surface is worth: the probability that the points it leaves cover it.
+/// Coverage model: the probability that the points of one observation cover a surface.
 ///
-/// A place on the surface is covered when a measured point lies within the coverage radius r_d of
-/// it. Rays meet a surface in a regular grid of some density and each return is displaced by noise,
-/// so a look covers only a share f of the area. Looks from different places are independent, their
-/// grids unrelated, so the uncovered shares multiply, and their *hazards* H = -ln(1 - f) add up:
-/// the covered share after all looks is 1 - exp(-sum of H). One quantity thus serves clean data
-/// (one dense look covers everything) and noise several times r_d (many looks are needed).
+/// A position on the surface is covered if a measured point lies within the coverage radius r_d of
+/// it. Rays hit a surface in a regular grid, and noise displaces each return, so that one
+/// observation covers only a fraction f of the area. Observations from different positions are
+/// independent, because their grids are unrelated. Hence the uncovered fractions multiply, and the
+/// *hazards* H = -ln(1 - f) add up. The covered fraction after all observations is 1 - exp(-sum of
+/// H).
+///
+/// One quantity thus describes clean data, for which one dense observation covers everything, and
+/// noise of several r_d, for which many observations are needed.
 #pragma once
 
 #include <algorithm>
@@ -16,51 +19,56 @@
 
 namespace skycap::survey::skycap {
 
-/// Standard deviations of a measured point about the true one.
+/// Standard deviations of a measured point from the ground truth.
 struct Noise {
-  double isotropic = 0.0;  ///< along each axis
-  double along_ray = 0.0;  ///< further noise, along the measuring ray only
-  /// Of a sensor whose noise grows with range: the share of the variance at `depth` that grows with
-  /// the fourth power of the depth. So the noise of triangulating sensors does (Khoshelham &
-  /// Elberink, Accuracy and Resolution of Kinect Depth Data, Sensors 12, 2012, Eq. (10)).
+  double isotropic = 0.0;  ///< along each axis [m]
+  double along_ray = 0.0;  ///< additional noise along the measuring ray [m]
+  /// Fraction of the variance at `depth` that grows with the fourth power of the depth. This models
+  /// triangulating sensors (Khoshelham & Elberink, Accuracy and Resolution of Kinect Depth Data,
+  /// Sensors 12, 2012, Eq. (10)).
   double growing = 0.0;
-  double depth = 1.0;  ///< that the deviations hold at if they grow [m]
-  /// Errors of the pose, which all points of a look have alike: of the place along each axis [m],
-  /// and small angles about each [rad].
+  double depth = 1.0;  ///< depth at which the deviations are valid if they grow [m]
+  /// Pose errors, which are common to all points of an observation: position along each axis [m]
+  /// and small rotation about each axis [rad].
   double place = 0.0, angle = 0.0;
 
-  /// Standard deviation of the points of one look across a surface met at this cosine of the angle
-  /// of incidence.
+  /// Returns the standard deviation of the points of one observation across a surface with this
+  /// cosine of the angle of incidence [m].
   double across(double cos_incidence) const;
-  /// That of a whole look, at a depth [m].
+  /// Returns the standard deviation of a whole observation, including pose errors, at depth `z`
+  /// [m].
   double across_of_look(double cos_incidence, double z) const;
-  /// The noise of what is so deep, which does not grow.
+  /// Returns the noise at depth `z` [m] as a model that does not grow with range.
   Noise at(double z) const;
-  /// Whether the other one is so much like it that doses are the same: all parts within `tolerance`
-  /// of the noise across.
+  /// Returns whether both noise models give the same hazards: the deviations differ by at most
+  /// `tolerance` times the noise at normal incidence, and the growing fractions by at most
+  /// `tolerance`.
   bool is_like(const Noise& other, double tolerance) const;
 };
 
-/// The share covered by one look, for one coverage radius and noise. Immutable.
+/// Covered fraction of one observation for a given coverage radius and noise. Immutable.
 ///
-/// For rays in a square grid (seen by the sensor) that meet a plane at the given incidence,
-/// 1 - f is the mean over the grid's offset of prod_i (1 - p_i), where p_i is the probability that
-/// the return of ray i falls into the ball of radius r_d about the place. An error of the pose
-/// moves all returns of a look alike: the mean is over it, too, across the surface; along it the
-/// grid's offset already is any. It is tabulated at construction (up to a tenth of a second, half
-/// of one with such errors) and interpolated.
+/// Rays form a square grid as seen by the sensor and hit a plane at a given incidence. Then 1 - f
+/// is the mean of prod_i (1 - p_i) over the grid offset. Here, p_i is the probability that the
+/// return of ray i is within r_d of the position. A pose error moves all returns of an observation
+/// alike, so the mean includes the pose error across the surface. The component along the surface
+/// is already part of the grid offset.
+///
+/// The model is tabulated at construction and interpolated. Construction takes up to 0.1 s, or 0.5
+/// s with pose errors.
 class DoseModel {
  public:
-  /// `ray_spacing` is that of neighbouring rays at one metre of depth, by which a spacing tells the
-  /// depth that noise is of; it may be left out for noise that does not grow, nor has angles.
+  /// `ray_spacing` is the distance between neighbouring rays at a depth of 1 m. It relates a ray
+  /// spacing to a depth. It is needed only for noise that grows or contains angles.
   DoseModel(double coverage_radius, const Noise& noise, double ray_spacing = 1.0);
 
-  /// -ln(1 - covered share) of a look with `ray_density` rays per square metre of surface (not of
-  /// the plane across the rays), at most `most_hazard` (99.9 % covered).
+  /// Returns -ln(1 - covered fraction) of an observation with `ray_density` rays per m^2 of surface
+  /// (not of the plane perpendicular to the rays). The result is at most `most_hazard` (99.9%
+  /// covered).
   float hazard(float ray_density, float cos_incidence) const {
     const float rays = ray_density * static_cast<float>(coverage_radius_ * coverage_radius_);
     if (!(rays > 0.0F)) return 0.0F;
-    // rays = mantissa * 2^octave with a mantissa in [1, 2), read off the number's bits.
+    // rays = mantissa * 2^octave with a mantissa in [1, 2), taken from the bits of the number.
     const auto bits = std::bit_cast<std::uint32_t>(rays);
     const auto mantissa = std::bit_cast<float>((bits & 0x7fffffU) | 0x3f800000U);
     const float octave =
@@ -84,7 +92,7 @@ class DoseModel {
   static constexpr float most_hazard = 7.0F;
 
  private:
-  static constexpr int density_count = 15;    // rays per r_d^2, from 2^-3 to 2^4, two an octave
+  static constexpr int density_count = 15;    // rays per r_d^2, from 2^-3 to 2^4, two per octave
   static constexpr int incidence_count = 11;  // cosines from 0 to 1
   static constexpr float first_octave = -3.0F;
 

@@ -8,16 +8,19 @@
 namespace skycap::survey::skycap {
 namespace {
 
-constexpr std::size_t least_blocks = 40;  // for a quartile worth its name
-constexpr double least_cosine = 0.5;      // beyond 60 degrees few rays make the window too coarse
+constexpr std::size_t least_blocks = 40;  // minimum for a reliable quartile
+constexpr double least_cosine =
+    0.5;  // beyond 60 degrees, low ray density makes the window too coarse
 
-/// Growth is not believed below this: curvature and chance make some.
-constexpr double least_growth = 2.5;  // of the variance from the nearest depths to the farthest
-constexpr double worst_fit = 0.6;     // relative error of a variance; relief does not fit
-constexpr double farther = 2.0;       // than as a rule, from where looks may be, too
-constexpr int least_span = 2;         // half octaves between their middles
+/// Minimum growth. Smaller growth is caused by curvature and chance.
+constexpr double least_growth =
+    2.5;                           // ratio of the variances at the farthest and the nearest depths
+constexpr double worst_fit = 0.6;  // relative error of a variance; relief exceeds it
+constexpr double farther = 2.0;    // factor for depths beyond the typical depth
+constexpr int least_span = 2;      // minimum difference of half octaves
 
-/// Exact, so that it is the same everywhere: [2^(n/2), 2^((n+1)/2)) has the number n.
+/// Returns n for depths in [2^(n/2), 2^((n+1)/2)). Exact, so that the result does not depend on the
+/// platform.
 int half_octave(float depth) {
   int exponent = 0;
   const float mantissa = std::frexp(depth, &exponent);  // in [1/2, 1)
@@ -28,7 +31,7 @@ double cosine_of(const BlockImage& image, const Block& block) {
   return (image.projection.sensor_position - block.mean).normalized().dot(block.normal);
 }
 
-/// The lower quartile.
+/// Returns the lower quartile.
 template <typename Value>
 Value low_quartile(std::vector<Value>& values) {
   const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
@@ -60,7 +63,8 @@ void NoiseEstimate::add(const BlockImage& image) {
 }
 
 void NoiseEstimate::add_by_depth(const BlockImage& image) {
-  // A bin's quartile is mostly of its nearer part: the depth goes with it.
+  // The quartile of a bin mostly belongs to its nearer part, so the depth of the quartile is stored
+  // with it.
   std::map<int, std::vector<std::pair<float, float>>> residuals;
   for (const Block& block : image.blocks) {
     if (block.residual <= 0.0F || !(block.depth > 0.0F)) continue;
@@ -78,7 +82,7 @@ void NoiseEstimate::add_by_depth(const BlockImage& image) {
   }
 }
 
-/// Least squares of relative errors: (a + b z^4) / variance = 1.
+/// Fits (a + b z^4) / variance = 1 by least squares of relative errors.
 void NoiseEstimate::let_grow(Noise& noise, double depth) const {
   if (by_depth_.empty()) return;
   const auto& [nearest, near] = *by_depth_.begin();
@@ -111,7 +115,7 @@ std::optional<Noise> NoiseEstimate::noise(double negligible, double depth) const
 }
 
 std::optional<Noise> NoiseEstimate::constant_noise() const {
-  // Least squares for variance = a + b c^2, the line through the ranges' middles.
+  // Least-squares fit of variance = a + b c^2 through the centres of the ranges.
   double n = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
   for (int i = 0; i < range_count; ++i) {
     if (!least_variance_[i]) continue;
@@ -125,7 +129,8 @@ std::optional<Noise> NoiseEstimate::constant_noise() const {
   }
   if (n == 0.0) return std::nullopt;
   const double spread = n * sum_xx - sum_x * sum_x;
-  // One range cannot tell the two apart: isotropic is the careful guess, it needs more looks.
+  // A single range cannot distinguish both parts. Isotropic noise is the conservative assumption,
+  // because it requires more observations.
   const double slope = n >= 2.0 ? std::max(0.0, (n * sum_xy - sum_x * sum_y) / spread) : 0.0;
   double isotropic = (sum_y - slope * sum_x) / n, along_ray = slope;
   if (isotropic < 0.0) {

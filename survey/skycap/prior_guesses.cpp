@@ -9,11 +9,11 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Surfaces that face apart by more than this cosine says are not the same: the two sides of a
-/// wall.
+/// Surfaces whose normals have a smaller cosine are different, such as the two sides of a wall.
 constexpr float least_facing = -0.3F;
 
-/// The cube that a point lies in, and which of the six ways it faces most.
+/// Returns a key of the cube that contains the point and of the main direction (one of six) of its
+/// normal.
 std::uint64_t cell_of(const Vector3f& position, const Vector3f& normal, float edge) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
@@ -26,7 +26,7 @@ std::uint64_t cell_of(const Vector3f& position, const Vector3f& normal, float ed
   return cell;
 }
 
-/// Sums over the points of a cell, by area.
+/// Area-weighted sums over the points of a cell.
 struct Gathered {
   Vector3f position = Vector3f::Zero(), normal = Vector3f::Zero();
   float area = 0.0F, uncertainty = 0.0F;
@@ -34,7 +34,7 @@ struct Gathered {
 
 std::vector<PriorPatch> gathered(const PriorSurface& surface, float edge) {
   std::unordered_map<std::uint64_t, std::size_t> index;
-  std::vector<Gathered> cells;  // in the order of their first points
+  std::vector<Gathered> cells;  // in order of their first points
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const std::uint64_t name = cell_of(surface.positions[i], surface.normals[i], edge);
     const auto [entry, is_new] = index.try_emplace(name, cells.size());

@@ -1,9 +1,9 @@
-/// Guesses by what is thought to be there: a prior surface as patches of the planner's resolution,
-/// each open until its place is known.
+/// Surface prediction from prior data. The prior surface is divided into patches with the planner's
+/// resolution. Each patch is open until its position is known.
 ///
-/// A patch is answered when a surface that faces alike is measured within its uncertainty and one
-/// spacing of it, or when a scan measured at its place, or saw through it. What is answered is
-/// never open again: measurements overrule the prior.
+/// A patch is closed in three cases: a surface with a similar orientation is measured within its
+/// uncertainty plus one spacing, a scan measured its position, or a scan saw through it. A closed
+/// patch is never opened again, because measurements take precedence over prior data.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace skycap::survey::skycap {
 
 struct PriorPatch {
   Eigen::Vector3f position;
-  Eigen::Vector3f normal;  ///< unit
+  Eigen::Vector3f normal;  ///< unit vector
   float area;
   float uncertainty;
 };
@@ -29,27 +29,29 @@ class PriorGuesses {
  public:
   enum class State : std::uint8_t { open, found, refuted };
 
-  /// One patch for all points in a cube of the spacing that face about alike.
+  /// Creates one patch for all points of similar orientation in a cube with the edge length
+  /// `spacing` [m].
   PriorGuesses(const PriorSurface& surface, float spacing);
 
-  /// Answers what was measured since the last call.
+  /// Closes patches according to the measurements since the last call.
   void update(const DoseMap& map, const SpaceMemory& space);
 
   const std::vector<PriorPatch>& patches() const { return patches_; }
-  /// Where the patches are that no scan has seen through: they hide what is behind them.
+  /// Returns the positions of the patches that no scan has seen through. They occlude surface
+  /// behind them.
   std::vector<Eigen::Vector3f> standing() const;
-  /// Whether an open patch is within `radius`.
+  /// Returns whether an open patch is within `radius` of `point`.
   bool is_open_near(const Eigen::Vector3f& point, float radius) const;
   State state(std::size_t patch) const { return states_[patch]; }
 
  private:
   std::vector<PriorPatch> patches_;
   std::vector<State> states_;
-  geometry::PointGrid grid_;  ///< of the patches
+  geometry::PointGrid grid_;  ///< grid of the patch positions
   float spacing_;
-  float reach_;  ///< of the most uncertain one
+  float reach_;  ///< maximum uncertainty of a patch plus one spacing [m]
   std::size_t surfels_asked_ = 0, images_asked_ = 0;
-  std::vector<geometry::Neighbour> found_;  // kept for its memory
+  std::vector<geometry::Neighbour> found_;  // scratch array
 };
 
 }  // namespace skycap::survey::skycap

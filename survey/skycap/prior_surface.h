@@ -1,4 +1,4 @@
-/// What is thought to be there before it is measured, whoever says so: for the planner to guess by.
+/// Prior surface from external data, used by the planner to predict surface before it is measured.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace skycap::survey::skycap {
 
-/// Points spread over a surface. Structure of arrays, all of one length.
+/// Points distributed over a surface. Structure of arrays of equal length.
 struct PriorSurface {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<Eigen::Vector3f> normals;  ///< unit, towards the free side
-  std::vector<float> areas;              ///< that each stands for
-  std::vector<float> uncertainties;      ///< bound of how far off each may be
+  std::vector<Eigen::Vector3f> normals;  ///< unit vectors towards the free side
+  std::vector<float> areas;              ///< area represented by each point [m^2]
+  std::vector<float> uncertainties;      ///< upper bound of the position error of each point [m]
 
   std::size_t size() const { return positions.size(); }
 };

@@ -1,4 +1,4 @@
-/// What a mission may set about Skycap's own planner (skycap_planner.h).
+/// Settings of Skycap's own planner (skycap_planner.h).
 #pragma once
 
 #include <memory>
@@ -11,65 +11,70 @@
 
 namespace skycap::survey::skycap {
 
-/// When to stop, in the user's words. The survey ends as soon as one of them holds.
+/// Stop criteria in terms of the user. The survey ends when the first of them is met.
 struct StopRule {
-  /// Enough is covered: the share of the surface, seen and guessed, that the planner believes
-  /// covered; in (0, 1].
+  /// Target coverage: covered fraction of the measured and predicted surface, as estimated by the
+  /// planner; in (0, 1].
   double wanted_coverage = 1.0;
-  /// Another view is not worth it: the best one promises less than this share of the known area, or
-  /// of seven times what one scan covered at most, if that is less.
+  /// Minimum gain of the best view, as a fraction of the known area. If seven times the maximum
+  /// area that one scan covered is smaller, it replaces the known area.
   double least_gain = 0.003;
-  std::optional<double> most_length;  ///< of the straight lines between the views
-  std::optional<double> most_time;    ///< of the flight [s], by `speed` and `time_per_view`
+  std::optional<double> most_length;  ///< total length of the straight lines between the views [m]
+  std::optional<double> most_time;    ///< flight time [s], from `speed` and `time_per_view`
   double speed = 5.0;                 ///< between views [m/s]
-  double time_per_view = 5.0;         ///< to stop, turn and measure [s]
+  double time_per_view = 5.0;         ///< stop, rotation and measurement [s]
 };
 
-/// The planner's main ideas, to find out what each is worth.
+/// Ablation switches of the planner.
 struct SkycapIdeas {
-  bool dose = true;            ///< weigh looks by the noise; otherwise one look covers
-  bool unseen_surface = true;  ///< guess where the surface goes on
-  bool free_space = true;      ///< drop guesses where the sensor saw through
-  bool learned_rates = true;   ///< grade the guesses by what became of the earlier ones
-  bool targeted_views = true;  ///< candidates for what is missing, besides the global directions
-  bool refinement = true;      ///< move the best candidates
-  bool batch = true;           ///< plan several views ahead
+  bool dose = true;  ///< weight observations by noise; otherwise one observation covers completely
+  bool unseen_surface = true;  ///< predict how the surface continues
+  bool free_space = true;      ///< discard predictions where the sensor saw through
+  bool learned_rates = true;   ///< weight predictions by the success of earlier ones
+  bool targeted_views =
+      true;  ///< generate candidates for uncovered surface, in addition to the global directions
+  bool refinement = true;  ///< move the best candidates
+  bool batch = true;       ///< plan several views ahead
 };
 
 struct SkycapConfig {
-  double coverage_radius = 0.005;  ///< r_d: covered is what has a measurement this near
-  std::optional<double> spacing;   ///< epsilon, least distance of kept points; r_d / 2
-  /// d, at which views are taken; where the pixels are r_d / 2 apart on a wall.
+  double coverage_radius =
+      0.005;  ///< r_d: maximum distance of a measurement that covers a position [m]
+  std::optional<double>
+      spacing;  ///< epsilon: minimum distance of kept points [m]; default: r_d / 2
+  /// d: view distance [m]; default: the distance at which the pixel spacing on a wall is r_d / 2.
   std::optional<double> view_distance;
-  std::optional<double> view_price;  ///< what a view costs, in metres of way; 3 d
-  std::optional<double> resolution;  ///< h of the surfels; from the pixels and the first scan
-  /// Angle between ray and normal beyond which the sensor gets no return [rad], in (0, pi/2]. Looks
-  /// at more than 78 degrees are not counted on, whatever it is.
+  std::optional<double> view_price;  ///< fixed cost of a view, in metres of path; default: 3 d
+  std::optional<double>
+      resolution;  ///< h: surfel spacing [m]; default: from the pixels and the first scan
+  /// Maximum angle between ray and normal with a return [rad], in (0, pi/2]. Observations at more
+  /// than 78 degrees are never counted on.
   double max_incidence = 1.5707963267948966;
-  /// Where the scene is. What lies outside is no surface of interest, and its space is free.
-  /// Not given: all that was measured so far.
+  /// Bounding box of the scene. Surface outside is ignored, and space outside is assumed free.
+  /// Default: the bounding box of all measurements so far.
   std::optional<Eigen::AlignedBox3d> scene_box;
-  /// What is thought to be there; null: nothing.
+  /// Prior surface; may be null.
   std::shared_ptr<const PriorSurface> prior{};
   ViewLimits limits;
   StopRule stop;
   SkycapIdeas ideas;
-  int continuation_steps = 3;  ///< how far guesses reach: 1.6 h, 3.2 h, 6.4 h ... ; 1 to 5
-  /// Whether a ray without a return shows empty space, to drop guesses. Never for where to fly.
+  int continuation_steps = 3;  ///< range of predictions: 1.6 h, 3.2 h, 6.4 h ...; 1 to 5 steps
+  /// Whether a ray without a return proves free space for discarding predictions. Never used for
+  /// path planning.
   bool misses_are_empty = true;
-  unsigned threads = 1;  ///< zero: all processors; the plan does not depend on it
-  /// How far a scan's pose is known to be off: standard deviations of its place along each axis [m]
-  /// and of small angles about each [rad].
+  unsigned threads = 1;  ///< zero: all processors; does not affect the plan
+  /// Pose error of a scan: standard deviation of the position along each axis [m] and of a small
+  /// rotation about each axis [rad].
   double place_error = 0.0, angle_error = 0.0;
-  /// Between frames that are taken on straight ways to views [m]; zero: none are.
+  /// Distance between en-route frames on straight paths to views [m]; zero: no en-route frames.
   double frame_spacing = 0.0;
-  /// Whether a single scan shows so little that stop rules count a view with the way to it.
+  /// Whether stop rules include the path to a view, for sensors whose single scans show little.
   bool counts_ways = false;
-  /// Whether the sensor sees upright lines only, which are to the left of a level nose: then the
-  /// camera stands for what is swept in a frame's spacing, and only ways measure.
+  /// Whether the sensor measures only vertical lines, to the left of a level nose. The camera then
+  /// represents the area swept within a frame spacing, and only paths measure.
   bool sees_lines = false;
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} that names the first field outside its interval.
   void validate() const;
 };
 

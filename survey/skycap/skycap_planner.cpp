@@ -25,22 +25,25 @@ using Eigen::Vector3f;
 using geometry::ScanSpan;
 using geometry::View;
 
-/// So many successive scans that each add less than this share of the area end the survey.
+/// The survey ends after this number of consecutive scans that each add less than this fraction of
+/// the area.
 constexpr double idle_gain = 0.003;
 constexpr int most_idle_scans = 8;
-/// Shares are of the known area, or of this many times what one scan covered at most: objects take
-/// about as many, and a scene that takes many more is worth as small gains as an object.
+/// Fractions refer to the known area, but at most to this multiple of the maximum area that one
+/// scan covered. Objects need about as many scans. For a larger scene, the same absolute gains are
+/// then relevant as for an object.
 constexpr double scans_of_an_object = 7.0;
-/// Of this share of d in unknown space, 37 % lets a look at what is guessed beyond it through.
+/// Length of unknown space, as a fraction of d, with a line-of-sight confidence of 37%.
 constexpr double clearness_scale = 0.15;
-/// A jump in depth is of six deviations, which noise alone seldom spans in a block; while the noise
-/// is not known, of a share of the scene.
+/// A depth discontinuity is at least six standard deviations, which noise rarely reaches within a
+/// block. While the noise is unknown, it is a fraction of the scene.
 constexpr double unknown_noise_jump = 0.05, noise_jump = 6.0;
-/// Noise below the first share of r_d is as good as none; a change of the estimate by less than the
-/// second share of itself is not worth a new dose table.
+/// Noise below the first fraction of r_d is treated as zero. A relative change of the estimate
+/// below the second value does not justify recomputing the coverage model.
 constexpr double negligible_noise = 0.12, noise_change = 0.03;
 
-/// Distance between neighbouring rays on a wall at distance 1, the coarser way.
+/// Returns the distance between neighbouring rays on a wall at distance 1, along the coarser image
+/// axis.
 double ray_spacing(const geometry::Camera& camera) {
   return 1.0 / camera.focal_length_px().minCoeff();
 }
@@ -68,7 +71,7 @@ struct SkycapPlanner::Impl {
     if (given.scene_box) region = given.scene_box->cast<float>();
   }
 
-  /// Fixes the resolution by the first scan that holds a point.
+  /// Sets the resolution from the first scan that contains a point.
   void start() {
     Eigen::AlignedBox3f seen;
     for (const Vector3f& point : kept.cloud().positions) seen.extend(point);
@@ -90,7 +93,7 @@ struct SkycapPlanner::Impl {
     if (config.prior) unseen->expect({*config.prior, static_cast<float>(h)});
   }
 
-  /// No scan shows them by itself.
+  /// Adds the configured pose errors, which cannot be estimated from scans.
   Noise with_pose_errors(Noise learnt) const {
     learnt.place = config.place_error;
     learnt.angle = config.angle_error;
@@ -109,7 +112,8 @@ struct SkycapPlanner::Impl {
   }
 
   void take_in(const ScanSpan& scan) {
-    // What the view promised has been seen in part on the way there; lines promise ways.
+    // En-route scans have already shown a part of the predicted gain. For lines, the prediction
+    // refers to paths.
     if (is_field_old && !config.sees_lines) predict();
     const std::vector<BlockImage> images = make_block_images(scan, camera, blocks);
     learn_noise(images);
@@ -133,11 +137,11 @@ struct SkycapPlanner::Impl {
     idle_scans = with_way < idle_gain * reference_area() ? idle_scans + 1 : 0;
   }
 
-  /// Adds a scan to what is known; returns the area that it covers newly.
+  /// Adds a scan to the model and returns the newly covered area [m^2].
   double add(const std::vector<BlockImage>& images) {
     const double covered_before = map->covered_area();
     const auto noise_along = static_cast<float>(dose->noise().across(1.0));
-    // Noise may have brought a point near that says nothing of the place.
+    // Noise may have displaced a point to this position without measuring it.
     const double reach = config.coverage_radius - 2.0 * dose->noise().across(1.0);
     const IsMeasured was_measured = [&](const Vector3f& place) {
       return reach > 0.0 && kept.has_near(place, reach, points_before);
@@ -150,7 +154,7 @@ struct SkycapPlanner::Impl {
     return map->covered_area() - covered_before;
   }
 
-  /// Guesses where the surface goes on, and lists all that a view could cover.
+  /// Predicts how the surface continues and updates all targets.
   void predict() {
     is_field_old = false;
     unseen->predict(*map, *space, region);
@@ -160,7 +164,7 @@ struct SkycapPlanner::Impl {
     asked = {};
   }
 
-  /// The box in which unknown space may hold an obstacle.
+  /// Returns the box in which unknown space may contain obstacles.
   Eigen::AlignedBox3d obstacle_box() const {
     if (config.scene_box) return *config.scene_box;
     Eigen::AlignedBox3f box;
@@ -188,7 +192,7 @@ struct SkycapPlanner::Impl {
     };
   }
 
-  /// How far the next view may be away for the budgets of length and time.
+  /// Returns the maximum distance of the next view for the limits of length and time [m].
   double most_way() const {
     double way = std::numeric_limits<double>::infinity();
     if (config.stop.most_length) way = std::min(way, *config.stop.most_length - length);
@@ -224,7 +228,7 @@ struct SkycapPlanner::Impl {
     return proposed;
   }
 
-  /// What the shares of the stop rule are of.
+  /// Returns the area to which the fractions of the stop rule refer [m^2].
   double reference_area() const {
     return std::min(map->area(), scans_of_an_object * most_covered_at_once);
   }
@@ -238,8 +242,8 @@ struct SkycapPlanner::Impl {
     return SkycapStop::running;
   }
 
-  /// What is to be expected of the guesses that could be seen: the others are as a rule inside of
-  /// something.
+  /// Returns the expected area of the visible predictions [m^2]. The others are usually inside an
+  /// object.
   double guessed_area() const {
     double area = 0.0;
     for (std::size_t t = 0; t < chances.size(); ++t) {
@@ -309,11 +313,11 @@ struct SkycapPlanner::Impl {
   GuessYield yield;
   SpacedCloud kept;
   PlanningStep step;
-  PlanningStep on_way;            ///< what the scans since the last view add to the next step
-  std::size_t taken = 0;          ///< scans, on ways too
-  std::size_t points_before = 0;  ///< kept of those before the last
-  bool is_field_old = false;      ///< there are scans since that it does not know
-  double covered_on_way = 0.0;    ///< newly, since the last view [m^2]
+  PlanningStep on_way;    ///< contribution to the next step of the scans since the last view
+  std::size_t taken = 0;  ///< number of scans, including en-route scans
+  std::size_t points_before = 0;  ///< points kept before the last scan
+  bool is_field_old = false;      ///< the field does not include the latest scans
+  double covered_on_way = 0.0;    ///< newly covered area since the last view [m^2]
 
   BlockSettings blocks;
   double least_jump = 0.0;
@@ -323,19 +327,19 @@ struct SkycapPlanner::Impl {
   std::optional<SpaceMemory> space;
   std::optional<UnseenSurface> unseen;
   std::optional<GainField> field;
-  ChoiceMemory asked;          ///< of the field, from the present view
-  Promise promise;             ///< of the way to the view that is proposed, by lines
-  std::vector<float> chances;  ///< that a good view sees the field's targets, if they are there
+  ChoiceMemory asked;          ///< cached gains of the field from the present view
+  Promise promise;             ///< predicted gain of the path to the proposed view, for lines
+  std::vector<float> chances;  ///< probability that a good view sees each target, if it exists
 
-  double next_gain = 0.0;             ///< of the best view, as a share of the known area
-  double most_covered_at_once = 0.0;  ///< newly covered by one scan [m^2]
+  double next_gain = 0.0;             ///< gain of the best view, as a fraction of the known area
+  double most_covered_at_once = 0.0;  ///< maximum area newly covered by one scan [m^2]
   std::size_t scans = 0;
   double length = 0.0;
   int idle_scans = 0;
-  View present;          ///< of the last view's scan
-  PlaceCheck may_be_at;  ///< null: anywhere
+  View present;          ///< view of the last scan
+  PlaceCheck may_be_at;  ///< null: all positions allowed
   std::optional<View> proposed;
-  std::vector<View> refused;  ///< since the last scan
+  std::vector<View> refused;  ///< rejected views since the last scan
   SkycapStop stop = SkycapStop::running;
 };
 

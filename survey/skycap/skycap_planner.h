@@ -1,11 +1,11 @@
-/// Skycap's own planner: few views, from measurements alone.
+/// Skycap's own planner, which needs few views and uses only measurements.
 ///
-/// It keeps what was measured (dose_map.h), what is known of space (space_memory.h) and guesses
-/// where the surface goes on (unseen_surface.h). A view is worth the area that it is expected to
-/// cover newly; the next one is the first stop of a short tour through views that complement each
-/// other (chooser.h). Nothing needs tuning to a scene: every length derives from the sensor, the
-/// coverage radius and the first scan. docs/explanation/skycap-planner.md has the formulas and what
-/// each idea is worth.
+/// The planner maintains the measured surface (dose_map.h), the free-space memory (space_memory.h)
+/// and a prediction of unobserved surface (unseen_surface.h). The gain of a view is the area that
+/// it is expected to cover newly. The next view is the first stop of a short tour through
+/// complementary views. No parameter needs tuning to a scene: all lengths derive from the sensor,
+/// the coverage radius and the first scan. docs/explanation/skycap-planner.md contains the formulas
+/// and an ablation study.
 #pragma once
 
 #include <memory>
@@ -26,27 +26,28 @@ namespace skycap::survey::skycap {
 enum class SkycapStop {
   running,
   wanted_coverage,
-  little_gain,  ///< no view promises enough, or the last four brought almost nothing
+  little_gain,  ///< the predicted gain is too small, or the last eight scans covered almost nothing
   most_length,
   most_time,
-  nothing_in_reach,  ///< no admissible view sees anything that is missing
+  nothing_in_reach,  ///< no admissible view sees uncovered surface
 };
 
 class SkycapPlanner final : public Planner, public CoverageEstimator {
  public:
-  /// Throws what config.validate() throws.
+  /// Throws the errors of config.validate().
   SkycapPlanner(const SkycapConfig& config, const geometry::Camera& camera);
   ~SkycapPlanner() override;
 
-  /// `scan` may be organised (of the camera) or not: a sweep that shoots everywhere into the view
-  /// of the camera, about as densely as its pixels lie, and maybe elsewhere too. Views are chosen
-  /// by what the camera would see.
+  /// `scan` may be organised (an image of the camera) or a sweep. A sweep must cover the field of
+  /// view of the camera with about the density of its pixels, and may extend beyond it. Views are
+  /// selected by what the camera would see.
   std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
-  /// As next_view(), but proposes nothing, and what the scan shows is not held against what views
-  /// promised.
+  /// Processes a scan like next_view(), but proposes no view and does not compare the scan with the
+  /// predicted gain.
   void pass(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
-  /// From now on only views at such places are proposed, by what is known when they are.
+  /// Restricts subsequent proposals to positions allowed by `may_be_at` at the time of the
+  /// proposal.
   void keep_to(PlaceCheck may_be_at) override;
   void stop_on(const std::stop_token& stop) override;
   const geometry::PointCloud& cloud() const override;
@@ -55,15 +56,15 @@ class SkycapPlanner final : public Planner, public CoverageEstimator {
   StopReason stop_reason() const override;
   const CoverageEstimator* estimator() const override { return this; }
 
-  /// Why the last call proposed nothing.
+  /// Returns why the last call proposed no view.
   SkycapStop stop() const;
-  /// Expected covered share of the surface, seen and guessed.
+  /// Returns the expected covered fraction of the measured and predicted surface.
   double predicted_coverage() const override;
-  /// All that the planner believes of the surface. O(surfels).
+  /// Returns the complete estimate of the surface. Complexity: O(surfels).
   SurveyBelief belief() const override;
   std::string_view stop_rule() const override;
-  /// What views would cover of all that was measured, from an empty cloud, by so many targets at
-  /// most (GainField::of_known_surface()); null before the first scan.
+  /// Returns GainField::of_known_surface() with at most `most_targets` targets, or null before the
+  /// first scan.
   std::shared_ptr<const GainField> known_surface(std::size_t most_targets) const override;
 
  private:

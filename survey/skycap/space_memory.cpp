@@ -9,15 +9,15 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Rays at a lower cosine of incidence may well pass a surface by.
+/// Minimum cosine of incidence at which a ray reliably returns.
 constexpr float least_struck_cosine = 0.3F;
-/// Such a share of the points in sight, and so many of them, on rays without a return tell of
-/// glass. Where there is none, slender bars and noise make it a thousandth or less.
+/// Glass is detected if at least this fraction and this number of the visible points are on rays
+/// without a return. Without glass, thin bars and noise cause at most a thousandth.
 constexpr double glassy_share = 0.004;
 constexpr std::size_t least_missed = 30;
 
-/// Whether no block around has a return: then a grazed surface that swallowed the rays is unlikely,
-/// since some of the neighbours would have hit it less obliquely.
+/// Returns whether no neighbouring block has a return. A grazed surface that absorbs the rays is
+/// then unlikely, because some neighbours would hit it less obliquely.
 bool is_amid_misses(const BlockImage& image, int row, int column) {
   const BlockProjection& p = image.projection;
   for (int r = std::max(0, row - 1); r <= std::min(p.rows - 1, row + 1); ++r) {
@@ -28,7 +28,7 @@ bool is_amid_misses(const BlockImage& image, int row, int column) {
   return true;
 }
 
-/// On the image's axis, as far away as its returns are on average.
+/// Returns the point on the optical axis at the mean depth of the returns.
 Eigen::Vector3f middle_of(const BlockImage& image) {
   float sum = 0.0F, count = 0.0F;
   for (const Block& block : image.blocks) {
@@ -45,7 +45,8 @@ Eigen::Vector3f middle_of(const BlockImage& image) {
 
 std::size_t SpaceMemory::DepthImage::bytes() const { return 3 * least.size() * sizeof(float); }
 
-/// Images are alike that show the same place from the same place.
+/// Updates the most similar newer image. Images are similar if they show the same place from the
+/// same position.
 void SpaceMemory::DepthImage::compare(const DepthImage& newer) {
   const float difference = (projection.sensor_position - newer.projection.sensor_position).norm() +
                            (middle - newer.middle).norm();
@@ -87,7 +88,7 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
       continue;
     }
     depth.farthest = std::max(depth.farthest, block.depth);
-    // A slanted surface spans depths of sqrt(3) standard deviations either side of their mean.
+    // A slanted surface spans depths of sqrt(3) standard deviations on both sides of the mean.
     const float relief = std::sqrt(
         3.0F * std::max(0.0F, block.depth_deviation * block.depth_deviation - noise * noise));
     depth.empty_before[i] = block.depth - relief - tolerance_;
@@ -171,7 +172,7 @@ bool SpaceMemory::proves_empty(const DepthImage& image, const Eigen::Vector3f& c
   const Eigen::Vector3f in_sensor = p.sensor_from_world * (centre - p.sensor_position);
   const float nearest = in_sensor.z() - radius, farthest = in_sensor.z() + radius;
   if (!(nearest > 0.0F)) return false;
-  // The ball's image lies within that of its bounding box's near and far faces.
+  // The image of the ball lies within the images of the near and far faces of its bounding box.
   const auto range = [&](int axis) {
     const float low = in_sensor[axis] - radius, high = in_sensor[axis] + radius;
     const float first = p.focal_length[axis] * std::min(low / nearest, low / farthest);

@@ -1,4 +1,5 @@
-/// What is known of space: the depth images of the scans, asked by projection. No voxels, no box.
+/// Free-space memory: depth images of the scans, queried by projection. It needs no voxels and no
+/// bounding box.
 #pragma once
 
 #include <cstddef>
@@ -13,72 +14,73 @@
 namespace skycap::survey::skycap {
 
 enum class SpaceState {
-  outside,   ///< no scan looked there: outside every image
-  hidden,    ///< scans looked, and none saw it: behind what was measured
-  measured,  ///< at a measured surface, within the tolerance
-  empty,     ///< a scan saw through it
+  outside,   ///< outside all images
+  hidden,    ///< inside an image, but behind the measured surface in all of them
+  measured,  ///< on a measured surface, within the tolerance
+  empty,     ///< at least one scan saw through it
 };
 
-/// Whether no scan saw it, whether one looked there or not.
+/// Returns whether the position is unobserved, inside or outside the images.
 inline bool is_unknown(SpaceState state) {
   return state == SpaceState::outside || state == SpaceState::hidden;
 }
 
-/// Grows by one depth image a scan, up to a size: from there on, the image that is most like a
-/// newer one is forgotten, so that a survey of any length goes on in bounded memory and time. A
-/// query costs one projection for each image, newest first.
+/// Stores one depth image per scan up to `most_bytes`. Beyond that, evicts the image most similar
+/// to a newer one, so that memory and query time are bounded for surveys of any length. A query
+/// needs one projection per image, newest first.
 class SpaceMemory {
  public:
-  /// Hundreds of images with usual blocks; 42 of 2400 x 1750 pixels in the smallest.
+  /// Default memory limit [bytes]. Sufficient for hundreds of images with typical blocks, or for 42
+  /// images of 2400 x 1750 pixels with the smallest blocks.
   static constexpr std::size_t usual_size = std::size_t{128} << 20;
 
-  /// `tolerance` is how far from its depth a measured surface is taken to reach. With
-  /// `misses_are_empty`, a ray without a return proves its way empty as long as its neighbours have
-  /// no return either; without it, it proves nothing. `most_bytes` bounds the images; the newest
-  /// is always kept.
+  /// `tolerance` is the depth range of a measured surface [m]. With `misses_are_empty`, a ray
+  /// without a return proves free space if its neighbours have no return either; otherwise it
+  /// proves nothing. `most_bytes` limits the size of the images; the newest image is always kept.
   SpaceMemory(float tolerance, bool misses_are_empty, std::size_t most_bytes = usual_size)
       : tolerance_(tolerance), misses_are_empty_(misses_are_empty), most_bytes_(most_bytes) {}
 
-  /// `noise` is the measurements' standard deviation along the ray: it does not count as relief.
+  /// Adds the image of a scan. `noise` is the standard deviation along the ray [m], which is not
+  /// treated as relief.
   void add(const BlockImage& image, float noise);
 
-  /// Compares rays without a return with surface that other scans measured: of `points`, which are
-  /// those of earlier calls with new ones behind. Where there is glass, which returns nothing, many
-  /// lie on such rays, and nowhere else.
+  /// Compares rays without a return with surface measured by other scans. `points` must extend
+  /// those of earlier calls. Only glass, which returns nothing, causes many surface points on such
+  /// rays.
   void compare_misses(std::span<const Eigen::Vector3f> points,
                       std::span<const Eigen::Vector3f> normals);
 
-  /// Whether rays without a return have been found to pass through surface: there is glass.
+  /// Returns whether rays without a return pass through measured surface, which indicates glass.
   bool misses_lie() const { return misses_lie_; }
 
-  /// What the scans say of the point, in this order: empty if one saw through it, measured if one
-  /// measured there, hidden if one looked there, outside otherwise. Only images from the number
-  /// `first` on are asked; they are counted from zero, forgotten ones too.
+  /// Returns the state of a point. The first applicable state is returned: empty if a scan saw
+  /// through it, measured, hidden if a scan looked there, otherwise outside. Only images with
+  /// number >= `first` are queried; numbers are zero-based and include evicted images.
   SpaceState query(const Eigen::Vector3f& point, std::size_t first = 0) const;
 
-  /// The same of a surface there that faces `normal`: as long as misses_lie(), a ray without a
-  /// return tells nothing of a surface that it would not have struck from the front.
+  /// Returns the state of a surface at `point` with the normal `normal`. While misses_lie(), rays
+  /// without a return are ignored unless they would hit the front of the surface.
   SpaceState query_surface(const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
                            std::size_t first = 0) const;
 
-  /// Whether the ball is certainly empty: one scan's *returns*, the nearest of each block, all lie
-  /// beyond it. Rays without a return prove nothing here, whatever the constructor was told.
+  /// Returns whether the ball is certainly empty: the nearest *returns* of all blocks of one scan
+  /// are behind it. Rays without a return never prove this, even with `misses_are_empty`.
   bool is_proven_empty(const Eigen::Vector3f& centre, float radius) const;
 
-  std::size_t image_count() const { return count_; }  ///< that were ever added
-  std::size_t bytes() const { return bytes_; }        ///< of the images that are kept
+  std::size_t image_count() const { return count_; }  ///< number of images added so far
+  std::size_t bytes() const { return bytes_; }        ///< size of the stored images [bytes]
 
  private:
   struct DepthImage {
     BlockProjection projection;
-    std::vector<float> empty_before;    ///< seen through up to here; -infinity: proves nothing
-    std::vector<float> measured_until;  ///< measured between `empty_before` and here
-    std::vector<float> least;           ///< the nearest return; -infinity without one
+    std::vector<float> empty_before;    ///< free up to this depth; -infinity: unknown
+    std::vector<float> measured_until;  ///< measured between `empty_before` and this depth
+    std::vector<float> least;           ///< minimum depth of a return; -infinity without returns
     std::size_t number;
-    float farthest = 0.0F;   ///< depth of a return
-    Eigen::Vector3f middle;  ///< of what it shows, on its axis
-    std::size_t twin = 0;    ///< number of the newer one that is most like it
-    float unlikeness = std::numeric_limits<float>::infinity();  ///< of the two
+    float farthest = 0.0F;   ///< maximum depth of a return [m]
+    Eigen::Vector3f middle;  ///< centre of the imaged volume, on the optical axis
+    std::size_t twin = 0;    ///< number of the most similar newer image
+    float unlikeness = std::numeric_limits<float>::infinity();  ///< dissimilarity of the two images
 
     std::size_t bytes() const;
     void compare(const DepthImage& newer);
@@ -93,10 +95,11 @@ class SpaceMemory {
   float tolerance_;
   bool misses_are_empty_;
   std::size_t most_bytes_;
-  std::vector<DepthImage> images_;  ///< the newest last
+  std::vector<DepthImage> images_;  ///< newest last
   std::size_t count_ = 0, bytes_ = 0;
   std::size_t compared_images_ = 0, compared_points_ = 0;
-  std::size_t points_in_sight_ = 0, points_missed_ = 0;  ///< once for each image that has them
+  std::size_t points_in_sight_ = 0,
+              points_missed_ = 0;  ///< counted once per image that contains them
   bool misses_lie_ = false;
 };
 

@@ -11,11 +11,11 @@ using Eigen::Vector3f;
 using geometry::ScanSpan;
 
 constexpr std::uint32_t tile_px = 32;
-constexpr std::size_t sweep_chunk = 4096;  // returns without an image that a thread takes at a time
+constexpr std::size_t sweep_chunk = 4096;  // returns without an image per thread and step
 
-/// Calls `visit` with the index of each return of a row of tiles and its column in its tile, tile
-/// by tile, so that consecutive returns are neighbours in space. Returns without an image go by
-/// their order.
+/// Calls `visit` for each return of a row of tiles with its index and its column in the tile.
+/// Returns are visited tile by tile, so that consecutive returns are close to each other. Returns
+/// without an image are visited in their order.
 template <typename Visit>
 void visit_tiles(const ScanSpan& scan, const geometry::Camera& camera, std::size_t tile_row,
                  Visit visit) {
@@ -27,7 +27,7 @@ void visit_tiles(const ScanSpan& scan, const geometry::Camera& camera, std::size
   const auto width = static_cast<std::uint32_t>(camera.width());
   const auto first_row = static_cast<std::uint32_t>(tile_row) * tile_px;
   const auto rows = std::min(tile_px, static_cast<std::uint32_t>(camera.height()) - first_row);
-  std::array<std::size_t, tile_px> next;  // return of each row
+  std::array<std::size_t, tile_px> next;  // next return of each row
   for (std::uint32_t r = 0; r < rows; ++r) {
     next[r] = static_cast<std::size_t>(
         std::ranges::lower_bound(scan.pixels, (first_row + r) * width) - scan.pixels.begin());
@@ -46,7 +46,7 @@ void visit_tiles(const ScanSpan& scan, const geometry::Camera& camera, std::size
 
 }  // namespace
 
-// Cells wider than pixels: else each return would have one, and a brick, of its own.
+// Cells must be wider than pixels. Otherwise each return would occupy a separate cell and brick.
 SpacedCloud::SpacedCloud(double spacing, double pixel)
     : points_(spacing, 2.0 * std::max(spacing, pixel)) {}
 

@@ -1,5 +1,4 @@
-/// The cloud that Skycap's own planner keeps: of all returns, those that are not too near to one
-/// kept before.
+/// Cloud of Skycap's own planner: all returns, downsampled to a minimum spacing.
 #pragma once
 
 #include <cstddef>
@@ -19,20 +18,22 @@ namespace skycap::survey::skycap {
 
 class SpacedCloud {
  public:
-  /// Points farther apart than `spacing` [m], of scans whose pixels are `pixel` apart on a wall.
+  /// `spacing` is the minimum distance of points [m]. `pixel` is the pixel spacing of the scans on
+  /// a wall [m].
   SpacedCloud(double spacing, double pixel);
 
-  /// Keeps the returns within `region` that have room, said to come from scan number `view`;
-  /// returns how many. An organised scan is of `camera`. What is kept does not depend on `threads`.
+  /// Inserts the returns within `region` that are far enough from all kept points and attributes
+  /// them to scan `view`. Returns their number. An organised scan must be an image of `camera`. The
+  /// result does not depend on `threads`.
   std::size_t insert(const geometry::ScanSpan& scan, const geometry::Camera& camera,
                      const std::optional<Eigen::AlignedBox3f>& region, std::uint32_t view,
                      unsigned threads);
 
-  /// Whether one of the first `count` points is within `radius` of a place.
+  /// Returns whether one of the first `count` points is within `radius` of `place`.
   bool has_near(const Eigen::Vector3f& place, double radius, std::size_t count) const;
 
   const geometry::PointCloud& cloud() const { return cloud_; }
-  /// Hands the points over; nothing may be asked afterwards.
+  /// Moves the cloud out. No other member function may be called afterwards.
   geometry::PointCloud release_cloud() { return std::move(cloud_); }
 
  private:

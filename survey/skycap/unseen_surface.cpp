@@ -14,13 +14,13 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int most_steps = 5;
-constexpr float stretch = 3.0F;          // of the way before a place that is asked about, in scales
-constexpr double prior_strength = 40.0;  // patches' worth of evidence in the first guesses
+constexpr float stretch = 3.0F;  // sampled length of the path before a patch, in units of the scale
+constexpr double prior_strength = 40.0;  // weight of the initial rates, in patches
 constexpr double most_evidence = 60.0;
-constexpr double correlation = 0.2;      // neighbouring patches share their fate: five count as one
-constexpr float disappointment = 0.35F;  // factor on the trust in a place that stayed unknown
+constexpr double correlation = 0.2;      // neighbouring patches are correlated: five count as one
+constexpr float disappointment = 0.35F;  // trust factor for a place that remained unknown
 
-// First guesses [continuation][step]: what tuning on three objects found, and only a start.
+// Initial rates [continuation][step], tuned on three objects. They are only a start for learning.
 constexpr std::array<std::array<double, most_steps>, continuations> first_rates = {
     {{0.8, 0.7, 0.6, 0.5, 0.4},
      {0.5, 0.4, 0.3, 0.2, 0.15},
@@ -28,20 +28,22 @@ constexpr std::array<std::array<double, most_steps>, continuations> first_rates 
      {0.5, 0.4, 0.3, 0.2, 0.2},
      {0.9, 0.85, 0.8, 0.7, 0.6}}};
 
-/// The same of what is thought to be there beforehand: a few scans without it make it unlikely.
+/// Initial rate of the prior surface. A few scans that do not show it reduce the rate
+/// substantially.
 constexpr double first_prior_rate = 0.9;
 
-/// From this rate on it is not guessed a second time what is thought to be there.
+/// Minimum rate at which the prior surface replaces other predictions.
 constexpr double trusted_prior_rate = 0.5;
 
-/// Names of hypotheses that continue the measured surface have 63 bits; the others are numbered.
+/// Identifiers of continuations have 63 bits; patches of the prior surface are numbered with this
+/// bit set.
 constexpr std::uint64_t prior_place = std::uint64_t{1} << 63;
 
 std::uint8_t kind_of(Continuation continuation, int step) {
   return static_cast<std::uint8_t>(continuations * step + static_cast<int>(continuation));
 }
 
-/// Of a surfel's chains, which `beyond` shares with `straight`.
+/// Returns the index of a chain of a surfel; `beyond` shares the chain of `straight`.
 std::size_t chain_number(int direction, Continuation continuation) {
   return 4 * static_cast<std::size_t>(direction) + static_cast<std::size_t>(continuation);
 }
@@ -50,8 +52,9 @@ std::uint64_t place_of(const Vector3f& position, const Vector3f& normal, float e
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   const std::uint64_t facing = static_cast<std::uint64_t>(2 * axis + (normal[axis] < 0.0F ? 1 : 0));
-  // 19 bits a coordinate, 3 for the facing, 3 for the step: distinct within 262,000 cells of the
-  // origin; beyond, far apart places share a name, which does little harm.
+  // 19 bits per coordinate, 3 for the orientation, 3 for the step. Identifiers are unique within
+  // 262,000 cells of the origin. Beyond that, distant places share identifiers, which has little
+  // effect.
   constexpr std::uint64_t mask = (1U << 19) - 1U;
   const Eigen::Vector3i cell = (position / edge).array().floor().cast<int>();
   std::uint64_t place = facing * 8U + static_cast<std::uint64_t>(step);
@@ -88,10 +91,10 @@ void UnseenSurface::predict(const DoseMap& map, const SpaceMemory& space,
     emit_prior(region);
   }
   const Surfels& surfels = map.surfels();
-  // What was known to be empty may be unknown again, this once.
+  // Free space may become unknown again when misses_lie() changes.
   if (std::exchange(misses_lied_, space.misses_lie()) != space.misses_lie()) asked_.clear();
   asked_.resize(surfels.size());
-  constexpr std::size_t some = 512;  // surfels at a time
+  constexpr std::size_t some = 512;  // surfels per part
   std::vector<std::vector<UnseenPatch>> guesses((surfels.size() + some - 1) / some);
   geometry::parallel_for(guesses.size(), settings_.threads, [&](std::size_t part) {
     const std::size_t end = std::min(surfels.size(), (part + 1) * some);
@@ -214,7 +217,7 @@ std::optional<double> UnseenSurface::found_share(const UnseenPatch& patch, const
   const float reach = 0.5F * map.spacing() + 0.75F * patch.edge;
   if (!(map.area_near(patch.position, reach, first_new) > 0.0)) return std::nullopt;
   if (patch.edge <= map.spacing()) return 1.0;
-  // A ball that cuts as much out of a surface through its middle as the square is large.
+  // Radius of a ball that cuts an area as large as the square out of a surface through its centre.
   const float square = patch.edge * patch.edge;
   const float radius = std::sqrt(square / std::numbers::pi_v<float>);
   return std::min(1.0, map.area_near(patch.position, radius, first_new) / double{square});
@@ -300,7 +303,7 @@ void Clearness::update(std::span<const UnseenPatch> patches, const SpaceMemory& 
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const UnseenPatch& patch = patches[i];
     const auto old = rows_.find(patch.place);
-    // Another surfel's guess may go by the same name, a little beside.
+    // The patch of another surfel may have the same identifier at a slightly different position.
     if (old != rows_.end() && old->second.position == patch.position) {
       known_as[i] = old->second.number;
     }
@@ -325,7 +328,7 @@ float Clearness::of(std::size_t i, const Vector3f& sensor) const {
   if (images == 0 || patch.kind == prior_kind) return 1.0F;
   const Vector3f offset = sensor - patch.position;
   const std::size_t way = offset.isZero() ? 0 : way_towards(offset);
-  // Threads that ask the same at once find the same.
+  // Concurrent threads compute the same result.
   std::atomic_ref<std::uint32_t> asked(asked_[way * patches_.size() + i]);
   const std::uint32_t before = asked.load(std::memory_order_relaxed);
   std::uint32_t unknown = before & all_unknown;

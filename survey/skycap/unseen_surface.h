@@ -1,17 +1,20 @@
-/// Guesses where the surface goes on, unseen, beyond the edge of what was measured.
+/// Prediction of unobserved surface beyond the edge of the measured surface.
 ///
-/// A surfel without a neighbour in some direction emits three chains of hypothetical patches:
-/// straight on, bent away (over a convex edge) and bent towards the free side (a concave edge), at
-/// distances that double. Where the first two are known not to be, and no other face is near, the
-/// surfel is at the edge of something thin: a fourth chain guesses its back. A chain ends at the
-/// first patch whose place is not unknown: what the sensor saw through cannot be surface. How much
-/// a hypothesis is worth is learnt: each kind of patch has a hit rate, updated after each scan with
-/// what appeared where it was expected, and a place that disappointed counts less each time.
-/// Nothing is forbidden for good. What lies straight on past the border of all images is a kind of
-/// its own: only the image's border cut the surface off there, so that it is far likelier to go on.
+/// A surfel without a neighbour in some direction emits three chains of hypothetical patches at
+/// doubling distances. One continues straight, one bends away (over a convex edge), and one bends
+/// towards the free side (at a concave edge). If the first two are refuted and no other face is
+/// nearby, the surfel is at the edge of a thin object. A fourth chain then predicts its back. A
+/// chain ends at the first patch whose position is not unknown, because the sensor cannot see
+/// through surface.
 ///
-/// What is thought to be there beforehand (prior_guesses.h) is one more kind, graded as the others:
-/// where it is wrong, its rate falls with each scan that should have shown it.
+/// The value of a hypothesis is learnt. Each kind of patch has a hit rate, which is updated after
+/// each scan by comparison with the predicted surface. The weight of a place decreases with each
+/// failure, but never to zero. Straight continuations beyond the border of all images are a
+/// separate kind. Only the image border cuts off the surface there, so that it is much more likely
+/// to continue.
+///
+/// The prior surface (prior_guesses.h) is another kind, evaluated in the same way: its rate
+/// decreases with each scan that should have shown it but did not.
 #pragma once
 
 #include <algorithm>
@@ -34,27 +37,28 @@
 
 namespace skycap::survey::skycap {
 
-/// How surface goes on; `back`: as the other side of something thin; `beyond`: straight, where no
-/// image looked.
+/// Kinds of continuation. `back` is the other side of a thin object; `beyond` is a straight
+/// continuation outside all images.
 enum class Continuation : std::uint8_t { straight, convex, concave, back, beyond };
 inline constexpr int continuations = 5;
 
-/// UnseenPatch::kind of what is thought to be there beforehand.
+/// UnseenPatch::kind of patches from the prior surface.
 inline constexpr std::uint8_t prior_kind = 25;
 
 struct UnseenPatch {
   Eigen::Vector3f position;
-  Eigen::Vector3f normal;  ///< unit
-  float edge;              ///< of the square that it stands for
-  float weight;            ///< area times the probability that there is surface
+  Eigen::Vector3f normal;  ///< unit vector
+  float edge;              ///< edge length of the patch, a square [m]
+  float weight;            ///< area times the probability that the surface exists [m^2]
   std::uint8_t kind;       ///< 5 * step + continuation, or prior_kind
-  std::uint64_t place;     ///< names the hypothesis: same place, facing and step, same number
+  std::uint64_t
+      place;  ///< identifier of the hypothesis, computed from position, orientation and step
 };
 
 struct UnseenSurfaceSettings {
-  int steps = 3;             ///< patches in a chain, at most 5
-  bool learns_rates = true;  ///< otherwise the rates stay at their first guesses
-  float memory = 0.85F;      ///< share of the evidence on rates kept from scan to scan
+  int steps = 3;             ///< patches per chain, at most 5
+  bool learns_rates = true;  ///< if false, the rates keep their initial values
+  float memory = 0.85F;      ///< fraction of the evidence on rates kept from scan to scan
   unsigned threads = 1;      ///< zero: all processors
 };
 
@@ -62,57 +66,57 @@ class UnseenSurface {
  public:
   explicit UnseenSurface(const UnseenSurfaceSettings& settings);
 
-  /// What is thought to be there, guessed from the next prediction on.
+  /// Sets the prior surface, used from the next prediction on.
   void expect(PriorGuesses prior) { prior_.emplace(std::move(prior)); }
 
-  /// Derives the patches anew from the surfels and from what is known of space.
+  /// Recomputes the patches from the surfels and the free-space memory.
   void predict(const DoseMap& map, const SpaceMemory& space,
                const std::optional<Eigen::AlignedBox3f>& region);
 
-  /// A patch, by its index, that a scan should have shown if it is there, with the probability
-  /// that nothing hides it.
+  /// Patch that a scan should have shown if it exists, with its line-of-sight confidence.
   struct Expected {
     std::uint32_t patch;
     float clearness;
   };
 
-  /// Learns from a scan that should have shown the patches `expected`; the map and the
-  /// space memory hold the scan already, its surfels from index `first_new` on. Call before
-  /// predict().
+  /// Updates the hit rates after a scan that should have shown the patches `expected`. The map and
+  /// the free-space memory must already contain the scan, with its surfels from index `first_new`
+  /// on. Must be called before predict().
   void grade(std::span<const Expected> expected, const DoseMap& map, const SpaceMemory& space,
              std::size_t first_new);
 
   const std::vector<UnseenPatch>& patches() const { return patches_; }
 
-  /// What hides patches of the prior kind from each other.
+  /// Returns the positions of prior patches, which occlude each other.
   std::vector<Eigen::Vector3f> prior_occluders() const {
     return prior_ ? prior_->standing() : std::vector<Eigen::Vector3f>{};
   }
 
-  /// Probability that a patch of that kind and step is there.
+  /// Returns the probability that a patch of this kind and step exists.
   double hit_rate(Continuation continuation, int step) const;
 
-  /// Probability that what is thought to be there beforehand is there.
+  /// Returns the probability that a patch of the prior surface exists.
   double prior_hit_rate() const { return rates_[prior_kind].hits / rates_[prior_kind].tries; }
 
  private:
   struct Rate {
     double hits, tries;
   };
-  /// What earlier predictions found out. Places become known, and never unknown again, so that only
-  /// new images have to be asked.
+  /// Cached results of earlier predictions. A known place never becomes unknown again, so that only
+  /// new images must be queried.
   struct AskedChain {
-    std::uint32_t images = 0;                             ///< of the space memory that were asked
-    int unknown_steps = std::numeric_limits<int>::max();  ///< no patch from this step on
-    std::uint8_t looked_at = 0;  ///< bit set: by an image, the step's place
+    std::uint32_t images = 0;  ///< number of images of the free-space memory that were queried
+    int unknown_steps =
+        std::numeric_limits<int>::max();  ///< number of the first step without a patch
+    std::uint8_t looked_at = 0;           ///< bit mask of the steps that an image has observed
   };
-  /// Those of one surfel, as long as it stays where it is.
+  /// Cached chains of one surfel, valid while it does not move.
   struct AskedChains {
     Eigen::Vector3f position = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
     std::array<AskedChain, 24> chains;  ///< by direction and continuation
   };
-  /// Of one surfel, whatever other surfels emit and places that disappointed aside; may be called
-  /// for several at once.
+  /// Emits the chains of one surfel, independent of other surfels and of failed places. May be
+  /// called concurrently for different surfels.
   void emit_chains(const DoseMap& map, const SpaceMemory& space, std::size_t surfel,
                    const std::optional<Eigen::AlignedBox3f>& region,
                    std::vector<UnseenPatch>& guesses);
@@ -120,10 +124,10 @@ class UnseenSurface {
                   Continuation continuation, const std::optional<Eigen::AlignedBox3f>& region,
                   std::vector<UnseenPatch>& guesses);
   void emit_prior(const std::optional<Eigen::AlignedBox3f>& region);
-  /// Whether the prior, while it is to be trusted, has a patch there that is still open.
+  /// Returns whether the prior surface, if it is reliable, has an open patch at this position.
   bool is_told_by_prior(const UnseenPatch& patch) const;
-  /// The share of what was guessed that a scan has shown whose surfels begin at `first_new`;
-  /// nothing if it has shown no surface there.
+  /// Returns the found fraction of a predicted patch in a scan whose surfels start at `first_new`,
+  /// or nullopt if the scan shows no surface there.
   std::optional<double> found_share(const UnseenPatch& patch, const DoseMap& map,
                                     std::size_t first_new) const;
 
@@ -132,29 +136,30 @@ class UnseenSurface {
   std::optional<PriorGuesses> prior_;
   std::vector<UnseenPatch> patches_;
   std::vector<AskedChains> asked_;                   ///< by surfel
-  bool misses_lied_ = false;                         ///< at the last prediction
-  std::unordered_set<std::uint64_t> seen_places_;    ///< of the prediction under way
-  std::unordered_map<std::uint64_t, float> trusts_;  ///< of places that disappointed
+  bool misses_lied_ = false;                         ///< misses_lie() at the last prediction
+  std::unordered_set<std::uint64_t> seen_places_;    ///< places of the current prediction
+  std::unordered_map<std::uint64_t, float> trusts_;  ///< weights of places with failed predictions
 };
 
-/// How likely it is that nothing hides a guessed place: unknown space before it may hold something,
-/// the likelier the more of it there is.
+/// Line-of-sight confidence of predicted patches: unknown space in front of a patch may contain
+/// occluders, with a probability that grows with its length.
 ///
-/// Of the last stretch of the way to a place, three times `scale` long, L metres are unknown; then
-/// the place is in sight with the probability exp(-L / scale). The ways to one place fall into 54
-/// directions, nine to a face of a cube. Each is asked about in pieces that double in length, each
-/// in its middle, once a view that may use it comes up; and because what is known stays known,
-/// later only what was unknown so far is asked, of new images.
+/// Let L be the unknown length within the last 3 * `scale` of the path to a patch. The patch is in
+/// sight with the probability exp(-L / scale). The paths to a patch are grouped into 54 directions,
+/// nine per face of a cube. Each is sampled at the centres of pieces that double in length, when a
+/// view first needs it. Known space stays known, so that later only unknown pieces are queried
+/// again, in new images.
 class Clearness {
  public:
-  /// `scale` [m]: of so much unknown space 37 % lets a look through.
+  /// `scale` is the unknown length with a confidence of 37% [m].
   explicit Clearness(float scale);
 
-  /// Answers for `patches` from now on, with what `space` knows now; both must outlive the answers.
+  /// Selects the patches and the free-space memory for subsequent queries. Both must outlive the
+  /// queries.
   void update(std::span<const UnseenPatch> patches, const SpaceMemory& space, unsigned threads = 1);
 
-  /// Of patch `i`, for a sensor at `sensor`: in (0, 1]. One without any image, or of what a prior
-  /// tells, which tells what hides it too. Safe to call from several threads.
+  /// Returns the confidence in (0, 1] of patch `i` for a sensor at `sensor`. It is 1 without
+  /// images, and for prior patches, whose occluders are known from the prior surface. Thread-safe.
   float of(std::size_t i, const Eigen::Vector3f& sensor) const;
 
  private:
@@ -164,28 +169,28 @@ class Clearness {
 
   static std::size_t way_towards(const Eigen::Vector3f& offset);
 
-  std::array<float, pieces> middles_;                 ///< of the pieces, from the place [m]
-  std::array<float, all_unknown + 1> probabilities_;  ///< by the unknown pieces
+  std::array<float, pieces> middles_;  ///< distances of the piece centres from the patch [m]
+  std::array<float, all_unknown + 1> probabilities_;  ///< by bit mask of the unknown pieces
   std::array<Eigen::Vector3f, ways> directions_;
 
   std::span<const UnseenPatch> patches_;
   const SpaceMemory* space_ = nullptr;
-  /// Of each way and patch: the pieces that are unknown, below the number of images asked. A sensor
-  /// sees neighbours by the same way.
+  /// Cache by path and patch: bit mask of unknown pieces in the low bits, number of queried images
+  /// above them. A sensor sees neighbouring patches along the same path.
   mutable std::vector<std::uint32_t> asked_;
   struct Row {
     std::size_t number;
     Eigen::Vector3f position;
   };
-  std::unordered_map<std::uint64_t, Row> rows_;  ///< of asked_, by the names of places
+  std::unordered_map<std::uint64_t, Row> rows_;  ///< rows of asked_ by place
 };
 
-/// What guesses are worth: how much surface came of those that the last scans should have shown.
+/// Yield of predictions: found area relative to predicted area over the last scans.
 class GuessYield {
  public:
-  /// A scan was promised `promised` square metres of guesses; it covered `beyond_known` more than
-  /// known surface had promised, and `new_territory` where nothing was known nearby. The former may
-  /// be relief, or noise, and counts for at most what was promised.
+  /// Updates the yield after a scan with `promised` m^2 of predicted surface. The scan covered
+  /// `beyond_known` m^2 more than predicted for known surface and `new_territory` m^2 without known
+  /// surface nearby. The former may be relief or noise and counts up to `promised` only.
   void learn(double promised, double beyond_known, double new_territory) {
     if (promised <= 0.0) return;
     const double found = std::max(
@@ -196,20 +201,21 @@ class GuessYield {
     value_ = std::clamp(found_ / promised_, least, most);
   }
 
-  /// Area found for each square metre that was promised; 1 as long as nothing is known. More than 1
-  /// where guesses were the beginning of something larger.
+  /// Returns the found area per predicted area, or 1 before the first scan. The value exceeds 1 if
+  /// predictions led to larger surfaces.
   double value() const { return value_; }
 
  private:
-  /// The share of the evidence that a scan keeps of those before it.
+  /// Fraction of the earlier evidence that is kept at each scan.
   static constexpr double memory = 0.6;
-  /// What was promised before counts for no more than so many times what a scan was promised: the
-  /// large finds at the beginning say little of the small promises at the end.
+  /// Maximum weight of earlier predictions relative to the latest one. Large finds at the beginning
+  /// of a survey do not predict the small gains at its end.
   static constexpr double most_past = 2.0;
-  /// A scan or two without any find must not end a survey, nor one great find keep it going.
+  /// Limits of the value, so that one or two scans without finds do not end a survey and one large
+  /// find does not prolong it.
   static constexpr double least = 0.15, most = 6.0, most_at_once = 10.0;
 
-  double promised_ = 0.0, found_ = 0.0;  ///< fading sums over the scans [m^2]
+  double promised_ = 0.0, found_ = 0.0;  ///< exponentially weighted sums over the scans [m^2]
   double value_ = 1.0;
 };
 

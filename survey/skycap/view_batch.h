@@ -1,4 +1,4 @@
-/// Several views planned ahead that complement each other, and which of them to fly to first.
+/// Batches of complementary views planned ahead, and the order of flying them.
 #pragma once
 
 #include <cstddef>
@@ -11,33 +11,34 @@
 
 namespace skycap::survey::skycap {
 
-/// A view that a batch may take: where it is, and the targets in its sight.
+/// Candidate view of a batch: position and targets in sight.
 struct BatchView {
   Eigen::Vector3d position;
   std::vector<Sight> sights;
 };
 
 struct BatchSettings {
-  std::size_t size = 5;      ///< views in a batch at most; above 6 the tours are too many
-  double view_price = 4.0;   ///< what a view costs besides the way to it, in metres of way
-  double least_share = 0.5;  ///< of the first view's gain, for another one to join it
-  double impatience = 0.15;  ///< weight of early gain against the length of a tour
+  std::size_t size = 5;     ///< maximum number of views; above 6 there are too many tours
+  double view_price = 4.0;  ///< fixed cost of a view, in metres of path
+  double least_share =
+      0.5;  ///< minimum gain of further views, as a fraction of the first view's gain
+  double impatience = 0.15;  ///< weight of early gain relative to tour length
 };
 
 struct Stop {
-  std::size_t view;  ///< index into the views
-  double gain;       ///< given the stops picked before it
+  std::size_t view;  ///< index of the view
+  double gain;       ///< gain in addition to the previously picked stops
 };
 
-/// Greedy cover: each pick is the view that adds most, per metre of its price and of the way from
-/// the nearest place already on the list (at first `position`), to what the picks before it leave
-/// uncovered of the targets' `weights`. Of equals, the earlier view.
+/// Selects views greedily. Each pick maximises the additional coverage of the targets' `weights`
+/// per cost. The cost is the price of the view plus the path from the nearest position in the list,
+/// which initially contains only `position`. Ties are resolved by the order of the views.
 std::vector<Stop> pick_batch(std::span<const BatchView> views, std::vector<float> weights,
                              const Eigen::Vector3d& position, const BatchSettings& settings);
 
-/// Index into `batch`, which is not empty, of the first stop of its best open tour from `position`:
-/// the one with the least length plus `impatience` times the mean way to the stops, weighted by
-/// their gains. Tries every order.
+/// Returns the index in `batch` (not empty) of the first stop of the best open tour from
+/// `position`. The best tour minimises its length plus `impatience` times the gain-weighted mean
+/// path to the stops. Evaluates all permutations.
 std::size_t first_stop(std::span<const BatchView> views, std::span<const Stop> batch,
                        const Eigen::Vector3d& position, double impatience);
 

@@ -12,19 +12,19 @@ namespace {
 
 using Eigen::Vector3f;
 
-// A look that yields less than a quarter of what was promised, if that was worth mentioning, halves
-// the trust in its surfel.
+// An observation that yields less than a quarter of a substantial predicted gain halves the trust
+// in its surfel.
 constexpr float least_promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
 
-/// Surfels whose missing area is a smaller share of the largest one's are not worth a look each;
-/// together they stay far below any stop rule.
+/// Surfels with a smaller missing area, relative to the maximum, are not targets. Their sum is far
+/// below all stop rules.
 constexpr float least_weight_share = 2e-3F;
-constexpr float raster_spacing = 1.0F;  // pixel at the view distance, in units of h
+constexpr float raster_spacing = 1.0F;  // pixel size at the view distance, in units of h
 
-constexpr std::size_t chunk = 2048;  // targets projected at a time: their arrays stay in the cache
+constexpr std::size_t chunk =
+    2048;  // targets projected at a time, so that their arrays fit into the cache
 
-/// Depths of the nearest surfels, and what the kernels say of a chunk of targets; reused between
-/// calls on one thread.
+/// Depth images and projected targets of a chunk, reused between calls on the same thread.
 struct Workspace {
   DepthRaster raster, prior_raster;
   std::array<std::uint32_t, chunk> in_view, pixels, numbers;
@@ -75,7 +75,7 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
     sources_.push_back(static_cast<std::uint32_t>(i));
   }
   surfel_targets_ = targets_.size();
-  // Patches of one kind follow each other.
+  // Patches of the same kind are consecutive.
   const auto is_prior_patch = [](const UnseenPatch& patch) { return patch.kind == prior_kind; };
   const auto priors = std::ranges::find_if(patches, is_prior_patch);
   first_prior_ = surfel_targets_ + static_cast<std::size_t>(priors - patches.begin());
@@ -99,8 +99,8 @@ GainField GainField::of_known_surface(const DoseMap& map, const geometry::Camera
     const std::size_t end = std::min(first + stride, surfels.size()), middle = (first + end) / 2;
     float weight = 0.0F;
     for (std::size_t i = first; i < end; ++i) {
-      // What was no news when it was found is there all the same, as large as others mostly are.
-      constexpr float usual_area = 1.5F;  // in squares of the spacing
+      // Surfels without area, because they refined known surface, get a typical area.
+      constexpr float usual_area = 1.5F;  // in units of the squared spacing
       const float area =
           surfels.areas[i] > 0.0F ? surfels.areas[i] : usual_area * map.spacing() * map.spacing();
       weight += area * surfels.trusts[i];
@@ -160,7 +160,7 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
     const std::size_t count = std::min(chunk, targets_.size() - first);
     project_targets(raster, focal_length_px_.prod(), count, arrays_of(positions_, first),
                     arrays_of(normals_, first), projected);
-    // Lists in place of branches, which nobody could foresee.
+    // Index lists instead of unpredictable branches.
     std::size_t in_view = 0, in_sight = 0;
     for (std::size_t i = 0; i < count; ++i) {
       work.numbers[in_view] = static_cast<std::uint32_t>(i);
@@ -168,7 +168,7 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
     }
     for (std::size_t k = 0; k < in_view; ++k) {
       const std::uint32_t i = work.numbers[k];
-      // A slanted surface hides itself by as much as it falls off over a square.
+      // A slanted surface occludes itself by its depth difference over a square.
       const float own_tolerance = spacing_ * (1.5F + 2.0F * work.slopes[i]);
       const float tolerance = first + i < surfel_targets_ ? own_tolerance : spacing_;
       work.numbers[in_sight] = i;
@@ -247,7 +247,7 @@ void grade(const Promise& promise, const GainField& field, DoseMap& map, UnseenS
 std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
                                             std::span<const UnseenPatch> patches,
                                             std::span<const float> chances, float guess_yield) {
-  constexpr float well_covered = 0.5F;  // more likely covered than not: not missing
+  constexpr float well_covered = 0.5F;  // more likely covered than not, and therefore not missing
   const Surfels& surfels = map.surfels();
   std::vector<BelievedPatch> believed;
   for (std::size_t i = 0; i < surfels.size(); ++i) {

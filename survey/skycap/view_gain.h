@@ -1,4 +1,4 @@
-/// How much surface a view would newly cover, by what is known and guessed so far.
+/// Gain of views: expected newly covered area, from the measured and the predicted surface.
 #pragma once
 
 #include <array>
@@ -18,14 +18,14 @@
 
 namespace skycap::survey::skycap {
 
-/// A target in sight of a view.
+/// Target in sight of a view.
 struct Sight {
   std::uint32_t target;
-  float covered_share;     ///< of what is still uncovered of it, expected
-  float clearness = 1.0F;  ///< the probability that it is in sight, counted above
+  float covered_share;     ///< expected covered fraction of the uncovered area
+  float clearness = 1.0F;  ///< line-of-sight confidence, included in `covered_share`
 };
 
-/// A target in sight of a view, and the hazard of the look (dose_model.h).
+/// Target in sight of a view, with the hazard of the observation (dose_model.h).
 struct Look {
   std::uint32_t target;
   float hazard;
@@ -33,23 +33,23 @@ struct Look {
 
 struct Gain {
   double area = 0.0;    ///< expected newly covered area [m^2]
-  double unseen = 0.0;  ///< the part of it that is only guessed to be there
-  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();  ///< of it
+  double unseen = 0.0;  ///< part of the area that is only predicted [m^2]
+  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();  ///< centroid of the area [m]
 };
 
 struct GainSettings {
-  double view_distance = 2.0;     ///< d: sets the resolution at which visibility is decided
-  float max_incidence = 1.3614F;  ///< beyond it no return is counted on [rad]; 78 degrees: there a
-                                  ///< head-on look's rays per area are down to a fifth
+  double view_distance = 2.0;  ///< d [m]: determines the resolution of the visibility test
+  float max_incidence =
+      1.3614F;  ///< maximum angle of incidence with a return [rad]; default: 78 degrees, where the
+                ///< ray density is one fifth of that at normal incidence
 };
 
-/// A snapshot of all surfaces, seen and guessed, that answers for any view. Immutable; safe to ask
-/// from any number of threads.
+/// Snapshot of the measured and predicted surface that evaluates views. Immutable and thread-safe.
 ///
-/// Targets are the surfels with a deficit worth a look and the unseen patches. Occlusion is decided
-/// in a depth image of all surfels, splatted as squares of 2 h. Unseen patches hide nothing; but
-/// those of prior_kind are hidden by `prior_occluders`, too. `clearness`, if given, says with what
-/// probability unknown space hides them; it must outlive the field.
+/// Targets are surfels with a relevant deficit and unobserved patches. Occlusion is tested in a
+/// depth image of all surfels, drawn as squares of 2 h. Unobserved patches do not occlude, but
+/// patches of prior_kind are also occluded by `prior_occluders`. `clearness`, if given, is the
+/// line-of-sight confidence of patches and must outlive the field.
 class GainField {
  public:
   GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
@@ -57,9 +57,10 @@ class GainField {
             std::span<const Eigen::Vector3f> prior_occluders = {},
             const Clearness* clearness = nullptr);
 
-  /// The known surface as if nothing had been measured of it yet: for views that are to cover it
-  /// from an empty cloud. One target stands for each so many surfels in turn that there are
-  /// `most_targets` at most, and weighs their area times the trust in them.
+  /// Returns a field of the known surface as if it were unmeasured, for planning views that cover
+  /// it from an empty cloud. Groups of consecutive surfels are represented by one target each, so
+  /// that there are at most `most_targets`. The weight of a target is the area of its surfels times
+  /// the trust in them.
   static GainField of_known_surface(const DoseMap& map, const geometry::Camera& camera,
                                     const DoseModel& dose, const GainSettings& settings,
                                     std::size_t most_targets);
@@ -67,21 +68,21 @@ class GainField {
   struct Target {
     Eigen::Vector3f position;
     Eigen::Vector3f normal;
-    float weight;  ///< uncovered area, expected
+    float weight;  ///< expected uncovered area [m^2]
   };
   std::span<const Target> targets() const { return targets_; }
-  /// The surfel that target `i` is, or the unseen patch: see is_patch().
+  /// Returns the index of the surfel of target `i`, or of its unobserved patch if is_patch().
   std::uint32_t source(std::size_t target) const { return sources_[target]; }
   bool is_patch(std::size_t target) const { return target >= surfel_targets_; }
 
   Gain gain(const geometry::View& view) const;
-  /// The targets in sight of the view, ascending.
+  /// Returns the targets in sight of the view, ascending.
   std::vector<Sight> sights(const geometry::View& view) const;
-  /// The same, with what the looks add to the dose.
+  /// Returns the targets in sight of the view, ascending, with the hazards of the observations.
   std::vector<Look> looks(const geometry::View& view) const;
 
  private:
-  /// Without targets.
+  /// Creates a field without targets.
   GainField(const DoseMap& map, const geometry::Camera& camera, const DoseModel& dose,
             const GainSettings& settings);
   void index_targets();
@@ -93,39 +94,40 @@ class GainField {
   DoseModel dose_;
   float spacing_;
   float least_cosine_;
-  Eigen::Vector2f focal_length_px_;  ///< of the sensor
+  Eigen::Vector2f focal_length_px_;  ///< focal length of the sensor
   float least_range_, most_range_;
-  Eigen::Vector2f half_slope_;  ///< tangents of half the angles of view
+  Eigen::Vector2f half_slope_;  ///< tangents of half the field of view
   float raster_focal_length_px_;
   int raster_width_, raster_height_;
-  std::array<std::vector<float>, 3> occluders_;  ///< all surfels: their x, y and z
+  std::array<std::vector<float>, 3> occluders_;  ///< x, y and z of all surfels
   std::array<std::vector<float>, 3> prior_occluders_;
   std::size_t surfel_targets_ = 0;
-  std::size_t first_prior_ = 0, end_prior_ = 0;  ///< the targets that those are
+  std::size_t first_prior_ = 0, end_prior_ = 0;  ///< index range of the prior targets
   std::vector<Target> targets_;
-  std::array<std::vector<float>, 3> positions_, normals_;  ///< of the targets
+  std::array<std::vector<float>, 3> positions_, normals_;  ///< target positions and normals
   std::vector<std::uint32_t> sources_;
   const Clearness* clearness_ = nullptr;
 };
 
-/// What was promised of the surface that a field tells of, and what was known of it then.
+/// Predicted effect of a view, with the state of the surface at the time of the prediction.
 struct Promise {
   std::vector<Sight> sights;
-  std::vector<float> hazards;        ///< of the surfels
-  double seen = 0.0, guessed = 0.0;  ///< to be covered, of known surface and of guesses [m^2]
+  std::vector<float> hazards;  ///< hazards of the surfels
+  double seen = 0.0,
+         guessed = 0.0;  ///< predicted newly covered area of known and predicted surface [m^2]
 
   std::size_t surfels() const { return hazards.size(); }
 };
 Promise promise_of(const GainField& field, const DoseMap& map, std::vector<Sight> sights);
 
-/// Compares it with what became of it: surfels that keep withholding what they promise are trusted
-/// less, guesses are graded.
+/// Compares the prediction with the result. Lowers the trust in surfels that repeatedly gain less
+/// than predicted and updates the hit rates of predicted patches.
 void grade(const Promise& promise, const GainField& field, DoseMap& map, UnseenSurface& unseen,
            const SpaceMemory& space);
 
-/// All surface, seen and guessed, as far as it can be covered: the surfels of `map`, and of the
-/// unseen `patches` those in sight, their areas as expected, times `guess_yield`. `chances` says of
-/// each target with what probability some good view sees it, if it is there.
+/// Returns the coverable surface: the surfels of `map` and the unobserved `patches` in sight, with
+/// their expected area times `guess_yield`. `chances` contains the probability for each target that
+/// a good view sees it, if it exists.
 std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
                                             std::span<const UnseenPatch> patches,
                                             std::span<const float> chances, float guess_yield);

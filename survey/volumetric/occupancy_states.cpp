@@ -47,7 +47,7 @@ OccupancyStates::Code OccupancyStates::successor(Code code, float change, Code V
   const std::size_t number = code - first_measured;
   if (values_[number].*known == untouched) {
     const float next = std::clamp(values_[number].log_odds + change, lowest_, highest_);
-    const Code next_code = code_of(next);  // may move values_
+    const Code next_code = code_of(next);  // may reallocate values_
     values_[number].*known = next_code;
   }
   return values_[number].*known;

@@ -14,14 +14,14 @@ using Mark = ScanVoxels::Mark;
 
 constexpr std::size_t lane_count = 4;
 using Lanes [[gnu::vector_size(lane_count * sizeof(std::int64_t))]] = std::int64_t;
-// A comparison of lanes gives -1 for true and 0 for false.
+// A comparison of lanes returns -1 for true and 0 for false.
 
-/// Where four rays are on their ways from voxel to voxel.
+/// State of four rays that step through voxels.
 struct FourWalks {
-  Lanes number{};                  // of the current voxels
-  std::array<Lanes, 3> border{};   // that is crossed next on each axis
-  std::array<Lanes, 3> spacing{};  // of the borders
-  std::array<Lanes, 3> stride{};   // from a voxel's number to its neighbours'
+  Lanes number{};                  // current voxels
+  std::array<Lanes, 3> border{};   // next border crossing on each axis
+  std::array<Lanes, 3> spacing{};  // distance between borders
+  std::array<Lanes, 3> stride{};   // index difference between adjacent voxels
 };
 
 /// Marks the next `steps` voxels of each ray as passed.
@@ -50,7 +50,7 @@ SKYCAP_FOR_AVX2 void pass_four_with_avx2(FourWalks& walks, std::int64_t steps, M
   pass_four_body(walks, steps, marks);
 }
 
-/// Where the shadow of a point ends.
+/// Returns the end of the shadow of a point.
 Vector3f end_of_shadow(const Vector3f& origin, const Vector3f& point, double length) {
   const Vector3f way = point - origin;
   const float distance = way.norm();
@@ -58,7 +58,7 @@ Vector3f end_of_shadow(const Vector3f& origin, const Vector3f& point, double len
   return point + way * (static_cast<float>(length) / distance);
 }
 
-/// One ray on its way.
+/// State of one ray.
 struct Walk {
   Walk(const VoxelLine::Steps& steps, const std::array<std::int64_t, 3>& strides, Mark* first)
       : mark(first), border(steps.border) {
@@ -71,12 +71,12 @@ struct Walk {
   std::array<std::int64_t, 3> stride{};
 };
 
-/// Calls `visit` with the marks that are still to be passed, in order.
+/// Calls `visit` with the marks of the remaining voxels in order.
 template <typename Visit>
 void finish(const Walk& walk, const VoxelLine::Steps& steps, Visit visit) {
   Mark* mark = walk.mark;
   std::int64_t x = walk.border[0], y = walk.border[1], z = walk.border[2];
-  // Processors guess these branches well where the ray before went much the same way.
+  // Branch prediction works well here if the previous ray had a similar direction.
   const auto advance = [&] {
     if (x < y && x < z) {
       x += steps.spacing[0];
@@ -121,7 +121,7 @@ ScanVoxels::ScanVoxels(const Vector3f& origin, std::span<const Vector3f> returns
     extend(end_of_shadow(origin, point, shadow_length));
   }
   for (const Vector3f& end : empty_ends) extend(end);
-  // Rounding may lead a ray past the voxel of its end, by one voxel on some axis.
+  // Due to rounding, a ray may pass its end by one voxel per axis.
   double voxels = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
     low_[axis] -= 1;
@@ -138,7 +138,7 @@ ScanVoxels::ScanVoxels(const Vector3f& origin, std::span<const Vector3f> returns
   }
   marks_.resize(static_cast<std::size_t>(voxels));
 
-  // What is measured outweighs shadows, and hits what is passed.
+  // Measurements override shadows, and hits override passed voxels.
   for (const Vector3f& point : returns) mark_shadow(origin, point, shadow_length);
   mark_passed(origin, returns);
   mark_passed(origin, empty_ends);
@@ -152,7 +152,7 @@ void ScanVoxels::mark_shadow(const Vector3f& origin, const Vector3f& point, doub
   Mark* const first = marks_.data() + number_of(voxel_at(point, 1.0 / resolution_));
   Mark depth = 0;
   finish(Walk(steps, strides_, first), steps, [&](Mark& mark) {
-    // Zero, for none, becomes the largest by going below it.
+    // Zero (no mark) underflows to the maximum value.
     mark = static_cast<Mark>(std::min<Mark>(mark - 1, depth - 1) + 1);
     ++depth;
   });

@@ -1,4 +1,4 @@
-/// Which voxels the rays of one scan pass, hit and leave in the shadow, each once.
+/// Voxels that the rays of one scan pass, hit or leave in the shadow, each listed once.
 #pragma once
 
 #include <cstdint>
@@ -12,25 +12,25 @@
 
 namespace skycap::survey::volumetric {
 
-/// A mark for each voxel of a box around the scan. A million rays take half a thousand steps each,
-/// so a step has to cost little: it only writes, and never waits for what another step wrote.
+/// Marks of all voxels of a box around the scan. A million rays have about 500 steps each, so a
+/// step must be cheap: it only writes and never depends on an earlier write.
 class ScanVoxels {
  public:
-  /// What is said of a voxel: that it is passed or hit, or else how many voxels it is behind the
-  /// nearest surface in front of it.
+  /// Mark of a voxel: `passed`, `hit`, or its depth behind the nearest surface in front of it
+  /// [voxels].
   using Mark = std::uint16_t;
   static constexpr Mark passed = 0xfffe, hit = 0xffff;
   static bool is_shadow(Mark mark) { return mark < passed; }
 
-  /// Of rays from `origin`, in the world frame. The voxels of `returns` are hit; those before them
-  /// and before `empty_ends` are passed. Shadows reach `shadow_length` behind returns, less than
-  /// 30,000 voxels. Throws if the scan spans more than most_voxels.
+  /// Marks the voxels of rays from `origin` in the world frame. The voxels of `returns` are hit,
+  /// those before `returns` and `empty_ends` are passed. Shadows extend `shadow_length` [m] behind
+  /// returns, less than 30,000 voxels. Throws if the scan spans more than most_voxels.
   ScanVoxels(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> returns,
              std::span<const Eigen::Vector3f> empty_ends, double resolution, double shadow_length);
 
-  static constexpr double most_voxels = 0x1p32;  // 8 GiB
+  static constexpr double most_voxels = 0x1p32;  // 8 GiB of marks
 
-  /// Calls f(voxel, mark) for all that have a mark, in a fixed order.
+  /// Calls f(voxel, mark) for all marked voxels in a fixed order.
   template <typename F>
   void for_each(F f) const {
     std::size_t row = 0;
@@ -64,8 +64,8 @@ class ScanVoxels {
   void mark_passed(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> ends);
 
   double resolution_;
-  VoxelIndex low_{};                        // of the box
-  std::array<std::int64_t, 3> strides_{1};  // from a voxel's number to its neighbours'
+  VoxelIndex low_{};                        // minimum corner of the box
+  std::array<std::int64_t, 3> strides_{1};  // index difference between adjacent voxels on each axis
   std::vector<Mark> marks_;
 };
 

@@ -26,7 +26,7 @@ void VolumetricConfig::validate() const {
   require(std::isfinite(settings.cost_weight) && settings.cost_weight >= 0.0, "cost_weight",
           settings.cost_weight, "zero or more");
   require(is_length(ray_depth()), "ray_depth", ray_depth(), length);
-  // A diagonal shadow takes sqrt(3) times as many voxels.
+  // A diagonal shadow needs sqrt(3) times as many voxels.
   constexpr double longest_shadow = OccupancyStates::deepest_shadow / 2.0;
   require(is_length(shadow_length()) && shadow_length() < longest_shadow * resolution,
           "shadow_length", shadow_length(), "positive and less than 2000 voxels");

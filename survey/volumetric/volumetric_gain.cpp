@@ -11,15 +11,15 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// What the map does not know has this entropy, at occupancy 1/2.
+/// Entropy of unknown voxels, with occupancy 1/2.
 constexpr double prior_entropy = 0.6931471805599453;  // ln 2
 
-/// 0.2 <= p <= 0.8, the prior included.
+/// Returns whether 0.2 <= p <= 0.8, which includes the prior.
 bool is_uncertain(const VoxelState& state) {
   return state.kind != VoxelKind::free && state.kind != VoxelKind::occupied;
 }
 
-/// How likely light gets from the view to a voxel: a product over the voxels before it.
+/// Visibility of a voxel from the view: a product over the voxels in front of it.
 class Visibility {
  public:
   explicit Visibility(VisibilityFactor factor) : factor_(factor) {}
@@ -27,9 +27,10 @@ class Visibility {
   double weight() const { return weight_; }
   void pass(double occupancy) {
     weight_ *= factor_ == VisibilityFactor::occupancy ? occupancy : 1.0 - occupancy;
-    if (weight_ < vanishing) weight_ = 0.0;  // subnormal numbers are slow
+    if (weight_ < vanishing) weight_ = 0.0;  // avoids slow subnormal numbers
   }
-  /// The sum of the weights of `count` untouched voxels, whose factor is 1/2 either way.
+  /// Returns the sum of the weights of `count` untouched voxels. Their factor is 1/2 for both
+  /// settings.
   double pass_untouched(std::size_t count) {
     const double before = weight_;
     weight_ = std::ldexp(weight_, -static_cast<int>(std::min<std::size_t>(count, 2000)));
@@ -43,8 +44,8 @@ class Visibility {
   double weight_ = 1.0;
 };
 
-/// Each gain takes in one ray of a view, as VolumetricMap::follow() tells it, after the other.
-/// `only_surfaces` says that rays which meet nothing occupied do not count.
+/// The gains process the events of VolumetricMap::follow() ray by ray. If `only_surfaces` is true,
+/// rays that hit nothing occupied are not counted.
 class RearSideVoxelGain {
  public:
   static constexpr Hears hears = Hears::last_left_out;
@@ -99,12 +100,12 @@ class RearSideEntropyGain {
  private:
   GainSettings settings_;
   Visibility visibility_{VisibilityFactor::occupancy};
-  double run_ = 0.0;  // of the uncertain voxels straight before the current one
+  double run_ = 0.0;  // sum over the uncertain voxels directly before the current one
   bool is_in_run_ = false;
   double total_ = 0.0;
 };
 
-/// OA, and UV if only uncertain voxels count.
+/// Gain of OA, or of UV if only uncertain voxels count.
 template <bool only_uncertain>
 class VisibleEntropyGain {
  public:
@@ -132,8 +133,8 @@ class VisibleEntropyGain {
   double total() const { return total_; }
 
  private:
-  /// What is left of a ray is at most ln 2 times a geometric series of factors up to 0.88; once
-  /// that cannot change the ray's sum any more, the ray is over.
+  /// Returns whether to continue the ray. The rest is at most ln 2 times a geometric series with
+  /// factors of up to 0.88. The ray ends when it cannot change the sum.
   bool go_on() {
     constexpr double most_left = prior_entropy / (1.0 - 0.88);
     if (visibility_.weight() * most_left > 1e-17 * ray_) return true;
@@ -212,7 +213,7 @@ class AreaFactorGain {
  private:
   AreaShare share_;
   bool is_from_free_ = true;
-  bool nothing_known_yet_ = true;  // of the whole view: rays depend on those before them
+  bool nothing_known_yet_ = true;  // for the whole view: rays depend on the preceding rays
   double occupied_ = 0.0, shadowed_ = 0.0, unobserved_ = 0.0;
 };
 
@@ -246,7 +247,7 @@ class AverageEntropyGain {
   double entropy_ = 0.0, voxels_ = 0.0;
 };
 
-/// Whether a ray ends on an occupied voxel: quick to know.
+/// Fast test whether a ray ends on an occupied voxel.
 class OccupiedEnd {
  public:
   static constexpr Hears hears = Hears::only_its_end;
@@ -259,11 +260,12 @@ class OccupiedEnd {
   bool is_met_ = false;
 };
 
-/// How far along a ray the box reaches; nothing of it lies on the ray if that is negative.
+/// Returns the distance at which a ray leaves the box, or a negative value if it does not intersect
+/// the box.
 double far_end(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d& direction) {
   double nearest = 0.0, farthest = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
-    // A direction of zero gives infinities of the right signs.
+    // A direction of zero gives infinities with the correct signs.
     const double a = (box.min()[axis] - origin[axis]) / direction[axis];
     const double b = (box.max()[axis] - origin[axis]) / direction[axis];
     nearest = std::max(nearest, std::min(a, b));
@@ -279,7 +281,7 @@ double gain_of(const VolumetricMap& map, const geometry::View& view,
   const Eigen::Matrix3d world_from_camera = geometry::camera_pose(view).linear();
   const Vector3f origin = view.position.cast<float>();
   Eigen::AlignedBox3d surface = map.surface_box();
-  if (!surface.isEmpty()) {  // a voxel wider, for what rounding does
+  if (!surface.isEmpty()) {  // margin of one voxel for rounding errors
     surface.min().array() -= map.resolution();
     surface.max().array() += map.resolution();
   }
@@ -292,7 +294,8 @@ double gain_of(const VolumetricMap& map, const geometry::View& view,
       reach = surface.isEmpty() ? -1.0 : far_end(surface, view.position, direction);
       if (reach < 0.0) continue;
     }
-    if (Gain::only_surfaces && Gain::hears == Hears::every_voxel) {  // too slow to be for nothing
+    if (Gain::only_surfaces &&
+        Gain::hears == Hears::every_voxel) {  // the fast test avoids useless slow rays
       OccupiedEnd surface_end;
       map.follow(origin, end, reach, surface_end);
       if (!surface_end.is_met()) continue;
@@ -327,7 +330,7 @@ std::vector<Vector3d> ray_directions(const geometry::Camera& camera, const RayPa
 }
 
 double area_reward(double x, double wanted) {
-  // The share on the way from the nearer end of [0, 1] to the wanted one.
+  // Position between the nearer end of [0, 1] and the target fraction.
   const double r = x <= wanted ? x / wanted : (1.0 - x) / (1.0 - wanted);
   return r * r * (3.0 - 2.0 * r);
 }

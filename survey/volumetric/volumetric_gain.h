@@ -1,10 +1,10 @@
-/// How much a view promises: the information gains of seven volumetric planners, each a sum over
-/// the rays of the view through what the map knows. docs/explanation/volumetric.md writes them out.
+/// Information gains of the seven volumetric planners. Each gain is a sum over the rays of a view
+/// through the map. docs/explanation/volumetric.md contains the formulas.
 ///
 /// Sources: Delmerico et al., Autonomous Robots 42 (2018), for RSV, RSE, OA, UV and PC;
 /// Vasquez-Gomez et al., Robotica 33 (2015), for AF; Kriegel et al., Journal of Real-Time Image
-/// Processing 10 (2015), for AE; all in the form in which the evaluation code of Delmerico et al.
-/// computes them, as the SEE++ paper compares them, unless GainSettings says otherwise.
+/// Processing 10 (2015), for AE. Unless GainSettings selects otherwise, all gains are those of the
+/// evaluation code of Delmerico et al., which the SEE++ paper uses.
 #pragma once
 
 #include <vector>
@@ -18,19 +18,19 @@
 
 namespace skycap::survey::volumetric {
 
-/// Unit directions in the camera frame, column by column: x = x0, x0 + 1/k, ... up to and with
-/// x1, rounded down to pixels, and likewise the rows.
+/// Returns unit directions in the camera frame, column by column. Columns are x0, x0 + 1/k, ...,
+/// x1, rounded down to pixels; rows likewise.
 std::vector<Eigen::Vector3d> ray_directions(const geometry::Camera& camera,
                                             const RayPattern& pattern);
 
-/// The gain of a view whose rays end `depth` from it at the latest. The order of `directions`
-/// matters to AF alone. Safe to call from several threads.
+/// Returns the gain of a view whose rays have the maximum length `depth` [m]. The order of
+/// `directions` affects only AF. Thread-safe.
 double information_gain(VolumetricMetric metric, const VolumetricMap& map,
                         const geometry::View& view, const std::vector<Eigen::Vector3d>& directions,
                         double depth, const GainSettings& settings = {});
 
-/// AF's reward for a share x in [0, 1]: two cubics that rise from 0 at 0 to 1 at the wanted share
-/// and fall to 0 at 1, level at all three.
+/// Returns the reward of AF for a fraction x in [0, 1]. It consists of two cubics: from 0 at 0 to 1
+/// at the target fraction, and to 0 at 1, with zero slope at all three.
 double area_reward(double x, double wanted);
 
 }  // namespace skycap::survey::volumetric

@@ -18,7 +18,7 @@ VolumetricMap::VolumetricMap(double resolution, double shadow_length, const Occu
 void VolumetricMap::insert(const Vector3f& origin, std::span<const Vector3f> returns,
                            std::span<const Vector3f> empty_ends) {
   std::vector<Block*> changed;
-  Block* block = nullptr;  // of the last voxel
+  Block* block = nullptr;  // block of the last voxel
   const ScanVoxels voxels(origin, returns, empty_ends, resolution_, shadow_length_);
   voxels.for_each([&](const VoxelIndex& voxel, ScanVoxels::Mark mark) {
     const VoxelIndex index = coarser(voxel, block_shift);

@@ -1,13 +1,12 @@
-/// What the volumetric planners know: which voxels are occupied, free, or hidden behind a surface.
-/// World frame, metres.
+/// Voxel map of the volumetric planners: occupied, free and shadowed voxels. World frame [m].
 ///
-/// Occupancy and its update are OctoMap's (Hornung et al. 2013). Shadows, "occlusion marks" in the
-/// active-reconstruction literature (Isler et al., ICRA 2016), are voxels behind a measured point
-/// that nothing has measured.
+/// Occupancy and its update are those of OctoMap (Hornung et al. 2013). Shadows are unmeasured
+/// voxels behind a measured point; the active-reconstruction literature calls them "occlusion
+/// marks" (Isler et al., ICRA 2016).
 ///
-/// Voxels of two bytes lie in blocks of 16 x 16 x 16 that are found by hashing and know which of
-/// their bricks of 4 x 4 x 4 have anything that stops a ray. A ray passes blocks and bricks of
-/// which nothing is known, or which have nothing to tell it, in one step each.
+/// Voxels of two bytes are stored in hashed blocks of 16 x 16 x 16. Each block records which of its
+/// bricks of 4 x 4 x 4 contain voxels that stop rays. A ray passes unknown or irrelevant blocks and
+/// bricks in one step each.
 #pragma once
 
 #include <array>
@@ -28,24 +27,24 @@
 
 namespace skycap::survey::volumetric {
 
-/// What a ray that VolumetricMap::follow() follows is told of.
+/// Events of VolumetricMap::follow() that a ray receives.
 enum class Hears {
-  every_voxel,    ///< that it passes, and the one where it stops
-  last_left_out,  ///< before anything that it may not miss: the last voxel of what was left out
-  only_its_end,   ///< beside what it may not miss
+  every_voxel,    ///< every passed voxel, and the one at which the ray stops
+  last_left_out,  ///< all relevant voxels and, before each of them, the last skipped voxel
+  only_its_end,   ///< all relevant voxels and the end of the ray
 };
 
 class VolumetricMap {
  public:
-  /// An empty map of voxels `resolution` wide. Shadows reach `shadow_length` behind measurements,
-  /// which must be less than deepest_shadow / 2 voxels.
+  /// Creates an empty map with voxels of size `resolution` [m]. Shadows extend `shadow_length` [m]
+  /// behind measurements, which must be less than deepest_shadow / 2 voxels.
   VolumetricMap(double resolution, double shadow_length, const OccupancyModel& model = {});
 
   double resolution() const { return resolution_; }
 
-  /// Takes in a scan from `origin`: the voxels of `returns` are hit; those before them, and before
-  /// the ends of the measured-empty segments to `empty_ends`, are missed unless they are hit. A
-  /// scan changes a voxel at most once. Then casts the shadows of `returns`.
+  /// Inserts a scan from `origin`. The voxels of `returns` are hit. Those before `returns`, and
+  /// before the ends `empty_ends` of free segments, are missed unless they are hit. A scan changes
+  /// a voxel at most once. Afterwards, casts the shadows of `returns`.
   void insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> returns,
               std::span<const Eigen::Vector3f> empty_ends = {});
 
@@ -53,22 +52,23 @@ class VolumetricMap {
     return states_.state(code_at(point));
   }
 
-  /// 2 s / res, for shadows of length s: what shadow depths are subtracted from.
+  /// Returns 2 s / res for shadows of length s. Shadow depths are subtracted from it.
   double shadow_ceiling() const { return 2.0 * shadow_length_ / resolution_; }
 
-  /// A box around everything that stops rays; empty if nothing does.
+  /// Returns the bounding box of all voxels that stop rays; empty without such voxels.
   const Eigen::AlignedBox3d& surface_box() const { return surface_box_; }
 
-  /// Memory taken [byte].
+  /// Returns the allocated memory [bytes].
   std::size_t memory() const;
 
-  /// Follows the ray from `origin` to `end` and tells `ray`, as its `hears` says, by
-  /// `pass_untouched(count)` of voxels of bricks that do not exist and by `pass(state)` of one
-  /// voxel; either returns false to say that it wants to know no more. Bricks in which nothing
-  /// stops rays are left out if `ray.may_miss(has_shadows)`, except from rays that hear of every
-  /// voxel. Stops at the first voxel that stops rays, or at the one of `end`, and hands that to
-  /// `ray.finish(state)`. Beyond `reach` from `origin` nothing is looked at, and finish() is not
-  /// called.
+  /// Follows the ray from `origin` to `end` and reports events according to `ray.hears`.
+  /// `pass_untouched(count)` reports voxels of missing bricks, and `pass(state)` reports a single
+  /// voxel. The ray ends if either returns false.
+  ///
+  /// Bricks without voxels that stop rays are skipped if `ray.may_miss(has_shadows)`, unless the
+  /// ray receives every voxel. The ray stops at the first voxel that stops rays, or at `end`, and
+  /// passes that voxel to `ray.finish(state)`. A ray that exceeds the length `reach` [m] ends there
+  /// without finish().
   template <typename Ray>
   void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end, double reach,
               Ray& ray) const;
@@ -78,14 +78,15 @@ class VolumetricMap {
 
   struct Block {
     VoxelIndex index{};
-    // A bit for each brick.
-    std::uint64_t known = 0;     // has a voxel that is not untouched
-    std::uint64_t surfaces = 0;  // has a voxel that stops rays
-    std::uint64_t shadows = 0;   // has a shadowed voxel
-    std::uint64_t changed = 0;   // while a scan is taken in
+    // Bit masks of bricks.
+    std::uint64_t known = 0;     // contains a voxel that is not untouched
+    std::uint64_t surfaces = 0;  // contains a voxel that stops rays
+    std::uint64_t shadows = 0;   // contains a shadowed voxel
+    std::uint64_t changed = 0;   // used while a scan is inserted
     std::array<std::array<Code, voxels_in_brick>, bricks_in_block> codes{};
   };
-  static std::uint64_t key_of(const VoxelIndex& block) {  // 21 bits an axis, and a carry of the sum
+  static std::uint64_t key_of(
+      const VoxelIndex& block) {  // 21 bits per axis, and a carry of the sum
     constexpr std::uint64_t lower_bits = ~std::uint64_t{0} >> 1;
     return lower_bits & static_cast<std::uint64_t>(block[0] + (std::int64_t{block[1]} << 21) +
                                                    (std::int64_t{block[2]} << 42));
@@ -94,7 +95,7 @@ class VolumetricMap {
     Block* const* const found = index_.find(key_of(block));
     return found == nullptr ? nullptr : *found;
   }
-  Block& block_at(const VoxelIndex& index);  // made if need be
+  Block& block_at(const VoxelIndex& index);  // creates the block if it does not exist
   void summarise(Block& block, std::uint32_t brick);
   Code code_of(const VoxelIndex& voxel) const;
   Code code_at(const Eigen::Vector3f& point) const {
@@ -109,12 +110,11 @@ class VolumetricMap {
   Eigen::AlignedBox3d surface_box_;
 };
 
-/// The cells that a walk has passed over without a word to the ray, and what it is told of them
-/// before it hears of anything else.
+/// Skipped cells of a walk, and the report about them before the next event of the ray.
 template <typename Ray, typename StateOf>
 class UntoldStretch {
  public:
-  /// `state_of(voxel)` gives the state of a voxel of the map.
+  /// `state_of(voxel)` returns the state of a voxel of the map.
   UntoldStretch(const VoxelLine& line, Ray& ray, StateOf state_of)
       : line_(line), ray_(ray), state_of_(state_of) {}
 
@@ -123,7 +123,7 @@ class UntoldStretch {
     if (!since_) since_ = walk.entered();
   }
 
-  /// Tells the ray of what lies before `entered`; false if it wants to know no more.
+  /// Reports the skipped cells before `entered`. Returns false if the ray ends.
   bool tell_before(const Crossing& entered) {
     const std::optional<Crossing> since = std::exchange(since_, std::nullopt);
     if constexpr (Ray::hears == Hears::every_voxel) {
@@ -139,7 +139,7 @@ class UntoldStretch {
   const VoxelLine& line_;
   Ray& ray_;
   StateOf state_of_;
-  std::optional<Crossing> since_;  // into the first of the cells
+  std::optional<Crossing> since_;  // crossing into the first skipped cell
 };
 
 template <typename Ray>

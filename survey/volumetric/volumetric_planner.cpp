@@ -23,7 +23,7 @@ using Eigen::Vector3f;
 using geometry::ScanSpan;
 using geometry::View;
 
-/// Where the rays of pixels without a return end, `depth` from the sensor.
+/// Returns the ends of the rays of no-return pixels, at the distance `depth` from the sensor.
 std::vector<Vector3f> ends_of_no_returns(const ScanSpan& scan, const geometry::Camera& camera,
                                          double depth) {
   std::vector<Vector3f> ends;
@@ -112,7 +112,7 @@ struct VolumetricPlanner::Impl {
   VolumetricMap map;
   geometry::SpacedPoints kept;
   geometry::PointCloud cloud;
-  std::vector<Candidate> candidates;  // not yet proposed, in the order in which they were drawn
+  std::vector<Candidate> candidates;  // not yet proposed, in order of generation
   Vector3d position = Vector3d::Zero();
   std::uint32_t scans = 0;
   PlanningStep step;

@@ -1,5 +1,5 @@
-/// The volumetric planners: of views given beforehand on a sphere around the scene, take the one
-/// that promises most for its way. docs/explanation/volumetric.md describes them.
+/// Volumetric planners: select views from a fixed set on a sphere around the scene by predicted
+/// gain and path length. See docs/explanation/volumetric.md.
 ///
 /// Source: Delmerico et al., Autonomous Robots 42 (2018), whose evaluation code the SEE++ paper
 /// compares with (§IV).
@@ -21,24 +21,24 @@
 
 namespace skycap::survey::volumetric {
 
-/// `count` views of the sphere's centre from places drawn independently, uniformly over the part
-/// of the sphere that is not below `least_height`, if that is given. Throws Error{bad_config} if
-/// nothing is left.
+/// Returns `count` views of the sphere's centre. Their positions are distributed independently and
+/// uniformly over the sphere, without the part below `least_height`, if given. Throws
+/// Error{bad_config} if the whole sphere is below it.
 std::vector<geometry::View> sphere_views(std::size_t count, const Eigen::Vector3d& centre,
                                          double radius, const std::optional<double>& least_height,
                                          std::uint64_t seed);
 
-/// The index of the largest utility, gain / sum of gains - cost_weight * distance / sum of
-/// distances, where a sum of zero makes its term zero. The two spans are equally long, and not
+/// Returns the index with the maximum utility: gain / sum of gains - cost_weight * distance / sum
+/// of distances. A term with a zero sum is zero. Both spans must have the same size and not be
 /// empty.
 std::size_t most_useful(std::span<const double> gains, std::span<const double> distances,
                         double cost_weight, TieRule ties);
 
-/// Takes every candidate at most once and proposes nothing when none is left; it does not notice
-/// that a scene is complete.
+/// Uses every candidate at most once and ends when none is left. It does not detect that a scene is
+/// complete.
 class VolumetricPlanner final : public Planner {
  public:
-  /// Throws what config.validate() and sphere_views() throw.
+  /// Throws the errors of config.validate() and sphere_views().
   VolumetricPlanner(const VolumetricConfig& config, const geometry::Camera& camera);
   ~VolumetricPlanner() override;
 

@@ -1,10 +1,10 @@
-/// The voxels that a segment passes, in order: Amanatides & Woo, A Fast Voxel Traversal Algorithm
-/// for Ray Tracing, Eurographics 1987, over voxels grouped in bricks of 4 x 4 x 4 and blocks of
-/// 4 x 4 x 4 bricks.
+/// Voxel traversal of a segment (Amanatides & Woo, A Fast Voxel Traversal Algorithm for Ray
+/// Tracing, Eurographics 1987). Voxels are grouped into bricks of 4 x 4 x 4 and blocks of 4 x 4 x 4
+/// bricks.
 ///
-/// Where the segment crosses the borders of voxels is kept in fixed point. Those of bricks and
-/// blocks are some of the same numbers, so that walks over larger cells cross the same borders in
-/// the same order, and a walk over smaller ones can begin exactly wherever one of larger ones got.
+/// Border crossings are stored in fixed point. Borders of bricks and blocks are a subset of the
+/// voxel borders, so walks over larger cells cross the same borders in the same order. A walk over
+/// smaller cells can begin exactly at any crossing of a larger one.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,8 @@
 
 namespace skycap::survey::volumetric {
 
-/// Number of a voxel, brick or block on each axis; (0, 0, 0) has its lowest corner at the origin.
+/// Index of a voxel, brick or block on each axis. Cell (0, 0, 0) has its minimum corner at the
+/// origin.
 using VoxelIndex = std::array<std::int32_t, 3>;
 
 inline constexpr int brick_shift = 2;
@@ -33,19 +34,19 @@ inline VoxelIndex voxel_at(const Eigen::Vector3f& point, double voxels_per_metre
   return {on_axis(0), on_axis(1), on_axis(2)};
 }
 
-/// The larger cell that a smaller one is in.
+/// Returns the larger cell that contains `cell`.
 inline VoxelIndex coarser(const VoxelIndex& cell, int shift) {
   return {cell[0] >> shift, cell[1] >> shift, cell[2] >> shift};
 }
 
-/// The place of a voxel in its brick, or of a brick in its block: below 64.
+/// Returns the index (below 64) of a voxel in its brick, or of a brick in its block.
 inline std::uint32_t place_of(const VoxelIndex& cell) {
   return (static_cast<std::uint32_t>(cell[0]) & 3U) |
          (static_cast<std::uint32_t>(cell[1]) & 3U) << 2 |
          (static_cast<std::uint32_t>(cell[2]) & 3U) << 4;
 }
 
-/// A border that a segment crosses: where along it, in units of its own, and on which axis.
+/// Crossing of a segment and a border: fixed-point distance along the segment, and axis.
 struct Crossing {
   std::int64_t distance = -(std::int64_t{1} << 60);  ///< before any border
   int axis = 0;
@@ -53,33 +54,34 @@ struct Crossing {
   bool operator==(const Crossing&) const = default;
 };
 
-/// A segment among voxels. The directions and borders are rounded as OctoMap rounds them, so that
-/// the two pass the same voxels: from the one of `origin` up to, but not with, the one of `end`.
+/// Segment in a voxel grid. Directions and borders are rounded as in OctoMap, so that both pass the
+/// same voxels: from the voxel of `origin` to that of `end`, which is excluded.
 class VoxelLine {
  public:
   VoxelLine(const Eigen::Vector3f& origin, const Eigen::Vector3f& end, double resolution);
 
-  /// Whether no voxel is passed.
+  /// Returns whether the segment passes no voxel.
   bool is_in_one_voxel() const { return steps_ == 0; }
 
-  /// Ends the segment where it is farther than `length` from its origin, if that is sooner.
+  /// Shortens the segment to `length` [m], if it is longer.
   void stop_at(double length);
 
-  /// How many voxels are left behind with a crossing.
+  /// Returns the number of voxels before a crossing.
   std::int64_t voxels_before(const Crossing& crossing) const {
     return crossed(0, 0, crossing) + crossed(1, 0, crossing) + crossed(2, 0, crossing);
   }
-  /// The voxel that a crossing leaves.
+  /// Returns the voxel that is left at a crossing.
   VoxelIndex voxel_before(const Crossing& crossing) const;
 
-  /// What a walk from voxel to voxel needs.
+  /// Parameters of a walk from voxel to voxel.
   struct Steps {
-    std::array<std::int64_t, 3> border{};   ///< where the first border is crossed on each axis
-    std::array<std::int64_t, 3> spacing{};  ///< of the borders
-    std::array<std::int32_t, 3> sense{};    ///< 1 or -1: which way the numbers of voxels go
-    std::int64_t most = 0;                  ///< that are passed
-    std::int64_t surely_passed = 0;         ///< that are passed whatever `limit` says
-    std::int64_t limit = 0;  ///< a voxel but the first that is left beyond this is not passed
+    std::array<std::int64_t, 3> border{};   ///< distance of the first border on each axis
+    std::array<std::int64_t, 3> spacing{};  ///< distance between borders
+    std::array<std::int32_t, 3> sense{};    ///< 1 or -1: step of the voxel index
+    std::int64_t most = 0;                  ///< number of passed voxels
+    std::int64_t surely_passed = 0;         ///< number of voxels passed independent of `limit`
+    std::int64_t limit =
+        0;  ///< voxels other than the first that are left beyond this distance are not passed
   };
   Steps steps() const {
     const Crossing last_sure{surely_passed_ - 1, 0};
@@ -91,15 +93,15 @@ class VoxelLine {
   friend class CellWalk;
   friend class VoxelWalk;
 
-  /// Where the first border of cells of 2^shift voxels is crossed on an axis.
+  /// Returns the distance of the first border of cells of 2^shift voxels on an axis.
   std::int64_t first_border(int axis, int shift) const {
     const std::int32_t mask = (std::int32_t{1} << shift) - 1;
     const std::int32_t inside = sense_[axis] > 0 ? ~first_[axis] & mask : first_[axis] & mask;
     return border_[axis] + inside * spacing_[axis];
   }
 
-  /// How many such borders are crossed up to and with a crossing. Of equal distances that of the
-  /// later axis comes first.
+  /// Returns the number of such borders up to and including a crossing. At equal distances, the
+  /// later axis is crossed first.
   std::int64_t crossed(int axis, int shift, const Crossing& crossing) const {
     const std::int64_t beyond_first =
         crossing.distance - (axis < crossing.axis ? 1 : 0) - first_border(axis, shift);
@@ -113,22 +115,22 @@ class VoxelLine {
   }
 
   VoxelIndex first_{};
-  std::array<std::int32_t, 3> sense_{};    // 1 or -1: which way the numbers of voxels go
-  std::array<std::int64_t, 3> border_{};   // where the first border is crossed
-  std::array<std::int64_t, 3> spacing_{};  // of the borders
+  std::array<std::int32_t, 3> sense_{};    // 1 or -1: step of the voxel index
+  std::array<std::int64_t, 3> border_{};   // distance of the first border
+  std::array<std::int64_t, 3> spacing_{};  // distance between borders
   std::array<double, 3> per_spacing_{};    // 1 / spacing_
-  std::int64_t steps_ = 0;                 // after which the voxel of the end is reached at last
-  std::int64_t limit_ = 0;                 // the last voxel is the one left beyond this
-  std::int64_t surely_passed_ = 0;         // no voxel left before this is the last
+  std::int64_t steps_ = 0;                 // number of steps to the voxel of the end
+  std::int64_t limit_ = 0;                 // the last voxel is the one left beyond this distance
+  std::int64_t surely_passed_ = 0;         // voxels left before this distance are not the last
   double units_per_metre_ = 0.0;
 };
 
-/// Walks over the cells of 2^shift voxels that a segment meets. Does not end by itself: the cell
-/// that may_be_skipped() forbids to pass over has to be looked at voxel by voxel.
+/// Walk over the cells of 2^shift voxels that intersect a segment. It has no end: a cell for which
+/// may_be_skipped() is false must be traversed voxel by voxel.
 template <int shift>
 class CellWalk {
  public:
-  /// From the cell that a crossing enters.
+  /// Starts at the cell entered by a crossing.
   explicit CellWalk(const VoxelLine& line, const Crossing& entered = {})
       : entered_(entered), surely_passed_(line.surely_passed_) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -145,7 +147,7 @@ class CellWalk {
   const Crossing& entered() const { return entered_; }
   const Crossing& leaving() const { return leaving_; }
 
-  /// Whether all of the cell's voxels on the segment are passed, and the segment goes on.
+  /// Returns whether the segment passes all voxels of the cell on its line and continues beyond it.
   bool may_be_skipped() const { return leaving_.distance < surely_passed_; }
 
   void cross() {
@@ -174,17 +176,17 @@ class CellWalk {
   std::int64_t surely_passed_;
 };
 
-/// Walks over the voxels of one brick.
+/// Walk over the voxels of one brick.
 class VoxelWalk {
  public:
-  /// From the voxel that a crossing enters.
+  /// Starts at the voxel entered by a crossing.
   explicit VoxelWalk(const VoxelLine& line, const Crossing& entered = {});
 
-  /// Whether the segment has arrived: the current voxel is not one of the passed ones any more.
+  /// Returns whether the end of the segment is reached: the current voxel is not passed.
   bool is_over() const { return is_over_; }
   bool left_brick() const { return (local_ & guards) != 0; }
 
-  /// Where the current voxel is in the brick.
+  /// Returns the index of the current voxel in its brick.
   std::uint32_t place() const {
     return (local_ & 0x3U) | (local_ >> 1 & 0xcU) | (local_ >> 2 & 0x30U);
   }
@@ -206,21 +208,21 @@ class VoxelWalk {
   }
 
  private:
-  /// Two bits for each axis' place in the brick, and above each a guard that is set by a step out
-  /// of the brick, forwards (3 + 1) and backwards (0 - 1) alike.
+  /// Two bits per axis for the position in the brick, each followed by a guard bit. A step out of
+  /// the brick sets the guard, both forwards (3 + 1) and backwards (0 - 1).
   static constexpr std::uint32_t guards = 0x124;
 
   std::array<std::int64_t, 3> next_{}, spacing_{};
-  std::array<std::uint32_t, 3> step_{};  // what a step adds to local_
+  std::array<std::uint32_t, 3> step_{};  // increment of local_ per step
   std::int64_t limit_;
   std::int64_t steps_left_;
   std::uint32_t local_ = 0;
   bool is_over_;
 };
 
-/// Visits the bricks that a segment meets, in order. `passes_over(blocks)` says whether to leave
-/// out the block that the walk `blocks` is at, which may_be_skipped() has to allow;
-/// `visit(bricks)` returns false at the end.
+/// Visits the bricks that intersect a segment in order. `passes_over(blocks)` returns whether to
+/// skip the current block of the walk, which requires may_be_skipped(). `visit(bricks)` returns
+/// false to end the traversal.
 template <typename PassesOver, typename Visit>
 void for_each_brick(const VoxelLine& line, PassesOver passes_over, Visit visit) {
   for (CellWalk<block_shift> blocks(line);; blocks.cross()) {
@@ -247,16 +249,16 @@ inline VoxelLine::VoxelLine(const Eigen::Vector3f& origin, const Eigen::Vector3f
   const Eigen::Vector3f way = end - origin;
   const float squares = way.x() * way.x() + way.y() * way.y() + way.z() * way.z();
   const auto length = static_cast<float>(std::sqrt(double{squares}));
-  // 44 bits for the segment; borders that lie far beyond its end are all the same.
+  // The segment has 44 bits; all borders far beyond its end have the same distance.
   constexpr double units_in_segment = 0x1p44, beyond = 0x1p56;
   units_per_metre_ = units_in_segment / length;
-  // The last distance that rounds to the segment's length in single precision.
+  // The maximum distance that rounds to the segment length in single precision.
   const double rounds_to_length =
       0.5 * (double{length} + double{std::nextafter(length, 2 * length)});
   limit_ = static_cast<std::int64_t>(rounds_to_length * units_per_metre_);
 
-  // The voxel of the end is reached by the last of its borders, if no border beyond it comes
-  // sooner, which rounding can bring about.
+  // The last border of the end voxel ends the walk, unless rounding lets a border beyond it come
+  // first.
   std::int64_t arrives = 0, overshoots = std::numeric_limits<std::int64_t>::max();
   for (int axis = 0; axis < 3; ++axis) {
     const float direction = way[axis] / length;

@@ -21,7 +21,7 @@ void Column::take(std::span<std::uint64_t> values) {
   }
   constexpr std::size_t word = sizeof(std::uint64_t);
   const std::size_t size = bytes_.size();
-  bytes_.append(word + 1, '\0');  // so that a whole word can be read wherever a value begins
+  bytes_.append(word + 1, '\0');  // allows reading a whole word at the start of every value
   const std::uint64_t mask = std::numeric_limits<std::uint64_t>::max() >> (64 - bits_);
   std::size_t bit = first_bit_;
   for (std::uint64_t& value : values) {
@@ -36,7 +36,7 @@ void Column::take(std::span<std::uint64_t> values) {
   bytes_.resize(size);
   first_bit_ = bit;
   if (first_bit_ / 8 <= size / 2)
-    return;  // what is left is moved a few times, however small values
+    return;  // limits the number of moves of the remaining bytes, even for small values
   bytes_.erase(0, first_bit_ / 8);
   first_bit_ %= 8;
 }

@@ -1,4 +1,4 @@
-/// The values of one field of an E57 file's records, bit behind bit as they come in packets.
+/// Bit stream of the values of one field of E57 records, collected from consecutive packets.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@ namespace skycap::geometry::e57 {
 
 class Column {
  public:
-  /// Of values of 0 to 64 bits.
+  /// `bits` is the size of a value, from 0 to 64.
   explicit Column(unsigned bits) : bits_(bits) {}
 
-  /// Bytes that follow those before.
+  /// Appends the next bytes of the stream.
   void append(std::string_view bytes) { bytes_ += bytes; }
 
-  /// How many values have come and are not taken.
+  /// Returns the number of complete values that have not been taken.
   std::uint64_t available() const;
 
-  /// The next values, all of which have come.
+  /// Takes the next values. Requires values.size() <= available().
   void take(std::span<std::uint64_t> values);
 
   std::size_t bytes_waiting() const { return bytes_.size(); }
@@ -27,7 +27,7 @@ class Column {
  private:
   unsigned bits_;
   std::string bytes_;
-  std::size_t first_bit_ = 0;  ///< of those that are not taken
+  std::size_t first_bit_ = 0;  ///< position of the first value that has not been taken
 };
 
 }  // namespace skycap::geometry::e57

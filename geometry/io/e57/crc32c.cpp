@@ -8,7 +8,7 @@
 namespace skycap::geometry::e57 {
 namespace {
 
-// Eight bytes a step: table k takes a byte that k others follow.
+// Processes eight bytes per step. Table k is for a byte followed by k others.
 using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
 
 constexpr Tables make_tables() {

@@ -1,4 +1,5 @@
-/// CRC-32C (Castagnoli; RFC 3720, appendix B.4): the checksum of a page of an E57 file.
+/// Returns the CRC-32C checksum (Castagnoli; RFC 3720, appendix B.4), which protects the pages of
+/// E57 files.
 #pragma once
 
 #include <cstdint>

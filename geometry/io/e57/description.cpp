@@ -15,9 +15,9 @@ namespace {
 
 using std::string_view;
 
-constexpr std::size_t most_fields = 1000;  // of a record; real ones have about 20
+constexpr std::size_t most_fields = 1000;  // maximum per record; typical files have about 20
 
-/// For a message: a piece of a file's text in one line.
+/// Returns a part of a file's text on one line in quotes, for messages.
 std::string in_quotes(string_view text) {
   std::string result(text.substr(0, 60));
   for (char& c : result) {
@@ -33,7 +33,7 @@ string_view trimmed(string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// A number in text; what is empty is zero, as the standard has it.
+/// Parses a number. Empty text is zero, as required by the standard.
 template <typename Number>
 Number number_of(string_view text, const std::string& what) {
   text = trimmed(text);
@@ -61,7 +61,7 @@ Number attribute_or(const pugi::xml_node& node, const char* name, Number otherwi
   return number_of<Number>(attribute.value(), std::string(name) + " of " + in_quotes(node.name()));
 }
 
-/// The number in an element's child, if it has it.
+/// Returns the number in a child of an element, or zero if it does not exist.
 double child_number(const pugi::xml_node& node, const char* name) {
   const pugi::xml_node child = node.child(name);
   return finite_number(child.text().get(), std::string(name) + " of a " + node.name());
@@ -98,7 +98,7 @@ Field parse_field(const pugi::xml_node& node) {
   return field;
 }
 
-/// A rotation of four zeros, which some programs write for none.
+/// Returns whether the rotation is four zeros, which some programs write instead of the identity.
 bool is_zero_rotation(const pugi::xml_node& pose) {
   const pugi::xml_node rotation = pose.child("rotation");
   const auto is_zero = [&](const char* name) { return child_number(rotation, name) == 0.0; };
@@ -111,7 +111,7 @@ Eigen::Isometry3d parse_pose(const pugi::xml_node& pose) {
   if (rotation && !is_zero_rotation(pose)) {
     const Eigen::Quaterniond turn(child_number(rotation, "w"), child_number(rotation, "x"),
                                   child_number(rotation, "y"), child_number(rotation, "z"));
-    constexpr double tolerance = 0.01;  // of what was rounded
+    constexpr double tolerance = 0.01;  // tolerance of rounded quaternions
     if (std::abs(turn.norm() - 1.0) > tolerance) {
       refuse("has a scan whose rotation is a quaternion of length " + std::to_string(turn.norm()) +
              "; it must be 1: save the scan again with a valid pose, or without one");

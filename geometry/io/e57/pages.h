@@ -1,5 +1,5 @@
-/// The pages of an E57 file (ASTM E2807-11, 6): each ends with a checksum of 4 bytes, the highest
-/// first. A place in the file is physical, one that does not count checksums is logical.
+/// Pages of an E57 file (ASTM E2807-11, section 6). Each page ends with a 4-byte big-endian
+/// checksum. Physical offsets count the checksums; logical offsets do not.
 #pragma once
 
 #include <cstddef>
@@ -11,40 +11,42 @@
 
 namespace skycap::geometry::e57 {
 
-inline constexpr std::size_t page_size = 1024;  ///< of files that are written
+inline constexpr std::size_t page_size = 1024;  ///< page size of written files [bytes]
 inline constexpr std::size_t checksum_size = 4;
 inline constexpr std::size_t page_content = page_size - checksum_size;
 
-/// Bytes from a place of the file, fewer if it ends.
+/// Returns `count` bytes from offset `place`, or fewer at the end of the file.
 using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
 
-/// Throws Error{bad_file}; who knows the file's name puts it before the sentence.
+/// Throws Error{bad_file}. Callers that know the file name prepend it to the message.
 [[noreturn]] void refuse(const std::string& sentence);
 
-/// What a file begins with, in bytes without a checksum between them.
+/// File header, which contains no checksum.
 struct FileHeader {
   std::uint64_t file_size = 0;    ///< [bytes]
-  std::uint64_t description = 0;  ///< physical place of the XML
+  std::uint64_t description = 0;  ///< physical offset of the XML section
   std::uint64_t description_size = 0;
   std::uint64_t page_size = 0;
 };
 
-/// Throws Error{bad_file} unless a file of that size can begin so.
+/// Parses the file header. Throws Error{bad_file} if it is invalid for a file of `file_size` bytes.
 FileHeader parse_file_header(std::string_view beginning, std::uint64_t file_size);
 
-/// Logical bytes of a file whose pages are checked as they are read.
+/// Logical byte stream of a file. The checksum of each page is verified when the page is read.
 class Pages {
  public:
   Pages(ReadBytes read, const FileHeader& header);
 
-  std::uint64_t size() const { return file_size_ / page_size_ * content_; }  ///< logical
+  std::uint64_t size() const {
+    return file_size_ / page_size_ * content_;
+  }  ///< logical size [bytes]
 
-  /// Of a physical place. Throws Error{bad_file} if it is not within the file, or in a checksum;
-  /// `what` is said to be there.
+  /// Converts a physical to a logical offset. Throws Error{bad_file} if the offset is outside the
+  /// file or inside a checksum; `what` names the object at the offset in the message.
   std::uint64_t logical(std::uint64_t physical, const std::string& what) const;
 
-  /// All bytes of a logical stretch, which lies within the file. Throws Error{bad_file} if a page
-  /// does not agree with its checksum.
+  /// Returns exactly `count` bytes from logical offset `place`; the range must lie within the file.
+  /// Throws Error{bad_file} if a page does not match its checksum.
   std::string bytes(std::uint64_t place, std::uint64_t count);
 
  private:
@@ -52,27 +54,27 @@ class Pages {
 
   ReadBytes read_;
   std::uint64_t file_size_, page_size_, content_;
-  std::string window_;  ///< contents of some pages
+  std::string window_;  ///< contents of consecutive pages
   std::uint64_t window_begin_ = 0;
 };
 
-/// Turns content into pages, piece by piece.
+/// Splits content into pages with checksums, incrementally.
 class PageWriter {
  public:
   PageWriter() = default;
-  /// Goes on with a page that holds these bytes and has no checksum yet.
+  /// Resumes a page with the content `open_page` that has no checksum yet.
   explicit PageWriter(std::string open_page) : open_(std::move(open_page)) {}
 
-  /// What a file grows by: the content, with checksums where pages end.
+  /// Returns the bytes to append to the file: the content, with a checksum at each page end.
   std::string continued(std::string_view content);
-  /// The rest of a page that was begun: zeros, and its checksum.
+  /// Returns the zero padding and the checksum that complete the last page.
   std::string closed();
 
  private:
-  std::string open_;  ///< content of the page that has no checksum yet
+  std::string open_;  ///< content of the current page, which has no checksum yet
 };
 
-/// Pages with this content, the last one filled up with zeros.
+/// Returns pages with this content. The last page is padded with zeros.
 std::string sealed(std::string_view content);
 
 }  // namespace skycap::geometry::e57

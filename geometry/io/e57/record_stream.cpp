@@ -8,12 +8,13 @@
 namespace skycap::geometry::e57 {
 namespace {
 
-/// That so many bytes have room for. Points of fewer bits than real ones, or of none at all, are
-/// believed up to a number that costs nothing: else a short file could fill the memory.
+/// Returns the maximum number of records that fit into `size` bytes. Records with unusually few
+/// bits, or none, are accepted only up to a harmless number. Otherwise a short file could exhaust
+/// the memory.
 std::uint64_t most_records(const ScanDescription& scan, std::uint64_t size) {
   std::uint64_t bits = 0;
   for (const Field& field : scan.fields) {
-    bits += field.coding == Coding::text ? 8 : field.bits();  // text has a byte of length
+    bits += field.coding == Coding::text ? 8 : field.bits();  // text has at least one length byte
   }
   constexpr std::uint64_t usual_bits = 24, harmless = 1 << 16;
   if (bits == 0) return harmless;
@@ -105,7 +106,7 @@ void RecordStream::take_streams(std::string_view packet, std::uint64_t place) {
     refuse("has a packet" + at(place) + " without a stream for each of the " +
            std::to_string(streams) + " fields");
   }
-  std::vector<std::size_t> begins{begin};  // of the streams, and the end
+  std::vector<std::size_t> begins{begin};  // offsets of the streams and of their end
   for (std::size_t i = 0; i < streams; ++i) {
     begins.push_back(begins.back() +
                      value_at<std::uint16_t>(packet.data(), packet::lengths + 2 * i));
@@ -113,7 +114,7 @@ void RecordStream::take_streams(std::string_view packet, std::uint64_t place) {
   if (begins.back() > packet.size()) {
     refuse("has a packet" + at(place) + " whose streams are longer than it is");
   }
-  // Real files have the values of a record in one packet, or in the next.
+  // In valid files, the values of a record are in the same packet or in the next one.
   constexpr std::size_t most_waiting = 16 << 20;
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const std::size_t field = fields_[i];

@@ -1,4 +1,4 @@
-/// The records of one scan of an E57 file, packet by packet (ASTM E2807-11, 9).
+/// Reads the records of one scan of an E57 file, packet by packet (ASTM E2807-11, section 9).
 #pragma once
 
 #include <span>
@@ -12,13 +12,13 @@ namespace skycap::geometry::e57 {
 
 class RecordStream {
  public:
-  /// Of those fields, by their number; `pages` and `scan` have to outlive it. Throws
-  /// Error{bad_file} if the file has no such records, or tells of more than it has room for; so
-  /// does next(). Their sentences lack the file's name.
+  /// Opens a stream of the fields with the given indices. `pages` and `scan` must outlive the
+  /// stream. Both the constructor and next() throw Error{bad_file} if the records are invalid or
+  /// exceed the file size. The messages do not contain the file name.
   RecordStream(Pages& pages, const ScanDescription& scan, std::span<const std::size_t> fields);
 
-  /// Values of the next records, at most so many: values()[i] are those of the i-th field asked
-  /// for. Returns how many they are; none at the end of the scan alone.
+  /// Reads up to `most` records. values()[i] contains the values of the i-th requested field.
+  /// Returns the number of records read, which is zero only at the end of the scan.
   std::size_t next(std::size_t most);
 
   std::span<const std::vector<double>> values() const { return values_; }
@@ -33,8 +33,8 @@ class RecordStream {
   std::vector<Column> columns_;
   std::vector<std::vector<double>> values_;
   std::vector<std::uint64_t> stored_;
-  std::uint64_t next_packet_ = 0, end_ = 0;  ///< logical places
-  std::uint64_t left_ = 0;                   ///< records
+  std::uint64_t next_packet_ = 0, end_ = 0;  ///< logical offsets
+  std::uint64_t left_ = 0;                   ///< remaining records
 };
 
 }  // namespace skycap::geometry::e57

@@ -50,7 +50,7 @@ std::string element(const std::string& name, double number) {
   return element(name, "Float", text_of(number));
 }
 
-/// An identifier as E57 has them, of 16 bytes that follow from a text: FNV-1a, twice.
+/// Returns a GUID of 16 bytes derived from a text with two FNV-1a hashes.
 std::string identifier_of(string_view text) {
   std::array<std::uint8_t, 16> bytes{};
   constexpr std::uint64_t beginning = 0xCBF29CE484222325, prime = 0x100000001B3;
@@ -61,7 +61,8 @@ std::string identifier_of(string_view text) {
       bytes[8 * half + i] = static_cast<std::uint8_t>(hash >> 8 * i & 0xFF);
     }
   }
-  bytes[6] = static_cast<std::uint8_t>((bytes[6] & 0x0F) | 0x80);  // RFC 9562, 5.8: version 8
+  bytes[6] =
+      static_cast<std::uint8_t>((bytes[6] & 0x0F) | 0x80);  // RFC 9562, section 5.8: version 8
   bytes[8] = static_cast<std::uint8_t>((bytes[8] & 0x3F) | 0x80);
   std::string result = "{";
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -95,7 +96,7 @@ bool has_field(const WrittenScan& scan, string_view name) {
   return std::ranges::find(scan.fields, name, &Field::name) != scan.fields.end();
 }
 
-/// What the values of the scan lie between.
+/// Returns the XML of the value limits of the scan.
 std::string limits_text(const WrittenScan& scan) {
   std::string text;
   if (!scan.bounds.isEmpty()) {
@@ -123,7 +124,8 @@ std::string limits_text(const WrittenScan& scan) {
   return text;
 }
 
-/// The physical place of the header of records, the last bytes of the beginning.
+/// Returns the physical offset of the section header of the records, which ends the beginning of
+/// the file.
 std::uint64_t section_place(std::uint64_t pages) {
   return (pages - 1) * page_size + page_content - section::size;
 }
@@ -159,7 +161,7 @@ std::string description_of(const WrittenScan& scan, std::uint64_t pages) {
   return root + ">\n" + element("guid", "String", identifier_of(text)) + text + "</e57Root>\n";
 }
 
-/// With the longest numbers that the description could have.
+/// Computed for the longest numbers that the description can contain.
 std::uint64_t pages_of_beginning(WrittenScan scan) {
   constexpr double long_number = -2.2250738585072014e-308;
   scan.bounds = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(long_number));
@@ -187,7 +189,7 @@ std::string beginning_of(const WrittenScan& scan) {
   char* const head = bytes + content.size() - section::size;
   head[section::kind] = section::of_records;
   put_value(head, section::length, std::uint64_t{section::size + scan.size_of_packets});
-  // Without records there is no packet to point at.
+  // Without records, there is no packet to refer to.
   put_value(head, section::data, scan.records > 0 ? pages * page_size : section_place(pages));
   return sealed(content);
 }

@@ -1,5 +1,5 @@
-/// E57 files of one scan as they are written: a beginning of constant length with the description,
-/// then the records in packets that are made on any thread, and put into pages in order.
+/// Writer of E57 files with one scan. The file begins with a header and description of constant
+/// length. The record packets can be created on any thread and are then written to pages in order.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@
 
 namespace skycap::geometry::e57 {
 
-/// What is said of the scan. The same input gives the same bytes: the identifiers that E57 wants
-/// follow from the rest, and no date is given.
+/// Metadata of a written scan. Equal input gives equal bytes: the required GUIDs are derived from
+/// the other fields, and no date is written.
 struct WrittenScan {
-  std::string sensor;            ///< its model; empty: nothing is said of it
-  std::string reference_system;  ///< WKT; empty: nothing is said of it
-  std::vector<Field> fields;     ///< numbers of whole bytes
+  std::string sensor;            ///< sensor model; omitted if empty
+  std::string reference_system;  ///< WKT; omitted if empty
+  std::vector<Field> fields;     ///< numbers with a size of whole bytes
   std::uint64_t records = 0;
-  Eigen::AlignedBox3d bounds;         ///< of the coordinates; empty: nothing is said of them
-  std::uint64_t checksum = 0;         ///< of the records: any number that changes with them
-  std::uint64_t size_of_packets = 0;  ///< without the pages' checksums [bytes]
+  Eigen::AlignedBox3d bounds;         ///< bounding box of the coordinates; omitted if empty
+  std::uint64_t checksum = 0;         ///< any value that depends on all records
+  std::uint64_t size_of_packets = 0;  ///< without page checksums [bytes]
 };
 
-/// Header, description and header of the records, in whole pages whose number depends on `sensor`,
-/// `reference_system` and `fields` alone.
+/// Returns the file header, the description and the header of the records as whole pages. Their
+/// number depends only on `sensor`, `reference_system` and `fields`.
 std::string beginning_of(const WrittenScan& scan);
 
-/// These records: of each field its values one after another, as stored. No packet is without
-/// records: there are readers that know no others.
+/// Returns the packets of records. `values` contains the stored values of each field. Empty packets
+/// are never written, because some readers do not support them.
 std::string packets_of(std::span<const Field> fields, std::span<const std::string> values);
 
 }  // namespace skycap::geometry::e57

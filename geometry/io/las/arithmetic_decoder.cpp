@@ -6,7 +6,8 @@
 namespace skycap::geometry::las {
 namespace {
 
-constexpr std::uint32_t most_counted = 1 << 15;  // symbols, until all counts are halved
+constexpr std::uint32_t most_counted =
+    1 << 15;  // maximum number of counted symbols, after which all counts are halved
 constexpr std::uint32_t most_counted_bits = 1 << 13;
 
 [[noreturn]] void refuse_value() {
@@ -53,7 +54,7 @@ void SymbolModel::update() {
   until_update_ = cycle_;
 }
 
-/// Each entry is the last symbol whose share begins before the entry's.
+/// Each entry is the last symbol whose cumulative probability is below that of the entry.
 void SymbolModel::fill_table() {
   std::size_t entry = 0;
   for (std::uint32_t symbol = 1; symbol < symbols_; ++symbol) {

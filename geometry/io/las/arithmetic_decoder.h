@@ -1,6 +1,5 @@
-/// Arithmetic decoding of symbols and bits with models that adapt to what was decoded (A. Said,
-/// Introduction to Arithmetic Coding, HP Laboratories 2004; LAZ specification 1.4, section 5): the
-/// entropy coder of compressed LAS.
+/// Adaptive arithmetic decoder, the entropy coder of LAZ (A. Said, Introduction to Arithmetic
+/// Coding, HP Laboratories 2004; LAZ specification 1.4, section 5).
 #pragma once
 
 #include <cstddef>
@@ -11,14 +10,13 @@
 
 namespace skycap::geometry::las {
 
-/// How probable each symbol of an alphabet is, by how often it came. Costs nothing until it is
-/// used.
+/// Adaptive probability model of the symbols of an alphabet. Memory is allocated on first use.
 class SymbolModel {
  public:
-  /// `symbols` from 2 to 2048.
+  /// `symbols` must be in [2, 2048].
   explicit SymbolModel(std::uint32_t symbols = 256) : symbols_(symbols) {}
 
-  /// Forgets what it has learnt: all symbols are as probable again.
+  /// Resets the model to equal probabilities.
   void reset() { until_update_ = 0; }
 
  private:
@@ -28,13 +26,15 @@ class SymbolModel {
   void fill_table();
 
   std::uint32_t symbols_, until_update_ = 0, cycle_ = 0, total_ = 0;
-  std::uint32_t table_shift_ = 0;            ///< 0: few symbols, no table
-  std::vector<std::uint16_t> counts_;        ///< of each symbol
-  std::vector<std::uint16_t> distribution_;  ///< share of the symbols before each, of 2^15
-  std::vector<std::uint16_t> table_;         ///< a symbol to begin with, by the share's first bits
+  std::uint32_t table_shift_ = 0;      ///< 0 for small alphabets, which have no table
+  std::vector<std::uint16_t> counts_;  ///< number of occurrences per symbol
+  std::vector<std::uint16_t>
+      distribution_;  ///< cumulative probability before each symbol, scaled to 2^15
+  std::vector<std::uint16_t>
+      table_;  ///< first candidate symbol by the leading bits of the cumulative probability
 };
 
-/// How probable a bit is.
+/// Adaptive probability model of a bit.
 class BitModel {
  public:
   void reset() { *this = {}; }
@@ -43,20 +43,21 @@ class BitModel {
   friend class ArithmeticDecoder;
   void update();
 
-  std::uint32_t zeros_ = 1, total_ = 2, zero_share_ = 1 << 12;  ///< of 2^13
+  std::uint32_t zeros_ = 1, total_ = 2,
+                zero_share_ = 1 << 12;  ///< probability of zero, scaled to 2^13
   std::uint32_t cycle_ = 4, until_update_ = 4;
 };
 
-/// Throws Error{bad_file} from any function when the bytes end, or cannot have been encoded.
+/// All member functions throw Error{bad_file} if the data ends or is not a valid encoding.
 class ArithmeticDecoder {
  public:
-  ArithmeticDecoder() = default;  ///< of nothing: must not be asked
+  ArithmeticDecoder() = default;  ///< without data; must not be used for decoding
   explicit ArithmeticDecoder(ByteWindow bytes);
 
   std::uint32_t symbol(SymbolModel& model);
   bool bit(BitModel& model);
 
-  /// A number of `count` bits, each of which is as probable as not; at most 32.
+  /// Reads a number of `count` (at most 32) equally distributed bits.
   std::uint32_t bits(std::uint32_t count);
 
  private:
@@ -64,7 +65,7 @@ class ArithmeticDecoder {
   void narrow(std::uint32_t low, std::uint32_t length);
 
   ByteWindow bytes_;
-  std::uint32_t value_ = 0, length_ = 0xFFFFFFFF;  // value_ < length_ whatever is decoded
+  std::uint32_t value_ = 0, length_ = 0xFFFFFFFF;  // invariant: value_ < length_
 };
 
 inline void ArithmeticDecoder::narrow(std::uint32_t low, std::uint32_t length) {

@@ -1,4 +1,5 @@
-/// A stretch of a file, read piece by piece: no length that a file states costs memory.
+/// Range of a file that is read in pieces, so that invalid lengths in a file cannot exhaust the
+/// memory.
 #pragma once
 
 #include <cstddef>
@@ -8,27 +9,27 @@
 
 namespace skycap::geometry::las {
 
-/// Bytes from a place of the file, fewer if it ends.
+/// Returns `count` bytes from offset `place`, or fewer at the end of the file.
 using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
 
-/// Throws Error{bad_file}; who knows the file's name puts it before the sentence.
+/// Throws Error{bad_file}. Callers that know the file name prepend it to the message.
 [[noreturn]] void refuse(const std::string& sentence);
 
 class ByteWindow {
  public:
-  ByteWindow() = default;  ///< without bytes
+  ByteWindow() = default;  ///< Creates an empty window.
 
-  /// The bytes from `begin` to before `end`; `read` has to outlive the window.
+  /// Range [begin, end) of the file. `read` must outlive the window.
   ByteWindow(const ReadBytes& read, std::uint64_t begin, std::uint64_t end)
       : read_(&read), unread_(begin), end_(end) {}
 
-  /// Throws Error{bad_file} at the end.
+  /// Reads the next byte. Throws Error{bad_file} at the end.
   std::uint8_t next() {
     if (position_ == piece_.size()) read_piece();
     return static_cast<std::uint8_t>(piece_[position_++]);
   }
 
-  /// The next bytes, all of them. Throws Error{bad_file} if there are fewer.
+  /// Reads exactly `count` bytes. Throws Error{bad_file} if there are fewer.
   void take(char* bytes, std::size_t count);
 
   template <typename Value>
@@ -38,10 +39,11 @@ class ByteWindow {
     return value;
   }
 
-  /// Of the byte that comes next.
+  /// Returns the file offset of the next byte.
   std::uint64_t place() const { return unread_ - (piece_.size() - position_); }
 
-  /// So many bytes from a place of the file. Throws Error{bad_file} if they end behind these.
+  /// Returns a window of `count` bytes at file offset `begin`. Throws Error{bad_file} if it exceeds
+  /// the end of this window.
   ByteWindow part(std::uint64_t begin, std::uint64_t count) const;
 
  private:

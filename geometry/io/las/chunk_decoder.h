@@ -1,4 +1,4 @@
-/// What turns the bytes of a chunk into points, for each kind of compression.
+/// Decoders of the points of a chunk, one for each kind of compression.
 #pragma once
 
 #include <memory>
@@ -7,25 +7,26 @@
 
 namespace skycap::geometry::las {
 
-/// Points that were compressed together: without them all before it in its chunk, a point cannot be
-/// decoded; without other chunks it can.
+/// Decodes a chunk. Its points must be decoded in order, independently of other chunks.
 class ChunkDecoder {
  public:
   virtual ~ChunkDecoder() = default;
 
-  /// Begins with a chunk, all bytes of which are `chunk`, and puts its first point at `point`, as
-  /// the format has it without compression. Throws Error{bad_file}.
+  /// Starts decoding `chunk` and writes its first point to `point` in the uncompressed format.
+  /// Throws Error{bad_file}.
   virtual void begin(ByteWindow chunk, char* point) = 0;
 
-  /// The next one; the chunk has to have one. Throws Error{bad_file}.
+  /// Writes the next point of the chunk to `point`. The chunk must have one. Throws
+  /// Error{bad_file}.
   virtual void next(char* point) = 0;
 };
 
-/// For points of format 0 to 3. All of each point is decoded.
+/// Creates a decoder of all fields of the point formats 0 to 3.
 std::unique_ptr<ChunkDecoder> make_pointwise_decoder(int format, std::size_t point_size);
 
-/// For points of format 6 to 8: position, numbers of returns, class, flags, channel, colour (not
-/// infrared); other bytes keep what they are. `version` of the items: 3 or 4.
+/// Creates a decoder of the point formats 6 to 8 with item version 3 or 4. It decodes position,
+/// return numbers, class, flags, channel and colour (not infrared). Other bytes of a point are not
+/// modified.
 std::unique_ptr<ChunkDecoder> make_layered_decoder(int format, int version, std::size_t point_size);
 
 }  // namespace skycap::geometry::las

@@ -7,12 +7,13 @@ namespace skycap::geometry::las {
 
 Colour ColourDecoder::read(ArithmeticDecoder& decoder, const Colour& last) {
   const std::uint32_t changed = decoder.symbol(changed_);
-  std::array<std::array<int, 3>, 2> bytes{}, old{};  // low ones, high ones
+  std::array<std::array<int, 3>, 2> bytes{}, old{};  // low bytes, high bytes
   for (std::size_t channel = 0; channel < 3; ++channel) {
     old[0][channel] = last[channel] & 0xFF;
     old[1][channel] = last[channel] >> 8;
   }
-  // A byte that has not changed is the last colour's, else what was predicted and a correction.
+  // An unchanged byte equals that of the last colour. Otherwise it is the prediction plus a
+  // correction.
   const auto read_byte = [&](std::size_t channel, std::size_t half, int change) {
     const std::size_t i = 2 * channel + half;
     int& byte = bytes[half][channel];

@@ -1,5 +1,5 @@
-/// Colours of compressed points, of all versions: byte by byte against the last colour, green and
-/// blue also by how much red has changed.
+/// Colour decoder for all item versions. Bytes are predicted from the previous colour, green and
+/// blue also from the change of red.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ class ColourDecoder {
   Colour read(ArithmeticDecoder& decoder, const Colour& last);
 
  private:
-  SymbolModel changed_{128};            // which bytes; bit 6: not all channels are the same
-  std::array<SymbolModel, 6> changes_;  // low byte, high byte of red; so green, blue
+  SymbolModel changed_{128};            // mask of changed bytes; bit 6: channels differ
+  std::array<SymbolModel, 6> changes_;  // low and high byte of red, green and blue
 };
 
 }  // namespace skycap::geometry::las

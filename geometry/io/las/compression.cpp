@@ -8,7 +8,7 @@
 namespace skycap::geometry::las {
 namespace {
 
-/// A part of points that is compressed by itself; types as the specification numbers them.
+/// Part of a point that is compressed separately. Types are those of the specification.
 struct Item {
   std::uint16_t type = 0, size = 0;
   bool operator==(const Item&) const = default;
@@ -17,7 +17,7 @@ constexpr Item point10{6, 20}, time11{7, 8}, colour12{8, 6};
 constexpr Item point14{10, 30}, colour14{11, 6}, infrared14{12, 8};
 constexpr std::uint16_t bytes10 = 0, bytes14 = 14;
 
-/// Those that points of a format have; what they are longer by are bytes of the user's.
+/// Returns the items of a point format. Additional bytes of a point are user data.
 std::vector<Item> items_of(int format, std::size_t point_size) {
   std::vector<Item> items = {format >= 6 ? point14 : point10};
   if (format == 1 || format == 3) items.push_back(time11);
@@ -32,7 +32,7 @@ std::vector<Item> items_of(int format, std::size_t point_size) {
   return items;
 }
 
-// Of the record, and of an item in it; places in bytes.
+// Byte offsets in the record and in its items.
 constexpr std::size_t compressor_place = 0, coder_place = 2, chunk_size_place = 12,
                       item_count_place = 32, items_place = 34, item_size = 6;
 
@@ -85,7 +85,7 @@ ChunkTable::ChunkTable(const ReadBytes& read, std::uint64_t file_size, std::uint
   };
   begin_ = first_point + sizeof(std::uint64_t);
   end_ = place_at(first_point);
-  // Written by who could not go back in the file, the place stands at its end.
+  // Writers without random access store the offset at the end of the file.
   constexpr std::uint64_t elsewhere = ~std::uint64_t{0};
   if (end_ == elsewhere) end_ = place_at(file_size - sizeof(std::uint64_t));
   if (end_ < begin_ || end_ > file_size) {

@@ -1,5 +1,4 @@
-/// The record by which a compressed LAS file says how it is compressed (LAZ specification 1.4,
-/// section 3), and where the chunks of its points are.
+/// Compression record of a LAZ file (LAZ specification 1.4, section 3) and table of its chunks.
 #pragma once
 
 #include <cstddef>
@@ -11,40 +10,43 @@
 
 namespace skycap::geometry::las {
 
-/// User and number of the record.
+/// User ID and record ID of the compression record.
 inline constexpr std::string_view compression_user = "laszip encoded";
 inline constexpr std::uint16_t compression_id = 22204;
 
 struct Compression {
-  int version = 0;               ///< of the items that a point is made of
-  std::uint32_t chunk_size = 0;  ///< points of each chunk but the last
-  /// Chunks differ in size, and the table tells their points.
+  int version = 0;               ///< version of the items of a point
+  std::uint32_t chunk_size = 0;  ///< points per chunk, except for the last one
+  /// Returns whether chunk sizes vary. If they do, the chunk table contains the number of points.
   bool has_various_chunks() const { return chunk_size == 0xFFFFFFFF; }
 };
 
-/// From the record's content. Throws Error{bad_file} unless it is of a kind that can be read: in
-/// chunks; items as the format and size of points ask for them; of version 2 for points of format 0
-/// to 3, of version 3 or 4 for points of format 6 to 8.
+/// Parses the content of the record. Throws Error{bad_file} if the compression is not supported.
+/// Supported are chunked files whose items match the point format and size. Required item versions:
+/// 2 for point formats 0 to 3; 3 or 4 for point formats 6 to 8.
 Compression parse_compression(std::string_view record, int format, std::size_t point_size);
 
-/// The table of chunks, entry by entry: no number of chunks that a file states costs memory.
+/// Reads the chunk table entry by entry, so that an invalid number of chunks cannot exhaust the
+/// memory.
 class ChunkTable {
  public:
   struct Chunk {
-    std::uint64_t begin = 0, end = 0;  ///< bytes of the file
+    std::uint64_t begin = 0, end = 0;  ///< byte range in the file
     std::uint64_t points = 0;
   };
 
-  /// `first_point` as the header has it; `read` has to outlive the table. Throws Error{bad_file}.
+  /// `first_point` is the offset in the LAS header. `read` must outlive the table. Throws
+  /// Error{bad_file}.
   ChunkTable(const ReadBytes& read, std::uint64_t file_size, std::uint64_t first_point,
              const Compression& compression);
 
-  /// Throws Error{bad_file} if there is none, or if it does not lie before the table.
+  /// Returns the next chunk. Throws Error{bad_file} if no chunk is left or it does not lie before
+  /// the table.
   Chunk next();
 
  private:
   Compression compression_;
-  std::uint64_t begin_ = 0, end_ = 0;  // of the chunks that were not asked for
+  std::uint64_t begin_ = 0, end_ = 0;  // byte range of the remaining chunks
   std::uint32_t unread_ = 0;
   std::uint32_t last_points_ = 0, last_size_ = 0;
   ArithmeticDecoder decoder_;

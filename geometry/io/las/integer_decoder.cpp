@@ -5,7 +5,8 @@
 namespace skycap::geometry::las {
 namespace {
 
-constexpr std::uint32_t modelled_bits = 8;  // of a correction, the highest; the others are plain
+constexpr std::uint32_t modelled_bits =
+    8;  // high bits of a correction with a model; the others are uncompressed
 
 }  // namespace
 
@@ -29,7 +30,8 @@ std::uint32_t IntegerDecoder::read(ArithmeticDecoder& decoder, std::uint32_t pre
   return (prediction + correction(decoder)) & mask_;
 }
 
-/// Magnitude k > 0 stands for -(2^k - 1) to -2^(k-1) and 2^(k-1) + 1 to 2^k, 0 for 0 and 1.
+/// Magnitude k > 0 represents -(2^k - 1) to -2^(k-1) and 2^(k-1) + 1 to 2^k; magnitude 0 represents
+/// 0 and 1.
 std::uint32_t IntegerDecoder::correction(ArithmeticDecoder& decoder) {
   if (magnitude_ == 0) return decoder.bit(bit_) ? 1 : 0;
   if (magnitude_ == 32) return 0x80000000;

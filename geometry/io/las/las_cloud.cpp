@@ -6,8 +6,8 @@
 namespace skycap::geometry {
 namespace {
 
-/// Of 16 bits the upper 8. A file whose numbers all are below 256 has 8 bits in them, against the
-/// specification.
+/// Returns the upper 8 of 16 bits. If all numbers of a file are below 256, they are 8-bit values,
+/// which violates the specification.
 std::vector<std::array<std::uint8_t, 3>> bytes_of(
     const std::vector<std::array<std::uint16_t, 3>>& colours) {
   const bool has_bytes = std::ranges::all_of(

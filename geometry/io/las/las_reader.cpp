@@ -12,9 +12,10 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr int compressed_bit = 0x80;  // of the format of points
+constexpr int compressed_bit = 0x80;  // flag in the point format
 
-/// Throws unless it is LAS of a kind that can be read; the header's size is that of its version.
+/// Throws Error{bad_file} unless the file is a supported LAS file with the header size of its
+/// version.
 void require_readable(const std::filesystem::path& path, std::string_view beginning) {
   if (beginning.size() <= las::header::point_format || !beginning.starts_with("LASF")) {
     fail_cloud(path, "is not a LAS file: it does not begin with a LAS header");
@@ -51,7 +52,7 @@ LasHeader fields_of(std::string_view beginning) {
   header.point_size = value_at<std::uint16_t>(bytes, las::header::point_size);
   header.points = value_at<std::uint32_t>(bytes, las::header::old_points);
   if (header.minor == 4) {
-    // Some writers of 1.4 fill in the count of the versions before alone.
+    // Some writers of version 1.4 set only the legacy point count.
     const auto points = value_at<std::uint64_t>(bytes, las::header::points);
     if (points != 0) header.points = points;
     header.first_extended_record =
@@ -65,7 +66,7 @@ LasHeader fields_of(std::string_view beginning) {
   return header;
 }
 
-/// `beginning` is the file's first 375 bytes, or all of a shorter file.
+/// `beginning` contains the first 375 bytes of the file, or all of a shorter file.
 LasHeader parse_header(const std::filesystem::path& path, std::string_view beginning,
                        std::uint64_t file_size) {
   require_readable(path, beginning);
@@ -132,8 +133,7 @@ int id_of(std::string_view record) {
   return value_at<std::uint16_t>(record.data(), las::record::id);
 }
 
-/// Reads the directory of GeoKeys (GeoTIFF 1.1, OGC 19-008r4): key, place of the value, count,
-/// value.
+/// Reads the GeoKey directory (GeoTIFF 1.1, OGC 19-008r4): key, value location, count, value.
 void read_geo_keys(std::string_view directory, LasReferenceSystem& system) {
   constexpr int geographic = 2048, projected = 3072, vertical = 4096, vertical_unit = 4099;
   constexpr int user_defined = 32767;
@@ -180,7 +180,7 @@ void LasReader::visit_records(const TakeRecord& take) {
 }
 
 void LasReader::visit_extended_records(const TakeRecord& take) {
-  constexpr std::uint64_t longest = 1 << 20;  // of what is read of a record
+  constexpr std::uint64_t longest = 1 << 20;  // maximum bytes read per record
   constexpr std::uint32_t most_records = 1000;
   std::uint64_t place = header_.first_extended_record;
   for (std::uint32_t i = 0; i < std::min(header_.extended_records, most_records); ++i) {

@@ -1,6 +1,6 @@
-/// LAS files of any size, piece by piece: versions 1.0 to 1.4 (ASPRS specification R15), points of
-/// format 0 to 10, and those of format 0 to 3 and 6 to 8 also compressed (LAZ, COPC:
-/// point_stream.h). gzip may have compressed the whole file.
+/// Reader of LAS files of any size, in pieces: versions 1.0 to 1.4 (ASPRS specification R15), point
+/// formats 0 to 10. Point formats 0 to 3 and 6 to 8 may be compressed (LAZ, COPC; see
+/// point_stream.h). The whole file may be gzip-compressed.
 #pragma once
 
 #include <array>
@@ -20,55 +20,56 @@
 
 namespace skycap::geometry {
 
-/// What the beginning of a LAS file says of its points.
+/// Header fields of a LAS file.
 struct LasHeader {
-  int minor = 0;               ///< of the version 1.minor
-  int format = 0;              ///< of points
-  bool is_compressed = false;  ///< LAZ, COPC
+  int minor = 0;               ///< minor version: 1.minor
+  int format = 0;              ///< point format
+  bool is_compressed = false;  ///< LAZ or COPC
   std::uint64_t points = 0;
   std::uint64_t header_size = 0, first_point = 0, point_size = 0;  ///< [bytes]
-  std::uint32_t records = 0;  ///< of variable length, behind the header
+  std::uint32_t records = 0;  ///< number of variable length records after the header
   std::uint64_t first_extended_record = 0;
-  std::uint32_t extended_records = 0;  ///< behind the points
+  std::uint32_t extended_records = 0;  ///< number of records after the points
   Eigen::Vector3d scale, offset;
 
   bool has_colours() const;
 };
 
-/// Some points of a file. Coordinates are as they are, whatever their unit.
+/// Consecutive points of a file, in the unit of the file.
 struct LasPoints {
   std::vector<Eigen::Vector3d> positions;
-  std::vector<std::uint8_t> classes;                  ///< ASPRS's, of each
-  std::vector<std::array<std::uint16_t, 3>> colours;  ///< of each, if the format has them
+  std::vector<std::uint8_t> classes;  ///< ASPRS class of each point
+  std::vector<std::array<std::uint16_t, 3>>
+      colours;  ///< colour of each point, or empty if the format has none
 };
 
-/// The coordinate reference system that a file states: WKT, or EPSG codes of its GeoKeys.
+/// Coordinate reference system of a file: WKT, or EPSG codes of its GeoKeys.
 struct LasReferenceSystem {
   std::string wkt;
-  int projected = 0, geographic = 0, vertical = 0;  ///< EPSG codes; 0: not stated
-  int vertical_unit = 0;                            ///< EPSG code; 0: not stated
-  bool is_user_defined = false;                     ///< by parameters that are not read
+  int projected = 0, geographic = 0, vertical = 0;  ///< EPSG codes; 0 if unspecified
+  int vertical_unit = 0;                            ///< EPSG code; 0 if unspecified
+  bool is_user_defined = false;                     ///< defined by parameters, which are not read
 };
 
 class LasReader {
  public:
-  /// Throws Error{bad_file} if the file cannot be read, has no such header, is compressed in
-  /// another way, or tells of more points than it has room for.
+  /// Throws Error{bad_file} if the file cannot be read, if its header is invalid or its compression
+  /// unsupported. The same applies if it declares more points than fit into the file.
   explicit LasReader(std::filesystem::path path);
 
   const LasHeader& header() const { return header_; }
 
-  /// Replaces `points` by the next of the file, from at most `most` of its records: withheld points
-  /// are passed over, so that there may be none of them left. False at the end. Throws
-  /// Error{bad_file} if the file cannot be read, or what is compressed is damaged.
+  /// Replaces `points` with the next points, from at most `most` records. Withheld points are
+  /// ignored, so that the result may be empty. Returns false at the end of the file. Throws
+  /// Error{bad_file} if the file cannot be read or its compressed data is damaged.
   bool next(LasPoints& points, std::size_t most = 1 << 16);
 
-  /// Reads the reference system from the records before and behind the points; the first WKT
-  /// counts. Throws Error{bad_file} if the file cannot be read.
+  /// Reads the reference system from the records before and after the points. The first WKT takes
+  /// precedence. Throws Error{bad_file} if the file cannot be read.
   LasReferenceSystem reference_system();
 
  private:
-  /// Takes a record's user, number and content; returns whether to go on.
+  /// Receives the user ID, record ID and content of a record. Returns whether to continue.
   using TakeRecord = std::function<bool(std::string_view user, int id, std::string_view content)>;
 
   std::string bytes(std::uint64_t place, std::uint64_t count);
@@ -78,10 +79,11 @@ class LasReader {
   void open_compressed();
   void decompress(LasPoints& points, std::uint64_t count);
 
-  std::unique_ptr<SeekableFile> file_;  ///< which stays where it is when its reader is moved
+  std::unique_ptr<SeekableFile>
+      file_;  ///< on the heap, so that its address stays the same when the reader is moved
   LasHeader header_;
   std::unique_ptr<las::PointStream> compressed_;
-  std::vector<char> record_;  ///< of the point that was decompressed last
+  std::vector<char> record_;  ///< most recently decompressed point
   std::uint64_t points_read_ = 0;
 };
 

@@ -4,10 +4,10 @@
 
 namespace skycap::geometry::las {
 
-// Bytes that are not put are zero: the counts of older versions, as from point format 6 on;
-// waveforms and extended records, of which there are none.
+// All other bytes stay zero: the legacy counts, which are unused for point formats 6 and above, and
+// the missing waveforms and extended records.
 std::vector<std::uint8_t> header_of(const WrittenFile& file) {
-  const std::size_t wkt_size = file.crs_wkt.size() + 1;  // ends with zero
+  const std::size_t wkt_size = file.crs_wkt.size() + 1;  // including the terminating zero
   constexpr std::size_t first_record = header::end, wkt = first_record + record::end;
   constexpr std::uint16_t adjusted_time = 1, is_wkt = 1 << 4;
   std::vector<std::uint8_t> bytes(wkt + wkt_size);

@@ -1,5 +1,5 @@
-/// LAS 1.4 files (ASPRS specification R15) with points of format 6 or 7, as bytes: for files that
-/// are written while they grow.
+/// Bytes of LAS 1.4 files (ASPRS specification R15) with point format 6 or 7, for files that grow
+/// during a measurement.
 #pragma once
 
 #include <array>
@@ -14,31 +14,32 @@
 
 namespace skycap::geometry::las {
 
-/// What the header states of a file.
+/// Header fields of a file.
 struct WrittenFile {
   int point_format = 6;      ///< 7 adds a colour: the intensity as grey
   std::string_view crs_wkt;  ///< at most 65534 bytes
-  double scale = 1e-4;       ///< coordinates are multiples of it from the offset
+  double scale = 1e-4;       ///< coordinates are offset + integer * scale
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   std::uint64_t points = 0;
   std::array<std::uint64_t, 15> points_by_return = {};
-  Eigen::AlignedBox3d bounds;  ///< of the coordinates as written
+  Eigen::AlignedBox3d bounds;  ///< bounding box of the written coordinates
 };
 
-/// Returns the public header block and one record, that of the reference system. The length does
-/// not depend on the points. The creation date is zero, so that equal input gives equal bytes.
+/// Returns the public header block and the record of the reference system. The length does not
+/// depend on the points. The creation date is zero, so that equal input gives equal bytes.
 std::vector<std::uint8_t> header_of(const WrittenFile& file);
 
 struct WrittenPoint {
-  std::array<std::int32_t, 3> position = {};  ///< in multiples of the scale from the offset
+  std::array<std::int32_t, 3> position = {};  ///< multiples of the scale from the offset
   std::uint16_t intensity = 0;
   std::uint8_t return_number = 1, returns = 1;
   std::uint8_t user_data = 0;
-  std::int16_t scan_angle = 0;  ///< in multiples of point::scan_angle_unit_deg
+  std::int16_t scan_angle = 0;  ///< multiples of point::scan_angle_unit_deg
   double time = 0.0;            ///< [s]
 };
 
-/// Writes the point_size() bytes of an unclassified point of the first flight line to `bytes`.
+/// Writes an unclassified point of the first flight line to `bytes`, which must have room for
+/// point_size() bytes.
 inline void put_point(std::uint8_t* bytes, int point_format, const WrittenPoint& written) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     put_value(bytes, point::position + 4 * axis, written.position[axis]);

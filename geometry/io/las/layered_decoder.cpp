@@ -1,5 +1,5 @@
-// LAZ specification 1.4, section 9: POINT14, RGB14, RGBNIR14 and BYTE14 of version 3 and 4, each
-// attribute in a layer of its own, with models for each channel of the scanner.
+// LAZ specification 1.4, section 9: POINT14, RGB14, RGBNIR14 and BYTE14 of versions 3 and 4. Each
+// attribute has a separate layer, with models for each scanner channel.
 #include <array>
 #include <cstring>
 #include <optional>
@@ -18,15 +18,15 @@ namespace {
 
 constexpr std::size_t channels = 4;
 
-/// The layers that are decoded, by their place among a chunk's.
+/// Decoded layers, by their index in a chunk.
 enum Layer : std::size_t { steps = 0, heights = 1, classes = 2, flags = 3, colours = 9 };
 
-/// What is decoded of a point but its colour.
+/// All decoded fields of a point except its colour.
 struct Point14 {
   std::int32_t x = 0, y = 0, z = 0;
-  std::uint8_t number_of_returns = 0, return_number = 0;  // of 4 bits
+  std::uint8_t number_of_returns = 0, return_number = 0;  // 4 bits each
   std::uint8_t classification = 0;
-  std::uint8_t flags = 0;  // 4 of the classification, direction of the scan, edge of flight line
+  std::uint8_t flags = 0;  // 4 classification flags, scan direction, edge of flight line
   bool has_new_time = false;
 
   bool is_first() const { return return_number == 1; }
@@ -35,19 +35,19 @@ struct Point14 {
 
 using Models = std::vector<SymbolModel>;
 
-/// Models and memory of one channel of the scanner.
+/// Models and state of one scanner channel.
 struct Channel {
   bool is_used = false;
   Point14 last;
-  Models changed = Models(8, SymbolModel(128));  // by which return the last one was, and its time
+  Models changed = Models(8, SymbolModel(128));  // by the kind and time of the last return
   SymbolModel channel_step{3}, return_step{13};
-  Models numbers_of_returns = Models(16, SymbolModel(16));  // by the last one's
-  Models return_numbers = numbers_of_returns;               // so
-  Models classes = Models(64, SymbolModel(256));            // so
-  Models flags = Models(64, SymbolModel(64));               // so
+  Models numbers_of_returns = Models(16, SymbolModel(16));  // by that of the last point
+  Models return_numbers = numbers_of_returns;               // by that of the last point
+  Models classes = Models(64, SymbolModel(256));            // by that of the last point
+  Models flags = Models(64, SymbolModel(64));               // by that of the last point
   PositionDecoder position;
   std::array<RunningMedian, 12> x_steps, y_steps;
-  std::array<std::int32_t, 8> heights{};  // last of each level of returns
+  std::array<std::int32_t, 8> heights{};  // last height per return level
 
   void begin(const Point14& first);
 };
@@ -66,7 +66,7 @@ void Channel::begin(const Point14& first) {
   heights.fill(first.z);
 }
 
-/// A chunk's layers; one that the chunk has no bytes of says that nothing changes.
+/// Layers of a chunk. An empty layer means that its attribute is constant.
 using Layers = std::array<std::optional<ArithmeticDecoder>, colours + 1>;
 
 class Point14Decoder {
@@ -84,7 +84,7 @@ class Point14Decoder {
 
   std::array<Channel, channels> channels_;
   std::size_t channel_ = 0;
-  bool channel_is_new_ = false;  // since the last point
+  bool channel_is_new_ = false;  // changed since the last point
 };
 
 void Point14Decoder::begin(const Point14& first, std::size_t channel) {
@@ -102,8 +102,8 @@ const Point14& Point14Decoder::read(Layers& layers) {
   return channels_[channel_].last;
 }
 
-/// Bits 0 and 1: the return number; 2: their number; 4: the time; 6: the channel; others belong to
-/// layers that are not decoded.
+/// Reads the change mask. Bits 0 and 1: return number; 2: number of returns; 4: time; 6: channel.
+/// Other bits belong to layers that are not decoded.
 std::uint32_t Point14Decoder::read_changed(ArithmeticDecoder& decoder) {
   Channel& channel = channels_[channel_];
   const Point14& last = channel.last;
@@ -168,8 +168,8 @@ void Point14Decoder::read_class_and_flags(Layers& layers) {
   }
 }
 
-/// Colours of points of several channels. Version 3 of the format takes some against the colour of
-/// another channel than was meant, which readers have to follow; 4 mends it.
+/// Decoder of colours of several channels. Version 3 predicts some colours from a wrong channel,
+/// which readers must reproduce; version 4 corrects this.
 class Colour14Decoder {
  public:
   void begin(const Colour& first, std::size_t channel) {
@@ -178,7 +178,7 @@ class Colour14Decoder {
     channels_[channel_].begin(first);
   }
 
-  /// `channel` as the version has it; no decoder: nothing changes.
+  /// `channel` is the channel according to the version. Without a decoder, the colour is constant.
   Colour read(std::optional<ArithmeticDecoder>& decoder, std::size_t channel, int version) {
     std::size_t remembered = channel_;
     if (channel != channel_) {
@@ -268,8 +268,8 @@ void LayeredDecoder::begin(ByteWindow chunk, char* point) {
   is_open_ = false;
 }
 
-/// Behind the first point: how many points there are, which the table of chunks has said, the size
-/// of each layer, the layers.
+/// Reads the data after the first point: number of points (known from the chunk table), size of
+/// each layer, and layers.
 void LayeredDecoder::find_layers(ByteWindow& chunk) {
   chunk.value<std::uint32_t>();
   std::vector<std::uint32_t> sizes(layers_in_file_);
@@ -285,7 +285,7 @@ void LayeredDecoder::find_layers(ByteWindow& chunk) {
 }
 
 void LayeredDecoder::next(char* point) {
-  if (!is_open_) {  // a chunk of one point need not have layers
+  if (!is_open_) {  // a chunk of one point may have no layers
     for (const std::size_t layer : {+steps, +heights, +classes, +flags, +colours}) {
       layers_[layer].reset();
       const bool is_needed = layer == steps || is_there_[layer];

@@ -1,4 +1,4 @@
-/// The points of a compressed LAS file (LAZ, COPC), one after another, chunk by chunk.
+/// Sequential reader of the points of a compressed LAS file (LAZ, COPC).
 #pragma once
 
 #include <memory>
@@ -8,24 +8,25 @@
 
 namespace skycap::geometry::las {
 
-/// What the file's header says of its points.
+/// Header fields that describe the points of a file.
 struct StoredPoints {
-  int format = 0;           ///< 0 to 3 or 6 to 8
-  std::size_t size = 0;     ///< of one, not compressed [bytes]; at least the format's
-  std::uint64_t first = 0;  ///< place in the file
+  int format = 0;        ///< 0 to 3 or 6 to 8
+  std::size_t size = 0;  ///< uncompressed size of a point [bytes]; at least the size of the format
+  std::uint64_t first = 0;  ///< file offset
 };
 
 class PointStream {
  public:
-  /// `record` is the content of the file's record of its compression. Throws Error{bad_file}; the
-  /// sentences, from here and from next(), lack the file's name.
+  /// `record` is the content of the compression record. The constructor and next() throw
+  /// Error{bad_file} without the file name in the message.
   PointStream(ReadBytes read, std::uint64_t file_size, const StoredPoints& points,
               std::string_view record);
   PointStream(const PointStream&) = delete;
   PointStream& operator=(const PointStream&) = delete;
 
-  /// The next point at `point`, as the format has it without compression; of formats 6 to 8, what
-  /// make_layered_decoder() says. The header knows how often there is one. Throws Error{bad_file}.
+  /// Writes the next point to `point` in the uncompressed format. For formats 6 to 8, only the
+  /// fields listed at make_layered_decoder() are written. Must not be called more often than there
+  /// are points in the header. Throws Error{bad_file}.
   void next(char* point);
 
  private:

@@ -1,5 +1,5 @@
-// LAZ specification 1.4, section 8: POINT10, GPSTIME11, RGB12 and BYTE, all of version 2, by one
-// arithmetic decoder, point after point.
+// LAZ specification 1.4, section 8: POINT10, GPSTIME11, RGB12 and BYTE of version 2. All points are
+// decoded in order by one arithmetic decoder.
 #include <array>
 #include <cstring>
 #include <optional>
@@ -16,7 +16,7 @@
 namespace skycap::geometry::las {
 namespace {
 
-/// A point of format 0, as it stands in a file.
+/// Point of format 0 in file layout.
 struct Point10 {
   std::int32_t x = 0, y = 0, z = 0;
   std::uint16_t intensity = 0;
@@ -41,19 +41,21 @@ class Point10Decoder {
 
   Point10 last_;
   SymbolModel changed_{64};
-  std::vector<SymbolModel> returns_ = std::vector<SymbolModel>(256);    // by the last one's
-  std::vector<SymbolModel> classes_ = returns_, user_data_ = returns_;  // so
-  std::array<SymbolModel, 2> scan_angles_;  // by the direction of the scan
+  std::vector<SymbolModel> returns_ =
+      std::vector<SymbolModel>(256);  // by the value of the last point
+  std::vector<SymbolModel> classes_ = returns_,
+                           user_data_ = returns_;  // by the value of the last point
+  std::array<SymbolModel, 2> scan_angles_;         // by scan direction
   IntegerDecoder intensity_{16, 4}, source_{16, 1};
   PositionDecoder position_;
-  std::array<std::uint16_t, 16> intensities_{};  // last of each kind of return
+  std::array<std::uint16_t, 16> intensities_{};  // last intensity per kind of return
   std::array<RunningMedian, 16> x_steps_{}, y_steps_{};
-  std::array<std::int32_t, 8> heights_{};  // last of each level of returns
+  std::array<std::int32_t, 8> heights_{};  // last height per return level
 };
 
 void Point10Decoder::begin(const Point10& first) {
   last_ = first;
-  last_.intensity = 0;  // as encoders have it
+  last_.intensity = 0;  // required for compatibility with encoders
   changed_.reset();
   for (auto* models : {&returns_, &classes_, &user_data_}) {
     for (SymbolModel& model : *models) model.reset();
@@ -145,7 +147,7 @@ void PointwiseDecoder::begin(ByteWindow chunk, char* point) {
 }
 
 void PointwiseDecoder::next(char* point) {
-  if (!decoder_) decoder_.emplace(std::move(compressed_));  // a chunk of one point has no more
+  if (!decoder_) decoder_.emplace(std::move(compressed_));  // a chunk of one point ends here
   put_value(last_.data(), 0, points_.read(*decoder_));
   if (has_time_) put_value(last_.data(), sizeof(Point10), times_.read(*decoder_));
   if (has_colour_) {

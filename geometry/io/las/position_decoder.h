@@ -1,5 +1,5 @@
-/// Coordinates of compressed points, of all versions: steps in x and y against the median of recent
-/// ones, heights against the last of the same kind of return.
+/// Coordinate decoder for all item versions. x and y are predicted by the median of recent steps, z
+/// by the previous return of the same kind.
 #pragma once
 
 #include <algorithm>
@@ -20,10 +20,10 @@ class PositionDecoder {
   struct Step {
     std::int32_t x = 0, y = 0;
   };
-  /// `is_single`: the only return of its pulse. The medians learn the step.
+  /// Reads a step and adds it to the medians. `is_single` is true for the only return of a pulse.
   Step read_step(ArithmeticDecoder& decoder, RunningMedian& x, RunningMedian& y, bool is_single);
 
-  /// The height of the point whose step was read last.
+  /// Reads the z coordinate of the point whose step was read last.
   std::int32_t read_height(ArithmeticDecoder& decoder, std::int32_t last, bool is_single);
 
  private:
@@ -51,7 +51,7 @@ inline std::int32_t PositionDecoder::read_height(ArithmeticDecoder& decoder, std
   return z_.read_signed(decoder, last, context(magnitude, 18, is_single));
 }
 
-/// a + b without overflow: as two's complements, as the encoder adds.
+/// Returns a + b in two's complement without overflow, as the encoder does.
 inline std::int32_t wrapped_sum(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }

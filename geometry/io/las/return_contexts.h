@@ -1,5 +1,5 @@
-/// Which returns resemble each other: what models of compressed points are told apart by (LAZ
-/// specification 1.4, sections 8.1 and 9.1). [number of returns][return number].
+/// Classes of similar returns, which share a model of compressed points (LAZ specification 1.4,
+/// sections 8.1 and 9.1). Index: [number of returns][return number].
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace skycap::geometry::las {
 
 using ReturnRow = std::array<std::uint8_t, 16>;
 
-/// Contexts of points of formats 0 to 5, whose return numbers have 3 bits.
+/// Contexts for point formats 0 to 5, whose return numbers have 3 bits.
 inline constexpr std::array<std::array<std::uint8_t, 8>, 8> old_return_contexts = {{
     {15, 14, 13, 12, 11, 10, 9, 8},
     {14, 0, 1, 3, 6, 10, 10, 9},
@@ -22,7 +22,7 @@ inline constexpr std::array<std::array<std::uint8_t, 8>, 8> old_return_contexts 
     {8, 9, 10, 11, 12, 13, 14, 15},
 }};
 
-/// Contexts of points of format 6 and above, whose return numbers have 4 bits.
+/// Contexts for point formats 6 and above, whose return numbers have 4 bits.
 inline constexpr std::array<ReturnRow, 16> return_contexts = {{
     {0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
     {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
@@ -42,7 +42,7 @@ inline constexpr std::array<ReturnRow, 16> return_contexts = {{
     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5},
 }};
 
-/// How many returns of the pulse lie below, at most 7.
+/// Returns the number of returns of the pulse below this return, at most 7.
 constexpr std::size_t return_level(std::size_t number_of_returns, std::size_t return_number) {
   const std::size_t level = number_of_returns > return_number ? number_of_returns - return_number
                                                               : return_number - number_of_returns;

@@ -1,5 +1,5 @@
-/// A median that follows a stream of numbers: of five, of which a new one takes the place of the
-/// largest and the smallest in turn (LAZ specification 1.4, section 7).
+/// Running median of five numbers. A new number replaces alternately the largest and the smallest
+/// number (LAZ specification 1.4, section 7).
 #pragma once
 
 #include <array>

@@ -3,11 +3,11 @@
 namespace skycap::geometry::las {
 namespace {
 
-// Symbols of multiples: 0 to 500 are themselves, then -1 to -10, then these.
+// Symbols of multiples: 0 to 500 for the same multiple, then -1 to -10, then the following.
 constexpr int largest_multiple = 500, smallest_multiple = -10;
 constexpr int unchanged = largest_multiple - smallest_multiple + 1, new_sequence = unchanged + 1;
 
-/// The model that corrects a step of so many times the last one.
+/// Returns the model for correcting a step that is `multiple` times the last step.
 std::size_t context_of(int multiple) {
   if (multiple == 0) return 7;
   if (multiple == 1) return 1;
@@ -29,7 +29,7 @@ void TimeDecoder::begin(std::uint64_t first) {
 }
 
 std::uint64_t TimeDecoder::read(ArithmeticDecoder& decoder) {
-  // An encoder changes the sequence once, and then uses it.
+  // Encoders change the sequence at most once per time.
   for (int changes = 0; changes < 2; ++changes) {
     const bool is_first = sequences_[current_].step == 0;
     if (is_first ? read_first_step(decoder) : read_multiple(decoder)) {

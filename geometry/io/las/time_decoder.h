@@ -1,5 +1,5 @@
-/// GPS times of compressed points of format 1 and 3: four sequences of times, one of which goes on
-/// by a multiple of its last step (LAZ specification 1.4, section 8.2). Times are the bits of
+/// Decoder of GPS times of the point formats 1 and 3. One of four time sequences continues by a
+/// multiple of its previous step (LAZ specification 1.4, section 8.2). Times are the bits of
 /// doubles, read as integers.
 #pragma once
 
@@ -21,9 +21,9 @@ class TimeDecoder {
   struct Sequence {
     std::uint64_t time = 0;
     std::int32_t step = 0;
-    int extremes = 0;  // how often the step was far off, one time after another
+    int extremes = 0;  // consecutive steps outside the range of multiples
   };
-  /// False: the time belongs to another sequence, which is now the current one.
+  /// Returns false if the time belongs to another sequence, which then becomes the current one.
   bool read_first_step(ArithmeticDecoder& decoder);
   bool read_multiple(ArithmeticDecoder& decoder);
   void follow(ArithmeticDecoder& decoder, int multiple);

@@ -11,7 +11,7 @@ namespace {
 
 using std::string_view;
 
-/// Replacement for halves of pairs that stand alone.
+/// Replacement character for unpaired surrogates.
 constexpr std::uint32_t unknown_character = 0xFFFD;
 
 void append_utf8(std::string& text, std::uint32_t code) {
@@ -58,7 +58,7 @@ std::string utf8_of_utf16(string_view bytes, bool is_big_endian) {
   return text;
 }
 
-/// Spellings that std::from_chars does not know.
+/// Parses spellings that std::from_chars does not support.
 std::optional<double> special_number(string_view digits) {
   const bool is_negative = digits.starts_with('-');
   if (is_negative) digits.remove_prefix(1);
@@ -72,9 +72,9 @@ std::optional<double> special_number(string_view digits) {
   return std::nullopt;
 }
 
-/// Larger than the largest number, or smaller than the smallest.
+/// Returns infinity for numbers above the range of double, and zero for numbers below it.
 double beyond_range(string_view digits) {
-  // The number of digits before the point, and the exponent, tell the two apart.
+  // The digits before the point and the exponent distinguish both cases.
   const std::size_t exponent = digits.find_first_of("eE");
   const bool is_tiny =
       exponent != string_view::npos && digits.substr(exponent + 1).starts_with('-');

@@ -1,5 +1,5 @@
-/// Text as other programs write it: marks of its encoding, ends of its lines, its numbers. Every
-/// reader of text opens it and reads its numbers here.
+/// Normalisation of text from external sources: encoding, line ends and numbers. All text readers
+/// use these functions.
 #pragma once
 
 #include <optional>
@@ -10,28 +10,30 @@
 
 namespace skycap::geometry {
 
-/// The bytes that mark a text as UTF-8.
+/// UTF-8 byte-order mark.
 inline constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
 
-/// A file's bytes as UTF-8 without a mark, with lines that end with \n: UTF-16 is told by its mark
-/// or by a first character from ASCII; lines may end with \r\n, \r or \n.
+/// Converts the bytes of text files to UTF-8 without byte-order mark and with \n as line end.
+/// UTF-16 is detected by its mark or by an ASCII first character. Input lines may end with \r\n, \r
+/// or \n.
 std::string plain_text(std::string bytes);
 
-/// The same without a change to the ends of lines, for bytes that may be no text at all.
+/// Converts bytes to UTF-8 without byte-order mark and keeps the line ends. Also for files that may
+/// be binary.
 std::string as_utf8(std::string bytes);
 
-/// A real number as programs write it, with a sign or without; also NaN and infinity, in all
-/// spellings of C and of Microsoft's library (nan, -nan(ind), 1.#QNAN, inf, -1.#INF). What is
-/// larger than the largest number is infinite. Nothing if all of the text is not one number.
+/// Parses a real number with optional sign, or NaN and infinity in all spellings of C and of
+/// Microsoft's library (nan, -nan(ind), 1.#QNAN, inf, -1.#INF). Numbers that exceed the range of
+/// double are infinite. Returns nullopt if the text is not exactly one number.
 std::optional<double> number_in(std::string_view text);
 
-/// The same where a comma may stand for the decimal point.
+/// Parses a number like number_in(), but also accepts a decimal comma.
 std::optional<double> number_with_comma(std::string_view text);
 
-/// Whether the text would be a number if its comma were a point.
+/// Returns whether the text would be a valid number with a point instead of its comma.
 bool has_decimal_comma(std::string_view text);
 
-/// With small letters of ASCII only.
+/// Converts ASCII letters to lower case.
 std::string lower_case(std::string_view text);
 
 }  // namespace skycap::geometry

@@ -72,7 +72,7 @@ double load(const char* bytes, bool swap) {
   return static_cast<double>(std::bit_cast<Value>(raw));
 }
 
-/// Calls `visit` with a std::type_identity of the type's values.
+/// Calls `visit` with a std::type_identity of the value type.
 template <typename Visit>
 auto with_type(PlyType type, const Visit& visit) {
   switch (type) {
@@ -145,19 +145,19 @@ std::string ply_header(std::span<const PlyElement> elements, std::string_view co
 }
 
 std::string growing_ply_header(const PlyElement& element) {
-  constexpr std::size_t most_digits = 20;  // of 64 bits
+  constexpr std::size_t most_digits = 20;  // digits of a 64-bit number
   const std::size_t digits = std::to_string(element.count).size();
   return ply_header({&element, 1}, "written by Skycap" + std::string(most_digits - digits, ' '));
 }
 
-// For each property of an element: the column it goes to, or -1; and which of them is the list.
+// Column of each property of an element, or -1, and index of the list property.
 struct PlyReader::Wanted {
   std::vector<int> column;
   std::size_t list;
   std::size_t smallest_row;  // [bytes]
 };
 
-// Those to be read now.
+// Range of rows to be read.
 struct PlyReader::Rows {
   const PlyElement& element;
   std::uint64_t begin, end;
@@ -165,7 +165,7 @@ struct PlyReader::Rows {
 
 namespace {
 
-/// Whether the line 'ply' ends with \r alone, as old programs of the Macintosh have it.
+/// Returns whether the line 'ply' ends with a bare \r, as in old Macintosh programs.
 bool ends_lines_with_return(std::string_view bytes) {
   const std::size_t end = bytes.find_first_of("\r\n");
   return end != std::string_view::npos && bytes[end] == '\r' &&
@@ -225,7 +225,7 @@ void PlyReader::read_header() {
   scanner.next_line();
   at_ = bytes_.size() - scanner.remaining();
   line_ = scanner.line();
-  // Where lines end with \r alone, a first byte of data that is \n belongs to the data.
+  // In files with bare \r line ends, a first data byte \n belongs to the data.
   const bool has_bare_returns = format_ != Format::ascii && ends_lines_with_return(bytes_);
   if (has_bare_returns && bytes_.substr(end, at_ - end).ends_with("\r\n")) --at_;
 }
@@ -268,7 +268,7 @@ PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
   }
   const Wanted wanted = wanted_of(element, scalars, lists);
 
-  // The last row of ascii needs no line end, hence the 1.
+  // The last ASCII row needs no line end, hence the 1.
   if (left > (bytes_.size() - at_ + 1) / std::max<std::size_t>(wanted.smallest_row, 1)) {
     fail("the header declares " + std::to_string(element.count) + " of element '" + element.name +
          "', but the file is too short; it may be truncated");
@@ -304,7 +304,7 @@ void PlyReader::require_short(const Rows& rows, const PlyTable& table, std::uint
 }
 
 std::int64_t PlyReader::index_of(const Rows& rows, double value) const {
-  constexpr double most = 1e15;  // whole numbers are exact up to here
+  constexpr double most = 1e15;  // integers are exact up to this value
   if (std::abs(value) <= most && value == std::floor(value)) {
     return static_cast<std::int64_t>(value);
   }

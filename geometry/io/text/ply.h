@@ -1,6 +1,6 @@
-/// The PLY format, for readers and writers of meshes and clouds: reads any elements and properties,
-/// in ascii and both binary byte orders; writes binary little-endian files. Source: Turk, "The PLY
-/// Polygon File Format", 1994, with the type names that came later (int8 ... float64).
+/// PLY format for meshes and clouds. Reads any elements and properties in ASCII and both binary
+/// byte orders; writes binary little-endian files. Source: Turk, "The PLY Polygon File Format",
+/// 1994, with the later type names (int8 ... float64).
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64
 
 struct PlyProperty {
   std::string name;
-  PlyType type;                       ///< of the value, or of a list's values
-  std::optional<PlyType> count_type;  ///< set if it is a list
+  PlyType type;                       ///< type of the value or of the list values
+  std::optional<PlyType> count_type;  ///< set for lists only
 };
 
 struct PlyElement {
@@ -30,8 +30,8 @@ struct PlyElement {
   void add(PlyType type, std::initializer_list<std::string_view> names);
 };
 
-/// Returns the header of a binary little-endian file. The rows follow it, element by element, each
-/// value as append_value() of byte_values.h writes it. An empty comment is omitted.
+/// Returns the header of a binary little-endian file. It must be followed by the rows of each
+/// element, with values written by append_value() of byte_values.h. An empty comment is omitted.
 std::string ply_header(std::span<const PlyElement> elements,
                        std::string_view comment = "written by Skycap");
 
@@ -39,33 +39,35 @@ std::string ply_header(std::span<const PlyElement> elements,
 /// header does not depend on the number of rows.
 std::string growing_ply_header(const PlyElement& element);
 
-/// What was asked for of an element, row by row in the file's order.
+/// Requested values of an element in file order.
 struct PlyTable {
   std::uint64_t rows = 0;
-  std::vector<std::vector<double>> columns;  ///< as the names were given; empty if there is none
-  std::vector<std::uint64_t> list_begin;     ///< row i's list: [list_begin[i], list_begin[i + 1])
+  std::vector<std::vector<double>>
+      columns;  ///< one per requested name; empty if the property is absent
+  std::vector<std::uint64_t> list_begin;  ///< list of row i: [list_begin[i], list_begin[i + 1])
   std::vector<std::int64_t> list_values;
 };
 
-/// Most values of a list that is read.
+/// Maximum length of a list.
 inline constexpr std::size_t longest_ply_list = 1'000'000;
 
-/// Reads a PLY file from memory, element after element.
+/// Reads a PLY file from memory, one element after another.
 class PlyReader {
  public:
-  /// Reads the header. `name` (a path) opens every message; both must outlive the reader. Throws
-  /// Error{bad_file}, here and below, naming the line or the row.
+  /// Reads the header. Every message begins with `name`, usually a path. `name` and `bytes` must
+  /// outlive the reader. All member functions throw Error{bad_file} that names the line or row.
   PlyReader(std::string_view name, std::string_view bytes);
 
   const std::vector<PlyElement>& elements() const { return elements_; }
 
-  /// The next element: of its properties, the scalars with these names. Never allocates more than a
-  /// small multiple of the file's size.
+  /// Reads the scalar properties with these names of the next element. Allocates at most a small
+  /// multiple of the file size.
   PlyTable read_element(std::span<const std::string_view> scalars);
 
-  /// The same of its next `most_rows` rows, or those that are left, with the first list with one of
-  /// these names: numbers take several times the file's bytes. Ends before with the row that brings
-  /// the lists to `longest_ply_list` values. With its last row an element is read.
+  /// Reads up to `most_rows` further rows of the current element, because numbers take several
+  /// times the memory of the file. Reads the first list property with one of the names `lists`.
+  /// Stops early after the row with which the lists reach `longest_ply_list` values. After its last
+  /// row, the element is complete.
   PlyTable read_rows(std::span<const std::string_view> scalars,
                      std::span<const std::string_view> lists, std::uint64_t most_rows);
 
@@ -86,12 +88,12 @@ class PlyReader {
 
   std::string_view name_;
   std::string_view bytes_;
-  std::size_t at_ = 0;    // of the first byte that is not read yet
-  std::size_t line_ = 1;  // of that byte, in ascii
+  std::size_t at_ = 0;    // offset of the first unread byte
+  std::size_t line_ = 1;  // line of that byte in ASCII files
   enum class Format { ascii, little_endian, big_endian } format_ = Format::ascii;
   std::vector<PlyElement> elements_;
   std::size_t next_element_ = 0;
-  std::uint64_t next_row_ = 0;  // of that element
+  std::uint64_t next_row_ = 0;  // row of that element
 };
 
 }  // namespace skycap::geometry

@@ -1,5 +1,5 @@
-/// Words and numbers of a text file, with the line they are on for messages. For readers' sources.
-/// A mark of UTF-8 at the beginning is passed over; lines end with \n, \r\n or \r.
+/// Tokeniser of text files for readers. Tracks the line number for messages. A leading UTF-8
+/// byte-order mark is skipped. Lines end with \n, \r\n or \r.
 #pragma once
 
 #include <charconv>
@@ -18,7 +18,7 @@ namespace skycap::geometry {
 
 class TextScanner {
  public:
-  /// `name` (a path) opens every message. Both must outlive the scanner.
+  /// Every message begins with `name`, usually a path. `name` and `text` must outlive the scanner.
   TextScanner(std::string_view name, std::string_view text, std::size_t first_line = 1)
       : name_(name), text_(text), line_(first_line) {
     if (first_line == 1) at_ = text.size() - without_mark(text).size();
@@ -27,7 +27,7 @@ class TextScanner {
   std::size_t line() const { return line_; }
   std::size_t remaining() const { return text_.size() - at_; }
 
-  /// The next word, on this line or a later one; nothing at the end of the text.
+  /// Returns the next word on this line or a later one, or nullopt at the end of the text.
   std::optional<std::string_view> word() {
     while (true) {
       if (const auto found = word_in_line()) return found;
@@ -35,7 +35,7 @@ class TextScanner {
     }
   }
 
-  /// The next word on this line; nothing at its end.
+  /// Returns the next word on this line, or nullopt at its end.
   std::optional<std::string_view> word_in_line() {
     while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
     const std::size_t begin = at_;
@@ -44,14 +44,14 @@ class TextScanner {
     return text_.substr(begin, at_ - begin);
   }
 
-  /// What is left of this line, without blanks around it.
+  /// Returns the rest of this line without surrounding blanks.
   std::string_view rest_of_line() {
     const std::size_t begin = at_;
     at_ = end_of_line();
     return trimmed(text_.substr(begin, at_ - begin));
   }
 
-  /// Goes to the start of the next line; false if there is none.
+  /// Advances to the start of the next line. Returns false at the end of the text.
   bool next_line() {
     const std::size_t end = end_of_line();
     at_ = end;
@@ -61,8 +61,8 @@ class TextScanner {
     return at_ < text_.size();
   }
 
-  /// `word` as a number; `what` names it in the message, as in "a coordinate". Real numbers may be
-  /// NaN or infinite.
+  /// Converts `word` to a number. `what` names it in the message, such as "a coordinate". Real
+  /// numbers may be NaN or infinite.
   template <typename Number>
   Number number(std::optional<std::string_view> word, std::string_view what) const {
     if (!word) fail("ends where " + std::string(what) + " is expected");
@@ -79,7 +79,7 @@ class TextScanner {
     fail_of(*word, what);
   }
 
-  /// The message for a word that stands where something else is expected.
+  /// Throws an Error about an unexpected word.
   [[noreturn]] void fail_of(std::string_view word, std::string_view what) const {
     const std::string quoted = "'" + std::string(word.substr(0, 40)) + "'";
     if (has_decimal_comma(word)) {
@@ -97,7 +97,7 @@ class TextScanner {
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-  /// Where the line's end is, or the text's.
+  /// Returns the position of the end of the line or text.
   std::size_t end_of_line() const {
     std::size_t end = at_;
     while (end < text_.size() && !is_line_end(text_[end])) ++end;

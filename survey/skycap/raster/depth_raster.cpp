@@ -9,7 +9,7 @@ namespace {
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 
-/// Where the pixels of a plane begin.
+/// Returns the offset of the first pixel of a plane.
 std::size_t margin_of(const RasterView& view) {
   return static_cast<std::size_t>(row_margin) * static_cast<std::size_t>(view.stride);
 }
@@ -18,7 +18,7 @@ std::size_t margin_of(const RasterView& view) {
 
 void DepthRaster::draw(const RasterView& view, std::size_t count, const PointArrays& points,
                        float spacing) {
-  // Until the end, no plane is as it has to be: an exception leaves it so.
+  // The stride is invalid until the end, so that planes are reset after an exception.
   const int stride = std::exchange(stride_, 0);
   if (depths_.size() != view.outside || stride != view.stride) {
     const std::size_t with_margins = view.outside + 2 * margin_of(view);
@@ -46,7 +46,7 @@ void DepthRaster::draw_chunk(const RasterView& view, const PointArrays& points, 
                              float spacing) {
   project_points(view, count, points, spacing,
                  {pixels_.data(), chunk_depths_.data(), sizes_.data()});
-  // Values in place of references and branches: what is nearer is anybody's guess.
+  // Uses values instead of references and branches, because the depth order is unpredictable.
   const std::uint32_t outside = view.outside;
   std::size_t inside = 0;
   for (std::size_t i = 0; i < count; ++i) {

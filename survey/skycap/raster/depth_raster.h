@@ -1,4 +1,4 @@
-/// How deep a view looks before points hide what is behind them.
+/// Depth buffer of a view, for occlusion tests.
 #pragma once
 
 #include <array>
@@ -10,21 +10,23 @@
 
 namespace skycap::survey::skycap {
 
-/// A depth image of points that stand for squares. Its memory is used again: one for each thread.
+/// Depth image of points drawn as squares. The memory is reused; use one object per thread.
 class DepthRaster {
  public:
-  /// Points that stand for squares of twice `spacing`: of four pixels at the depth of
-  /// focal_length times spacing and beyond, and of more nearer, lest what is behind shine through.
+  /// Draws points as squares with the edge length 2 * `spacing`. A square has four pixels at depths
+  /// of at least focal length * spacing. At smaller depths it has more pixels, so that surface
+  /// behind the points stays hidden.
   void draw(const RasterView& view, std::size_t count, const PointArrays& points, float spacing);
 
-  /// Of the nearest square [m]; infinite where there is none.
+  /// Returns the depth of the nearest square [m], or infinity where no square is drawn.
   float depth(std::uint32_t pixel) const { return depths_[pixel]; }
 
  private:
-  static constexpr std::size_t chunk = 2048;  // points at a time: their arrays stay in the cache
+  static constexpr std::size_t chunk =
+      2048;  // points processed at a time, so that their arrays fit into the cache
 
-  /// A plane with as many rows beside it as windows reach: pixels of it, and infinite depths
-  /// around.
+  /// Pixel plane with additional rows of infinite depth above and below, as many as the windows
+  /// need.
   using Plane = std::vector<float>;
   struct Square {
     std::uint32_t pixel;
@@ -36,13 +38,13 @@ class DepthRaster {
                   float spacing);
   void draw_square(const RasterView& view, const Square& square);
 
-  /// By the width of squares: the nearest of them in their points' pixels. Infinite between calls.
+  /// Nearest depth per point pixel, by width of the squares. Infinite between calls.
   std::array<Plane, largest_window + 1> nearest_;
   std::array<bool, largest_window + 1> is_used_{};
   Plane row_wise_;
-  int stride_ = 0;  ///< of the planes; 0: they are to be made anew
+  int stride_ = 0;  ///< stride of the planes; 0 if they must be reallocated
   std::vector<float> depths_;
-  std::vector<Square> large_;  ///< too wide for windows
+  std::vector<Square> large_;  ///< squares too wide for windows
 
   std::array<std::uint32_t, chunk> pixels_{}, inside_{};
   std::array<float, chunk> chunk_depths_{};

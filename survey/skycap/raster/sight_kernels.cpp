@@ -9,12 +9,12 @@
 namespace skycap::survey::skycap {
 namespace {
 
-constexpr float largest_square = 1e4F;  // wider than any raster [px]
+constexpr float largest_square = 1e4F;  // larger than any raster [px]
 
 [[gnu::always_inline]] inline void project_points_body(const RasterView& given, std::size_t count,
                                                        const PointArrays& points, float spacing,
                                                        const PointPixels& projected) {
-  const RasterView view = given;  // copies of our own: nothing that is written can alias them
+  const RasterView view = given;  // local copy, so that no output can alias it
   const PointPixels out = projected;
   const float *const x = points.x, *const y = points.y, *const z = points.z;
   const float centre_column = 0.5F * view.width, centre_row = 0.5F * view.height;
@@ -82,7 +82,7 @@ constexpr float largest_square = 1e4F;  // wider than any raster [px]
   }
 }
 
-/// The least of `size` values, `step` apart, about the one at `at`.
+/// Returns the minimum of `size` values with stride `step` around `at`.
 template <int size>
 [[gnu::always_inline]] inline float least_about(const float* at, std::ptrdiff_t step) {
   const float* value = at - (size - 1 - pixels_before_square(size)) * step;
@@ -95,8 +95,8 @@ template <int size>
   return least;
 }
 
-/// A pixel is in the squares whose points are in a window of as many pixels about it: the least of
-/// each row's, then of these.
+/// A pixel is covered by the squares whose points are in a window of the same size around it. The
+/// minimum is computed along rows, then along columns.
 template <int size>
 [[gnu::always_inline]] inline void draw_squares_of(const RasterView& view, float* nearest,
                                                    float* row_wise, float* depths) {
