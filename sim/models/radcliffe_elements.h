@@ -1,5 +1,5 @@
-/// The elements of the Radcliffe Camera, at full size; radcliffe_camera() puts them together.
-/// Each function adds every instance of its element all round the building.
+/// Elements of the Radcliffe Camera at full size, which radcliffe_camera() combines. Each function
+/// adds all instances of its element around the building.
 #pragma once
 
 #include "sim/models/masonry/solids.h"
@@ -7,19 +7,20 @@
 
 namespace skycap::sim::models::radcliffe {
 
-/// What every element is made from.
+/// Common input of all elements.
 struct Plan {
   const RadcliffeTable& table;
-  Fineness fineness;  ///< at full size
+  Fineness fineness;  ///< At full size.
   bool has_fluted_columns;
 
-  double bay_angle() const;             ///< from a projecting bay to the next
-  double arched_bay(int i) const;       ///< azimuth of a projecting bay, also of window bays
-  double niche_bay(int i) const;        ///< azimuth of a niche bay, also of buttresses
-  std::vector<double> columns() const;  ///< azimuths of all columns
+  double bay_angle() const;  ///< Angle between two projecting bays.
+  /// Azimuth of a projecting bay, which is also that of window bays.
+  double arched_bay(int i) const;
+  double niche_bay(int i) const;  ///< Azimuth of a niche bay, which is also that of buttresses.
+  std::vector<double> columns() const;  ///< Azimuths of all columns.
 };
 
-// The body: everything that is one with the wall, from the ground to the finial.
+// Returns the body: all parts connected to the wall, from the ground to the finial.
 geometry::Mesh body(const Plan& plan);
 
 // Ground stage.
