@@ -1,5 +1,5 @@
-/// Simulation of all sorties of a fleet together, repeated with random wind and random delays
-/// within the tolerance.
+/// Simulation of all sorties of a fleet together, repeated with random wind and random deviations
+/// from the timetable within the tolerance.
 #pragma once
 
 #include <cstddef>
