@@ -3,11 +3,11 @@
 /// No measured model of it is published. The table lists the source of each dimension, so that an
 /// estimate can be replaced by a measurement.
 ///
-/// Stated: from a description of the building. Descriptions are an 18th-century Oxford guide
-/// (heights of 80 and 60 ft), the list entry and Sherwood & Pevsner (stages, bays, orders), and
-/// Summerson (bay rhythm, buttresses). Derived: follows from stated facts. Estimate: from the rules
-/// of the Corinthian order in Gibbs' own "Rules for Drawing the Several Parts of Architecture" and
-/// from general knowledge of views.
+/// Stated: from a description of the building. These are an 18th-century Oxford guide (heights of
+/// 80 and 60 ft); the list entry and Sherwood & Pevsner (stages, bays, orders); and Summerson (bay
+/// rhythm, buttresses). Derived: follows from stated facts. Estimate: from the rules of the
+/// Corinthian order in Gibbs' own "Rules for Drawing the Several Parts of Architecture" and from
+/// general knowledge of views.
 ///
 /// Frame: origin on the ground in the middle of the building, x east, y north (the entrance), z up.
 /// Projecting arched bays are at azimuths 0, 45, 90 ... degrees, with niche bays between them.
