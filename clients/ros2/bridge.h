@@ -44,7 +44,7 @@ struct BridgeConfig {
   bool is_rectified = false;    ///< Depth images are rectified.
 };
 
-/// Requests to `skycap serve`. All throw the errors of skycap_live::Survey.
+/// Requests to `skycap serve`. All throw the same errors as skycap_live::Survey.
 struct SurveyPort {
   std::function<std::string()> next, finish;
   std::function<std::string(const SensorScan&, const skycap_live::Pose&,

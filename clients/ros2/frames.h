@@ -31,7 +31,7 @@ struct BodyPose {
 /// covariance that is asymmetric or has negative variances.
 BodyPose body_pose(const Odometry& odometry);
 
-/// Returns the pose of a transform: the child in its parent. Throws the errors of the odometry
+/// Returns the pose of a transform: the child in its parent. Throws the same errors as the odometry
 /// overload.
 BodyPose body_pose(const TransformMessage& transform);
 

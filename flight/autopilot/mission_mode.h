@@ -24,8 +24,8 @@ struct MissionMode {
   double jerk = 4.0;                   ///< Jerk limit in any direction [m/s^3].
   /// Duration of the raised-cosine rise from zero jerk to the limit (s_curve only) [s].
   double jerk_rise = 0.0;
-  double settle_time =
-      1.0;  ///< Additional time at each stop, for lag and for waypoint acceptance [s].
+  /// Additional time at each stop, for lag and for waypoint acceptance [s].
+  double settle_time = 1.0;
   double yaw_rate = 1.0471975511965976;  ///< Maximum yaw rate [rad/s].
   double yaw_acceleration = 0.349;       ///< Yaw acceleration [rad/s^2].
 

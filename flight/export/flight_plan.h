@@ -62,7 +62,7 @@ std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan);
 /// them.
 enum class Corners { stopped_in, flown_round };
 
-/// Returns the plan of sortie `index` of a route. Throws the errors of Site::validate().
+/// Returns the plan of sortie `index` of a route. Throws the same errors as Site::validate().
 FlightPlan flight_plan(const Route& route, std::size_t index, const std::string& name,
                        const Site& site, const Obstacles& rules = {},
                        Corners corners = Corners::stopped_in);

@@ -35,7 +35,7 @@ struct MissionFile {
 };
 
 /// Returns a .plan file. Home is stored AMSL, which requires the geoid undulation. No-fly volumes
-/// are flattened, see flat_no_fly(). Throws the errors of mission_items().
+/// are flattened, see flat_no_fly(). Throws the same errors as mission_items().
 std::string write_plan(const FlightPlan& plan);
 
 /// Returns the problems of a .plan file, empty if it is valid.

@@ -51,7 +51,7 @@ double turn_time(double angle, double rate, double acceleration);
 /// Time and energy model of one vehicle in given conditions.
 class Motion {
  public:
-  /// Throws the errors of Vehicle::validate() and Conditions::validate().
+  /// Throws the same errors as Vehicle::validate() and Conditions::validate().
   Motion(const Vehicle& vehicle, const Conditions& conditions);
 
   const Vehicle& vehicle() const { return vehicle_; }

@@ -46,7 +46,7 @@ double length(const std::vector<Eigen::Vector3d>& points);
 /// Deterministic: the result depends only on the space, the options and the two positions.
 class PathFinder {
  public:
-  /// Keeps a reference to `space`. Throws the errors of PathOptions::validate(), and
+  /// Keeps a reference to `space`. Throws the same errors as PathOptions::validate(), and
   /// Error{bad_config} unless the clearance is finite and not negative.
   PathFinder(const FreeSpace& space, double clearance, const PathOptions& options = {});
   ~PathFinder();

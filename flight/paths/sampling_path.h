@@ -26,7 +26,7 @@ struct SamplingOptions {
 /// means that no path was found, not that none exists.
 ///
 /// Repeatable: the result depends only on the arguments. Concurrent calls are serialised, because
-/// OMPL has one seed source per process. Throws the errors of the PathFinder constructor, and
+/// OMPL has one seed source per process. Throws the same errors as the PathFinder constructor, and
 /// Error{bad_config} if the seed is 0.
 Path find_path_by_sampling(const FreeSpace& space, const Eigen::Vector3d& from,
                            const Eigen::Vector3d& to, double clearance,

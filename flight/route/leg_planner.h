@@ -25,7 +25,7 @@ struct VerifiedPath {
 /// depends only on the space, the options and the two end points.
 class LegPlanner {
  public:
-  /// Keeps a reference to `space`. Throws the errors of the PathFinder constructor.
+  /// Keeps a reference to `space`. Throws the same errors as the PathFinder constructor.
   LegPlanner(const FreeSpace& space, double clearance, const PathOptions& options);
 
   LegPlanner(const LegPlanner&) = delete;

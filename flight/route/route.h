@@ -173,8 +173,8 @@ inline constexpr double reported_surplus = 10.0;
 /// `options.returns`, every point of the legs has a verified return. Waypoints without a return are
 /// listed as unreached, too.
 ///
-/// Throws the errors of the validations. Throws Error{bad_config} if the position above the pad is
-/// not free, or if no return altitude is verified for the whole route.
+/// Throws if a validation fails. Throws Error{bad_config} if the position above the pad is not
+/// free, or if no return altitude is verified for the whole route.
 Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
                  const FreeSpace* pad_space, const RouteOptions& options);
 

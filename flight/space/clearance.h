@@ -97,7 +97,7 @@ LegProof prove(const FreeSpace& space, const Segment& leg, double clearance,
 /// Space around a scene that is known in advance.
 class KnownSpace : public FreeSpace {
  public:
-  /// Throws the errors of validate(obstacles). Keeps no reference.
+  /// Throws the same errors as validate(obstacles). Keeps no reference.
   explicit KnownSpace(const Obstacles& obstacles);
   ~KnownSpace() override;
   KnownSpace(KnownSpace&&) noexcept;

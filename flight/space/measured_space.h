@@ -39,8 +39,8 @@ struct MeasuredSpaceConfig {
   /// (default): everywhere.
   Eigen::AlignedBox3d region;
   /// Further regions in which space must be measured to count as free. They belong to other surveys
-  /// and require a region of this one. Their measurements are stored, but do not count in the
-  /// volume. In a space read from a file, these regions are not obstacles.
+  /// and require a region of this one. Their measurements are stored. They do not count in the
+  /// volume or, in a space read from a file, as obstacles.
   std::vector<Eigen::AlignedBox3d> beside;
   /// Points below this height are discarded, because the ground is known more exactly from other
   /// data [m].
@@ -67,7 +67,7 @@ struct SweepRays {
 /// insertions.
 class MeasuredSpace : public FreeSpace {
  public:
-  /// Throws the errors of MeasuredSpaceConfig::validate().
+  /// Throws the same errors as MeasuredSpaceConfig::validate().
   explicit MeasuredSpace(const MeasuredSpaceConfig& config = {});
   ~MeasuredSpace() override;
   MeasuredSpace(MeasuredSpace&&) noexcept;

@@ -21,7 +21,7 @@ struct MeasuredSpaceFile {
   std::vector<FileBlock> blocks;
 };
 
-/// Throws the errors of MeasuredSpace::read().
+/// Throws the same errors as MeasuredSpace::read().
 MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& name);
 
 }  // namespace skycap::flight

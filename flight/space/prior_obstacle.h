@@ -41,7 +41,7 @@ struct PriorObstacleConfig {
 /// Immutable and shared, so that the search trees of a city are built only once.
 class PriorObstacle final : public FreeSpace {
  public:
-  /// Throws the errors of config.validate(). Keeps no reference.
+  /// Throws the same errors as config.validate(). Keeps no reference.
   explicit PriorObstacle(const PriorObstacleConfig& config);
   ~PriorObstacle() override;
 

@@ -47,7 +47,7 @@ class Scene {
   static constexpr float default_reflectance = 0.4F;
 
   /// Builds the ray-casting structure on `threads` threads (0: all processors). Keeps no reference
-  /// to `mesh`. Throws the errors of geometry::validate().
+  /// to `mesh`. Throws the same errors as geometry::validate().
   explicit Scene(const geometry::Mesh& mesh, unsigned threads = 0);
   /// Builds a scene with the diffuse reflectance of each triangle at the laser wavelength, in [0,
   /// 1]. Throws Error{bad_geometry} if the number of reflectances differs from that of triangles.

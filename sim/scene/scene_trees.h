@@ -44,8 +44,8 @@ Eigen::AlignedBox3d box_around(std::span<const ScenePart> parts);
 /// property.
 void require_one_each(std::size_t count, const char* what, const geometry::Mesh& mesh);
 
-/// Throws the errors of geometry::validate(), and Error{bad_geometry} if a property does not have
-/// one value per triangle.
+/// Throws the same errors as geometry::validate(), and Error{bad_geometry} if a property does not
+/// have one value per triangle.
 void require_valid(const ScenePart& part, unsigned threads);
 
 }  // namespace skycap::sim

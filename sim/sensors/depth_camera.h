@@ -16,7 +16,7 @@ namespace skycap::sim {
 /// Validated sensor. Immutable and thread-safe.
 class DepthCamera {
  public:
-  /// Throws the errors of DepthCameraConfig::validate().
+  /// Throws the same errors as DepthCameraConfig::validate().
   explicit DepthCamera(const DepthCameraConfig& config);
 
   const DepthCameraConfig& config() const { return config_; }

@@ -64,7 +64,7 @@ struct LidarReturns {
 /// Validated scanner. Immutable and thread-safe.
 class Lidar {
  public:
-  /// Throws the errors of LidarConfig::validate().
+  /// Throws the same errors as LidarConfig::validate().
   explicit Lidar(const LidarConfig& config);
   ~Lidar();
   Lidar(Lidar&&) noexcept;

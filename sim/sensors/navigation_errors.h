@@ -29,7 +29,7 @@ struct NavigationErrors {
 /// Sequence of errors of one flight.
 class NavigationProcess {
  public:
-  /// Throws the errors of NavigationErrors::validate().
+  /// Throws the same errors as NavigationErrors::validate().
   explicit NavigationProcess(const NavigationErrors& errors);
 
   /// Returns the errors `elapsed` [s] after the previous call, possibly infinite: east, north and

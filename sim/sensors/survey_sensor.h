@@ -48,8 +48,8 @@ struct SurveySensorOptions {
   /// planning_camera(). The survey provides its noise seed.
   DepthCameraConfig camera = d435();
   std::optional<LidarConfig> scanner;  ///< Laser scanner. The survey provides its seed.
-  std::optional<geometry::ScannerMount>
-      mount;  ///< Mount on a vehicle. Without a mount, the scanner can look in any direction.
+  /// Mount on a vehicle. Without a mount, the scanner can look in any direction.
+  std::optional<geometry::ScannerMount> mount;
   geometry::Shutter shutter{.exposure = 0.01, .readout = 0.0};
   double settle = 0.0;  ///< Rest time of the sensor before an exposure [s].
   Capture capture = Capture::stops;
@@ -71,7 +71,7 @@ std::optional<RosetteField> flown_rosette(const SurveySensorOptions& sensor);
 
 /// Returns the camera equivalent to the mounted or hand-held scanner for view selection. `rosette`
 /// is flown_rosette(sensor). For a single-line scanner, the pixel density is that of its rays until
-/// the speed is known. Throws the errors of forward_camera().
+/// the speed is known. Throws the same errors as forward_camera().
 DepthCameraConfig planning_camera(const SurveySensorOptions& sensor,
                                   const std::optional<RosetteField>& rosette);
 
@@ -113,7 +113,7 @@ struct Carriage {
 /// Immutable and thread-safe.
 class SurveySensor {
  public:
-  /// Throws the errors of the sensor configuration.
+  /// Throws if the sensor configuration is invalid.
   SurveySensor(const SurveySensorOptions& config, std::uint64_t seed);
 
   /// Returns the scan from `view` in its optical frame (geometry::camera_pose()). Seed and `frame`
