@@ -96,7 +96,7 @@ class Writer : public AnyWriter {
   void write(const Message& message) const { write_one(&message); }
 };
 
-/// Wait set for messages at readers.
+/// DDS wait set on a group of readers.
 class WaitSet : public DdsEntity {
  public:
   explicit WaitSet(const Participant& participant);

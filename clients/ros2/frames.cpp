@@ -30,7 +30,7 @@ Matrix3d cross_matrix(const Vector3d& v) {
   return (Matrix3d() << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0).finished();
 }
 
-/// Returns nothing if all elements are zero, which means unknown in ROS.
+/// Returns std::nullopt if all elements are zero, which means unknown in ROS.
 std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
   const Covariance given =
       Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&numbers[0]);

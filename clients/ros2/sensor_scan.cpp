@@ -137,7 +137,7 @@ CloudScan cloud_of(const Image& image, const CameraLens& lens) {
   return scan;
 }
 
-/// Returns k1 k2 p1 p2 k3, or nothing without distortion.
+/// Returns k1 k2 p1 p2 k3. Empty without distortion.
 std::vector<double> distortion_of(const CameraInfo& info) {
   std::vector<double> d(info.d._buffer, info.d._buffer + info.d._length);
   if (std::ranges::any_of(d, [](double value) { return !std::isfinite(value); })) {

@@ -160,7 +160,7 @@ class Message {
 /// Message times, which ascend except for damage and restarts.
 class Clock {
  public:
-  /// Returns the continuous time [s], or nothing for a damaged message.
+  /// Returns the continuous time [s], or std::nullopt for a damaged message.
   std::optional<double> read(double stated) {
     const double time = stated + offset_;
     const bool is_next = last_ && time > *last_ - backwards && time < *last_ + forwards;
@@ -236,8 +236,8 @@ class LogBuilder {
   }
 
  private:
-  /// Returns the battery number of a message, or nothing for other messages. Before Copter 4.0, the
-  /// second battery has its own message.
+  /// Returns the battery number of a message, or std::nullopt for other messages. Before Copter
+  /// 4.0, the second battery has its own message.
   static std::optional<double> battery_of(const Message& message) {
     const std::string& name = message.name();
     if (name == "BAT" || name == "CURR") {

@@ -41,8 +41,8 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
   return spaces;
 }
 
-/// Returns the part of a leg within a box grown by `reach`, or nothing. The rest of the leg is at
-/// least `reach` away from the box.
+/// Returns the part of a leg within a box grown by `reach`, or std::nullopt. The rest of the leg is
+/// at least `reach` away from the box.
 std::optional<Segment> part_near(const Segment& leg, const AlignedBox3d& box, double reach) {
   double begin = 0.0, end = 1.0;
   // Rounding tolerance of fractions, by which parts may be longer.

@@ -53,7 +53,7 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
 std::vector<Eigen::Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                         const Eigen::Vector3d& pad);
 
-/// Returns the return altitude above take-off that a route file specifies [m], or nothing.
+/// Returns the return altitude above take-off that a route file specifies [m], or std::nullopt.
 std::optional<double> read_return_height(const std::filesystem::path& path);
 
 /// Upper bound on the displacement by rounding [m]: half of 1e-7 degrees horizontally and 1 cm

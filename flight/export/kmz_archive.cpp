@@ -51,7 +51,7 @@ std::string names_of(zip_t* archive) {
 }
 
 /// Returns the member with that name, or the only one with the same last part. Repacked archives
-/// prefix names with "./" or a folder. Returns nothing if there is no match.
+/// prefix names with "./" or a folder. Returns std::nullopt if there is no match.
 std::optional<zip_uint64_t> find(zip_t* archive, const char* name) {
   const zip_int64_t exact = zip_name_locate(archive, name, 0);
   if (exact >= 0) return static_cast<zip_uint64_t>(exact);

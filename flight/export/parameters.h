@@ -40,7 +40,7 @@ std::string write_parameters(const FlightPlan& plan);
 /// neither a comment nor a parameter.
 std::vector<Parameter> read_parameters(const std::string& text);
 
-/// Returns the return altitude above home that the parameters specify [m], or nothing.
+/// Returns the return altitude above home that the parameters specify [m], or std::nullopt.
 std::optional<double> return_height(const std::vector<Parameter>& parameters, Dialect dialect);
 
 /// Returns the parameters that make the autopilot's return differ from ReturnLaw, such as

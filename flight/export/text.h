@@ -17,7 +17,7 @@ inline std::string degrees(double value) { return fixed(value, 9); }
 /// Returns the value rounded to 9 decimals, for writers with their own number formatting.
 double rounded_degrees(double value);
 
-/// Parses all of `text` as a finite number. Returns nothing on failure.
+/// Parses all of `text` as a finite number. Returns std::nullopt on failure.
 std::optional<double> to_number(std::string_view text);
 
 std::vector<std::string> split(std::string_view text, char separator);
@@ -34,7 +34,7 @@ std::string_view next_line(std::string_view& rest);
 using Problems = std::vector<std::string>;
 
 /// Parses the fields as numbers. If a field is not a number, adds a problem with `place` and
-/// returns nothing.
+/// returns std::nullopt.
 std::optional<std::vector<double>> to_numbers(const std::vector<std::string>& fields,
                                               const std::string& place, Problems& problems);
 

@@ -39,8 +39,8 @@ struct Encounter {
   Eigen::Vector3d first = Eigen::Vector3d::Zero(), second = Eigen::Vector3d::Zero();
 };
 
-/// Returns an encounter that violates the rule. Returns nothing if none exists for any deviation
-/// within the tolerance, verified for all times when both vehicles fly.
+/// Returns an encounter that violates the rule. Returns std::nullopt if none exists for any
+/// deviation within the tolerance, verified for all times when both vehicles fly.
 std::optional<Encounter> too_near(const TimedFlight& first, const TimedFlight& second,
                                   const SeparationRule& rule);
 

@@ -63,8 +63,8 @@ class Scheduler {
     return least;
   }
 
-  /// Schedules one sortie per vehicle in turn until all are scheduled. Returns nothing unless the
-  /// makespan is below `below`.
+  /// Schedules one sortie per vehicle in turn until all are scheduled. Returns std::nullopt unless
+  /// the makespan is below `below`.
   std::optional<Timetable> by_turns(const std::vector<std::size_t>& turns, double below) {
     Timetable table{.starts = std::vector<double>(sorties_.size(), 0.0),
                     .variants = std::vector<std::size_t>(of_.size(), 0)};

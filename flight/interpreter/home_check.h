@@ -11,8 +11,8 @@
 namespace skycap::flight {
 
 /// Returns the problems of the file's home, which the pilot sees, whereas relative heights refer to
-/// the real home. `pad` is the take-off position of the file, or nothing. A file without home has
-/// no problems.
+/// the real home. `pad` is the take-off position of the file, or std::nullopt. A file without home
+/// has no problems.
 Problems check_home(const MissionFile& file, const std::optional<Eigen::Vector3d>& pad,
                     const FlightFacts& facts);
 

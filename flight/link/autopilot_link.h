@@ -26,8 +26,8 @@ class AutopilotLink {
   double now() const { return port_.now(); }
   const VehicleState& state() const { return state_; }
 
-  /// Sends a command until it is acknowledged. Returns MAV_RESULT, or nothing after a timeout of
-  /// some seconds. Requires that a message from the vehicle has been received.
+  /// Sends a command until it is acknowledged. Returns MAV_RESULT, or std::nullopt after a timeout
+  /// of some seconds. Requires that a message from the vehicle has been received.
   std::optional<std::uint8_t> command(std::uint16_t number, const std::array<float, 7>& params);
 
   /// Sends a setpoint once. Fills in its target and time.

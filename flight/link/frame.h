@@ -40,15 +40,16 @@ Bytes wire_form(const Frame& frame, std::uint8_t extra_byte);
 /// Extracts frames from an arbitrary byte stream.
 class FrameReader {
  public:
-  /// Returns the CRC extra byte of a message, or nothing for unknown messages, which are skipped.
+  /// Returns the CRC extra byte of a message, or std::nullopt for unknown messages, which are
+  /// skipped.
   using ExtraByteOf = std::function<std::optional<std::uint8_t>(std::uint32_t id)>;
 
   explicit FrameReader(ExtraByteOf extra_byte_of) : extra_byte_of_(std::move(extra_byte_of)) {}
 
   void feed(std::span<const std::uint8_t> bytes);
 
-  /// Returns the next complete frame of a known message, or nothing until more bytes are fed. At
-  /// most one incomplete frame (280 bytes) is buffered.
+  /// Returns the next complete frame of a known message, or std::nullopt until more bytes are fed.
+  /// At most one incomplete frame (280 bytes) is buffered.
   std::optional<Frame> next();
 
  private:

@@ -134,7 +134,7 @@ Bytes encode(const M& message, Address sender, std::uint8_t sequence) {
   return wire_form({M::id, sender, sequence, std::move(writer.bytes())}, extra_byte<M>());
 }
 
-/// Returns the message of a frame, or nothing if the frame has a different ID.
+/// Returns the message of a frame, or std::nullopt if the frame has a different ID.
 template <class M>
 std::optional<M> decode(const Frame& frame) {
   if (frame.id != M::id) return std::nullopt;

@@ -13,7 +13,7 @@ constexpr int late_frames = 64;
 
 constexpr std::uint8_t no_autopilot = 8, armed_flag = 128, least_warning = 4;
 
-/// Returns the pitch of a gimbal's optical axis, or nothing for an invalid rotation.
+/// Returns the pitch of a gimbal's optical axis, or std::nullopt for an invalid rotation.
 std::optional<double> pitch_of(const std::array<float, 4>& turn) {
   double norm = 0.0;
   for (const float part : turn) norm += static_cast<double>(part) * part;

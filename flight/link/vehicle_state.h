@@ -53,7 +53,7 @@ class VehicleState {
   std::optional<double> battery() const { return battery_; }
   std::optional<std::uint16_t> estimator() const { return estimator_; }  ///< EKF_STATUS_FLAGS.
 
-  /// Returns the acknowledgement of a command since the last forget_answer(), or nothing.
+  /// Returns the acknowledgement of a command since the last forget_answer(), or std::nullopt.
   std::optional<std::uint8_t> answer(std::uint16_t command) const;
   void forget_answer(std::uint16_t command) { answers_.erase(command); }
 

@@ -21,7 +21,7 @@ constexpr double joules_per_wh = 3600.0;
 constexpr double aged_capacity = 0.95;
 /// Relative capacity loss per degree below 15 °C.
 constexpr double loss_per_degree = 0.01;
-/// Fraction of the rotors' hover power that blade drag causes. The ratio of cruise speed to tip
+/// Fraction of the rotors' hover power that overcomes blade drag. The ratio of cruise speed to tip
 /// speed changes it by the factor 1 + 3 (v / tip)^2 (Leishman, Principles of Helicopter
 /// Aerodynamics, section 5.4).
 constexpr double profile_share = 0.2;

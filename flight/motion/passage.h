@@ -70,7 +70,7 @@ struct Passage {
 /// are cut less and finally become stops. `is_allowed` must accept the lines of the polyline. The
 /// curve observes the vehicle's limits. Clearance is searched up to `up_to` [m]. Deterministic.
 ///
-/// Returns nothing without views, with a view at either end, or if images are not sharp at any
+/// Returns std::nullopt without views, with a view at either end, or if images are not sharp at any
 /// flyable speed.
 std::optional<Passage> pass_through(const std::vector<Eigen::Vector3d>& points,
                                     std::span<const ViewOnWay> views, const FreeSpace& space,

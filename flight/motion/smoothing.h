@@ -26,7 +26,7 @@ struct SmoothLeg {
 /// points of the derivatives bound speed, acceleration and jerk within the vehicle's limits.
 /// Clearance is searched up to `up_to` [m]. Deterministic.
 ///
-/// Returns nothing without corners, for the styles `stop` and `pass` (see passage.h), or if no
+/// Returns std::nullopt without corners, for the styles `stop` and `pass` (see passage.h), or if no
 /// verified curve is faster than stopping.
 std::optional<SmoothLeg> smooth(const std::vector<Eigen::Vector3d>& points, const FreeSpace& space,
                                 double clearance, double up_to, const Motion& motion,

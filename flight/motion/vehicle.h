@@ -25,7 +25,7 @@ struct Vehicle {
   std::string name;
   Dialect dialect = Dialect::px4;
   WpmlCodes wpml;
-  MissionMode mode;  ///< Mission mode of the autopilot.
+  MissionMode mode;  ///< How the autopilot flies missions.
 
   double radius = 0.5;       ///< Distance from the centre to the outermost propeller tip [m].
   double max_speed = 10.0;   ///< Maximum horizontal speed and airspeed [m/s].

@@ -78,7 +78,7 @@ class Search {
     }
   }
 
-  /// Returns the path, or nothing if none is shorter than `limit`. Decrements `expansions_left`.
+  /// Returns the path, empty if none is shorter than `limit`. Decrements `expansions_left`.
   std::vector<Vector3d> run(double limit, std::size_t& expansions_left) {
     limit_ = limit;
     push(0);

@@ -36,7 +36,7 @@ class LegPlanner {
   /// Requires a verified return from every point of every leg to `home`, the position above the
   /// pad.
   void require_returns(const ReturnLaw& law, const Eigen::Vector3d& home);
-  /// Returns the returns planner, or nothing if returns are not required.
+  /// Returns the returns planner, or std::nullopt if returns are not required.
   const std::optional<WaysHome>& returns() const { return returns_; }
 
   /// Returns the shortest path found by PathFinder. Paths are cached until forget().
@@ -49,10 +49,10 @@ class LegPlanner {
   /// Returns `path`, or a nearby path that has the required returns.
   std::vector<Eigen::Vector3d> with_returns(std::vector<Eigen::Vector3d> path) const;
 
-  /// Returns the verified path, or nothing if one of its lines cannot be verified.
+  /// Returns the verified path, or std::nullopt if one of its lines cannot be verified.
   std::optional<VerifiedPath> verified(std::vector<Eigen::Vector3d> path) const;
 
-  /// Returns the verified path with the required returns, or nothing if none exists.
+  /// Returns the verified path with the required returns, or std::nullopt if none exists.
   std::optional<VerifiedPath> leg(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
   /// Returns a shortened version of a free path, see pull_tight().

@@ -32,8 +32,8 @@ struct PadGround {
 /// Returns "as measured", "as declared", "by the terrain" or "in the scene".
 const char* name_of(GroundSource source);
 
-/// Fits the ground plane to `places`, which are points on the ground. Returns nothing for fewer
-/// than six points, or if the standard error of the slope exceeds 2 degrees.
+/// Fits the ground plane to `places`, which are points on the ground. Returns std::nullopt for
+/// fewer than six points, or if the standard error of the slope exceeds 2 degrees.
 std::optional<PadGround> pad_ground(const Eigen::Vector3d& pad,
                                     std::span<const Eigen::Vector3d> places, GroundSource source);
 
@@ -61,7 +61,7 @@ class PadScan {
   /// pad are ignored: that covers a slope of 45 degrees and 1 m of height error.
   void take_in(std::span<const Eigen::Vector3f> points);
 
-  /// Returns the ground, or nothing under the conditions of pad_ground().
+  /// Returns the ground, or std::nullopt under the conditions of pad_ground().
   std::optional<PadGround> ground() const;
 
  private:

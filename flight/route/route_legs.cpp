@@ -126,7 +126,7 @@ void RouteLegs::admit(const std::vector<Station>& allowed) {
   }
 }
 
-/// Returns nothing if the path cannot be verified in both directions.
+/// Returns std::nullopt if the path cannot be verified in both directions.
 std::optional<RouteLegs::Ends> RouteLegs::ends_along(std::vector<Vector3d> way) const {
   std::optional<VerifiedPath> out = planner_.verified(way);
   std::optional<VerifiedPath> back = planner_.verified(reversed(way));

@@ -49,7 +49,7 @@ class RouteLegs {
   bool give_returns(std::size_t station);
 
   /// Returns the leg between two waypoints along `way`, or along a nearby path that has returns.
-  /// Returns nothing if that cannot be verified, or if `way` is empty.
+  /// Returns std::nullopt if that cannot be verified, or if `way` is empty.
   std::optional<Leg> along(std::vector<Eigen::Vector3d> way, std::size_t from,
                            std::size_t to) const;
 
@@ -69,7 +69,7 @@ class RouteLegs {
   const Motion& motion() const { return motion_; }
   const Eigen::Vector3d& home() const { return home_; }  ///< Position above the pad.
   const LegCosts& costs() const { return costs_; }
-  /// Returns the returns planner. Nothing if returns are not required, or before allowed() is
+  /// Returns the returns planner. std::nullopt if returns are not required, or before allowed() is
   /// called.
   const std::optional<WaysHome>& returns() const { return planner_.returns(); }
 

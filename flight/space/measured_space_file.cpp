@@ -19,7 +19,8 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 constexpr char file_mark[16] = "skycap free v1\n";
-constexpr std::uint64_t most_blocks = 8'000'000;  ///< 1 GiB, for a survey of about 10^10 voxels.
+/// About 1 GB, for a survey of about 10^10 voxels.
+constexpr std::uint64_t most_blocks = 8'000'000;
 constexpr double no_floor = -std::numeric_limits<double>::infinity();
 
 /// File header. Plain numbers, written as in memory.

@@ -32,9 +32,9 @@ double azimuth_step(const LidarConfig& lidar);
 /// Measuring time of a rosette scanner at rest [s].
 inline constexpr double rosette_period = 0.5;
 
-/// Returns the pinhole camera equivalent to a scanner that stops at views. It covers the forward
-/// quarter revolution of a ring, or a rosette within rosette_period, with one pixel per ray. Throws
-/// the errors of kind_of(), and Error{bad_config} for a single-line scanner.
+/// Returns the pinhole camera that approximates a scanner that stops at views. It covers the
+/// forward quarter revolution of a ring, or a rosette within rosette_period, with one pixel per
+/// ray. Throws the same errors as kind_of(), and Error{bad_config} for a single-line scanner.
 DepthCameraConfig forward_camera(const LidarConfig& lidar);
 
 /// Returns the pinhole camera for the sideways quarter revolution of a ring with a level axis. Its
@@ -42,11 +42,11 @@ DepthCameraConfig forward_camera(const LidarConfig& lidar);
 /// revolutions.
 DepthCameraConfig side_camera(const LidarConfig& lidar, std::size_t turns = 1);
 
-/// Returns the pinhole camera equivalent to a single-line scanner flown along its axis. The width
-/// covers the distance flown in `period` [s] at the view distance, with one column per line. The
-/// height covers a quarter revolution. Consecutive images then contain the correct number of rays
-/// for surfaces at any distance. `way` is the distance flown in the period, divided by the view
-/// distance.
+/// Returns the pinhole camera that approximates a single-line scanner flown along its axis. The
+/// width covers the distance flown in `period` [s] at the view distance, with one column per line.
+/// The height covers a quarter revolution. Consecutive images then contain the correct number of
+/// rays for surfaces at any distance. `way` is the distance flown in the period, divided by the
+/// view distance.
 DepthCameraConfig line_camera(const LidarConfig& lidar, double period, double way);
 
 /// Coverage of a rosette within some time.

@@ -66,12 +66,12 @@ struct SurveySensorOptions {
 std::size_t turns_of(const SurveySensorOptions& sensor);
 
 /// Returns the field of one scan of a mounted rosette scanner, in the frame of its planning camera.
-/// Returns nothing for other scanners. Takes tenths of a second.
+/// Returns std::nullopt for other scanners. Takes tenths of a second.
 std::optional<RosetteField> flown_rosette(const SurveySensorOptions& sensor);
 
-/// Returns the camera equivalent to the mounted or hand-held scanner for view selection. `rosette`
-/// is flown_rosette(sensor). For a single-line scanner, the pixel density is that of its rays until
-/// the speed is known. Throws the same errors as forward_camera().
+/// Returns the camera that approximates the mounted or hand-held scanner for view selection.
+/// `rosette` is flown_rosette(sensor). For a single-line scanner, the pixel density is that of its
+/// rays until the speed is known. Throws the same errors as forward_camera().
 DepthCameraConfig planning_camera(const SurveySensorOptions& sensor,
                                   const std::optional<RosetteField>& rosette);
 

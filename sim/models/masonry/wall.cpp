@@ -153,7 +153,7 @@ class WallBuilder {
     add_polygon(face, face_ring);
   }
 
-  /// Returns the positions of a counter-clockwise loop without a jump where s wraps around.
+  /// Returns the positions of a counter-clockwise loop, continuous where s wraps around.
   Polyline2 unrolled(const Loop& loop) const {
     Polyline2 places;
     for (const std::uint32_t v : loop) {
