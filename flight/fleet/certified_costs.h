@@ -21,9 +21,9 @@
 
 namespace skycap::flight {
 
-/// Verifies all legs from and to pads, and the legs between mutual nearest neighbours. Other legs
-/// have the cost of least_costs() until a split uses them. All vehicles fly the same paths between
-/// waypoints, in both directions, unless a return requires a different one.
+/// Verifies all legs from and to pads, and the legs between each waypoint and its nearest
+/// neighbours. Other legs have the cost of least_costs() until a split uses them. All vehicles fly
+/// the same paths between waypoints, in both directions, unless a return requires a different one.
 class CertifiedCosts {
  public:
   /// The view indices of `stations` must differ. Keeps a reference to `space`. Free space and
@@ -58,7 +58,8 @@ class CertifiedCosts {
   using Way = std::vector<Eigen::Vector3d>;
   struct Vehicle;
 
-  /// Legs in ascending and descending direction. Empty unless the vehicle serves both waypoints.
+  /// Legs from the lower to the higher index, and back. Empty unless the vehicle serves both
+  /// waypoints.
   struct BothWays {
     std::optional<Leg> up, down;
   };

@@ -2,11 +2,11 @@
 /// time.
 ///
 /// Every waypoint has a prize, with a total of 1. Within time t, a vehicle collects at most M(t),
-/// the maximum over all closed tours of that duration. The vehicles cannot visit all waypoints if
-/// their M(t) add up to less than 1. Dynamic programming computes M(t) exactly over a relaxed set
-/// of tours. These may revisit a waypoint, but not directly after leaving it (q-routes without
-/// 2-cycles; Christofides, Mingozzi & Toth 1981). Prizes are shifted towards the waypoints that the
-/// best such tours omit (subgradient ascent of the Lagrangian dual).
+/// the maximum over all closed tours of at most that duration. The vehicles cannot visit all
+/// waypoints if their M(t) add up to less than 1. Dynamic programming computes M(t) exactly over a
+/// relaxed set of tours. These may revisit a waypoint, but not directly after leaving it (q-routes
+/// without 2-cycles; Christofides, Mingozzi & Toth 1981). Prizes are shifted towards the waypoints
+/// that the best such tours omit (subgradient ascent of the Lagrangian dual).
 #pragma once
 
 #include "flight/fleet/fleet_problem.h"

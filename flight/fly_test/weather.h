@@ -14,7 +14,7 @@ namespace skycap::flight {
 /// Air velocity above a site: east, north and up [m/s].
 class Weather {
  public:
-  /// Steady wind plus gusts. `wind` is the air velocity [m/s].
+  /// Constructs steady wind plus gusts. `wind` is the air velocity [m/s].
   Weather(const Eigen::Vector2d& wind, geometry::RandomNumbers& random)
       : wind_(wind), random_(random) {}
 

@@ -111,7 +111,7 @@ class PayloadReader {
   std::span<const std::uint8_t> rest_;
 };
 
-/// Returns the CRC extra byte, which extends a frame's checksum so that peers with different
+/// Returns the CRC extra byte. It extends a frame's checksum so that peers with different
 /// definitions reject each other's messages.
 template <class M>
 std::uint8_t extra_byte() {

@@ -39,19 +39,21 @@ class VehicleState {
   /// from other systems, and duplicate or late ones, are ignored.
   void hear(const Frame& frame, double now);
 
-  /// Time of the last message from the vehicle [s].
+  /// Returns the time of the last message from the vehicle [s].
   std::optional<double> last_heard() const { return last_heard_; }
   const std::optional<Address>& autopilot() const { return autopilot_; }
   const std::optional<HeardHeartbeat>& heartbeat() const { return heartbeat_; }
   const std::optional<HeardPosition>& position() const { return position_; }
-  std::optional<double> yaw() const { return yaw_; }  ///< Clockwise from north [rad].
-  /// Pitch of the vehicle, positive nose up [rad].
+  /// Returns the heading, clockwise from north [rad].
+  std::optional<double> yaw() const { return yaw_; }
+  /// Returns the pitch of the vehicle, positive nose up [rad].
   std::optional<double> pitch() const { return body_pitch_; }
-  /// Reported gimbal pitch, 0 at the horizon [rad].
+  /// Returns the reported gimbal pitch, 0 at the horizon [rad].
   std::optional<double> gimbal_pitch() const { return pitch_; }
-  /// Remaining fraction of the battery charge.
+  /// Returns the remaining fraction of the battery charge.
   std::optional<double> battery() const { return battery_; }
-  std::optional<std::uint16_t> estimator() const { return estimator_; }  ///< EKF_STATUS_FLAGS.
+  /// Returns the EKF_STATUS_FLAGS.
+  std::optional<std::uint16_t> estimator() const { return estimator_; }
 
   /// Returns the acknowledgement of a command since the last forget_answer(), or std::nullopt.
   std::optional<std::uint8_t> answer(std::uint16_t command) const;

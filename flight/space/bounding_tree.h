@@ -33,7 +33,7 @@ class BoundingTree {
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }
 
-  /// Item indices, ordered by leaf slot.
+  /// Returns the item indices, ordered by leaf slot.
   const std::vector<std::uint32_t>& items() const { return items_; }
 
   /// Calls `visit(item)` for every item whose box may be within `reach` [m] of the segment, near

@@ -1,4 +1,4 @@
-/// Free space from measurements. Space without proof by measured rays is not free.
+/// Free space from measurements. Only space observed as free counts as free.
 ///
 /// Space is divided into voxels. A voxel becomes free if all of it lies in front of the
 /// measurements of one sensor pose. That requires farther measurements in every pixel that its

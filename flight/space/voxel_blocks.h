@@ -19,7 +19,7 @@ class VoxelBlocks {
 
   std::size_t size() const { return blocks_.size(); }
 
-  /// Keys and blocks in insertion order.
+  /// Returns the keys or blocks in insertion order.
   std::span<const std::uint64_t> keys() const { return keys_; }
   std::span<const VoxelBlock> blocks() const { return blocks_; }
 

@@ -1,4 +1,4 @@
-/// Returns for route planning: tests whether they exist, and finds paths that have them.
+/// Tests whether a path has returns, and finds paths that have them. Used in route planning.
 #pragma once
 
 #include <string>

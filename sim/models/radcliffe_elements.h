@@ -13,34 +13,35 @@ struct Plan {
   Fineness fineness;  ///< At full size.
   bool has_fluted_columns;
 
-  double bay_angle() const;  ///< Angle between two projecting bays.
-  /// Azimuth of a projecting bay, which is also that of window bays.
+  double bay_angle() const;  ///< Returns the angle between two projecting bays.
+  /// Returns the azimuth of a projecting bay, which is also that of window bays.
   double arched_bay(int i) const;
-  double niche_bay(int i) const;  ///< Azimuth of a niche bay, which is also that of buttresses.
-  std::vector<double> columns() const;  ///< Azimuths of all columns.
+  /// Returns the azimuth of a niche bay, which is also that of buttresses.
+  double niche_bay(int i) const;
+  std::vector<double> columns() const;  ///< Returns the azimuths of all columns.
 };
 
 // Returns the body: all parts connected to the wall, from the ground to the finial.
 geometry::Mesh body(const Plan& plan);
 
-// Ground stage.
+// Adds elements of the ground stage.
 void add_pediments(const Plan& plan, Parts& parts);
 void add_keystones(const Plan& plan, Parts& parts);
 void add_arch_glazing(const Plan& plan, Parts& parts);
 void add_north_steps(const Plan& plan, Parts& parts);
 
-// Middle stage.
+// Adds elements of the middle stage.
 void add_columns(const Plan& plan, Parts& parts);
 void add_window_frames(const Plan& plan, Parts& parts);
 void add_niche_frames(const Plan& plan, Parts& parts);
 void add_festoons(const Plan& plan, Parts& parts);
 void add_cornice_blocks(const Plan& plan, Parts& parts);
 
-// Balustrade.
+// Adds elements of the balustrade.
 void add_balustrade(const Plan& plan, Parts& parts);
 void add_vases(const Plan& plan, Parts& parts);
 
-// Drum, dome, lantern.
+// Adds elements of the drum, the dome and the lantern.
 void add_buttresses(const Plan& plan, Parts& parts);
 void add_drum_window_frames(const Plan& plan, Parts& parts);
 void add_dome_ribs(const Plan& plan, Parts& parts);
