@@ -39,7 +39,7 @@ struct RenderOptions {
   int width = 1000;   ///< Image width of one view [px].
   int height = 1000;  ///< Image height of one view [px].
   int columns = 2;    ///< Number of views per row.
-  /// Number of evenly spread rays per pixel side, squared for the pixel.
+  /// Number of rays per pixel along each image axis, evenly spread.
   int samples_per_side = 3;
   int sky_rays = 4;  ///< Number of rays per sample that determine the visible fraction of the sky.
   /// Azimuth of the sun in each view, to the left of straight behind the viewer [rad].
