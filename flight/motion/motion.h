@@ -79,8 +79,8 @@ class Motion {
   double landing_time(double descent) const;
   double takeoff_energy(double climb) const;  ///< Returns the electrical energy of the climb [J].
 
-  /// Returns the electrical energy of a straight leg flown in `duration` [s], which is at least
-  /// leg_time() [J]. The vehicle hovers for the remaining time.
+  /// Returns the electrical energy [J] of a straight leg flown in `duration` [s], which must be at
+  /// least leg_time(). The vehicle hovers for the remaining time.
   double leg_energy(const Eigen::Vector3d& displacement, double duration) const;
 
   /// Returns the electrical power of steady flight at a ground velocity, including climb [W].

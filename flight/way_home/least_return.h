@@ -26,7 +26,7 @@ struct Returns {
 
 struct ReturnSearch {
   std::optional<Returns> found;
-  std::string why;  ///< Obstacle at the last tested altitude, if no altitude was found.
+  std::string why;  ///< Reason why no altitude was found: the obstacle at the last tested altitude.
   /// True if, at some altitude, the clearance is kept and the proof failed only because its balls
   /// are too large.
   bool fails_by_slack = false;
