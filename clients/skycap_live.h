@@ -1,9 +1,9 @@
-/// A client of `skycap serve` in one header for C++17 and POSIX; docs/reference/live-protocol.md
-/// describes the messages. Link zlib.
+/// Client of `skycap serve` in one header for C++17 and POSIX. For the messages see
+/// docs/reference/live-protocol.md. Requires zlib.
 ///
 ///     skycap_live::Survey survey("unix:survey.sock");
-///     std::string answer = survey.next();     // JSON, as `skycap next --json` prints it
-///     answer = survey.add_points(xyz, pose);  // and so on
+///     std::string answer = survey.next();     // JSON, as printed by `skycap next --json`
+///     answer = survey.add_points(xyz, pose);
 #pragma once
 
 #include <array>
@@ -27,29 +27,29 @@
 
 namespace skycap_live {
 
-/// Three rows of a matrix [rotation | position]: world from the sensor's optical frame.
+/// World from the sensor's optical frame: three rows of the matrix [rotation | position].
 using Pose = std::array<double, 12>;
 
-/// How far off a pose may be: one standard deviation along and about each axis, [metres, degrees];
-/// or a covariance of x y z rx ry rz along and about the axes of the mission's frame [m, rad], by
-/// rows, as ROS's PoseWithCovariance has it; or as the mission says.
+/// Pose error as one of the following: one standard deviation along and around each axis [metres,
+/// degrees]; a covariance; or empty, for the value of the mission. The covariance is that of ROS's
+/// PoseWithCovariance: x y z rx ry rz along and around the axes of the mission's frame [m, rad],
+/// row by row.
 using PoseSigma = std::array<double, 2>;
 using PoseCovariance = std::array<double, 36>;
 using PoseError = std::variant<std::monostate, PoseSigma, PoseCovariance>;
 
-/// Where a scan was taken: at the view that is asked for, or on the way there, if the mission
-/// measures on it.
+/// Origin of a scan: the requested view, or en route to it, if the mission measures en route.
 enum class From { view, way };
 
-/// The server's answer to a message that is wrong; the survey is as it was.
+/// Error answer of the server to an invalid message. The survey remains unchanged.
 struct Refused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 class Survey {
  public:
-  /// `address` is what the server prints: unix:PATH or tcp:127.0.0.1:PORT. Throws
-  /// std::runtime_error, here and below, if the connection fails.
+  /// Connects to `address` as printed by the server: unix:PATH or tcp:127.0.0.1:PORT. All functions
+  /// throw std::runtime_error if the connection fails.
   explicit Survey(const std::string& address) {
     if (address.rfind("unix:", 0) == 0) {
       sockaddr_un place{};
@@ -80,8 +80,8 @@ class Survey {
 
   std::string next() { return ask("{\"type\":\"next\"}"); }
 
-  /// Points in the mission's frame: x y z after x y z. `pixels`, if there are some, ascend: row *
-  /// width + column of the mission's camera, for each point.
+  /// Adds points in the mission's frame as consecutive x y z [m]. `pixels` is empty or has the
+  /// pixel of each point in ascending order: row * width + column of the mission's camera.
   std::string add_points(const std::vector<float>& xyz, const Pose& pose,
                          const std::vector<std::uint32_t>& pixels = {}, const PoseError& error = {},
                          From from = From::view) {
@@ -92,16 +92,17 @@ class Survey {
                pose, error, payload, from);
   }
 
-  /// Points in the sensor's optical frame: x y z after x y z, in any order. The server gives each
-  /// the pixel of the mission's camera that it is seen in.
+  /// Adds points in the sensor's optical frame as consecutive x y z [m], in any order. The server
+  /// assigns each point to a pixel of the mission's camera.
   std::string add_cloud(const std::vector<float>& xyz, const Pose& pose,
                         const PoseError& error = {}, From from = From::view) {
     return add("\"format\":\"cloud\",\"points\":" + std::to_string(xyz.size() / 3), pose, error,
                {reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float)}, from);
   }
 
-  /// A depth image, row after row, in steps of `unit` metres; 0 and 65535 are no return. `lens`:
-  /// fx fy cx cy, maybe followed by k1 k2 p1 p2 k3; else the mission's.
+  /// Adds a depth image, row by row, in steps of `unit` [m]. 0 and 65535 are no-return values.
+  /// `lens` is fx fy cx cy, optionally followed by k1 k2 p1 p2 k3. If empty, that of the mission
+  /// applies.
   std::string add_depth(const std::vector<std::uint16_t>& depth, int width, int height, double unit,
                         const Pose& pose, const PoseError& error = {},
                         const std::vector<double>& lens = {}, From from = From::view) {
@@ -112,7 +113,8 @@ class Survey {
                {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]}, from);
   }
 
-  /// Another view in place of that of the answer with this id; `reason` is put into JSON as it is.
+  /// Requests a replacement for the view of the answer `id`. `reason` is inserted into JSON without
+  /// escaping.
   std::string refuse(std::size_t id, const std::string& reason) {
     return ask("{\"type\":\"refuse\",\"id\":" + std::to_string(id) + ",\"reason\":\"" + reason +
                "\"}");
@@ -129,13 +131,13 @@ class Survey {
     throw std::runtime_error("no server at this address");
   }
 
-  /// With as many digits as it takes to read the same number back.
+  /// Returns the shortest text from which the same number can be read.
   static std::string number(double value) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
   }
 
-  /// A field of a header: a row of numbers.
+  /// Returns a header field with an array of numbers.
   template <typename Numbers>
   static std::string row(const char* key, const Numbers& values) {
     std::string text;
@@ -157,7 +159,7 @@ class Survey {
     return answer;
   }
 
-  /// The scans that an answer knows of; on the way where the mission measures there.
+  /// Reads the number of scans, and of en-route scans if the mission has them, from an answer.
   void count(const std::string& answer) {
     const auto at = [&](const std::string& field) { return answer.find("\"" + field + "\":"); };
     const auto number = [&](std::size_t place) {

@@ -15,14 +15,16 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// Voxels of a quarter of the clearance lose little of the free space beside what was measured.
+/// With a quarter of the clearance as voxel size, little free space near measurements is lost.
 constexpr double voxels_per_clearance = 4.0;
 
-/// How far beside the unknown box places are proposed: more than the clearance and a voxel.
+/// Returns the distance of proposed positions from the unknown box [m], which exceeds the clearance
+/// plus a voxel.
 double distance_from_unknown(const FlightOptions& options) { return 2.0 * options.clearance; }
 
-/// The same for pads. Near home DJI's vehicles may land where they are instead of on the pad
-/// (ReturnLaw): those columns must not lead into the box, which grows to whole voxels.
+/// Returns the distance of pads from the unknown box [m]. Near home, DJI vehicles may land on the
+/// spot instead of on the pad (ReturnLaw). Those columns must not enter the box, which is extended
+/// to whole voxels.
 double pad_distance_from_unknown(const FlightOptions& options) {
   constexpr double voxel_spare = 1.0;
   const bool is_dji = options.is_flown() && options.flown().dialect == Dialect::dji;
@@ -30,13 +32,13 @@ double pad_distance_from_unknown(const FlightOptions& options) {
   return is_dji ? std::max(distance_from_unknown(options), needed) : distance_from_unknown(options);
 }
 
-/// No-fly volumes with their top above this are not flown over [m].
+/// No-fly volumes with a ceiling above this height are not flown over [m].
 constexpr double no_flight_is_higher = 500.0;
 
-/// What corners are cut by where views are passed, as a share of the view distance.
+/// Maximum cut of corners at fly-through views, relative to the view distance.
 constexpr double most_cut_by_distance = 0.03;
 
-/// Grid vertices looked at before a view counts as out of reach: some tenths of a second.
+/// Number of expanded grid vertices after which a view counts as unreachable: tenths of a second.
 constexpr std::size_t most_expansions = 50'000;
 
 }  // namespace
@@ -136,7 +138,7 @@ Obstacles FlightOptions::rules() const {
   }
   if (!airspace.geofence.empty() || airspace.highest_height) {
     geometry::Prism fence{.name = "site.geofence", .footprint = airspace.geofence};
-    // The fence must not hold the vehicle up on its way from and to the pad.
+    // The floor of the fence must not block the climb from and the descent to the pad.
     if (airspace.highest_height) fence.ceiling = *airspace.highest_height;
     if (fence.footprint.empty()) {
       fence.name = "site.max_height";
@@ -181,7 +183,7 @@ double FlightOptions::climb() const {
 }
 
 double FlightOptions::highest_return(double pad_z, double obstacles_top) const {
-  /// A whole metre is lost in rounding, and autopilots may fly level up to 2 m lower.
+  /// Rounding loses up to 1 m, and autopilots may fly level up to 2 m lower.
   constexpr double spare = 3.0;
   const AlignedBox3d box = unknown_box;
   double top = std::max(obstacles_top, airspace.base.z());
@@ -194,7 +196,7 @@ double FlightOptions::highest_return(double pad_z, double obstacles_top) const {
   }
   const double highest = std::max(top + clearance + spare, pad_z + least_of_dji);
   if (!airspace.highest_height) return highest;
-  /// A proof right at the fence's clearance fails by rounding.
+  /// A proof exactly at the fence's clearance would fail because of rounding.
   constexpr double rounding = 0.01;
   return std::min(highest, *airspace.highest_height - clearance - rounding);
 }
@@ -206,7 +208,7 @@ std::vector<Dialect> dialects_of(const Vehicle& vehicle) {
 
 namespace {
 
-/// What its pictures ask of a flight that passes its views.
+/// Returns the rules for fly-through capture with this sensor.
 PassRules pass_rules_of(const FlightOptions& options) {
   const double distance = options.capture.view_distance;
   PassRules rules{.speed = options.cruise_speed,
@@ -234,7 +236,7 @@ RouteOptions FlightOptions::route(const Vector3d& pad) const {
   options.order_is_free = order == VisitOrder::shortest;
   options.style = style;
   if (style == FlightStyle::pass) options.passing = pass_rules_of(*this);
-  // The air moves away from where the wind comes from.
+  // The air moves in the direction opposite to the wind's origin.
   options.conditions.wind = -wind_speed * Eigen::Vector2d(std::sin(wind_from), std::cos(wind_from));
   options.conditions.temperature_c = temperature;
   options.conditions.cruise_speed = cruise_speed;

@@ -1,8 +1,8 @@
-/// What a mission asks of its flight, complete: the vehicle, the clearance and its terms, what is
-/// in the way, and how legs are flown. From it follow the options of every part of this library.
+/// Complete flight settings of a mission: vehicle, clearance budget, obstacles and leg style. The
+/// options of each part of this library are derived from them.
 ///
-/// Nothing in it depends on the take-off point that is only known when a survey begins, or on what
-/// the survey measures: those are arguments.
+/// Nothing here depends on the take-off point of a survey or on its measurements. Functions receive
+/// those as arguments.
 #pragma once
 
 #include <functional>
@@ -31,182 +31,201 @@
 
 namespace skycap::flight {
 
-/// In which order the exported mission visits the survey's views.
+/// Order in which the exported mission visits the views of the survey.
 enum class VisitOrder { shortest, survey };
 
-/// Which views the exported mission takes.
+/// Set of views that the exported mission captures.
 enum class MissionViews {
-  survey,  ///< the survey's
-  anew,    ///< chosen by the surface that the survey measured
+  survey,  ///< The views of the survey.
+  anew,    ///< Views replanned from the surface that the survey measured.
 };
 
-/// The sensor as far as the flight depends on it.
+/// Sensor properties that the flight depends on.
 struct CaptureOptions {
   geometry::CameraConfig camera;
-  double view_distance = 1.0;                   ///< from how far surfaces are looked at [m]
-  bool is_scanner = false;                      ///< a laser scanner, for which `camera` stands
-  std::optional<geometry::ScannerMount> mount;  ///< of a scanner that is flown
-  /// How its scans prove space free; nothing: they do not, since lines prove nothing between them.
+  double view_distance = 1.0;  ///< Planned distance from a view to the surface [m].
+  bool is_scanner = false;     ///< The sensor is a laser scanner that `camera` approximates.
+  std::optional<geometry::ScannerMount> mount;  ///< Mount of a scanner on the vehicle.
+  /// Ray density of en-route scans, which proves space free between rays. Empty if the scans of the
+  /// sensor cannot prove space free.
   std::optional<SweepRays> rays;
   geometry::Shutter shutter{.exposure = 0.01, .readout = 0.0};
-  double settle = 0.0;        ///< at rest before a picture [s]
-  bool is_moving = false;     ///< measures on the ways between views, too
-  double frame_period = 1.0;  ///< between the scans that are taken on the way [s]
+  double settle = 0.0;        ///< Rest time before an exposure [s].
+  bool is_moving = false;     ///< The sensor also measures on legs.
+  double frame_period = 1.0;  ///< Interval between en-route scans [s].
 
-  /// Whether a laser scanner measures all the way, so that nothing is waited for at views.
+  /// Returns true if a laser scanner measures continuously, so that the vehicle need not hold at
+  /// views.
   bool scans_in_flight() const { return mount && is_moving; }
 };
 
-/// Where the vehicle may fly, and what is in its way whatever is measured.
+/// Limits of the airspace and the obstacles that are known before the survey.
 struct AirspaceOptions {
-  Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< the foot of the scene
-  double ground_height = 0.0;                      ///< z below which everything is solid
-  std::vector<Eigen::Vector2d> geofence;           ///< to stay inside of; empty: none
-  std::vector<Prism> no_fly;                       ///< to stay outside of
-  std::optional<double> highest_height;            ///< greatest z
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< Base point of the scene.
+  double ground_height = 0.0;                      ///< Height z below which all space is solid [m].
+  /// Polygon that the vehicle must not leave. Empty: no geofence.
+  std::vector<Eigen::Vector2d> geofence;
+  std::vector<Prism> no_fly;             ///< Volumes that the vehicle must not enter.
+  std::optional<double> highest_height;  ///< Maximum flight height z [m].
   std::vector<std::shared_ptr<const PriorObstacle>> priors;
-  /// z of the ground at a place as legs keep off it, known or taken to be there; empty: the base's.
+  /// Returns the ground height z used for leg clearance, known or assumed [m]. If unset, `base.z()`
+  /// applies.
   std::function<double(const Eigen::Vector2d&)> ground;
-  /// z of the highest ground there, where terrain is known; empty: there is no terrain.
+  /// Returns the maximum terrain height z around a position, where known [m]. Unset: no terrain
+  /// model.
   std::function<std::optional<double>(const Eigen::Vector2d&)> terrain;
 };
 
-/// Several vehicles that share the mission; the first of them flies the survey.
+/// Vehicles that share the mission. The first vehicle flies the survey.
 struct FleetOptions {
-  std::vector<std::string> names;     ///< as FlightOptions::vehicle_name; none, or several
-  std::vector<Vehicle> vehicles;      ///< what they name
-  std::vector<Eigen::Vector3d> pads;  ///< one for each, or none given
+  /// Names as in FlightOptions::vehicle_name. Empty, or at least two.
+  std::vector<std::string> names;
+  std::vector<Vehicle> vehicles;      ///< Profiles of `names`, in the same order.
+  std::vector<Eigen::Vector3d> pads;  ///< Pad of each vehicle, or empty.
   FleetGoal goal = FleetGoal::makespan;
-  double separation = 10.0;        ///< kept between vehicles, by plan
-  double timing_tolerance = 10.0;  ///< by which each may be early or late [s]
+  double separation = 10.0;        ///< Planned distance between vehicles [m].
+  double timing_tolerance = 10.0;  ///< Maximum deviation of each flight from its timetable [s].
 
-  /// What is asked of any two of its flights.
+  /// Returns the separation rule for each pair of flights.
   SeparationRule rule() const { return {.distance = separation, .tolerance = timing_tolerance}; }
 };
 
 struct FlightOptions {
-  std::string vehicle_name = "none";  ///< a preset, or the path of a description
-  std::optional<Vehicle> vehicle;     ///< nothing: the sensor is taken to reach every view
-  /// The presets whose autopilots stand in where a file is written for another one than the
-  /// vehicle's own.
+  std::string vehicle_name = "none";  ///< Preset name, or path of a vehicle profile.
+  /// Vehicle profile. Empty: the sensor is assumed to reach every view.
+  std::optional<Vehicle> vehicle;
+  /// Presets that supply the mission mode when a file is written for a different autopilot than the
+  /// vehicle's.
   std::vector<Vehicle> stand_ins;
 
-  double clearance = 2.0;  ///< that every leg is proven at; the errors below are part of it [m]
+  /// Clearance at which every leg is verified, including the three errors below [m].
+  double clearance = 2.0;
   double position_error = 0.1;
   double tracking_error = 0.3;
   double map_error = 0.1;
 
-  Eigen::AlignedBox3d unknown_box;  ///< where space must be measured to be free; may be empty
-  bool has_own_box = false;         ///< unknown_box is given; else it is the box around the scene
-  std::vector<Eigen::AlignedBox3d> unknown_beside;  ///< further boxes where it must
+  /// Volume that counts as occupied until it is measured as free. May be empty.
+  Eigen::AlignedBox3d unknown_box;
+  /// True if the mission sets `unknown_box`. Otherwise it is the box around the scene.
+  bool has_own_box = false;
+  /// Further volumes that count as occupied until measured as free.
+  std::vector<Eigen::AlignedBox3d> unknown_beside;
   double free_without_return = 0.0;
   AirspaceOptions airspace;
 
-  std::optional<Eigen::Vector3d> takeoff;  ///< the pad
-  std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
-  std::vector<Eigen::Vector3d> rally;      ///< other places to land when called home, on the ground
-  std::optional<double> pad_slope;         ///< of pad and rally points, as the pilot found it [rad]
-  double steepest_pad = 10.0 * geometry::radians_per_degree;  ///< at which it may stand [rad]
+  std::optional<Eigen::Vector3d> takeoff;  ///< Take-off point (pad).
+  /// Climb above the pad [m]. Default: the larger of 5 m and `clearance` + 1 m.
+  std::optional<double> takeoff_climb;
+  /// Rally points: alternative landing points for returns, on the ground.
+  std::vector<Eigen::Vector3d> rally;
+  /// Slope of the pad and the rally points as measured by the pilot [rad].
+  std::optional<double> pad_slope;
+  /// Maximum slope of the ground under the vehicle [rad].
+  double steepest_pad = 10.0 * geometry::radians_per_degree;
 
   double cruise_speed = 4.0;
-  double hold = 0.5;          ///< at a view, before the capture [s]
-  double hold_after = 0.5;    ///< and after it [s]
-  double wind_speed = 0.0;    ///< [m/s]
-  double wind_from = 0.0;     ///< where it blows from, clockwise from north [rad]
-  double temperature = 15.0;  ///< of the battery [degrees Celsius]
-  double reserve = 0.25;      ///< share of the battery left at landing
+  double hold = 0.5;          ///< Hold time at a view before the capture [s].
+  double hold_after = 0.5;    ///< Hold time at a view after the capture [s].
+  double wind_speed = 0.0;    ///< Wind speed [m/s].
+  double wind_from = 0.0;     ///< Direction the wind comes from, clockwise from north [rad].
+  double temperature = 15.0;  ///< Battery temperature [°C].
+  double reserve = 0.25;      ///< Fraction of the battery energy that remains at landing.
   MissionViews views = MissionViews::survey;
   VisitOrder order = VisitOrder::shortest;
-  FlightStyle style = FlightStyle::stop;  ///< of files that can hold curves
+  FlightStyle style = FlightStyle::stop;  ///< Leg style in file formats that support curves.
   CaptureOptions capture;
   FleetOptions fleet;
 
-  Site site;               ///< the origin of the frame; at 0 N 0 E if the mission has no place
-  bool has_place = false;  ///< whether the mission says where on the Earth it is
+  Site site;               ///< Origin of the local frame. 0° N 0° E without a georeference.
+  bool has_place = false;  ///< True if the mission has a georeference.
 
   bool is_flown() const { return vehicle.has_value(); }
-  /// What flies the mission, which must be one that is flown.
+  /// Returns the vehicle. The mission must have one (see `is_flown`).
   const Vehicle& flown() const { return vehicle.value(); }
 
-  /// The vehicle as that autopilot flies it: unchanged if it is its own, else with the stand-in's
-  /// mission mode, and codes if they are DJI's. Size, energy and gimbal stay the vehicle's.
+  /// Returns `own` with the autopilot `dialect`. If the dialects differ, the mission mode (and for
+  /// DJI the WPML codes) come from the stand-in. Size, energy and gimbal remain those of `own`.
   Vehicle flown_by(Vehicle own, Dialect dialect) const;
 
-  /// Whether several vehicles share the mission.
+  /// Returns true if several vehicles share the mission.
   bool is_fleet() const { return fleet.names.size() > 1; }
 
-  /// The fleet's pads: those given, or a row from the first one along the nearest side of the
-  /// unknown box, on the ground, a metre more than the separation apart, to either side in turn.
+  /// Returns the pads of the fleet. Without configured pads, they form a row on the ground through
+  /// `first`, parallel to the nearest side of the unknown box. Their spacing is the separation plus
+  /// 1 m, alternating on both sides of `first`.
   std::vector<Eigen::Vector3d> fleet_pads(const Eigen::Vector3d& first) const;
 
-  /// The flight of one of the fleet's vehicles, alone, from its pad, with its stations in the order
-  /// given. Speed, map error and sensor stay those of the first vehicle.
+  /// Returns the options for a single vehicle of the fleet that starts at `pad` and keeps the given
+  /// waypoint order. Speed, map error and sensor remain those of the first vehicle.
   FlightOptions of_vehicle(std::size_t number, const Eigen::Vector3d& pad) const;
 
-  /// The flight of some of the fleet's vehicles, one at least, with their pads.
+  /// Returns the options for a subset of the fleet with the corresponding `pads`. `kept` must not
+  /// be empty.
   FlightOptions with_vehicles(const std::vector<std::size_t>& kept,
                               const std::vector<Eigen::Vector3d>& pads) const;
 
-  /// The clearance's terms: the margin is what errors and vehicle leave of it.
+  /// Returns the clearance budget. Its margin is the clearance minus the errors and the vehicle
+  /// radius.
   ClearanceBudget budget() const;
 
-  /// Whether a survey may begin there: outside of the boxes and off what prior data knows, with
-  /// room to spare; or with nothing flown.
+  /// Returns true if a survey may start at `place`: at least twice the clearance from all unknown
+  /// boxes and prior obstacles. Always true without a vehicle.
   bool is_in_known_airspace(const Eigen::Vector3d& place) const;
 
-  /// Measured space before anything is measured.
+  /// Returns the settings of the measured space at the start of a survey.
   MeasuredSpaceConfig measured_space() const;
 
-  /// What holds whatever is measured: the ground, no-fly volumes, the geofence.
+  /// Returns the obstacles that do not depend on measurements: ground, prior data, no-fly volumes
+  /// and geofence.
   Obstacles rules() const;
 
-  /// z of the ground at a place: with terrain as legs keep off it, known or taken to be there; else
-  /// the scene's.
+  /// Returns the ground height z at a position: that of the terrain, known or assumed, otherwise
+  /// the base of the scene [m].
   double ground_at(const Eigen::Vector2d& place) const;
 
-  /// The pad: as given, or on the ground beside the unknown box, as near to the first view as can
-  /// be.
+  /// Returns the pad: the configured one, or the closest ground position to the first view outside
+  /// the unknown box and its margin.
   Eigen::Vector3d pad(const Eigen::Vector3d& first_view) const;
 
-  /// How far the vehicle climbs from the pad before its first leg.
+  /// Returns the climb from the pad to the start of the first leg [m].
   double climb() const;
 
-  /// The greatest z at which a height of return is looked for, of a vehicle whose pad is at
-  /// `pad_z`: over the unknown box, no-fly volumes and `obstacles_top`, under the greatest height
-  /// that the site allows.
+  /// Returns the maximum height z for the search of a return altitude [m]. It lies above the
+  /// unknown box, prior obstacles, no-fly volumes and `obstacles_top`, and below the maximum height
+  /// of the site. `pad_z` is the height z of the pad [m].
   double highest_return(double pad_z, double obstacles_top) const;
 
   RouteOptions route(const Eigen::Vector3d& pad) const;
 
-  /// Rest at a view, before the capture and after it [s]: what the flight asks for, and no less
-  /// than the sensor needs.
+  /// Returns the hold time before or after a capture [s]: the configured value, or the sensor's
+  /// minimum if that is longer.
   double rest_before() const;
   double rest_after() const;
 
-  /// How sharp its pictures are at the view distance; nothing for a laser scanner.
+  /// Returns the image sharpness bounds at the view distance. Empty for a laser scanner.
   std::optional<PictureBounds> picture_bounds() const;
 
-  /// What the mission's route files must agree with. Where the pad is not given, heights above it
-  /// count from the foot of the scene. The views are not known.
+  /// Returns the facts that route files must agree with, except the views. Without a configured
+  /// pad, the altitude reference is the base of the scene.
   FlightFacts facts() const;
 
-  /// How far from a pad's middle the vehicle's feet may come down.
+  /// Returns the maximum distance between pad centre and touchdown point [m].
   double pad_radius() const;
 
-  /// Where the vehicle lands: the pad, then the rally points.
+  /// Returns the landing points: the pad, then the rally points.
   std::vector<Eigen::Vector3d> landings(const Eigen::Vector3d& pad) const;
 
-  /// The ground of each of these that it is known of: what `measured` holds for the place, else as
-  /// pad_slope declares it, else by the terrain.
+  /// Returns the ground of each landing point where it is known. In order of precedence it is
+  /// measured, declared (`pad_slope`) or derived from the terrain.
   std::vector<PadGround> grounds(const Eigen::Vector3d& pad,
                                  std::span<const PadGround> measured) const;
 
-  /// What these must be.
+  /// Returns the limits for the ground of landing points.
   PadLimits ground_limits() const;
 };
 
-/// The autopilots that the vehicle's files are written for: a DJI vehicle's .plan and .waypoints
-/// are for others.
+/// Returns the autopilots that files are written for. For a DJI vehicle, the .plan and .waypoints
+/// files are for other autopilots.
 std::vector<Dialect> dialects_of(const Vehicle& vehicle);
 
 }  // namespace skycap::flight

@@ -37,13 +37,13 @@ skycap_live::PoseError error_of(const std::optional<Covariance>& covariance) {
   return rows;
 }
 
-/// As it stands between the quotes of a JSON string.
+/// Returns the text escaped for a JSON string, without quotes.
 std::string escaped(const std::string& text) {
   const std::string quoted = Json(text).dump();
   return quoted.substr(1, quoted.size() - 2);
 }
 
-/// The first name that is heard is kept.
+/// Stores the first name in `kept` and requires later names to equal it.
 void require_same(std::string& kept, const std::string& name, const std::string& what) {
   if (kept.empty()) kept = name;
   if (kept == name) return;
@@ -98,11 +98,11 @@ void Bridge::add_odometry(const Odometry& odometry) {
   locate();
 }
 
-/// The body is somewhere, from now on.
+/// Handles the first known body pose.
 void Bridge::locate() {
   if (is_located_) return;
   is_located_ = true;
-  publish_goal();  // now in a frame
+  publish_goal();  // Publishes the goal again, now with its frame.
   say("waiting for a scan");
 }
 
@@ -189,8 +189,9 @@ bool Bridge::has_arrived(const Whereabouts& whereabouts) const {
          std::atan2(axis.cross(wanted).norm(), axis.dot(wanted)) <= config_.direction_tolerance;
 }
 
-/// Where it has been for as long before the stamp as it takes to come to rest: in steps, and at all
-/// that odometry says. Throws Error{bad_geometry} if it was nowhere else, but not always known.
+/// Returns true if the sensor was within the tolerances during the whole settling time before the
+/// stamp. Checks regular steps and all odometry poses. Throws Error{bad_geometry} if no pose was
+/// elsewhere, but some are unknown.
 bool Bridge::has_settled(Stamp stamp) const {
   const auto settling = static_cast<Stamp>(config_.settling * 1e9);
   std::string gap;
@@ -234,7 +235,7 @@ void Bridge::proceed(double now) {
   survey_.next();
 }
 
-/// Whether the survey takes scans from the way that the robot is on.
+/// Returns true if the survey accepts scans en route.
 bool Bridge::measures_on_way() const {
   return answer_.contains("en_route") && view_ && answer_.at("scans").get<std::size_t>() > 0;
 }
@@ -297,7 +298,7 @@ void Bridge::learn(const std::string& answer, skycap_live::From from) {
   view_.reset();
   if (const Json& view = answer_.at("view"); !view.is_null()) view_ = view_of(view);
   holds_ = answer_.contains("warning");
-  // A scan from the way changes nothing of where it leads.
+  // An en-route scan does not change the goal.
   const bool is_new = from == skycap_live::From::view || holds_ != held;
   if (is_located_ && is_new) publish_goal();
   publish_status();

@@ -1,5 +1,5 @@
-/// Between a robot's messages and a survey that is served: which scans are taken in, from where,
-/// and what the robot is told. Knows nothing of DDS or sockets.
+/// Bridge between a robot's messages and a served survey. It selects scans, determines their poses
+/// and publishes goals. Independent of DDS and sockets.
 #pragma once
 
 #include <cstddef>
@@ -19,30 +19,32 @@
 
 namespace skycap::ros2 {
 
-/// When a scan is taken in.
+/// Condition for accepting a scan.
 enum class Taking {
-  arrived,  ///< from the view that was asked for, and from the way there if the mission measures
-            ///< on it; the first one from anywhere, if none was
-  every,    ///< whenever there is one
-  command,  ///< when told
+  /// At the requested view, and en route if the mission measures there. Without a requested view,
+  /// the first scan from anywhere.
+  arrived,
+  every,    ///< Every available scan.
+  command,  ///< On command.
 };
 
 struct BridgeConfig {
   Mount mount{Eigen::Isometry3d::Identity(), Axes::optical};
-  bool uses_transforms = false;  ///< TF says where the sensor is on the body, not `mount`
-  std::string world;             ///< TF says where the body is in this frame; empty: odometry does
-  std::string body = "base_link";  ///< the body's frame then; odometry says its own
+  bool uses_transforms = false;  ///< Sensor mount on the body from TF instead of `mount`.
+  std::string world;  ///< World frame in which TF locates the body. Empty: odometry locates it.
+  std::string body = "base_link";  ///< Body frame for TF. Odometry specifies its own.
   Taking taking = Taking::arrived;
-  double position_tolerance = 0.3;   ///< from the view asked for [m]
-  double direction_tolerance = 0.1;  ///< of the optical axis [rad]
-  double settling = 0.5;  ///< the robot is within the tolerances for so long before the scan [s]
-  double patience = 0.5;  ///< how long a scan waits for its odometry [s]
+  double position_tolerance = 0.3;  ///< Maximum distance from the requested view [m].
+  /// Maximum angle of the optical axis to the requested view [rad].
+  double direction_tolerance = 0.1;
+  double settling = 0.5;  ///< Time within the tolerances before a scan is accepted [s].
+  double patience = 0.5;  ///< Maximum time that a scan waits for its odometry [s].
   HistoryConfig history;
-  bool uses_covariance = true;  ///< of the odometry
-  bool is_rectified = false;    ///< depth images
+  bool uses_covariance = true;  ///< Use the covariance of the odometry.
+  bool is_rectified = false;    ///< Depth images are rectified.
 };
 
-/// What is asked of `skycap serve`: all throw what skycap_live::Survey throws.
+/// Requests to `skycap serve`. All throw the same errors as skycap_live::Survey.
 struct SurveyPort {
   std::function<std::string()> next, finish;
   std::function<std::string(const SensorScan&, const skycap_live::Pose&,
@@ -51,18 +53,18 @@ struct SurveyPort {
   std::function<std::string(std::size_t id, const std::string& reason)> refuse;
 };
 
-/// Where the robot is wanted, in the odometry's frame or the one that was named.
+/// Requested pose in the frame of the odometry, or in the configured world frame.
 struct Goal {
   std::string frame;
-  Stamp stamp = 0;                        ///< of the pose that came last; 0: none yet
-  std::optional<Eigen::Isometry3d> view;  ///< world from the optical frame
-  std::vector<Eigen::Vector3d> path;      ///< proven way of the sensor there; empty: none
-  std::optional<Mount> mount;             ///< as it is now, if it is known
+  Stamp stamp = 0;                        ///< Stamp of the latest pose. 0: no pose yet.
+  std::optional<Eigen::Isometry3d> view;  ///< World from the optical frame.
+  std::vector<Eigen::Vector3d> path;  ///< Verified path of the sensor to the view. Empty: no path.
+  std::optional<Mount> mount;         ///< Current mount, if known.
 };
 
 struct Outlets {
   std::function<void(const Goal&)> goal;
-  std::function<void(const std::string&)> status;  ///< a JSON object
+  std::function<void(const std::string&)> status;  ///< Publishes a JSON object.
   std::function<void(const std::string&)> warning;
 };
 
@@ -70,24 +72,25 @@ class Bridge {
  public:
   Bridge(BridgeConfig config, SurveyPort survey, Outlets outlets);
 
-  /// Asks for the first view.
+  /// Requests the first view.
   void begin();
 
-  // Messages as they come, at `now` [s] of a clock that only goes forward. What is wrong with them
-  // is said, and they are passed over.
+  // Processes messages as they arrive, at `now` [s] of a monotonic clock. Errors in messages are
+  // reported as warnings, and the messages are skipped.
   void receive(const Odometry& odometry, double now);
   void receive(const TFMessage& message, bool is_static, double now);
   void receive(const PointCloud2& cloud, double now);
   void receive(const CameraInfo& info, double now);
   void receive(const Image& image, double now);
-  /// take, refuse REASON, finish.
+  /// Processes a command: take, refuse REASON or finish.
   void receive(const String& command, double now);
 
-  /// To be called after messages and a few times a second: takes in a scan whose pose is known now,
-  /// gives up one that has waited too long, and notices that nobody serves the survey any more.
+  /// Must be called after messages and several times per second. Adds a waiting scan once its pose
+  /// is known, discards one that has waited too long, and detects the loss of the server.
   void proceed(double now);
 
-  /// What is going on, in a word or two of docs/reference/ros2-topics.md, for the status.
+  /// Publishes the current activity, one of the terms in docs/reference/ros2-topics.md, in the
+  /// status.
   void say(const std::string& doing);
 
   bool is_finished() const { return is_finished_; }
@@ -99,13 +102,13 @@ class Bridge {
     SensorScan scan;
   };
 
-  /// Body and sensor at a time; the mount counts if the body's pose is known.
+  /// Body and sensor poses at one time. The mount is valid only if the body pose is known.
   struct Whereabouts {
     PoseMatch body;
     Mount mount;
   };
 
-  /// Complains of what `receive` throws.
+  /// Calls `receive` and reports its errors as warnings.
   void guarded(const std::string& kind, double now, const std::function<void()>& receive);
   void complain(const std::string& kind, const std::string& line, double now);
   void add_odometry(const Odometry& odometry);
@@ -132,20 +135,20 @@ class Bridge {
   PoseHistory history_;
   Transforms transforms_;
   std::string world_frame_, body_frame_, sensor_frame_;
-  bool is_located_ = false;   ///< something said where the body is
-  bool lacks_mount_ = false;  ///< the goal that was published
-  Stamp newest_pose_ = 0;     ///< of the odometry that came last
+  bool is_located_ = false;   ///< True once the body pose is known.
+  bool lacks_mount_ = false;  ///< True if the published goal lacks the mount.
+  Stamp newest_pose_ = 0;     ///< Stamp of the latest odometry.
   std::optional<CameraLens> lens_;
   std::optional<Waiting> waiting_;
-  nlohmann::json answer_;                  ///< the last one of the survey
-  std::optional<Eigen::Isometry3d> view_;  ///< that was asked for
+  nlohmann::json answer_;                  ///< Last answer of the survey.
+  std::optional<Eigen::Isometry3d> view_;  ///< Requested view.
   Stamp last_taken_ = 0;
   std::size_t taken_ = 0;
   bool is_told_to_take_ = false;
-  bool holds_ = false;  ///< a pose was wrong: nothing is taken in until told
+  bool holds_ = false;  ///< True after an inconsistent pose: no scans are added until a command.
   bool is_finished_ = false;
-  double not_before_ = 0.0;  ///< next scan, after one that was refused
-  double asked_at_ = 0.0;    ///< when the survey was last heard of
+  double not_before_ = 0.0;  ///< Earliest time of the next scan after a rejected one [s].
+  double asked_at_ = 0.0;    ///< Time of the last contact with the survey [s].
   std::string doing_, status_;
 };
 

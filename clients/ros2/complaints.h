@@ -1,4 +1,4 @@
-/// What is wrong with messages, in a line each and not too often.
+/// Rate-limited warnings about messages, one line each.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,21 @@
 
 namespace skycap::ros2 {
 
-/// A string of a message: null is empty, and what no terminal should see is a question mark.
+/// Returns the text of a message field. Null gives an empty string; non-printable characters become
+/// question marks.
 std::string text_of(const char* text);
 
 class Complaints {
  public:
-  /// `say` is given whole lines.
+  /// `say` receives complete lines.
   explicit Complaints(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
 
-  /// Says `line`, unless something of its kind was said in the five seconds before `now`; then it
-  /// is counted, and the count said with the next. Whether it was said.
+  /// Reports `line`, unless a warning of the same kind was reported within the five seconds before
+  /// `now` [s]. Suppressed warnings are counted, and the next report contains their number. Returns
+  /// true if reported.
   bool add(const std::string& kind, const std::string& line, double now);
 
-  std::size_t count() const { return count_; }  ///< said or not
+  std::size_t count() const { return count_; }  ///< Number of warnings, including suppressed ones.
   const std::string& last() const { return last_; }
 
  private:

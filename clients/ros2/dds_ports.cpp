@@ -25,7 +25,7 @@ Qos qos(bool is_reliable, bool is_latched, int depth) {
   return qos;
 }
 
-/// Topics need no handle of ours: they go with the participant.
+/// Creates a topic. Topics need no owner, because the participant deletes them.
 dds_entity_t topic(const Participant& participant, const dds_topic_descriptor_t& type,
                    const std::string& name) {
   if (name.size() < 2 || name.front() != '/') {

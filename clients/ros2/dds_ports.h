@@ -1,8 +1,8 @@
-/// Topics of ROS 2 over Cyclone DDS: a participant, and typed ends of topics in it.
+/// ROS 2 topics over Cyclone DDS: a participant with typed readers and writers.
 ///
-/// ROS 2 puts "rt" before a topic's name. What sensors send is asked for as best effort and
-/// volatile, which goes with whatever they offer; what we say is reliable and transient local, with
-/// a depth of one: ROS's latched topics.
+/// ROS 2 adds the prefix "rt" to topic names. Sensor readers request best effort and volatile,
+/// which is compatible with every writer. Own topics are reliable and transient local with depth
+/// one: latched topics in ROS terms.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace skycap::ros2 {
 
-/// A handle of DDS, which goes with all that was made in it.
+/// DDS handle that deletes all its child entities on destruction.
 class DdsEntity {
  public:
-  /// Throws Error{bad_usage} with `what` and DDS's own words if the handle is an error.
+  /// Throws Error{bad_usage} with `what` and the DDS error text if the handle is an error code.
   DdsEntity(std::int32_t handle, const std::string& what);
   DdsEntity(const DdsEntity&) = delete;
   DdsEntity& operator=(const DdsEntity&) = delete;
@@ -30,30 +30,30 @@ class DdsEntity {
 
 class Participant : public DdsEntity {
  public:
-  /// In a domain, as ROS_DOMAIN_ID has them, and as the environment's CYCLONEDDS_URI says.
+  /// Joins a domain (ROS_DOMAIN_ID) with the settings of the environment variable CYCLONEDDS_URI.
   explicit Participant(std::uint32_t domain);
 };
 
 enum class Reading {
-  sensor,   ///< best effort, volatile
-  command,  ///< reliable, volatile
-  latched,  ///< reliable, transient local
+  sensor,   ///< Best effort, volatile.
+  command,  ///< Reliable, volatile.
+  latched,  ///< Reliable, transient local.
 };
 
 enum class Writing {
-  sensor,   ///< best effort, volatile
-  command,  ///< reliable, volatile
-  latched,  ///< reliable, transient local, the last message only
+  sensor,   ///< Best effort, volatile.
+  command,  ///< Reliable, volatile.
+  latched,  ///< Reliable, transient local, last message only.
 };
 
-/// The end of a topic that messages come out of; `depth` of them wait, older ones are lost.
+/// Untyped topic reader. Queues up to `depth` messages; older ones are lost.
 class AnyReader : public DdsEntity {
  public:
   AnyReader(const Participant& participant, const dds_topic_descriptor_t& type,
             const std::string& topic, Reading reading, int depth);
 
  protected:
-  /// Hands over the oldest message that waits; false if none does.
+  /// Passes the oldest queued message to `receive`. Returns false if the queue is empty.
   bool take_one(const std::function<void(const void*)>& receive) const;
 };
 
@@ -63,7 +63,7 @@ class Reader : public AnyReader {
   Reader(const Participant& participant, const std::string& topic, Reading reading, int depth)
       : AnyReader(participant, descriptor<Message>(), topic, reading, depth) {}
 
-  /// Hands over all messages that wait, in the order in which they came.
+  /// Passes all queued messages to `receive`, in order of arrival.
   template <typename Receive>
   void take(const Receive& receive) const {
     while (take_one([&](const void* message) { receive(*static_cast<const Message*>(message)); })) {
@@ -71,15 +71,15 @@ class Reader : public AnyReader {
   }
 };
 
-/// The end of a topic that messages go into.
+/// Untyped topic writer.
 class AnyWriter : public DdsEntity {
  public:
   AnyWriter(const Participant& participant, const dds_topic_descriptor_t& type,
             const std::string& topic, Writing writing);
 
-  /// Readers at present.
+  /// Returns the current number of readers.
   int readers() const;
-  /// Until all readers have what was written, half a second at most.
+  /// Waits until all readers have received the messages, at most 0.5 s.
   void flush() const;
 
  protected:
@@ -92,16 +92,16 @@ class Writer : public AnyWriter {
   Writer(const Participant& participant, const std::string& topic, Writing writing)
       : AnyWriter(participant, descriptor<Message>(), topic, writing) {}
 
-  /// Throws Error{bad_usage} if DDS does not take it.
+  /// Throws Error{bad_usage} if DDS rejects the message.
   void write(const Message& message) const { write_one(&message); }
 };
 
-/// Waits for messages at readers.
+/// DDS wait set on a group of readers.
 class WaitSet : public DdsEntity {
  public:
   explicit WaitSet(const Participant& participant);
   void add(const AnyReader& reader) const;
-  /// Until a message waits at one of the readers, or so long [s].
+  /// Waits until a reader has a message, at most `seconds` [s].
   void wait(double seconds) const;
 };
 

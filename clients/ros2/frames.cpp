@@ -25,12 +25,12 @@ Isometry3d isometry(const Matrix3d& turn, const Vector3d& position) {
   return pose;
 }
 
-/// The matrix of the cross product with v.
+/// Returns the matrix of the cross product with v.
 Matrix3d cross_matrix(const Vector3d& v) {
   return (Matrix3d() << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0).finished();
 }
 
-/// Nothing if all is zero, which is how ROS says that nobody knows.
+/// Returns std::nullopt if all elements are zero, which means unknown in ROS.
 std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
   const Covariance given =
       Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&numbers[0]);
@@ -44,7 +44,7 @@ std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
 
 BodyPose checked_pose(const Vector3d& position, const QuaternionMessage& given) {
   if (!position.allFinite()) refuse("its position is not finite");
-  constexpr double farthest = 1e7;  // as of all places that others give
+  constexpr double farthest = 1e7;  // Limit of all external positions [m].
   if (position.cwiseAbs().maxCoeff() > farthest)
     refuse("its position is more than 1e7 m from the origin");
   const Quaterniond turn(given.w, given.x, given.y, given.z);
@@ -73,7 +73,7 @@ Isometry3d isometry_of(const BodyPose& pose) {
 
 Matrix3d optical_from(Axes axes) {
   if (axes == Axes::optical) return Matrix3d::Identity();
-  // Right is minus left, down is minus up, forward is forward.
+  // Right is -left, down is -up, forward is forward.
   return (Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished();
 }
 

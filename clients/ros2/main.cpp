@@ -1,4 +1,4 @@
-// skycap_ros2: a live survey with a ROS 2 robot over DDS (docs/reference/ros2-topics.md).
+// Program skycap_ros2: a live survey with a ROS 2 robot over DDS (docs/reference/ros2-topics.md).
 
 #include <atomic>
 #include <csignal>
@@ -24,7 +24,7 @@ using skycap::ros2::Taking;
 
 std::atomic<bool> is_stopped = false;
 
-/// Ends after the message at hand; a second signal ends at once.
+/// Stops after the current message; a second signal terminates at once.
 void end_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int) { is_stopped = true; };
@@ -101,7 +101,7 @@ void add_rules(CLI::App& app, Options& options) {
                "Ignore the covariance of the odometry");
 }
 
-/// Throws Error{bad_usage} for an option that was given, and that others leave without effect.
+/// Throws Error{bad_usage} for an option that has no effect in combination with the others.
 void require_effect(const CLI::App& app, const Options& options) {
   const bool has_world = !options.node.bridge.world.empty();
   const bool has_image = !options.node.image.empty();
@@ -124,7 +124,7 @@ void require_effect(const CLI::App& app, const Options& options) {
           "with --trigger always or command");
 }
 
-/// What options say in words or degrees.
+/// Converts options that are words or in degrees.
 NodeConfig node_of(const Options& options) {
   NodeConfig node = options.node;
   node.bridge.uses_transforms = options.sensor.empty();
@@ -142,8 +142,8 @@ NodeConfig node_of(const Options& options) {
 
 namespace {
 
-/// The arguments with the options of version 0.1 by their current names, in the reverse order that
-/// CLI11 takes; warns of each that was replaced.
+/// Returns the arguments with version 0.1 options replaced by their current names, with a warning
+/// for each. They are in reverse order, as CLI11 requires.
 std::vector<std::string> current_arguments(int argc, char** argv) {
   static const std::map<std::string, std::string> former{
       {"--world", "--fixed-frame"},         {"--body", "--base-frame"},

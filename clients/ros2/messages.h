@@ -1,4 +1,4 @@
-/// The messages of ROS 2 by their names there, and what DDS has to know of each.
+/// ROS 2 message types with their ROS names, and their DDS descriptors.
 #pragma once
 
 #include "ros2_messages.h"

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Isometry3d;
 
-/// A clock that only goes forward [s].
+/// Returns the time of a monotonic clock [s].
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -35,7 +35,7 @@ SurveyPort port_of(skycap_live::Survey& survey) {
           .refuse = [&](std::size_t id, const std::string& why) { return survey.refuse(id, why); }};
 }
 
-/// Keeps the name that it points to.
+/// Message header with storage for its frame name.
 struct Heading {
   explicit Heading(const Goal& goal) : frame(goal.frame) {
     header.stamp.sec = static_cast<std::int32_t>(goal.stamp / 1'000'000'000);
@@ -55,7 +55,7 @@ PoseMessage message_of(const Isometry3d& pose) {
           .orientation = {turn.x(), turn.y(), turn.z(), turn.w()}};
 }
 
-/// The body along the way, aimed as at its end.
+/// Returns the body poses along the path, with the orientation at its end.
 std::vector<PoseStamped> body_path(const Goal& goal, const Header& header) {
   std::vector<PoseStamped> places;
   for (const Eigen::Vector3d& place : goal.path) {
@@ -66,7 +66,7 @@ std::vector<PoseStamped> body_path(const Goal& goal, const Header& header) {
   return places;
 }
 
-/// What is published.
+/// Published topics.
 class Outputs {
  public:
   Outputs(const Participant& participant, const std::string& prefix)
@@ -77,8 +77,8 @@ class Outputs {
 
   ~Outputs() { status_.flush(); }
 
-  /// The way before the view: who hears of the view can go at once. Without a mount nobody knows
-  /// yet where the body is round its sensor.
+  /// Publishes the path before the view, so that a subscriber of the view can depart at once.
+  /// Without a mount, the body pose for a sensor pose is unknown.
   void goal(const Goal& goal) const {
     const Heading heading(goal);
     if (goal.mount) {
@@ -100,13 +100,13 @@ class Outputs {
   Writer<String> status_;
 };
 
-/// What is subscribed to.
+/// Subscribed topics.
 class Inputs {
  public:
   Inputs(const Participant& participant, const NodeConfig& config)
       : waits_(participant),
         commands_(participant, config.prefix + "/command", Reading::command, 10) {
-    constexpr int few = 2;  // while the survey plans, old scans are of no use
+    constexpr int few = 2;  // During planning, old scans become useless.
     if (config.image.empty()) {
       clouds_ =
           std::make_unique<Reader<PointCloud2>>(participant, config.cloud, Reading::sensor, few);
@@ -124,7 +124,7 @@ class Inputs {
     waits_.add(commands_);
   }
 
-  /// Waits a moment for messages and hands them over: what scans need before the scans.
+  /// Waits briefly for messages and forwards them, poses before scans.
   void forward_to(Bridge& bridge) const {
     constexpr double moment = 0.05;
     waits_.wait(moment);
@@ -139,9 +139,9 @@ class Inputs {
   }
 
  private:
-  /// Where body and sensor are.
+  /// Subscribes to the topics of body and sensor poses.
   void add_poses(const Participant& participant, const NodeConfig& config) {
-    constexpr int many = 2000;  // while the survey plans
+    constexpr int many = 2000;  // Capacity for the poses that arrive during planning.
     const bool asks_odometry = config.bridge.world.empty();
     if (asks_odometry) {
       odometry_ =

@@ -1,4 +1,4 @@
-/// The program skycap_ros2: a bridge with its topics and its survey.
+/// Program skycap_ros2: a bridge with its topics and its survey.
 #pragma once
 
 #include <atomic>
@@ -10,23 +10,25 @@
 namespace skycap::ros2 {
 
 struct NodeConfig {
-  std::string address;       ///< what `skycap serve` prints
-  std::uint32_t domain = 0;  ///< ROS_DOMAIN_ID
+  std::string address;       ///< Address printed by `skycap serve`.
+  std::uint32_t domain = 0;  ///< ROS_DOMAIN_ID.
   std::string odometry = "/odom";
-  std::string cloud = "/points";  ///< of clouds, unless there is an `image`
-  std::string image;              ///< of depth images
-  std::string camera_info;        ///< its CameraInfo; empty: beside `image`, as ROS has it
-  std::string transforms = "/tf", static_transforms = "/tf_static";  ///< if the bridge uses some
-  std::string prefix = "/skycap";                                    ///< of what is published
+  std::string cloud = "/points";  ///< Topic of point clouds, unless `image` is set.
+  std::string image;              ///< Topic of depth images.
+  /// Topic of the CameraInfo. Empty: next to `image`, as is usual in ROS.
+  std::string camera_info;
+  /// Topics of transforms, if the bridge uses them.
+  std::string transforms = "/tf", static_transforms = "/tf_static";
+  std::string prefix = "/skycap";  ///< Prefix of published topics.
   BridgeConfig bridge;
 };
 
-/// Until the survey is finished or `stop` is set. Warnings go to stderr. Throws Error for topics
-/// and DDS, and std::runtime_error if the survey cannot be talked to any more; its journal has all
-/// that was taken in.
+/// Runs until the survey is finished or `stop` is set. Warnings are written to stderr. Throws Error
+/// for problems with topics and DDS, and std::runtime_error if the connection to the survey is
+/// lost. The journal of the survey then contains all accepted scans.
 void run_node(const NodeConfig& config, const std::atomic<bool>& stop);
 
-/// The topic of an image's CameraInfo: the same with camera_info in place of the last name.
+/// Returns the CameraInfo topic of an image topic: its last component is replaced by camera_info.
 std::string camera_info_topic(const std::string& image);
 
 }  // namespace skycap::ros2

@@ -1,4 +1,4 @@
-/// Where something was at the time of a scan: the body by odometry, or a frame by TF.
+/// Interpolated pose at the time of a scan: of the body from odometry, or of a frame from TF.
 #pragma once
 
 #include <cstddef>
@@ -12,47 +12,51 @@
 
 namespace skycap::ros2 {
 
-using Stamp = std::int64_t;  ///< [ns] of whatever clock the robot goes by
+using Stamp = std::int64_t;  ///< Time on the robot's clock [ns].
 
-/// Throws Error{bad_geometry} for a stamp that is not set, or has a second's worth of nanoseconds.
+/// Returns the stamp of a header. Throws Error{bad_geometry} if it is not set, or has 1e9
+/// nanoseconds or more.
 Stamp stamp_of(const Header& header);
 
-/// Between which poses it is fair to interpolate.
+/// Limits for interpolation between poses.
 struct HistoryConfig {
-  double longest_gap = 0.1;     ///< from the stamp to the pose before, and to the one after [s]
-  double highest_speed = 30.0;  ///< between the two [m/s]; beyond, it has jumped
-  double highest_turn = 10.0;   ///< between the two [rad/s]
-  std::size_t most = 4096;      ///< poses that are kept; those that came first go first
+  /// Maximum time from the stamp to the previous and to the next pose [s].
+  double longest_gap = 0.1;
+  /// Maximum speed between the two poses [m/s]. Above it, the pose has jumped.
+  double highest_speed = 30.0;
+  double highest_turn = 10.0;  ///< Maximum angular rate between the two poses [rad/s].
+  /// Maximum number of stored poses. The first to arrive is removed first.
+  std::size_t most = 4096;
 };
 
-/// What is known of the pose at a stamp.
+/// Result of a query for the pose at a stamp.
 struct PoseMatch {
   enum class State {
     known,
-    open,     ///< not yet; poses may still come
-    refused,  ///< and will not be: it jumps there
+    open,     ///< Not yet known: further poses may arrive.
+    refused,  ///< Rejected permanently because of a jump.
   };
   State state = State::open;
   BodyPose pose;
-  std::string why;  ///< why it is not known
+  std::string why;  ///< Reason why it is not known.
 };
 
-/// Messages may come in any order, twice, and with stamps from the future: a pose counts only near
+/// Messages may arrive in any order, twice, or with stamps in the future: a pose is used only near
 /// its own stamp.
 class PoseHistory {
  public:
   explicit PoseHistory(const HistoryConfig& config) : config_(config) {}
 
   enum class Added { taken, known, contradicts };
-  /// `known`: this very pose is there already; `contradicts`: another one with the same stamp is,
-  /// and stays.
+  /// Adds a pose. `known`: the same pose exists already. `contradicts`: a different pose with the
+  /// same stamp exists and is kept.
   Added add(Stamp stamp, const BodyPose& pose);
 
-  /// The pose of that very stamp; or between the poses around it, the position and covariance
-  /// linearly and the turn along the great arc.
+  /// Returns the pose at the stamp or an interpolated one: linear for position and covariance,
+  /// along the great arc for the rotation.
   PoseMatch at(Stamp stamp) const;
 
-  /// Whether all poses from one stamp to another, both included, have a property.
+  /// Returns true if all poses between two stamps, both included, satisfy `holds`.
   bool all_between(Stamp from, Stamp to,
                    const std::function<bool(Stamp, const BodyPose&)>& holds) const;
 

@@ -19,7 +19,7 @@ using Eigen::Vector3f;
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
 
-/// A number of this type in any byte order, at any address.
+/// Returns a number from any address in either byte order.
 template <typename Number>
 Number number_at(const std::uint8_t* bytes, bool is_big_endian) {
   std::array<std::uint8_t, sizeof(Number)> own;
@@ -28,7 +28,7 @@ Number number_at(const std::uint8_t* bytes, bool is_big_endian) {
   return std::bit_cast<Number>(own);
 }
 
-/// The data types of PointField that places come in.
+/// PointField data types of coordinates.
 constexpr std::uint8_t float32 = 7, float64 = 8;
 
 struct Coordinate {
@@ -63,7 +63,7 @@ Coordinate coordinate(const PointCloud2& cloud, const std::string& name) {
   return *found;
 }
 
-/// Rows of `width` things of `size` bytes, of which `data` bytes are there.
+/// Rows of `width` elements of `size` bytes, with `data` bytes in total.
 struct Rows {
   std::uint32_t height, width, size, step;
   std::uint64_t data;
@@ -82,7 +82,7 @@ void require_whole(const Rows& rows) {
 }
 
 void require_points(std::uint64_t points) {
-  // `serve` takes 256 MiB in a message.
+  // `serve` accepts up to 256 MiB per message.
   constexpr std::uint64_t most = (std::uint64_t{256} << 20) / (3 * sizeof(float));
   if (points > most) {
     refuse("it has " + std::to_string(points) + " points; the maximum is " + std::to_string(most) +
@@ -90,7 +90,7 @@ void require_points(std::uint64_t points) {
   }
 }
 
-/// Row after row, of any number type.
+/// Returns the pixels row by row in the given number type.
 template <typename Number>
 std::vector<Number> pixels_of(const Image& image) {
   std::vector<Number> pixels;
@@ -121,7 +121,7 @@ void require_image(const Image& image, std::uint32_t pixel, const CameraLens& le
   require_whole({image.height, image.width, pixel, image.step, image.data._length});
 }
 
-/// Metres along the optical axis as points.
+/// Returns points from depths along the optical axis [m].
 CloudScan cloud_of(const Image& image, const CameraLens& lens) {
   const std::vector<float> depths = pixels_of<float>(image);
   CloudScan scan;
@@ -137,7 +137,7 @@ CloudScan cloud_of(const Image& image, const CameraLens& lens) {
   return scan;
 }
 
-/// k1 k2 p1 p2 k3; nothing if there is no distortion.
+/// Returns k1 k2 p1 p2 k3. Empty without distortion.
 std::vector<double> distortion_of(const CameraInfo& info) {
   std::vector<double> d(info.d._buffer, info.d._buffer + info.d._length);
   if (std::ranges::any_of(d, [](double value) { return !std::isfinite(value); })) {
@@ -146,7 +146,7 @@ std::vector<double> distortion_of(const CameraInfo& info) {
   while (!d.empty() && d.back() == 0.0) d.pop_back();
   if (d.empty()) return d;
   const std::string model = text_of(info.distortion_model);
-  // The first five of rational_polynomial are those of plumb_bob.
+  // The first five coefficients of rational_polynomial are those of plumb_bob.
   if ((model != "plumb_bob" && model != "rational_polynomial" && !model.empty()) || d.size() > 5) {
     refuse("its distortion is '" + model + "' with " + std::to_string(d.size()) +
            " numbers; it must be plumb_bob with k1 k2 p1 p2 k3, or the image rectified");
@@ -164,7 +164,7 @@ CloudScan scan_of(const PointCloud2& cloud, Axes axes) {
                                          coordinate(cloud, "z")};
   const Matrix3f turn = optical_from(axes).cast<float>();
   CloudScan scan;
-  if (cloud.width == 0) return scan;  // of rows there may be billions
+  if (cloud.width == 0) return scan;  // The number of rows may be in the billions.
   scan.xyz.reserve(std::size_t{3} * cloud.width * cloud.height);
   for (std::uint32_t row = 0; row < cloud.height; ++row) {
     const std::uint8_t* point = cloud.data._buffer + std::size_t{row} * cloud.row_step;

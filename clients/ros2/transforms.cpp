@@ -15,7 +15,7 @@ namespace {
 
 std::string name_of(const char* text, const std::string& what) {
   if (text == nullptr || *text == '\0') refuse("a transform whose " + what + " has no name");
-  // Longer ones are cut where text_of() shortens them, and would be one another.
+  // text_of() truncates longer names, which could then collide.
   constexpr std::size_t longest = 100;
   if (::strnlen(text, longest + 1) > longest) {
     refuse("a transform whose " + what + " has a name longer than 100 bytes");
@@ -23,7 +23,7 @@ std::string name_of(const char* text, const std::string& what) {
   return text_of(text);
 }
 
-/// Of b in a, and of c in b: of c in a.
+/// Returns the pose of c in a, from b in a and c in b.
 BodyPose chained(const BodyPose& a, const BodyPose& b) {
   return {.position = a.position + a.turn * b.position,
           .turn = (a.turn * b.turn).normalized(),
@@ -81,7 +81,7 @@ PoseMatch Transforms::in_parent(const Frame& frame, std::optional<Stamp> stamp) 
 
 Transforms::Found Transforms::find(const std::string& target, const std::string& source,
                                    std::optional<Stamp> stamp) const {
-  // Up from a frame to the root, the frame first.
+  // Returns the frame names from `name` up to the root.
   const auto up_from = [this](std::string name) {
     std::vector<std::string> names{name};
     for (auto frame = frames_.find(name); frame != frames_.end();

@@ -1,7 +1,8 @@
-/// The tree of frames that /tf and /tf_static tell of: where one frame is in another at a time.
+/// Tree of frames from /tf and /tf_static, for the pose of one frame in another at a given time.
 ///
-/// Each frame has one parent, from the first message that names it on. Those of /tf_static hold for
-/// ever; the others at their stamps and between, as odometry does (PoseHistory).
+/// The parent of a frame is fixed by the first message that contains it. Transforms of /tf_static
+/// are constant. The others are valid at their stamps and are interpolated like odometry
+/// (PoseHistory).
 #pragma once
 
 #include <cstddef>
@@ -16,45 +17,47 @@
 
 namespace skycap::ros2 {
 
-/// Where a frame is by what came last.
+/// Pose of a frame from the latest transforms.
 struct NewestTransform {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  Stamp stamp = 0;  ///< the latest on the way from one to the other; 0 if nothing there moves
+  Stamp stamp = 0;  ///< Latest stamp on the chain between the frames. 0 if all are static.
 };
 
 class Transforms {
  public:
   static constexpr std::size_t most_frames = 256;
-  static constexpr std::size_t most_poses = 1000;  ///< of each frame; the first go first
-  static constexpr int longest_chain = 64;         ///< of frames, up to the root
+  /// Per frame. The first to arrive is removed first.
+  static constexpr std::size_t most_poses = 1000;
+  static constexpr int longest_chain = 64;  ///< Maximum number of frames up to the root.
 
   explicit Transforms(HistoryConfig config);
 
-  /// Throws Error{bad_geometry} saying what is wrong: names that are empty or longer than 100
-  /// bytes, numbers that are none, a quaternion whose length is not one, a stamp that is not set,
-  /// another parent than before, another pose at the same stamp, a frame that is static here and
-  /// moves there, more frames than there may be.
+  /// Adds a transform. Throws Error{bad_geometry} with the problem: an empty name or one above 100
+  /// bytes, values that are not finite, or a quaternion that is not normalised. Further problems
+  /// are a missing stamp, a changed parent, a different pose at the same stamp, a frame both static
+  /// and moving, and too many frames.
   void add(const TransformStamped& transform, bool is_static);
 
-  /// `target` from `source` at a stamp; without covariance. A frame is itself, known or not.
+  /// Returns `target` from `source` at a stamp, without covariance. A frame relative to itself is
+  /// the identity, even if unknown.
   PoseMatch at(const std::string& target, const std::string& source, Stamp stamp) const;
 
-  /// The same by what came last of each frame.
+  /// Returns `target` from `source` according to the latest transform of each frame.
   std::optional<NewestTransform> newest(const std::string& target, const std::string& source) const;
 
  private:
   struct Frame {
     std::string parent;
-    std::optional<BodyPose> fixed;  ///< in the parent, for ever
-    PoseHistory history;            ///< and if it moves
+    std::optional<BodyPose> fixed;  ///< Constant pose in the parent.
+    PoseHistory history;            ///< Poses of a moving frame.
     BodyPose last;
-    Stamp last_stamp;  ///< 0 if it is static
+    Stamp last_stamp;  ///< 0 if static.
   };
   struct Found {
     PoseMatch match;
-    Stamp newest = 0;  ///< of what came last of the frames on the way
+    Stamp newest = 0;  ///< Latest stamp of the frames on the chain.
   };
-  /// What came last if there is no stamp.
+  /// Returns the pose at the stamp, or the latest one without a stamp.
   static PoseMatch in_parent(const Frame& frame, std::optional<Stamp> stamp);
   Found find(const std::string& target, const std::string& source,
              std::optional<Stamp> stamp) const;

@@ -10,7 +10,8 @@
 namespace skycap::flight {
 namespace {
 
-/// The largest value in [0, most] for which `of`, which rises, is at most `bound`.
+/// Returns the largest value in [0, most] for which the increasing function `of` is at most
+/// `bound`.
 template <typename Function>
 double largest_below(double most, double bound, Function of) {
   if (of(most) <= bound) return most;
@@ -22,20 +23,21 @@ double largest_below(double most, double bound, Function of) {
   return low;
 }
 
-/// The positive root v of v (v / a + k) = b.
+/// Returns the positive root v of v (v / a + k) = b.
 double speed_for(double b, double a, double k) {
   return 0.5 * a * (std::sqrt(k * k + 4.0 * b / a) - k);
 }
 
-/// Time from rest to a speed, and back to no acceleration, in phases of constant jerk.
+/// Returns the time from rest to `speed` with zero acceleration at both ends, in phases of constant
+/// jerk [s].
 double ramp_time(double speed, double acceleration, double jerk) {
   if (speed * jerk >= acceleration * acceleration)
     return acceleration / jerk + speed / acceleration;
   return 2.0 * std::sqrt(speed / jerk);
 }
 
-/// Legs so short that the jerk does not reach its limit: only its rise, of at most `snap` [m/s^4],
-/// is limited. Each of the four rises takes the same time.
+/// Returns the duration of a leg that is too short for the full jerk [s]. Only the rise of the jerk
+/// is limited, to `snap` [m/s^4]. All four rises take the same time.
 double short_s_curve_time(double distance, const LegLimits& limits, double snap) {
   using std::numbers::pi;
   const double by_distance = std::pow(pi * distance / (16.0 * snap), 0.25);
@@ -45,7 +47,7 @@ double short_s_curve_time(double distance, const LegLimits& limits, double snap)
   if (rise == by_distance) return 8.0 * rise;
   const double acceleration = 2.0 * snap * rise * rise / pi;
   double speed = 2.0 * acceleration * rise;
-  if (rise != by_speed) {  // the acceleration holds for a while
+  if (rise != by_speed) {  // The acceleration remains constant for some time.
     speed = std::min(limits.speed, speed_for(distance, acceleration, 2.0 * rise));
   }
   return distance / speed + speed / acceleration + 2.0 * rise;
@@ -55,7 +57,7 @@ double short_s_curve_time(double distance, const LegLimits& limits, double snap)
 
 double s_curve_time(double distance, const LegLimits& limits, double jerk, double jerk_rise) {
   if (distance <= 0.0) return 0.0;
-  // Rising to the acceleration a and down again takes twice a / jerk + jerk_rise.
+  // The rise to the acceleration a and the fall to zero take a / jerk + jerk_rise each.
   const auto half_ramp = [&](double a) { return a / jerk + jerk_rise; };
   const double for_speed =
       largest_below(limits.acceleration, limits.speed, [&](double a) { return a * half_ramp(a); });
@@ -65,7 +67,7 @@ double s_curve_time(double distance, const LegLimits& limits, double jerk, doubl
     return short_s_curve_time(distance, limits, 0.5 * jerk * std::numbers::pi / jerk_rise);
   }
   const double half = half_ramp(acceleration);
-  if (acceleration < for_speed) return 4.0 * half;  // all of the leg is ramps
+  if (acceleration < for_speed) return 4.0 * half;  // The leg consists only of ramps.
   const double speed = acceleration < limits.acceleration
                            ? acceleration * half
                            : std::min(limits.speed, speed_for(distance, acceleration, half));
@@ -86,7 +88,7 @@ double braking_distance_time(double distance, const LegLimits& limits, double je
       limits.speed, way, [&](double v) { return ramp_distance(v) + braking_distance(v); });
   const double cruise = std::max(0.0, way - ramp_distance(speed) - braking_distance(speed));
   double time = ramp_time(speed, a, jerk) + cruise / speed;
-  if (speed > last_speed) {  // dt = -dd / v along the law of the speed
+  if (speed > last_speed) {  // dt = -dd / v along the speed law.
     time += (speed - last_speed) / a + b / (2.0 * a) * std::log(speed / last_speed);
   }
   return time;

@@ -1,61 +1,66 @@
-/// How an autopilot flies the legs of a mission: its limits, and what stops, take-off and landing
-/// take. These are parameters of the autopilot, not of the airframe: the same vehicle takes half as
-/// long again for the same route with another one.
+/// Model of how an autopilot flies the legs of a mission: motion limits, stops, take-off and
+/// landing. These are parameters of the autopilot, not of the airframe. With a different autopilot
+/// the same vehicle can take 1.5 times as long for the same route.
 #pragma once
 
 #include <string>
 
 namespace skycap::flight {
 
-/// The law that legs from stop to stop follow.
+/// Motion law of a leg between two stops.
 enum class LegLaw {
-  s_curve,           ///< ArduCopter: jerk limited, and the jerk itself rises in `jerk_rise`
-  braking_distance,  ///< PX4: the speed follows from the distance left, until it is near enough
+  s_curve,  ///< ArduCopter: limited jerk, whose rise takes `jerk_rise`.
+  /// PX4: speed limited by the remaining distance until the waypoint is accepted.
+  braking_distance,
 };
 
-/// The defaults are PX4's.
+/// Mission mode of an autopilot. The defaults are those of PX4.
 struct MissionMode {
   LegLaw law = LegLaw::braking_distance;
-  double max_ascent = 3.0;             ///< [m/s]
-  double max_descent = 1.5;            ///< [m/s]
-  double acceleration = 3.0;           ///< horizontal [m/s^2]
-  double vertical_acceleration = 3.0;  ///< [m/s^2]
-  double jerk = 4.0;                   ///< in any direction [m/s^3]
-  double jerk_rise = 0.0;              ///< of s_curve: raised cosine from no jerk to the limit [s]
-  double settle_time =
-      1.0;  ///< at each stop beyond the law: lag, and waiting to be near enough [s]
-  double yaw_rate = 1.0471975511965976;  ///< [rad/s]
-  double yaw_acceleration = 0.349;       ///< [rad/s^2]
+  double max_ascent = 3.0;             ///< Maximum climb speed [m/s].
+  double max_descent = 1.5;            ///< Maximum descent speed [m/s].
+  double acceleration = 3.0;           ///< Horizontal acceleration [m/s^2].
+  double vertical_acceleration = 3.0;  ///< Vertical acceleration [m/s^2].
+  double jerk = 4.0;                   ///< Jerk limit in any direction [m/s^3].
+  /// Duration of the raised-cosine rise from zero jerk to the limit (s_curve only) [s].
+  double jerk_rise = 0.0;
+  /// Additional time at each stop, for lag and for waypoint acceptance [s].
+  double settle_time = 1.0;
+  double yaw_rate = 1.0471975511965976;  ///< Maximum yaw rate [rad/s].
+  double yaw_acceleration = 0.349;       ///< Yaw acceleration [rad/s^2].
 
-  double takeoff_speed = 1.5;   ///< [m/s]
-  double takeoff_ramp = 3.0;    ///< what spinning up, accelerating and stopping add [s]
-  double landing_speed = 0.7;   ///< of the last metres [m/s]
-  double landing_height = 5.0;  ///< which begin so high above the pad [m]
-  double touchdown_time = 2.0;  ///< until it has noticed that it stands, and stops its motors [s]
+  double takeoff_speed = 1.5;  ///< Climb speed during take-off [m/s].
+  double takeoff_ramp = 3.0;   ///< Additional time for motor spin-up, acceleration and braking [s].
+  double landing_speed = 0.7;  ///< Descent speed below `landing_height` [m/s].
+  double landing_height = 5.0;  ///< Height above the pad at which the final descent starts [m].
+  double touchdown_time = 2.0;  ///< Time from touchdown until the motors stop [s].
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval, and `owner`.
+  /// Throws Error{bad_config} with `owner` and the name of the first field outside its interval.
   void validate(const std::string& owner) const;
 };
 
-/// The limits of one straight leg.
+/// Motion limits of one straight leg.
 struct LegLimits {
-  double speed = 0.0;         ///< [m/s]
-  double acceleration = 0.0;  ///< [m/s^2]
+  double speed = 0.0;         ///< Maximum speed [m/s].
+  double acceleration = 0.0;  ///< Maximum acceleration [m/s^2].
 };
 
-/// How near to a waypoint PX4 counts it as reached, as our files tell it [m].
+/// Acceptance radius of waypoints in exported PX4 files [m].
 inline constexpr double acceptance_radius = 0.3;
 
-/// From rest to rest by ArduCopter's S-curve; zero for no distance. `jerk_rise` 0 leaves the seven
-/// phases of constant jerk. Exact for its law (AP_Math/SCurve.cpp, calculate_path): where length
-/// and speed let the acceleration reach its limit it is distance / speed + speed / acceleration +
-/// acceleration / jerk + jerk_rise.
+/// Returns the rest-to-rest duration of ArduCopter's S-curve [s], 0 for zero distance. With
+/// `jerk_rise` = 0 the seven phases have constant jerk.
+///
+/// Exact for the law in AP_Math/SCurve.cpp, calculate_path(). If length and speed allow the full
+/// acceleration, the duration is distance / speed + speed / acceleration + acceleration / jerk +
+/// jerk_rise.
 double s_curve_time(double distance, const LegLimits& limits, double jerk, double jerk_rise);
 
-/// From rest until PX4 counts the place as reached; zero nearer than that. Speeding up is jerk
-/// limited; braking keeps to v^2 + 4 a^2 / j v = 2 a d at d from the place
-/// (motion_planning, computeMaxSpeedFromDistance). Not reproduced: how the setpoint waits for a
-/// vehicle that lags behind, which is in `settle_time`.
+/// Returns the time from rest until PX4 accepts the waypoint [s], 0 within the acceptance radius.
+///
+/// Acceleration is limited by jerk. The braking speed v at distance d satisfies v^2 + 4 a^2 / j v =
+/// 2 a d (PX4 motion_planning, computeMaxSpeedFromDistance). The model excludes the setpoint's wait
+/// for a lagging vehicle, which `settle_time` covers.
 double braking_distance_time(double distance, const LegLimits& limits, double jerk);
 
 }  // namespace skycap::flight

@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 
 constexpr double degree = geometry::radians_per_degree;
 
-/// How much of a kind of flight a log must hold [s], what is counted as that kind, and a flight
-/// that holds enough.
+/// Minimum time of one kind of flight in a log [s], with its condition and a flight that provides
+/// it.
 struct Needed {
   const char* what;
   double time;
@@ -41,8 +41,8 @@ constexpr std::array needed{
     Needed{"level flight faster than 2.5 m/s", 30.0, is_cruise,
            "fly 4 level legs of 100 m at 5 m/s, one in each direction"}};
 
-/// A fit whose scatter, or whose error in unseen parts, is a larger share of the hover power is
-/// none.
+/// Maximum scatter and maximum error on unseen parts, relative to the hover power. Fits above these
+/// limits are rejected.
 constexpr double most_scatter = 0.2, most_unseen_error = 0.3;
 
 double time_of(const std::vector<LogWindow>& windows, const Needed& kind) {
@@ -63,9 +63,9 @@ void require_enough(const std::vector<LogWindow>& windows) {
   }
 }
 
-/// A current sensor that is missing or dead reads zero, or the same offset all the time.
+/// Throws if the current sensor is missing or broken: it then reads zero or a constant offset.
 void require_power(const std::vector<LogSample>& samples) {
-  constexpr double least_power = 1.0;  // [W]
+  constexpr double least_power = 1.0;  // Minimum plausible power [W].
   const auto is_some = [](const LogSample& sample) { return sample.power > least_power; };
   const auto count = static_cast<std::size_t>(std::ranges::count_if(samples, is_some));
   if (2 * count > samples.size()) return;
@@ -75,7 +75,7 @@ void require_power(const std::vector<LogSample>& samples) {
                   " readings; a current sensor is required (BATT_MONITOR 4 or higher)");
 }
 
-/// What hovering takes by the log, at sea level [W].
+/// Returns the logged hover power, converted to sea level [W].
 double measured_hover(const std::vector<LogWindow>& windows, double air_density) {
   std::vector<double> powers;
   for (const LogWindow& window : windows) {
@@ -90,7 +90,8 @@ std::string text_of(const Vehicle& vehicle) {
          fixed(vehicle.rotor_diameter, 3) + " m";
 }
 
-/// The vehicle of that mass, if one is given, with rotors that carry it at the hover power.
+/// Returns the vehicle with the given mass, if any, and rotors that can carry it at the hover
+/// power.
 Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_power,
                   std::vector<std::string>& warnings) {
   const double preset = vehicle.mass;
@@ -99,7 +100,7 @@ Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_powe
   if (is_carried()) return vehicle;
   const Vehicle given = vehicle;
   if (mass && *mass > preset) {
-    vehicle.rotor_diameter *= std::sqrt(*mass / preset);  // the same disc loading
+    vehicle.rotor_diameter *= std::sqrt(*mass / preset);  // Equal disc loading.
     if (is_carried()) {
       warnings.push_back("rotor_diameter is set to " + fixed(vehicle.rotor_diameter, 3) +
                          " m: " + text_of(given) + " need at least " +
@@ -115,7 +116,8 @@ Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_powe
           " W; set the mass that flew (--mass), or calibrate the current sensor (BATT_AMP_PERVLT)");
 }
 
-/// The energy of each fifth of the windows by a fit of the others, against what it took.
+/// Returns the relative energy error of each fifth of the windows, predicted by a fit of the others
+/// (RMS).
 double unseen_error(const std::vector<LogWindow>& windows, const Vehicle& vehicle,
                     double air_density, double hover_power) {
   constexpr std::size_t parts = 5;
@@ -169,8 +171,8 @@ std::vector<std::string> warnings_of(const PowerFit& fit, const Vehicle& vehicle
   return warnings;
 }
 
-/// A parameter of ArduCopter that is a limit of its mission mode, in our units. Values beyond
-/// `largest` are damaged: ten times what ArduPilot's descriptions allow.
+/// ArduCopter parameter for a limit of its mission mode, with its unit. Values above `largest`, ten
+/// times the maximum of ArduPilot's descriptions, are damaged.
 struct ModeParameter {
   const char* name;
   double MissionMode::*field;
@@ -178,7 +180,7 @@ struct ModeParameter {
   double largest = 200.0;
 };
 
-// Both names, before 4.7 and since.
+// Names before version 4.7 and since.
 constexpr std::array mode_parameters{
     ModeParameter{"WPNAV_SPEED_UP", &MissionMode::max_ascent, 0.01},
     ModeParameter{"WP_SPD_UP", &MissionMode::max_ascent, 1},
@@ -216,8 +218,8 @@ std::size_t take_over(const std::vector<LogParameter>& parameters, MissionMode& 
   return taken;
 }
 
-/// What each leg that ended in a stop took beyond its law [s]; those that took less than half of it
-/// were not flown when the log says.
+/// Excess of the legs that ended in a stop over their law [s]. Legs faster than half the law are
+/// invalid, because they were not flown at the logged time.
 struct LegTimes {
   std::vector<double> excesses;
   std::size_t without_time = 0;
@@ -226,7 +228,7 @@ struct LegTimes {
 LegTimes settlings(const std::vector<LogCommand>& commands, const Vehicle& vehicle) {
   constexpr int last_navigation = 95;
   LegTimes times;
-  std::vector<Vector3d> way;  // where legs have ended since take-off
+  std::vector<Vector3d> way;  // End points of the legs since take-off.
   const LogCommand* under_way = nullptr;
   Conditions conditions;
   conditions.cruise_speed = std::min(conditions.cruise_speed, vehicle.max_speed);
@@ -284,7 +286,7 @@ Calibration calibrate(const FlightLog& log, const Vehicle& preset, double air_de
     squares += std::pow(modelled_power(fit, window, air_density) - window.power, 2);
   }
   result.scatter = std::sqrt(squares / static_cast<double>(windows.size()));
-  // From the fit on, which the parts' fits are near.
+  // The fits of the parts start from the complete fit, which is close.
   result.energy_error =
       unseen_error(windows, fit.vehicle, air_density, data_sheet_power(fit.vehicle));
   result.vehicle.energy_error = std::clamp(2.0 * result.energy_error, least_energy_error, 0.9);

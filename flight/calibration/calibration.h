@@ -1,13 +1,13 @@
-/// A vehicle's figures from a log of its own flight.
+/// Vehicle parameters identified from a flight log.
 ///
-/// Power: the model of Motion, with the endurance (which is the power of hovering), the avionics'
-/// power, the drag area and the wind of that day as unknowns, is fitted to the log's battery
-/// (power_fit.h) in windows of two seconds; windows in which the vehicle speeds up or brakes are
-/// left out. How far the energy of a part of the flight that the fit has not seen is off becomes
-/// the vehicle's energy_error. A log that the model does not fit is refused.
+/// Power: the model of Motion is fitted to the logged battery power in windows of two seconds
+/// (power_fit.h). The unknowns are endurance (equivalent to hover power), avionics power, drag area
+/// and the wind of that day. Windows with acceleration or braking are skipped. The energy error on
+/// parts of the flight outside the fit becomes the vehicle's energy_error. A log that does not
+/// match the model is rejected.
 ///
-/// Minutes: the autopilot's parameters say its limits; what its legs took beyond its law is the
-/// time to settle.
+/// Time: the limits come from the autopilot's parameters. The excess of leg durations over the leg
+/// law becomes the settle time.
 #pragma once
 
 #include <cstddef>
@@ -23,31 +23,34 @@
 namespace skycap::flight {
 
 struct Calibration {
-  Vehicle vehicle;                                 ///< with what the log says
-  Eigen::Vector2d wind = Eigen::Vector2d::Zero();  ///< of that flight, east and north [m/s]
-  double flown = 0.0;                              ///< in the air [s]
-  double hover_power = 0.0;                        ///< in still air at sea level [W]
-  double scatter = 0.0;                            ///< of windows about the model, rms [W]
-  double energy_error = 0.0;  ///< of parts that the fit has not seen, rms, as a share
+  Vehicle vehicle;  ///< Vehicle with the identified parameters.
+  /// Wind velocity during the flight, east and north [m/s].
+  Eigen::Vector2d wind = Eigen::Vector2d::Zero();
+  double flown = 0.0;         ///< Time in the air [s].
+  double hover_power = 0.0;   ///< Hover power in still air at sea level [W].
+  double scatter = 0.0;       ///< RMS deviation of windows from the model [W].
+  double energy_error = 0.0;  ///< RMS relative energy error on parts outside the fit.
   std::size_t windows = 0;
-  std::size_t outliers = 0;           ///< readings that were left out as damaged
-  std::vector<std::string> warnings;  ///< what the pilot must know of the fit
-  std::size_t parameters = 0;         ///< of the autopilot that were taken over
-  std::optional<double> settling;     ///< median of the legs, if there are enough [s]
-  std::size_t legs = 0;               ///< that ended in a stop
-  std::size_t legs_without_time = 0;  ///< that took less than any vehicle takes
+  std::size_t outliers = 0;           ///< Number of readings skipped as damaged.
+  std::vector<std::string> warnings;  ///< Warnings about the fit for the pilot.
+  std::size_t parameters = 0;         ///< Number of autopilot parameters that were used.
+  std::optional<double> settling;     ///< Median settle time of the legs, if there are enough [s].
+  std::size_t legs = 0;               ///< Number of legs that ended in a stop.
+  std::size_t legs_without_time = 0;  ///< Number of legs faster than physically possible.
 };
 
-/// What the log does not say stays as in `vehicle`, whose mass, rotors and battery must be those of
-/// the flight. With `mass` the vehicle is another one of its kind, of that mass [kg]: if its rotors
-/// could not carry it at the measured power, they are scaled to the same disc loading, with a
-/// warning. Throws Error{bad_file} if no power was measured, if the log holds too little of
-/// hovering or of level flight, saying which flight suffices, if the power is less than the mass
-/// takes to hover, and if it scatters too far about the model.
+/// Returns the calibration of `vehicle`, whose mass, rotors and battery must be those of the
+/// flight. Values missing from the log remain unchanged. `mass` [kg] requests a vehicle of the same
+/// type with that mass. If its rotors could not carry it at the measured power, they are scaled to
+/// equal disc loading, with a warning.
+///
+/// Throws Error{bad_file} if the log lacks power values. Also throws it if the log has too little
+/// hover or level flight, with the flight that would suffice. Other causes are power below the
+/// minimum for hovering, and excessive scatter around the model.
 Calibration calibrate(const FlightLog& log, const Vehicle& vehicle, double air_density,
                       std::optional<double> mass = {});
 
-/// An energy_error is not set lower: batteries and air differ from day to day.
+/// Minimum for energy_error, because batteries and air density vary from day to day.
 inline constexpr double least_energy_error = 0.05;
 
 }  // namespace skycap::flight

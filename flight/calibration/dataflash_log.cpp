@@ -16,11 +16,11 @@ namespace skycap::flight {
 namespace {
 
 constexpr unsigned char first_mark = 0xA3, second_mark = 0x95;
-constexpr std::size_t header_size = 3;  // the marks and the type
+constexpr std::size_t header_size = 3;  // Two marks and the message type.
 constexpr std::uint8_t format_type = 128;
-constexpr std::size_t format_size = 89;  // of a FMT message, header included
+constexpr std::size_t format_size = 89;  // Size of an FMT message including its header.
 
-/// A type letter's width, and what a stored unit is worth.
+/// Width of a field type in bytes, and the unit of its stored values.
 struct FieldType {
   char letter;
   std::size_t width;
@@ -80,7 +80,7 @@ double number_at(const char* bytes, const FieldType& type) {
   }
 }
 
-/// Text that ends at a zero or with its field.
+/// Returns text that ends at a zero or at the end of its field.
 std::string text_at(std::string_view field) {
   return std::string(field.substr(0, std::min(field.find('\0'), field.size())));
 }
@@ -88,13 +88,13 @@ std::string text_at(std::string_view field) {
 struct Field {
   std::string label;
   FieldType type;
-  std::size_t offset;  ///< after the header
+  std::size_t offset;  ///< Offset after the header.
 };
 
-/// What a FMT message says of the messages of one type.
+/// Format of the messages of one type, from an FMT message.
 struct MessageFormat {
   std::string name;
-  std::size_t size = 0;  ///< header included
+  std::size_t size = 0;  ///< Size including the header.
   std::vector<Field> fields;
 
   const Field* find(std::string_view label) const {
@@ -110,7 +110,7 @@ MessageFormat format_of(std::string_view body) {
   std::size_t offset = 0;
   for (std::size_t i = 0; i < std::min(letters.size(), labels.size()); ++i) {
     const FieldType* type = find_type(letters[i]);
-    if (type == nullptr) break;  // a letter that is not known: the sizes do not agree
+    if (type == nullptr) break;  // Unknown type letter: the sizes will not match.
     format.fields.push_back({labels[i], *type, offset});
     offset += type->width;
   }
@@ -119,7 +119,7 @@ MessageFormat format_of(std::string_view body) {
   return format;
 }
 
-/// One message with the format that its type has.
+/// Message with the format of its type.
 class Message {
  public:
   Message(const MessageFormat& format, std::string_view body) : format_(format), body_(body) {}
@@ -138,13 +138,13 @@ class Message {
     const Field* field = format_.find(label);
     return field == nullptr ? "" : text_at(body_.substr(field->offset, field->type.width));
   }
-  /// [s]; before Copter 3.3 in milliseconds.
+  /// Returns the time [s]. Logs before Copter 3.3 store milliseconds.
   double time() const {
     const std::optional<double> microseconds = number("TimeUS");
     return microseconds ? 1e-6 * *microseconds : 1e-3 * number_or("TimeMS", 0.0);
   }
 
-  /// A reading that logs before Copter 3.3 hold in hundredths, as an integer.
+  /// Returns a reading. Logs before Copter 3.3 store it as an integer in hundredths.
   std::optional<double> reading(std::string_view label) const {
     const Field* field = format_.find(label);
     if (field == nullptr) return std::nullopt;
@@ -157,10 +157,10 @@ class Message {
   std::string_view body_;
 };
 
-/// Times of messages, which ascend but for damage and restarts.
+/// Message times, which ascend except for damage and restarts.
 class Clock {
  public:
-  /// The time that goes on from those before [s]; nothing for one that is damaged.
+  /// Returns the continuous time [s], or std::nullopt for a damaged message.
   std::optional<double> read(double stated) {
     const double time = stated + offset_;
     const bool is_next = last_ && time > *last_ - backwards && time < *last_ + forwards;
@@ -169,7 +169,7 @@ class Clock {
       strangers_ = 0;
       return time;
     }
-    // Many messages of one other time are a restart, or a log that was switched off for a while.
+    // Several messages near a different time indicate a restart, or a log that was paused.
     const bool is_same = strangers_ > 0 && std::abs(stated - stranger_) < forwards;
     strangers_ = is_same ? strangers_ + 1 : 1;
     stranger_ = stated;
@@ -181,7 +181,8 @@ class Clock {
   }
 
  private:
-  static constexpr double backwards = 1.0, forwards = 10.0;  ///< of neighbouring messages [s]
+  /// Limits between consecutive messages [s].
+  static constexpr double backwards = 1.0, forwards = 10.0;
   static constexpr int enough = 10;
 
   double offset_ = 0.0, stranger_ = 0.0;
@@ -189,7 +190,7 @@ class Clock {
   int strangers_ = 0;
 };
 
-/// Takes in message after message.
+/// Builds the log from its messages.
 class LogBuilder {
  public:
   explicit LogBuilder(std::size_t most_entries) : most_entries_(most_entries) {}
@@ -210,7 +211,7 @@ class LogBuilder {
     }
   }
 
-  /// `skipped`: bytes of the log that belong to no message.
+  /// Returns the log. `skipped` is the number of bytes outside of messages.
   FlightLog finish(std::size_t skipped) {
     const std::string damage =
         skipped == 0 ? "" : "; " + std::to_string(skipped) + " of its bytes are damaged";
@@ -229,14 +230,14 @@ class LogBuilder {
       throw Error(ErrorKind::bad_file,
                   "contains no battery data (BAT); a power monitor is required" + damage);
     }
-    // Since October 2024 CMD lists the mission at its upload alone.
+    // Since October 2024, CMD lists only the uploaded mission.
     if (log_.commands.empty()) log_.commands = std::move(listed_);
     return std::move(log_);
   }
 
  private:
-  /// Which battery a message is of; nothing if of none. Before Copter 4.0 the second has a message
-  /// of its own.
+  /// Returns the battery number of a message, or std::nullopt for other messages. Before Copter
+  /// 4.0, the second battery has its own message.
   static std::optional<double> battery_of(const Message& message) {
     const std::string& name = message.name();
     if (name == "BAT" || name == "CURR") {
@@ -249,9 +250,9 @@ class LogBuilder {
     return std::nullopt;
   }
 
-  // Of several cores of the estimator, the first.
+  // Uses the first of several estimator cores.
   void set_velocity(const Message& message) {
-    constexpr double fastest = 100.0;  // of any multicopter [m/s]
+    constexpr double fastest = 100.0;  // Maximum plausible speed of a multicopter [m/s].
     const auto north = message.number("VN"), east = message.number("VE"),
                down = message.number("VD");
     if (!north || !east || !down || message.number_or("C", 0.0) != 0.0) return;
@@ -285,7 +286,8 @@ class LogBuilder {
     readings_.push_back({*time, velocity_, static_cast<std::uint8_t>(battery), *volts * *amperes});
   }
 
-  /// Sums the batteries up. One that has hardly any reading is another's, whose number is damaged.
+  /// Adds up the power of all batteries. A battery number with very few readings is damaged and
+  /// ignored.
   void add_samples() {
     constexpr std::size_t least_share = 20;
     std::array<std::size_t, 256> counts{};
@@ -317,7 +319,7 @@ class LogBuilder {
                         message.number_or("Lng", 0.0), message.number_or("Alt", 0.0)});
   }
 
-  /// One battery's power at a time.
+  /// Power of one battery at one time.
   struct Reading {
     double time = 0.0;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
@@ -327,7 +329,7 @@ class LogBuilder {
 
   std::size_t most_entries_;
   FlightLog log_;
-  std::vector<LogCommand> listed_;  ///< CMD
+  std::vector<LogCommand> listed_;  ///< Items from CMD.
   Clock clock_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   double velocity_time_ = 0.0;
@@ -352,7 +354,7 @@ FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
     const bool is_format = type == format_type;
     const std::size_t size = is_format ? format_size : formats[type] ? formats[type]->size : 0;
     const bool is_message = has_marks(i) && size >= header_size;
-    // A message that has lost bytes reaches into the next: nothing begins where it ends.
+    // A message with missing bytes overlaps the next one, so no message starts at its end.
     if (is_message && i + size > bytes.size()) break;
     if (!is_message || (i + size != bytes.size() && !has_marks(i + size))) {
       ++i, ++skipped;

@@ -1,4 +1,4 @@
-/// What a vehicle wrote down of a flight, as far as its energy and its minutes show in it.
+/// Parts of a flight log that are relevant to energy and time.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace skycap::flight {
 
-/// A moment of the flight.
+/// Log entry at one time.
 struct LogSample {
-  double time = 0.0;                                   ///< [s]
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< over ground: east, north, up [m/s]
-  double power = 0.0;                                  ///< of all batteries [W]
+  double time = 0.0;                                   ///< Time [s].
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Ground velocity: east, north, up [m/s].
+  double power = 0.0;                                  ///< Power of all batteries [W].
 };
 
 struct LogParameter {
@@ -23,36 +23,38 @@ struct LogParameter {
   double value = 0.0;
 };
 
-/// A mission item that the autopilot went on to.
+/// Mission item that the autopilot started to execute.
 struct LogCommand {
-  double time = 0.0;  ///< [s]
-  int command = 0;    ///< MAV_CMD
+  double time = 0.0;  ///< Time [s].
+  int command = 0;    ///< MAV_CMD.
   double first_parameter = 0.0, second_parameter = 0.0;
   double latitude_deg = 0.0, longitude_deg = 0.0, height = 0.0;
 };
 
 struct FlightLog {
-  std::vector<LogSample> samples;        ///< times ascend
-  std::vector<LogParameter> parameters;  ///< as they were when the log began, or changed to
-  std::vector<LogCommand> commands;      ///< as they were executed
-  std::size_t damaged = 0;               ///< messages with values that cannot be
+  std::vector<LogSample> samples;        ///< In ascending order of time.
+  std::vector<LogParameter> parameters;  ///< Values at the start of the log and later changes.
+  std::vector<LogCommand> commands;      ///< In order of execution.
+  std::size_t damaged = 0;               ///< Number of messages with impossible values.
 };
 
 inline constexpr std::size_t largest_log = std::size_t{512} << 20, most_log_samples = 10'000'000;
 
-/// ArduPilot's dataflash log (.bin): BAT, before Copter 3.5 CURR, for the power; XKF1, NKF1 or EKF1
-/// for the velocity; PARM; MISE for the items executed, in logs before October 2024 CMD. Formats
-/// are those that the log itself describes (FMT; AP_Logger/LogStructure.h). What is damaged is
-/// skipped: messages that no other follows, and readings that no vehicle has. Times that begin
-/// again after a restart go on. Throws Error{bad_file} if it is no such log, saying which kind it
-/// is, or lacks one of the first two.
+/// Reads an ArduPilot dataflash log (.bin). Power comes from BAT (before Copter 3.5: CURR) and
+/// velocity from XKF1, NKF1 or EKF1. Parameters come from PARM; executed items from MISE (before
+/// October 2024: CMD). The formats are those described in the log (FMT; AP_Logger/LogStructure.h).
+///
+/// Skips damaged data: messages without a valid successor, and physically impossible readings.
+/// Times continue after a restart of the clock. Throws Error{bad_file} if the file is a different
+/// kind of log, or lacks power or velocity.
 FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries = most_log_samples);
 
-/// Text with a header line that names the columns time_s, east_m_s, north_m_s, up_m_s and power_w,
-/// in any order, beside others. Throws Error{bad_file} naming the line.
+/// Reads text with a header line that names the columns time_s, east_m_s, north_m_s, up_m_s and
+/// power_w in any order. Other columns are ignored. Throws Error{bad_file} with the line number.
 FlightLog read_csv_log(std::string_view text, std::size_t most_samples = most_log_samples);
 
-/// Either, by the name's ending: .csv or any other. Errors name the file.
+/// Reads either format: CSV if the name ends in .csv, otherwise dataflash. Errors include the file
+/// name.
 FlightLog read_flight_log(const std::filesystem::path& file);
 
 }  // namespace skycap::flight

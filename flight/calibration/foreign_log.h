@@ -1,4 +1,4 @@
-/// What a log is that ArduPilot's vehicles do not write.
+/// Identification of logs that do not come from ArduPilot vehicles.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace skycap::flight {
 
-/// The kind of the bytes, with what to do instead, such as "a text log of ArduPilot; give the .bin
-/// file that it was made from"; empty if it is not known.
+/// Returns the kind of file with a remedy, such as "an ArduPilot text log; use the .bin file that
+/// it was made from". Empty if the kind is unknown.
 std::string foreign_kind(std::string_view bytes);
 
 }  // namespace skycap::flight

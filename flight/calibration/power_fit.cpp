@@ -19,47 +19,46 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double window_time = 2.0;       ///< [s]
-constexpr double longest_gap = 0.5;       ///< between samples of a window [s]
-constexpr double steady = 0.5;            ///< change of velocity within a window [m/s]
-constexpr double share_in_the_air = 0.5;  ///< of the usual power
-constexpr double hover_speed = 0.5;       ///< [m/s]
+constexpr double window_time = 2.0;       ///< Duration of a window [s].
+constexpr double longest_gap = 0.5;       ///< Maximum interval between samples of a window [s].
+constexpr double steady = 0.5;            ///< Maximum velocity change within a window [m/s].
+constexpr double share_in_the_air = 0.5;  ///< Minimum power in the air, relative to the median.
+constexpr double hover_speed = 0.5;       ///< Maximum speed of hovering [m/s].
 
-/// Of a reading among its neighbours: deviations beyond so many median absolute deviations, and
-/// beyond these bounds, are damage.
+/// Outlier limits relative to neighbouring readings. An outlier exceeds this number of median
+/// absolute deviations and the tolerance.
 constexpr double most_deviations = 6.0, power_tolerance = 0.3 /* of the median */,
                  velocity_tolerance = 1.0 /* [m/s] */;
-constexpr std::size_t neighbours = 5;   ///< on each side
-constexpr double neighbour_time = 1.0;  ///< [s]
+constexpr std::size_t neighbours = 5;   ///< Number of neighbours on each side.
+constexpr double neighbour_time = 1.0;  ///< Maximum time to a neighbour [s].
 
-/// Power of the rotors in hover at sea level [W], avionics' power [W], the product of the former
-/// and the drag area [W m^2], wind east and north [m/s]. For a given wind the model is linear in
-/// them.
+/// Unknowns: rotor power in hover at sea level [W], avionics power [W], product of rotor power and
+/// drag area [W m^2], wind east and north [m/s]. The model is linear in them for a fixed wind.
 using Unknowns = std::array<double, 5>;
 constexpr std::size_t rotors = 0, avionics = 1, drag = 2, wind_east = 3, wind_north = 4;
 
-/// Above the rotors' least power by a share that rounding of the written figures keeps.
+/// Relative margin above the minimum rotor power, which survives the rounding of written values.
 constexpr double rotor_margin = 1e-4;
-/// The fit itself may go below the rotors' least power, down to this share of it: so hover and wind
-/// are right even where mass or rotors are not those that flew.
+/// Lower bound of the fit, relative to the minimum rotor power. The fit may use values below the
+/// minimum. Hover power and wind are then right even if mass or rotors differ from the actual ones.
 constexpr double least_rotor_share = 0.05;
 constexpr double least_avionics = 1e-3, least_drag = 1e-6;
 
-/// What a metre a second of wind counts as [W]: far less than in a log that was flown in several
-/// directions, it lets the wind be none where the log cannot tell.
+/// Weight of wind [W per m/s]. It is far smaller than the evidence of a log flown in several
+/// directions. Its effect is zero wind where the log contains no evidence.
 constexpr double wind_weight = 1.0;
 
-/// Windows beyond so many robust standard deviations count less and less.
+/// Huber threshold in robust standard deviations.
 constexpr double huber_deviations = 2.0;
-/// That deviation is at least this share of the hover power.
+/// Lower bound of that deviation, relative to the hover power.
 constexpr double least_deviation = 0.005;
 constexpr int reweightings = 3;
 
-/// Where the model cannot be right everywhere, as where a figure is at its bound, it shall be right
-/// in hover, which decides the endurance: those errors count so many times as much.
+/// Weight of hover windows. If the model cannot fit everywhere, such as with a parameter at its
+/// bound, it must fit in hover, which determines the endurance.
 constexpr double hover_weight = 10.0;
 
-/// The means of every few velocities that follow each other: within a window they hardly change.
+/// Returns the means of groups of consecutive velocities, which hardly change within a window.
 std::vector<Vector3d> means_of(const std::vector<Vector3d>& velocities) {
   constexpr std::size_t together = 5;
   std::vector<Vector3d> means;
@@ -72,8 +71,8 @@ std::vector<Vector3d> means_of(const std::vector<Vector3d>& velocities) {
   return means;
 }
 
-/// Whether a value is beyond its neighbours' spread and the tolerance, which is for values about
-/// their median.
+/// Returns true if a value exceeds both the spread of its neighbours and the tolerance, which
+/// depends on their median.
 template <class Tolerance>
 bool is_outlier(double value, const std::vector<double>& around, const Tolerance& tolerance) {
   const double middle = median(around);
@@ -108,11 +107,11 @@ double mean_power(const Motion& motion, const LogWindow& window) {
   return sum / static_cast<double>(window.velocities.size());
 }
 
-/// What the model's power is linear in, for one wind.
+/// Basis functions of the linear model for one wind.
 class Basis {
  public:
   Basis(Vehicle vehicle, const Eigen::Vector2d& wind, double air_density) {
-    rotor_power_ = 2.0 * min_rotor_power(vehicle);  // any that is possible
+    rotor_power_ = 2.0 * min_rotor_power(vehicle);  // Any feasible value.
     vehicle.avionics_power = 0.0;
     vehicle.endurance_min = endurance_at(vehicle, rotor_power_);
     vehicle.drag_area = 0.0;
@@ -121,7 +120,8 @@ class Basis {
     with_drag_.emplace(motion_of(vehicle, wind, air_density));
   }
 
-  /// Of the rotors' power in hover, its share in a window; and what a unit of `drag` adds [1/m^2].
+  /// Returns the rotor power in a window relative to hover, and the effect of one unit of `drag`
+  /// [1/m^2].
   std::array<double, 2> of(const LogWindow& window) const {
     const double without = mean_power(*without_drag_, window);
     return {without / rotor_power_, (mean_power(*with_drag_, window) - without) / rotor_power_};
@@ -147,12 +147,12 @@ struct Problem {
   double air_density;
   const std::vector<double>& weights;
 
-  /// Throws an Error if the vehicle does not fly in such wind.
+  /// Throws an Error if the vehicle cannot fly in such wind.
   Basis basis(double east, double north) const { return {vehicle, {east, north}, air_density}; }
 };
 
-/// The weighted errors of all windows, and of the wind [W]. Derivatives are exact where the model
-/// is linear; those by the wind are central differences.
+/// Weighted errors of all windows and of the wind [W]. Derivatives are exact for linear unknowns
+/// and central differences for the wind.
 class Errors final : public ceres::CostFunction {
  public:
   explicit Errors(const Problem& problem) : problem_(problem) {
@@ -192,7 +192,7 @@ class Errors final : public ceres::CostFunction {
 
  private:
   void add_wind(const Unknowns& x, std::size_t axis, double* rows) const {
-    constexpr double step = 1e-4;  // [m/s]
+    constexpr double step = 1e-4;  // Step of the differences [m/s].
     Unknowns less = x, more = x;
     less[axis] -= step;
     more[axis] += step;
@@ -214,7 +214,7 @@ class Errors final : public ceres::CostFunction {
   const Problem& problem_;
 };
 
-/// One weighted least-squares fit within the bounds, from `x` on.
+/// Solves one weighted least-squares problem within the bounds, starting at `x`.
 Unknowns solved(Unknowns x, const Problem& problem) {
   ceres::Problem fit;
   fit.AddResidualBlock(std::make_unique<Errors>(problem).release(), nullptr, x.data());
@@ -239,14 +239,14 @@ Unknowns solved(Unknowns x, const Problem& problem) {
   return x;
 }
 
-/// Huber's weights of the windows' errors, whose deviation is by their median.
+/// Computes Huber weights of the window errors, with a deviation from their median.
 void reweight(std::vector<double>& weights, const Problem& problem, const Unknowns& x) {
   const Basis basis = problem.basis(x[wind_east], x[wind_north]);
   std::vector<double> errors;
   for (const LogWindow& window : problem.windows) {
     errors.push_back(std::abs(power_of(x, basis.of(window)) - window.power));
   }
-  constexpr double normal = 1.4826;  // standard deviations in a median absolute deviation
+  constexpr double normal = 1.4826;  // Standard deviations per median absolute deviation.
   const double deviation =
       std::max(normal * median(errors), least_deviation * (x[rotors] + x[avionics]));
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -254,8 +254,8 @@ void reweight(std::vector<double>& weights, const Problem& problem, const Unknow
   }
 }
 
-/// The nearest that is possible, at the same wind and hover power: rotors with their least power,
-/// and the drag that fits best then.
+/// Returns the nearest feasible solution with the same wind and hover power: minimum rotor power,
+/// and the best drag for it.
 Unknowns with_possible_rotors(Unknowns x, const Problem& problem) {
   const double least = least_rotors(problem.vehicle);
   if (x[rotors] >= least) return x;

@@ -1,8 +1,8 @@
-/// Fits the power model of Motion to windows of a flight.
+/// Fit of Motion's power model to windows of a flight.
 ///
-/// Steps: single readings that damage has made are left out; samples that follow each other in
-/// nearly steady flight become windows; the model's unknowns are fitted to the windows' powers by
-/// iteratively reweighted least squares (Huber 1981, section 7.8) with Ceres.
+/// Steps: damaged single readings are skipped; consecutive samples of nearly steady flight form
+/// windows; the unknowns are fitted to the power of the windows. The fit uses iteratively
+/// reweighted least squares (Huber 1981, section 7.8) with Ceres.
 #pragma once
 
 #include <cstddef>
@@ -17,35 +17,35 @@
 
 namespace skycap::flight {
 
-/// The upper median of at least one value.
+/// Returns the upper median. Requires at least one value.
 double median(std::vector<double> values);
 
-/// Samples that follow each other, of nearly steady flight.
+/// Consecutive samples of nearly steady flight.
 struct LogWindow {
-  std::vector<Eigen::Vector3d> velocities;  ///< means of a few samples each [m/s]
-  double power = 0.0;                       ///< mean [W]
-  double duration = 0.0;                    ///< [s]
+  std::vector<Eigen::Vector3d> velocities;  ///< Means of a few samples each [m/s].
+  double power = 0.0;                       ///< Mean power [W].
+  double duration = 0.0;                    ///< Duration [s].
 };
 
-/// The samples without those whose power or velocity no neighbour within a second shares: what
-/// damaged bytes have made of single readings. Times must ascend.
+/// Returns the samples without outliers. An outlier's power or velocity differs from all neighbours
+/// within one second, because of damaged bytes. Times must ascend.
 std::vector<LogSample> without_outliers(const std::vector<LogSample>& samples);
 
-/// The windows of steady flight, in the air.
+/// Returns the windows of steady flight in the air.
 std::vector<LogWindow> windows_of(const std::vector<LogSample>& samples);
 
 struct PowerFit {
   Vehicle vehicle;
-  Eigen::Vector2d wind = Eigen::Vector2d::Zero();  ///< [m/s]
-  std::vector<std::string> at_bound;  ///< figures that the fit would set beyond what is possible
+  Eigen::Vector2d wind = Eigen::Vector2d::Zero();  ///< Wind velocity [m/s].
+  std::vector<std::string> at_bound;  ///< Parameters that the fit limited to their bounds.
 };
 
-/// The windows' powers over endurance, avionics, drag area and wind, from the vehicle's own figures
-/// on. `hover_power`, above min_rotor_power(), is where the fit begins [W].
+/// Fits endurance, avionics power, drag area and wind to the window powers. The initial values are
+/// those of `vehicle` and `hover_power` [W], which must exceed min_rotor_power().
 PowerFit fit_power(std::span<const LogWindow> windows, const Vehicle& vehicle, double air_density,
                    double hover_power);
 
-/// The model's mean power in a window [W].
+/// Returns the mean power that the model predicts for a window [W].
 double modelled_power(const PowerFit& fit, const LogWindow& window, double air_density);
 
 }  // namespace skycap::flight

@@ -18,7 +18,7 @@ std::vector<AlignedBox3d> extents_of(const std::vector<MeasuredSpace>& spaces) {
   return extents;
 }
 
-/// Spaces with what others have measured to be free in their regions, which `near` finds.
+/// Adds to each space the free space of the others in its region. `near` finds candidates.
 std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
   for (const MeasuredSpace& space : spaces) {
     if (!space.config().region.isEmpty()) continue;
@@ -31,7 +31,7 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
   for (const MeasuredSpace& space : spaces) known.push_back(space.known_box());
   const BoundingTree tree(known);
   for (std::size_t i = 0; i < spaces.size(); ++i) {
-    // A ball about the region finds all that meets it.
+    // A ball around the region finds everything that intersects it.
     const AlignedBox3d& box = spaces[i].config().region;
     double reach = 0.5 * box.diagonal().norm();
     tree.visit_near({box.center(), box.center()}, reach, [&](std::uint32_t j) {
@@ -41,11 +41,12 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
   return spaces;
 }
 
-/// The part of a leg that a box, grown by `reach`, holds; nothing if that is none of it. What is in
-/// the box is no nearer than that to the rest.
+/// Returns the part of a leg within a box grown by `reach`, or std::nullopt. The rest of the leg is
+/// at least `reach` away from the box.
 std::optional<Segment> part_near(const Segment& leg, const AlignedBox3d& box, double reach) {
   double begin = 0.0, end = 1.0;
-  constexpr double rounding = 1e-9;  // of fractions; pieces may be longer
+  // Rounding tolerance of fractions, by which parts may be longer.
+  constexpr double rounding = 1e-9;
   for (int axis = 0; axis < 3; ++axis) {
     const double way = leg.to[axis] - leg.from[axis];
     if (way == 0.0) continue;

@@ -1,9 +1,9 @@
-/// What several surveys of one frame have measured, as one space.
+/// Union of the measurements of several surveys in one frame.
 ///
-/// Each survey has a region in which space has to be measured to be free; regions may overlap. A
-/// place is free if no survey has measured a point there and, wherever it is in the region of some
-/// survey, at least one survey has measured it to be free. Outside of all regions somebody vouches
-/// for the airspace, as for that of a single survey.
+/// Each survey has a region in which space must be measured to count as free. Regions may overlap.
+/// A position is free if no survey has measured a point there. Within regions, at least one survey
+/// must also have measured it as free. Outside all regions, space is assumed free and the pilot
+/// must check it, as for a single survey.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ namespace skycap::flight {
 
 class MeasuredUnion : public FreeSpace {
  public:
-  /// Throws Error{bad_config} if voxels are of different sizes, or a space has no region.
+  /// Throws Error{bad_config} if voxel sizes differ, or if a space has no region.
   explicit MeasuredUnion(std::vector<MeasuredSpace> spaces);
 
   Closest closest(const Segment& leg, double up_to) const override;
@@ -25,11 +25,12 @@ class MeasuredUnion : public FreeSpace {
   std::string name(const Closest& closest) const override;
 
  private:
-  /// Each with what the others have measured to be free: then what is free in all of them is free
-  /// together.
+  /// Spaces, each with the free space of the others added. A position that is free in all of them
+  /// is free in the union.
   std::vector<MeasuredSpace> spaces_;
-  std::vector<Eigen::AlignedBox3d> extents_;  ///< of each, outside of which nothing is in the way
-  BoundingTree tree_;                         ///< of these
+  /// Extent of each space, outside of which it has no obstacles.
+  std::vector<Eigen::AlignedBox3d> extents_;
+  BoundingTree tree_;  ///< Search tree over `extents_`.
 };
 
 }  // namespace skycap::flight

@@ -13,17 +13,17 @@ namespace {
 using Eigen::Vector3d;
 using Indices = std::vector<std::uint32_t>;
 
-/// A tour's cost grows with the square of its places.
+/// Maximum number of nodes in a tour, whose cost grows quadratically.
 constexpr std::size_t most_in_a_tour = 1000;
 
-/// A short closed tour of places from the first one, without it.
+/// Returns a short closed tour from the first node, without that node.
 Indices tour_of(const std::vector<Vector3d>& places) {
   return plan_tour(static_cast<std::uint32_t>(places.size()),
                    [&](std::uint32_t a, std::uint32_t b) { return (places[a] - places[b]).norm(); })
       .order;
 }
 
-/// The stations of each target that has some.
+/// Returns the waypoints of each target that has any.
 std::vector<Indices> by_target(std::span<const std::uint32_t> targets) {
   std::vector<Indices> stations;
   for (std::uint32_t i = 0; i < targets.size(); ++i) {
@@ -33,7 +33,8 @@ std::vector<Indices> by_target(std::span<const std::uint32_t> targets) {
   return stations;
 }
 
-/// Stations of targets that follow each other on a tour of the targets, up to a thousand at a time.
+/// Returns groups of at most 1000 waypoints, whose targets are consecutive in a tour of the
+/// targets.
 std::vector<Indices> neighbourhoods(std::span<const Station> stations,
                                     std::span<const std::uint32_t> targets, const Vector3d& start) {
   if (stations.size() <= most_in_a_tour) {
@@ -71,7 +72,7 @@ Indices ordered(std::span<const Station> stations, std::span<const std::uint32_t
   return order;
 }
 
-/// What the parts of flights take in straight lines.
+/// Costs of flight parts along straight lines.
 class StraightCosts {
  public:
   StraightCosts(const Motion& motion, double climb)

@@ -1,5 +1,5 @@
-/// The stations of a district in one order across its targets, and the pad that each is flown from,
-/// before any leg is proven.
+/// Order of a district's waypoints across its targets, with a pad for each, before any leg is
+/// verified.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,19 @@
 namespace skycap::flight {
 
 struct PadSorties {
-  std::vector<std::uint32_t> order;         ///< of the stations; those out of reach are not in it
-  std::vector<std::uint32_t> pads;          ///< of each of `order`
-  std::vector<std::uint32_t> out_of_reach;  ///< for a full battery, there and back from any pad
-  double length = 0.0;                      ///< of the order, in straight lines [m]
+  std::vector<std::uint32_t> order;  ///< Indices of the reachable waypoints in flight order.
+  std::vector<std::uint32_t> pads;   ///< Pad of each entry of `order`.
+  /// Waypoints beyond the range of a full battery from every pad.
+  std::vector<std::uint32_t> out_of_reach;
+  double length = 0.0;  ///< Length of the straight lines in this order [m].
 };
 
-/// As if every leg were straight: a short tour of all stations (plan_tour()), cut into the sorties
-/// that take the least time, each from the best of several pads (split_into_sorties()). Of more
-/// than a thousand stations those of neighbouring `targets`, one number a station and ascending,
-/// are ordered together. `pads` are where vehicles stand, and `climb` is how far straight up they
-/// begin.
+/// Computes order and pads under the assumption of straight legs. A short tour of all waypoints
+/// (plan_tour()) is split into the fastest sorties, each from its best pad (split_into_sorties()).
+/// Above 1000 waypoints, the order is computed separately for groups of neighbouring targets.
+///
+/// `targets` has one ascending number per waypoint. `pads` are ground positions, and `climb` is the
+/// vertical climb above them before the first leg [m].
 PadSorties sorties_from_pads(std::span<const Station> stations,
                              std::span<const std::uint32_t> targets,
                              std::span<const Eigen::Vector3d> pads, double climb,

@@ -20,26 +20,27 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A format with all that is done with it.
+/// Format with its functions.
 struct FormatRecord {
   FormatInfo info;
   bool holds_curves = false;
   std::string (*write)(const FlightPlan& plan);
   Problems (*validate)(const std::string& content);
-  /// In the local frame, in the order of the file.
+  /// Returns positions in the local frame [m], in file order.
   std::vector<Vector3d> (*places)(const std::string& content, const Site& site,
                                   const Vector3d& pad);
-  std::vector<std::string> (*notes)(const FlightPlan& plan) = nullptr;  ///< what it leaves out
+  /// Returns notes on omitted data.
+  std::vector<std::string> (*notes)(const FlightPlan& plan) = nullptr;
 };
 
-/// Between the rows of trajectory files [s].
+/// Interval between rows of trajectory files [s].
 constexpr double trajectory_interval = 0.1;
 
 std::vector<TimedState> states_of(const FlightPlan& plan) {
   return trajectory(plan, trajectory_interval);
 }
 
-/// Places of a file that has them on the Earth.
+/// Returns the local positions of a file with geodetic coordinates.
 template <class Read>
 std::vector<Vector3d> earth_places(const std::string& content, const Site& site,
                                    const Vector3d& pad, const Read& read) {
@@ -76,8 +77,8 @@ std::vector<std::string> notes_of_litchi(const FlightPlan&) {
       "\"Straight Lines\"; the gimbal pitch has whole degrees"};
 }
 
-/// Everything about the formats, in the order of Format. A new one has a row here, an enumerator,
-/// and a source with its writer, its reader and its checks.
+/// All formats, in the order of Format. A new format requires a row here, an enumerator, and a
+/// source file with its writer, reader and checks.
 const std::array<FormatRecord, 9> records{{
     {.info = {Format::plan, "plan", ".plan", "above take-off; home above mean sea level"},
      .write = write_plan,

@@ -1,4 +1,4 @@
-/// The formats of route files: what they hold, writers and readers.
+/// Route file formats with their writers and readers.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace skycap::flight {
 
 enum class Format { plan, waypoints, kmz, kml, geojson, litchi, csv, ned_csv, tum };
 
-/// A format's name on the command line, its file name's ending, and the datum its heights have.
+/// Format with its command-line name, file extension and altitude reference.
 struct FormatInfo {
   Format format;
   const char* name;
@@ -24,38 +24,40 @@ struct FormatInfo {
 std::span<const FormatInfo> formats();
 const FormatInfo& format_info(Format format);
 
-/// The format of that name, such as "kmz". Throws Error{bad_usage} listing the names.
+/// Returns the format of that name, such as "kmz". Throws Error{bad_usage} with the list of names.
 Format format_named(const std::string& name);
 
-/// Whether files of this format can hold curved legs: those that are lists of places close to one
-/// another. Of DJI's turn modes, which could also be told to round corners, it is not published
-/// which curve is flown, so nothing could be proven of it.
+/// Returns true if files of this format can hold curved legs, as lists of closely spaced positions.
+/// DJI's turn modes round corners, too, but the exact curves are unpublished and cannot be
+/// verified.
 bool holds_curves(Format format);
 
-/// The content of the file, what it leaves out, and its problems.
+/// Returns the file content, the notes on omitted data, or the problems of the content.
 std::string write(const FlightPlan& plan, Format format);
 std::vector<std::string> notes_of(const FlightPlan& plan, Format format);
 Problems validate(const std::string& content, Format format);
 
-/// A file's places in the local frame, in the order of the file; `pad` is where heights above
-/// take-off count from. Throws Error{bad_file} with the first problem. What a vehicle does with
-/// them is interpreter/interpret.h's to say.
+/// Returns the positions of a file in the local frame [m], in file order. `pad` is the altitude
+/// reference for heights above take-off. Throws Error{bad_file} with the first problem. For the
+/// vehicle's behaviour see interpreter/interpret.h.
 std::vector<Eigen::Vector3d> places_of(const std::string& content, Format format, const Site& site,
                                        const Eigen::Vector3d& pad);
 
 inline constexpr std::size_t largest_route_file = std::size_t{64} << 20;
 
-/// The format of a route file by its name's ending; .csv by its first line. Throws Error{bad_file}.
+/// Returns the format for a file extension; for .csv the first line decides. Throws
+/// Error{bad_file}.
 Format format_of_file(const std::filesystem::path& path, const std::string& content);
 
-/// places_of() of a file of any format above, whoever wrote it. Errors name it.
+/// Returns places_of() for a file of any supported format and origin. Errors include the file name.
 std::vector<Eigen::Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                         const Eigen::Vector3d& pad);
 
-/// How high above take-off the vehicle returns by that route file; nothing if it does not say.
+/// Returns the return altitude above take-off that a route file specifies [m], or std::nullopt.
 std::optional<double> read_return_height(const std::filesystem::path& path);
 
-/// Rounding moves a place by less than this: half of 1e-7 degrees each way and a centimetre up [m].
+/// Upper bound on the displacement by rounding [m]: half of 1e-7 degrees horizontally and 1 cm
+/// vertically.
 inline constexpr double rounding_bound = 0.02;
 
 }  // namespace skycap::flight

@@ -81,7 +81,7 @@ const Returns& FlightPlan::certified_returns() const {
 std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan) {
   if (!plan.returns) return {};
   const std::vector<Eigen::Vector3d>& landings = plan.returns->law.landings;
-  return {landings.begin() + 1, landings.end()};  // the pad is the first
+  return {landings.begin() + 1, landings.end()};  // The first landing point is the pad.
 }
 
 FlatNoFly flat_no_fly(const FlightPlan& plan) {
@@ -90,7 +90,7 @@ FlatNoFly flat_no_fly(const FlightPlan& plan) {
   for (const Waypoint& waypoint : plan.waypoints) points.push_back(waypoint.position);
   for (const Prism& prism : plan.no_fly) {
     Obstacles footprint;
-    footprint.no_fly = {{prism.name, prism.footprint}};  // unbounded in height
+    footprint.no_fly = {{prism.name, prism.footprint}};  // Unbounded in height.
     const KnownSpace space(footprint);
     bool is_kept_out = check_route(points, space, 0.0).empty();
     for (std::size_t i = 1; plan.returns && is_kept_out && i < points.size(); ++i) {

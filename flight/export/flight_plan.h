@@ -1,4 +1,4 @@
-/// One sortie as every writer sees it, and a route file as every reader gives it.
+/// Input of all writers (one sortie) and output of all readers (a route file).
 #pragma once
 
 #include <limits>
@@ -14,22 +14,22 @@
 
 namespace skycap::flight {
 
-/// A point that the vehicle stops at.
+/// Point at which the vehicle stops.
 struct Waypoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< local frame
-  bool is_station = false;                             ///< else a corner of a leg
-  double yaw = 0.0;         ///< of a station: from north, clockwise [rad]
-  double pitch = 0.0;       ///< of the gimbal at a station [rad]
-  double hold = 0.0;        ///< at rest and aimed before the shots, or at a corner [s]
-  double hold_after = 0.0;  ///< and after them [s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Position in the local frame [m].
+  bool is_station = false;                             ///< False: corner of a leg.
+  double yaw = 0.0;    ///< Heading with captures, clockwise from north [rad].
+  double pitch = 0.0;  ///< Gimbal pitch with captures [rad].
+  double hold = 0.0;   ///< Rest time with the camera aimed before the captures, or at a corner [s].
+  double hold_after = 0.0;  ///< Rest time after the captures [s].
   int shots = 0;
   std::uint32_t view_index = 0;
-  double clearance = 0.0;  ///< proven for the leg that ends here [m]
-  Curve curve;             ///< how to get here from the stop before; empty: straight
-  /// How to get here past the stations of a sortie, in place of the curve.
+  double clearance = 0.0;  ///< Verified clearance of the leg that ends here [m].
+  Curve curve;             ///< Curve from the previous stop. Empty: straight leg.
+  /// Fly-through alternative to `curve`, past the waypoints of a sortie.
   std::optional<Passage> passage{};
 
-  /// Where the vehicle is on the curve or passage that leads here; null: the way is straight.
+  /// Returns the curve of the leg that ends here, or null for a straight leg.
   const Curve* way() const {
     if (passage) return &passage->curve;
     return curve.empty() ? nullptr : &curve;
@@ -42,51 +42,52 @@ struct FlightPlan {
   Vehicle vehicle;
   Conditions conditions;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<Waypoint> waypoints;  ///< from above the pad, through the stations, and back there
+  std::vector<Waypoint> waypoints;  ///< From above the pad through the route's waypoints and back.
   std::vector<Prism> no_fly;
   std::optional<Prism> fence;
-  double clearance = 0.0;          ///< that the legs are certified at [m]
-  std::optional<Returns> returns;  ///< of the whole mission that the sortie is a part of
-  std::vector<std::shared_ptr<const PriorObstacle>> priors{};  ///< in the way of the climb, too
-  std::vector<Waypoint> passed{};  ///< stations that are not stopped at, one for each passed view
+  double clearance = 0.0;          ///< Clearance at which the legs are verified [m].
+  std::optional<Returns> returns;  ///< Returns of the complete mission that contains the sortie.
+  /// Obstacles that apply to the climb, too.
+  std::vector<std::shared_ptr<const PriorObstacle>> priors{};
+  std::vector<Waypoint> passed{};  ///< Waypoints without a stop, one per fly-through view.
 
-  /// Throws Error{bad_config} if there are none.
+  /// Returns the verified returns. Throws Error{bad_config} without returns.
   const Returns& certified_returns() const;
 };
 
-/// Where the plan's vehicle may land beside the pad when it is called home.
+/// Returns the rally points that the plan's vehicle may use for a return.
 std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan);
 
-/// Whether a plan's legs go round their corners, and past stations, where the route has a proven
-/// curve for that.
+/// Treatment of corners and waypoints: with stops, or along the verified curves where the route has
+/// them.
 enum class Corners { stopped_in, flown_round };
 
-/// The plan of sortie `index` of a route. Throws what Site::validate() throws.
+/// Returns the plan of sortie `index` of a route. Throws the same errors as Site::validate().
 FlightPlan flight_plan(const Route& route, std::size_t index, const std::string& name,
                        const Site& site, const Obstacles& rules = {},
                        Corners corners = Corners::stopped_in);
 
-/// No-fly volumes as formats without heights can hold them: footprints that no leg crosses, and no
-/// return. Those that one passes over or under are left out, by name.
+/// No-fly volumes for formats without heights: footprints that no leg or return crosses. `left_out`
+/// lists the names of the other volumes.
 struct FlatNoFly {
   std::vector<Prism> written;
   std::vector<std::string> left_out;
 };
 FlatNoFly flat_no_fly(const FlightPlan& plan);
 
-/// When the plan's vehicle is where, stop by stop [s], counted from the pad.
+/// Times at one stop, measured from departure from the pad [s].
 struct StopTime {
-  double arrival;    ///< settled in place
-  double aimed;      ///< heading and gimbal are right, too
-  double shot;       ///< the hold is over
-  double departure;  ///< and the hold after the shots
+  double arrival;    ///< Position reached and settled.
+  double aimed;      ///< Heading and gimbal aimed, too.
+  double shot;       ///< End of the hold before the captures.
+  double departure;  ///< End of the hold after the captures.
 };
 std::vector<StopTime> stop_times(const FlightPlan& plan);
 
-/// From leaving the pad until the motors stop there [s].
+/// Returns the time from leaving the pad until the motors stop [s].
 double flight_time(const FlightPlan& plan);
 
-// ---- what readers give -----------------------------------------------------------------------
+// ---- Output of readers ------------------------------------------------------------------------
 
 enum class HeightDatum { ellipsoid, mean_sea_level, takeoff };
 
@@ -95,25 +96,27 @@ inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 struct FilePoint {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
-  double height = 0.0;  ///< above the point's datum [m]
+  double height = 0.0;  ///< Height above the point's datum [m].
   double yaw_deg = not_given;
   double pitch_deg = not_given;
-  double hold = 0.0;         ///< in all [s]
-  double hold_before = 0.0;  ///< before the first shot, where the format says [s]
+  double hold = 0.0;         ///< Total hold time [s].
+  double hold_before = 0.0;  ///< Hold time before the first capture, if the format has it [s].
   int shots = 0;
-  double speed = not_given;  ///< towards it, where the format says [m/s]
-  double curve = 0.0;        ///< how far from it the vehicle may turn [m]
+  double speed = not_given;  ///< Speed towards the point, if the format has it [m/s].
+  double curve = 0.0;  ///< Distance from the point at which the vehicle may start to turn [m].
   HeightDatum datum = HeightDatum::ellipsoid;
 };
 
-/// The places a file makes a vehicle fly through, in order.
+/// Positions of a route file in flight order.
 struct RouteFile {
   std::vector<FilePoint> points;
-  std::optional<double> return_height;  ///< above take-off, where the format says it [m]
+  /// Return altitude above take-off, if the format has it [m].
+  std::optional<double> return_height;
 };
 
-/// The file's points in the local frame; `pad` is where heights above take-off count from. Throws
-/// Error{bad_config} if one counts from mean sea level and the site's undulation is unknown.
+/// Returns the file's points in the local frame [m]. `pad` is the altitude reference for heights
+/// above take-off. Throws Error{bad_config} if a height is AMSL and the site's geoid undulation is
+/// unknown.
 std::vector<Eigen::Vector3d> local_points(const RouteFile& file, const Site& site,
                                           const Eigen::Vector3d& pad);
 

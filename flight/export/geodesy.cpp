@@ -10,7 +10,7 @@ namespace skycap::flight {
 
 void Site::validate() const {
   const auto require = [](double value, double limit, const char* field) {
-    if (std::abs(value) <= limit) return;  // NaN is not
+    if (std::abs(value) <= limit) return;  // False for NaN.
     throw Error(ErrorKind::bad_config, "the site's " + std::string(field) + " is " +
                                            std::to_string(value) + "; it must be in [-" +
                                            std::to_string(limit) + ", " + std::to_string(limit) +

@@ -1,8 +1,8 @@
-/// Between the local frame and the Earth, and the three heights that are so often confused.
+/// Conversion between local frame and geodetic coordinates, and the three height references.
 ///
-/// The local frame is east-north-up about an origin on WGS84; the model stores ellipsoid heights.
-/// Height above mean sea level is the ellipsoid height less the geoid undulation; height above
-/// take-off is the difference of two ellipsoid heights.
+/// The local frame is east-north-up around an origin on WGS84. The model stores ellipsoid heights.
+/// Height AMSL is the ellipsoid height minus the geoid undulation. Height above take-off is the
+/// difference of two ellipsoid heights.
 #pragma once
 
 #include <memory>
@@ -16,24 +16,25 @@ namespace skycap::flight {
 struct GeodeticPoint {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
-  double height = 0.0;  ///< above the WGS84 ellipsoid [m]
+  double height = 0.0;  ///< Height above the WGS84 ellipsoid [m].
 };
 
-/// Where the local frame is on the Earth.
+/// Georeference of the local frame.
 struct Site {
   GeodeticPoint origin;
-  /// Height of the geoid (EGM96 or EGM2008) above the ellipsoid at the site [m]; unknown if absent,
-  /// then nothing can be written that needs heights above mean sea level.
+  /// Height of the geoid (EGM96 or EGM2008) above the ellipsoid at the site [m]. If it is unknown,
+  /// formats with heights AMSL cannot be written.
   std::optional<double> geoid_undulation;
 
-  /// Throws Error{bad_config} naming the first value that is out of its interval.
+  /// Throws Error{bad_config} naming the first value outside its interval.
   void validate() const;
 
-  /// The undulation. Throws Error{bad_config} saying that `who` needs it.
+  /// Returns the undulation. If it is unknown, throws Error{bad_config} with `who`, the name of the
+  /// requesting format.
   double undulation_for(const std::string& who) const;
 };
 
-/// East-north-up about an origin: exact on the ellipsoid, not a flat-Earth approximation.
+/// East-north-up frame at an origin. Exact on the ellipsoid, without a flat-Earth approximation.
 class LocalFrame {
  public:
   explicit LocalFrame(const GeodeticPoint& origin);

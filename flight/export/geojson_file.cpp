@@ -72,7 +72,7 @@ class GeoJsonWriter {
          {"t_s", rounded(arrival, 1e3)}});
   }
 
-  /// Exterior rings run counter-clockwise and are closed (RFC 7946, section 3.1.6).
+  /// Exterior rings are closed and counter-clockwise (RFC 7946, section 3.1.6).
   Json area(const Prism& prism, bool is_inclusion) const {
     std::vector<Eigen::Vector2d> corners = prism.footprint;
     double twice_area = 0.0;
@@ -85,7 +85,7 @@ class GeoJsonWriter {
     Json ring = Json::array();
     for (const Eigen::Vector2d& corner : corners) {
       Json place = coordinates({corner.x(), corner.y(), 0.0});
-      place.erase(2);  // an area has no one height
+      place.erase(2);  // An area has no single height.
       ring.push_back(place);
     }
     const auto height = [&](double z) {

@@ -19,7 +19,8 @@ pugi::xml_node begin_kml(pugi::xml_document& document, const char* prefix,
 
 std::string xml_text(const pugi::xml_document& document) {
   std::ostringstream out;
-  out.exceptions(std::ios::badbit);  // else text is lost without a word where memory is missing
+  // Without this, text would be lost silently if memory is insufficient.
+  out.exceptions(std::ios::badbit);
   document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
   return out.str();
 }

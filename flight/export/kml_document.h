@@ -1,4 +1,4 @@
-/// How KML files begin, and their texts.
+/// Common start and text output of KML documents.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace skycap::flight {
 
 inline constexpr const char* kml_namespace = "http://www.opengis.net/kml/2.2";
 
-/// Begins a document: its root element, with a namespace of extensions under the attribute
-/// `prefix`, such as "xmlns:gx".
+/// Creates the root element of a document. `prefix` is the attribute of the extension namespace,
+/// such as "xmlns:gx".
 pugi::xml_node begin_kml(pugi::xml_document& document, const char* prefix,
                          const std::string& extensions);
 

@@ -14,14 +14,15 @@ namespace {
 using geometry::degrees_per_radian;
 constexpr const char* google_namespace = "http://www.google.com/kml/ext/2.2";
 
-/// Between the places that a curve is drawn through [s]: at the accelerations that vehicles fly
-/// with, its chords are some millimetres from it, less than rounding_bound.
+/// Interval between the drawn points of a curve [s]. At typical accelerations, the chords deviate
+/// from the curve by some millimetres, less than rounding_bound.
 constexpr double curve_interval = 0.1;
 
-/// Unbounded no-fly volumes are drawn this far up and down from the pad [m].
+/// Height above and below the pad to which unbounded no-fly volumes are drawn [m].
 constexpr double drawn_height = 120.0;
 
-/// The playable track needs dates; a dry run has none, so it begins with the year 2000.
+/// Returns a date for the playable track. A simulated flight has no date, so it starts with the
+/// year 2000.
 std::string moment(double seconds) {
   const auto milliseconds = static_cast<long>(std::lround(seconds * 1000.0));
   const auto two = [](long n) { return (n < 10 ? "0" : "") + std::to_string(n); };
@@ -68,7 +69,7 @@ class KmlWriter {
     pugi::xml_node style = root.append_child("Style");
     style.append_attribute("id") = id;
     pugi::xml_node part = style.append_child(kind);
-    add_element(part, "color", colour);  // alpha, blue, green, red
+    add_element(part, "color", colour);  // Alpha, blue, green, red.
     if (std::string(kind) == "LineStyle") add_element(part, "width", "3");
   }
 
@@ -95,7 +96,7 @@ class KmlWriter {
     add_element(line, "coordinates", coordinates);
   }
 
-  /// Between the ends of the curve that leads there; none on a straight way.
+  /// Returns times between the ends of the curve to the waypoint. Empty for a straight leg.
   static std::vector<double> moments_on(const Waypoint& waypoint) {
     std::vector<double> times;
     const double end = waypoint.way() == nullptr ? 0.0 : duration(*waypoint.way());
@@ -106,7 +107,8 @@ class KmlWriter {
   void add_station(pugi::xml_node root, const Waypoint& station) {
     pugi::xml_node mark = root.append_child("Placemark");
     add_element(mark, "name", "view " + std::to_string(station.view_index));
-    pugi::xml_node camera = mark.append_child("Camera");  // double click flies there and looks
+    // A double click moves the viewer to this pose.
+    pugi::xml_node camera = mark.append_child("Camera");
     const GeodeticPoint place = frame_.to_geodetic(station.position);
     add_element(camera, "longitude", degrees(place.longitude_deg));
     add_element(camera, "latitude", degrees(place.latitude_deg));
@@ -128,7 +130,7 @@ class KmlWriter {
     add_element(point, "coordinates", tuple(station.position, ","));
   }
 
-  /// Drawn as its outline at the ceiling, extruded to the ground as viewers do.
+  /// Draws the outline at the ceiling, extruded to the ground as viewers do.
   void add_volume(pugi::xml_node root, const Prism& prism) {
     pugi::xml_node mark = root.append_child("Placemark");
     add_element(mark, "name", prism.name);
@@ -137,7 +139,8 @@ class KmlWriter {
     add_element(polygon, "extrude", "1"), add_element(polygon, "altitudeMode", "absolute");
     const double top = std::isfinite(prism.ceiling) ? prism.ceiling : plan_.pad.z() + drawn_height;
     std::string coordinates;
-    for (std::size_t i = 0; i <= prism.footprint.size(); ++i) {  // the first corner closes the ring
+    // The first corner closes the ring.
+    for (std::size_t i = 0; i <= prism.footprint.size(); ++i) {
       const Eigen::Vector2d& corner = prism.footprint[i % prism.footprint.size()];
       coordinates += (i == 0 ? "" : " ") + tuple({corner.x(), corner.y(), top}, ",");
     }
@@ -217,7 +220,7 @@ class KmlChecker {
       const std::string kind = shape.name();
       if (kind == "LineString" || kind == "Point" || kind == "Polygon") {
         const std::string mode = shape.child("altitudeMode").text().get();
-        // Without it heights are ignored: the path would be drawn on the ground.
+        // Without "absolute", heights are ignored and the path would be drawn on the ground.
         if (mode != "absolute") {
           complain(name, "has altitudeMode", mode, "; it must be absolute");
         }

@@ -30,7 +30,7 @@ struct CloseFile {
 using Source = std::unique_ptr<zip_source_t, CloseSource>;
 using Archive = std::unique_ptr<zip_t, DiscardArchive>;
 
-/// The last part of a member's name; some programs separate parts by backslashes.
+/// Returns the last part of a member's name. Some programs use backslashes as separators.
 std::string_view last_name(std::string_view name) {
   return name.substr(name.find_last_of("/\\") + 1);
 }
@@ -40,7 +40,7 @@ std::string name_of(zip_t* archive, zip_uint64_t index) {
   return name == nullptr ? "" : name;
 }
 
-/// What the archive holds, for messages: at most three names.
+/// Returns up to three member names for messages.
 std::string names_of(zip_t* archive) {
   const auto count = static_cast<zip_uint64_t>(zip_get_num_entries(archive, 0));
   std::string names;
@@ -50,8 +50,8 @@ std::string names_of(zip_t* archive) {
   return count == 0 ? "no files" : names + (count > 3 ? ", ..." : "");
 }
 
-/// The member of that name, else the only one whose last name is the same: archives that were
-/// packed again have "./" or a folder before it. Nothing if there is none.
+/// Returns the member with that name, or the only one with the same last part. Repacked archives
+/// prefix names with "./" or a folder. Returns std::nullopt if there is no match.
 std::optional<zip_uint64_t> find(zip_t* archive, const char* name) {
   const zip_int64_t exact = zip_name_locate(archive, name, 0);
   if (exact >= 0) return static_cast<zip_uint64_t>(exact);
@@ -87,7 +87,7 @@ void add_entry(zip_t* archive, const char* name, const std::string& content) {
   zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
   const zip_int64_t index = zip_file_add(archive, name, source, ZIP_FL_ENC_UTF_8);
   if (index < 0) fail(zip_strerror(archive));
-  // 1 January 1980: the same mission is the same file whenever it is written.
+  // 1 January 1980, so that a mission gives the same file at any time.
   zip_file_set_dostime(archive, static_cast<zip_uint64_t>(index), 0, 0x21, 0);
 }
 
@@ -99,7 +99,7 @@ KmzContent unpack_kmz(const std::string& bytes) {
   Source source(zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error));
   Archive archive(source ? zip_open_from_source(source.get(), ZIP_RDONLY, &error) : nullptr);
   if (!archive) fail("it is not a zip archive");
-  static_cast<void>(source.release());  // the archive owns it now
+  static_cast<void>(source.release());  // The archive owns it now.
   const auto edited = find(archive.get(), template_name);
   const auto flown = find(archive.get(), waylines_name);
   if (!flown) {
@@ -114,7 +114,8 @@ std::string pack_kmz(const KmzContent& content) {
   zip_error_init(&error);
   Source source(zip_source_buffer_create(nullptr, 0, 0, &error));
   if (!source) fail(zip_error_strerror(&error));
-  zip_source_keep(source.get());  // to read what was written after the archive is closed
+  // Keeps the source to read the result after the archive is closed.
+  zip_source_keep(source.get());
   Archive archive(zip_open_from_source(source.get(), ZIP_TRUNCATE, &error));
   if (!archive) fail(zip_error_strerror(&error));
   add_entry(archive.get(), template_name, content.template_kml);

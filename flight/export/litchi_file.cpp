@@ -10,10 +10,10 @@ namespace {
 
 using geometry::degrees_per_radian;
 constexpr std::size_t actions_per_line = 15;
-constexpr std::size_t most_waypoints = 99;  // of one mission, on the oldest firmware still flown
-constexpr double stop_like_curve = 0.2;     // the smallest curve at a corner that Litchi takes [m]
+constexpr std::size_t most_waypoints = 99;  // Limit per mission on the oldest supported firmware.
+constexpr double stop_like_curve = 0.2;     // Minimum corner curve that Litchi accepts [m].
 
-constexpr int stay = 0, photo = 1, rotate = 4, tilt = 5;  // action types
+constexpr int stay = 0, photo = 1, rotate = 4, tilt = 5;  // Action types.
 
 constexpr std::size_t fields_before_actions = 8, fields_after_actions = 8;
 constexpr std::size_t litchi_fields =
@@ -39,7 +39,7 @@ std::string actions_of(const Waypoint& waypoint) {
     ++used;
   };
   if (waypoint.is_station)
-    act(tilt, fixed(waypoint.pitch * degrees_per_radian, 0));  // whole degrees only
+    act(tilt, fixed(waypoint.pitch * degrees_per_radian, 0));  // Whole degrees only.
   act(stay, fixed(waypoint.hold * 1000.0, 0));
   for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
   if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));

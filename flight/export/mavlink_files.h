@@ -1,8 +1,8 @@
-/// Mission files of the MAVLink world: QGroundControl's .plan and the "QGC WPL 110" text format.
+/// MAVLink mission files: QGroundControl's .plan and the "QGC WPL 110" text format.
 ///
-/// There is no official schema of either: the loaders of QGroundControl, MAVSDK and Mission Planner
-/// are. The validators ask for what the strictest of them asks for; the readers read what each
-/// program reads of its own files.
+/// Neither format has an official schema. The references are the loaders of QGroundControl, MAVSDK
+/// and Mission Planner. The validators apply the strictest of their rules. The readers accept what
+/// each program reads from its own files.
 #pragma once
 
 #include <optional>
@@ -15,43 +15,44 @@
 
 namespace skycap::flight {
 
-/// An area of a geofence. Circles are polygons round them: fences a little smaller than the circle,
-/// no-fly areas a little larger.
+/// Area of a geofence. Circles are approximated by polygons: slightly smaller for inclusion areas,
+/// slightly larger for no-fly areas.
 struct FenceArea {
-  std::string name;  ///< its place in the file
+  std::string name;  ///< Location within the file.
   bool is_inclusion = false;
-  std::vector<GeodeticPoint> corners;  ///< heights mean nothing
+  std::vector<GeodeticPoint> corners;  ///< Heights are unused.
 };
 
-/// What a mission file holds beside its format's own matters.
+/// Format-independent content of a mission file.
 struct MissionFile {
-  std::vector<MissionItem> items;     ///< without home
-  std::optional<Dialect> dialect;     ///< of the autopilot it is written for, if it says
-  std::optional<GeodeticPoint> home;  ///< as planned; height above mean sea level
-  std::string home_name;              ///< its place in the file
-  bool holds_fence = false;           ///< whether the format has a geofence
+  std::vector<MissionItem> items;  ///< Items without home.
+  std::optional<Dialect> dialect;  ///< Dialect of the target autopilot, if the file specifies it.
+  std::optional<GeodeticPoint> home;  ///< Planned home position with height AMSL.
+  std::string home_name;              ///< Location within the file.
+  bool holds_fence = false;           ///< True if the format supports a geofence.
   std::vector<FenceArea> fence;
-  std::vector<GeodeticPoint> rally;  ///< heights above home
+  std::vector<GeodeticPoint> rally;  ///< Rally points with heights above home.
 };
 
-/// A .plan file. Needs the geoid undulation (home is stored above mean sea level). No-fly volumes
-/// are flattened as flat_no_fly() says. Throws what mission_items() throws.
+/// Returns a .plan file. Home is stored AMSL, which requires the geoid undulation. No-fly volumes
+/// are flattened, see flat_no_fly(). Throws the same errors as mission_items().
 std::string write_plan(const FlightPlan& plan);
 
-/// What is wrong with a .plan file; empty when it is good.
+/// Returns the problems of a .plan file, empty if it is valid.
 Problems validate_plan(const std::string& text);
 
-/// What it holds. Throws Error{bad_file} with the first problem.
+/// Reads a .plan file. Throws Error{bad_file} with the first problem.
 MissionFile read_plan(const std::string& text);
 
-/// A .waypoints file; in the ArduPilot dialect line 0 is home and needs the geoid undulation.
+/// Returns a .waypoints file. In the ArduPilot dialect, line 0 is home and requires the geoid
+/// undulation.
 std::string write_waypoints(const FlightPlan& plan);
 
-/// What is wrong with a .waypoints file for that autopilot; empty when it is good.
+/// Returns the problems of a .waypoints file for that autopilot, empty if it is valid.
 Problems validate_waypoints(const std::string& text, std::optional<Dialect> dialect = {});
 
-/// What it holds; a file that begins with a home is ArduPilot's. Throws Error{bad_file} with the
-/// first problem.
+/// Reads a .waypoints file. A file that starts with a home item counts as ArduPilot's. Throws
+/// Error{bad_file} with the first problem.
 MissionFile read_waypoints(const std::string& text);
 
 }  // namespace skycap::flight

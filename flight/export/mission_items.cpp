@@ -58,8 +58,8 @@ class ItemWriter {
                        std::round((place.height - pad_.height) * 1e3) / 1e3}});
   }
 
-  /// All that the times and the tracking depend on, whatever the vehicle is set to. PX4 knows no
-  /// vertical speeds in a mission and ignores them.
+  /// Adds all speeds that times and tracking depend on, independent of the vehicle's settings. PX4
+  /// ignores vertical speeds in missions.
   void add_speeds() {
     add(command::change_speed, {1, plan_.conditions.cruise_speed, -1, 0, 0, 0, 0});
     if (!is_ardupilot()) return;
@@ -71,8 +71,8 @@ class ItemWriter {
     if (seconds > 0.0) add(command::delay, {seconds, -1, -1, -1, 0, 0, 0});
   }
 
-  /// The place, and the wait there until the shots, if there are any. ArduPilot keeps whole seconds
-  /// of a waypoint's own hold but all of a delay's, which makes the waypoint before it a stop too.
+  /// Adds the position and the wait before the captures, if any. ArduPilot rounds a waypoint's hold
+  /// to whole seconds but not a delay, which also turns the previous waypoint into a stop.
   void add_stop(std::size_t i, double yaw_deg) {
     const double wait = std::round((times_[i].shot - times_[i].arrival) * 1e3) / 1e3;
     add_place(command::waypoint, {is_ardupilot() ? 0.0 : wait, acceptance_radius, 0, yaw_deg},
@@ -80,17 +80,19 @@ class ItemWriter {
     if (is_ardupilot()) add_delay(wait);
   }
 
-  // ArduPilot starts "do" items when the item before them is done and flies on meanwhile: gimbal
-  // and yaw turn on the way, the gimbal first since whatever comes after a CONDITION_YAW waits
-  // until the vehicle has turned. It obeys that and ignores the waypoint's own yaw; PX4 obeys the
-  // waypoint's and refuses missions that hold a CONDITION_YAW. The delay after the shots keeps the
-  // vehicle there until the shutter has closed.
+  // Adds the items of a waypoint with captures.
+  //
+  // ArduPilot starts "do" items when the previous item is complete, and continues to fly. Gimbal
+  // and yaw therefore rotate en route. The gimbal comes first, because items after a CONDITION_YAW
+  // wait until the vehicle has rotated. ArduPilot obeys CONDITION_YAW and ignores the waypoint's
+  // yaw. PX4 obeys the latter and rejects missions with a CONDITION_YAW. The delay after the
+  // captures keeps the vehicle in position until the shutter has closed.
   void add_station(std::size_t i) {
     const Waypoint& station = plan_.waypoints[i];
     const double yaw_deg =
         std::fmod(std::round(station.yaw * degrees_per_radian * 1e4) / 1e4, 360.0);
     const double pitch_deg = std::round(station.pitch * degrees_per_radian * 1e4) / 1e4;
-    add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: by these angles
+    add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: aim by these angles.
     if (is_ardupilot()) add(command::condition_yaw, {yaw_deg, 0, 0, 0, 0, 0, 0});
     add_stop(i, is_ardupilot() ? not_given : yaw_deg);
     for (int shot = 0; shot < station.shots; ++shot) {
@@ -198,7 +200,8 @@ class ItemChecker {
     }
   }
 
-  /// A shot without a gimbal command since the last place looks wherever the one before did.
+  /// Reports captures without a gimbal command since the last position: the camera would keep its
+  /// previous aim.
   void check_shots() {
     bool has_aimed = false;
     std::optional<std::size_t> place;
@@ -283,8 +286,8 @@ RouteFile route_of(const std::vector<MissionItem>& items) {
     if (item.command == command::delay && !route.points.empty()) {
       route.points.back().hold += std::max(0.0, item.params[0]);
     }
-    // The landing is straight down from the last waypoint: the pad itself is no place to keep
-    // clear. Items without a place are flown from where the vehicle is.
+    // The landing is vertical from the last waypoint, so the pad itself needs no clearance. Items
+    // without a position are executed at the current position.
     if (!has_place(item.command) || item.command == command::land || !has_coordinates(item))
       continue;
     FilePoint point{item.params[4], item.params[5], item.params[6]};

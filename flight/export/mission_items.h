@@ -1,4 +1,4 @@
-/// MAVLink mission items: what the .plan and the .waypoints format both hold.
+/// MAVLink mission items, common to the .plan and .waypoints formats.
 ///
 /// Sources: MAVLink common message set; PX4's mavlink_mission.cpp and ArduPilot's AP_Mission.cpp
 /// for what each autopilot accepts, ignores and rounds.
@@ -13,7 +13,7 @@
 
 namespace skycap::flight {
 
-/// MAV_CMD numbers used here.
+/// MAV_CMD numbers in use.
 namespace command {
 inline constexpr int waypoint = 16, loiter_time = 19, return_to_launch = 20, land = 21,
                      takeoff = 22, delay = 93, condition_yaw = 115, jump = 177, change_speed = 178,
@@ -21,7 +21,7 @@ inline constexpr int waypoint = 16, loiter_time = 19, return_to_launch = 20, lan
                      start_capture = 2000;
 }
 
-/// MAV_FRAME numbers used here.
+/// MAV_FRAME numbers in use.
 namespace frame {
 inline constexpr int global = 0, mission = 2, relative = 3, global_int = 5, relative_int = 6,
                      terrain = 10;
@@ -30,36 +30,39 @@ inline constexpr int global = 0, mission = 2, relative = 3, global_int = 5, rela
 struct MissionItem {
   int command = 0;
   int frame = 0;
-  std::array<double, 7> params{};  ///< 4, 5, 6: latitude [deg], longitude [deg], height; NaN: unset
+  /// Parameters. Indices 4, 5 and 6: latitude [deg], longitude [deg] and height. NaN: unset.
+  std::array<double, 7> params{};
   bool auto_continue = true;
-  std::size_t number = 0;  ///< as ground stations show it
+  std::size_t number = 0;  ///< Number shown by ground stations.
 };
 
-/// What messages call an item, such as "item 12".
+/// Returns the name of an item for messages, such as "item 12".
 std::string name_of(const MissionItem& item);
 
-/// What its height counts from; neither: the ground below, or nothing.
+/// Returns true if the height is AMSL or above home. If both are false, it is above ground or has
+/// no reference.
 bool is_above_sea(const MissionItem& item);
 bool is_above_home(const MissionItem& item);
 
-/// Whether it has a latitude or a longitude other than zero: stations write both as zero where a
-/// place is unknown or not meant.
+/// Returns true if latitude or longitude is non-zero. Ground stations write zeros for unknown or
+/// unused positions.
 bool has_coordinates(const MissionItem& item);
 
-/// The items of a sortie, numbered from 1: take-off, speed, and for each stop what the dialect
-/// needs in the order that it needs it; the last lands on the pad. Throws Error{bad_config} for
-/// vehicles that do not fly MAVLink missions, and if there are more items than the vehicle takes.
+/// Returns the items of a sortie, numbered from 1: take-off, speed, and the items of each stop in
+/// the order of the dialect. The last item lands on the pad. Throws Error{bad_config} for vehicles
+/// without MAVLink missions, or if the vehicle's limit on items is exceeded.
 std::vector<MissionItem> mission_items(const FlightPlan& plan);
 
-/// Why that autopilot would not take the items, or not as they are written; nothing: any autopilot.
-/// What it would do with them is interpreter/mission_interpreter.h's to say.
+/// Returns the reasons why the autopilot would reject or change the items. Without a dialect, the
+/// rules of all autopilots apply. For the flight behaviour see interpreter/mission_interpreter.h.
 Problems check_items(const std::vector<MissionItem>& items, std::optional<Dialect> dialect);
 
-/// What the autopilot's memory makes of them: 1e-7 degrees, ArduPilot's whole seconds of hold and
-/// centimetres of height, PX4's single-precision heights.
+/// Returns the items as the autopilot stores them: 1e-7 degrees; for ArduPilot integer seconds and
+/// centimetres; for PX4 single-precision heights.
 std::vector<MissionItem> as_stored(std::vector<MissionItem> items, Dialect dialect);
 
-/// The places of the items, each with its own datum. The items must have passed check_items().
+/// Returns the positions of the items, each with its own datum. The items must have passed
+/// check_items().
 RouteFile route_of(const std::vector<MissionItem>& items);
 
 }  // namespace skycap::flight

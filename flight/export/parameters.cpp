@@ -13,9 +13,9 @@
 namespace skycap::flight {
 namespace {
 
-enum class Type { whole = 6, real = 9 };  ///< of a value, as MAVLink numbers them
+enum class Type { whole = 6, real = 9 };  ///< MAVLink type of a value.
 
-/// What an autopilot's settings must be for its returns to be those that were proven.
+/// Setting that an autopilot must have for its returns to equal the verified ones.
 struct Requirement {
   const char* name;
   double least, most;
@@ -46,7 +46,7 @@ std::span<const Requirement> requirements(Dialect dialect) {
   return {};
 }
 
-/// The shortest text of a number with up to four decimals.
+/// Returns the shortest text of a number with up to four decimals.
 std::string plain(double value) {
   std::string text = fixed(value, 4);
   text.erase(text.find_last_not_of('0') + 1);
@@ -54,7 +54,7 @@ std::string plain(double value) {
   return text;
 }
 
-/// Writes one file, heading by heading.
+/// Writes one file, section by section.
 class ParameterWriter {
  public:
   ParameterWriter(const FlightPlan& plan, const Returns& returns)
@@ -92,14 +92,14 @@ class ParameterWriter {
   }
   void real(const std::string& name, double value) { set(name, value, Type::real); }
 
-  /// Under its old name in centimetres, and under the name since 4.7 in metres.
+  /// Writes the old name in centimetres, and the name since version 4.7 in metres.
   void both(const std::string& old_name, const std::string& new_name, double metres) {
     set(old_name, std::round(100.0 * metres));
     set(new_name, metres);
   }
 
-  /// Share of the battery that the dearest return needs; at most what is left at landing anyway, so
-  /// that a flight as planned does not set it off.
+  /// Returns the fraction of the battery that the most expensive return needs. It is at most the
+  /// reserve at landing, so that a flight as planned does not trigger the failsafe.
   double battery_share() const {
     const double full = plan_.vehicle.battery_wh * 3600.0;
     return std::max(0.07, std::min(1.2 * returns_.energy / full, plan_.conditions.reserve));
@@ -115,10 +115,10 @@ class ParameterWriter {
         "Return: names and centimetres up to 4.6, names and metres since 4.7. The autopilot knows");
     comment("one of each pair; the station may report that the other is missing.");
     both("RTL_ALT", "RTL_ALT_M", returns_.height);
-    set("RTL_CONE_SLOPE", 0);  // else it climbs less near home
+    set("RTL_CONE_SLOPE", 0);  // Otherwise it climbs less near home.
     both("RTL_CLIMB_MIN", "RTL_CLIMB_MIN_M", 0);
-    both("RTL_ALT_FINAL", "RTL_ALT_FINAL_M", 0);  // lands
-    set("RTL_ALT_TYPE", 0);                       // above home
+    both("RTL_ALT_FINAL", "RTL_ALT_FINAL_M", 0);  // Land.
+    set("RTL_ALT_TYPE", 0);                       // Above home.
     set("RTL_OPTIONS", 0);
     set("RTL_LOIT_TIME", 5000);
     both("RTL_SPEED", "RTL_SPEED_MS", plan_.conditions.cruise_speed);
@@ -133,8 +133,8 @@ class ParameterWriter {
     both("WPNAV_RADIUS", "WP_RADIUS_M", ardupilot_waypoint_radius);
     both("LAND_SPEED", "LAND_SPD_MS", mode.landing_speed);
     both("LAND_ALT_LOW", "LAND_ALT_LOW_M", mode.landing_height);
-    set("WP_YAW_BEHAVIOR", 0);  // headings are the mission's
-    set("OA_TYPE", 0);          // no other ways than those that were proven
+    set("WP_YAW_BEHAVIOR", 0);  // The mission sets the headings.
+    set("OA_TYPE", 0);          // Only verified paths.
     comment("Link to the pilot or the station lost: return");
     set("FS_THR_ENABLE", 1);
     set("FS_GCS_ENABLE", 1);
@@ -147,7 +147,7 @@ class ParameterWriter {
     set("BATT_FS_LOW_ACT", 2);
     set("BATT_FS_CRT_ACT", 1);
     set("RALLY_INCL_HOME", 1);
-    if (returns_.law.landings.size() > 1) set("RALLY_LIMIT_KM", 0);  // however far
+    if (returns_.law.landings.size() > 1) set("RALLY_LIMIT_KM", 0);  // Any distance.
     write_ardupilot_fence();
   }
 
@@ -165,9 +165,9 @@ class ParameterWriter {
   }
 
   void write_px4() {
-    set("RTL_TYPE", 0);  // to home or a rally point, straight
+    set("RTL_TYPE", 0);  // Straight to home or a rally point.
     real("RTL_RETURN_ALT", returns_.height);
-    set("RTL_CONE_ANG", 0);  // else it climbs less near home
+    set("RTL_CONE_ANG", 0);  // Otherwise it climbs less near home.
     real("RTL_MIN_DIST", 0.5);
     real("RTL_DESCEND_ALT", 10);
     real("RTL_LAND_DELAY", 0);
@@ -210,9 +210,10 @@ class ParameterWriter {
   std::string text_;
 };
 
-/// The parameter in a line of either kind; nothing if it is none.
-/// Mission Planner separates name and value by a comma, MAVProxy by blanks, QGroundControl five
-/// fields by tabs.
+/// Parses the parameter in a line of either format. Returns std::nullopt if there is none.
+///
+/// Mission Planner separates name and value by a comma, MAVProxy by blanks. QGroundControl
+/// separates five fields by tabs.
 std::optional<Parameter> parameter_in(const std::string& line) {
   const std::vector<std::string> tabbed = split(line, '\t');
   const bool is_qgc = tabbed.size() == 5;

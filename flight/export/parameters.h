@@ -1,9 +1,11 @@
-/// Parameter files: what a mission's items cannot say, above all how high the vehicle returns.
+/// Parameter files for settings that mission items cannot contain, in particular the return
+/// altitude.
 ///
-/// ArduPilot reads "NAME,VALUE" lines (Mission Planner, MAVProxy, QGroundControl), with "#" before
-/// comments. Version 4.7 has renamed parameters and changed centimetres to metres; an unknown name
-/// is passed over, so the files hold both. PX4's are QGroundControl's: "1<TAB>1<TAB>NAME<TAB>VALUE
-/// <TAB>TYPE", type 6 an integer and 9 a float; QGroundControl refuses a value of another type.
+/// ArduPilot reads "NAME,VALUE" lines (Mission Planner, MAVProxy, QGroundControl) with "#"
+/// comments. Version 4.7 renamed parameters and changed centimetres to metres. Since unknown names
+/// are ignored, files contain both names. PX4 uses QGroundControl's format
+/// "1<TAB>1<TAB>NAME<TAB>VALUE<TAB>TYPE" with type 6 for integers and 9 for floats. QGroundControl
+/// rejects a value of a different type.
 ///
 /// Sources: ArduPilot's ArduCopter/Parameters.cpp and mode_rtl.cpp, libraries/AC_WPNav, AC_Fence,
 /// AP_BattMonitor, and the wiki's list of changed names; PX4's module parameters of navigator,
@@ -24,28 +26,29 @@ struct Parameter {
   double value = 0.0;
 };
 
-/// "mission.param" for ArduPilot, "mission.params" for PX4, as their ground stations look for them,
-/// or with another stem; empty for DJI's, whose missions carry their settings.
+/// Returns the file name that ground stations expect: "mission.param" for ArduPilot,
+/// "mission.params" for PX4, or with a different stem. Empty for DJI, whose missions contain their
+/// settings.
 std::string parameters_name(Dialect dialect, const std::string& stem = "mission");
 
-/// The settings for the plan's vehicle: return, speeds, fence, failsafes, and in comments what to
-/// upload in which order. Throws Error{bad_config} for DJI's vehicles, and if the plan has no
-/// certified returns.
+/// Returns the settings for the plan's vehicle: return, speeds, fence and failsafes. Comments list
+/// the upload order. Throws Error{bad_config} for DJI vehicles, and if the plan has no verified
+/// returns.
 std::string write_parameters(const FlightPlan& plan);
 
-/// The values in either kind of file. Throws Error{bad_file} naming the first line that is neither
-/// a comment nor a parameter.
+/// Reads a parameter file of either format. Throws Error{bad_file} with the first line that is
+/// neither a comment nor a parameter.
 std::vector<Parameter> read_parameters(const std::string& text);
 
-/// How high the vehicle returns with these, above home; nothing if they do not say.
+/// Returns the return altitude above home that the parameters specify [m], or std::nullopt.
 std::optional<double> return_height(const std::vector<Parameter>& parameters, Dialect dialect);
 
-/// Parameters under which the autopilot would return in another way than ReturnLaw says, such as
-/// "RTL_CONE_SLOPE is 3; it must be 0". A parameter that is missing is at its default.
+/// Returns the parameters that make the autopilot's return differ from ReturnLaw, such as
+/// "RTL_CONE_SLOPE is 3; it must be 0". A missing parameter has its default value.
 Problems return_problems(const std::vector<Parameter>& parameters, Dialect dialect);
 
-/// A return altitude [m] as files and summaries state it: in full, such as "62" and "42.7". Rounded
-/// to whole metres it could be above a ceiling or below what is proven.
+/// Returns a return altitude [m] for files and summaries without rounding, such as "62" or "42.7".
+/// Rounded to whole metres, it could exceed a ceiling or undercut the verified altitude.
 std::string return_altitude_text(double height);
 
 }  // namespace skycap::flight

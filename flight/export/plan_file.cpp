@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 /// MAV_AUTOPILOT and MAV_TYPE.
 constexpr int px4_firmware = 12, ardupilot_firmware = 3, quadrotor = 2;
 
-/// Corners of the polygon that stands for a circle.
+/// Number of corners of the polygon for a circle.
 constexpr int circle_corners = 64;
 
 Json polygon(const Prism& prism, const LocalFrame& frame, bool is_inclusion) {
@@ -41,14 +41,14 @@ Json item_json(const MissionItem& item, std::size_t id) {
   if (item.frame == frame::relative) {
     json["AMSLAltAboveTerrain"] = nullptr;
     json["Altitude"] = item.params[6];
-    json["AltitudeMode"] = 1;  // relative to home
+    json["AltitudeMode"] = 1;  // Relative to home.
   }
   return json;
 }
 
-/// The checks of one file; problems are collected, in the order of the file. Strict: as the
-/// strictest loader asks for; otherwise as QGroundControl reads its own files since version 3.2,
-/// which lack parts that later versions write.
+/// Checks one file and collects problems in file order. Strict: the rules of the strictest loader.
+/// Otherwise: the rules of QGroundControl since version 3.2 for its own files, which lack parts of
+/// later versions.
 class PlanChecker {
  public:
   PlanChecker(const std::string& text, bool is_strict)
@@ -79,8 +79,8 @@ class PlanChecker {
  private:
   void complain(const std::string& what) { problems_.push_back(what); }
 
-  /// Whether a section must be read. Files of QGroundControl 3.2 and of programs that write
-  /// missions alone lack it, or have an empty one of version 1, which holds nothing.
+  /// Returns true if a section must be read. Files of QGroundControl 3.2 and of mission-only
+  /// programs lack it, or have an empty section of version 1.
   bool is_needed(const char* name) const {
     if (is_strict_) return true;
     if (!plan_.contains(name) || plan_[name].is_null()) return false;
@@ -142,8 +142,8 @@ class PlanChecker {
     file_.home = GeodeticPoint{home[0], home[1], home[2]};
   }
 
-  /// The seven parameters; before QGroundControl 3.3 four, and the place beside them. Null:
-  /// neither.
+  /// Returns the seven parameters. Before QGroundControl 3.3 there were four, with a separate
+  /// position. Null if neither form is present.
   Json params_of(const Json& json) const {
     const auto is_list = [&](const char* key, std::size_t count) {
       return json.contains(key) && json[key].is_array() && json[key].size() == count;
@@ -165,7 +165,8 @@ class PlanChecker {
     return params;
   }
 
-  /// The number that stations show. Missing in files of other programs, where the order counts.
+  /// Checks the number that ground stations show. Files of other programs lack it, and the order
+  /// counts instead.
   bool check_jump_id(const Json& json, std::size_t i, const std::string& who) {
     const bool is_missing = !json.contains("doJumpId");
     if (!is_strict_ && is_missing) return true;
@@ -223,7 +224,7 @@ class PlanChecker {
     const bool has_mode = json.contains("AltitudeMode"), has_height = json.contains("Altitude");
     const bool has_terrain = json.contains("AMSLAltAboveTerrain");
     if (!has_mode && !has_height && !has_terrain) return;
-    if (!is_strict_ && !has_mode) return;  // the frame and the params say all
+    if (!is_strict_ && !has_mode) return;  // Frame and params suffice.
     if (is_strict_ && !(has_mode && has_height && has_terrain)) {
       return complain(who +
                       " must have all of AltitudeMode, Altitude, AMSLAltAboveTerrain or none");
@@ -281,7 +282,8 @@ class PlanChecker {
                            are_numbers(circle["center"], 2) && circle.contains("radius") &&
                            circle["radius"].is_number() && circle["radius"] > 0.0;
       if (!is_good) return complain(who + ".circle must have a center and a positive radius");
-      // From inside for a fence, from outside for a no-fly circle: the polygon is the stricter one.
+      // Inscribed for a fence, circumscribed for a no-fly circle: the polygon is stricter than the
+      // circle.
       const double widened =
           found.is_inclusion ? 1.0 : 1.0 / std::cos(std::numbers::pi / circle_corners);
       const LocalFrame centre({circle["center"][0], circle["center"][1], 0.0});
@@ -331,8 +333,8 @@ std::string write_plan(const FlightPlan& plan) {
   for (const Prism& prism : flat_no_fly(plan).written) {
     polygons.push_back(polygon(prism, frame, false));
   }
-  // PX4 adds the height of return to the point's own, ArduPilot takes the greater of both: at zero
-  // above home both fly home at the height that is proven, and land where the ground is.
+  // PX4 adds the return altitude to the point's height, and ArduPilot uses the larger of both. With
+  // zero height above home, both return at the verified altitude and land on the ground.
   Json rally = Json::array();
   for (const Eigen::Vector3d& point : rally_points(plan)) {
     const GeodeticPoint place = frame.to_geodetic(point);

@@ -1,4 +1,4 @@
-/// Numbers as files want them, whatever the user's locale.
+/// Number formatting and parsing for files, independent of the locale.
 #pragma once
 
 #include <optional>
@@ -8,34 +8,37 @@
 
 namespace skycap::flight {
 
-/// Fixed point with `decimals` digits; no sign on zero.
+/// Returns fixed-point text with `decimals` digits, without a sign for zero.
 std::string fixed(double value, int decimals);
 
-/// 1e-9 degrees: a tenth of a millimetre.
+/// Returns degrees with a resolution of 1e-9, which is 0.1 mm on the ground.
 inline std::string degrees(double value) { return fixed(value, 9); }
 
-/// The value rounded to 9 decimals, for writers that print numbers themselves.
+/// Returns the value rounded to 9 decimals, for writers with their own number formatting.
 double rounded_degrees(double value);
 
-/// All of `text` as a number; nothing if it is not one, or not finite.
+/// Parses all of `text` as a finite number. Returns std::nullopt on failure.
 std::optional<double> to_number(std::string_view text);
 
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// Lines without their ends, which may be "\n" or "\r\n". A last line without an end counts.
+/// Returns the lines without their terminators "\n" or "\r\n". A final line without terminator
+/// counts.
 std::vector<std::string> lines_of(std::string_view text);
 
-/// The first line of `rest`, in the same way, which loses it; for texts of millions of lines.
+/// Removes the first line from `rest` and returns it without its terminator. For texts with
+/// millions of lines.
 std::string_view next_line(std::string_view& rest);
 
-/// What a validator found. Each entry names the place and what is wrong with it.
+/// Findings of a validator. Each entry states location and problem.
 using Problems = std::vector<std::string>;
 
-/// The fields at `place` as numbers. Nothing if one of them is none, which is then a problem.
+/// Parses the fields as numbers. If a field is not a number, adds a problem with `place` and
+/// returns std::nullopt.
 std::optional<std::vector<double>> to_numbers(const std::vector<std::string>& fields,
                                               const std::string& place, Problems& problems);
 
-/// Throws Error{bad_file} with the first problem, if there is one; `what` names the format.
+/// Throws Error{bad_file} with the first problem, if any. `what` is the name of the format.
 void throw_first(const Problems& problems, const std::string& what);
 
 }  // namespace skycap::flight

@@ -22,9 +22,10 @@ constexpr std::string_view tum_comment =
     "# timestamp tx ty tz qx qy qz qw; world frame ENU, camera optical (z forward, x right, y "
     "down)";
 
-Vector3d swapped(const Vector3d& v) { return {v.y(), v.x(), -v.z()}; }  // ENU <-> NED
+// Converts between ENU and NED.
+Vector3d swapped(const Vector3d& v) { return {v.y(), v.x(), -v.z()}; }
 
-/// The shorter way from one heading to another.
+/// Returns the shorter rotation between two headings.
 double turn(double from, double to) { return std::remainder(to - from, 2.0 * std::numbers::pi); }
 
 class TrajectorySampler {
@@ -35,7 +36,7 @@ class TrajectorySampler {
   std::vector<TimedState> sample() {
     const std::vector<StopTime> times = stop_times(plan_);
     aim_at_first_station();
-    // The climb from the pad, whose clearance is another matter, is left to the autopilot.
+    // The autopilot flies the climb from the pad, whose clearance is verified separately.
     Vector3d from = plan_.waypoints.front().position;
     double left = times.front().arrival;
     for (std::size_t i = 0; i < plan_.waypoints.size(); ++i) {
@@ -58,7 +59,7 @@ class TrajectorySampler {
     }
   }
 
-  /// Moments of the interval, and those of the pictures.
+  /// Adds states at the regular interval and at the images.
   void add_passage(const Passage& passage, double start, double end) {
     std::vector<double> moments;
     const auto first = static_cast<std::size_t>(std::ceil(start / interval_));
@@ -84,7 +85,7 @@ class TrajectorySampler {
   }
 
   void add_passing(const Passage& passage, double start, double time) {
-    constexpr double step = 1e-4;  // of the difference that the yaw rate is taken from
+    constexpr double step = 1e-4;  // Time step of the difference for the yaw rate [s].
     const CurveState moved = state_at(passage.curve, time - start);
     const Aim aim = passage.aim_at(time - start);
     const double next_yaw = passage.aim_at(time - start + step).yaw;
@@ -143,7 +144,7 @@ class TrajectorySampler {
     add(state);
   }
 
-  /// Keeps times strictly ascending; a sample that falls onto a stop's end gives way to it.
+  /// Keeps times strictly ascending. A regular sample at the end of a stop is replaced.
   void add(const TimedState& state) {
     if (!states_.empty() && state.time - states_.back().time < 1e-6) {
       states_.back() = state;
@@ -163,7 +164,7 @@ bool is_comment(const std::string& line) {
   return geometry::trimmed(line).empty() || geometry::trimmed(line).front() == '#';
 }
 
-/// Rows of numbers; problems name the line.
+/// Parses rows of numbers. Problems include the line number.
 std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, std::size_t first,
                                          char separator, std::size_t count, Problems& problems) {
   std::vector<std::vector<double>> rows;

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double series_reach = 1000.0;  // of the series about the origin [m]
+constexpr double series_reach = 1000.0;  // Range of the series around the origin [m].
 
 int zone_of(const Site& site) {
   site.validate();
@@ -55,7 +55,8 @@ Vector3d UtmProjection::to_map_exactly(const Vector3d& local) const {
   double easting = 0.0, northing = 0.0;
   GeographicLib::UTMUPS::Forward(point.latitude_deg, point.longitude_deg, zone, is_north, easting,
                                  northing, zone_);
-  constexpr double southern_false_northing = 1e7;  // beyond the equator the origin's still counts
+  // The zone's hemisphere is that of the origin, even beyond the equator.
+  constexpr double southern_false_northing = 1e7;
   if (is_north && !is_north_) northing += southern_false_northing;
   if (!is_north && is_north_) northing -= southern_false_northing;
   return {easting, northing, point.height - undulation_};
@@ -69,7 +70,8 @@ Vector3d UtmProjection::to_map(const Vector3d& local) const {
   return at_origin_ + slopes_ * local + curvature_ * squares;
 }
 
-// Typed, so that whoever exports needs no PROJ; tests hold it against what PROJ says of the code.
+// Written as a constant so that exports do not require PROJ. Tests compare it with PROJ's output
+// for the code.
 std::string UtmProjection::wkt() const {
   const std::string metre = "UNIT[\"metre\",1," + authority(9001) + "]";
   const std::string name = "WGS 84 / UTM zone " + std::to_string(zone_) + (is_north_ ? "N" : "S");
@@ -83,7 +85,7 @@ std::string UtmProjection::wkt() const {
       "PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\"," +
       (is_north_ ? "0" : "10000000") + "]," + metre + ",AXIS[\"Easting\",EAST]," +
       "AXIS[\"Northing\",NORTH]," + authority(epsg()) + "]";
-  // Datum type 2005 is a geoid's; 2002 is the ellipsoid, and has no code of the EPSG's.
+  // Datum type 2005 denotes a geoid. 2002 denotes the ellipsoid, which has no EPSG code.
   const std::string vertical =
       is_above_geoid_
           ? "VERT_CS[\"EGM96 height\",VERT_DATUM[\"EGM96 geoid\",2005," + authority(5171) + "]," +

@@ -1,5 +1,5 @@
-/// From the local frame to the Universal Transverse Mercator projection, in which surveyors keep
-/// their clouds.
+/// Projection from the local frame to Universal Transverse Mercator, the usual system of surveyed
+/// point clouds.
 #pragma once
 
 #include <string>
@@ -10,25 +10,25 @@
 
 namespace skycap::flight {
 
-/// UTM on WGS84, in the zone of a site's origin. Heights are above the EGM96 geoid if the site's
-/// undulation is known, which then holds for all of the site, and above the ellipsoid otherwise.
-/// Immutable; safe to use from any number of threads.
+/// UTM on WGS84 in the zone of the site's origin. If the site's geoid undulation is known, it
+/// applies to the whole site and heights are above EGM96. Otherwise they are above the ellipsoid.
+/// Immutable and thread-safe.
 class UtmProjection {
  public:
-  /// Throws Error{bad_config} if the site is not valid, or nearer to a pole than UTM goes.
+  /// Throws Error{bad_config} if the site is invalid or beyond the latitude limits of UTM.
   explicit UtmProjection(const Site& site);
 
   int zone() const { return zone_; }
   int epsg() const { return (is_north_ ? 32600 : 32700) + zone_; }
 
-  /// Easting, northing and height of a point of the local frame. Within a kilometre of its origin
-  /// by a series of second order, which is off by less than 0.01 mm; exact to 10 nm beyond.
+  /// Returns easting, northing and height of a local point [m]. Within 1 km of the origin, a
+  /// second-order series is used, with an error below 0.01 mm. Beyond, the error is below 10 nm.
   Eigen::Vector3d to_map(const Eigen::Vector3d& local) const;
 
-  /// The same at any distance without the series.
+  /// Returns the result of to_map() without the series, at any distance.
   Eigen::Vector3d to_map_exactly(const Eigen::Vector3d& local) const;
 
-  /// The coordinate system, heights included, as OGC WKT 1, with the EPSG's codes.
+  /// Returns the coordinate reference system including heights as OGC WKT 1 with EPSG codes.
   std::string wkt() const;
 
  private:
@@ -37,7 +37,8 @@ class UtmProjection {
   int zone_ = 0;
   bool is_north_ = true;
   LocalFrame frame_;
-  // About the origin: value, slopes, and second derivatives (xx, yy, zz, yz, xz, xy).
+  // Taylor coefficients at the origin: value, gradient, and second derivatives (xx, yy, zz, yz, xz,
+  // xy).
   Eigen::Vector3d at_origin_;
   Eigen::Matrix3d slopes_;
   Eigen::Matrix<double, 3, 6> curvature_;

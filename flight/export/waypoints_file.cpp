@@ -20,9 +20,9 @@ std::string line(std::size_t index, bool is_current, const MissionItem& item) {
   return text + "\t1\n";
 }
 
-/// Checks and reads at once: the items are complete if there are no problems. Strict: as the
-/// strictest station asks for; otherwise as Mission Planner, MAVProxy and APM Planner read files,
-/// with blank lines, comments, columns separated by blanks and a home without a place.
+/// Combines checking and reading: the items are complete if there are no problems. Strict: the
+/// rules of the strictest ground station. Otherwise: those of Mission Planner, MAVProxy and APM
+/// Planner, with blank lines, comments, columns separated by blanks and a home without position.
 struct WaypointsReading {
   Problems problems;
   std::vector<MissionItem> items;
@@ -49,7 +49,7 @@ struct WaypointsReading {
     if (line == waypoints_header) return true;
     const std::vector<std::string> words = geometry::words_of(line);
     const bool is_wpl = words.size() == 3 && words[0] == "QGC" && words[1] == "WPL";
-    // Files of APM Planner 2 say 120 and have the same columns.
+    // Files of APM Planner 2 have version 120 and the same columns.
     if (!is_strict && is_wpl && (words[2] == "110" || words[2] == "120")) return true;
     if (is_wpl && (words[2] == "100" || words[2] == "101")) {
       problems.push_back(
@@ -61,8 +61,9 @@ struct WaypointsReading {
     return false;
   }
 
-  /// ArduPilot's files begin with home: a waypoint in absolute height before the take-off. Mission
-  /// Planner writes a home that it does not know as zeros, its command included.
+  /// Returns true for the home item. ArduPilot's files start with it: a waypoint with absolute
+  /// height before the take-off. Mission Planner writes an unknown home as zeros, including its
+  /// command.
   bool is_home(const MissionItem& item) const {
     if (item.command == command::waypoint && item.frame == frame::global) return true;
     return !is_strict &&
@@ -128,8 +129,8 @@ std::string write_waypoints(const FlightPlan& plan) {
                              frame::global,
                              {0, 0, 0, 0, home.latitude_deg, home.longitude_deg, amsl}});
   }
-  // No reader agrees with another on NaN. A corner's open yaw becomes that of the stop before it,
-  // or of the first station.
+  // Programs interpret NaN differently. Therefore an unset yaw at a corner becomes that of the
+  // previous stop, or of the first waypoint with captures.
   double yaw = 0.0;
   for (auto item = items.rbegin(); item != items.rend(); ++item) {
     if (item->command == command::waypoint && !std::isnan(item->params[3])) yaw = item->params[3];

@@ -13,8 +13,8 @@
 namespace skycap::flight {
 namespace {
 
-/// Checks either file and reads its places. Strict: as our own files are written; otherwise the
-/// return altitude may be missing, as in the samples of DJI's documentation.
+/// Checks one of the files and reads its positions. Strict: the rules for Skycap's own files.
+/// Otherwise the return altitude may be missing, as in the samples of DJI's documentation.
 class WpmlChecker {
  public:
   WpmlChecker(const std::string& text, const std::string& file, bool is_strict)
@@ -29,8 +29,8 @@ class WpmlChecker {
 
   Problems problems;
   RouteFile route;
-  std::vector<double> ellipsoid_heights;  ///< of the template's waypoints [m]
-  std::string version;                    ///< of the namespace
+  std::vector<double> ellipsoid_heights;  ///< Waypoint heights of the template [m].
+  std::string version;                    ///< Version of the namespace.
 
  private:
   void complain(const std::string& what) { problems.push_back(file_ + " " + what); }
@@ -226,8 +226,8 @@ std::string write_kmz(const FlightPlan& plan) {
 
 namespace {
 
-/// Whether both files lead to the same places with the same photographs. Pilot 2 writes a template
-/// above the geoid beside waylines above the ellipsoid; the template then holds both heights.
+/// Returns true if both files have the same positions and photos. Pilot 2 writes a template above
+/// the geoid with waylines above the ellipsoid; the template then contains both heights.
 bool agree(const WpmlChecker& edited, const WpmlChecker& flown) {
   constexpr double same_degrees = 1e-8, same_height = 1e-3;
   if (edited.version != flown.version) return false;
@@ -247,7 +247,7 @@ bool agree(const WpmlChecker& edited, const WpmlChecker& flown) {
   return true;
 }
 
-/// Without a template only the waylines are checked: aircraft fly nothing else.
+/// Without a template, only the waylines are checked, because the aircraft flies only them.
 Problems problems_of(const KmzContent& content, bool is_strict) {
   const WpmlChecker flown(content.waylines_wpml, "waylines.wpml", is_strict);
   if (content.template_kml.empty()) {
@@ -257,7 +257,7 @@ Problems problems_of(const KmzContent& content, bool is_strict) {
   const WpmlChecker edited(content.template_kml, "template.kml", is_strict);
   Problems problems = edited.problems;
   problems.insert(problems.end(), flown.problems.begin(), flown.problems.end());
-  // Pilot 2 may make the waylines anew from the template: the two must say the same.
+  // Pilot 2 may regenerate the waylines from the template, so both must be equivalent.
   if (problems.empty() && !agree(edited, flown)) {
     problems.emplace_back("template.kml and waylines.wpml differ");
   }

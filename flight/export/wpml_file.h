@@ -1,6 +1,6 @@
-/// DJI's waypoint missions: a zip of two KML files in the WPML vocabulary, read by Pilot 2 and
-/// FlightHub 2. `template.kml` is what they show and edit, `waylines.wpml` what the aircraft flies;
-/// both are written, and agree.
+/// DJI waypoint missions for Pilot 2 and FlightHub 2: a zip archive with two KML files in the WPML
+/// vocabulary. The apps show and edit `template.kml`; the aircraft flies `waylines.wpml`. Both
+/// files are written with equivalent content.
 ///
 /// Source: DJI Cloud API documentation, chapter DJI WPML.
 #pragma once
@@ -12,26 +12,28 @@
 
 namespace skycap::flight {
 
-/// The bytes of a .kmz file. Heights are above take-off; legs are straight, with a stop at every
-/// point. Throws Error{bad_config} for a vehicle that is not DJI's, or if there are more waypoints
-/// than the vehicle takes.
+/// Returns the bytes of a .kmz file. Heights are above take-off; legs are straight with a stop at
+/// every point. Throws Error{bad_config} for vehicles other than DJI's, or if the vehicle's
+/// waypoint limit is exceeded.
 std::string write_kmz(const FlightPlan& plan);
 
-/// What is wrong with a .kmz file, naming file and element; empty when it is good.
+/// Returns the problems of a .kmz file with file and element names, empty if it is valid.
 Problems validate_kmz(const std::string& bytes);
 
-/// The two files inside, for inspection. Members are found by their last names, whatever folder
-/// they are in. Throws Error{bad_file} if the archive lacks the waylines or holds two of a name.
+/// Content of the two files in the archive, for inspection. Members are identified by file name in
+/// any folder. unpack_kmz() throws Error{bad_file} if the waylines are missing or a name is
+/// duplicate.
 struct KmzContent {
-  std::string template_kml;  ///< empty: the archive lacks it, and the mission cannot be edited
+  /// Empty: the archive has no template, so the mission cannot be edited.
+  std::string template_kml;
   std::string waylines_wpml;
 };
 KmzContent unpack_kmz(const std::string& bytes);
 
-/// The inverse of unpack_kmz(); the same content gives the same bytes.
+/// Inverse of unpack_kmz(). Deterministic: equal content gives equal bytes.
 std::string pack_kmz(const KmzContent& content);
 
-/// The waylines' places. Throws Error{bad_file} with the first problem.
+/// Reads the positions of the waylines. Throws Error{bad_file} with the first problem.
 RouteFile read_kmz(const std::string& bytes);
 RouteFile read_kmz(const KmzContent& content);
 

@@ -23,7 +23,7 @@ pugi::xml_node add(pugi::xml_node parent, const std::string& name) {
   return parent.append_child(("wpml:" + name).c_str());
 }
 
-/// Writes either file; they share most of their elements.
+/// Writes either file. Both share most of their elements.
 class WpmlWriter {
  public:
   WpmlWriter(const FlightPlan& plan, bool is_template)
@@ -47,7 +47,7 @@ class WpmlWriter {
     if (is_template_) {
       pugi::xml_node payload = add(folder, "payloadParam");
       add(payload, "payloadPositionIndex", "0");
-      add(payload, "imageFormat", "visable");  // spelt so by the format
+      add(payload, "imageFormat", "visable");  // Spelling of the format.
     }
     return xml_text(document);
   }
@@ -147,7 +147,7 @@ class WpmlWriter {
     add_actions(mark, index);
   }
 
-  /// A corner keeps the heading of the station to come.
+  /// At a corner, uses the heading of the next waypoint with captures.
   void add_heading(pugi::xml_node mark, std::size_t index) {
     auto station = std::find_if(plan_.waypoints.begin() + static_cast<std::ptrdiff_t>(index),
                                 plan_.waypoints.end(),
@@ -157,7 +157,7 @@ class WpmlWriter {
     add(heading, "waypointHeadingMode", "smoothTransition");
     add(heading, "waypointHeadingAngle",
         fixed(std::remainder(yaw, 2.0 * std::numbers::pi) * degrees_per_radian, 4));
-    add(heading, "waypointHeadingPathMode", "followBadArc");  // the shortest way round
+    add(heading, "waypointHeadingPathMode", "followBadArc");  // Shortest rotation.
   }
 
   void add_actions(pugi::xml_node mark, std::size_t index) {
@@ -194,7 +194,7 @@ class WpmlWriter {
     add(gimbal, "gimbalPitchRotateAngle", fixed(waypoint.pitch * degrees_per_radian, 4));
     add(gimbal, "gimbalRollRotateEnable", "0");
     add(gimbal, "gimbalRollRotateAngle", "0");
-    add(gimbal, "gimbalYawRotateEnable", "0");  // the vehicle's heading aims the camera
+    add(gimbal, "gimbalYawRotateEnable", "0");  // The vehicle's heading aims the camera.
     add(gimbal, "gimbalYawRotateAngle", "0");
     add(gimbal, "gimbalRotateTimeEnable", "0");
     add(gimbal, "gimbalRotateTime", "0");

@@ -1,4 +1,4 @@
-/// The two files of a DJI mission as texts; wpml_file.h says what they are for.
+/// Text of the two files of a DJI mission, see wpml_file.h.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 namespace skycap::flight {
 
 namespace wpml {
-inline constexpr const char* wpml_namespace = "http://www.dji.com/wpmz/";  ///< a version follows
-/// The turn that keeps to straight legs and stops at their ends.
+/// Namespace without its version suffix.
+inline constexpr const char* wpml_namespace = "http://www.dji.com/wpmz/";
+/// Turn mode with straight legs and a stop at each end.
 inline constexpr const char* stop_turn = "toPointAndStopWithDiscontinuityCurvature";
 }  // namespace wpml
 

@@ -14,17 +14,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// To so many of the nearest stations legs are certified before anybody asks for them.
+/// Number of nearest waypoints to which legs are verified in advance.
 constexpr std::size_t near_stations = 10;
 
 }  // namespace
 
-/// Its stations by their place among those that it can serve.
+/// Maps the waypoints to the vehicle's own indices.
 struct CertifiedCosts::Vehicle {
   Vehicle(const FleetMember& member, const FreeSpace& space)
       : options(member.options), legs(member.vehicle, space, options) {}
 
-  /// Finds ends for all stations that have them.
+  /// Finds the legs from and to the pad for all waypoints.
   void take(const std::vector<Station>& stations) {
     legs.admit(legs.allowed(stations));
     std::map<std::uint32_t, std::size_t> place_of_view;
@@ -40,8 +40,9 @@ struct CertifiedCosts::Vehicle {
 
   RouteOptions options;
   RouteLegs legs;
-  std::vector<std::optional<std::size_t>> places;               ///< by station
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Way> ways;  ///< certified, from and to
+  std::vector<std::optional<std::size_t>> places;  ///< Index in `legs`, by waypoint.
+  /// Verified paths, by start and goal.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Way> ways;
 };
 
 CertifiedCosts::CertifiedCosts(std::vector<Station> stations,
@@ -52,7 +53,7 @@ CertifiedCosts::CertifiedCosts(std::vector<Station> stations,
       threads_(threads),
       clearance_(members.front().options.clearance.total()),
       path_options_(members.front().options.path) {
-  for (Station& station : stations_) station.way.clear();  // of another order
+  for (Station& station : stations_) station.way.clear();  // Paths of a different order.
   for (const FleetMember& member : members) {
     vehicles_.push_back(std::make_unique<Vehicle>(member, space));
   }
@@ -146,10 +147,11 @@ bool CertifiedCosts::certify(std::vector<Pair> pairs) {
   return !pairs.empty();
 }
 
-/// From the lower number to the higher one; empty where there is none.
+/// Returns paths from the lower to the higher index, empty where none was found.
 std::vector<CertifiedCosts::Way> CertifiedCosts::found(const std::vector<Pair>& pairs) const {
   std::vector<Way> ways(pairs.size());
-  // A planner remembers distances, for itself: few of them, each for neighbouring pairs.
+  // Each planner has its own distance cache. Therefore few planners are used, each for neighbouring
+  // pairs.
   const std::size_t parts = std::min<std::size_t>(geometry::thread_count(threads_), pairs.size());
   geometry::parallel_for(parts, threads_, [&](std::size_t part) {
     LegPlanner planner(space_, clearance_, path_options_);

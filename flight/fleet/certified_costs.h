@@ -1,4 +1,4 @@
-/// What the parts of a fleet's flights take, by the very legs that its routes will be made of.
+/// Costs of the parts of a fleet's flights, from the legs that the routes will contain.
 #pragma once
 
 #include <compare>
@@ -21,44 +21,45 @@
 
 namespace skycap::flight {
 
-/// Certifies every way from and to a pad, and the legs between stations that are among each other's
-/// nearest; of other legs it counts what least_costs() does until somebody wants to fly them. All
-/// vehicles fly the same ways between stations, in both directions, unless a way home asks for
-/// another one.
+/// Verifies all legs from and to pads, and the legs between each waypoint and its nearest
+/// neighbours. Other legs have the cost of least_costs() until a split uses them. All vehicles fly
+/// the same paths between waypoints, in both directions, unless a return requires a different one.
 class CertifiedCosts {
  public:
-  /// The stations' view indices differ. `space` must outlive this object; what is free and the
-  /// clearance are the same for all. The result does not depend on `threads` (0: all processors).
+  /// The view indices of `stations` must differ. Keeps a reference to `space`. Free space and
+  /// clearance are common to all vehicles. The result does not depend on `threads` (0: all
+  /// processors).
   CertifiedCosts(std::vector<Station> stations, const std::vector<FleetMember>& members,
                  const FreeSpace& space, unsigned threads = 0);
   ~CertifiedCosts();
 
-  /// A station that a vehicle cannot serve takes infinite energy.
+  /// Returns the costs. A waypoint that a vehicle cannot serve has infinite energy.
   const FleetProblem& problem() const { return problem_; }
-  /// The same by least_costs() alone: no flight whatever is faster.
+  /// Returns the costs of least_costs() for all legs: a lower bound for every flight.
   const FleetProblem& least() const { return least_; }
 
-  /// Stations that no vehicle can serve.
+  /// Returns the waypoints that no vehicle can serve.
   std::vector<Unreached> unreached() const;
 
-  /// Certifies what legs of a split are not; whether there were any.
+  /// Verifies the remaining legs of a split. Returns true if there were any.
   bool certify(const FleetSplit& split);
 
-  /// The stations of a vehicle in that order, with the ways between them, which are certified: what
-  /// plan_route() makes a route of that takes what problem() says.
+  /// Returns the waypoints of a vehicle in the given order, with their verified paths. A route that
+  /// plan_route() makes from them has the costs of problem().
   std::vector<Station> stations_of(std::size_t vehicle, std::span<const std::uint32_t> order) const;
 
  private:
-  /// Two stations, the lower number first.
+  /// Two waypoints, in ascending order.
   struct Pair {
     std::uint32_t low, high;
-    // clang-tidy 14 takes the zero that its results are compared with for a null pointer.
+    // clang-tidy 14 mistakes the zero in comparisons of the result for a null pointer.
     auto operator<=>(const Pair&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   using Way = std::vector<Eigen::Vector3d>;
   struct Vehicle;
 
-  /// From the lower number to the higher one, and back; nothing if the vehicle serves only one.
+  /// Legs from the lower to the higher index, and back. Empty unless the vehicle serves both
+  /// waypoints.
   struct BothWays {
     std::optional<Leg> up, down;
   };

@@ -8,18 +8,19 @@
 namespace skycap::flight {
 namespace {
 
-/// That the makespan is cut into: for the ascent, and for the last word.
+/// Number of time steps of the makespan in the ascent and in the final evaluation.
 constexpr std::size_t coarse_steps = 400, most_fine_steps = 4000;
-constexpr double most_work = 4e9;       ///< steps of dynamic programming in the ascent
-constexpr double most_fine_work = 5e8;  ///< and in the last word
+constexpr double most_work = 4e9;  ///< Maximum number of dynamic programming steps in the ascent.
+/// Maximum number of dynamic programming steps in the final evaluation.
+constexpr double most_fine_work = 5e8;
 constexpr std::size_t most_rounds = 600;
-constexpr std::size_t patience = 15;   ///< rounds without a better bound before steps are halved
-constexpr double sum_rounding = 1e-9;  ///< of sums of prizes
-constexpr double nothing = -1.0;       ///< the prize where no tour leads
-constexpr std::uint32_t pad = UINT32_MAX;  ///< as the station before the first
+/// Iterations without a better bound before the step length is halved.
+constexpr std::size_t patience = 15;
+constexpr double sum_rounding = 1e-9;      ///< Rounding tolerance of prize sums.
+constexpr double nothing = -1.0;           ///< Prize where no tour exists.
+constexpr std::uint32_t pad = UINT32_MAX;  ///< Predecessor of the first waypoint.
 
-/// The best tours that come to a station at a time: the best of all, and the best of those that
-/// come from another station than that one.
+/// Best tours to a waypoint at a time: the best overall, and the best with a different predecessor.
 struct Best {
   double prize[2] = {nothing, nothing};
   std::uint32_t from[2] = {pad, pad};
@@ -35,11 +36,11 @@ struct Best {
       prize[1] = offered, from[1] = station;
     }
   }
-  /// Which of the two a tour to `next` goes on from: it does not turn back at once.
+  /// Returns the index of the tour that may continue to `next`, without turning back at once.
   std::size_t on_to(std::uint32_t next) const { return from[0] == next && next != pad ? 1 : 0; }
 };
 
-/// What one vehicle collects in tours of up to so many steps of time.
+/// Prizes that one vehicle collects in tours of a limited number of time steps.
 class Collector {
  public:
   Collector(const FleetVehicle& vehicle, double step, std::size_t steps)
@@ -53,7 +54,7 @@ class Collector {
     }
     for (std::uint32_t j = 0; j < count_; ++j) {
       for (std::uint32_t i = 0; i < count_; ++i) {
-        // Direct or by the pad, so that a vehicle with several sorties counts as one tour.
+        // Direct or via the pad, so that several sorties of a vehicle count as one tour.
         const double by_pad = vehicle.back[i].time + vehicle.out[j].time;
         const double leg = std::min(vehicle.leg(i, j).time, by_pad) + vehicle.station[j].time;
         legs_.push_back(std::max(std::size_t{1}, in_steps(leg)));
@@ -61,7 +62,7 @@ class Collector {
     }
   }
 
-  /// M(t) for t = 0, 1, ... steps, for these prizes.
+  /// Returns M(t) for t = 0, 1, ... steps with these prizes.
   const std::vector<double>& collect(const std::vector<double>& prizes) {
     best_.assign((steps_ + 1) * count_, {});
     most_.assign(steps_ + 1, 0.0);
@@ -73,7 +74,8 @@ class Collector {
     return most_;
   }
 
-  /// How often the best tour of up to t steps, of the last prizes, comes to each station.
+  /// Adds the number of visits of the best tour of up to t steps to each waypoint, for the latest
+  /// prizes.
   void count_visits(std::size_t t, std::vector<double>& visits) const {
     auto [station, time] = ends_[t];
     std::uint32_t next = pad;
@@ -113,14 +115,14 @@ class Collector {
   }
 
   std::size_t count_, steps_;
-  std::vector<std::size_t> out_, back_;  ///< with what is done at the station; in steps
-  std::vector<std::size_t> legs_;        ///< to station j from station i at [j * count + i]
+  std::vector<std::size_t> out_, back_;  ///< Including the stop at the waypoint, in steps.
+  std::vector<std::size_t> legs_;        ///< To waypoint j from waypoint i at [j * count + i].
   std::vector<Best> best_;
   std::vector<double> most_;
-  std::vector<End> ends_;  ///< the last station of the best tour, and when it was there
+  std::vector<End> ends_;  ///< Last waypoint of the best tour, with its time.
 };
 
-/// All vehicles at one step of time.
+/// All vehicles at one time step length.
 class Fleet {
  public:
   Fleet(const FleetProblem& least, double makespan, std::size_t steps)
@@ -129,7 +131,7 @@ class Fleet {
       collectors_.emplace_back(vehicle, step_, steps);
   }
 
-  /// The first time at which all can be collected.
+  /// Returns the first time at which all prizes can be collected.
   double bound(const std::vector<double>& prizes) {
     std::vector<double> sum(steps_ + 1, 0.0);
     for (Collector& collector : collectors_) {
@@ -142,7 +144,7 @@ class Fleet {
     return static_cast<double>(first_) * step_;
   }
 
-  /// Of the best tours at the last bound, by station.
+  /// Returns the visits of the best tours at the latest bound, per waypoint.
   std::vector<double> visits(std::size_t count) const {
     std::vector<double> visits(count, 0.0);
     for (const Collector& collector : collectors_) collector.count_visits(first_, visits);
@@ -155,12 +157,13 @@ class Fleet {
   std::vector<Collector> collectors_;
 };
 
-/// Prizes after a step against the visits, none below zero, 1 together.
+/// Returns the prizes after a step against the visits. Prizes are non-negative and add up to 1.
 std::vector<double> moved(const std::vector<double>& prizes, const std::vector<double>& visits,
                           double length) {
   double squared = 0.0, sum = 0.0;
   for (const double count : visits) squared += (1.0 - count) * (1.0 - count);
-  if (squared == 0.0) return prizes;  // each once: the tours share the stations out
+  // Each waypoint is visited once, so the tours are a partition.
+  if (squared == 0.0) return prizes;
   std::vector<double> after;
   for (std::size_t i = 0; i < prizes.size(); ++i) {
     after.push_back(std::max(0.0, prizes[i] + length * (1.0 - visits[i]) / squared));

@@ -12,16 +12,16 @@ using Order = std::vector<std::uint32_t>;
 
 constexpr std::uint64_t seed = 1, stream_of_annealing = 6ULL << 32;
 constexpr std::size_t moves_per_station = 30'000, least_moves = 20'000;
-constexpr double most_tried = 3e8;  ///< stations in the orders that are tried, in all
+constexpr double most_tried = 3e8;  ///< Total number of waypoints in all trial orders.
 constexpr std::size_t longest_moved_chain = 4;
-constexpr double first_temperature = 0.1, last_temperature = 0.0003;  ///< shares of the goal
-constexpr double hopeless = -40.0;  ///< exponent of a chance that no draw is below
-/// What the other figure counts: a shorter flight of one vehicle makes room for the others'.
+constexpr double first_temperature = 0.1, last_temperature = 0.0003;  ///< Relative to the goal.
+constexpr double hopeless = -40.0;  ///< Exponent below which acceptance is practically impossible.
+/// Weight of the other objective: a shorter flight of one vehicle gives freedom to the others.
 constexpr double share_of_other = 0.02;
 
 std::ptrdiff_t signed_index(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
 
-/// What a vehicle takes from place to place, the pad being the last, with what is done there.
+/// Times between nodes including the stops. The last node is the pad.
 class Times {
  public:
   explicit Times(const FleetVehicle& vehicle)
@@ -35,7 +35,7 @@ class Times {
     }
   }
 
-  /// In one sortie, whatever its battery says.
+  /// Returns the time of one sortie, regardless of the battery.
   double of(const Order& order) const {
     double time = 0.0;
     std::uint32_t from = pad_;
@@ -53,7 +53,7 @@ class Times {
   std::vector<double> times_;
 };
 
-/// Simulated annealing (Kirkpatrick, Gelatt & Vecchi 1983) of orders of all vehicles.
+/// Simulated annealing (Kirkpatrick, Gelatt & Vecchi 1983) of the orders of all vehicles.
 class Annealing {
  public:
   Annealing(const FleetProblem& problem, FleetSplit split, FleetGoal goal, std::uint64_t chain)
@@ -154,7 +154,7 @@ class Annealing {
     decide(v, w);
   }
 
-  /// Takes the new orders of two vehicles (or of one, twice) if they are better, or by chance.
+  /// Accepts the new orders of two vehicles (or twice the same) if they are better, or randomly.
   void decide(std::size_t v, std::size_t w) {
     const double chance = random_.uniform();
     const auto is_good = [&] {
@@ -164,7 +164,7 @@ class Annealing {
       return exponent > hopeless && chance < std::exp(exponent);
     };
     tried_ = times_;
-    // Most are not good even if one battery were enough, which is soon known.
+    // Most orders are rejected even with one unlimited battery, which is fast to compute.
     tried_[v] = in_one_[v].of(one_);
     if (v != w) tried_[w] = in_one_[w].of(other_);
     if (!is_good()) return;
@@ -181,9 +181,9 @@ class Annealing {
   const FleetProblem& problem_;
   FleetGoal goal_;
   std::vector<FleetPart> parts_, best_;
-  std::vector<Times> in_one_;  ///< by vehicle
-  std::vector<double> times_;  ///< of the parts
-  Order one_, other_, chain_;  ///< that are tried
+  std::vector<Times> in_one_;  ///< By vehicle.
+  std::vector<double> times_;  ///< Times of the parts.
+  Order one_, other_, chain_;  ///< Trial orders.
   std::vector<double> tried_;
   double cost_ = 0.0, best_cost_ = 0.0, temperature_ = 1.0;
   geometry::RandomNumbers random_;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// Times of the best of all vehicles, the same in both directions.
+/// Minimum times over all vehicles, equal in both directions.
 class BestTimes {
  public:
   explicit BestTimes(const FleetProblem& least) : least_(least), pad_(least.count(), unknown) {
@@ -37,7 +37,7 @@ class BestTimes {
   std::size_t count() const { return pad_.size(); }
   double longest() const { return longest_; }
 
-  /// What `tours` closed tours from the pad through all stations take at least.
+  /// Returns a lower bound for `tours` closed tours from the pad through all waypoints [s].
   double bound_of(std::size_t tours) const {
     const auto stations = static_cast<std::uint32_t>(count());
     const auto nodes = static_cast<std::uint32_t>(count() + tours);
@@ -51,7 +51,8 @@ class BestTimes {
   }
 
  private:
-  /// Direct or by the pad, so that a vehicle with several sorties counts as one tour.
+  /// Returns the time directly or via the pad, so that several sorties of a vehicle count as one
+  /// tour.
   double between(std::uint32_t a, std::uint32_t b) const {
     double time = pad_[a] + pad_[b] + each_;
     for (const FleetVehicle& vehicle : least_.vehicles) {
@@ -60,11 +61,12 @@ class BestTimes {
     return time;
   }
 
-  static constexpr double apart = 1e6;  ///< of two copies of the pad: no tour has them in a row
+  /// Cost between two pad copies, which no tour has in a row.
+  static constexpr double apart = 1e6;
 
   const FleetProblem& least_;
-  std::vector<double> pad_;  ///< to a station or from it, whichever is shorter
-  double each_ = 0.0;        ///< what a tour takes beside that, such as its landing
+  std::vector<double> pad_;  ///< Minimum of the times to and from a waypoint.
+  double each_ = 0.0;        ///< Further time per tour, such as its landing.
   double rests_ = 0.0, longest_ = 0.0;
 };
 

@@ -1,4 +1,4 @@
-/// How little time a fleet could need at all.
+/// Lower bounds on the flight times of a fleet.
 #pragma once
 
 #include "flight/fleet/fleet_problem.h"
@@ -6,17 +6,16 @@
 namespace skycap::flight {
 
 struct FleetBound {
-  double makespan = 0.0;  ///< the last of the vehicles lands no sooner [s]
-  double flown = 0.0;     ///< all together are no shorter in the air [s]
+  double makespan = 0.0;  ///< Lower bound on the time of the last landing [s].
+  double flown = 0.0;     ///< Lower bound on the total time in the air [s].
 };
 
-/// No way of sharing the stations out is faster than this, if no part of a flight is faster than
-/// `least` says; energy is not asked about. The makespan is the greatest of collection_bound(), of
-/// the longest flight to a single station and back, and, over all numbers k of vehicles that may
-/// fly, of the least k-th part of what k closed tours through all stations take at least: the
-/// 1-tree bound of Held & Karp with k copies of the pad, which are not neighbours. In the last two
-/// a vehicle's own pad and speed count as those of the best placed and the fastest one. `makespan`
-/// is what some fleet attains; no bound is above it.
+/// Returns the bounds, if no part of a flight is faster than in `least`. Energy is ignored. The
+/// makespan bound is the maximum of three: collection_bound(), the longest flight to a single
+/// waypoint and back, and the minimum over k of a bound for k vehicles. The latter is 1/k of the
+/// 1-tree bound of Held & Karp with k pad copies that are not adjacent. The last two use the best
+/// pad and the maximum speed for all vehicles. `makespan` [s] is the value of a known solution; no
+/// bound exceeds it.
 FleetBound fleet_bound(const FleetProblem& least, double makespan);
 
 }  // namespace skycap::flight

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// From rest to rest, whatever the way, and without settling: the greater of the times that its
-/// shares along the straight line and upright take at least, and of the time at full speed.
+/// Returns a lower bound on the rest-to-rest time for any path, without settle time. It is the
+/// maximum of the bounds along the straight line and vertically, and of the time at full speed.
 double least_moving_time(const Motion& motion, const Vector3d& way) {
   const double distance = way.norm();
   if (distance == 0.0) return 0.0;
@@ -26,7 +26,7 @@ double least_moving_time(const Motion& motion, const Vector3d& way) {
   const double upright =
       rest_to_rest_time(std::abs(way.z()), way.z() > 0.0 ? mode.max_ascent : mode.max_descent,
                         mode.vertical_acceleration, mode.jerk);
-  // Velocities that the limits allow are a convex set: no detour is faster than its straight line.
+  // The permitted velocities are a convex set, so no detour is faster than the straight line.
   return std::max({along, upright, distance / motion.leg_speed(direction)});
 }
 
@@ -35,19 +35,19 @@ double least_leg_time(const Motion& motion, const Vector3d& way) {
   return least_moving_time(motion, way) + motion.vehicle().mode.settle_time;
 }
 
-/// What stopping at corners takes at least, because a place of the straight line, and so a ball of
-/// `shortfall` about it, is not free.
+/// Returns a lower bound on the extra time of corner stops, given that a ball of radius `shortfall`
+/// around a position on the straight line is not free.
 double least_corner_time(const Motion& motion, const Vector3d& way, double shortfall) {
   if (!(shortfall > 0.0)) return 0.0;
   const MissionMode& mode = motion.vehicle().mode;
-  // In no direction are speed and acceleration greater; of such times that of a longer way is
-  // greater, but by less and less.
+  // Upper bounds on speed and acceleration in any direction. The time is a concave increasing
+  // function of distance.
   const auto moving = [&](double distance) {
     return rest_to_rest_time(distance, motion.conditions().cruise_speed,
                              std::hypot(mode.acceleration, mode.vertical_acceleration), mode.jerk);
   };
-  // A single corner is no nearer to either end than the ball is large, and both pieces together are
-  // no shorter than the line: they take least if one of them is as short as can be.
+  // A single corner is at least one ball radius from both ends, and its two pieces are no shorter
+  // than the line. Their total time is minimal if one piece is as short as possible.
   const double in_two = moving(shortfall) + moving(std::max(shortfall, way.norm() - shortfall));
   const double slower = std::max(0.0, in_two - least_moving_time(motion, way));
   const double stop = mode.settle_time + corner_hold;

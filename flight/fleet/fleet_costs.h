@@ -1,4 +1,4 @@
-/// What the parts of a fleet's flights take at least, before any leg is proven.
+/// Lower bounds on the costs of a fleet's flights, before any leg is verified.
 #pragma once
 
 #include <span>
@@ -13,14 +13,13 @@
 
 namespace skycap::flight {
 
-/// How much nearer than the clearance straight lines come to what is not free; 0 where they are
-/// proven. Empty lists: all are.
+/// Clearance deficits of straight lines: 0 for verified lines. Empty lists: no deficits.
 struct Shortfalls {
-  std::vector<double> home;  ///< from above the pad to each station [m]
-  std::vector<double> legs;  ///< from station i to station j at [i * count + j] [m]
+  std::vector<double> home;  ///< From above the pad to each waypoint [m].
+  std::vector<double> legs;  ///< From waypoint i to waypoint j at [i * count + j] [m].
 };
 
-/// One vehicle of a fleet, and how it flies; its pad is options.takeoff.
+/// Vehicle of a fleet with its route options. Its pad is options.takeoff.
 struct FleetMember {
   Vehicle vehicle;
   RouteOptions options;
@@ -30,18 +29,17 @@ struct FleetMember {
   }
 };
 
-/// Of the lines between stations.
+/// Returns the deficits of the lines between waypoints [m].
 std::vector<double> leg_shortfalls(std::span<const Station> stations, const FreeSpace& space,
                                    double clearance);
-/// Of the lines from above a pad.
+/// Returns the deficits of the lines from above a pad [m].
 std::vector<double> home_shortfalls(std::span<const Station> stations, const Eigen::Vector3d& home,
                                     const FreeSpace& space, double clearance);
 
-/// Times that no certified legs undercut, corners and detours as they may be; energies are not
-/// looked at. A motion from rest to rest is, along any direction, one from rest to rest under the
-/// greatest speed and acceleration that the vehicle has in that direction, whatever its way. Where
-/// the straight line is not free there is a stop at a corner, outside of a ball about the line's
-/// worst place, or there are two.
+/// Returns lower bounds on the times of verified legs, for any corners and detours. Energies are
+/// not bounded. Projected onto any direction, a rest-to-rest motion is a rest-to-rest motion with
+/// the vehicle's maximum speed and acceleration in that direction. Where the straight line is not
+/// free, the leg has one stop outside a ball around its worst position, or two stops.
 FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& member,
                          const Shortfalls& shortfalls = {});
 

@@ -8,13 +8,13 @@ namespace {
 
 using Order = std::vector<std::uint32_t>;
 
-/// An improvement must exceed rounding, or moves could go in circles.
+/// Minimum improvement, above rounding. Otherwise moves could cycle.
 constexpr double least_gain = 1e-9;
-constexpr std::size_t longest_chain = 3;  ///< of stations that are moved together
+constexpr std::size_t longest_chain = 3;  ///< Maximum number of waypoints that are moved together.
 
 std::ptrdiff_t offset(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
 
-/// Changes orders as long as that helps; first improvement, always in the same sequence.
+/// Local search on the orders: first improvement, in a fixed sequence.
 class Exchange {
  public:
   Exchange(const FleetProblem& problem, FleetSplit split, FleetGoal goal)
@@ -34,8 +34,8 @@ class Exchange {
   }
 
  private:
-  /// What a vehicle's time counts. The eighth power is nearly the greatest of all times, but
-  /// rewards shortening the others, too, which makes room.
+  /// Returns the weight of a vehicle's time. The eighth power approximates the maximum, but also
+  /// rewards shortening the other times, which gives freedom for moves.
   double weight(double time) const {
     if (goal_ == FleetGoal::flown) return time / scale_;
     const double share = time / scale_, square = share * share, fourth = square * square;
@@ -52,8 +52,8 @@ class Exchange {
 
   double makespan() const { return makespan_with(0, parts_[0].time, 0, parts_[0].time); }
 
-  /// Takes the new orders of two vehicles (or of one, twice) if they are better, and never for a
-  /// greater makespan where that is the goal.
+  /// Accepts the new orders of two vehicles (or twice the same) if they are better. A greater
+  /// makespan is never accepted if that is the goal.
   bool take(std::size_t v, Order order, std::size_t w, Order other) {
     const double time = part_time(problem_.vehicles[v], order);
     if (time == never) return false;
@@ -101,7 +101,8 @@ class Exchange {
     return false;
   }
 
-  /// A chain of one vehicle goes to a place in another's order, or in its own, either way round.
+  /// Moves a chain of one vehicle to a position in another's order or in its own, in either
+  /// direction.
   bool move_chain(std::size_t v, std::size_t w) {
     const Order from = parts_[v].stations;
     for (std::size_t size = 1; size <= std::min(longest_chain, from.size()); ++size) {
@@ -140,7 +141,7 @@ class Exchange {
     return false;
   }
 
-  /// Each flies on as the other would have: tail for tail, or the heads joined and the tails.
+  /// Exchanges the tails of two orders, or joins the heads and the tails.
   bool swap_tails(std::size_t v, std::size_t w) {
     const Order first = parts_[v].stations, second = parts_[w].stations;
     for (std::size_t i = 0; i <= first.size(); ++i) {

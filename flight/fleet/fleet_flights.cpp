@@ -14,12 +14,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Random numbers apart from those of single flights.
+/// Random number streams separate from those of single flights.
 constexpr std::uint64_t stream_of_fleets = 4ULL << 32, stream_of_sorties = 5ULL << 32;
 
 struct Track {
   std::size_t vehicle = 0;
-  std::ptrdiff_t begin = 0;  ///< in steps
+  std::ptrdiff_t begin = 0;  ///< In steps.
   std::vector<Vector3d> places;
 };
 
@@ -43,7 +43,7 @@ std::vector<Track> tracks_of(std::span<const FleetFlight> flights, const Separat
   return tracks;
 }
 
-/// While both are in the air.
+/// Returns the minimum distance while both are in the air [m].
 double least_distance(const Track& one, const Track& other) {
   const auto end = [](const Track& track) {
     return track.begin + static_cast<std::ptrdiff_t>(track.places.size());

@@ -1,5 +1,5 @@
-/// A fleet's sorties flown in the simulator, all at once and many times: each time in another wind,
-/// each vehicle early or late by some of the tolerance.
+/// Simulation of all sorties of a fleet together, repeated with random wind and random deviations
+/// from the timetable within the tolerance.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,24 @@
 
 namespace skycap::flight {
 
-/// A sortie as its file has it, and its place in the timetable.
+/// Sortie from its file, with its timetable entry.
 struct FleetFlight {
   FlownMission mission;
   std::size_t vehicle = 0;
-  double start = 0.0;  ///< [s]
+  double start = 0.0;  ///< Start time [s].
 };
 
 struct FleetFlightTest {
-  std::size_t flown = 0;      ///< times; fewer than asked for if it was stopped
-  std::size_t nearer = 0;     ///< times that two vehicles came nearer than `limit`
-  double limit = 0.0;         ///< [m]
-  double least = 0.0;         ///< distance of any two in the air, in all flights [m]
-  double least_median = 0.0;  ///< the median of the least of each [m]
+  std::size_t flown = 0;   ///< Number of simulations. Fewer than requested after a stop.
+  std::size_t nearer = 0;  ///< Number of simulations with a distance below `limit`.
+  double limit = 0.0;      ///< Minimum permitted distance [m].
+  double least = 0.0;  ///< Minimum distance of two vehicles in the air, over all simulations [m].
+  double least_median = 0.0;  ///< Median of the minimum distances of the simulations [m].
 };
 
-/// Flies all sorties options.flights times. Two vehicles may come as near as the rule says less
-/// `strays`, by which both together may be off their places: the rule is about places by plan.
-/// Nobody is called home. The same for any number of threads.
+/// Simulates all sorties options.flights times. The minimum distance is that of the rule, which
+/// refers to planned positions, minus `strays`, the total position error of two vehicles [m]. No
+/// vehicle is recalled. The result does not depend on the number of threads.
 FleetFlightTest fly_fleet(std::span<const FleetFlight> flights, const SeparationRule& rule,
                           double strays, const FlyTestOptions& options);
 

@@ -1,11 +1,11 @@
-/// What a fleet's flights are to be short in.
+/// Objective of a fleet's flights.
 #pragma once
 
 namespace skycap::flight {
 
 enum class FleetGoal {
-  makespan,  ///< until the last vehicle has landed
-  flown,     ///< the time of all vehicles in the air together
+  makespan,  ///< Time until the last landing.
+  flown,     ///< Total time of all vehicles in the air.
 };
 
 }  // namespace skycap::flight

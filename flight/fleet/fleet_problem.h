@@ -1,4 +1,4 @@
-/// Stations that several vehicles share, and what each part of a flight takes each of them.
+/// Waypoints shared by several vehicles, and the cost of each part of a flight per vehicle.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@ namespace skycap::flight {
 
 using PartCost = SplitProblem::Cost;
 
-/// What one vehicle's flights are made of, from its own pad; by station.
+/// Costs of the flights of one vehicle from its own pad, per waypoint.
 struct FleetVehicle {
-  std::vector<PartCost> out;      ///< pad to station, take-off included
-  std::vector<PartCost> station;  ///< what is done there
-  std::vector<PartCost> back;     ///< station to pad, landing included
-  std::vector<PartCost> legs;     ///< from station i to station j at [i * count + j]
+  std::vector<PartCost> out;      ///< Pad to waypoint, including take-off.
+  std::vector<PartCost> station;  ///< Stop at the waypoint.
+  std::vector<PartCost> back;     ///< Waypoint to pad, including landing.
+  std::vector<PartCost> legs;     ///< Leg from waypoint i to waypoint j at [i * count + j].
   double energy_per_sortie = 0.0;
   std::size_t stations_per_sortie = 0;
 
@@ -25,7 +25,7 @@ struct FleetVehicle {
   PartCost& leg(std::uint32_t i, std::uint32_t j) { return legs[i * count() + j]; }
 };
 
-/// One vehicle at least; all with the same stations.
+/// Costs of at least one vehicle, all with the same waypoints.
 struct FleetProblem {
   std::vector<FleetVehicle> vehicles;
 

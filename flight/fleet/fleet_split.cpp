@@ -24,7 +24,7 @@ SplitProblem split_problem(const FleetVehicle& vehicle, std::span<const std::uin
   return problem;
 }
 
-/// Of all stations in one sortie; infinite if its battery does not allow that.
+/// Returns the time of one sortie to all waypoints [s], infinite if the battery does not suffice.
 double sortie_time(const FleetVehicle& vehicle, std::span<const std::uint32_t> stations) {
   if (stations.size() > vehicle.stations_per_sortie) return never;
   PartCost sum = vehicle.out[stations.front()];
@@ -51,7 +51,7 @@ FleetSplit added_up(std::vector<FleetPart> parts) {
   return split;
 }
 
-/// Two figures of a split, that of the goal first.
+/// Objectives of a split, compared with the goal first.
 struct Worth {
   double makespan = 0.0, flown = 0.0;
 
@@ -77,7 +77,8 @@ FleetSplit split_among(const FleetProblem& problem, std::span<const std::uint32_
                        FleetGoal goal) {
   const std::size_t count = order.size(), vehicles = problem.vehicles.size();
   constexpr Worth none{never, never};
-  std::vector<Worth> best(count + 1, none);  // of the stations before i, by the vehicles so far
+  // For the waypoints before i, with the vehicles so far.
+  std::vector<Worth> best(count + 1, none);
   best[0] = {};
   std::vector<std::vector<std::size_t>> first_of(vehicles, std::vector<std::size_t>(count + 1));
   for (std::size_t v = 0; v < vehicles; ++v) {
@@ -86,7 +87,7 @@ FleetSplit split_among(const FleetProblem& problem, std::span<const std::uint32_
       if (best[first].flown == never) continue;
       for (std::size_t end = first; end <= count; ++end) {
         const double time = part_time(problem.vehicles[v], order.subspan(first, end - first));
-        if (time == never) break;  // more stations take more
+        if (time == never) break;  // More waypoints only take longer.
         const Worth worth{std::max(best[first].makespan, time), best[first].flown + time};
         if (!worth.is_better_than(next[end], goal)) continue;
         next[end] = worth;

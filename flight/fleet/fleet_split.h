@@ -1,10 +1,10 @@
-/// Shares an order of stations out among vehicles: route first, split second, then exchanges by
-/// chance (simulated annealing) and by gain.
+/// Assignment of ordered waypoints to vehicles: route first, cluster second, followed by random
+/// exchanges (simulated annealing) and improving exchanges.
 ///
-/// The split of a given order is exact (dynamic programming, as Beasley 1983 for one vehicle; for
-/// the longest of several, as the linear partition problem). The exchange then moves stations,
-/// swaps them and swaps the tails of two vehicles' orders (2-opt*, Potvin & Rousseau 1995) as long
-/// as that helps.
+/// The split of a given order is exact: dynamic programming, as in Beasley 1983 for one vehicle,
+/// and as in the linear partition problem for the makespan. The exchanges then move waypoints, swap
+/// them and swap the tails of two vehicles' orders (2-opt*, Potvin & Rousseau 1995) while that
+/// improves the goal.
 #pragma once
 
 #include <cstdint>
@@ -16,49 +16,50 @@
 
 namespace skycap::flight {
 
-/// What one vehicle flies, sortie after sortie.
+/// Part of one vehicle, in one or more sorties.
 struct FleetPart {
-  std::vector<std::uint32_t> stations;  ///< in the order flown
-  double time = 0.0;                    ///< of all its sorties [s]
+  std::vector<std::uint32_t> stations;  ///< In flight order.
+  double time = 0.0;                    ///< Total time of its sorties [s].
 };
 
 struct FleetSplit {
-  std::vector<FleetPart> parts;  ///< by vehicle; empty if some station can be served by none
-  double makespan = 0.0;         ///< the longest of their times [s]
-  double flown = 0.0;            ///< all of them together [s]
+  /// One part per vehicle. Empty if no vehicle can serve one of the waypoints.
+  std::vector<FleetPart> parts;
+  double makespan = 0.0;  ///< Maximum time of all vehicles [s].
+  double flown = 0.0;     ///< Total time of all vehicles [s].
 };
 
-/// What a vehicle takes for stations in that order, in one sortie if its battery allows that, else
-/// in the fastest split; infinite if it cannot serve them.
+/// Returns the time of a vehicle for waypoints in the given order [s]: one sortie if the battery
+/// suffices, otherwise the fastest split. Infinite if the vehicle cannot serve them.
 double part_time(const FleetVehicle& vehicle, std::span<const std::uint32_t> stations);
 
-/// The best split of the order into one run of stations for each vehicle, the first vehicle's
-/// first: the least of the goal, and of such splits the least of the other. O(count^2) part_time()
-/// for each vehicle.
+/// Returns the best split of the order into one run of waypoints per vehicle, in the order of
+/// vehicles. It minimises the goal and, among equal splits, the other objective. Needs O(count^2)
+/// calls of part_time() per vehicle.
 FleetSplit split_among(const FleetProblem& problem, std::span<const std::uint32_t> order,
                        FleetGoal goal);
 
-/// The order's sorties, as the first vehicle would fly them, each given to the vehicle that will
-/// have landed first with it, the longest sortie first (Graham 1969, "longest processing time").
+/// Splits the order into sorties of the first vehicle. Each sortie, longest first, is assigned to
+/// the vehicle that finishes it first (Graham 1969, "longest processing time").
 FleetSplit share_sorties(const FleetProblem& problem, std::span<const std::uint32_t> order);
 
-/// The split after exchanges between vehicles, and within, until none helps. Never worse by the
-/// goal. Deterministic.
+/// Returns the split after exchanges between and within vehicles until none improves it. Never
+/// worse in the goal. Deterministic.
 FleetSplit exchanged(const FleetProblem& problem, FleetSplit split, FleetGoal goal);
 
-/// The best that random exchanges between vehicles, and within, came by, at first with losses and
-/// ever less so. A fixed number of moves, 30,000 for each station (fewer from hundreds on);
-/// deterministic: each `chain` draws other numbers.
+/// Returns the best split found by simulated annealing with exchanges between and within vehicles.
+/// The number of moves is fixed: 30,000 per waypoint, fewer for hundreds of waypoints.
+/// Deterministic: `chain` selects the random numbers.
 FleetSplit annealed(const FleetProblem& problem, FleetSplit split, FleetGoal goal,
                     std::uint64_t chain = 0);
 
-/// Annealings that are seldom all in vain: of a city block's 36 stations every fourth or so comes
-/// by the best known.
+/// Number of annealing chains that rarely all fail: with the 36 waypoints of a city block, about
+/// one chain in four finds the best known split.
 inline constexpr std::size_t thorough = 12;
 
-/// The best of both splits of an order, each after its exchanges, and of so many annealings of the
-/// better one, exchanged again. Empty parts if there is none. The same for any number of `threads`
-/// (0: all processors).
+/// Returns the best result for an order. Both splits are improved by exchanges. The better one is
+/// then annealed in `chains` chains, each followed by exchanges. Parts are empty if no split
+/// exists. The result does not depend on `threads` (0: all processors).
 FleetSplit share_among(const FleetProblem& problem, std::span<const std::uint32_t> order,
                        FleetGoal goal, std::size_t chains = thorough, unsigned threads = 0);
 

@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Places follow from times by a handful of multiplications; for coordinates below 10 km they and
-/// their distances are right to this [m].
+/// Rounding bound of positions and distances [m], for coordinates below 10 km. Positions result
+/// from a few multiplications.
 constexpr double rounding = 1e-6;
-/// Shorter spans are not halved: a vehicle at 20 m/s moves 0.2 mm in one [s].
+/// Minimum span to subdivide [s]. A vehicle at 20 m/s moves 0.2 mm in it.
 constexpr double shortest_span = 1e-5;
-constexpr double precision = 1e-3;  ///< of proven_distance() [m]
+constexpr double precision = 1e-3;  ///< Precision of proven_distance() [m].
 
 struct Span {
   double begin = 0.0, end = 0.0;
@@ -26,11 +26,11 @@ struct Span {
   double middle() const { return 0.5 * (begin + end); }
 };
 
-/// A leg's motion, or the wait at its end.
+/// Motion along a leg, or the wait at its end.
 struct Piece {
   const ScriptedLeg* leg;
-  Span span;         ///< by the timetable
-  double leg_begin;  ///< [s]
+  Span span;         ///< In timetable time.
+  double leg_begin;  ///< Start of the leg [s].
   double jerk;
 
   Vector3d at(double time) const {
@@ -51,11 +51,11 @@ std::vector<Piece> pieces_of(const TimedFlight& flight) {
   return pieces;
 }
 
-/// Looks for the nearest encounter of two flights.
+/// Search for the closest encounter of two flights.
 class Search {
  public:
-  /// Each at its own time, which differ by at most `lag`. Encounters of `up_to` or more are of no
-  /// interest, and with `takes_any` the first that is nearer will do.
+  /// The flights' own times differ by at most `lag` [s]. Encounters at `up_to` [m] or more are
+  /// ignored. With `takes_any`, the first closer encounter ends the search.
   Search(double lag, double up_to, bool takes_any) : lag_(lag), takes_any_(takes_any) {
     nearest_.distance = up_to;
     bound_ = up_to;
@@ -80,7 +80,7 @@ class Search {
 
   void look(const Piece& one, Span span, const Piece& other, Span window) {
     if (is_done()) return;
-    // Only the times at which both may be there.
+    // Restricts both spans to times that can coincide.
     window = {std::max(window.begin, span.begin - lag_), std::min(window.end, span.end + lag_)};
     if (window.end < window.begin) return;
     span = {std::max(span.begin, window.begin - lag_), std::min(span.end, window.end + lag_)};
@@ -104,7 +104,7 @@ class Search {
     }
   }
 
-  /// An encounter that is possible: one vehicle at a time, the other within the lag of it.
+  /// Evaluates a possible encounter: one vehicle at a fixed time, the other within the lag of it.
   void meet(const Piece& one, double time, const Piece& other, const Span& window) {
     const Span together{std::max(window.begin, time - lag_), std::min(window.end, time + lag_)};
     if (together.end < together.begin) return;
@@ -112,7 +112,7 @@ class Search {
     take(time, flight::nearest(other.between(together), place));
   }
 
-  /// Spans too short to tell whether it is near enough count as an encounter.
+  /// Counts a span that is too short for a decision as an encounter.
   void settle(const Piece& one, const Span& span, const Piece& other, const Span& window,
               double bound) {
     bound_ = std::min(bound_, bound - rounding);

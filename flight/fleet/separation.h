@@ -1,10 +1,10 @@
-/// How near two vehicles come to each other, proven for all times at once.
+/// Verified distance between two vehicles over all times.
 ///
-/// A vehicle on a straight leg moves forward only. Within any span of time it is therefore on the
-/// part of the leg between its places at both ends of the span, whatever its speed is in between,
-/// and the distance of two vehicles is no less than that of two such parts. Spans are halved until
-/// that lower bound is large enough, or until a place is found that is too near: the bound goes to
-/// the exact distance as spans go to nothing.
+/// A vehicle on a straight leg only moves forward. Within a time span it is on the part of the leg
+/// between its positions at both ends of the span, regardless of its speed profile. The distance of
+/// two vehicles is therefore at least that of two such parts. Spans are halved until this lower
+/// bound suffices or a violation is found. The bound converges to the exact distance as spans
+/// shrink.
 #pragma once
 
 #include <optional>
@@ -15,39 +15,41 @@
 
 namespace skycap::flight {
 
-/// A sortie with its place in the timetable.
+/// Sortie with its timetable entry.
 struct TimedFlight {
   FlightScript script;
-  double jerk = 0.0;   ///< of the vehicle that flies it, see set_point() [m/s^3]
-  double start = 0.0;  ///< leaves the pad [s]
+  double jerk = 0.0;   ///< Jerk of the vehicle, see set_point() [m/s^3].
+  double start = 0.0;  ///< Departure from the pad [s].
 
   double landing() const { return start + duration(script); }
 };
 
-/// What is asked of two flights.
+/// Requirements for two flights.
 struct SeparationRule {
-  double distance = 10.0;  ///< between their places, which errors are a part of [m]
-  double tolerance = 0.0;  ///< each may be so much early or late all along, or lately [s]
+  /// Minimum distance of the planned positions, including position errors [m].
+  double distance = 10.0;
+  /// Maximum deviation from the timetable, early or late, at any time [s].
+  double tolerance = 0.0;
 };
 
-/// Two places that the timetable allows two vehicles to be at together.
+/// Two positions that the timetable permits at the same time.
 struct Encounter {
-  double distance = 0.0;  ///< [m]
-  double time = 0.0;      ///< of the first of the two, by the timetable [s]
+  double distance = 0.0;  ///< Distance [m].
+  double time = 0.0;      ///< Timetable time of the first vehicle [s].
   Eigen::Vector3d first = Eigen::Vector3d::Zero(), second = Eigen::Vector3d::Zero();
 };
 
-/// An encounter nearer than the rule asks for; nothing if it is proven that there is none: wherever
-/// within the tolerance of its timetable each vehicle is, at all times when both fly.
+/// Returns an encounter that violates the rule. Returns std::nullopt if none exists for any
+/// deviation within the tolerance, verified for all times when both vehicles fly.
 std::optional<Encounter> too_near(const TimedFlight& first, const TimedFlight& second,
                                   const SeparationRule& rule);
 
-/// A proven lower bound for all encounters within the tolerance, at most `up_to`, and less than a
-/// millimetre below the least [m].
+/// Returns a verified lower bound for all encounters within the tolerance [m]. It is at most
+/// `up_to` and less than 1 mm below the minimum.
 double proven_distance(const TimedFlight& first, const TimedFlight& second, double tolerance,
                        double up_to);
 
-/// Least distance of any place of a flight from a place on the ground [m].
+/// Returns the minimum distance between a flight and a position on the ground [m].
 double distance_from(const FlightScript& script, const Eigen::Vector3d& place);
 
 }  // namespace skycap::flight

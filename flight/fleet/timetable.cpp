@@ -10,10 +10,11 @@
 namespace skycap::flight {
 namespace {
 
-constexpr double later_by = 1.0;                ///< what a start is put off by [s]
-constexpr std::size_t most_in_every_order = 5;  ///< vehicles: 120 sequences
+constexpr double later_by = 1.0;  ///< Increment of a start time [s].
+/// Number of vehicles up to which all sequences are tried: 120 for five.
+constexpr std::size_t most_in_every_order = 5;
 
-/// Gives starts, one sequence of vehicles after another.
+/// Assigns start times for one sequence of vehicles after another.
 class Scheduler {
  public:
   Scheduler(const std::vector<FleetSortie>& sorties, std::size_t vehicles,
@@ -50,10 +51,10 @@ class Scheduler {
   }
 
  private:
-  /// What a vehicle may fly: its sorties in their order.
+  /// Possible flight of a vehicle: its sorties in order.
   struct Variant {
     std::vector<std::size_t> sorties;
-    double work = 0.0;  ///< of them all [s]
+    double work = 0.0;  ///< Total duration [s].
   };
 
   double least_work(std::size_t vehicle) const {
@@ -62,8 +63,8 @@ class Scheduler {
     return least;
   }
 
-  /// The vehicles in turn, a sortie each, until all have their starts; nothing if that is not
-  /// sooner done than `below`.
+  /// Schedules one sortie per vehicle in turn until all are scheduled. Returns std::nullopt unless
+  /// the makespan is below `below`.
   std::optional<Timetable> by_turns(const std::vector<std::size_t>& turns, double below) {
     Timetable table{.starts = std::vector<double>(sorties_.size(), 0.0),
                     .variants = std::vector<std::size_t>(of_.size(), 0)};
@@ -90,7 +91,7 @@ class Scheduler {
     return table;
   }
 
-  /// The variant that has landed first if nothing but its first start is put off.
+  /// Returns the variant that lands first if only its first start is delayed.
   std::size_t soonest(std::size_t vehicle, const std::vector<std::size_t>& placed,
                       const std::vector<double>& starts) {
     std::size_t best = 0;
@@ -105,7 +106,7 @@ class Scheduler {
 
   double first_start(std::size_t i, double ready, const std::vector<std::size_t>& placed,
                      const std::vector<double>& starts) {
-    double last = ready;  // from then on it is alone in the air, early or late
+    double last = ready;  // After this time, it is alone in the air, whether early or late.
     for (const std::size_t j : placed) {
       last = std::max(last, starts[j] + durations_[j] + std::ceil(2.0 * rule_.tolerance) + 1.0);
     }
@@ -120,7 +121,8 @@ class Scheduler {
     return last;
   }
 
-  /// Depends on the difference of both starts alone, and is asked again and again.
+  /// Returns true if two flights are separated. Cached, because it depends only on the difference
+  /// of the start times.
   bool is_apart(std::size_t i, double start, std::size_t j, double other) {
     const auto key = std::make_tuple(i, j, start - other);
     if (const auto known = known_.find(key); known != known_.end()) return known->second;
@@ -140,8 +142,8 @@ class Scheduler {
 
   const std::vector<FleetSortie>& sorties_;
   SeparationRule rule_;
-  std::vector<std::vector<Variant>> of_;  ///< by vehicle
-  std::vector<double> durations_;         ///< in whole seconds, rounded up
+  std::vector<std::vector<Variant>> of_;  ///< By vehicle.
+  std::vector<double> durations_;         ///< In whole seconds, rounded up.
   std::map<std::tuple<std::size_t, std::size_t, double>, bool> known_;
 };
 

@@ -1,4 +1,4 @@
-/// When each sortie of a fleet takes off, so that no two vehicles come too near to each other.
+/// Take-off times of a fleet's sorties that keep all vehicles separated.
 #pragma once
 
 #include <cstddef>
@@ -9,29 +9,32 @@
 
 namespace skycap::flight {
 
-/// A sortie that is to be given a start.
+/// Sortie without a start time.
 struct FleetSortie {
   std::size_t vehicle = 0;
-  std::size_t number = 0;  ///< of its vehicle's sorties, which are flown in that order
+  /// Index within the sorties of its vehicle, which are flown in that order.
+  std::size_t number = 0;
   FlightScript script;
-  double jerk = 0.0;  ///< see TimedFlight
+  double jerk = 0.0;  ///< See TimedFlight.
   std::size_t variant =
-      0;  ///< of all its vehicle may fly: one of them is flown, with all its sorties
+      /// Variant of the vehicle's flight. Each vehicle flies all sorties of exactly one variant.
+      0;
 };
 
 struct Timetable {
-  std::vector<double> starts;         ///< by sortie [s]; of variants that are not flown 0
-  std::vector<std::size_t> variants;  ///< by vehicle: which of them it flies
-  double makespan = 0.0;              ///< until the last landing [s]
-  double delay = 0.0;                 ///< of the last landing, beside no separation at all [s]
+  std::vector<double> starts;  ///< Start of each sortie [s], 0 for sorties of other variants.
+  std::vector<std::size_t> variants;  ///< Selected variant of each vehicle.
+  double makespan = 0.0;              ///< Time of the last landing [s].
+  double delay = 0.0;  ///< Delay of the last landing compared with no separation [s].
 };
 
-/// Starts of all sorties: none too near to another, a vehicle's next sortie begun when the one
-/// before has landed (batteries are changed in no time). Vehicles take turns in every sequence, or
-/// those with the longest work first if there are more than five; each sortie starts at the first
-/// whole second after its vehicle is ready at which it is proven against all before it, at the
-/// latest when all those have landed. Of its variants a vehicle flies the one that lands first so.
-/// The sequence with the least makespan wins.
+/// Computes start times such that all sorties are separated and a vehicle's next sortie starts
+/// after the previous landing (battery changes take no time).
+///
+/// Vehicles are scheduled in every possible sequence, or longest work first if there are more than
+/// five. Each sortie starts at the first whole second at which it is verified against all earlier
+/// ones, at the latest after their landings. A vehicle flies the variant that lands first. The
+/// sequence with the minimum makespan wins.
 Timetable timetable(const std::vector<FleetSortie>& sorties, std::size_t vehicles,
                     const SeparationRule& rule);
 

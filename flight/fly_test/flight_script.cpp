@@ -12,13 +12,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The shorter way from one heading to another [rad]; nothing to do where one is not given.
+/// Returns the shorter rotation between two headings [rad], 0 if one is not given.
 double turn_between(double from_deg, double to_deg) {
   if (std::isnan(from_deg) || std::isnan(to_deg)) return 0.0;
   return std::remainder(to_deg - from_deg, 360.0) * geometry::radians_per_degree;
 }
 
-/// Follows a route's pieces, and its stops beside them.
+/// Converts a route's pieces and stops to a script.
 class ScriptWriter {
  public:
   ScriptWriter(const FlownRoute& route, const Motion& motion) : route_(route), motion_(motion) {}
@@ -48,7 +48,8 @@ class ScriptWriter {
     return leg;
   }
 
-  /// Whether a piece is straight down and the last, or goes on into the last.
+  /// Returns true if a piece is vertically downwards and is the last one, or continues into the
+  /// last one.
   bool is_landing(std::size_t i) const {
     const auto is_down = [&](const FlownPiece& piece) {
       const Vector3d way = piece.to - piece.start.to;
@@ -59,7 +60,8 @@ class ScriptWriter {
     return i == last || (i + 1 == last && is_down(route_.pieces[i]));
   }
 
-  /// What turning vehicle and gimbal takes longer than the leg. MAVLink files wait for that.
+  /// Returns the additional time of vehicle and gimbal rotation beyond the leg [s], for which
+  /// MAVLink missions wait.
   double turning(const FlownPiece& piece, double moving) {
     if (next_stop_ == route_.stops.size()) return 0.0;
     const FlownStop& stop = route_.stops[next_stop_];
@@ -72,7 +74,8 @@ class ScriptWriter {
     return motion_.aimed_time(moving, yaw, pitch) - moving;
   }
 
-  /// The vehicle's motion where the file sets another speed than the mission's.
+  /// Returns the vehicle's motion at the speed set in the file, if it is lower than that of the
+  /// mission.
   const Motion& motion_at(double speed) {
     if (std::isnan(speed) || speed >= motion_.conditions().cruise_speed) return motion_;
     Conditions conditions = motion_.conditions();
@@ -88,8 +91,8 @@ class ScriptWriter {
   double yaw_deg_ = not_given, pitch_deg_ = not_given;
 };
 
-/// The motion along the leg, `time` after it began; the leg's time is the law's, its shape that of
-/// seven phases.
+/// Returns the state `time` after the start of the leg. The duration is that of the leg law, the
+/// shape that of seven phases.
 MotionState state_on(const ScriptedLeg& leg, double jerk, double time) {
   const double distance = (leg.to - leg.from).norm();
   const double own = rest_to_rest_time(distance, leg.speed, leg.acceleration, jerk);

@@ -1,7 +1,6 @@
-/// What a vehicle is told to do on a flight: straight legs in time, with waits between.
+/// Time-stamped flight commands: straight legs with waits in between.
 ///
-/// The motion along a leg is that of rest_to_rest_state() in the time that the autopilot's law
-/// takes for it.
+/// The motion along a leg is that of rest_to_rest_state(), in the time of the autopilot's leg law.
 #pragma once
 
 #include <array>
@@ -16,44 +15,44 @@
 
 namespace skycap::flight {
 
-/// One straight leg, from rest to rest.
+/// Straight leg from rest to rest.
 struct ScriptedLeg {
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
-  double moving = 0.0;                 ///< from rest to rest [s]
-  double wait = 0.0;                   ///< at its end: to settle, turn and photograph [s]
-  double speed = 0.0;                  ///< its limit [m/s]
-  double acceleration = 0.0;           ///< its limit [m/s^2]
-  bool is_over_pad = false;            ///< where the ground is no obstacle
-  std::array<std::string, 2> items{};  ///< of the file that it leads between
+  double moving = 0.0;                 ///< Time in motion [s].
+  double wait = 0.0;                   ///< Wait at the end for settling, rotation and captures [s].
+  double speed = 0.0;                  ///< Speed limit [m/s].
+  double acceleration = 0.0;           ///< Acceleration limit [m/s^2].
+  bool is_over_pad = false;            ///< True above the pad, where the ground is not an obstacle.
+  std::array<std::string, 2> items{};  ///< Mission items at the start and end of the leg.
 
   double duration() const { return moving + wait; }
 };
 
 using FlightScript = std::vector<ScriptedLeg>;
 
-/// How long all of it takes [s].
+/// Returns the duration of the script [s].
 double duration(const FlightScript& script);
 
-/// Where the vehicle shall be `time` after the leg began, waits included.
+/// Returns the setpoint at `time` [s] after the start of the leg, waits included.
 SetPoint set_point(const ScriptedLeg& leg, double jerk, double time);
 
-/// The set point when a leg is given up `time` after it began: braking at the leg's acceleration,
-/// on it and no farther than its end, `braking` later.
+/// Returns the setpoint `braking` [s] after a leg was aborted at `time` [s]. The vehicle brakes
+/// along the leg with its acceleration, at most to its end.
 SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double braking);
 
-/// How long that braking takes [s].
+/// Returns the braking time after an abort at `time` [s].
 double braking_time(const ScriptedLeg& leg, double jerk, double time);
 
-/// A leg from rest to rest in the time of `motion`, without a wait.
+/// Returns a leg from rest to rest with the duration from `motion`, without a wait.
 ScriptedLeg scripted_leg(const Motion& motion, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& to);
 
-/// A part of the descent to the ground at z = `foot`, from where it begins down to z = `end`: at
-/// the speed of landings where it is low, and until the motors stop where it ends there.
+/// Returns a part of the descent from `from` to z = `end`, above ground at z = `foot` [m]. Near the
+/// ground it uses the landing speed. If it ends on the ground, it lasts until the motors stop.
 ScriptedLeg landing_leg(const Motion& motion, const Eigen::Vector3d& from, double end, double foot);
 
-/// The flight of a route that was read from a file, as the vehicle of `motion` flies it. Legs that
-/// may begin in several places begin in the last of them.
+/// Returns the flight of a route file with the vehicle of `motion`. Legs with several possible
+/// start positions use the last one.
 FlightScript script_of(const FlownRoute& route, const Motion& motion);
 
 }  // namespace skycap::flight

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Streams of random numbers, apart from those of the flights themselves.
+/// Random number streams separate from those of the flights.
 constexpr std::uint64_t stream_of_draws = 1ULL << 32, stream_of_places = 2ULL << 32,
                         stream_of_returns = 3ULL << 32;
 
@@ -31,7 +31,8 @@ FlightDraw draw_of(std::size_t number, const FlownMission& mission, const FlyTes
   return draw;
 }
 
-/// Where returns begin: spread evenly over the legs, and where the flight is at every second.
+/// Returns the start positions of returns: evenly distributed over the legs, and at every second of
+/// the flight.
 std::vector<Vector3d> places_of(const FlownMission& mission, const FlyTestOptions& options) {
   std::vector<Vector3d> places;
   double length = 0.0;
@@ -61,8 +62,8 @@ std::vector<Vector3d> places_of(const FlownMission& mission, const FlyTestOption
   return places;
 }
 
-/// How near the way home from a place comes to anything; what the pilot vouches for over the pad
-/// excepted.
+/// Returns the closest approach of a return to an obstacle. Excludes the column above the pad that
+/// the pilot must check.
 Closest nearest_return(const ReturnLaw& law, const std::vector<Vector3d>& way, const Judge& judge,
                        double up_to) {
   Closest nearest{up_to};

@@ -1,6 +1,5 @@
-/// A mission flown many times in the simulator, each time in another wind and every second time
-/// called home at a random moment; and the returns from many places, as straight as autopilots are
-/// told to fly them.
+/// Repeated simulation of a mission in random wind. Every second flight is recalled at a random
+/// time. Additional returns are flown from many positions along the exact lines of the law.
 #pragma once
 
 #include <cstdint>
@@ -15,42 +14,45 @@ namespace skycap::flight {
 
 struct FlyTestOptions {
   std::size_t flights = 100;
-  std::size_t returns = 0;      ///< from places at random; more begin at every second of the flight
-  double wind_speed = 5.0;      ///< the strongest steady wind, from any side [m/s]
-  double position_error = 0.1;  ///< greatest [m]
-  double up_to = 12.0;          ///< distances beyond are of no interest [m]
+  /// Number of random start positions. Further returns start at every second of the flight.
+  std::size_t returns = 0;
+  double wind_speed = 5.0;      ///< Maximum steady wind speed, from any direction [m/s].
+  double position_error = 0.1;  ///< Maximum navigation error [m].
+  double up_to = 12.0;          ///< Distance limit: larger distances are ignored [m].
   std::uint64_t seed = 1;
-  unsigned threads = 0;                             ///< zero: all processors
-  std::function<void(std::size_t flights)> report;  ///< called by one thread at a time
+  unsigned threads = 0;  ///< 0: all processors.
+  /// Progress callback, called by one thread at a time.
+  std::function<void(std::size_t flights)> report;
   std::stop_token stop{};
 };
 
-/// One flight, what it drew, and what came of it.
+/// One flight with its random values and results.
 struct TestFlight {
   FlightDraw draw;
   SimulatedFlight flown;
 };
 
-/// Returns against one judge.
+/// Results of the returns for one judge.
 struct ReturnTest {
   std::size_t flown = 0;
-  std::size_t nearer = 0;                          ///< than the judge allows
-  Closest nearest{};                               ///< of all
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< where that return began
+  std::size_t nearer = 0;  ///< Number of returns that violate the judge's limit.
+  Closest nearest{};       ///< Minimum distance of all returns.
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< Start of that return.
 };
 
 struct FlyTest {
-  double planned_time = 0.0;        ///< of the script, in calm air [s]
-  std::vector<TestFlight> flights;  ///< by number; fewer than asked for if it was stopped
-  std::vector<ReturnTest> returns;  ///< by judge
+  double planned_time = 0.0;  ///< Duration of the script in calm air [s].
+  /// In order of their numbers. Fewer than requested after a stop.
+  std::vector<TestFlight> flights;
+  std::vector<ReturnTest> returns;  ///< One entry per judge.
   bool is_complete = true;
 };
 
-/// The same for any number of threads.
+/// Runs the test. The result does not depend on the number of threads.
 FlyTest fly_test(const FlownMission& mission, std::span<const Judge> judges,
                  const FlyTestOptions& options);
 
-/// How many of the flights came nearer than that judge allows.
+/// Returns the number of flights that violate the limit of a judge.
 std::size_t flights_nearer(const FlyTest& test, std::span<const Judge> judges, std::size_t judge);
 
 }  // namespace skycap::flight

@@ -5,7 +5,7 @@
 namespace skycap::flight {
 namespace {
 
-/// Looking farther than to the nearest so far spares the steps after this one [m].
+/// Search distance beyond the current minimum, which saves queries for later steps [m].
 constexpr double look_ahead = 2.0;
 
 }  // namespace

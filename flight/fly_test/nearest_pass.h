@@ -1,4 +1,4 @@
-/// How near a long path of short steps comes to anything.
+/// Minimum distance of a long path of short steps from obstacles.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,14 +7,14 @@
 
 namespace skycap::flight {
 
-/// Distances change by no more than the vehicle moves, so only steps are asked for that may be
-/// nearer than all before: the least distance is exact all the same. Keeps a reference.
+/// Exact minimum distance with few queries. Since a distance changes by no more than the vehicle
+/// moves, only steps that may undercut the minimum are evaluated. Keeps a reference to the space.
 class NearestPass {
  public:
-  /// Nothing farther than `up_to` is of interest.
+  /// Distances above `up_to` [m] are ignored.
   NearestPass(const FreeSpace& space, double up_to) : space_(space) { nearest_.distance = up_to; }
 
-  /// Goes one step further. Whether it is the nearest so far.
+  /// Processes the next step. Returns true if it is the closest so far.
   bool pass(const Segment& step);
 
   const Closest& nearest() const { return nearest_; }
@@ -23,7 +23,7 @@ class NearestPass {
   const FreeSpace& space_;
   Closest nearest_{};
   Eigen::Vector3d known_at_ = Eigen::Vector3d::Zero();
-  double known_free_ = -1.0;  ///< around `known_at_`; negative: nothing is known
+  double known_free_ = -1.0;  ///< Free radius around `known_at_` [m]. Negative: unknown.
 };
 
 }  // namespace skycap::flight

@@ -8,17 +8,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// ArduCopter cuts the corner at the top within WP_RADIUS; PX4 ends its climb within NAV_MC_ALT_RAD
-// and begins its descent within NAV_ACC_RAD.
+// ArduCopter cuts the top corner within WP_RADIUS. PX4 ends its climb within NAV_MC_ALT_RAD and
+// starts its descent within NAV_ACC_RAD.
 
-/// DJI's vehicles fly home as high as they are within 20 or 50 m, by model, and land at once within
-/// 5 m, by their own reckoning [m].
+/// Switching distances of DJI vehicles by their own estimate [m]. Within 20 or 50 m, depending on
+/// the model, they fly home at their current altitude. Within 5 m they land on the spot.
 constexpr double dji_least_level = 20.0, dji_most_level = 50.0, dji_landing = 5.0;
 
-/// PX4 holds before a return (COM_FAIL_ACT_T), ArduCopter over home (RTL_LOIT_TIME) [s].
+/// PX4 holds before a return (COM_FAIL_ACT_T), ArduCopter above home (RTL_LOIT_TIME) [s].
 constexpr double px4_hold = 5.0, ardupilot_hold = 5.0;
 
-/// So near the pad's middle a vehicle is over the pad [m].
+/// Maximum distance from the pad centre at which a vehicle counts as above the pad [m].
 constexpr double over_the_pad = 2.0;
 
 double distance_over_ground(const Vector3d& a, const Vector3d& b) {
@@ -33,7 +33,7 @@ Vector3d nearest_landing(const ReturnLaw& law, const Vector3d& place) {
   });
 }
 
-/// Up, round the corner, and level: to the place over the landing.
+/// Adds the climb, the rounded corner and the level flight to the position above the landing point.
 void climb_and_fly(const Vector3d& over, double cut, std::vector<Vector3d>& way) {
   const Vector3d place = way.back();
   const Vector3d level(over.x() - place.x(), over.y() - place.y(), 0.0);
@@ -84,7 +84,7 @@ FlightScript return_script(const ReturnLaw& law, const Motion& motion, const Vec
     script.push_back(leg);
     script.back().is_over_pad = is_over_pad;
   };
-  // Called home while it takes off, it is where the pilot vouches for the air.
+  // A recall during take-off starts in the column that the pilot must check.
   const bool begins_over_pad =
       place.z() < seam && distance_over_ground(place, way.back()) < over_the_pad;
   append({.from = place, .to = place, .wait = dialect == Dialect::px4 ? px4_hold : 1.0},

@@ -1,7 +1,7 @@
-/// The way home as one vehicle flies it: one of the many that ReturnLaw allows, for it leaves open
-/// how far corners are cut, and what DJI's vehicles do within tens of metres of the pad.
+/// Return as flown by one vehicle. ReturnLaw permits many, because it leaves open how corners are
+/// cut and how DJI vehicles behave within tens of metres of the pad.
 ///
-/// Written from the autopilots' sources and manuals (return_law.h), not from the proof.
+/// Implemented from the autopilots' sources and manuals (return_law.h), independently of the proof.
 #pragma once
 
 #include <vector>
@@ -14,13 +14,13 @@
 
 namespace skycap::flight {
 
-/// The corners of the way from a place to the ground, itself the first. The law's dialects must be
-/// one.
+/// Returns the corners of a return from a position to the ground, including the start. The law must
+/// have exactly one dialect.
 std::vector<Eigen::Vector3d> return_way(const ReturnLaw& law, const Eigen::Vector3d& place,
                                         geometry::RandomNumbers& random);
 
-/// That way in time, after a first wait where the vehicle has come to rest. Below
-/// ReturnLaw::landing_climb its descent is over the pad.
+/// Returns that flight as a script, after an initial wait at rest. Below ReturnLaw::landing_climb,
+/// the descent counts as above the pad.
 FlightScript return_script(const ReturnLaw& law, const Motion& motion, const Eigen::Vector3d& place,
                            geometry::RandomNumbers& random);
 

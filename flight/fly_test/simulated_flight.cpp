@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double step = simulation_step;
 
-/// One judge's two passes, over the pad and elsewhere.
+/// Closest approaches for one judge, above the pad and elsewhere.
 struct JudgedPass {
   NearestPass elsewhere, over_pad;
   NearestPlace nearest;
@@ -59,7 +59,7 @@ class Simulation {
  private:
   double jerk() const { return mission_.motion.vehicle().mode.jerk; }
 
-  /// Whether it was called home on the way, and has come to rest.
+  /// Flies a leg. Returns true if the vehicle was recalled and has come to rest.
   bool fly_leg(const ScriptedLeg& leg) {
     const double begin = time_, end = begin + leg.duration();
     const double home = is_on_way_home_ ? end : std::min(end, draw_.called_home.value_or(end));
@@ -87,7 +87,7 @@ class Simulation {
     time_ += step;
     if (track_) track_->push_back(vehicle_.position());
     const Segment line{leg.from, leg.to};
-    if (line.length() > 0.0) {  // it comes to rest on the line of the leg before
+    if (line.length() > 0.0) {  // The vehicle comes to rest on the line of the leg.
       const double off_line = std::sqrt(nearest(line, vehicle_.position()).squared_distance);
       result_.off_line = std::max(result_.off_line, off_line);
     }
@@ -108,10 +108,10 @@ class Simulation {
   double ground_;
   std::deque<JudgedPass> passes_;
   SimulatedFlight result_;
-  std::optional<std::vector<Vector3d>> track_;  ///< if it is asked for
+  std::optional<std::vector<Vector3d>> track_;  ///< Set if the track is requested.
   double time_ = 0.0;
   Vector3d air_ = Vector3d::Zero();
-  Vector3d place_ = Vector3d::Zero();  ///< where it has come to rest, called home
+  Vector3d place_ = Vector3d::Zero();  ///< Position at rest after a recall.
   bool is_on_way_home_ = false;
 };
 

@@ -1,4 +1,4 @@
-/// One flight of a mission in wind, with a receiver's errors, and called home on the way or not.
+/// One flight of a mission in wind with navigation errors, with or without a recall.
 #pragma once
 
 #include <optional>
@@ -14,52 +14,52 @@
 
 namespace skycap::flight {
 
-/// What flights are judged against: what is not free, over the pad and elsewhere, and how near they
-/// may come to it. Keeps references.
+/// Obstacles that flights are judged against, with the distance limits. Keeps references to the
+/// spaces, above the pad and elsewhere.
 struct Judge {
   std::string name;
   const FreeSpace& space;
   const FreeSpace& pad_space;
-  double limit = 0.0;         ///< for flights in weather [m]
-  double return_limit = 0.0;  ///< for returns along the very lines that autopilots are told [m]
+  double limit = 0.0;         ///< Minimum distance of flights with wind and errors [m].
+  double return_limit = 0.0;  ///< Minimum distance of returns along the exact lines of the law [m].
 };
 
-/// A mission's file, ready to be flown.
+/// Mission file prepared for simulation.
 struct FlownMission {
   FlightScript script;
   Motion motion;
-  std::optional<ReturnLaw> law;  ///< of one autopilot; without: it is never called home
+  std::optional<ReturnLaw> law;  ///< Law of exactly one autopilot. Empty: no recalls.
 };
 
-/// What one flight has drawn.
+/// Random values of one flight.
 struct FlightDraw {
   std::uint64_t seed = 0, number = 0;
-  Eigen::Vector2d wind = Eigen::Vector2d::Zero();  ///< [m/s]
-  double position_error = 0.0;                     ///< greatest [m]
-  std::optional<double> called_home;               ///< after this time [s]
+  Eigen::Vector2d wind = Eigen::Vector2d::Zero();  ///< Air velocity [m/s].
+  double position_error = 0.0;                     ///< Maximum navigation error [m].
+  std::optional<double> called_home;               ///< Time of the recall [s].
 };
 
-/// How near it came to anything.
+/// Closest approach of a flight to an obstacle.
 struct NearestPlace {
   Closest closest{};
-  double time = 0.0;  ///< since take-off [s]
+  double time = 0.0;  ///< Time since take-off [s].
   bool is_on_way_home = false;
 };
 
 struct SimulatedFlight {
-  double time = 0.0;                  ///< until the motors stopped [s]
-  double energy = 0.0;                ///< [J]
-  double off_line = 0.0;              ///< farthest from where it was to be on its leg's line [m]
-  std::vector<NearestPlace> nearest;  ///< by judge
+  double time = 0.0;                  ///< Time until the motors stopped [s].
+  double energy = 0.0;                ///< Electrical energy [J].
+  double off_line = 0.0;              ///< Maximum deviation from the line of the leg [m].
+  std::vector<NearestPlace> nearest;  ///< One entry per judge.
 };
 
-/// Time between two places of a simulated flight [s].
+/// Simulation time step [s].
 inline constexpr double simulation_step = 0.04;
 
-/// Where the vehicle is on a flight, step by step, from the pad until its motors stop.
+/// Returns the positions of a flight step by step, from the pad until the motors stop.
 std::vector<Eigen::Vector3d> track_of(const FlownMission& mission, const FlightDraw& draw);
 
-/// Distances are looked for up to `up_to`.
+/// Simulates a flight. Distances are searched up to `up_to` [m].
 SimulatedFlight fly(const FlownMission& mission, const FlightDraw& draw,
                     std::span<const Judge> judges, double up_to);
 

@@ -8,13 +8,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double position_gain = 1.0;    ///< [1/s]
-constexpr double velocity_gain = 2.0;    ///< [1/s]
-constexpr double sum_gain = 0.8;         ///< [1/s^2]
-constexpr double lag = 0.15;             ///< until thrust and tilt follow [s]
-constexpr double most_level = 6.9;       ///< at a tilt of 35 degrees [m/s^2]
-constexpr double most_upright = 5.0;     ///< [m/s^2]
-constexpr double most_correction = 2.0;  ///< of velocity for an error of position [m/s]
+constexpr double position_gain = 1.0;  ///< Proportional gain of the position error [1/s].
+constexpr double velocity_gain = 2.0;  ///< Proportional gain of the velocity error [1/s].
+constexpr double sum_gain = 0.8;       ///< Integral gain of the velocity error [1/s^2].
+constexpr double lag = 0.15;           ///< Lag of thrust and tilt [s].
+/// Maximum horizontal acceleration, at a tilt of 35 degrees [m/s^2].
+constexpr double most_level = 6.9;
+constexpr double most_upright = 5.0;  ///< Maximum vertical acceleration [m/s^2].
+/// Maximum velocity correction for a position error [m/s].
+constexpr double most_correction = 2.0;
 
 Vector3d limited(const Vector3d& acceleration) {
   Vector3d result = acceleration;
@@ -42,7 +44,7 @@ void VehicleModel::fly(const SetPoint& wanted, const Vector3d& error, const Vect
   const Vector3d velocity_error = wanted.velocity + correction - velocity_;
   const Vector3d asked = wanted.acceleration + velocity_gain * velocity_error + sum_;
   const Vector3d allowed = limited(asked);
-  // What the limits cut off is not summed up: it would be flown later as an overshoot.
+  // Errors beyond the limits are not integrated, because they would cause an overshoot.
   if (allowed == asked) sum_ += sum_gain * step * velocity_error;
   thrust_ += (1.0 - std::exp(-step / lag)) * (allowed - thrust_);
 

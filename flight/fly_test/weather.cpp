@@ -10,11 +10,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double feet_per_metre = 3.280839895;
-/// Errors of a receiver with corrections change within about a minute [s].
+/// Correlation time of receivers with corrections [s].
 constexpr double receiver_time = 60.0;
 
-/// What is left of a first-order process after a step, and what comes in anew, in standard
-/// deviations.
+/// Decay factor of a first-order process and standard deviation of its innovation over one step.
 struct Decay {
   double kept, added;
 };
@@ -29,7 +28,7 @@ Decay decay_of(double step, double time) {
 Vector3d Weather::next(double step, double height, double airspeed) {
   const double speed = wind_.norm();
   if (speed == 0.0) return Vector3d::Zero();
-  // MIL-F-8785C, Eqs. for h below 1000 ft; lengths and heights in feet.
+  // MIL-F-8785C, equations for h below 1000 ft. Lengths and heights are in feet.
   const double h = std::clamp(height * feet_per_metre, 10.0, 1000.0);
   const double shape = 0.177 + 0.000823 * h;
   const double sigma_up = 0.1 * speed, sigma_level = sigma_up / std::pow(shape, 0.4);

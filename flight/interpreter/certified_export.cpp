@@ -12,8 +12,8 @@
 namespace skycap::flight {
 namespace {
 
-/// What the climb from the pad has to keep clear of: the rules; what was measured there is for the
-/// pilot to judge.
+/// Returns the obstacles for the climb from the pad: only the rules. The pilot must check measured
+/// obstacles there.
 KnownSpace space_over_pad(const FlightPlan& plan) {
   Obstacles rules;
   rules.no_fly = plan.no_fly;

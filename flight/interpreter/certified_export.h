@@ -1,4 +1,4 @@
-/// Writes flights so that what is on disk is what was proved.
+/// Export of flights with verification of the written file.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,17 @@
 
 namespace skycap::flight {
 
-/// What an export leaves unsaid or undone, for the user to read.
+/// Result of an export with notes for the user.
 struct ExportResult {
-  double min_clearance = 0.0;  ///< proven for the file as read back and rounded [m], see LegProof
+  /// Verified clearance of the rounded file content [m], see LegProof.
+  double min_clearance = 0.0;
   std::vector<std::string> notes;
 };
 
-/// Writes the file under a temporary name, reads it back, interprets it as its target would fly it,
-/// and proves that in `space` again, at the plan's clearance less `rounding_bound`; only then it
-/// gets its name. Throws Error{bad_geometry} if any of that fails: the name then stays as it was.
+/// Writes the file under a temporary name, reads it back and interprets it like its target. The
+/// interpreted flight is verified in `space` at the plan's clearance minus `rounding_bound`, and
+/// only then the file is renamed to `path`. Throws Error{bad_geometry} if any step fails; an
+/// existing file then remains unchanged.
 ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpace& space,
                            const std::filesystem::path& path);
 

@@ -1,45 +1,45 @@
-/// Every MAVLink command that is known here, and what the autopilots do with it in a mission.
+/// Table of all supported MAVLink commands and their effect in a mission.
 ///
 /// Sources: ArduPilot's AP_Mission.cpp (mavlink_int_to_mission_cmd, is_nav_cmd) and ArduCopter's
 /// mode_auto.cpp; PX4's mavlink_mission.cpp (parse_mavlink_mission_item) and mission_block.cpp.
-/// ArduPilot skips commands that it does not know without a word; PX4 refuses the mission.
+/// ArduPilot skips unknown commands silently; PX4 rejects the mission.
 #pragma once
 
 namespace skycap::flight {
 
-/// What the interpreter does with a command.
+/// Effect of a command in the interpreter.
 enum class Meaning {
-  take_off,       ///< climbs from the pad
-  fly_to,         ///< a straight leg, then a hold
-  land,           ///< level to the place, then down
-  wait,           ///< holds where it is
-  turn,           ///< heading of the vehicle
-  set_speed,      ///< limits of speed
-  aim_by_mount,   ///< gimbal, DO_MOUNT_CONTROL
-  aim_by_gimbal,  ///< gimbal, DO_GIMBAL_MANAGER_PITCHYAW
-  take_photo,     ///< IMAGE_START_CAPTURE
-  trigger_photo,  ///< DO_DIGICAM_CONTROL
-  jump,           ///< unrolled
-  hold_fence,     ///< switches the fence on
-  no_motion,      ///< neither moves the vehicle nor aims its camera
-  refused         ///< known to be unsafe or not provable; `why` says it
+  take_off,       ///< Climb from the pad.
+  fly_to,         ///< Straight leg, then a hold.
+  land,           ///< Level flight to the position, then descent.
+  wait,           ///< Hold at the current position.
+  turn,           ///< Heading of the vehicle.
+  set_speed,      ///< Speed limits.
+  aim_by_mount,   ///< Gimbal by DO_MOUNT_CONTROL.
+  aim_by_gimbal,  ///< Gimbal by DO_GIMBAL_MANAGER_PITCHYAW.
+  take_photo,     ///< IMAGE_START_CAPTURE.
+  trigger_photo,  ///< DO_DIGICAM_CONTROL.
+  jump,           ///< Unrolled by the interpreter.
+  hold_fence,     ///< Enables the fence.
+  no_motion,      ///< Affects neither motion nor camera aim.
+  refused         ///< Unsafe or not verifiable, with the reason in `why`.
 };
 
-/// Which autopilots execute a command.
+/// Autopilots that execute a command.
 enum class FlownBy { both, ardupilot, px4 };
 
 struct CommandRow {
-  int id;            ///< MAV_CMD
-  const char* name;  ///< without MAV_CMD_
+  int id;            ///< MAV_CMD.
+  const char* name;  ///< Name without MAV_CMD_.
   Meaning meaning;
   FlownBy flown_by;
-  const char* why;  ///< of those refused: what the autopilots do with it
+  const char* why;  ///< Effect of a rejected command on the autopilots.
 };
 
-/// The row of a command; nullptr if it is not known, and refused as such.
+/// Returns the row of a command, or nullptr if it is unknown. Unknown commands are rejected.
 const CommandRow* find_command(int id);
 
-/// Whether the command goes to a place of its own.
+/// Returns true if the command has its own position.
 bool has_place(Meaning meaning);
 
 }  // namespace skycap::flight

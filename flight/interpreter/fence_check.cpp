@@ -10,20 +10,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A corner is the same if it is no farther away than this [degrees]: a tenth of a metre.
+/// Maximum distance of equal corners [degrees], about 0.1 m.
 constexpr double same_corner = 1e-6;
 
-/// A no-fly footprint that a leg comes nearer to than this may be left out of the file [m].
+/// Footprints closer than this to a leg may be omitted from the file [m].
 constexpr double grazing = 0.05;
 
-/// The stretch as seen from above.
+/// Returns the piece projected to the ground.
 Segment flat(const FlownPiece& piece) {
   Segment leg{piece.start.to, piece.to};
   leg.from.z() = leg.to.z() = 0.0;
   return leg;
 }
 
-/// The least distance of any stretch from a footprint, and the stretches that touch it.
+/// Minimum distance of all pieces from a footprint, and the pieces that touch it.
 struct Touch {
   double distance = std::numeric_limits<double>::infinity();
   std::vector<const FlownPiece*> pieces;
@@ -45,7 +45,7 @@ bool is_same(const GeodeticPoint& a, const GeodeticPoint& b) {
          std::abs(a.longitude_deg - b.longitude_deg) < same_corner;
 }
 
-/// Whether the polygons have the same corners, either way round, whichever comes first.
+/// Returns true if the polygons have the same corners, in either direction and from any start.
 bool is_same(const std::vector<GeodeticPoint>& a, const std::vector<GeodeticPoint>& b) {
   const std::size_t n = a.size();
   if (b.size() != n) return false;
@@ -105,9 +105,9 @@ Problems check_fence(const MissionFile& file, const FlownRoute& route, const Fli
                        "\"");
   }
   for (const Prism& prism : facts.no_fly) {
-    if (std::isfinite(prism.ceiling)) continue;  // a return may pass over it
+    if (std::isfinite(prism.ceiling)) continue;  // A return may pass above it.
     Obstacles footprint;
-    footprint.no_fly = {{prism.name, prism.footprint}};  // unbounded in height
+    footprint.no_fly = {{prism.name, prism.footprint}};  // Unbounded in height.
     if (holds(file, prism, false, frame) || touch(route, footprint).distance < grazing) continue;
     problems.push_back("geoFence does not contain the mission's no-fly volume \"" + prism.name +
                        "\"");

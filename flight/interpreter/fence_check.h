@@ -1,4 +1,4 @@
-/// Whether a mission file's own geofence goes with its route, and with the mission's.
+/// Consistency of a mission file's geofence with its route and with the mission.
 #pragma once
 
 #include "flight/export/mavlink_files.h"
@@ -7,10 +7,10 @@
 
 namespace skycap::flight {
 
-/// Stretches that leave or enter an area of the file, named by their items, and volumes of the
-/// mission that a file with a geofence does not hold. Fences have no heights: a no-fly volume that
-/// a stretch passes over or under cannot be in it, and one with a ceiling need not. Formats without
-/// a geofence hold none: there the route alone is judged.
+/// Returns the pieces that leave or enter an area of the file's fence, with their items. Also
+/// returns mission volumes that a file with a geofence lacks. Fences have no heights: the file
+/// cannot contain a no-fly volume that a piece passes above or below, and may omit one with a
+/// ceiling. For formats without a geofence, only the route is checked.
 Problems check_fence(const MissionFile& file, const FlownRoute& route, const FlightFacts& facts);
 
 }  // namespace skycap::flight

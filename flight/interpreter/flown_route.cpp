@@ -5,13 +5,13 @@
 namespace skycap::flight {
 namespace {
 
-/// Fans are cut no finer than this [m]: a leg that is proven at the clearance in the plan has half
-/// of this to spare in its file, where less is asked for (rounding_bound).
+/// Minimum length to subdivide [m]. A leg that is verified in the plan has half of this as margin
+/// in its file, where the required clearance is lower (rounding_bound).
 constexpr double finest_fan = 0.01;
 
-/// The legs from every place of `start` to `to`. The distance of a place to what is not free is
-/// 1-Lipschitz and the legs from places e apart are nowhere more than e apart: a leg proven at the
-/// clearance and e proves its neighbours within e.
+/// Verifies the legs from every point of `start` to `to`. The distance to obstacles is 1-Lipschitz,
+/// and legs from points e apart are at most e apart everywhere. A leg verified at the clearance
+/// plus e therefore verifies all legs within e.
 LegProof prove_fan(const FreeSpace& space, const Segment& start, const Eigen::Vector3d& to,
                    double clearance, double up_to) {
   const double reach = 0.5 * start.length();

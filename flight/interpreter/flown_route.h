@@ -1,8 +1,8 @@
-/// What a vehicle does with a route file, stretch by stretch, and the proof that all of it is free.
+/// Flight behaviour for a route file, piece by piece, with verification of all pieces.
 ///
-/// Stretches are named by the two items that they lead between, numbered as ground stations show
-/// them: `.waypoints` by the first field of a line, `.plan` by doJumpId, WPML by wpml:index,
-/// counting from 0 in files without numbers of their own.
+/// Pieces are named by the two items that they connect, with the numbers that ground stations show.
+/// These are the first field of a line in `.waypoints`, doJumpId in `.plan` and wpml:index in WPML.
+/// Files without own numbers count from 0.
 #pragma once
 
 #include <cstddef>
@@ -17,44 +17,44 @@
 
 namespace skycap::flight {
 
-/// A stretch: from some place of `start` straight to `to`. A vehicle that stops before it starts
-/// at one place; one that is allowed to turn early starts anywhere between two.
+/// Straight piece from a point of `start` to `to`. A vehicle that stops before has a single start
+/// point. A vehicle that may turn early starts anywhere on the segment.
 struct FlownPiece {
   Segment start;
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
-  std::string from_item, to_item;  ///< such as "item 12"
-  bool is_over_pad = false;        ///< of the climb or the landing, where the ground is no obstacle
-  double hold = 0.0;               ///< waits at its end, as far as the file says them [s]
-  double speed = not_given;        ///< over ground, where the file says [m/s]
+  std::string from_item, to_item;  ///< Item names, such as "item 12".
+  bool is_over_pad = false;  ///< True for climb and landing, where the ground is not an obstacle.
+  double hold = 0.0;         ///< Wait at the end, as specified in the file [s].
+  double speed = not_given;  ///< Ground speed, if specified in the file [m/s].
 };
 
-/// A place where photographs are taken.
+/// Position at which photos are taken.
 struct FlownStop {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::string item;
-  double hold = 0.0;             ///< at rest before the first photograph [s]
-  double yaw_deg = not_given;    ///< clockwise from north; not_given: nothing in the file says
-  double pitch_deg = not_given;  ///< of the gimbal, 0 at the horizon
+  double hold = 0.0;             ///< Rest time before the first photo [s].
+  double yaw_deg = not_given;    ///< Clockwise from north. `not_given`: not specified in the file.
+  double pitch_deg = not_given;  ///< Gimbal pitch, 0 at the horizon.
   int shots = 0;
 };
 
 struct FlownRoute {
-  std::vector<FlownPiece> pieces;  ///< in the order flown
-  std::vector<FlownStop> stops;    ///< those with photographs
-  Problems problems;               ///< what is not known to be safe, or not known at all, by item
+  std::vector<FlownPiece> pieces;  ///< In flight order.
+  std::vector<FlownStop> stops;    ///< Stops with photos.
+  Problems problems;               ///< Unsafe or unknown behaviour, per item.
 };
 
 struct FlownProof {
-  Problems problems;       ///< stretches that are not proven, by their items
-  double clearance = 0.0;  ///< proven lower bound for all others, at most `up_to` [m]
+  Problems problems;       ///< Pieces that cannot be verified, with their items.
+  double clearance = 0.0;  ///< Verified lower bound of all other pieces [m], at most `up_to`.
 };
 
-/// Proves every stretch at `clearance`, looking at most `up_to` far; those over the pad in
-/// `pad_space`, which should lack the ground there.
+/// Verifies every piece at `clearance` [m], with a search distance of `up_to` [m]. Pieces above the
+/// pad are verified in `pad_space`, which should not contain the ground there.
 FlownProof prove(const FlownRoute& route, const FreeSpace& space, const FreeSpace& pad_space,
                  double clearance, double up_to);
 
-/// Length of the stretches that are not over the pad [m].
+/// Returns the length of the pieces that are not above the pad [m].
 double length(const FlownRoute& route);
 
 }  // namespace skycap::flight

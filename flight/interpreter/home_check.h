@@ -1,4 +1,4 @@
-/// Whether the home and the rally points that a mission file states are those of the mission.
+/// Consistency of the home position and rally points of a mission file with the mission.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,15 @@
 
 namespace skycap::flight {
 
-/// The file's home is what the pilot sees; relative heights count from the real one. `pad`: where
-/// the file takes off, nothing if it does not. A file without a home has no problems.
+/// Returns the problems of the file's home, which the pilot sees, whereas relative heights refer to
+/// the real home. `pad` is the take-off position of the file, or std::nullopt. A file without home
+/// has no problems.
 Problems check_home(const MissionFile& file, const std::optional<Eigen::Vector3d>& pad,
                     const FlightFacts& facts);
 
-/// Returns go to the nearest rally point: those of the file must be those that are proven, at
-/// home's height, which the return altitude counts from.
+/// Returns the problems of the rally points. Since returns go to the nearest rally point, the file
+/// must contain exactly the verified ones. They must be at the height of home, to which the return
+/// altitude refers.
 Problems check_rally(const MissionFile& file, const FlightFacts& facts);
 
 }  // namespace skycap::flight

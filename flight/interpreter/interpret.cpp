@@ -11,10 +11,10 @@
 namespace skycap::flight {
 namespace {
 
-/// Litchi's curves stay this near to their corners: covered by every tracking error [m].
+/// Maximum corner curve of Litchi that any tracking error covers [m].
 constexpr double covered_curve = 0.3;
 
-/// What a place is called in messages: by `word` and its number, counted from `first`.
+/// Name of a position in messages: `word` and its number, counted from `first`.
 struct Naming {
   std::string word;
   std::size_t first = 0;
@@ -22,7 +22,7 @@ struct Naming {
   std::string operator()(std::size_t i) const { return word + std::to_string(first + i); }
 };
 
-/// One place after the other.
+/// Returns a route through the positions in order.
 FlownRoute in_a_row(const std::vector<Eigen::Vector3d>& places, const Naming& name) {
   FlownRoute route;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -33,7 +33,8 @@ FlownRoute in_a_row(const std::vector<Eigen::Vector3d>& places, const Naming& na
   return route;
 }
 
-/// Litchi flies straight lines, with a small curve at each corner, and acts where it stops.
+/// Interprets a Litchi mission: straight lines with a small curve at each corner, and actions at
+/// stops.
 FlownRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
   const std::vector<Eigen::Vector3d> places = local_points(file, facts.site, facts.pad);
   const Naming name{"line ", 2};

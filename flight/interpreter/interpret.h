@@ -1,4 +1,4 @@
-/// What a vehicle does with the content of a route file of any format.
+/// Flight behaviour for the content of a route file of any format.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,12 @@
 
 namespace skycap::flight {
 
-/// Missions are executed by their items; files for maps and set-point followers are lists of
-/// places, flown one after the other. Throws Error{bad_file} with the first problem of the format.
+/// Interprets route content. Missions are executed item by item. Formats for maps and setpoint
+/// followers are lists of positions, flown in order. Throws Error{bad_file} with the first problem
+/// of the format.
 FlownRoute interpret(const std::string& content, Format format, const FlightFacts& facts);
 
-/// The same of a file. Errors name it.
+/// Interprets a file. Errors include its name.
 FlownRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts);
 
 }  // namespace skycap::flight

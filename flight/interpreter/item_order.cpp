@@ -6,10 +6,10 @@
 namespace skycap::flight {
 namespace {
 
-constexpr double most_repeats = 20.0;    // more are taken for a mistake
-constexpr std::size_t most_growth = 10;  // of a mission by its jumps
+constexpr double most_repeats = 20.0;    // Higher values are assumed to be mistakes.
+constexpr std::size_t most_growth = 10;  // Maximum growth of a mission by its jumps.
 
-/// The index that a jump leads to; the size of `items` if there is none.
+/// Returns the target index of a jump, or the size of `items` if there is none.
 std::size_t target_of(const MissionItem& jump, const std::vector<MissionItem>& items) {
   const auto target = std::ranges::find_if(items, [&](const MissionItem& item) {
     return static_cast<double>(item.number) == jump.params[0];

@@ -1,4 +1,4 @@
-/// In which order an autopilot comes to the items of a mission.
+/// Order in which an autopilot executes mission items.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 namespace skycap::flight {
 
 struct ItemOrder {
-  std::vector<std::size_t> indices;  ///< of items, jumps unrolled and left out
-  Problems problems;                 ///< jumps that cannot be followed, by item
+  std::vector<std::size_t> indices;  ///< Item indices, with jumps unrolled and omitted.
+  Problems problems;                 ///< Jumps that cannot be executed, per item.
 };
 
-/// Follows every DO_JUMP (177): to the item of that number, as often as it says, then on.
+/// Executes every DO_JUMP (177) to its target item as often as specified, then continues.
 ItemOrder order_of(const std::vector<MissionItem>& items);
 
 }  // namespace skycap::flight

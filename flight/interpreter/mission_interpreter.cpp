@@ -18,18 +18,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// PX4's NAV_ACC_RAD where an item gives no radius [m].
+/// PX4's NAV_ACC_RAD, used for items without a radius [m].
 constexpr double default_radius_px4 = 10.0;
 
-/// WPNAV_SPEED and MPC_XY_CRUISE where no item sets a speed [m/s].
+/// WPNAV_SPEED and MPC_XY_CRUISE, used if no item sets a speed [m/s].
 constexpr double default_speed_ardupilot = 10.0, default_speed_px4 = 5.0;
 
 /// MAV_MOUNT_MODE_MAVLINK_TARGETING.
 constexpr double aims_by_angles = 2.0;
 
-constexpr double longest_wait = 600.0;  // more is taken for a mistake [s]
+constexpr double longest_wait = 600.0;  // Longer waits are assumed to be mistakes [s].
 
-/// One flight through the items of a file.
+/// Execution of the items of a file.
 class MissionFlight {
  public:
   MissionFlight(const MissionFile& file, Dialect dialect, const FlightFacts& facts)
@@ -50,7 +50,7 @@ class MissionFlight {
       step(item);
     }
     if (!has_landed_) add("the mission ends in the air, without a landing (21)");
-    std::optional<Vector3d> pad;  // known from the mission or from the take-off
+    std::optional<Vector3d> pad;  // Known from the mission or from the take-off item.
     if (has_taken_off_) pad = pad_;
     for (const std::string& problem : check_home(file_, pad, facts_)) add(problem);
     for (const std::string& problem : check_rally(file_, facts_)) add(problem);
@@ -110,8 +110,9 @@ class MissionFlight {
     return !is_nowhere && !is_without_height;
   }
 
-  /// ArduCopter takes off and lands where it is if the item has no place (AP_Mission's default
-  /// location); a take-off's place is known from the mission or from the file's home.
+  /// Returns true if the item without position is executed at the current position, as ArduCopter
+  /// does for take-off and landing (AP_Mission's default location). The take-off position must be
+  /// known from the mission or from the file's home.
   bool takes_present_place(const CommandRow& row) const {
     if (dialect_ != Dialect::ardupilot) return false;
     if (row.meaning == Meaning::take_off) return facts_.is_pad_known || file_.home;
@@ -166,13 +167,14 @@ class MissionFlight {
     return frame_.to_local(place);
   }
 
-  /// Where the vehicle is over ground: before the take-off on the pad, else where it flew to.
+  /// Returns the current horizontal position: the pad before take-off, otherwise the end of the
+  /// last leg.
   GeodeticPoint present_place() const {
     if (has_taken_off_) return frame_.to_geodetic(position_);
     return facts_.is_pad_known || !file_.home ? frame_.to_geodetic(facts_.pad) : *file_.home;
   }
 
-  // Autopilots climb where they stand: of a take-off only the height counts.
+  // Autopilots climb at their current position, so only the height of a take-off item counts.
   void take_off(const MissionItem& item) {
     if (has_taken_off_) return complain(item, "takes off again in mid-flight");
     const Vector3d place = place_of(item);
@@ -203,7 +205,7 @@ class MissionFlight {
     const double way = (target - from).norm();
     Segment departure{target, target};
     if (!stops) {
-      departure.from = from;  // corners are cut anywhere within the triangle of both legs
+      departure.from = from;  // Corners are cut anywhere within the triangle of both legs.
     } else if (radius > acceptance_radius && way > 0.0) {
       departure.from = target + std::min(1.0, radius / way) * (from - target);
     }
@@ -220,15 +222,17 @@ class MissionFlight {
     route_.pieces.back().speed = speed_;
   }
 
-  /// ArduCopter has one radius for all waypoints, which it comes within at stops; a larger one in
-  /// the file is refused as well, in case another vehicle reads it.
+  /// Returns the acceptance radius. ArduCopter has one radius for all waypoints, which it observes
+  /// at stops. A larger radius in the file is rejected as well, because a different vehicle may use
+  /// the file.
   double radius_of(const MissionItem& item) const {
     const bool counts = item.command == command::waypoint;
     const double radius = counts && std::isfinite(item.params[1]) ? item.params[1] : 0.0;
     return radius > 0.0 || dialect_ != Dialect::px4 ? radius : default_radius_px4;
   }
 
-  /// ArduPilot stops at waypoints without a hold unless the next thing that it flies is one, too.
+  /// Returns true if ArduPilot stops at a waypoint without a hold, which it does unless the next
+  /// flown item is a waypoint, too.
   bool stops_for_the_next() const {
     if (dialect_ != Dialect::ardupilot) return false;
     for (const MissionItem* item : upcoming_) {
@@ -244,12 +248,13 @@ class MissionFlight {
     departure_ = departure;
     is_exact_ = is_exact;
     shoots_ = false;
-    // ArduPilot turns the nose to the next waypoint unless a CONDITION_YAW came since the last.
+    // ArduPilot turns the nose to the next waypoint unless a CONDITION_YAW was executed since the
+    // last one.
     yaw_deg_ = dialect_ == Dialect::ardupilot ? next_yaw_deg_ : item.params[3];
     next_yaw_deg_ = not_given;
   }
 
-  // Level to the place at the height that it has, then down: the item's own height is ignored.
+  // Flies level to the position at the current height, then down. The item's own height is ignored.
   void land(const MissionItem& item) {
     check_default_speed(item);
     has_landed_ = true;
@@ -305,7 +310,7 @@ class MissionFlight {
   void check_default_speed(const MissionItem& item) {
     const double speed = dialect_ == Dialect::px4 ? default_speed_px4 : default_speed_ardupilot;
     if (is_speed_set_ || speed <= facts_.cruise_speed) return;
-    is_speed_set_ = true;  // said once
+    is_speed_set_ = true;  // Reported once.
     complain(item, "is flown to at " + autopilot() + "'s default of " + fixed(speed, 0) +
                        " m/s: no item before it sets the speed (178)");
   }
@@ -328,7 +333,7 @@ class MissionFlight {
       return complain(item, "takes " + fixed(item.params[2], 0) +
                                 " images; more than one cannot be taken in motion");
     }
-    if (meaning == Meaning::trigger_photo && item.params[4] != 1.0) return;  // focus or zoom
+    if (meaning == Meaning::trigger_photo && item.params[4] != 1.0) return;  // Focus or zoom.
     if (!is_exact_) return complain(item, "captures an image where the vehicle does not stop");
     if (std::exchange(shoots_, true)) {
       ++route_.stops.back().shots;
@@ -342,17 +347,18 @@ class MissionFlight {
   const FlightFacts& facts_;
   LocalFrame frame_;
   std::vector<MissionItem> items_;
-  std::deque<const MissionItem*> upcoming_;  ///< in the order flown
+  std::deque<const MissionItem*> upcoming_;  ///< In flight order.
   FlownRoute route_;
 
   bool has_taken_off_ = false, has_landed_ = false;
   bool is_speed_set_ = false;
-  bool is_exact_ = false;              ///< whether it comes to rest in `position_`
-  bool shoots_ = false;                ///< whether the last of the stops is the present one
-  const MissionItem* last_ = nullptr;  ///< that it flew to
+  bool is_exact_ = false;              ///< True if the vehicle comes to rest in `position_`.
+  bool shoots_ = false;                ///< True if the last stop is the current one.
+  const MissionItem* last_ = nullptr;  ///< Last item flown to.
   Vector3d pad_ = Vector3d::Zero();
   Vector3d position_ = Vector3d::Zero();
-  Segment departure_{Vector3d::Zero(), Vector3d::Zero()};  ///< where the next leg may begin
+  /// Possible start positions of the next leg.
+  Segment departure_{Vector3d::Zero(), Vector3d::Zero()};
   double hold_ = 0.0;
   double speed_ = not_given;
   double yaw_deg_ = not_given, next_yaw_deg_ = not_given, pitch_deg_ = not_given;
@@ -361,7 +367,8 @@ class MissionFlight {
 }  // namespace
 
 FlownRoute interpret(const MissionFile& file, const FlightFacts& facts) {
-  std::optional<Dialect> flown_by;  // the vehicle's own autopilot; DJI's fly no such files
+  // The vehicle's own autopilot. DJI vehicles do not fly such files.
+  std::optional<Dialect> flown_by;
   if (facts.vehicle && facts.vehicle->dialect != Dialect::dji) flown_by = facts.vehicle->dialect;
   const Dialect dialect = file.dialect.value_or(flown_by.value_or(Dialect::px4));
   FlownRoute route = MissionFlight(file, dialect, facts).fly();

@@ -1,9 +1,9 @@
-/// What ArduCopter and PX4 do with a MAVLink mission, item by item.
+/// Behaviour of ArduCopter and PX4 for a MAVLink mission, item by item.
 ///
-/// Every command is looked up in command_table.h; what is not there, and what an autopilot would
-/// skip, is a problem of that item. Heights count item by item: frames 0 and 5 from sea level, 3
-/// and 6 from home, which is the mission's pad whatever the file says, as autopilots take home from
-/// where they are armed; a file that says another home is refused.
+/// Every command is looked up in command_table.h. Unknown commands, and those that an autopilot
+/// would skip, are problems of that item. The altitude reference is set per item: frames 0 and 5
+/// are AMSL, 3 and 6 are above home. Home is the mission's pad, because autopilots set it where
+/// they are armed; a file with a different home is rejected.
 ///
 /// Sources: those of command_table.h.
 #pragma once
@@ -14,9 +14,9 @@
 
 namespace skycap::flight {
 
-/// Flies the file in its dialect, else in the vehicle's. Places are rounded as the autopilot's
-/// memory rounds them. Throws Error{bad_config} if heights count from sea level and the site's
-/// undulation is unknown.
+/// Interprets the file in its own dialect, or in the vehicle's if it specifies none. Positions are
+/// rounded like those in the autopilot's memory. Throws Error{bad_config} if heights are AMSL and
+/// the site's geoid undulation is unknown.
 FlownRoute interpret(const MissionFile& file, const FlightFacts& facts);
 
 }  // namespace skycap::flight

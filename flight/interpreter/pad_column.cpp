@@ -6,7 +6,7 @@
 namespace skycap::flight {
 namespace {
 
-/// Formats round heights by less than this, own climbs included [m].
+/// Maximum rounding of heights in the formats, including Skycap's own climbs [m].
 constexpr double column_rounding = 0.02;
 
 }  // namespace

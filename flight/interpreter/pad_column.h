@@ -1,4 +1,4 @@
-/// The climb from a pad and the descent to it.
+/// Vertical climb from a pad and descent to it.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace skycap::flight {
 
-/// Adds an upright stretch in the direction that it is flown in: up to `vouched` metres above its
-/// foot it is over the pad, the rest of it is a leg like any other. `items` are those it leads
-/// between.
+/// Adds a vertical piece in flight direction. Up to `vouched` [m] above its foot it counts as above
+/// the pad, where the pilot must check it. The rest is an ordinary leg. `items` are the names of
+/// both ends.
 void append_column(FlownRoute& route, const Segment& column,
                    const std::array<std::string, 2>& items, double vouched);
 

@@ -12,14 +12,14 @@ namespace {
 
 constexpr double degree = geometry::radians_per_degree;
 
-/// How far a photograph's direction may be from its view's: Litchi has whole degrees of pitch.
+/// Maximum angle between a photo and its view: Litchi stores whole degrees of pitch.
 constexpr double direction_tolerance = 1.0 * degree;
 
-/// Photographs nearer than this to a view are meant to be of it [m]: rounding, and ArduPilot's
-/// centimetres of height.
+/// Maximum distance between a photo and its view [m]: rounding, and ArduPilot's centimetres of
+/// height.
 constexpr double place_tolerance = 2.0 * rounding_bound;
 
-/// Time that formats round away [s].
+/// Rounding of times in the formats [s].
 constexpr double hold_tolerance = 0.005;
 
 Eigen::Vector3d direction_of(const FlownStop& stop) {
@@ -31,7 +31,7 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// What is wrong with a photograph for the views; empty if it is one of them.
+/// Returns the mismatch between a photo and the views, or an empty string.
 std::string compare(const FlownStop& stop, const std::vector<geometry::View>& views) {
   double nearest = place_tolerance, turned = std::numbers::pi;
   bool has_place = false;

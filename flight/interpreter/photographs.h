@@ -1,4 +1,4 @@
-/// Whether the photographs of a flown file are those that the mission wants.
+/// Consistency of a file's photos with the mission's views.
 #pragma once
 
 #include "flight/interpreter/flight_facts.h"
@@ -6,8 +6,8 @@
 
 namespace skycap::flight {
 
-/// Holds that are too short, directions that the gimbal does not have, and, where the mission's
-/// views are known, photographs that are none of them, by item.
+/// Returns the problems per item: holds that are too short, directions outside the gimbal range,
+/// and photos that match no view of the mission, if its views are known.
 Problems check_photographs(const std::vector<FlownStop>& stops, const FlightFacts& facts);
 
 }  // namespace skycap::flight

@@ -18,10 +18,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Speeds and heights are written with two decimals.
+/// Speeds and heights have two decimals.
 constexpr double rounding = 0.01;
 
-/// The one value of an element whose flight is proven, and what another one does.
+/// The only value of an element whose flight can be verified, and the effect of other values.
 struct OnlyValue {
   const char* element;
   std::string_view right;
@@ -56,7 +56,7 @@ constexpr std::array gimbal_rules{
     OnlyValue{"gimbalRollRotateEnable", "0", "rolls the gimbal"},
     OnlyValue{"gimbalYawRotateEnable", "0", "turns the gimbal away from the heading"}};
 
-/// Every element that is known below each of these; all others are refused.
+/// Elements that are supported below each of these. All others are rejected.
 constexpr std::array<std::string_view, 16> of_config{"flyToWaylineMode",
                                                      "finishAction",
                                                      "exitOnRCLost",
@@ -121,7 +121,7 @@ class WpmlFlight {
     if (folder_.next_sibling("Folder")) complain("has more than one wayline");
   }
 
-  /// Where heights count from, by the template.
+  /// Returns the altitude reference of the template.
   std::optional<Vector3d> reference_pad() {
     const std::vector<std::string> parts = split(text_of(config_, "takeOffRefPoint"), ',');
     if (parts.size() != 3) return std::nullopt;
@@ -132,7 +132,7 @@ class WpmlFlight {
     return frame_.to_local({*latitude, *longitude, *height});
   }
 
-  /// `places` are the waypoints' in the local frame.
+  /// Interprets the file. `places` are the waypoints in the local frame [m].
   FlownRoute fly(const std::vector<Vector3d>& places, const Vector3d& pad) {
     check_known(config_, of_config, "");
     check_known(folder_, of_folder, "");
@@ -170,7 +170,7 @@ class WpmlFlight {
         geometry::trimmed(node.child((std::string("wpml:") + name).c_str()).text().get()));
   }
 
-  /// `who` is the waypoint; empty: the file.
+  /// Adds a problem. `who` is the waypoint; empty for the file.
   void complain(const std::string& what, const std::string& who = "") {
     route_.problems.push_back(who.empty() ? file_ + " " + what
                                           : who + " " + what + " (" + file_ + ")");
@@ -187,7 +187,7 @@ class WpmlFlight {
     }
   }
 
-  /// Elements that are missing are judged by the format's validator.
+  /// Checks element values. The validator of the format reports missing elements.
   void check_values(pugi::xml_node node, std::span<const OnlyValue> rules,
                     const std::string& who = "") {
     for (const OnlyValue& rule : rules) {
@@ -249,7 +249,8 @@ class WpmlFlight {
              "\" is " + std::to_string(facts_.vehicle->wpml.drone));
   }
 
-  // flyToWaylineMode safely: up, level, then down to the first waypoint if that is lower.
+  // Adds the climb of flyToWaylineMode "safely": up, level, then down to the first waypoint if it
+  // is lower.
   void climb(const Vector3d& first, const Vector3d& pad) {
     const double security = number_of(config_, "takeOffSecurityHeight");
     const double top = std::max(first.z(), pad.z() + (std::isnan(security) ? 0.0 : security));
@@ -262,7 +263,7 @@ class WpmlFlight {
     }
   }
 
-  // Within 5 m of home, going there is landing at once.
+  // Within 5 m of home, the return is an immediate landing.
   void descend(const Vector3d& last, const Vector3d& pad, const std::string& who) {
     append_column(route_, {last, {last.x(), last.y(), pad.z()}}, {who, "the ground"},
                   facts_.takeoff_climb);
@@ -284,7 +285,7 @@ class WpmlFlight {
     }
   }
 
-  /// What happens at a waypoint, in the order of its actions.
+  /// Adds the actions at a waypoint in their order.
   void act(pugi::xml_node mark, const Vector3d& place, std::size_t index) {
     const std::string who = waypoint(index);
     const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
@@ -341,7 +342,7 @@ class WpmlFlight {
   double pitch_deg_ = not_given;
 };
 
-/// The pad that the file says, if it says one, must be the mission's.
+/// Checks that the pad in the file, if any, is that of the mission.
 void check_pad(const Vector3d& said, const Vector3d& pad, Problems& problems) {
   const double level = (said - pad).head<2>().norm(), up = said.z() - pad.z();
   if (level <= pad_tolerance && std::abs(up) <= pad_height_tolerance) return;

@@ -1,7 +1,7 @@
-/// What a DJI aircraft does with a waypoint mission of DJI's WPML format.
+/// Behaviour of a DJI aircraft for a waypoint mission in the WPML format.
 ///
-/// Aircraft fly waylines.wpml; Pilot 2 makes it anew from template.kml when a mission is edited. So
-/// both are held to the same rules. Elements that are not known here are refused.
+/// Aircraft fly waylines.wpml. When a mission is edited, Pilot 2 regenerates it from template.kml,
+/// so both files must satisfy the same rules. Unknown elements are rejected.
 ///
 /// Sources: DJI Cloud API documentation, chapter DJI WPML; the return-to-home sections of DJI's
 /// manuals.
@@ -13,9 +13,10 @@
 
 namespace skycap::flight {
 
-/// Flies a good .kmz file's waylines: up from the pad to the security height or the first
-/// waypoint's, level to it, through all of them with a stop at each, and down to the pad. Throws
-/// Error{bad_config} if heights count from sea level and the site's undulation is unknown.
+/// Interprets the waylines of a valid .kmz file. The aircraft climbs from the pad to the security
+/// height or that of the first waypoint and flies level to it. It then flies through all waypoints
+/// with a stop at each, and descends to the pad. Throws Error{bad_config} if heights are AMSL and
+/// the site's geoid undulation is unknown.
 FlownRoute interpret(const KmzContent& kmz, const FlightFacts& facts);
 
 }  // namespace skycap::flight

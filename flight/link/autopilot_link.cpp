@@ -6,10 +6,11 @@
 namespace skycap::flight::mavlink {
 namespace {
 
-constexpr double beat_period = 1.0;  ///< [s]
+constexpr double beat_period = 1.0;  ///< Period of heartbeats [s].
 constexpr std::uint8_t in_progress = 5;
 constexpr int most_tries = 5;
-constexpr double answer_patience = 1.0, listening_period = 0.05;  ///< [s]
+/// Timeout per try and receive period [s].
+constexpr double answer_patience = 1.0, listening_period = 0.05;
 
 }  // namespace
 

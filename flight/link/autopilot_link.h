@@ -1,5 +1,5 @@
-/// The talk with one autopilot: we are heard once a second, it is heard all the time, commands are
-/// repeated until they are answered.
+/// MAVLink connection to one autopilot: sends a heartbeat every second, receives continuously, and
+/// repeats commands until they are acknowledged.
 #pragma once
 
 #include <array>
@@ -11,26 +11,26 @@
 
 namespace skycap::flight::mavlink {
 
-/// Us: the number that ground stations have, whose silence autopilots notice (FS_GCS_ENABLE), and
+/// Own address: the system ID of ground stations, whose loss autopilots detect (FS_GCS_ENABLE), and
 /// MAV_COMP_ID_ONBOARD_COMPUTER.
 inline constexpr Address our_address{255, 191};
 
 class AutopilotLink {
  public:
-  /// Keeps a reference.
+  /// Keeps a reference to `port`.
   explicit AutopilotLink(Port& port) : port_(port), reader_(guided_extra_byte) {}
 
-  /// Hears and is heard for so many seconds.
+  /// Receives messages and sends heartbeats for `duration` [s].
   void spin(double duration);
 
   double now() const { return port_.now(); }
   const VehicleState& state() const { return state_; }
 
-  /// Sends a command until it is answered: MAV_RESULT, or nothing if no answer comes in some
-  /// seconds. The vehicle must have been heard.
+  /// Sends a command until it is acknowledged. Returns MAV_RESULT, or std::nullopt after a timeout
+  /// of some seconds. Requires that a message from the vehicle has been received.
   std::optional<std::uint8_t> command(std::uint16_t number, const std::array<float, 7>& params);
 
-  /// Sends a set point once. Its target and time are filled in.
+  /// Sends a setpoint once. Fills in its target and time.
   void send(PositionTarget target);
 
  private:

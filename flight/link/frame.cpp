@@ -9,7 +9,7 @@ constexpr std::uint8_t start_of_frame = 0xFD;
 constexpr std::size_t header_size = 10, checksum_size = 2;
 
 std::uint16_t frame_checksum(std::span<const std::uint8_t> frame, std::uint8_t extra_byte) {
-  // All but the start and the checksum itself.
+  // All bytes except the start byte and the checksum.
   const auto covered = frame.subspan(1, frame.size() - 1 - checksum_size);
   return checksum({&extra_byte, 1}, checksum(covered));
 }
@@ -57,7 +57,7 @@ std::optional<Frame> FrameReader::next() {
     begin_ = static_cast<std::size_t>(start - bytes_.begin());
     const std::span<const std::uint8_t> rest = std::span(bytes_).subspan(begin_);
     if (rest.size() < header_size) return std::nullopt;
-    if (rest[2] != 0) {  // a feature without which it cannot be read
+    if (rest[2] != 0) {  // Incompatible feature flag.
       skip(1);
       continue;
     }
@@ -65,7 +65,7 @@ std::optional<Frame> FrameReader::next() {
     if (rest.size() < size) return std::nullopt;
     const std::uint32_t id = rest[7] + 256U * rest[8] + 65536U * rest[9];
     const std::optional<std::uint8_t> extra_byte = extra_byte_of_(id);
-    if (!extra_byte) {  // nobody can tell whether it is whole
+    if (!extra_byte) {  // The frame cannot be validated.
       skip(size);
       continue;
     }

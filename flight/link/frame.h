@@ -1,8 +1,8 @@
-/// The frames of MAVLink 2: bytes on a link, cut into messages.
+/// MAVLink 2 framing: conversion between byte streams and message frames.
 ///
-/// Source: MAVLink's serialization guide (frame, checksum, truncation of zeros). What comes in is
-/// hostile: a frame counts only if its checksum, which covers the definition of its message, is
-/// right. Signed frames are not understood and passed over, as MAVLink asks of unknown features.
+/// Source: MAVLink's serialization guide (frame, checksum, truncation of zeros). Input is
+/// untrusted: a frame is accepted only if its checksum, which covers the message definition, is
+/// correct. Signed frames are unsupported and skipped, as MAVLink requires for unknown features.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,10 @@ namespace skycap::flight::mavlink {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The checksum of MAVLink: CRC-16/MCRF4XX, continued from `crc`.
+/// Returns the MAVLink checksum CRC-16/MCRF4XX of `data`, continued from `crc`.
 std::uint16_t checksum(std::span<const std::uint8_t> data, std::uint16_t crc = 0xFFFF);
 
-/// Who speaks: a vehicle or ground station, and which part of it.
+/// Sender address: system (vehicle or ground station) and component.
 struct Address {
   std::uint8_t system = 0, component = 0;
 
@@ -28,27 +28,28 @@ struct Address {
 };
 
 struct Frame {
-  std::uint32_t id = 0;  ///< of the message, below 2^24
+  std::uint32_t id = 0;  ///< Message ID, below 2^24.
   Address sender;
-  std::uint8_t sequence = 0;  ///< counted by each sender
-  Bytes payload;              ///< at most 255 bytes; zeros at its end may be missing
+  std::uint8_t sequence = 0;  ///< Sequence number, counted per sender.
+  Bytes payload;              ///< At most 255 bytes. Trailing zeros may be missing.
 };
 
-/// A frame as it is sent. `extra_byte` is that of its message (message.h).
+/// Returns the serialised frame. `extra_byte` is the CRC extra byte of the message (message.h).
 Bytes wire_form(const Frame& frame, std::uint8_t extra_byte);
 
-/// Finds frames in a stream of bytes that may hold anything.
+/// Extracts frames from an arbitrary byte stream.
 class FrameReader {
  public:
-  /// The extra byte of a message; nothing for one that is not known, which is passed over.
+  /// Returns the CRC extra byte of a message, or std::nullopt for unknown messages, which are
+  /// skipped.
   using ExtraByteOf = std::function<std::optional<std::uint8_t>(std::uint32_t id)>;
 
   explicit FrameReader(ExtraByteOf extra_byte_of) : extra_byte_of_(std::move(extra_byte_of)) {}
 
   void feed(std::span<const std::uint8_t> bytes);
 
-  /// The next frame that is whole and known; nothing until more is fed. What it waits for is never
-  /// longer than one frame, 280 bytes.
+  /// Returns the next complete frame of a known message, or std::nullopt until more bytes are fed.
+  /// At most one incomplete frame (280 bytes) is buffered.
   std::optional<Frame> next();
 
  private:
@@ -56,7 +57,7 @@ class FrameReader {
 
   ExtraByteOf extra_byte_of_;
   Bytes bytes_;
-  std::size_t begin_ = 0;  ///< of what was not looked at yet
+  std::size_t begin_ = 0;  ///< Start of the unprocessed bytes.
 };
 
 }  // namespace skycap::flight::mavlink

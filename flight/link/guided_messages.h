@@ -1,5 +1,5 @@
-/// The messages that it takes to fly a vehicle by set points: names, fields and units are those of
-/// MAVLink's common message set (EKF_STATUS_REPORT: of ardupilotmega).
+/// Messages for flight control by setpoints. Names, fields and units follow MAVLink's common
+/// message set (EKF_STATUS_REPORT: ardupilotmega).
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct SystemStatus {
   std::int16_t current_battery = 0;
   std::uint16_t drop_rate = 0, errors = 0;
   std::array<std::uint16_t, 4> counts{};
-  std::int8_t battery_remaining = -1;  ///< [%]; -1: nobody knows
+  std::int8_t battery_remaining = -1;  ///< Remaining charge [%]. -1: unknown.
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -56,7 +56,7 @@ struct Attitude {
   static constexpr std::uint32_t id = 30;
   static constexpr const char* name = "ATTITUDE";
   std::uint32_t time_boot_ms = 0;
-  float roll = 0.0F, pitch = 0.0F, yaw = 0.0F;  ///< yaw clockwise from north [rad]
+  float roll = 0.0F, pitch = 0.0F, yaw = 0.0F;  ///< Attitude [rad]. Yaw is clockwise from north.
   float roll_rate = 0.0F, pitch_rate = 0.0F, yaw_rate = 0.0F;
 
   template <class Self, class Visit>
@@ -75,10 +75,11 @@ struct GlobalPosition {
   static constexpr std::uint32_t id = 33;
   static constexpr const char* name = "GLOBAL_POSITION_INT";
   std::uint32_t time_boot_ms = 0;
-  std::int32_t latitude = 0, longitude = 0;                      ///< [1e-7 degrees]
-  std::int32_t height_msl = 0, height_above_home = 0;            ///< [mm]
-  std::int16_t north_speed = 0, east_speed = 0, down_speed = 0;  ///< [cm/s]
-  std::uint16_t heading = 0;                                     ///< [0.01 degrees]
+  std::int32_t latitude = 0, longitude = 0;            ///< Geodetic coordinates [1e-7 degrees].
+  std::int32_t height_msl = 0, height_above_home = 0;  ///< Heights AMSL and above home [mm].
+  /// Velocity in the NED frame [cm/s].
+  std::int16_t north_speed = 0, east_speed = 0, down_speed = 0;
+  std::uint16_t heading = 0;  ///< Heading [0.01 degrees].
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -116,7 +117,7 @@ struct CommandAnswer {
   static constexpr std::uint32_t id = 77;
   static constexpr const char* name = "COMMAND_ACK";
   std::uint16_t command = 0;
-  std::uint8_t result = 0;  ///< MAV_RESULT; 0: accepted
+  std::uint8_t result = 0;  ///< MAV_RESULT. 0: accepted.
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -129,14 +130,14 @@ struct PositionTarget {
   static constexpr std::uint32_t id = 86;
   static constexpr const char* name = "SET_POSITION_TARGET_GLOBAL_INT";
   std::uint32_t time_boot_ms = 0;
-  std::int32_t latitude = 0, longitude = 0;  ///< [1e-7 degrees]
-  float height = 0.0F;                       ///< by `frame` [m]
-  std::array<float, 3> velocity{};           ///< north, east, down [m/s]
-  std::array<float, 3> acceleration{};       ///< north, east, down [m/s^2]
-  float yaw = 0.0F, yaw_rate = 0.0F;         ///< clockwise from north [rad], [rad/s]
-  std::uint16_t ignored = 0;                 ///< a bit for each number that is not meant
+  std::int32_t latitude = 0, longitude = 0;  ///< Geodetic coordinates [1e-7 degrees].
+  float height = 0.0F;                       ///< Height with the reference of `frame` [m].
+  std::array<float, 3> velocity{};           ///< North, east and down [m/s].
+  std::array<float, 3> acceleration{};       ///< North, east and down [m/s^2].
+  float yaw = 0.0F, yaw_rate = 0.0F;  ///< Yaw clockwise from north [rad] and its rate [rad/s].
+  std::uint16_t ignored = 0;          ///< Bit mask of unused fields.
   Address target;
-  std::uint8_t frame = 0;  ///< MAV_FRAME
+  std::uint8_t frame = 0;  ///< MAV_FRAME.
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -158,7 +159,7 @@ struct EstimatorStatus {
   static constexpr std::uint32_t id = 193;
   static constexpr const char* name = "EKF_STATUS_REPORT";
   std::array<float, 5> variances{};
-  std::uint16_t flags = 0;  ///< EKF_STATUS_FLAGS
+  std::uint16_t flags = 0;  ///< EKF_STATUS_FLAGS.
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -173,8 +174,8 @@ struct EstimatorStatus {
 struct StatusText {
   static constexpr std::uint32_t id = 253;
   static constexpr const char* name = "STATUSTEXT";
-  std::uint8_t severity = 0;    ///< 0 to 7, as of syslog; up to 4: a warning or worse
-  std::array<char, 50> text{};  ///< without a zero at its end if it fills it
+  std::uint8_t severity = 0;    ///< Syslog severity, 0 to 7. Up to 4: warning or worse.
+  std::array<char, 50> text{};  ///< Without a terminating zero if it fills the array.
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -187,7 +188,7 @@ struct GimbalAttitude {
   static constexpr std::uint32_t id = 285;
   static constexpr const char* name = "GIMBAL_DEVICE_ATTITUDE_STATUS";
   std::uint32_t time_boot_ms = 0;
-  std::array<float, 4> turn{};  ///< quaternion w, x, y, z; forward, right, down
+  std::array<float, 4> turn{};  ///< Quaternion w, x, y, z in the frame forward, right, down.
   std::array<float, 3> rates{};
   std::uint32_t failures = 0;
   std::uint16_t flags = 0;
@@ -205,7 +206,7 @@ struct GimbalAttitude {
   }
 };
 
-/// The extra byte of each of these; nothing for others.
+/// Returns the CRC extra byte of a message above, or std::nullopt for other messages.
 inline std::optional<std::uint8_t> guided_extra_byte(std::uint32_t id) {
   return extra_byte_of<Heartbeat, SystemStatus, Attitude, GlobalPosition, CommandLong,
                        CommandAnswer, PositionTarget, EstimatorStatus, StatusText, GimbalAttitude>(

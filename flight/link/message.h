@@ -1,12 +1,11 @@
-/// How a message becomes bytes and back: from one list of its fields, which is its definition.
+/// Serialisation of messages from a single definition: the list of their fields.
 ///
 /// A message is a struct with an `id`, a `name` and
 ///
 ///     template <class Self, class Visit> static void fields(Self& self, Visit&& visit);
 ///
-/// which visits its fields in the order of the wire, largest types first, by the names that MAVLink
-/// gives them. Extensions are left out: they do not count for the extra byte, and zeros stand for
-/// them.
+/// which visits its fields with their MAVLink names in wire order, largest types first. Extension
+/// fields are omitted: they do not count for the CRC extra byte, and missing bytes mean zero.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@ namespace skycap::flight::mavlink {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as MAVLink has them");
 
-/// What MAVLink's definitions call a type.
+/// Returns the type name of MAVLink's definitions.
 template <class T>
 constexpr const char* type_name() {
   if constexpr (std::is_same_v<T, char>) return "char";
@@ -40,21 +39,21 @@ constexpr const char* type_name() {
   if constexpr (std::is_same_v<T, std::int32_t>) return "int32_t";
 }
 
-/// Visits the numbers of an array as fields of their own.
+/// Visits the elements of an array as individual fields.
 template <class Visit, std::size_t N, class Array>
 void visit_each(Visit& visit, const char* const (&names)[N], Array& values) {
   static_assert(N == std::tuple_size_v<std::remove_const_t<Array>>);
   for (std::size_t i = 0; i < N; ++i) visit(names[i], values[i]);
 }
 
-/// Visits the two fields that say whom a message is for.
+/// Visits the two fields of a message's target address.
 template <class Visit, class Target>
 void visit_target(Visit& visit, Target& target) {
   visit("target_system", target.system);
   visit("target_component", target.component);
 }
 
-/// The definition's text, from which the extra byte is computed.
+/// Text of a message definition, from which the CRC extra byte is computed.
 class DefinitionText {
  public:
   explicit DefinitionText(const char* name) { add(name); }
@@ -93,7 +92,7 @@ class PayloadWriter {
   Bytes bytes_;
 };
 
-/// Reads fields from a payload; what is missing at its end is zero.
+/// Reads fields from a payload. Missing trailing bytes are zero.
 class PayloadReader {
  public:
   explicit PayloadReader(std::span<const std::uint8_t> rest) : rest_(rest) {}
@@ -112,8 +111,8 @@ class PayloadReader {
   std::span<const std::uint8_t> rest_;
 };
 
-/// The byte that goes into a frame's checksum besides its bytes, so that ends with different
-/// definitions do not understand each other.
+/// Returns the CRC extra byte. It extends a frame's checksum so that peers with different
+/// definitions reject each other's messages.
 template <class M>
 std::uint8_t extra_byte() {
   static const std::uint8_t byte = [] {
@@ -135,7 +134,7 @@ Bytes encode(const M& message, Address sender, std::uint8_t sequence) {
   return wire_form({M::id, sender, sequence, std::move(writer.bytes())}, extra_byte<M>());
 }
 
-/// The message in a frame; nothing if it is another one.
+/// Returns the message of a frame, or std::nullopt if the frame has a different ID.
 template <class M>
 std::optional<M> decode(const Frame& frame) {
   if (frame.id != M::id) return std::nullopt;
@@ -145,7 +144,7 @@ std::optional<M> decode(const Frame& frame) {
   return message;
 }
 
-/// For a FrameReader of these messages.
+/// Returns the CRC extra byte of one of the messages `M`, for FrameReader.
 template <class... M>
 std::optional<std::uint8_t> extra_byte_of(std::uint32_t id) {
   std::optional<std::uint8_t> byte;

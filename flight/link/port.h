@@ -1,5 +1,5 @@
-/// Where the bytes of a link go to and come from, and what time it is there: sockets and the clock
-/// on the wall, or an autopilot in a test, whose time is as fast as it is computed.
+/// Transport and clock of a link: sockets with the system clock, or a simulated autopilot with its
+/// own time in tests.
 #pragma once
 
 #include <span>
@@ -12,13 +12,13 @@ class Port {
  public:
   virtual ~Port() = default;
 
-  /// May lose it, as links do.
+  /// Sends bytes, which may be lost.
   virtual void send(std::span<const std::uint8_t> bytes) = 0;
 
-  /// What has come; waits for something until so many seconds have passed.
+  /// Returns the received bytes. Waits at most `patience` [s] for the first.
   virtual Bytes receive(double patience) = 0;
 
-  /// Seconds since some moment; never goes back.
+  /// Returns the time since a fixed moment [s]. Monotonic.
   virtual double now() const = 0;
 };
 

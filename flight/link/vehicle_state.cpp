@@ -7,16 +7,17 @@
 namespace skycap::flight::mavlink {
 namespace {
 
-/// Frames this far behind the last one came late; farther behind, the sender has begun anew.
+/// Frames up to this number behind the last one are late. A larger difference indicates a restart
+/// of the sender.
 constexpr int late_frames = 64;
 
 constexpr std::uint8_t no_autopilot = 8, armed_flag = 128, least_warning = 4;
 
-/// Pitch of the axis that a gimbal looks along; nothing for what is no rotation.
+/// Returns the pitch of a gimbal's optical axis, or std::nullopt for an invalid rotation.
 std::optional<double> pitch_of(const std::array<float, 4>& turn) {
   double norm = 0.0;
   for (const float part : turn) norm += static_cast<double>(part) * part;
-  if (!(norm > 0.9 && norm < 1.1)) return std::nullopt;  // NaN is none, either
+  if (!(norm > 0.9 && norm < 1.1)) return std::nullopt;  // Also rejects NaN.
   const double w = turn[0], x = turn[1], y = turn[2], z = turn[3];
   return std::asin(std::clamp(2.0 * (w * y - z * x) / norm, -1.0, 1.0));
 }
@@ -54,7 +55,7 @@ void VehicleState::hear(const Frame& frame, double now) {
   }
   if (frame.sender.system != autopilot_->system || !is_new(frame)) return;
   last_heard_ = now;
-  // Gimbals may speak for themselves.
+  // Gimbals may be separate components.
   if (const auto gimbal = decode<GimbalAttitude>(frame)) {
     if (const auto pitch = pitch_of(gimbal->turn)) pitch_ = pitch;
   } else if (frame.sender.component == autopilot_->component) {
@@ -89,7 +90,7 @@ void VehicleState::hear_position(const GlobalPosition& message, double now) {
       std::abs(static_cast<double>(message.longitude)) > most_longitude) {
     return;
   }
-  // A position that does not get any newer is not heard again.
+  // A position with an unchanged time stamp is ignored.
   if (position_ && message.time_boot_ms == position_->boot_ms) return;
   constexpr double degrees = 1e-7, metres = 1e-3, metres_a_second = 1e-2;
   position_ = {now,

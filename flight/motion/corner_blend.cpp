@@ -9,22 +9,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Share of a straight piece that the blends at its ends may use up each.
+/// Maximum fraction of a straight piece that the blend at each end may use.
 constexpr double most_of_a_piece = 0.45;
-/// A blend that comes too near to something is tried smaller by this factor, so often.
+/// Factor by which a blend that violates the clearance is reduced, and the number of tries.
 constexpr double shrinking = 0.8;
 constexpr int most_tries = 14;
-/// Blends that begin this near to their corner are not worth it [m].
+/// Minimum reach of a worthwhile blend [m].
 constexpr double least_reach = 0.02;
-/// Share of the way to the corner between the first control points of a blend, at the least.
+/// Minimum distance between the first control points of a blend, relative to its reach.
 constexpr double least_handle = 0.30;
-/// No change of speed is done faster than in twice this time [s], no speed held for less: shorter
-/// pieces would lose digits of their jerk.
+/// Minimum duration of half a speed change and of constant speed [s]. Shorter pieces would have
+/// inaccurate jerk.
 constexpr double least_phase = 0.05;
-/// Halvings of an interval in which a speed is looked for.
+/// Number of halvings in the search for a speed.
 constexpr int bisections = 50;
 
-/// The largest value in [low, high] for which `holds`, which is true of low and changes once.
+/// Returns the largest value in [low, high] for which `holds` is true. `holds` must be true for low
+/// and change at most once.
 template <class Predicate>
 double largest(double low, double high, const Predicate& holds) {
   if (holds(high)) return high;
@@ -35,9 +36,9 @@ double largest(double low, double high, const Predicate& holds) {
   return low;
 }
 
-/// A change of speed: the acceleration rises, holds and falls.
+/// Speed change: rise, hold and fall of the acceleration.
 struct Ramp {
-  double rise = 0.0, hold = 0.0;  ///< times [s]
+  double rise = 0.0, hold = 0.0;  ///< Durations [s].
 
   double duration() const { return 2.0 * rise + hold; }
   Ramp stretched(double factor) const { return {factor * rise, factor * hold}; }
@@ -50,7 +51,7 @@ Ramp ramp(double from, double to, const MissionMode& limits) {
   if (change >= limits.acceleration * full_rise) {
     const double hold = change / limits.acceleration - full_rise;
     if (hold >= least_phase && full_rise >= least_phase) return {full_rise, hold};
-    // A short hold goes into the rise: less jerk at the same peak.
+    // A short hold is merged into the rise, which reduces the jerk at the same peak.
     return {std::max(change / limits.acceleration, least_phase), 0.0};
   }
   return {std::max(std::sqrt(change / limits.jerk), least_phase), 0.0};
@@ -75,7 +76,7 @@ class StraightMotion {
   }
   void hold_speed(double time) { advance(time, 0.0, 0.0); }
 
-  /// Puts what rounding has left of the way into the last piece.
+  /// Adds the rounding residual of the distance to the last piece.
   void end_in(const Vector3d& place) {
     CurvePiece& last = curve_.back();
     const Vector3d missing = place - last.control[5];
@@ -100,9 +101,9 @@ class StraightMotion {
   CurveState now_;
 };
 
-/// How a corner is passed. All zero: with a stop.
+/// Passage of a corner. All zero: with a stop.
 struct Blend : CornerShape {
-  double speed = 0.0;  ///< at both ends
+  double speed = 0.0;  ///< At both ends [m/s].
 };
 
 class Blender {
@@ -137,8 +138,8 @@ class Blender {
     return piece_length(i) - blends_[i].reach - blends_[i + 1].reach;
   }
 
-  /// Control points on both arms of the corner, evenly spaced as constant speed at the ends and no
-  /// acceleration there demand.
+  /// Returns control points on both arms of the corner. They are evenly spaced, which gives
+  /// constant speed and zero acceleration at the ends.
   CurvePiece blend_piece(std::size_t corner, const Blend& blend) const {
     const Vector3d before = direction(corner - 1), after = direction(corner);
     const double step = blend.handle * blend.reach;
@@ -149,7 +150,7 @@ class Blender {
             5.0 * step / blend.speed};
   }
 
-  /// The handle with which a blend of that reach is fastest.
+  /// Returns the blend of that reach with the fastest handle.
   Blend fastest_blend(std::size_t corner, double reach) const {
     constexpr int tries = 11;
     double handle = least_handle;
@@ -163,7 +164,7 @@ class Blender {
 
   Blend blend_of(std::size_t corner, const CornerShape& shape) const {
     Blend blend{shape, 1.0};
-    // Flown at one metre a second it may be sped up by the inverse of the slowdown it needs.
+    // At 1 m/s it may be sped up by the inverse of its required slowdown.
     blend.speed = 1.0 / needed_slowdown({blend_piece(corner, blend)}, motion_);
     return blend;
   }
@@ -172,7 +173,7 @@ class Blender {
     return prove(space_, {blend_piece(corner, blend)}, clearance_, clearance_).is_proven;
   }
 
-  /// The corner, round it or with a stop in it.
+  /// Appends the corner: the blend, or a stop in it.
   void pass(std::size_t corner, BlendedWay& way) const {
     const double now = duration(way.curve);
     const double wait = rules_[corner].wait;
@@ -185,9 +186,9 @@ class Blender {
     if (wait > 0.0) way.curve.push_back(piece_between({points_[corner]}, {points_[corner]}, wait));
   }
 
-  /// How far before its corner a blend may begin that comes as near to it as the rule asks, by the
-  /// rounder of its shapes: the middle of a piece with the handle h is (16 - 25 h) / 32 of its
-  /// reach away, along both arms.
+  /// Returns the maximum reach of a blend that observes the rule's maximum distance, for the
+  /// roundest shape. With the handle h, the middle of the piece is (16 - 25 h) / 32 of its reach
+  /// away, along both arms.
   double allowed_reach(std::size_t corner) const {
     const double bend = (direction(corner) - direction(corner - 1)).norm();
     const double off = (16.0 - 25.0 * least_handle) / 32.0 * bend;
@@ -200,7 +201,7 @@ class Blender {
   }
 
   Blend largest_blend(std::size_t corner) const {
-    // Near a reversal the triangle is a line and a stop in its end is needed.
+    // Near a reversal, the triangle degenerates to a line and a stop at its end is required.
     if (direction(corner - 1).dot(direction(corner)) < -0.95) return {};
     if (rules_[corner].most_off == 0.0) return {};
     if (std::optional<CornerShape> shape = rules_[corner].shape) {
@@ -217,8 +218,8 @@ class Blender {
     return {};
   }
 
-  /// Lowers the speeds at corners until each follows from the one before within the straight piece
-  /// between them, forwards and backwards.
+  /// Reduces the speeds at corners, forwards and backwards, until each can be reached from the
+  /// previous one within the straight piece between them.
   void match_speeds() {
     const MissionMode& limits = motion_.vehicle().mode;
     const auto limit = [&](std::size_t from, std::size_t to, std::size_t piece) {
@@ -249,7 +250,7 @@ class Blender {
       motion.change_speed(end, ramp(peak, end, limits));
     } else if (start == end) {
       motion.hold_speed(room / start);
-    } else {  // one ramp, stretched to fill the room
+    } else {  // One ramp, stretched to the available length.
       const double factor = room / ramp_distance(start, end, limits);
       motion.change_speed(end, ramp(start, end, limits).stretched(factor));
     }
@@ -261,7 +262,7 @@ class Blender {
   double clearance_;
   const Motion& motion_;
   std::vector<CornerRule> rules_;
-  std::vector<Blend> blends_;  ///< one for each point; none at the ends
+  std::vector<Blend> blends_;  ///< One per point, zero at the ends.
 };
 
 }  // namespace

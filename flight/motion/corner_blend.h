@@ -1,4 +1,4 @@
-/// Flying round the corners of a polyline instead of stopping in them.
+/// Rounded corners instead of stops on a polyline.
 #pragma once
 
 #include <limits>
@@ -14,36 +14,40 @@
 
 namespace skycap::flight {
 
-/// Rounding may make a curve that was slowed as needed look too fast by this share.
+/// Relative tolerance for the limit check of a slowed curve, because of rounding.
 inline constexpr double limit_tolerance = 1e-9;
 
-/// The shape of the curve round a corner.
+/// Shape of the curve at a corner.
 struct CornerShape {
-  double reach = 0.0;   ///< from so far before the corner to as far behind it; zero: a stop in it
-  double handle = 0.0;  ///< of the reach, from a control point to the next
+  /// Length of each adjacent line that the curve replaces [m]. 0: stop at the corner.
+  double reach = 0.0;
+  double handle = 0.0;  ///< Distance between control points, as a fraction of `reach`.
 };
 
-/// How one point of a polyline may be passed.
+/// Rule for passing one point of a polyline.
 struct CornerRule {
-  /// How far from it the curve may be where it is nearest [m]; zero: stop in it.
+  /// Maximum distance between the point and the curve [m]. 0: stop at the point.
   double most_off = std::numeric_limits<double>::infinity();
-  double wait = 0.0;  ///< at rest, where it is stopped in [s]
-  /// The only one that is tried, as far as both pieces are long enough; else the fastest is chosen.
+  double wait = 0.0;  ///< Rest time if the curve stops at the point [s].
+  /// The only shape to try, if both adjacent lines are long enough. Otherwise the fastest shape is
+  /// used.
   std::optional<CornerShape> shape{};
 };
 
 struct BlendedWay {
   Curve curve;
-  std::vector<double> moments;  ///< for each point, when the curve is nearest to it, or comes there
-  std::vector<CornerShape> shapes;  ///< for each point
+  std::vector<double> moments;      ///< Time at which the curve is closest to each point [s].
+  std::vector<CornerShape> shapes;  ///< Shape at each point.
 };
 
-/// A motion from rest to rest along a polyline: straight pieces with jerk-limited changes of speed,
-/// and in each corner a quintic Bezier piece, inside of the corner's triangle, whose hull is proven
-/// to keep the clearance. Where no such piece is proven the corner is flown to and stopped in.
-/// Keeps the vehicle's limits; deterministic. The straight pieces are taken to be proven by who
-/// made the polyline. Expects at least two points, no two of them in a row equal, and a rule for
-/// each point (those of both ends are not looked at) or none at all.
+/// Returns a rest-to-rest motion along a polyline that observes the vehicle's limits. Straight
+/// pieces have speed changes with limited jerk. Each corner has a quintic Bezier piece within the
+/// corner's triangle, whose hull is verified at `clearance` [m]. The motion stops at a corner where
+/// no such piece can be verified.
+///
+/// Assumes that the caller has verified the lines of the polyline. Requires at least two points, of
+/// which consecutive ones differ. `rules` is empty or has one rule per point; the rules of both
+/// ends are ignored. Deterministic.
 BlendedWay blend_corners(const std::vector<Eigen::Vector3d>& points, const FreeSpace& space,
                          double clearance, const Motion& motion,
                          std::span<const CornerRule> rules = {});

@@ -9,19 +9,20 @@ namespace {
 using Eigen::Vector3d;
 using Control = std::array<Vector3d, 6>;
 
-/// Halvings before a part of a curve counts as grazing: a piece of 100 m is then in parts of 2 cm,
-/// which lie within 1e-5 m of their chords.
+/// Number of halvings after which a part that cannot be verified counts as too close. A piece of
+/// 100 m then has parts of 2 cm, which deviate from their chords by at most 1e-5 m.
 constexpr int max_halvings = 12;
-/// Halvings of a piece for bounds on its derivatives: two leave them some percent from their least.
+/// Number of halvings for bounds on derivatives. Two give bounds within some percent of the
+/// minimum.
 constexpr int derivative_halvings = 2;
-/// A hull as thin as this is its chord: clearance_guard covers it.
+/// Hull radius below which a hull equals its chord: clearance_guard covers the difference.
 constexpr double thin = 1e-9;
-/// Halvings of a piece for its length: the error falls by sixteen with each.
+/// Number of halvings for the length. Each reduces the error by a factor of 16.
 constexpr int length_halvings = 4;
-/// Steps of the energy's integral over a piece.
+/// Number of integration steps for the energy of a piece.
 constexpr int integral_steps = 16;
 
-/// de Casteljau at one half.
+/// De Casteljau subdivision at one half.
 std::array<Control, 2> halves(Control points) {
   std::array<Control, 2> parts;
   for (std::size_t level = 0; level < 6; ++level) {
@@ -33,7 +34,7 @@ std::array<Control, 2> halves(Control points) {
 }
 
 CurveState state_of(const CurvePiece& piece, double share) {
-  // Levels of de Casteljau hold the derivatives' points too.
+  // The levels of de Casteljau's algorithm contain the points of the derivatives, too.
   Control points = piece.control;
   const auto lower = [&](std::size_t count) {
     for (std::size_t i = 0; i + 1 < count; ++i) {
@@ -51,8 +52,8 @@ CurveState state_of(const CurvePiece& piece, double share) {
   return state;
 }
 
-/// Between the chord's length and that of the control polygon (Gravesen, Adaptive Subdivision and
-/// the Length and Energy of Bezier Curves, 1997: the weights are those for degree 5).
+/// Returns a weighted mean of the lengths of chord and control polygon. Source: Gravesen, Adaptive
+/// Subdivision and the Length and Energy of Bezier Curves, 1997, with the weights for degree 5.
 double length_of(const Control& control, int halvings) {
   if (halvings > 0) {
     double sum = 0.0;
@@ -64,7 +65,7 @@ double length_of(const Control& control, int halvings) {
   return ((control[5] - control[0]).norm() + 2.0 * polygon) / 3.0;
 }
 
-/// How far from its chord a hull reaches.
+/// Returns the maximum distance of a hull from its chord [m].
 double hull_radius(const Control& control) {
   const Segment chord{control.front(), control.back()};
   double squared = 0.0;
@@ -77,14 +78,15 @@ double hull_radius(const Control& control) {
 
 LegProof prove_part(const FreeSpace& space, const Control& control, double clearance, double up_to,
                     int halvings_left) {
-  // All points within a radius of a chord are a convex set: with the control points in it, so is
-  // the curve. Hence its clearance is at least the chord's less the radius.
+  // The points within a radius of a chord form a convex set. If it contains the control points, it
+  // also contains the curve. The curve's clearance is therefore at least that of the chord minus
+  // the radius.
   const double radius = hull_radius(control);
   const LegProof chord =
       prove(space, {control.front(), control.back()}, clearance + radius, up_to + radius);
   if (chord.is_proven) return {true, chord.clearance - radius, chord.closest};
-  // Over every place of the chord the curve passes within the radius: if the chord is nearer than
-  // the clearance by more than that, so is the curve, and halving is in vain.
+  // The curve passes within the radius of every point of the chord. If the chord violates the
+  // clearance by more than that, so does the curve, and subdivision cannot help.
   const bool is_hopeless = chord.clearance + radius < clearance || radius == 0.0;
   if (is_hopeless || halvings_left == 0) return {false, 0.0, chord.closest};
   LegProof proof{true, up_to, {up_to}};
@@ -197,7 +199,7 @@ double energy(const Curve& curve, const Motion& motion) {
   double sum = 0.0, peak_speed = 0.0;
   for (const CurvePiece& piece : curve) {
     const double step = piece.duration / integral_steps;
-    for (int i = 0; i < integral_steps; ++i) {  // midpoints
+    for (int i = 0; i < integral_steps; ++i) {  // Midpoint rule.
       const Vector3d velocity = state_of(piece, (i + 0.5) / integral_steps).velocity;
       sum += step * motion.flight_power(velocity);
       peak_speed = std::max(peak_speed, velocity.norm());

@@ -14,26 +14,27 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Wanted duration of a piece, and the most pieces: a joint has nine numbers, and each step of the
-/// solver costs the cube of their sum.
+/// Target duration of a piece and limits on the number of pieces. A joint has nine variables, and
+/// the cost of a solver step is cubic in their number.
 constexpr double piece_duration = 0.8;
 constexpr std::size_t least_pieces = 6, most_pieces = 32;
 constexpr int most_iterations = 20;
-/// Times that the problem is solved, each for a duration a little shorter than the last one needed.
+/// Number of solutions, and the factor of each duration relative to the last required one.
 constexpr int rounds = 8;
 constexpr double haste = 0.92;
 
-/// Seconds that flying at full jerk all the time counts as.
+/// Weight of flight at full jerk, in equivalent seconds.
 constexpr double jerk_weight = 1.0;
-/// Seconds that a squared speed of twice the limit's counts as, at each control point.
+/// Weight of the squared excess for twice the speed limit at each control point, in equivalent
+/// seconds.
 constexpr double speed_weight = 10.0;
-/// Seconds that a metre into the wall costs, squared, at each of the places looked at.
+/// Weight of the squared penetration of 1 m into the wall at each sample, in equivalent seconds.
 constexpr double wall_weight = 400.0;
-/// Places on a piece at which the distance is looked at, besides its start.
+/// Number of distance samples on a piece in addition to its start.
 constexpr int places = 5;
 
-/// A joint's position, and its velocity and acceleration by the pieces' common duration: so the way
-/// does not change with the duration, and both can be improved at once.
+/// Position of a joint, and its velocity and acceleration scaled by the common duration of the
+/// pieces. The path is then independent of the duration, and both can be improved together.
 using Joint = std::array<double, 9>;
 
 template <class T>
@@ -57,8 +58,8 @@ T hinge(const T& value) {
   return value > T(0.0) ? value : T(0.0);
 }
 
-/// Jerk and speeds of one piece. Accelerations need no walls: least jerk spreads them evenly, and
-/// what is still too much is slowed.
+/// Jerk and speeds of one piece. Accelerations need no penalty: minimum jerk distributes them
+/// evenly, and the final slowdown covers the rest.
 struct PieceCost {
   static constexpr int residuals = 9 + 5 * 3;
 
@@ -69,8 +70,8 @@ struct PieceCost {
     const double rate = 1.0 / duration;
     const auto c = control_points(from, to);
 
-    // The integral of a squared Bezier curve of degree 2 is a quadratic form of its control points
-    // with this matrix, times the duration; its Cholesky factor turns it into a sum of squares.
+    // The integral of a squared Bezier curve of degree 2 is the duration times a quadratic form of
+    // its control points with this matrix. Its Cholesky factor converts it to a sum of squares.
     static const Eigen::Matrix3d factor = [] {
       Eigen::Matrix3d gram;
       gram << 1.0 / 5, 1.0 / 10, 1.0 / 30, 1.0 / 10, 2.0 / 15, 1.0 / 10, 1.0 / 30, 1.0 / 10,
@@ -105,7 +106,7 @@ struct PieceCost {
   }
 };
 
-/// How deep places of one piece are in the wall.
+/// Penetration of a piece's samples into the wall.
 struct WallCost {
   const FreeSpace* space;
   double wanted;
@@ -123,8 +124,8 @@ struct WallCost {
     return true;
   }
 
-  /// The distance, and its slope: away from the nearest place. Where the place itself is not free
-  /// there is no slope; the joints beside it have to pull it out.
+  /// Returns the distance with its gradient, which points away from the closest obstacle. There is
+  /// no gradient at a position that is not free. The neighbouring joints must pull it out.
   template <class T>
   T distance(const Vector<T>& place) const {
     const Vector3d p(value(place.x()), value(place.y()), value(place.z()));
@@ -161,7 +162,7 @@ Joint joint_of(const CurveState& state, double duration) {
   return joint;
 }
 
-/// One problem of a given duration, solved from where the joints are.
+/// Solves the problem for a given duration, starting from the current joints.
 void solve(std::vector<Joint>& joints, const PieceCost& piece_cost, const WallCost& wall_cost) {
   ceres::Problem problem;
   for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
@@ -176,11 +177,11 @@ void solve(std::vector<Joint>& joints, const PieceCost& piece_cost, const WallCo
   problem.SetParameterBlockConstant(joints.front().data());
   problem.SetParameterBlockConstant(joints.back().data());
   ceres::Solver::Options options;
-  options.num_threads = 1;  // sums in one order: the same curve every time
+  options.num_threads = 1;  // Fixed order of summation, for identical results.
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   options.dense_linear_algebra_library_type = ceres::EIGEN;
   options.max_num_iterations = most_iterations;
-  options.max_solver_time_in_seconds = 1e9;  // the iterations are the limit, not the clock
+  options.max_solver_time_in_seconds = 1e9;  // The limit is the number of iterations, not the time.
   options.function_tolerance = 1e-4;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -212,8 +213,8 @@ Curve refine(const Curve& start, const FreeSpace& space, double wanted_clearance
 
   const Vehicle& vehicle = motion.vehicle();
   const Conditions& conditions = motion.conditions();
-  // Against the wind the vehicle may not make its cruise speed. The few directions in which this is
-  // too careful are not worth a term of their own.
+  // Against the wind, the vehicle may not reach its cruise speed. This is too strict for a few
+  // directions, which do not justify a separate term.
   const double speed =
       std::min(conditions.cruise_speed,
                std::max(vehicle.max_speed - conditions.wind.norm(), 0.1 * vehicle.max_speed));

@@ -1,10 +1,11 @@
-/// Smoother and faster ways than round corners: the whole curve at once, by Ceres.
+/// Global optimisation of a curve with Ceres, for smoother and faster flight than with rounded
+/// corners.
 ///
-/// Minimises the integral of the squared jerk (Mellinger & Kumar, Minimum Snap Trajectory
-/// Generation and Control for Quadrotors, ICRA 2011, section IV, for the derivative one lower) over
-/// the states at the joints of pieces of equal duration, with soft walls before the speed limits
-/// and around what is not free. Then the duration is shortened, for as long as that makes the
-/// flight faster once it is slowed to keep all limits.
+/// Minimises the integral of the squared jerk over the states at the joints of pieces of equal
+/// duration. The method follows Mellinger & Kumar (Minimum Snap Trajectory Generation and Control
+/// for Quadrotors, ICRA 2011, section IV), with a derivative one order lower. Penalty terms act
+/// before the speed limits and near space that is not free. Afterwards the duration is reduced as
+/// long as the curve, slowed to all limits, becomes faster.
 #pragma once
 
 #include "flight/motion/curve.h"
@@ -13,9 +14,9 @@
 
 namespace skycap::flight {
 
-/// A curve between the same two places at rest, twice continuously differentiable: a proposal. It
-/// keeps the vehicle's limits, being slowed as needed, but nothing is proven of its clearance; the
-/// wall stands at `wanted_clearance`. Deterministic. `start` must not be empty.
+/// Returns a twice continuously differentiable curve between the same end positions, at rest at
+/// both. The curve observes the vehicle's limits, but its clearance is not verified. The obstacle
+/// penalty starts at `wanted_clearance` [m]. `start` must not be empty. Deterministic.
 Curve refine(const Curve& start, const FreeSpace& space, double wanted_clearance,
              const Motion& motion);
 

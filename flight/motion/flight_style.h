@@ -1,14 +1,14 @@
-/// What a pilot may choose about legs.
+/// Leg styles that the pilot can select.
 #pragma once
 
 namespace skycap::flight {
 
-/// How legs are flown.
+/// Style of flight along legs.
 enum class FlightStyle {
-  stop,    ///< straight, with a stop in every corner: what every autopilot can be told
-  blend,   ///< round the corners
-  smooth,  ///< along one curve, or round the corners where that is faster
-  pass,    ///< round the corners, and past the views: pictures are taken without a stop
+  stop,    ///< Straight legs with a stop at every corner, supported by every autopilot.
+  blend,   ///< Rounded corners.
+  smooth,  ///< One smooth curve, or rounded corners where those are faster.
+  pass,    ///< Rounded corners and fly-through capture without stops at views.
 };
 
 }  // namespace skycap::flight

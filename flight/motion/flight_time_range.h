@@ -1,23 +1,23 @@
-/// How much longer than Motion says an autopilot may fly, and the energy that is planned with then.
+/// Upper bound of flight time relative to the prediction of Motion, and the energy to plan with.
 ///
-/// PX4's law of a leg is the one of its source, but two missions flown in its simulator took 1.5 to
-/// 1.8 times as long as it says (docs/explanation/sensor-and-flight-models.md): its time is a
-/// range.
+/// PX4's leg law follows its source code, but two missions in its simulator took 1.5 to 1.8 times
+/// the predicted time. Predicted times on PX4 are therefore a range
+/// (docs/explanation/sensor-and-flight-models.md).
 #pragma once
 
 #include "flight/motion/motion.h"
 
 namespace skycap::flight {
 
-/// The upper end, as a multiple of the predicted time: 1 where predictions were confirmed by
-/// flights, or where no flight says otherwise.
+/// Returns the maximum ratio of actual to predicted flight time. It is 1 where flights confirmed
+/// the prediction or no flight data exist.
 inline double longest_flight(const Vehicle& vehicle) {
   constexpr double longest_on_px4 = 1.8;
   return vehicle.dialect == Dialect::px4 ? longest_on_px4 : 1.0;
 }
 
-/// Of full batteries, what a sortie may take by Motion's prediction, so that the battery lasts if
-/// it takes as long as its conditions allow; power is taken to be the same all the time [J].
+/// Returns the predicted energy that a sortie may use [J]. The usable battery energy is divided by
+/// the maximum time ratio of the conditions, assuming constant power.
 inline double plannable_energy(const Motion& motion) {
   return motion.usable_energy() / motion.conditions().longest_flight;
 }

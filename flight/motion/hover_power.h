@@ -1,18 +1,19 @@
-/// What a vehicle's data sheet says of the power of hovering, which calibrates Motion.
+/// Hover power from a vehicle's data sheet, which calibrates Motion.
 #pragma once
 
 #include "flight/motion/vehicle.h"
 
 namespace skycap::flight {
 
-/// Electrical power of hovering at sea level that the battery and the endurance stand for [W].
+/// Returns the electrical hover power [W] at sea level that follows from battery energy and
+/// endurance.
 double data_sheet_power(const Vehicle& vehicle);
 
-/// How long the battery lasts at a hover power [W]: the inverse of data_sheet_power() [min].
+/// Returns the endurance [min] for a hover power [W]. Inverse of data_sheet_power().
 double endurance_at(const Vehicle& vehicle, double hover_power);
 
-/// Electrical power that the rotors take at least to hover at sea level: with no losses but those
-/// of momentum theory and blade drag [W].
+/// Returns the minimum electrical rotor power for hovering at sea level [W], with only the losses
+/// of momentum theory and blade drag.
 double min_rotor_power(const Vehicle& vehicle);
 
 }  // namespace skycap::flight

@@ -17,12 +17,13 @@ constexpr double gravity = 9.80665;
 constexpr double sea_level_density = 1.225;
 constexpr double joules_per_wh = 3600.0;
 
-/// Endurances are stated to the last drop; a twentieth of a battery is lost to its age.
+/// Data sheets state endurance until the battery is empty. Ageing reduces the capacity by 5%.
 constexpr double aged_capacity = 0.95;
-/// Batteries lose a hundredth of their capacity for each degree below 15 C.
+/// Relative capacity loss per degree below 15 °C.
 constexpr double loss_per_degree = 0.01;
-/// Share of the rotors' hover power that goes into blade drag, and the ratio of cruise to tip speed
-/// enters it by 3 (v / tip)^2 (Leishman, Principles of Helicopter Aerodynamics, section 5.4).
+/// Fraction of the rotors' hover power that overcomes blade drag. The ratio of cruise speed to tip
+/// speed changes it by the factor 1 + 3 (v / tip)^2 (Leishman, Principles of Helicopter
+/// Aerodynamics, section 5.4).
 constexpr double profile_share = 0.2;
 constexpr double tip_speed = 120.0;
 
@@ -30,7 +31,7 @@ double disc_area(const Vehicle& vehicle) {
   return vehicle.rotors * std::numbers::pi * vehicle.rotor_diameter * vehicle.rotor_diameter / 4.0;
 }
 
-/// Of hovering at sea level by momentum theory [W].
+/// Returns the hover power at sea level from momentum theory [W].
 double ideal_power(const Vehicle& vehicle) {
   return std::pow(vehicle.mass * gravity, 1.5) /
          std::sqrt(2.0 * sea_level_density * disc_area(vehicle));
@@ -66,12 +67,12 @@ void Conditions::validate(const Vehicle& vehicle) const {
 
 double rest_to_rest_time(double distance, double speed, double acceleration, double jerk) {
   if (distance <= 0.0) return 0.0;
-  // Time to reach the speed: with a phase of constant acceleration, or without.
+  // Time to reach the speed, with or without a phase of constant acceleration.
   const double ramp = speed * jerk >= acceleration * acceleration
                           ? acceleration / jerk + speed / acceleration
                           : 2.0 * std::sqrt(speed / jerk);
   if (distance >= speed * ramp) return ramp + distance / speed;
-  // The speed is not reached; the acceleration is, or not.
+  // The speed is not reached. The acceleration may be.
   if (distance >= 2.0 * std::pow(acceleration, 3) / (jerk * jerk)) {
     const double half_rise = 0.5 * acceleration / jerk;
     return 2.0 * (half_rise + std::sqrt(half_rise * half_rise + distance / acceleration));
@@ -84,12 +85,13 @@ MotionState rest_to_rest_state(double distance, double speed, double acceleratio
   const double total = rest_to_rest_time(distance, speed, acceleration, jerk);
   if (time <= 0.0 || distance <= 0.0) return {};
   if (time >= total) return {distance, 0.0, 0.0};
-  if (time > 0.5 * total) {  // braking mirrors the start
+  if (time > 0.5 * total) {  // Braking mirrors the acceleration.
     const MotionState mirrored =
         rest_to_rest_state(distance, speed, acceleration, jerk, total - time);
     return {distance - mirrored.distance, mirrored.speed, -mirrored.acceleration};
   }
-  // Up to the peak speed: the acceleration rises, holds, falls; then the speed holds.
+  // Up to the peak speed: the acceleration rises, is constant, and falls. Then the speed is
+  // constant.
   const double peak_ramp = std::min(0.5 * total, speed * jerk >= acceleration * acceleration
                                                      ? acceleration / jerk + speed / acceleration
                                                      : 2.0 * std::sqrt(speed / jerk));
@@ -151,7 +153,8 @@ Motion::Motion(const Vehicle& vehicle, const Conditions& conditions)
 
 double Motion::hover_power() const { return forward_power(0.0); }
 
-// Induced power falls with airspeed, profile and parasite power rise (Liu et al. 2017, Eq. (12)).
+// Induced power decreases with airspeed, profile and parasite power increase (Liu et al. 2017, Eq.
+// (12)).
 double Motion::forward_power(double airspeed) const {
   const double ratio = 0.5 * airspeed * airspeed / (induced_speed_ * induced_speed_);
   const double induced = std::sqrt(std::sqrt(1.0 + ratio * ratio) - ratio);
@@ -175,7 +178,8 @@ double Motion::leg_speed(const Vector3d& direction) const {
         std::sqrt(std::max(0.0, vehicle_.max_speed * vehicle_.max_speed - across_squared));
     speed = std::min(speed, (along + root) / horizontal);
   }
-  return std::max(speed, 0.1);  // wind limits are below the top speed for every sane vehicle
+  // The wind limit of any realistic vehicle is below its maximum speed.
+  return std::max(speed, 0.1);
 }
 
 double Motion::leg_acceleration(const Vector3d& direction) const {
@@ -196,7 +200,7 @@ double Motion::moving_time(const Vector3d& displacement) const {
   if (mode.law == LegLaw::s_curve) {
     return s_curve_time(distance, limits, mode.jerk, mode.jerk_rise);
   }
-  // On shorter ways than it takes to be near enough, the vehicle still goes to the place.
+  // On distances within the acceptance radius, the vehicle still flies to the position.
   return std::max(braking_distance_time(distance, limits, mode.jerk),
                   rest_to_rest_time(distance, limits.speed, limits.acceleration, mode.jerk));
 }
@@ -242,7 +246,7 @@ double Motion::leg_energy(const Vector3d& displacement, double duration) const {
 }
 
 double Motion::flight_power(const Vector3d& velocity) const {
-  // Climbing lifts the mass; descending slowly gives nothing back.
+  // Climbing lifts the mass. Slow descent recovers no energy.
   const double climb = std::max(0.0, velocity.z()) * vehicle_.mass * gravity / efficiency_;
   return forward_power((velocity.head<2>() - conditions_.wind).norm()) + climb;
 }

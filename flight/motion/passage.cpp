@@ -11,31 +11,31 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// From the end of a turn until the camera has come to rest [s]; an estimate.
+/// Estimated time from the end of a rotation until the camera is at rest [s].
 constexpr double settling = 0.2;
-/// A corner of the way without a view may be cut by this much [m]: more saves little, and the
-/// nearer a curve is to the way that was planned, the rather it has ways home.
+/// Maximum cut of a corner without a view [m]. A larger cut saves little, and a curve close to the
+/// planned path is more likely to have returns.
 constexpr double most_cut_elsewhere = 3.0;
-/// Corners that would have to be cut by less are stopped in [m].
+/// Minimum cut; corners that require a smaller one are stops [m].
 constexpr double least_cut = 0.1;
-/// Corners keep their shapes and are moved outwards by what the curve is off their views, until
-/// that is no more than this [m], but not more often than that: each time it is a share of what it
-/// was.
+/// Corners keep their shapes. They are moved outwards by the distance between curve and view until
+/// it is below this limit [m], in a limited number of iterations. Each iteration reduces the
+/// distance by a constant factor.
 constexpr double near_enough = 1e-6;
 constexpr int most_bendings = 40;
-/// Nothing is flown more slowly (see Motion::leg_speed()) [m/s].
+/// Minimum flight speed (see Motion::leg_speed()) [m/s].
 constexpr double least_speed = 0.1;
 
 double turn(double from, double to) { return std::remainder(to - from, 2.0 * std::numbers::pi); }
 
-/// The same motion, no faster than pictures stay sharp.
+/// Returns the motion with its speed limited by image sharpness.
 Motion slowed_for(const Motion& motion, const PassRules& rules) {
   Conditions conditions = motion.conditions();
   conditions.cruise_speed = std::min(conditions.cruise_speed, rules.speed);
   return {motion.vehicle(), conditions};
 }
 
-/// A way without repeated points, and what is asked of the points that are left.
+/// Path without repeated points, and the rules of the remaining points.
 class Way {
  public:
   Way(const std::vector<Vector3d>& points, std::span<const ViewOnWay> views, const PassRules& rules)
@@ -58,13 +58,13 @@ class Way {
   }
 
   std::size_t size() const { return points_.size(); }
-  /// Where the way begins or ends nobody can wait.
+  /// Returns true if there is a view at either end of the path, where the vehicle cannot wait.
   bool has_view_at_end() const {
     return point_of_.front() == 0 || point_of_.back() + 1 == points_.size();
   }
 
-  /// Round all corners but through the places of views, with stops where the time between two
-  /// pictures would not do.
+  /// Rounds all corners with a curve through the view positions. Adds stops where the interval
+  /// between two images is too short.
   BlendedWay blend(const FreeSpace& space, double clearance, const Motion& motion,
                    const PassRules& rules) {
     const auto lack = [&](const BlendedWay& way, std::size_t view) {
@@ -77,7 +77,7 @@ class Way {
       rules_[point_of_[i]].wait = 0.0;
       if (lack(way, i) > 0.0) rules_[point_of_[i]].most_off = 0.0;
     }
-    // Stops only lengthen the time between others.
+    // Stops only lengthen the other intervals.
     way = bent();
     waits_.assign(views_.size(), 0.0);
     for (std::size_t i = 0; i + 1 < views_.size(); ++i) {
@@ -87,8 +87,8 @@ class Way {
     return blend_corners(points_, space, clearance, motion, rules_);
   }
 
-  /// Cuts the corners at both ends of each piece less that is not free. Whether all are, or nothing
-  /// is left to cut less.
+  /// Reduces the cut at both ends of each piece that is not free. Returns true if all pieces are
+  /// free, or if no cut can be reduced.
   bool relax(const BlendedWay& way, const std::function<bool(const Curve&)>& is_free) {
     std::vector<bool> is_tight(points_.size(), false);
     double begin = 0.0;
@@ -110,8 +110,7 @@ class Way {
     return is_done;
   }
 
-  /// When the pictures are taken on the way that was blended: those of one place one after the
-  /// other.
+  /// Returns the capture times on the blended path. Images at the same position are consecutive.
   std::vector<double> moments(const BlendedWay& way) const {
     std::vector<double> moments;
     for (std::size_t i = 0; i < views_.size(); ++i) {
@@ -122,7 +121,7 @@ class Way {
   }
 
  private:
-  /// Moves corners until the curve leads through the places of views.
+  /// Moves corners until the curve passes through the view positions.
   BlendedWay bend(const FreeSpace& space, double clearance, const Motion& motion) {
     points_ = places_;
     for (CornerRule& rule : rules_) rule.shape.reset();
@@ -130,7 +129,7 @@ class Way {
     for (int round = 0; round < most_bendings; ++round) {
       double most_off = 0.0;
       for (const std::size_t i : places_of_views_) {
-        rules_[i].shape = way.shapes[i];  // a stop stays one
+        rules_[i].shape = way.shapes[i];  // A stop remains a stop.
         const Vector3d off = places_[i] - state_at(way.curve, way.moments[i]).position;
         points_[i] += off;
         most_off = std::max(most_off, off.norm());
@@ -142,15 +141,15 @@ class Way {
   }
 
   std::span<const ViewOnWay> views_;
-  std::vector<Vector3d> places_;              ///< the points, each once
-  std::vector<Vector3d> points_;              ///< corners that the curve is bent round
-  std::vector<std::size_t> point_of_;         ///< for each view
-  std::vector<std::size_t> places_of_views_;  ///< the same, each once
-  std::vector<CornerRule> rules_;             ///< for each point
-  std::vector<double> waits_;                 ///< after each view
+  std::vector<Vector3d> places_;              ///< Points without repetition.
+  std::vector<Vector3d> points_;              ///< Displaced corners.
+  std::vector<std::size_t> point_of_;         ///< Point index of each view.
+  std::vector<std::size_t> places_of_views_;  ///< Distinct entries of `point_of_`.
+  std::vector<CornerRule> rules_;             ///< One rule per point.
+  std::vector<double> waits_;                 ///< Wait after each view [s].
 };
 
-/// Places between its ends at which a curve is at rest.
+/// Returns the number of positions between the ends of a curve at which it is at rest.
 std::size_t stops_on(const Curve& curve) {
   std::size_t stops = 0;
   for (std::size_t i = 1; i < curve.size(); ++i) {

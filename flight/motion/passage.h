@@ -1,10 +1,10 @@
-/// Taking pictures without a stop: one curve through all views of a flight, the camera turned
-/// meanwhile from each to the next.
+/// Fly-through capture: one curve through all views of a flight, with camera rotation between
+/// views.
 ///
-/// The curve goes round the way's corners (corner_blend.h). At views corners are moved outwards by
-/// what the curve cuts of them, so that it leads through the places of views. It is no faster than
-/// pictures stay sharp. Where the time between two pictures does not do for turning the camera, the
-/// vehicle stops at the first and waits.
+/// The curve rounds the corners of the path (corner_blend.h). Corners at views are moved outwards
+/// by the amount that the curve would cut, so that the curve passes through the view positions. Its
+/// speed is limited by image sharpness. Where the interval between two images is too short for the
+/// camera rotation, the vehicle stops and waits at the first.
 #pragma once
 
 #include <cstddef>
@@ -21,60 +21,64 @@
 
 namespace skycap::flight {
 
-/// What pictures ask of a flight that does not stop for them.
+/// Requirements of images captured without stops.
 struct PassRules {
-  double speed = 0.0;     ///< at which they are sharp; may be infinite [m/s]
-  double most_cut = 0.0;  ///< what a corner may be cut by, and moved outwards, at a view [m]
-  double exposure = 0.0;  ///< during which the camera does not turn, readout included [s]
-  double period = 0.0;    ///< between two of them, at the least [s]
+  double speed = 0.0;  ///< Maximum speed for sharp images, possibly infinite [m/s].
+  /// Maximum cut of a corner at a view, which is also its outward displacement [m].
+  double most_cut = 0.0;
+  double exposure = 0.0;  ///< Exposure including readout, without camera rotation [s].
+  double period = 0.0;    ///< Minimum interval between images [s].
 };
 
-/// Where a camera looks: heading from north, clockwise, and pitch, 0 at the horizon [rad].
+/// Camera aim: heading clockwise from north, and pitch with 0 at the horizon [rad].
 struct Aim {
   double yaw = 0.0, pitch = 0.0;
 };
 
-/// A view on a way.
+/// View on a path.
 struct ViewOnWay {
-  std::size_t point = 0;  ///< of the way; views ascend by it
+  std::size_t point = 0;  ///< Index of the path point. Views must be sorted by it.
   Aim aim;
 };
 
-/// A picture taken in passing.
+/// Image captured in flight.
 struct PassedView {
-  double moment = 0.0;  ///< from the start of the curve [s]
+  double moment = 0.0;  ///< Time from the start of the curve [s].
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Aim aim;
 };
 
-/// A flight from rest to rest along a way.
+/// Rest-to-rest flight along a path.
 struct Passage {
   Curve curve;
-  std::vector<PassedView> views;  ///< as they were given; moments ascend
-  std::size_t stops = 0;          ///< in between: turns too sharp to go round, and waits
+  std::vector<PassedView> views;  ///< Views in the given order, with ascending times.
+  std::size_t stops = 0;  ///< Number of intermediate stops, at sharp corners and for waiting.
   double length = 0.0;
-  double duration = 0.0;   ///< [s]
-  double energy = 0.0;     ///< [J]
-  double clearance = 0.0;  ///< proven lower bound over the whole curve, see LegProof
-  double steady = 0.0;     ///< before and after each picture, when the camera does not turn [s]
+  double duration = 0.0;   ///< Duration [s].
+  double energy = 0.0;     ///< Electrical energy [J].
+  double clearance = 0.0;  ///< Verified lower bound over the whole curve [m], see LegProof.
+  double steady = 0.0;     ///< Time before and after each image without camera rotation [s].
 
-  /// Where the camera looks: it turns evenly between pictures, and looks as at the first and last
-  /// ones before and after them. There must be a view.
+  /// Returns the camera aim at `time` [s]. The camera rotates at a constant rate between images. It
+  /// keeps the first aim before the first image, and the last aim after the last one. Requires at
+  /// least one view.
   Aim aim_at(double time) const;
 };
 
-/// The passage along a polyline whose straight pieces are proven at `clearance`; nothing if it has
-/// no view, or one at an end, or if pictures are not sharp at any speed that is flown. It keeps the
-/// vehicle's limits. Where a piece of the curve is not proven, or `is_allowed` says no of it (of
-/// straight pieces of the polyline it must say yes), the corners at its ends are cut less, and at
-/// last stopped in. Clearance is looked at up to `up_to`. Deterministic.
+/// Returns the fly-through flight along a polyline whose lines are verified at `clearance` [m].
+/// Where a piece of the curve cannot be verified or `is_allowed` rejects it, the adjacent corners
+/// are cut less and finally become stops. `is_allowed` must accept the lines of the polyline. The
+/// curve observes the vehicle's limits. Clearance is searched up to `up_to` [m]. Deterministic.
+///
+/// Returns std::nullopt without views, with a view at either end, or if images are not sharp at any
+/// flyable speed.
 std::optional<Passage> pass_through(const std::vector<Eigen::Vector3d>& points,
                                     std::span<const ViewOnWay> views, const FreeSpace& space,
                                     double clearance, double up_to, const Motion& motion,
                                     const PassRules& rules,
                                     const std::function<bool(const Curve&)>& is_allowed = {});
 
-/// The time that the camera needs from one picture to the next [s].
+/// Returns the minimum time from one image to the next for the camera rotation [s].
 double least_interval(const Aim& from, const Aim& to, const Motion& motion, const PassRules& rules);
 
 }  // namespace skycap::flight

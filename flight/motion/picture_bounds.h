@@ -1,4 +1,4 @@
-/// How sharp pictures are that a vehicle takes, at rest or in passing.
+/// Bounds on the image sharpness of a vehicle, hovering or in flight.
 #pragma once
 
 #include "flight/motion/vehicle.h"
@@ -7,14 +7,15 @@
 
 namespace skycap::flight {
 
-/// How far what is `distance` away moves at most over the image, anywhere in it, while the vehicle
-/// sways and its camera turns as it says of itself.
+/// Maximum image motion of surfaces at `distance`, anywhere in the image, caused by hover drift and
+/// camera rotation as specified in the vehicle profile.
 struct PictureBounds {
-  double blur_px = 0.0;   ///< while a pixel is exposed
-  double shear_px = 0.0;  ///< between the exposures of the first row and of the last
-  double distance = 0.0;  ///< [m]
+  double blur_px = 0.0;  ///< Motion blur during the exposure of one pixel.
+  /// Rolling-shutter skew between the exposures of the first and last rows.
+  double shear_px = 0.0;
+  double distance = 0.0;  ///< Distance of the surfaces [m].
 
-  /// More than that is seen.
+  /// Maximum image motion that counts as sharp [px].
   static constexpr double sharp_px = 1.0;
   bool is_sharp() const { return blur_px <= sharp_px && shear_px <= sharp_px; }
 };
@@ -22,8 +23,8 @@ struct PictureBounds {
 PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
                              const geometry::Shutter& shutter, double distance);
 
-/// The greatest speed over the ground at which pictures are sharp [m/s]: infinite for a shutter
-/// that takes no time, zero where they are not even at rest.
+/// Returns the maximum ground speed for sharp images [m/s]. It is infinite for a shutter without
+/// exposure time, and 0 if images are not sharp even in hover.
 double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera,
                    const geometry::Shutter& shutter, double distance);
 

@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How far outside of the clearance a refined curve is pulled, as shares of it: soft walls give way
-/// a little, so the next is tried when the proof fails.
+/// Distances beyond the clearance, relative to it, for the penalty of a refined curve. Since
+/// penalties are soft, the next value is used if verification fails.
 constexpr std::array wall_offsets{0.03, 0.1, 0.3};
 
 std::vector<Vector3d> without_repeats(std::vector<Vector3d> points) {

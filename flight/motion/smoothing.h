@@ -1,4 +1,4 @@
-/// Legs without stops at their corners: curves that are proposed and then proved, or not flown.
+/// Legs without stops at corners. A proposed curve is used only if it can be verified.
 #pragma once
 
 #include <optional>
@@ -13,20 +13,21 @@
 
 namespace skycap::flight {
 
-/// A leg flown along a curve, from rest to rest.
+/// Leg along a curve, from rest to rest.
 struct SmoothLeg {
   Curve curve;
   double length = 0.0;
-  double duration = 0.0;   ///< moving [s]
-  double energy = 0.0;     ///< [J]
-  double clearance = 0.0;  ///< proven lower bound over the whole curve, see LegProof
+  double duration = 0.0;   ///< Duration without the settle time [s].
+  double energy = 0.0;     ///< Electrical energy [J].
+  double clearance = 0.0;  ///< Verified lower bound over the whole curve [m], see LegProof.
 };
 
-/// The leg along `points`, whose straight pieces are proven at `clearance`, in that style. Nothing
-/// if it has no corner, if the style stops in corners or passes views (passage.h), or if no curve
-/// is both proven at the clearance and faster than stopping. Speed, acceleration and jerk keep the
-/// vehicle's limits everywhere, by the control points of the derivatives. Clearance is looked at up
-/// to `up_to`. Deterministic.
+/// Returns the curved leg along `points`, whose lines are verified at `clearance` [m]. The control
+/// points of the derivatives bound speed, acceleration and jerk within the vehicle's limits.
+/// Clearance is searched up to `up_to` [m]. Deterministic.
+///
+/// Returns std::nullopt without corners, for the styles `stop` and `pass` (see passage.h), or if no
+/// verified curve is faster than stopping.
 std::optional<SmoothLeg> smooth(const std::vector<Eigen::Vector3d>& points, const FreeSpace& space,
                                 double clearance, double up_to, const Motion& motion,
                                 FlightStyle style);

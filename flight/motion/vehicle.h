@@ -1,5 +1,5 @@
-/// What a vehicle can do: speeds, size, gimbal, battery, and what its ground station accepts.
-/// Profiles are data: flight/motion/presets/*.yaml, and what a user writes beside a mission.
+/// Vehicle profile: speeds, size, gimbal, battery and file codes. Profiles are data files:
+/// flight/motion/presets/*.yaml, or a user's file next to the mission.
 #pragma once
 
 #include <string>
@@ -8,46 +8,48 @@
 
 namespace skycap::flight {
 
-/// The kind of mission items an autopilot understands.
+/// Dialect of mission items that an autopilot supports.
 enum class Dialect { px4, ardupilot, dji };
 
-/// Numbers that DJI's WPML files name a vehicle and its payload by.
+/// Codes of vehicle and payload in DJI WPML files.
 struct WpmlCodes {
   int drone = 0;
   int drone_variant = 0;
   int payload = 0;
-  std::string version = "1.0.6";  ///< of the namespace that the firmware reads
+  std::string version = "1.0.6";  ///< Version of the XML namespace that the firmware supports.
 };
 
-/// SI units; angles in radians; energies in watt hours where the data sheets use them.
+/// Vehicle profile in SI units. Angles are in radians; energies are in Wh where data sheets use
+/// them.
 struct Vehicle {
   std::string name;
   Dialect dialect = Dialect::px4;
   WpmlCodes wpml;
-  MissionMode mode;  ///< how its autopilot flies
+  MissionMode mode;  ///< How the autopilot flies missions.
 
-  double radius = 0.5;                      ///< from the centre to the farthest propeller tip [m]
-  double max_speed = 10.0;                  ///< horizontal, and through the air [m/s]
-  double gimbal_rate = 1.0;                 ///< [rad/s]
-  double gimbal_min = -1.5707963267948966;  ///< lowest pitch [rad], 0 is the horizon
-  double gimbal_max = 0.5;                  ///< highest pitch [rad]
-  double max_wind = 10.0;                   ///< [m/s]
-  double sway_speed = 0.1;                  ///< at which it still moves when it stands [m/s]
-  double sway_rate = 0.0087;                ///< at which its camera still turns then [rad/s]
-  double position_error = 0.1;              ///< maximum navigation error, by its positioning [m]
+  double radius = 0.5;       ///< Distance from the centre to the outermost propeller tip [m].
+  double max_speed = 10.0;   ///< Maximum horizontal speed and airspeed [m/s].
+  double gimbal_rate = 1.0;  ///< Maximum gimbal rate [rad/s].
+  double gimbal_min = -1.5707963267948966;  ///< Minimum pitch [rad], 0 at the horizon.
+  double gimbal_max = 0.5;                  ///< Maximum pitch [rad].
+  double max_wind = 10.0;                   ///< Maximum wind speed [m/s].
+  double sway_speed = 0.1;                  ///< Hover drift speed [m/s].
+  double sway_rate = 0.0087;                ///< Residual camera rotation rate in hover [rad/s].
+  double position_error = 0.1;  ///< Maximum navigation error of the positioning system [m].
 
-  double mass = 2.0;  ///< flown, with payload [kg]
+  double mass = 2.0;  ///< Take-off mass with payload [kg].
   int rotors = 4;
-  double rotor_diameter = 0.3;   ///< [m]
-  double battery_wh = 100.0;     ///< of all batteries together
-  double endurance_min = 30.0;   ///< data sheet, at `mass`: calibrates the efficiency
-  double avionics_power = 20.0;  ///< electronics and payload [W]
-  double drag_area = 0.03;       ///< drag coefficient times frontal area [m^2]
-  double energy_error = 0.1;     ///< share that flights may take more than the model says
+  double rotor_diameter = 0.3;  ///< Rotor diameter [m].
+  double battery_wh = 100.0;    ///< Energy of all batteries together [Wh].
+  /// Data sheet endurance at `mass`, which calibrates the efficiency [min].
+  double endurance_min = 30.0;
+  double avionics_power = 20.0;  ///< Power of electronics and payload [W].
+  double drag_area = 0.03;       ///< Drag coefficient times frontal area [m^2].
+  double energy_error = 0.1;     ///< Maximum relative excess of actual over predicted energy.
 
-  int max_waypoints = 500;  ///< in one mission file
+  int max_waypoints = 500;  ///< Maximum number of waypoints per mission file.
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} naming the first field outside its interval.
   void validate() const;
 };
 

@@ -16,18 +16,18 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// The straight line is cut into about this many cells on the coarsest grid.
+/// Approximate number of cells along the straight line on the coarsest grid.
 constexpr double coarse_cells = 12.0;
-/// A path this near to the straight line is not worth improving on another grid.
+/// Length ratio to the straight line below which a path is not improved on other grids.
 constexpr double good_enough = 1.005;
-/// A further grid is searched only for paths that are shorter by this factor.
+/// Length ratio that a path on a further grid must achieve.
 constexpr double worth_searching = 0.99;
-/// Grid vertices that each grid may expand in the first round, and the factor from round to round.
+/// Expansion budget of each grid in the first round, and its growth factor per round.
 constexpr std::size_t first_round_budget = 4000;
 constexpr std::size_t round_growth = 4;
 
-/// Distances at the vertices of one grid. A vertex holds a lower bound of its distance, which is
-/// made exact only when the bound does not decide.
+/// Distances at the vertices of one grid. A vertex stores a lower bound, which is replaced by the
+/// exact distance only if the bound is insufficient.
 class GridDistances {
  public:
   GridDistances(const FreeSpace& space, double cell, double clearance)
@@ -36,7 +36,7 @@ class GridDistances {
   double cell() const { return cell_; }
   Vector3d position(const Cell& cell) const { return cell.cast<double>() * cell_; }
 
-  /// Distance of a vertex as far as it is known; at least enough to tell whether it is free.
+  /// Returns the known distance of a vertex, which suffices to decide whether it is free.
   double distance(const Cell& cell) {
     Known& known = known_.insert(cell_key(cell)).value;
     if (known.is_exact || known.bound >= needed_) return known.bound;
@@ -44,7 +44,7 @@ class GridDistances {
     return known.bound;
   }
 
-  /// Tells a vertex that a place `step` away is at `distance` from everything (1-Lipschitz).
+  /// Updates a vertex with the `distance` at a position `step` away (1-Lipschitz).
   void tell(const Cell& cell, double distance, double step) {
     Known& known = known_.insert(cell_key(cell)).value;
     if (!known.is_exact) known.bound = std::max(known.bound, distance - step);
@@ -64,7 +64,7 @@ class GridDistances {
 };
 
 /// One run of Lazy Theta* on one grid. Vertex 0 is the start and vertex 1 the goal, which need not
-/// lie on the grid.
+/// be on the grid.
 class Search {
  public:
   Search(const FreeSpace& space, double clearance, GridDistances& grid, const AlignedBox3d& region,
@@ -78,7 +78,7 @@ class Search {
     }
   }
 
-  /// The path, or nothing if there is none shorter than `limit`. Counts down `expansions_left`.
+  /// Returns the path, empty if none is shorter than `limit`. Decrements `expansions_left`.
   std::vector<Vector3d> run(double limit, std::size_t& expansions_left) {
     limit_ = limit;
     push(0);
@@ -87,7 +87,7 @@ class Search {
       const double queued_length = open_.top().length;
       open_.pop();
       Vertex& vertex = vertices_[current];
-      if (vertex.is_closed || queued_length != vertex.length) continue;  // an outdated entry
+      if (vertex.is_closed || queued_length != vertex.length) continue;  // Outdated entry.
       if (!settle(current)) continue;
       if (current == 1) return trace();
       --expansions_left;
@@ -102,15 +102,16 @@ class Search {
   struct Vertex {
     Vector3d position;
     Cell cell;
-    double length;  ///< of the best path known from the start
+    double length;  ///< Length of the best known path from the start [m].
     std::uint32_t parent;
     bool is_closed = false;
   };
   struct Entry {
-    double estimate;  ///< of the whole path through the vertex
+    double estimate;  ///< Estimated length of the complete path via the vertex [m].
     double length;
     std::uint32_t vertex;
-    bool operator<(const Entry& other) const {  // the least estimate, then the farthest come, wins
+    // Smallest estimate first, then the longest path from the start.
+    bool operator<(const Entry& other) const {
       if (estimate != other.estimate) return estimate > other.estimate;
       if (length != other.length) return length < other.length;
       return vertex > other.vertex;
@@ -127,8 +128,8 @@ class Search {
     return space_.continues_free({vertices_[from].position, vertices_[to].position}, clearance_);
   }
 
-  /// Lazy Theta*, SetVertex: the leg from the parent was assumed free; if it is not, the best
-  /// settled neighbour becomes the parent. False if there is none.
+  /// SetVertex of Lazy Theta*: the leg from the parent was assumed free. If it is not, the best
+  /// settled neighbour becomes the parent. Returns false if there is none.
   bool settle(std::uint32_t v) {
     if (v == 0 || is_leg_free(vertices_[v].parent, v)) {
       vertices_[v].is_closed = true;
@@ -187,8 +188,8 @@ class Search {
     }
   }
 
-  /// The free grid vertices around a vertex, and the goal where it is near. Start and goal have the
-  /// corners of their cell as neighbours.
+  /// Visits the free grid vertices around a vertex, and the goal if it is near. The neighbours of
+  /// start and goal are the corners of their cells.
   template <typename Visit>
   void for_each_neighbour(std::uint32_t v, Visit visit) {
     const auto visit_cell = [&](const Cell& cell) {
@@ -263,7 +264,7 @@ struct PathFinder::Impl {
   const FreeSpace& space;
   double clearance;
   PathOptions options;
-  std::map<int, GridDistances> grids;  ///< by the exponent of two that is their cell
+  std::map<int, GridDistances> grids;  ///< Keyed by the binary exponent of the cell size.
 
   GridDistances& grid(int exponent) {
     return grids.try_emplace(exponent, space, std::exp2(exponent), clearance).first->second;
@@ -273,13 +274,13 @@ struct PathFinder::Impl {
     int finest, coarsest;
   };
   Exponents exponents(double straight) const;
-  /// `path.points` holds the two ends until a path is found.
+  /// `path.points` contains the two ends until a path is found.
   bool search_grid(int exponent, std::size_t& budget, Path& path);
   void search_grids(Path& path);
 };
 
-/// Beyond the obstacles' box nothing is in the way, so a shortest path never leaves it by more than
-/// the clearance; two cells more leave room for the grid.
+/// Returns the search region. Space beyond the obstacles' box is free, so a shortest path leaves it
+/// by no more than the clearance. Two more cells provide space for the grid.
 AlignedBox3d PathFinder::Impl::region(const Vector3d& from, const Vector3d& to, double cell) const {
   AlignedBox3d box = space.extent();
   const double grown = clearance + 2.0 * cell;
@@ -294,7 +295,7 @@ AlignedBox3d PathFinder::Impl::region(const Vector3d& from, const Vector3d& to, 
   return box;
 }
 
-/// The exponents of two that are the cells of the finest and the coarsest grid.
+/// Returns the binary exponents of the finest and the coarsest cell sizes.
 PathFinder::Impl::Exponents PathFinder::Impl::exponents(double straight) const {
   const double finest = options.finest_cell > 0.0
                             ? options.finest_cell
@@ -303,8 +304,8 @@ PathFinder::Impl::Exponents PathFinder::Impl::exponents(double straight) const {
   return {last, std::max(last, static_cast<int>(std::floor(std::log2(straight / coarse_cells))))};
 }
 
-/// Searches one grid; keeps the path if it is shorter. Returns whether the grid was searched to the
-/// end, or a path was found: then there is nothing more to be had from it.
+/// Searches one grid and keeps a shorter path. Returns true if the grid is exhausted or a path was
+/// found, so that a repeated search is useless.
 bool PathFinder::Impl::search_grid(int exponent, std::size_t& budget, Path& path) {
   const bool has_path = path.status == PathStatus::found;
   const Vector3d from = path.points.front(), to = path.points.back();
@@ -326,9 +327,9 @@ bool PathFinder::Impl::search_grid(int exponent, std::size_t& budget, Path& path
   return true;
 }
 
-// The first path comes from the grid, coarse or fine, that finds one with the least work: all get
-// the same budget, which grows from round to round. It sets the length to beat. Then the finer
-// grids look for passages that the first one cannot see.
+// All grids receive the same budget, which grows per round. The first path comes from the grid that
+// finds one with the least effort, and it is the upper bound. Finer grids then search for passages
+// that this grid cannot resolve.
 void PathFinder::Impl::search_grids(Path& path) {
   const double straight = (path.points.back() - path.points.front()).norm();
   const auto [last, first] = exponents(straight);

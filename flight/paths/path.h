@@ -1,5 +1,5 @@
-/// Shortest collision-free paths between two places: any-angle search on a grid that is refined
-/// only as far as needed, then a string pulled tight, each move proven on the exact distances.
+/// Shortest collision-free paths between two positions. An any-angle search runs on a grid that is
+/// refined as needed, and its result is pulled tight. Every line is verified with exact distances.
 ///
 /// Source of the search: Nash, Koenig & Tovey, Lazy Theta*: Any-Angle Path Planning and Path Length
 /// Analysis in 3D (AAAI 2010).
@@ -16,19 +16,18 @@
 namespace skycap::flight {
 
 struct PathOptions {
-  /// Cell of the finest grid [m]: passages narrower than the clearance on both sides plus about
-  /// this may be missed. Zero: a quarter of the clearance, and no less than 1/400 of the way.
+  /// Cell size of the finest grid [m]. Passages narrower than twice the clearance plus about this
+  /// size may be missed. 0: a quarter of the clearance, but at least 1/400 of the path.
   double finest_cell = 0.0;
-  /// Vertices that the last round of search for a first path may expand on one grid; beyond it the
-  /// goal counts as unreachable.
+  /// Maximum number of grid vertices that the last search round for a first path may expand. Beyond
+  /// it, the goal counts as unreachable.
   std::size_t max_expansions = 200000;
-  /// Grid vertices expanded, once there is a path, in search of a shorter one.
+  /// Maximum number of grid vertices expanded in search of a shorter path.
   std::size_t max_improving_expansions = 3000;
-  /// A corner is cut in two (a stop more for the vehicle) only if that saves this share of the
-  /// path.
+  /// Minimum relative saving for which a corner is split in two, because each corner is a stop.
   double worthwhile_saving = 0.004;
 
-  /// Throws Error{bad_config} naming the first value that is out of its interval.
+  /// Throws Error{bad_config} naming the first value outside its interval.
   void validate() const;
 };
 
@@ -36,29 +35,30 @@ enum class PathStatus { found, start_not_free, goal_not_free, unreachable };
 
 struct Path {
   PathStatus status = PathStatus::unreachable;
-  std::vector<Eigen::Vector3d> points;  ///< from start to goal; empty unless found
+  std::vector<Eigen::Vector3d> points;  ///< Points from start to goal. Empty unless found.
   double length = 0.0;
-  std::size_t expansions = 0;  ///< grid vertices looked at: the work done
+  std::size_t expansions = 0;  ///< Number of expanded grid vertices, as a measure of effort.
 };
 
 double length(const std::vector<Eigen::Vector3d>& points);
 
-/// Finds paths at one clearance. Remembers distances from search to search. Not safe to use from
-/// several threads; deterministic: the result depends on the space, the options and the two places.
+/// Finds paths at one clearance and caches distances between searches. Not thread-safe.
+/// Deterministic: the result depends only on the space, the options and the two positions.
 class PathFinder {
  public:
-  /// Keeps a reference to `space`. Throws what PathOptions::validate() throws, and
+  /// Keeps a reference to `space`. Throws the same errors as PathOptions::validate(), and
   /// Error{bad_config} unless the clearance is finite and not negative.
   PathFinder(const FreeSpace& space, double clearance, const PathOptions& options = {});
   ~PathFinder();
   PathFinder(PathFinder&&) noexcept;
   PathFinder& operator=(PathFinder&&) noexcept;
 
-  /// Every straight piece of a path found is free at the clearance. The straight line if that is
-  /// free. Having found none is a normal answer; so is a start or goal that is itself not free.
+  /// Returns a path whose lines are all free at the clearance. That is the straight line if it is
+  /// free. A missing path, or a start or goal that is not free, is a regular result and not an
+  /// error.
   Path find(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-  /// Drops what was remembered: to be called when the space has changed.
+  /// Clears the cache. Must be called after the space has changed.
   void forget();
 
   double clearance() const;
@@ -68,8 +68,8 @@ class PathFinder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Shortens a path whose pieces are free at `clearance` without losing that: drops points that can
-/// be skipped, slides the others, cuts corners where worthwhile. Deterministic.
+/// Shortens a path whose lines are free at `clearance` and keeps them free. Removes redundant
+/// points, moves the others and cuts corners where worthwhile. Deterministic.
 std::vector<Eigen::Vector3d> pull_tight(const FreeSpace& space, double clearance,
                                         std::vector<Eigen::Vector3d> points,
                                         double worthwhile_saving);

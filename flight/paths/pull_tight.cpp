@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rounds of sliding and cutting; in practice two or three bring the gain below the tolerance.
+/// Maximum number of rounds. Two or three usually reduce the gain below the tolerance.
 constexpr int max_rounds = 8;
-/// A round that shortens the path by less than this share is the last.
+/// Relative gain below which a round is the last.
 constexpr double round_tolerance = 1e-3;
-/// Steps of a slide end at this share of the path's length.
+/// Minimum slide step, relative to the path length.
 constexpr double slide_tolerance = 1e-4;
 
 class StringPuller {
@@ -35,7 +35,7 @@ class StringPuller {
       skip_points();
       if (length(points_) > (1.0 - round_tolerance) * before) break;
     }
-    // Fewer stops, then the best places for those that are left.
+    // First fewer stops, then optimal positions for the remaining ones.
     drop_corners_not_worthwhile();
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) slide(i);
     skip_points();
@@ -48,7 +48,7 @@ class StringPuller {
     return space_.continues_free({from, to}, clearance_);
   }
 
-  /// From each point straight on to the last point that can be seen from it.
+  /// Connects each point to the last visible one.
   void skip_points() {
     std::vector<Vector3d> kept{points_.front()};
     for (std::size_t i = 0; i + 1 < points_.size();) {
@@ -60,8 +60,9 @@ class StringPuller {
     points_ = std::move(kept);
   }
 
-  /// Moves a point to shorten the two pieces that meet in it: towards the chord between its
-  /// neighbours, along the chord and across the plane of the three, by halving steps.
+  /// Moves a point to shorten its two pieces. It tries steps towards the chord between its
+  /// neighbours, along the chord and perpendicular to the plane of the three, with halved step
+  /// sizes.
   void slide(std::size_t i) {
     const Vector3d &before = points_[i - 1], &after = points_[i + 1];
     const auto pieces = [&](const Vector3d& p) { return (p - before).norm() + (p - after).norm(); };
@@ -91,7 +92,7 @@ class StringPuller {
     return {down, across, -across, chord, -chord};
   }
 
-  /// Replaces a corner by the widest free cut across it, where that saves enough.
+  /// Replaces a corner by the widest free cut if that saves enough.
   void cut_corners() {
     const double worthwhile = worthwhile_saving_ * length(points_);
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
@@ -118,8 +119,8 @@ class StringPuller {
     }
   }
 
-  /// A pair of neighbouring points that one point could replace at hardly any cost is a stop too
-  /// many: where the two outer legs meet when prolonged.
+  /// Replaces two neighbouring points by the intersection of the extended outer legs if that costs
+  /// almost no length, because it saves a stop.
   void drop_corners_not_worthwhile() {
     const double worthwhile = worthwhile_saving_ * length(points_);
     for (std::size_t i = 1; i + 2 < points_.size();) {
@@ -137,7 +138,8 @@ class StringPuller {
     }
   }
 
-  /// The middle between the nearest points of two lines; between their origins when parallel.
+  /// Returns the midpoint between the closest points of two lines, or between their origins if
+  /// parallel.
   static Vector3d nearest_of_lines(const Vector3d& p, const Vector3d& u, const Vector3d& q,
                                    const Vector3d& v) {
     const double a = u.squaredNorm(), b = u.dot(v), e = v.squaredNorm();

@@ -29,14 +29,14 @@ Vector3d place_of(const ob::State* state) {
   return {values[0], values[1], values[2]};
 }
 
-/// Legs by the exact proof, not by samples along them, which is OMPL's default.
+/// Verifies legs exactly instead of sampling them, as OMPL does by default.
 class ProvenMotion : public ob::MotionValidator {
  public:
   ProvenMotion(const ob::SpaceInformationPtr& information, const FreeSpace& space, double clearance,
                std::size_t& checks)
       : ob::MotionValidator(information), space_(space), clearance_(clearance), checks_(checks) {}
 
-  // OMPL asks for motions between states that it has found valid, so the start is known to be free.
+  // OMPL requests motions only between valid states, so the start is known to be free.
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
     ++checks_;
     return space_.continues_free({place_of(from), place_of(to)}, clearance_);
@@ -57,9 +57,9 @@ class ProvenMotion : public ob::MotionValidator {
   std::size_t& checks_;
 };
 
-/// OMPL's generators take their seeds from one source for the whole process, when they are made. It
-/// can be set anew before each search, though OMPL warns of that, thinking of generators made
-/// before; a search makes its own.
+/// OMPL's generators receive their seeds from one source per process when they are constructed.
+/// That source is reset before each search. OMPL's warning against this concerns existing
+/// generators, whereas a search constructs its own.
 void seed_generators(std::uint32_t seed) {
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   ompl::RNG::setSeed(seed);
@@ -84,7 +84,7 @@ ob::ScopedState<> state_at(const ob::StateSpacePtr& states, const Vector3d& plac
   return state;
 }
 
-/// One search: OMPL's objects, with our proof in the place of its samples.
+/// One search: OMPL's objects with Skycap's verification instead of sampling.
 class OmplSearch {
  public:
   OmplSearch(const FreeSpace& space, const Vector3d& from, const Vector3d& to, double clearance,
@@ -106,14 +106,14 @@ class OmplSearch {
         std::make_shared<ob::PathLengthOptimizationObjective>(information_));
   }
 
-  /// The best way found within the options' effort; empty if there is none.
+  /// Returns the best path found within the effort of the options, empty if none.
   std::vector<Vector3d> solve() {
     const auto planner = options_.planner == SamplingPlanner::bit_star
                              ? ob::PlannerPtr(std::make_shared<og::BITstar>(information_))
                              : ob::PlannerPtr(std::make_shared<og::AITstar>(information_));
     planner->setProblemDefinition(problem_);
     planner->setup();
-    // One of the planners tells the problem of each path it finds, the other calls back.
+    // One planner reports each path to the problem definition, the other uses the callback.
     bool has_path = false;
     problem_->setIntermediateSolutionCallback([&](const ob::Planner*,
                                                   const std::vector<const ob::State*>&,

@@ -1,5 +1,5 @@
-/// A second engine for paths: OMPL's informed trees, for narrow places that a grid would have to be
-/// very fine for, and to cross-check the first engine.
+/// Sampling-based path search with OMPL's informed trees. It finds narrow passages that would need
+/// a very fine grid, and serves to cross-check PathFinder.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,21 @@ enum class SamplingPlanner { bit_star, ait_star };
 
 struct SamplingOptions {
   SamplingPlanner planner = SamplingPlanner::bit_star;
-  /// Legs and places checked at most: the effort, in place of a time limit, which no result may
-  /// depend on.
+  /// Maximum number of lines and positions to check. Results must not depend on a time limit.
   std::size_t max_checks = 4000;
-  /// The same while there is no path yet: narrow places take luck, which more samples bring.
+  /// The limit that applies until a first path is found. Narrow passages need more samples.
   std::size_t max_checks_for_first_path = 40000;
-  std::uint32_t seed = 1;            ///< of the samples; not zero
-  double worthwhile_saving = 0.004;  ///< as in PathOptions
+  std::uint32_t seed = 1;            ///< Seed of the samples. Must not be 0.
+  double worthwhile_saving = 0.004;  ///< Minimum relative saving, see PathOptions.
 };
 
-/// A path by sampling (Gammell et al., BIT*, ICRA 2015; Strub & Gammell, AIT*, ICRA 2020), pulled
-/// tight; its pieces are free at the clearance like PathFinder's. Never proves that there is no
-/// path: `unreachable` means that none was found. Repeatable: the
-/// result depends on the arguments alone. Calls from several threads take turns, because OMPL's
-/// source of seeds is one for the process. Throws what PathFinder's constructor throws, and
-/// Error{bad_config} for a seed of zero.
+/// Returns a path found by sampling and pulled tight (Gammell et al., BIT*, ICRA 2015; Strub &
+/// Gammell, AIT*, ICRA 2020). Like PathFinder's, its lines are free at the clearance. `unreachable`
+/// means that no path was found, not that none exists.
+///
+/// Repeatable: the result depends only on the arguments. Concurrent calls are serialised, because
+/// OMPL has one seed source per process. Throws the same errors as the PathFinder constructor, and
+/// Error{bad_config} if the seed is 0.
 Path find_path_by_sampling(const FreeSpace& space, const Eigen::Vector3d& from,
                            const Eigen::Vector3d& to, double clearance,
                            const SamplingOptions& options = {});

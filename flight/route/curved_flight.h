@@ -1,5 +1,4 @@
-/// Other ways to fly a certified route than from stop to stop: its legs as curves, or its sorties
-/// past their views.
+/// Alternatives to stop-and-go flight on a verified route: curved legs and fly-through capture.
 #pragma once
 
 #include "flight/motion/motion.h"
@@ -9,9 +8,9 @@
 
 namespace skycap::flight {
 
-/// Gives the route's legs and sorties the curves of the style that its options ask for, where they
-/// are proven, have a way home from every point if the route has, and take neither more time nor
-/// more energy than what the sortie has set aside.
+/// Adds curves of the style in `route.options` to its legs or sorties. A curve is added only if it
+/// is verified and takes no more time and energy than the flight with stops. If the route has
+/// returns, every point of the curve must have one, too.
 void add_curves(Route& route, const FreeSpace& space, const Motion& motion, const LegCosts& costs);
 
 }  // namespace skycap::flight

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Autopilots need up to this many mission items for a station, and some around a sortie.
+/// Maximum number of mission items per waypoint, and per sortie.
 constexpr int items_per_station = 8;
 constexpr int items_per_sortie = 14;
 
@@ -37,15 +37,15 @@ Leg LegCosts::leg(VerifiedPath path, const Station* from, const Station* to) con
   leg.clearance = path.clearance;
   const std::vector<Vector3d>& points = leg.points;
   for (std::size_t i = 1; i < points.size(); ++i) {
-    // Autopilots begin to turn when they leave for the station, which is in the last corner.
+    // Autopilots start to rotate when they depart for the waypoint, which is at the last corner.
     const bool is_last = i + 1 == points.size();
     const Vector3d way = points[i] - points[i - 1];
     const double leg_time = motion_.leg_time(way);
     const double moving = is_last ? aimed_time(leg_time, from, to) : leg_time;
     leg.duration += moving;
     leg.energy += motion_.leg_energy(way, moving);
-    // Between two points a return costs no more than from the dearer of them: level flight grows
-    // with a distance, which is convex, climb and descent evenly.
+    // Between two points, a return costs no more than the more expensive of both. The cost of level
+    // flight grows with a distance, which is convex; climb and descent are linear.
     const double home = std::max(return_cost(points[i - 1]), return_cost(points[i]));
     leg.emergency = std::max(leg.emergency, leg.energy + home);
     if (is_last) break;

@@ -1,4 +1,4 @@
-/// What the legs of a route and the stops between them take.
+/// Time and energy of legs and of the stops between them.
 #pragma once
 
 #include <optional>
@@ -16,24 +16,25 @@ namespace skycap::flight {
 using LegCost = SplitProblem::Cost;
 
 LegCost cost_of(const Leg& leg);
-/// Of two parts, one after the other.
+/// Returns the cost of `first` followed by `second`.
 LegCost in_turn(const LegCost& first, const LegCost& second);
 
-/// How many stations a sortie may have, by the mission items that its vehicle takes.
+/// Returns the maximum number of waypoints per sortie, from the vehicle's limit on mission items.
 std::size_t most_stations(const Vehicle& vehicle);
 
-/// Keeps references to all that it is constructed from.
+/// Cost model of legs and stops. Keeps references to the constructor arguments.
 class LegCosts {
  public:
-  /// With `returns`, which may be required later, costs count the return from the dearest point.
+  /// If `returns` is given, the emergency energy of a cost includes the most expensive return.
+  /// `*returns` may be set later.
   explicit LegCosts(const Motion& motion, const std::optional<WaysHome>* returns = nullptr)
       : motion_(motion), returns_(returns) {}
 
-  /// Along a path, with a stop at each point. From and to the pad, where there is nothing to aim
-  /// at, the station is nullptr.
+  /// Returns the leg along `path` with a stop at each point. A null waypoint stands for the pad,
+  /// where the camera needs no aim.
   Leg leg(VerifiedPath path, const Station* from, const Station* to) const;
 
-  /// A leg's time until the camera looks right.
+  /// Returns the leg duration including the final yaw and gimbal rotation [s].
   double aimed_time(double leg, const Station* from, const Station* to) const;
 
   LegCost takeoff_cost(double climb) const;

@@ -1,6 +1,5 @@
-/// The one way to plan a leg: a path from place to place, changed where returns are required, and
-/// verified line by line. Survey, route, fleet and replanned views ask the same planner, so what
-/// one of them reaches the others reach as well.
+/// Leg planner shared by survey, route, fleet and replanning, so that all of them reach the same
+/// positions. Paths are adapted where returns are required and verified line by line.
 #pragma once
 
 #include <array>
@@ -16,17 +15,17 @@
 
 namespace skycap::flight {
 
-/// A polyline whose lines are verified free.
+/// Polyline whose lines are verified collision-free.
 struct VerifiedPath {
   std::vector<Eigen::Vector3d> points;
-  double clearance = 0.0;  ///< verified lower bound over the whole path [m], see LegProof
+  double clearance = 0.0;  ///< Verified lower bound over the whole path [m], see LegProof.
 };
 
-/// Not safe to use from several threads, except const functions. Deterministic: the result depends
-/// on the space, the options and the places alone.
+/// Plans verified legs. Not thread-safe, except for const functions. Deterministic: the result
+/// depends only on the space, the options and the two end points.
 class LegPlanner {
  public:
-  /// Keeps a reference to `space`. Throws what PathFinder's constructor throws.
+  /// Keeps a reference to `space`. Throws the same errors as the PathFinder constructor.
   LegPlanner(const FreeSpace& space, double clearance, const PathOptions& options);
 
   LegPlanner(const LegPlanner&) = delete;
@@ -34,31 +33,32 @@ class LegPlanner {
 
   double clearance() const { return finder_.clearance(); }
 
-  /// Requires of all legs a verified return from each of their points to `home`, the place above
-  /// the pad.
+  /// Requires a verified return from every point of every leg to `home`, the position above the
+  /// pad.
   void require_returns(const ReturnLaw& law, const Eigen::Vector3d& home);
-  /// Nothing if returns are not required.
+  /// Returns the returns planner, or std::nullopt if returns are not required.
   const std::optional<WaysHome>& returns() const { return returns_; }
 
-  /// The shortest path that PathFinder finds. Remembered until forget().
+  /// Returns the shortest path found by PathFinder. Paths are cached until forget().
   const Path& path(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-  /// The same or, through passages too narrow for its grid, by find_path_by_sampling().
+  /// Returns path() or, if its grid is too coarse for a narrow passage, the result of
+  /// find_path_by_sampling().
   Path wide_or_narrow_path(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-  /// A path, or one near it that has the required returns.
+  /// Returns `path`, or a nearby path that has the required returns.
   std::vector<Eigen::Vector3d> with_returns(std::vector<Eigen::Vector3d> path) const;
 
-  /// Nothing if one of the lines cannot be verified.
+  /// Returns the verified path, or std::nullopt if one of its lines cannot be verified.
   std::optional<VerifiedPath> verified(std::vector<Eigen::Vector3d> path) const;
 
-  /// The verified path with the required returns; nothing if there is none.
+  /// Returns the verified path with the required returns, or std::nullopt if none exists.
   std::optional<VerifiedPath> leg(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-  /// Shortens a path whose lines are free, see pull_tight().
+  /// Returns a shortened version of a free path, see pull_tight().
   std::vector<Eigen::Vector3d> pulled_tight(std::vector<Eigen::Vector3d> path) const;
 
-  /// Discards what is remembered: to be called when the space has changed.
+  /// Clears the caches. Must be called after the space has changed.
   void forget();
 
  private:
@@ -66,7 +66,8 @@ class LegPlanner {
   double worthwhile_saving_;
   PathFinder finder_;
   std::optional<WaysHome> returns_;
-  std::map<std::array<double, 6>, Path> paths_;  ///< by both ends
+  /// Cached paths, keyed by start and goal coordinates.
+  std::map<std::array<double, 6>, Path> paths_;
 };
 
 }  // namespace skycap::flight

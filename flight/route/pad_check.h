@@ -1,15 +1,16 @@
-/// Whether a vehicle can climb from its pad, and land on rally points.
+/// Checks of the climb from the pad and of the landing points.
 #pragma once
 
 #include "flight/route/route.h"
 
 namespace skycap::flight {
 
-/// Throws Error{bad_config}, saying what is in the way, unless the climb from options.takeoff keeps
-/// the clearance: in `space`, in which the ground is an obstacle, from as high above the pad as
-/// that lets it, and in `pad_space`, without the ground, from the pad on; that may be null, and
-/// then the rest is not checked. The columns over the rally points of options.returns keep it
-/// likewise. Where the ground is known (options.grounds), it is fit to stand on.
+/// Checks the climb from options.takeoff, the rally points and the ground below them. In `space`,
+/// where the ground is an obstacle, each column is checked from the height at which the ground
+/// allows the clearance. In `pad_space`, without the ground, it is checked from the pad. If
+/// `pad_space` is nullptr, that part and the rally points are not checked. Throws Error{bad_config}
+/// with the obstacle if the clearance is violated, or if known ground (options.grounds) exceeds its
+/// limits.
 void check_pad(const FreeSpace& space, const FreeSpace* pad_space, const RouteOptions& options);
 
 }  // namespace skycap::flight

@@ -45,7 +45,7 @@ const char* name_of(GroundSource source) {
 std::optional<PadGround> pad_ground(const Vector3d& pad, std::span<const Vector3d> places,
                                     GroundSource source) {
   if (places.size() < fewest_places) return std::nullopt;
-  // Least squares of z = rise + gradient . (x, y), all counted from the pad.
+  // Least squares fit of z = rise + gradient . (x, y), relative to the pad.
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Vector3d right = Vector3d::Zero();
   const auto row_of = [&](const Vector3d& place) {
@@ -119,7 +119,8 @@ void PadScan::take_in(std::span<const Eigen::Vector3f> points) {
   const double reach = radius_ + 1.0;
   const double cell = 2.0 * radius_ / cells_across;
   for (const Eigen::Vector3f& point : points) {
-    if (!(std::abs(double{point.x()} - pad_.x()) < radius_)) continue;  // nearly all are elsewhere
+    // Fast rejection, because most points are elsewhere.
+    if (!(std::abs(double{point.x()} - pad_.x()) < radius_)) continue;
     const Vector3d offset = point.cast<double>() - pad_;
     if (!(offset.head<2>().squaredNorm() < radius_ * radius_) || std::abs(offset.z()) > reach) {
       continue;

@@ -1,5 +1,5 @@
-/// The ground of pads and rally points: how steep and how even it is, and whether it lies where the
-/// pad is said to be. Heights of mission files count from where the vehicle stands.
+/// Ground of pads and rally points: slope, unevenness, and height relative to the configured pad.
+/// The pad height matters because it is the altitude reference of mission files.
 #pragma once
 
 #include <array>
@@ -14,54 +14,54 @@
 
 namespace skycap::flight {
 
-/// What stands no higher than this beside a pad is the ground that it is on [m].
+/// Maximum height of objects near a pad that count as part of its ground [m].
 inline constexpr double pad_roughness = 0.3;
 
-/// Who says how the ground of a pad lies.
+/// Source of the ground data of a pad.
 enum class GroundSource { measured, declared, terrain, scene };
 
-/// The plane that fits the ground round a pad best.
+/// Least-squares plane through the ground around a pad.
 struct PadGround {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< the pad
-  double slope = 0.0;                               ///< of that plane [rad]
-  double unevenness = 0.0;  ///< of the ground about it, root mean square [m]
-  double rise = 0.0;        ///< of it above the pad, at the pad [m]
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< Position of the pad.
+  double slope = 0.0;                               ///< Slope of the plane [rad].
+  double unevenness = 0.0;  ///< Root-mean-square distance of the ground from the plane [m].
+  double rise = 0.0;        ///< Height of the plane above the pad, at the pad [m].
   GroundSource source = GroundSource::measured;
 };
 
-/// "as measured", "as declared", "by the terrain", "in the scene".
+/// Returns "as measured", "as declared", "by the terrain" or "in the scene".
 const char* name_of(GroundSource source);
 
-/// Fits the ground to places of it. Nothing if they are fewer than six, or so few, uneven or on a
-/// line that the slope is not known to 2 degrees (its standard error).
+/// Fits the ground plane to `places`, which are points on the ground. Returns std::nullopt for
+/// fewer than six points, or if the standard error of the slope exceeds 2 degrees.
 std::optional<PadGround> pad_ground(const Eigen::Vector3d& pad,
                                     std::span<const Eigen::Vector3d> places, GroundSource source);
 
-/// Where to ask for heights of the ground within `radius` of a pad: its middle and two rings.
+/// Returns sample positions within `radius` of a pad [m]: its centre and two rings.
 std::vector<Eigen::Vector2d> places_on(const Eigen::Vector3d& pad, double radius);
 
-/// What a pad's ground may be.
+/// Limits for the ground of a pad.
 struct PadLimits {
-  double steepest = std::numbers::pi / 18.0;  ///< slope at which the vehicle may stand [rad]
-  double height_error = 0.0;  ///< how far off priors may have the ground, beside pad_roughness [m]
+  double steepest = std::numbers::pi / 18.0;  ///< Maximum slope under the vehicle [rad].
+  double height_error = 0.0;  ///< Height error of prior data, added to pad_roughness [m].
 };
 
-/// Why the vehicle must not stand there; empty if it may.
+/// Returns the reason why the ground is unsuitable for landing, or an empty string.
 std::string why_unfit(const PadGround& ground, const PadLimits& limits);
 
-/// Throws Error{bad_config} if one of the grounds is unfit.
+/// Throws Error{bad_config} if one of the grounds is unsuitable.
 void check_grounds(std::span<const PadGround> grounds, const PadLimits& limits);
 
-/// The ground of a pad as scans measure it: means over cells, so that noise averages out.
+/// Ground of a pad from scans. Points are averaged over cells to reduce noise.
 class PadScan {
  public:
   PadScan(const Eigen::Vector3d& pad, double radius);
 
-  /// Keeps what lies within the radius, and no farther above or below the pad than a slope of 45
-  /// degrees and a metre explain.
+  /// Adds the points within `radius` of the pad. Points more than `radius` + 1 m above or below the
+  /// pad are ignored: that covers a slope of 45 degrees and 1 m of height error.
   void take_in(std::span<const Eigen::Vector3f> points);
 
-  /// Nothing as pad_ground().
+  /// Returns the ground, or std::nullopt under the conditions of pad_ground().
   std::optional<PadGround> ground() const;
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Plans one route; the members are its stages' intermediate results.
+/// Planner of one route. Members hold intermediate results of its stages.
 class RoutePlanner {
  public:
   RoutePlanner(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options)
@@ -73,8 +73,8 @@ class RoutePlanner {
 
   void split() {
     if (route_.stations.empty()) return;
-    // Ways that no sortie takes need no returns. One view that has become too far for a battery
-    // would leave no split of all.
+    // Paths without a sortie need no returns. A single waypoint that has become too distant for the
+    // battery would prevent every split.
     do {
       if (legs_.drop_out_of_range()) connect();
       split_once();
@@ -106,7 +106,7 @@ class RoutePlanner {
     }
   }
 
-  /// Whether a way that a sortie takes had to be changed.
+  /// Returns true if the path of a sortie was changed.
   bool give_returns() {
     bool has_changed = false;
     for (const Sortie& sortie : route_.sorties) {
@@ -157,7 +157,7 @@ class RoutePlanner {
     ReturnSearch search =
         least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
     if (!search.found) {
-      const bool has_rally =  // DJI vehicles return to their take-off point only
+      const bool has_rally =  // DJI vehicles return only to their take-off point.
           std::ranges::find(law.dialects, Dialect::dji) == law.dialects.end();
       throw Error(ErrorKind::bad_config,
                   "no verified return altitude: " + search.why + "; move flight.takeoff" +

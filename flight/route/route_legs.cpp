@@ -17,7 +17,7 @@ std::vector<Vector3d> reversed(const std::vector<Vector3d>& way) {
   return {way.rbegin(), way.rend()};
 }
 
-/// Whether the survey came to a station from that place.
+/// Returns true if the survey flew from `from` to the waypoint.
 bool is_flown(const Vector3d& from, const Station& to) {
   return !to.way.empty() && to.way.front() == from && to.way.back() == to.view.position;
 }
@@ -60,7 +60,7 @@ std::string RouteLegs::why_not_allowed(const Station& station) const {
   return "it is " + length_text(closest.distance) + " from " + space_.name(closest);
 }
 
-/// Drops stations that no vehicle can be called home from.
+/// Removes waypoints without a verified return.
 void RouteLegs::keep_with_return(std::vector<Station>& stations) {
   double top = home_.z();
   for (const Station& station : stations) top = std::max(top, station.view.position.z());
@@ -72,9 +72,9 @@ void RouteLegs::keep_with_return(std::vector<Station>& stations) {
   });
 }
 
-/// From above the pad to a station: as flown where the order is the survey's and that is still
-/// free, or else the shortest found, or else along all that the survey flew before it came there.
-/// Empty if there is none.
+/// Returns the path from above the pad to a waypoint, empty if none exists. Candidates in order are
+/// the flown path, if the order is that of the survey and it is still free; the shortest path
+/// found; and the complete path of the survey up to the waypoint.
 std::vector<Vector3d> RouteLegs::from_home(const Station& to) {
   if (std::vector<Vector3d> way = flown(home_, to); !way.empty() && is_free(way)) return way;
   Path path = planner_.wide_or_narrow_path(home_, to.view.position);
@@ -88,7 +88,7 @@ bool RouteLegs::is_free(const std::vector<Vector3d>& way) const {
   return true;
 }
 
-/// As the survey flew; empty if it did not, or if the order is not the survey's.
+/// Returns the path that the survey flew. Empty if it did not fly there, or if the order differs.
 std::vector<Vector3d> RouteLegs::flown(const Vector3d& from, const Station& to) const {
   return !options_.order_is_free && is_flown(from, to) ? to.way : std::vector<Vector3d>();
 }
@@ -104,7 +104,7 @@ std::vector<Vector3d> RouteLegs::all_flown(const Station& to) const {
 }
 
 void RouteLegs::admit(const std::vector<Station>& allowed) {
-  // Those without a way are listed before those whose way cannot be flown.
+  // Waypoints without a path are listed before those whose path cannot be flown.
   std::vector<std::vector<Vector3d>> ways;
   for (const Station& station : allowed) {
     ways.push_back(from_home(station));
@@ -126,7 +126,7 @@ void RouteLegs::admit(const std::vector<Station>& allowed) {
   }
 }
 
-/// Nothing if the way cannot be proven in both directions.
+/// Returns std::nullopt if the path cannot be verified in both directions.
 std::optional<RouteLegs::Ends> RouteLegs::ends_along(std::vector<Vector3d> way) const {
   std::optional<VerifiedPath> out = planner_.verified(way);
   std::optional<VerifiedPath> back = planner_.verified(reversed(way));
@@ -174,7 +174,7 @@ bool RouteLegs::give_returns(std::size_t station) {
   std::vector<Vector3d> way = planner_.with_returns(ends.way);
   if (way == ends.way) return false;
   std::optional<Ends> changed = ends_along(std::move(way));
-  if (!changed) return false;  // the returns' own proof will name the place
+  if (!changed) return false;  // The verification of returns reports the position.
   ends = *std::move(changed);
   ends.has_returns = true;
   return true;
@@ -189,11 +189,11 @@ std::optional<Leg> RouteLegs::along(std::vector<Vector3d> way, std::size_t from,
 }
 
 Leg RouteLegs::by_home(std::size_t from, std::size_t to) const {
-  // Both are connected to the pad, so there is a way, though a long one.
+  // Both waypoints are connected to the pad, so a long path always exists.
   std::vector<Vector3d> points = reversed(ends_[from].way);
   points.insert(points.end(), ends_[to].way.begin() + 1, ends_[to].way.end());
   if (auto leg = along(planner_.pulled_tight(points), from, to)) return *std::move(leg);
-  VerifiedPath parts = planner_.verified(std::move(points)).value();  // each of them was verified
+  VerifiedPath parts = planner_.verified(std::move(points)).value();  // Each part was verified.
   return costs_.leg(std::move(parts), &stations_[from], &stations_[to]);
 }
 

@@ -1,4 +1,4 @@
-/// The certified legs that a vehicle's routes from one pad are made of, whatever their order.
+/// Verified legs for all routes of one vehicle from one pad, independent of the order.
 #pragma once
 
 #include <cstddef>
@@ -15,64 +15,67 @@
 
 namespace skycap::flight {
 
-/// Stations that a vehicle can serve, and ways to them. Stations are named by their place among
-/// those that admit() has kept.
+/// Waypoints within reach of a vehicle, and verified legs between them. An index refers to the
+/// waypoints kept by admit().
 class RouteLegs {
  public:
-  /// `space` and `options` must outlive this object.
+  /// Keeps references to `space` and `options`.
   RouteLegs(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options);
 
-  /// What the survey flew: its stations, in its order.
+  /// Sets the waypoints that the survey flew, in its order.
   void take_flown(std::vector<Station> stations) { flown_ = std::move(stations); }
 
-  /// The stations that are free themselves, that the gimbal can look from and, if returns are asked
-  /// for, that the vehicle can be called home from. The others go to unreached().
+  /// Returns the waypoints that are free, within the gimbal limits and, if required, have a return.
+  /// The others are added to unreached().
   std::vector<Station> allowed(std::vector<Station> stations);
 
-  /// Keeps, of stations that are allowed(), those with a way from and to the pad that can be proven
-  /// and that a full battery holds; once. The others go to unreached().
+  /// Keeps those of the allowed() waypoints that have a verified path from and to the pad within
+  /// the range of a full battery. The others are added to unreached(). Must be called once.
   void admit(const std::vector<Station>& allowed);
 
-  /// Has those go to unreached() whose ways have become longer than a full battery holds, by
-  /// give_returns(); whether there are any. Stations have other places then.
+  /// Removes waypoints whose paths exceed the battery range after give_returns() and adds them to
+  /// unreached(). Returns true if any was removed, which changes the indices of the others.
   bool drop_out_of_range();
 
   const std::vector<Station>& stations() const { return stations_; }
   const std::vector<Unreached>& unreached() const { return unreached_; }
 
-  /// From above the pad to a station, and back by the same way.
+  /// Returns the leg from above the pad to a waypoint, or the reverse leg along the same path.
   const Leg& out(std::size_t station) const { return ends_[station].out; }
   const Leg& back(std::size_t station) const { return ends_[station].back; }
 
-  /// Has out() and back() lead where every point has a proven way home; whether that changed them.
+  /// Changes out() and back() of a waypoint so that every point has a verified return. Returns true
+  /// if the legs changed.
   bool give_returns(std::size_t station);
 
-  /// From one station to another along a way, or along one near it that has returns; nothing if
-  /// that cannot be proven, or if the way is empty.
+  /// Returns the leg between two waypoints along `way`, or along a nearby path that has returns.
+  /// Returns std::nullopt if that cannot be verified, or if `way` is empty.
   std::optional<Leg> along(std::vector<Eigen::Vector3d> way, std::size_t from,
                            std::size_t to) const;
 
-  /// From one station to another along the ways of both from the pad, pulled tight.
+  /// Returns the leg between two waypoints along their paths from the pad, pulled tight.
   Leg by_home(std::size_t from, std::size_t to) const;
 
-  /// As the survey flew it, if the order is the survey's and it did; or else as found; or else by
-  /// home.
+  /// Returns the leg between two waypoints along the path flown by the survey, if the order is that
+  /// of the survey. Otherwise it follows the path found by the planner or, without one, by_home().
   Leg between(std::size_t from, std::size_t to);
 
-  /// What a sortie takes beside its legs between stations: take-off included, landing included.
+  /// Returns the cost of take-off and first leg, of last leg and landing, or of the stop at a
+  /// waypoint.
   LegCost out_cost(std::size_t station) const;
   LegCost back_cost(std::size_t station) const;
   LegCost station_cost(std::size_t station) const;
 
   const Motion& motion() const { return motion_; }
-  const Eigen::Vector3d& home() const { return home_; }  ///< above the pad
+  const Eigen::Vector3d& home() const { return home_; }  ///< Position above the pad.
   const LegCosts& costs() const { return costs_; }
-  /// Nothing if returns are not asked for, or before allowed().
+  /// Returns the returns planner. std::nullopt if returns are not required, or before allowed() is
+  /// called.
   const std::optional<WaysHome>& returns() const { return planner_.returns(); }
 
  private:
   struct Ends {
-    std::vector<Eigen::Vector3d> way;  ///< from above the pad
+    std::vector<Eigen::Vector3d> way;  ///< Path from above the pad.
     Leg out, back;
     bool has_returns = false;
   };

@@ -26,7 +26,7 @@ double pitch_of(const geometry::View& view) {
 }
 
 bool can_look(const Vehicle& vehicle, const geometry::View& view) {
-  constexpr double rounding = 1e-6;  // [rad]
+  constexpr double rounding = 1e-6;  // [rad].
   const double pitch = pitch_of(view);
   return pitch >= vehicle.gimbal_min - rounding && pitch <= vehicle.gimbal_max + rounding;
 }
@@ -43,7 +43,7 @@ void ClearanceBudget::validate() const {
 }
 
 ReturnLaw planning_law(const RouteOptions& options, double top) {
-  /// More than proofs divide legs by, and than files round places by.
+  /// Exceeds the subdivision of proofs and the rounding of positions in files.
   constexpr double reserve = 0.25;
   const ReturnOptions& asked = options.returns.value();
   const double ground = options.takeoff.z();

@@ -8,7 +8,7 @@ namespace {
 
 using Cost = SplitProblem::Cost;
 
-/// Of one figure at a station the least of all pads.
+/// Returns the minimum over all pads of one figure of a waypoint.
 double least(const SplitProblem& problem, std::vector<Cost> SplitProblem::Pad::*way, std::size_t i,
              double Cost::*figure) {
   double best = never;
@@ -16,8 +16,9 @@ double least(const SplitProblem& problem, std::vector<Cost> SplitProblem::Pad::*
   return best;
 }
 
-/// What time any split takes at least: every way from station to station flown direct or by a pad,
-/// whichever is faster, and as many visits to pads as the energy of all that asks for.
+/// Returns a lower bound for every split [s]. Each pair of waypoints is connected directly or via a
+/// pad, whichever is faster. The number of pad visits is the minimum that the total energy
+/// requires.
 double least_time(const SplitProblem& problem) {
   const std::size_t count = problem.station.size();
   const auto out = [&](std::size_t i, double Cost::*figure) {
@@ -46,16 +47,16 @@ double least_time(const SplitProblem& problem) {
   return time + (visits > 0.0 ? visits * cheapest_visit : 0.0);
 }
 
-/// The best split of the stations before each.
+/// Best split of the waypoints before each index.
 struct BestSplits {
   explicit BestSplits(std::size_t count) : time(count + 1, never), last(count + 1) {
     time[0] = 0.0;
   }
   std::vector<double> time;
-  std::vector<SortieRange> last;  ///< its last sortie
+  std::vector<SortieRange> last;  ///< Last sortie of that split.
 };
 
-/// Tries all sorties from a pad that begin at station `first`.
+/// Evaluates all sorties from a pad that start at waypoint `first`.
 void extend(const SplitProblem& problem, std::uint32_t pad_number, std::size_t first,
             BestSplits& best) {
   const SplitProblem::Pad& pad = problem.pads[pad_number];
@@ -71,7 +72,7 @@ void extend(const SplitProblem& problem, std::uint32_t pad_number, std::size_t f
     if (last > first) add(problem.leg[last - 1]);
     add(problem.station[last]);
     if (std::max(energy, worst) > problem.energy_per_sortie) break;
-    // The way home from here must be affordable, or the vehicle should not have come this far.
+    // The return from here must be affordable, otherwise the vehicle must not fly this far.
     const Cost& back = pad.back[last];
     if (energy + std::max(back.energy, back.emergency) > problem.energy_per_sortie) break;
     const double total = best.time[first] + time + back.time;

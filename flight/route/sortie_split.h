@@ -1,4 +1,4 @@
-/// Splits an order of stations into sorties that a battery can fly.
+/// Splits an ordered sequence of waypoints into sorties within the battery capacity.
 #pragma once
 
 #include <cstdint>
@@ -7,26 +7,26 @@
 
 namespace skycap::flight {
 
-/// The time of a flight that is not possible.
+/// Duration of an impossible flight.
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
-/// Times [s] and energies [J] of the parts that sorties are made of; one entry for each station,
-/// but `leg` has one less.
+/// Times [s] and energies [J] of the parts of sorties. Vectors have one entry per waypoint, `leg`
+/// one less.
 struct SplitProblem {
   struct Cost {
     double time = 0.0;
     double energy = 0.0;
-    /// What must be left when the part begins, so that wherever in it something goes wrong there is
-    /// energy for the return that the autopilot flies then.
+    /// Energy required at the start of the part so that, from each of its points, the autopilot can
+    /// still return [J].
     double emergency = 0.0;
   };
   struct Pad {
-    std::vector<Cost> out;   ///< pad to station, take-off included
-    std::vector<Cost> back;  ///< station to pad, landing included
+    std::vector<Cost> out;   ///< Pad to waypoint, including take-off.
+    std::vector<Cost> back;  ///< Waypoint to pad, including landing.
   };
-  std::vector<Pad> pads;      ///< a sortie begins and ends at one of them
-  std::vector<Cost> station;  ///< what is done there
-  std::vector<Cost> leg;      ///< station i to station i + 1
+  std::vector<Pad> pads;      ///< Pads at which a sortie can start and end.
+  std::vector<Cost> station;  ///< Stops at waypoints.
+  std::vector<Cost> leg;      ///< Legs from waypoint i to waypoint i + 1.
   double energy_per_sortie = 0.0;
   std::size_t stations_per_sortie = 0;
 };
@@ -37,15 +37,16 @@ struct SortieRange {
 };
 
 struct SortieSplit {
-  std::vector<SortieRange> sorties;  ///< empty if some station cannot be served at all
+  /// Sorties in order. Empty if a waypoint cannot be reached at all.
+  std::vector<SortieRange> sorties;
   double time = 0.0;
-  double time_bound = 0.0;  ///< no split is faster
+  double time_bound = 0.0;  ///< Lower bound for every split [s].
 };
 
-/// The fastest split in the given order, each sortie from the pad that is best for it (Beasley
-/// 1983, split of a giant tour): at every station the energy used so far and the way home fit into
-/// the battery, and so does what each part asks for an emergency. O(pads x stations x stations in a
-/// sortie).
+/// Returns the fastest split in the given order, with the best pad for each sortie (Beasley 1983,
+/// split of a giant tour). At every waypoint, the battery covers the energy used so far and the
+/// flight back, as well as the emergency energy of each part. Complexity: O(pads x waypoints x
+/// waypoints per sortie).
 SortieSplit split_into_sorties(const SplitProblem& problem);
 
 }  // namespace skycap::flight

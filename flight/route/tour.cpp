@@ -6,10 +6,10 @@
 namespace skycap::flight {
 namespace {
 
-/// An improvement must exceed rounding, or moves could go in circles.
+/// Minimum improvement, above rounding. Otherwise moves could cycle.
 constexpr double least_gain = 1e-9;
-constexpr std::size_t longest_chain = 3;  ///< of places that Or-opt moves together
-constexpr int ascent_steps = 300;         ///< of the subgradient ascent to the lower bound
+constexpr std::size_t longest_chain = 3;  ///< Maximum number of nodes that Or-opt moves together.
+constexpr int ascent_steps = 300;         ///< Steps of the subgradient ascent for the lower bound.
 
 class TourPlanner {
  public:
@@ -62,7 +62,7 @@ class TourPlanner {
     }
   }
 
-  /// Reverses stretches as long as that shortens the tour. Returns whether it did.
+  /// Reverses sections while that shortens the tour. Returns true if it did.
   bool two_opt() {
     bool has_improved = false;
     for (std::size_t i = 0; i + 2 < tour_.size(); ++i) {
@@ -78,7 +78,7 @@ class TourPlanner {
     return has_improved;
   }
 
-  /// Moves a chain of up to three places elsewhere, either way round. Place 0 stays first.
+  /// Moves a chain of up to three nodes, in either direction. Node 0 remains first.
   bool or_opt() {
     bool has_improved = false;
     for (std::size_t size = 1; size <= longest_chain; ++size) {
@@ -93,7 +93,7 @@ class TourPlanner {
     const std::uint32_t head = tour_[first], tail = tour_[first + size - 1];
     const double removed = cost(at(first - 1), head) + cost(tail, at(first + size)) -
                            cost(at(first - 1), at(first + size));
-    for (std::size_t j = 0; j < tour_.size(); ++j) {  // between places j and j + 1
+    for (std::size_t j = 0; j < tour_.size(); ++j) {  // Between nodes j and j + 1.
       if (j + 1 >= first && j < first + size) continue;
       const double base = cost(at(j), at(j + 1));
       const double ahead = cost(at(j), head) + cost(tail, at(j + 1)) - base;
@@ -112,8 +112,8 @@ class TourPlanner {
     return false;
   }
 
-  /// Held & Karp (1971): the least 1-tree under costs that are raised at places visited too often
-  /// and lowered at ends; Polyak steps towards the tour's cost.
+  /// Returns the bound of Held & Karp (1971): the minimum 1-tree with costs that are raised at
+  /// nodes of high degree and lowered at leaves. Polyak steps use the tour's cost as target.
   double lower_bound(double upper) const {
     if (count_ < 3) return upper;
     std::vector<double> price(count_, 0.0);
@@ -128,14 +128,15 @@ class TourPlanner {
       }
       double squared_excess = 0.0;
       for (const int d : degree) squared_excess += (d - 2) * (d - 2);
-      if (squared_excess == 0.0) break;  // the 1-tree is a tour
+      if (squared_excess == 0.0) break;  // The 1-tree is a tour.
       const double length = scale * (upper - bound) / squared_excess;
       for (std::uint32_t v = 0; v < count_; ++v) price[v] += length * (degree[v] - 2);
     }
     return best;
   }
 
-  /// A least spanning tree of places 1 .. count-1 (Prim) and the two cheapest edges of place 0.
+  /// Returns the cost of a minimum spanning tree of nodes 1 .. count-1 (Prim) plus the two cheapest
+  /// edges of node 0.
   double one_tree(const std::vector<double>& price, std::vector<int>& degree) const {
     const auto priced = [&](std::uint32_t a, std::uint32_t b) {
       return cost(a, b) + price[a] + price[b];

@@ -50,7 +50,7 @@ std::uint32_t BoundingTree::build(std::span<const Eigen::AlignedBox3d> boxes, st
 
 BoxTest::BoxTest(const Segment& segment) : segment_(segment), from_(segment.from.array()) {
   const Eigen::Array3d along = segment.to - segment.from;
-  // A huge finite stand-in for 1/0 keeps 0 * inverse at 0, where infinity would give NaN.
+  // A large finite value instead of 1/0 keeps 0 * inverse at 0; infinity would give NaN.
   inverse_ = along.unaryExpr([](double d) { return d == 0.0 ? 1e300 : 1.0 / d; });
   const double squared_length = along.matrix().squaredNorm();
   inverse_squared_length_ = squared_length > 0.0 ? 1.0 / squared_length : 0.0;

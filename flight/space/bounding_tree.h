@@ -1,6 +1,6 @@
-/// A binary tree of boxes around items, searched along a segment: it finds, without looking at the
-/// rest, the items whose boxes come within a distance of the segment. MeshDistance
-/// (geometry/surfaces) answers for points and triangles alone, four boxes of floats at a time.
+/// Binary tree of bounding boxes, searched for items within a distance of a segment. For points and
+/// triangles alone, MeshDistance (geometry/surfaces) is faster: it tests four boxes of floats at a
+/// time.
 #pragma once
 
 #include <array>
@@ -16,13 +16,15 @@
 
 namespace skycap::flight {
 
-/// Immutable; safe to search from any number of threads. The same boxes give the same tree.
+/// Immutable and thread-safe. Deterministic: equal boxes give equal trees.
 class BoundingTree {
  public:
   struct Node {
     Eigen::AlignedBox3d box;
-    std::uint32_t first = 0;  ///< of an inner node its right child; of a leaf its first item's slot
-    std::uint32_t count = 0;  ///< items of a leaf; zero in an inner node, whose left child is next
+    /// Inner node: index of the right child. Leaf: slot of the first item.
+    std::uint32_t first = 0;
+    /// Number of items of a leaf. 0 for an inner node, whose left child is the next node.
+    std::uint32_t count = 0;
   };
 
   BoundingTree() = default;
@@ -31,11 +33,12 @@ class BoundingTree {
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }
 
-  /// Item indices in the order that leaves name slots.
+  /// Returns the item indices, ordered by leaf slot.
   const std::vector<std::uint32_t>& items() const { return items_; }
 
-  /// Calls `visit(item)` for every item whose box may be within `reach` of the segment, near ones
-  /// early. `visit` may lower `reach` as it finds nearer things; a negative reach ends the search.
+  /// Calls `visit(item)` for every item whose box may be within `reach` [m] of the segment, near
+  /// items first. `visit` may reduce `reach` when it finds a closer item. A negative reach ends the
+  /// search.
   template <typename Visit>
   void visit_near(const Segment& segment, double& reach, Visit&& visit) const;
 
@@ -47,13 +50,13 @@ class BoundingTree {
   std::vector<std::uint32_t> items_;
 };
 
-/// A segment prepared for many box tests.
+/// Segment prepared for repeated box tests.
 class BoxTest {
  public:
   explicit BoxTest(const Segment& segment);
 
-  /// Whether the segment meets the box grown by `reach` on every side. True wherever the box is
-  /// nearer than `reach`; beyond that true at most near the grown box's corners.
+  /// Returns true if the segment intersects the box grown by `reach` on every side. That includes
+  /// every box closer than `reach`. False positives occur only near the corners of the grown box.
   bool is_near(const Eigen::AlignedBox3d& box, double reach) const {
     const Eigen::Array3d grown_min = box.min().array() - reach - from_;
     const Eigen::Array3d grown_max = box.max().array() + reach - from_;
@@ -62,8 +65,8 @@ class BoxTest {
            one.min(two).maxCoeff() <= one.max(two).minCoeff();
   }
 
-  /// A lower bound of the squared distance between the segment and the box: between their shadows
-  /// on the three axes, and between the box's bounding ball and the segment.
+  /// Returns a lower bound on the squared distance between segment and box [m^2]. It uses the
+  /// projections onto the three axes and the bounding sphere of the box.
   double squared_bound(const Eigen::AlignedBox3d& box) const;
 
  private:
@@ -80,7 +83,7 @@ void BoundingTree::visit_near(const Segment& segment, double& reach, Visit&& vis
     std::uint32_t node;
     double squared_bound;
   };
-  // Median splits keep the depth below 2 + log2(items): 64 levels are more than any index allows.
+  // Median splits keep the depth below 2 + log2(items), so 64 levels suffice for any index type.
   std::array<Entry, 64> stack;
   std::size_t size = 0;
   stack[size++] = {0, 0.0};

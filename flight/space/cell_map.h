@@ -1,4 +1,4 @@
-/// Cells of a grid and their keys in a geometry::HashGrid.
+/// Grid cells and their keys in a geometry::HashGrid.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@ namespace skycap::flight {
 
 using Cell = Eigen::Vector3i;
 
-/// Each coordinate in [-2^20, 2^20).
+/// Returns the key of a cell whose coordinates are in [-2^20, 2^20).
 inline std::uint64_t cell_key(const Cell& cell) {
   const auto part = [](int c) { return static_cast<std::uint64_t>(c + (1 << 20)) & 0x1fffff; };
   return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
 }
 
-/// The cell of a key.
+/// Returns the cell of a key.
 inline Cell cell_of(std::uint64_t key) {
   const auto part = [](std::uint64_t bits) {
     return static_cast<int>(bits & 0x1fffff) - (1 << 20);

@@ -33,8 +33,9 @@ LegProof prove(const FreeSpace& space, const Segment& leg, double clearance, dou
 
 struct KnownSpace::Impl {
   TriangleTree mesh;
-  TriangleTree rules;                     ///< boundaries of no-fly volumes, then of the fence
-  std::vector<std::uint32_t> rule_owner;  ///< no-fly volume of each; no_fly.size() for the fence
+  TriangleTree rules;  ///< Boundaries of the no-fly volumes, then of the fence.
+  /// No-fly volume of each triangle; no_fly.size() for the fence.
+  std::vector<std::uint32_t> rule_owner;
   BoundingTree points_tree;
   PointObstacles cloud;
   WindingNumber winding;
@@ -90,7 +91,7 @@ void KnownSpace::Impl::add_rule(const Prism& prism, std::uint32_t owner) {
   rule_owner.resize(rules.triangles.size(), owner);
   for (const Triangle& triangle : triangles) {
     for (const Vector3d& corner : triangle) {
-      // An unbounded prism cannot be flown over: its far ends are no place to plan a path.
+      // An unbounded prism cannot be flown over, so its distant ends are irrelevant for paths.
       if (std::abs(corner.z()) < 1e4) extent.extend(corner);
     }
   }
@@ -189,7 +190,7 @@ Closest KnownSpace::closest(const Segment& leg, double up_to) const {
   Closest found = impl_->surface_closest(leg, up_to);
   if (found.distance > 0.0) impl_->find_priors(leg, found);
   if (found.distance == 0.0) return found;
-  // The leg crosses no surface, so all of it is inside what its start is inside of.
+  // The leg crosses no surface, so all of it is inside the same solid as its start.
   return impl_->container(leg.from).value_or(found);
 }
 
@@ -198,7 +199,8 @@ bool KnownSpace::continues_free(const Segment& leg, double clearance) const {
   if (impl_->ground_height && std::min(leg.from.z(), leg.to.z()) - *impl_->ground_height < needed) {
     return false;
   }
-  // Any item nearer than needed ends the search: cheaper than looking for the nearest.
+  // Any item within the required distance ends the search, which is faster than finding the closest
+  // one.
   bool is_free = true;
   double reach = needed;
   const auto meet = [&](double squared_distance, double least) {

@@ -1,9 +1,9 @@
-/// Proof that a straight leg keeps its distance from everything that is not known to be free.
+/// Verification that a straight leg keeps its clearance from all space that is not known to be
+/// free.
 ///
-/// Nothing here samples: the distance of a leg is the exact minimum over all its points, from which
-/// a guard against rounding is subtracted before it is compared. What counts as "not free" is
-/// behind one interface: a scene known in advance (KnownSpace, here) or only what has been measured
-/// so far (MeasuredSpace, measured_space.h).
+/// No sampling is involved. The distance of a leg is the exact minimum over all its points, minus a
+/// guard for rounding. The interface FreeSpace defines what is free: a known scene (KnownSpace,
+/// here) or measured space (MeasuredSpace, measured_space.h).
 #pragma once
 
 #include <cstdint>
@@ -32,68 +32,72 @@ enum class ObstacleKind {
   occupied_space
 };
 
-/// The place where a leg comes nearest to something that is not free.
+/// Closest approach of a leg to an obstacle.
 struct Closest {
-  double distance;                         ///< zero when touching or inside
-  ObstacleKind kind = ObstacleKind::none;  ///< `none`: nothing nearer than was asked for
-  std::uint32_t index = 0;                 ///< triangle, point or no-fly volume; part of a prior
+  double distance;                         ///< Distance [m]. 0 for contact or penetration.
+  ObstacleKind kind = ObstacleKind::none;  ///< `none`: no obstacle within the search distance.
+  /// Index of the triangle, point or no-fly volume, or of the part of a prior.
+  std::uint32_t index = 0;
   Eigen::Vector3d on_leg = Eigen::Vector3d::Zero();
   Eigen::Vector3d on_obstacle = Eigen::Vector3d::Zero();
-  std::uint32_t owner = 0;  ///< the prior that it is a part of
+  std::uint32_t owner = 0;  ///< Index of the prior that contains the part.
 };
 
-/// What is known to be free. Implementations are safe to query from several threads.
+/// Free space. Implementations must be thread-safe for queries.
 class FreeSpace {
  public:
   virtual ~FreeSpace() = default;
 
-  /// The nearest thing to the leg that is not known to be free, looked for up to `up_to`:
-  /// `distance` is exact where it is smaller than `up_to`, else it is `up_to`. Never above the
-  /// true distance by more than rounding (1e-7 m).
+  /// Returns the obstacle closest to the leg within `up_to` [m]. `distance` is exact below `up_to`
+  /// and equals `up_to` otherwise. It exceeds the true distance by no more than rounding (1e-7 m).
   virtual Closest closest(const Segment& leg, double up_to) const = 0;
 
-  /// Whether nothing that is not known to be free comes within `clearance` of the leg. Assumes that
-  /// the leg's start is itself that free: then a solid cannot be entered without coming near its
-  /// surface, and the costly test for being inside one is spared.
+  /// Returns true if the leg keeps `clearance` [m] from all obstacles. Assumes that the start of
+  /// the leg keeps it: then entering a solid requires passing its surface, and the expensive inside
+  /// test is unnecessary.
   virtual bool continues_free(const Segment& leg, double clearance) const = 0;
 
-  /// A box outside of which everything is as free, or as unknown, as on its border: paths need not
-  /// leave it by more than their clearance. Empty when nothing is in the way.
+  /// Returns a box outside of which the state of space equals that on its border. Paths need not
+  /// leave it by more than their clearance. Empty without obstacles.
   virtual Eigen::AlignedBox3d extent() const = 0;
 
-  /// What an obstacle is called in messages; empty if this space has no obstacles of its kind.
+  /// Returns the name of an obstacle for messages. Empty if this space has no obstacles of that
+  /// kind.
   virtual std::string name(const Closest& closest) const = 0;
 
-  /// Distance of a point to the nearest surface, up to `up_to`: distance() without the costly test
-  /// for being inside a solid. For searches that reach a place by proven legs only.
+  /// Returns the distance from a point to the closest surface, at most `up_to` [m]. Unlike
+  /// distance(), it omits the expensive inside test. Intended for searches that reach positions
+  /// only along verified legs.
   virtual double surface_distance(const Eigen::Vector3d& point, double up_to) const {
     return distance(point, up_to);
   }
 
-  /// closest() and continues_free() without the assumption.
+  /// Returns the result of continues_free() or closest() without assumptions about the start.
   bool is_free(const Segment& leg, double clearance) const;
   double distance(const Eigen::Vector3d& point, double up_to) const;
 };
 
-/// Subtracted from every distance before it counts as proved: more than the rounding of the exact
+/// Subtracted from each distance before comparison [m]. Exceeds the rounding error of the exact
 /// formulas for legs below 1 km in a frame below 10 km.
 inline constexpr double clearance_guard = 1e-6;
 
-/// What is certified of a leg.
+/// Result of the verification of a leg.
 struct LegProof {
-  bool is_proven;    ///< no point of the leg is nearer than the clearance to anything not free
-  double clearance;  ///< proven lower bound of the leg's distance, at most `up_to` of prove()
+  bool is_proven;  ///< True if every point of the leg keeps the clearance.
+  /// Verified lower bound on the distance of the leg [m], at most `up_to` of prove().
+  double clearance;
   Closest closest;
 };
 
-/// Proves a leg at `clearance`, looking at most `up_to` far (more tells by how much it is better).
+/// Verifies a leg at `clearance` [m]. The search extends to `up_to` [m]; a larger value also
+/// determines the surplus.
 LegProof prove(const FreeSpace& space, const Segment& leg, double clearance,
                double up_to = std::numeric_limits<double>::infinity());
 
-/// A scene that is known in advance.
+/// Space around a scene that is known in advance.
 class KnownSpace : public FreeSpace {
  public:
-  /// Throws what validate(obstacles) throws. Keeps no reference.
+  /// Throws the same errors as validate(obstacles). Keeps no reference.
   explicit KnownSpace(const Obstacles& obstacles);
   ~KnownSpace() override;
   KnownSpace(KnownSpace&&) noexcept;
@@ -105,9 +109,9 @@ class KnownSpace : public FreeSpace {
   Eigen::AlignedBox3d extent() const override;
   std::string name(const Closest& closest) const override;
 
-  /// How often the mesh winds around a point: 0 outside and 1 inside a closed solid whichever way
-  /// it faces, in between near the holes of an open one (winding.h). A point counts as inside above
-  /// one half. Zero when the mesh is not solid.
+  /// Returns the winding number of the mesh at a point: 0 outside and 1 inside a closed solid of
+  /// any orientation. Values between occur near the holes of an open mesh (winding.h). A point
+  /// counts as inside above 0.5. Returns 0 if the mesh is not solid.
   double winding_number(const Eigen::Vector3d& point) const;
 
  private:
@@ -115,8 +119,8 @@ class KnownSpace : public FreeSpace {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Free is what is free in every one of several spaces, such as what was measured and what the
-/// rules allow. Keeps references: the spaces must outlive it.
+/// Intersection of several free spaces, such as measured space and the airspace rules. Keeps
+/// references to the spaces.
 class JointSpace : public FreeSpace {
  public:
   explicit JointSpace(std::vector<const FreeSpace*> spaces) : spaces_(std::move(spaces)) {}

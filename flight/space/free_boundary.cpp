@@ -19,8 +19,8 @@ constexpr Side sides[] = {{0, false}, {0, true}, {1, false}, {1, true}, {2, fals
 
 Cell step(const Side& side) { return Cell::Unit(side.axis) * (side.is_up ? 1 : -1); }
 
-/// For each voxel of a block the bit of its neighbour on a side, which may be one of the next
-/// block's.
+/// Returns, for each voxel of a block, the bit of its neighbour on a side, possibly from the next
+/// block.
 Slices of_neighbours(const Slices& own, const Slices& next, const Side& side) {
   constexpr std::uint64_t first_column = 0x0101010101010101ULL, last_column = first_column << 7;
   Slices moved{};

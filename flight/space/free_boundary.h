@@ -1,4 +1,4 @@
-/// Where space that was measured to be free ends.
+/// Boundary of the free space in a measured space.
 #pragma once
 
 #include <iosfwd>
@@ -9,9 +9,9 @@
 
 namespace skycap::flight {
 
-/// Of a file that MeasuredSpace::write() wrote, in the world: the middle of each face that a free
-/// voxel shares with one that is not. In the order of the file. Throws what MeasuredSpace::read()
-/// throws.
+/// Returns the centres of all faces between a free and a non-free voxel, in world coordinates [m]
+/// and file order. The stream contains the output of MeasuredSpace::write(). Throws the same errors
+/// as MeasuredSpace::read().
 std::vector<Eigen::Vector3f> free_boundary(std::istream& stream, const std::string& name);
 
 }  // namespace skycap::flight

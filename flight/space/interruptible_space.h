@@ -1,5 +1,5 @@
-/// A space whose questions stop being answered when the work shall stop: every search for paths
-/// asks for little else, so this ends any of them, at once and wherever it is.
+/// Free space with cancellable queries. Since path searches consist mostly of queries, this cancels
+/// any search promptly.
 #pragma once
 
 #include <stop_token>
@@ -10,8 +10,8 @@
 
 namespace skycap::flight {
 
-/// Answers as `space` does, which must outlive it, until a stop is requested; from then on every
-/// question throws Interrupted.
+/// Forwards queries to `space`, which must outlive this object. Once a stop is requested, every
+/// query throws Interrupted.
 class InterruptibleSpace : public FreeSpace {
  public:
   explicit InterruptibleSpace(const FreeSpace& space, std::stop_token stop = {})

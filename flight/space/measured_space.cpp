@@ -25,7 +25,7 @@ void MeasuredSpaceConfig::validate() const {
           "positive and below 100,000 voxels");
   require(!floor || std::isfinite(*floor), "measured_space.floor", floor.value_or(0.0),
           "a finite number");
-  const auto is_near = [&](const Vector3d& corner) {  // false for NaN, too
+  const auto is_near = [&](const Vector3d& corner) {  // False for NaN, too.
     return (corner.array().abs() < 1e5 * voxel).all() && geometry::is_place(corner);
   };
   const auto require_near = [&](const AlignedBox3d& box, const char* name) {
@@ -116,8 +116,8 @@ void MeasuredSpace::take_free(const MeasuredSpace& other) {
 }
 
 Closest MeasuredSpace::closest(const Segment& leg, double up_to) const {
-  // Pieces of a few blocks, so that the box around each is slim; a reach that grows until something
-  // is within it, so that near things are found without looking at far ones.
+  // The leg is divided into pieces of a few blocks, whose boxes are slim. The search distance grows
+  // until it contains an obstacle, so that distant blocks need not be examined.
   const auto pieces =
       static_cast<std::size_t>(std::ceil(leg.length() / (4.0 * impl_->block_size()))) + 1;
   for (double reach = std::min(up_to, impl_->block_size());; reach = std::min(up_to, 2.0 * reach)) {

@@ -1,11 +1,10 @@
-/// Free space as far as it has been measured: what no measured ray has proven to be free is not
-/// free.
+/// Free space from measurements. Only space observed as free counts as free.
 ///
-/// Space is cut into voxels. A voxel becomes free when, from one sensor position, *all* of it lies
-/// in front of what was measured: every pixel that its bounding ball touches, and a rim of one
-/// pixel around them, saw something farther away. That is exact up to what a sensor cannot see at
-/// all: things slimmer than the gap between two neighbouring rays. A voxel that holds a measured
-/// point is occupied, for good.
+/// Space is divided into voxels. A voxel becomes free if all of it lies in front of the
+/// measurements of one sensor pose. That requires farther measurements in every pixel that its
+/// bounding sphere touches, and in a border of one pixel around them. The method is exact except
+/// for objects thinner than the gap between neighbouring rays, which a sensor cannot detect. A
+/// voxel with a measured point remains occupied permanently.
 #pragma once
 
 #include <cstdint>
@@ -25,75 +24,77 @@
 namespace skycap::flight {
 
 struct MeasuredSpaceConfig {
-  double voxel = 0.25;        ///< edge of a voxel [m]; a quarter of the clearance or less is fine
-  double depth_margin = 0.1;  ///< free space ends this far in front of a measurement: noise, pose
-  /// Depth up to which a pixel without a return proves free space. Zero: such pixels prove nothing;
-  /// right for sensors that may miss dark, shiny or thin things. For a sensor that returns all that
-  /// is in range, that range.
+  /// Edge length of a voxel [m]. A quarter of the clearance or less is recommended.
+  double voxel = 0.25;
+  /// Distance between free space and a measurement in front of it, for noise and pose errors [m].
+  double depth_margin = 0.1;
+  /// Depth up to which a no-return pixel proves free space [m]. 0: such pixels prove nothing, which
+  /// is right for sensors that miss dark, shiny or thin objects. For a sensor with a return from
+  /// every object in range, use that range.
   double free_without_return = 0.0;
-  double max_depth = 60.0;  ///< measurements farther away prove free space up to here only
-  /// Where space has to be measured to be free. Outside of it somebody else vouches for the
-  /// airspace: there everything is free but measured points. Grows to whole voxels. Empty (as by
-  /// default): everywhere.
+  /// Depth limit: farther measurements prove free space only up to here [m].
+  double max_depth = 60.0;
+  /// Region in which space must be measured to count as free, extended to whole voxels. Outside,
+  /// everything except measured points is assumed free, and the pilot must check it. Empty
+  /// (default): everywhere.
   Eigen::AlignedBox3d region;
-  /// Further boxes where space has to be measured to be free: regions of others, with a region of
-  /// its own only. What is measured there is kept for them, but is neither in the volume nor, when
-  /// it was read from a file, in the way.
+  /// Further regions in which space must be measured to count as free. They belong to other surveys
+  /// and require a region of this one. Their measurements are stored. They do not count in the
+  /// volume or, in a space read from a file, as obstacles.
   std::vector<Eigen::AlignedBox3d> beside;
-  /// Points below this height, if it is given, are not kept: they are of the ground, which is known
-  /// from elsewhere and exactly, not to a voxel.
+  /// Points below this height are discarded, because the ground is known more exactly from other
+  /// data [m].
   std::optional<double> floor;
 
-  /// Throws Error{bad_config} naming the first value that is out of its interval.
+  /// Throws Error{bad_config} naming the first value outside its interval.
   void validate() const;
 };
 
-/// How a sensor without an image, such as a spinning laser scanner, shoots around itself.
+/// Ray pattern of a sensor without an image, such as a spinning laser scanner.
 struct SweepRays {
-  double spacing = 0.0;  ///< neighbouring rays are at most so far apart [rad], in (0, 1)
-  /// Of the turn, in the scan's frame: rows of rays are cones about it.
+  double spacing = 0.0;  ///< Maximum angle between neighbouring rays [rad], in (0, 1).
+  /// Rotation axis in the scan's frame. Rows of rays form cones around it.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();
-  /// Rays may begin this far from the scan's own place, as those of a turn in flight do [m].
+  /// Maximum distance between ray origins and the scan position, as for a revolution in flight [m].
   double origin_spread = 0.0;
-  /// Rays fall as in a pattern without rows, or as at random: a cell says something only if those
-  /// around it do, too, and then what is nearest in all nine. So what is free is well inside of
-  /// where the sensor looked, and every place in it has rays on all sides, two cells away at most.
+  /// Rays have no row pattern, or a random one. A cell then counts only if all eight neighbours
+  /// have returns, with the minimum depth of all nine. Free space is then well inside the scanned
+  /// directions, with rays on all sides at most two cells away.
   bool is_scattered = false;
 };
 
-/// Grows by insertion. Queries may run in parallel with each other, not with insertions.
+/// Free space accumulated from scans. Queries may run concurrently with each other, but not with
+/// insertions.
 class MeasuredSpace : public FreeSpace {
  public:
-  /// Throws what MeasuredSpaceConfig::validate() throws.
+  /// Throws the same errors as MeasuredSpaceConfig::validate().
   explicit MeasuredSpace(const MeasuredSpaceConfig& config = {});
   ~MeasuredSpace() override;
   MeasuredSpace(MeasuredSpace&&) noexcept;
   MeasuredSpace& operator=(MeasuredSpace&&) noexcept;
 
-  /// What somebody vouches for, such as the place where the vehicle starts: all voxels wholly
-  /// inside become free.
+  /// Marks all voxels entirely inside the sphere or box as free without measurement, such as at the
+  /// start position. The pilot must check that space.
   void declare_free(const Eigen::Vector3d& centre, double radius);
   void declare_free(const Eigen::AlignedBox3d& box);
 
-  /// Takes in an organised scan. Throws Error{bad_geometry} if the scan has points but no pixels,
-  /// or a pixel that the camera does not have. What is known then does not depend on `threads`
-  /// (zero: all processors).
+  /// Adds an organised scan. The result does not depend on `threads` (0: all processors). Throws
+  /// Error{bad_geometry} if points lack pixels, or if a pixel is outside the camera image.
   void insert(const geometry::Scan& scan, const geometry::Camera& camera, unsigned threads = 1);
 
-  /// Takes in a scan of a sensor that looks around itself and has no image, such as a LiDAR:
-  /// directions in which a cell as wide as its rays are apart got no return prove nothing. Throws
-  /// Error{bad_config} unless 0 < spacing < 1.
+  /// Adds a scan of a sensor without an image, such as a LiDAR. Cells as wide as the ray spacing
+  /// that have no return prove nothing. Throws Error{bad_config} unless 0 < spacing < 1.
   void insert(const geometry::Scan& scan, const SweepRays& rays, unsigned threads = 1);
   void insert(const geometry::Scan& scan, double ray_spacing) {
     insert(scan, SweepRays{.spacing = ray_spacing});
   }
 
-  /// Takes in what is in the way, of a scan that proves nothing free.
+  /// Adds only the obstacles of a scan that cannot prove space free.
   void insert_points(const geometry::Scan& scan, unsigned threads = 1);
 
-  /// Takes over what another survey of the same frame has measured to be free, in blocks that meet
-  /// the region; not what it has measured to be occupied. Throws Error{bad_config} if its voxels
-  /// are of another size.
+  /// Copies the free space, but not the occupied space, of another survey in the same frame. Only
+  /// blocks that intersect the region are copied. Throws Error{bad_config} if the voxel sizes
+  /// differ.
   void take_free(const MeasuredSpace& other);
 
   Closest closest(const Segment& leg, double up_to) const override;
@@ -103,16 +104,16 @@ class MeasuredSpace : public FreeSpace {
 
   const MeasuredSpaceConfig& config() const;
 
-  /// A box around all that is kept of places, free or not, and the region.
+  /// Returns a box around all stored blocks, free or occupied, and the region.
   Eigen::AlignedBox3d known_box() const;
 
-  /// Volume known to be free [m^3], of the region if there is one.
+  /// Returns the known free volume, limited to the region if one is set [m^3].
   double free_volume() const;
 
-  /// Writes all that is known, for read() on a machine of the same byte order. A name and version
-  /// come first, then the configuration, then each block of 8 x 8 x 8 voxels by its place.
+  /// Writes all data for read() on a machine with the same byte order. The format is: name and
+  /// version, configuration, then each block of 8 x 8 x 8 voxels with its position.
   void write(std::ostream& stream) const;
-  /// Throws Error{bad_file} naming `name` unless it holds exactly what write() wrote.
+  /// Throws Error{bad_file} with `name` unless the stream holds exactly the output of write().
   static MeasuredSpace read(std::istream& stream, const std::string& name);
 
  private:

@@ -19,15 +19,16 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 constexpr char file_mark[16] = "skycap free v1\n";
-constexpr std::uint64_t most_blocks = 8'000'000;  ///< a gigabyte: of a survey of 10^10 voxels or so
+/// About 1 GB, for a survey of about 10^10 voxels.
+constexpr std::uint64_t most_blocks = 8'000'000;
 constexpr double no_floor = -std::numeric_limits<double>::infinity();
 
-/// What a file begins with. Plain numbers: it is written as it is in memory.
+/// File header. Plain numbers, written as in memory.
 struct FileHead {
   char mark[16];
   double voxel, depth_margin, free_without_return, max_depth;
-  double floor;      ///< or no_floor
-  double region[6];  ///< its two corners; the first above the second if there is none
+  double floor;      ///< Height, or no_floor.
+  double region[6];  ///< Two corners. Without a region, the first is above the second.
   std::uint64_t blocks;
 };
 
@@ -52,7 +53,7 @@ void MeasuredSpace::write(std::ostream& stream) const {
   head.blocks = impl_->blocks.size();
   stream.write(reinterpret_cast<const char*>(&head), sizeof head);
 
-  // By place, so that equal spaces give equal files.
+  // Sorted by position, so that equal spaces give equal files.
   std::vector<FileBlock> blocks;
   blocks.reserve(impl_->blocks.size());
   for (std::size_t i = 0; i < impl_->blocks.size(); ++i) {
@@ -114,7 +115,7 @@ MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name)
   const MeasuredSpaceFile file = read_measured_space(stream, name);
   MeasuredSpace space(file.config);
   for (const FileBlock& record : file.blocks) {
-    const Cell cell = cell_of(record.key);  // whatever bits a file has beside it
+    const Cell cell = cell_of(record.key);  // Ignores any further bits of the key.
     space.impl_->set(cell, record.block);
   }
   return space;

@@ -1,4 +1,4 @@
-/// What a file of measured space holds. For the sources of measured_space.h and free_boundary.h.
+/// File content of measured space. Internal to measured_space.h and free_boundary.h.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace skycap::flight {
 
 struct FileBlock {
-  std::uint64_t key;  ///< of its cell
+  std::uint64_t key;  ///< Key of the block's cell.
   VoxelBlock block;
 };
 
@@ -21,7 +21,7 @@ struct MeasuredSpaceFile {
   std::vector<FileBlock> blocks;
 };
 
-/// Throws what MeasuredSpace::read() throws.
+/// Throws the same errors as MeasuredSpace::read().
 MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& name);
 
 }  // namespace skycap::flight

@@ -11,13 +11,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Those of a block that hold points.
+/// Voxels of a block that contain points.
 struct OccupiedVoxels {
   Cell block;
   Slices voxels{};
 };
 
-/// In the order of the points. Neighbouring pixels mostly hit the same block.
+/// Returns the voxels in the order of the points. Neighbouring pixels usually belong to the same
+/// block.
 std::vector<OccupiedVoxels> voxels_of(std::span<const Eigen::Vector3f> points,
                                       const MeasuredSpaceConfig& config) {
   std::vector<OccupiedVoxels> occupied;
@@ -36,7 +37,7 @@ std::vector<OccupiedVoxels> voxels_of(std::span<const Eigen::Vector3f> points,
 }  // namespace
 
 VoxelRegion voxel_region(const AlignedBox3d& region, double voxel) {
-  // Far beyond all voxels, yet so that sums and differences of them are whole numbers still.
+  // Beyond all voxels, but small enough for exact integer sums and differences.
   constexpr int far = 1 << 28;
   if (region.isEmpty()) return {Cell::Constant(-far), Cell::Constant(far)};
   return {(region.min() / voxel).array().floor().matrix().cast<int>(),
@@ -122,16 +123,17 @@ void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& t
   }
 }
 
-/// Lowers `best` to what is nearer to a short piece than that.
+/// Updates `best` with obstacles closer to a short piece.
 void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const {
   const Vector3d reach = Vector3d::Constant(best.distance);
   const AlignedBox3d around = in_the_way().intersection(
       {piece.from.cwiseMin(piece.to) - reach, piece.from.cwiseMax(piece.to) + reach});
-  if (around.isEmpty()) return;  // such as a return above all that there is
+  if (around.isEmpty()) return;  // For example a return above all obstacles.
   const BoxTest test(piece);
   for_each_block(around, [&](const Cell& cell) {
     const VoxelBlocks::Found found = blocks.find(cell_key(cell));
-    if (found.is_all_passable) return true;  // most are, and to ask where they are takes longer
+    // Most blocks are passable. Computing their distance would take longer.
+    if (found.is_all_passable) return true;
     const AlignedBox3d box = block_box(cell);
     if (!test.is_near(box, best.distance)) return true;
     if (found.block != nullptr) {

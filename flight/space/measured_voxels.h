@@ -1,4 +1,4 @@
-/// The voxels of a MeasuredSpace. For the sources of measured_space.h.
+/// Voxels of a MeasuredSpace. Internal to measured_space.h.
 #pragma once
 
 #include <algorithm>
@@ -17,25 +17,27 @@
 
 namespace skycap::flight {
 
-/// Voxels of a region, the end excluded.
+/// Half-open range of voxels.
 struct VoxelRegion {
   Cell low, high;
 };
 
-/// Those of a region; if that is empty, all of space.
+/// Returns the voxels of a region. For an empty region, returns all of space.
 VoxelRegion voxel_region(const Eigen::AlignedBox3d& region, double voxel);
 
-/// The voxels of a block that are not free, or outside of all regions occupied.
+/// Returns the voxels of a block that block a path. Inside the regions these are all except free
+/// voxels, outside the occupied ones.
 Slices blocked_voxels(std::span<const VoxelRegion> regions, const Cell& cell,
                       const VoxelBlock& block);
 
 struct MeasuredSpace::Impl {
   MeasuredSpaceConfig config;
-  VoxelBlocks blocks;  ///< a block not listed is unknown
-  /// The configuration's region, or all of space without one, and those beside it; of whole voxels.
+  VoxelBlocks blocks;  ///< A missing block is unknown.
+  /// Voxel ranges of the configured region (or of all space) and of the further regions.
   std::vector<VoxelRegion> regions;
-  std::vector<Eigen::AlignedBox3d> boxes;  ///< the same
-  /// Of all listed blocks, and of those that are in the way: in the regions, or with points.
+  std::vector<Eigen::AlignedBox3d> boxes;  ///< Boxes of `regions`.
+  /// Bounds of all listed blocks, and of those that contain obstacles: blocks in the regions or
+  /// with points.
   Eigen::AlignedBox3d listed, extent;
 
   bool is_bounded() const { return !config.region.isEmpty(); }
@@ -43,7 +45,7 @@ struct MeasuredSpace::Impl {
     return std::ranges::any_of(
         boxes, [&](const Eigen::AlignedBox3d& region) { return region.intersects(box); });
   }
-  /// Outside of it everything is free.
+  /// Returns a box outside of which everything is free.
   Eigen::AlignedBox3d in_the_way() const {
     Eigen::AlignedBox3d hull = extent;
     for (const Eigen::AlignedBox3d& region : boxes) hull.extend(region);
@@ -62,7 +64,7 @@ struct MeasuredSpace::Impl {
     return {low, low + Eigen::Vector3d::Constant(cube.edge * config.voxel)};
   }
 
-  /// An unknown one if it is not listed.
+  /// Returns the block of a cell, or an unknown block if the cell is not listed.
   VoxelBlock known_block(const Cell& cell) const {
     const VoxelBlock* known = blocks.find(cell_key(cell)).block;
     return known == nullptr ? VoxelBlock{} : *known;
@@ -88,7 +90,7 @@ struct MeasuredSpace::Impl {
                        Closest& best) const;
 };
 
-/// Visits block cells that meet the box; `visit` returns false to stop.
+/// Visits all block cells that intersect the box. `visit` returns false to stop.
 template <typename Visit>
 void MeasuredSpace::Impl::for_each_block(const Eigen::AlignedBox3d& box, Visit visit) const {
   const Cell low = block_of(box.min()), high = block_of(box.max());
@@ -101,8 +103,8 @@ void MeasuredSpace::Impl::for_each_block(const Eigen::AlignedBox3d& box, Visit v
   }
 }
 
-/// Frees, in blocks that meet the box and a region, the cubes of which `decide(box)` says so; it is
-/// asked from several threads.
+/// Marks cubes for which `decide(box)` returns BallSight::free, in blocks that intersect both the
+/// box and a region. `decide` must be thread-safe.
 template <typename Decide>
 void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, unsigned threads,
                                      Decide decide) {
@@ -134,7 +136,7 @@ void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, unsigned th
   }
 }
 
-/// A cube that is neither free nor hidden as a whole is cut into eight, down to voxels.
+/// Divides a partially visible cube into eight, down to single voxels.
 template <typename Decide>
 void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, VoxelBlock& block,
                                       Decide decide) const {

@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using geometry::turn;
 
-constexpr double far_away = 1e5;  // stands for an infinite floor or ceiling
+constexpr double far_away = 1e5;  // Represents an infinite floor or ceiling [m].
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -59,8 +59,7 @@ void validate(const Prism& prism, const std::string& role) {
 }  // namespace
 
 void validate(const Obstacles& obstacles) {
-  // An empty mesh is no mesh; vertices without a triangle, or triangles without area, are a
-  // mistake.
+  // An empty mesh is permitted. Vertices without triangles, and triangles without area, are errors.
   if (!obstacles.mesh.triangles.empty() || !obstacles.mesh.vertices.empty()) {
     geometry::validate(obstacles.mesh);
   }

@@ -1,5 +1,5 @@
-/// What a route must keep away from, as plain data: surfaces, measured points, no-fly volumes, the
-/// geofence, the ground.
+/// Obstacles of a route as plain data: surfaces, measured points, no-fly volumes, geofence and
+/// ground.
 #pragma once
 
 #include <limits>
@@ -18,34 +18,37 @@ namespace skycap::flight {
 class PriorObstacle;
 using geometry::Prism;
 
-/// Points that stand for the surface around them: each is a ball.
+/// Balls around points that sample a surface.
 struct PointObstacles {
   std::vector<Eigen::Vector3f> points;
-  double radius = 0.0;  ///< at least the distance from any surface point to the nearest of them
+  /// Radius of the balls: at least the maximum distance from a surface point to its closest sample
+  /// [m].
+  double radius = 0.0;
 };
 
-/// Everything known in advance. Any part may be missing.
+/// All obstacles known in advance. Each part is optional.
 struct Obstacles {
   geometry::Mesh mesh;
-  bool mesh_is_solid = true;  ///< being inside the mesh is as bad as touching it
+  bool mesh_is_solid = true;  ///< True if the interior of the mesh is an obstacle, too.
   PointObstacles cloud;
   std::vector<Prism> no_fly;
-  std::optional<Prism> fence;           ///< the vehicle must stay inside
-  std::optional<double> ground_height;  ///< everything below is solid
+  std::optional<Prism> fence;           ///< Volume that the vehicle must not leave.
+  std::optional<double> ground_height;  ///< Height z below which all space is solid [m].
   std::vector<std::shared_ptr<const PriorObstacle>> priors;
 };
 
-/// Throws Error{bad_geometry} or Error{bad_config} on the first part that cannot be worked with: a
-/// mesh with bad indices or coordinates, a point that is not finite, a footprint with fewer than
-/// three corners, without area or crossing itself, a floor that is not below its ceiling, a fence
-/// that lies wholly below the ground.
+/// Throws Error{bad_geometry} or Error{bad_config} for the first invalid part. Invalid are meshes
+/// with bad indices or coordinates, points that are not finite, floors at or above their ceiling,
+/// and fences entirely below the ground. Footprints need at least three corners, a positive area
+/// and no self-intersection.
 void validate(const Obstacles& obstacles);
 
-/// What a climb from a pad has to keep clear of: everything but the ground, which priors may be
-/// (PriorObstacle::is_ground()), and the fence's floor.
+/// Returns the obstacles for the climb from a pad: all except the ground, priors that are ground
+/// (PriorObstacle::is_ground()) and the floor of the fence.
 Obstacles without_ground(Obstacles obstacles);
 
-/// The prism's closed surface, facing outward. An infinite floor or ceiling becomes -/+ 100 km.
+/// Returns the closed surface of a prism, facing outward. An infinite floor or ceiling becomes -/+
+/// 100 km.
 geometry::Mesh surface(const Prism& prism);
 
 }  // namespace skycap::flight

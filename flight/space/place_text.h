@@ -1,4 +1,4 @@
-/// Places and lengths for messages.
+/// Positions and lengths as text for messages.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace skycap::flight {
 
-/// "(1.25, -3.00, 12.50)".
+/// Returns the coordinates [m] as "(1.25, -3.00, 12.50)".
 inline std::string place_text(const Eigen::Vector3d& place) {
   char text[96];
   const auto hundredths = [](double value) { return std::round(value * 100.0) / 100.0 + 0.0; };
@@ -18,7 +18,7 @@ inline std::string place_text(const Eigen::Vector3d& place) {
   return text;
 }
 
-/// To the millimetre: "1.995 m".
+/// Returns the length [m] with millimetres: "1.995 m".
 inline std::string length_text(double length) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3f m", length);

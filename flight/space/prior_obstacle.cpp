@@ -14,10 +14,10 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// Stands for the end of a column that has none.
+/// Represents the missing lower end of a column [m].
 constexpr double bottomless = -1e5;
 
-/// Stands for the far side of a column that has none.
+/// Represents the missing far side of a column [m].
 constexpr double without_end = 2e4;
 
 struct Part {
@@ -36,7 +36,7 @@ struct Part {
   }
 };
 
-/// A column without its lower end, which nobody can come near to.
+/// Returns the column extended downwards, so that its lower end is unreachable.
 AlignedBox3d endless(AlignedBox3d column) {
   column.min().z() = bottomless;
   return column;
@@ -71,13 +71,14 @@ void PriorObstacleConfig::validate() const {
 
 struct PriorObstacle::Impl {
   explicit Impl(const PriorObstacleConfig& config);
-  /// The nearest thing whose distance, uncertainty not taken off, is below that of `best`.
+  /// Finds the closest obstacle whose distance, before subtraction of the uncertainty, is below
+  /// that of `best`.
   void find(const Segment& leg, Closest& best) const;
   void find_parts(const Segment& leg, double& reach, Closest& best) const;
   void find_points(const Segment& leg, double& reach, Closest& best) const;
   void find_columns(const Segment& leg, double& reach, Closest& best) const;
   Closest widened(Closest found, double up_to) const;
-  /// The part that the point is inside of.
+  /// Returns the part that contains the point.
   std::optional<std::uint32_t> container(const Vector3d& point) const;
 
   std::string name;
@@ -115,7 +116,7 @@ PriorObstacle::Impl::Impl(const PriorObstacleConfig& config)
   points_tree = BoundingTree(boxes);
   columns.reserve(config.columns.size());
   for (const AlignedBox3d& column : config.columns) {
-    // What goes on without end cannot be gone round: its far ends are no place to plan a path.
+    // An unbounded column cannot be flown around, so its distant ends are irrelevant for paths.
     const double farthest = column.min().cwiseAbs().cwiseMax(column.max().cwiseAbs()).maxCoeff();
     if (farthest < without_end) extent.extend(column);
     columns.push_back(endless(column));
@@ -191,7 +192,7 @@ Closest PriorObstacle::closest(const Segment& leg, double up_to) const {
   Closest best{up_to + impl_->uncertainty};
   impl_->find(leg, best);
   if (best.distance > 0.0) {
-    // The leg crosses no surface, so all of it is inside what its start is inside of.
+    // The leg crosses no surface, so all of it is inside the same solid as its start.
     if (const auto part = impl_->container(leg.from)) {
       return {0.0, ObstacleKind::prior, *part, leg.from, leg.from};
     }

@@ -1,9 +1,9 @@
-/// What is in the way by a map, a model or an earlier scan, and is known only about: everything
-/// within `uncertainty` of it is in the way, too. It never says that space is free.
+/// Obstacle from a map, a model or an earlier scan. All space within `uncertainty` of it counts as
+/// occupied. It never marks space as free.
 ///
-/// Distances are exact to what is given, less the uncertainty; solids and columns are in the way
-/// inside as well. Height models are columns: each cell is solid from its top down without end, so
-/// that whatever lies under a roof or a crown is in the way.
+/// Distances are exact with respect to the data, minus the uncertainty. The interior of solids and
+/// columns is occupied as well. Height models become columns: each cell is solid from its top
+/// downwards without limit, which includes the space under roofs and tree crowns.
 #pragma once
 
 #include <memory>
@@ -18,30 +18,30 @@
 
 namespace skycap::flight {
 
-/// A closed or open surface with a name, such as a building. Being inside is as bad as touching it,
-/// as far as it is closed (winding.h).
+/// Named surface, such as a building. The interior of a closed part counts as occupied (winding.h).
 struct NamedSurface {
-  std::string name;  ///< empty: called by the obstacle's name alone
+  std::string name;  ///< Empty: messages use only the name of the obstacle.
   geometry::Mesh mesh;
 };
 
 struct PriorObstacleConfig {
-  std::string name;  ///< for messages, such as "the prior tile.gml"
+  std::string name;  ///< Name for messages, such as "the prior tile.gml".
   std::vector<NamedSurface> surfaces;
   std::vector<Eigen::Vector3f> points;
-  double point_radius = 0.0;  ///< at least the distance from any surface to the nearest point
-  std::vector<Eigen::AlignedBox3d> columns;  ///< their lower ends do not count
-  double uncertainty = 0.0;                  ///< bound of how far off all that may be
-  bool is_ground = false;                    ///< what pads and rally points stand on
+  /// At least the maximum distance from a surface to its closest point [m].
+  double point_radius = 0.0;
+  std::vector<Eigen::AlignedBox3d> columns;  ///< Solid columns. Their lower ends are ignored.
+  double uncertainty = 0.0;                  ///< Maximum position error of all parts [m].
+  bool is_ground = false;                    ///< True if pads and rally points stand on it.
 
-  /// Throws Error{bad_config} or Error{bad_geometry} naming what cannot be worked with.
+  /// Throws Error{bad_config} or Error{bad_geometry} naming the invalid part.
   void validate() const;
 };
 
-/// Immutable, and shared by all who ask: trees over a city are not built twice.
+/// Immutable and shared, so that the search trees of a city are built only once.
 class PriorObstacle final : public FreeSpace {
  public:
-  /// Throws what config.validate() throws. Keeps no reference.
+  /// Throws the same errors as config.validate(). Keeps no reference.
   explicit PriorObstacle(const PriorObstacleConfig& config);
   ~PriorObstacle() override;
 
@@ -52,8 +52,9 @@ class PriorObstacle final : public FreeSpace {
   std::string name(const Closest& closest) const override;
 
   double uncertainty() const;
-  /// Whether a climb from a pad is not judged by it near the ground: what is measured from above,
-  /// points and columns, and what is said to be the ground, are the place the pad stands on.
+  /// Returns true if a climb from a pad ignores this obstacle near the ground. That holds for
+  /// points and columns, which are measured from above, and for declared ground: the pad stands on
+  /// them.
   bool is_ground() const;
 
  private:

@@ -14,14 +14,14 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-/// Where a pixel of an image is stored.
+/// Returns the storage index of a pixel.
 std::size_t slot(int row, int column, int width) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
          static_cast<std::size_t>(column);
 }
 
-/// Of each cell and those around it, over the seam behind the sensor; next to the poles nothing,
-/// which is no depth at all.
+/// Returns the minimum of each cell and its neighbours, across the seam behind the sensor. The
+/// result is 0 (no depth) next to the poles.
 std::vector<float> least_around(const std::vector<float>& depths, int width, int height) {
   std::vector<float> least(depths.size(), 0.0F);
   for (int row = 1; row + 1 < height; ++row) {
@@ -82,7 +82,7 @@ RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double
     throw Error(ErrorKind::bad_config,
                 "the ray spacing is " + std::to_string(ray_spacing) + " rad; it must be in (0, 1)");
   }
-  // Cells as wide as the spacing of the rays hold at least one ray each wherever the sensor looked.
+  // Cells as wide as the ray spacing contain at least one ray in each scanned direction.
   width_ = static_cast<int>(std::floor(2.0 * pi / ray_spacing));
   pixels_per_radian_ = width_ / (2.0 * pi);
   height_ = static_cast<int>(std::ceil(pi * pixels_per_radian_)) + 1;
@@ -139,8 +139,8 @@ RangeImage::Level RangeImage::Level::halved(unsigned threads) const {
 }
 
 RangeImage::Depths RangeImage::over(int left, int right, int top, int bottom) const {
-  // The level on which the patch spans at most three pixels each way. Its pixels may cover a little
-  // more than the patch, which errs towards "not free".
+  // Pyramid level at which the patch spans at most three pixels in each direction. Its pixels may
+  // cover slightly more than the patch, which is conservative.
   std::size_t level = 0;
   while (((right - left) >> level) > 2 || ((bottom - top) >> level) > 2) ++level;
   const int width = levels_[level].width;
@@ -156,7 +156,8 @@ RangeImage::Depths RangeImage::over(int left, int right, int top, int bottom) co
   return depths;
 }
 
-/// A patch of the spherical image that may reach over the seam behind the sensor.
+/// Returns the depths over a patch of the spherical image that may cross the seam behind the
+/// sensor.
 RangeImage::Depths RangeImage::over_wrapped(const Patch& patch) const {
   const int top = static_cast<int>(patch.top), bottom = static_cast<int>(patch.bottom);
   const int left = static_cast<int>(patch.left), right = static_cast<int>(patch.right);
@@ -181,7 +182,7 @@ std::optional<RangeImage::Patch> RangeImage::pinhole_patch(const Vector3d& centr
   Patch patch{};
   bounds(centre.x(), 0, patch.left, patch.right);
   bounds(centre.y(), 1, patch.top, patch.bottom);
-  // The rays through the pixels' centres that enclose the patch.
+  // Rays through pixel centres that enclose the patch.
   patch.left = std::floor(patch.left), patch.top = std::floor(patch.top);
   patch.right = std::ceil(patch.right), patch.bottom = std::ceil(patch.bottom);
   patch.nearest = nearest, patch.farthest = farthest;
@@ -196,7 +197,7 @@ std::optional<RangeImage::Patch> RangeImage::spherical_patch(const Vector3d& cen
   const double elevation = std::asin(std::clamp(centre.y() / range, -1.0, 1.0));
   const double azimuth = std::atan2(centre.x(), centre.z());
   const double steepest = std::abs(elevation) + half_angle;
-  // Half the width in azimuth of a circle on the sphere; all of it if the circle holds a pole.
+  // Half the azimuth width of a circle on the sphere, or pi if the circle contains a pole.
   const double half_width =
       steepest >= pi / 2 ? pi
                          : std::asin(std::min(1.0, std::sin(half_angle) / std::cos(elevation)));
@@ -213,7 +214,7 @@ std::optional<RangeImage::Patch> RangeImage::spherical_patch(const Vector3d& cen
 BallSight RangeImage::sight(const Vector3d& centre_in_world, double radius, double margin) const {
   const Vector3d centre = sensor_from_world_ * centre_in_world;
   if (!camera_) {
-    // A ray that begins beside the image's place passes within the spread of where it seems to.
+    // A ray with a displaced origin passes within the spread of its apparent position.
     const std::optional<Patch> patch = spherical_patch(centre, radius + origin_spread_);
     if (!patch) return BallSight::partial;
     const Depths depths = over_wrapped(*patch);

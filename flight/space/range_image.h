@@ -1,5 +1,4 @@
-/// The depths that a sensor measured from one place, prepared to be asked over a patch of pixels at
-/// a time.
+/// Min/max depth pyramid of one scan, for conservative queries over pixel patches.
 #pragma once
 
 #include <optional>
@@ -15,45 +14,47 @@
 
 namespace skycap::flight {
 
-/// What an image says about a ball in front of the sensor.
+/// Visibility of a ball from the sensor.
 enum class BallSight {
-  free,     ///< wholly in front of everything measured in its direction
-  hidden,   ///< wholly out of view, or behind everything measured in its direction
-  partial,  ///< anything else
+  free,     ///< Entirely in front of all measurements in its direction.
+  hidden,   ///< Entirely outside the view, or behind all measurements in its direction.
+  partial,  ///< All other cases.
 };
 
-/// Least and greatest depth over patches of pixels, in a pyramid of halved images.
+/// Minimum and maximum depths of pixel patches, stored as an image pyramid.
 class RangeImage {
  public:
-  /// A pinhole image; depth is along the optical axis. Pixels without a point count as
-  /// `depth_without_return`. Made on so many threads (zero: all processors).
+  /// Constructs a pinhole image with depth along the optical axis [m]. Pixels without a point have
+  /// `depth_without_return`. Uses `threads` threads (0: all processors).
   RangeImage(const geometry::Scan& scan, const geometry::Camera& camera,
              double depth_without_return, double max_depth, unsigned threads);
 
-  /// An image of azimuth and elevation about the axis, whose cells are as wide as the rays are
-  /// apart; depth is the range. Cells without a point count as 0.
+  /// Constructs an image of azimuth and elevation around the rotation axis, with the range as depth
+  /// [m]. Cells are as wide as the ray spacing. Cells without a point have depth 0.
   RangeImage(const geometry::Scan& scan, const SweepRays& rays, double max_depth, unsigned threads);
 
-  /// `margin` is kept free in front of the measurements.
+  /// Returns the visibility of a ball (world coordinates) [m]. `margin` is the required free
+  /// distance in front of measurements [m].
   BallSight sight(const Eigen::Vector3d& centre_in_world, double radius, double margin) const;
 
-  /// The greatest depth in the image.
+  /// Returns the maximum depth in the image [m].
   double farthest() const { return levels_.back().greatest().front(); }
 
-  /// A box around all that the image can prove free.
+  /// Returns a box around all space that the image can prove free.
   Eigen::AlignedBox3d reach() const;
 
  private:
-  struct Patch {  ///< pixels, both ends included; may reach beyond the image
+  struct Patch {  ///< Pixel bounds, both inclusive. May extend beyond the image.
     double left, right, top, bottom;
-    double nearest, farthest;  ///< depth of the ball
+    double nearest, farthest;  ///< Depth interval of the ball [m].
   };
   struct Depths {
     float least, greatest;
   };
   struct Level {
     int width, height;
-    std::vector<float> least_depths, greatest_depths;  ///< the latter empty: the same
+    /// Pyramid data. Empty `greatest_depths` means that they equal `least_depths`.
+    std::vector<float> least_depths, greatest_depths;
 
     const std::vector<float>& least() const { return least_depths; }
     const std::vector<float>& greatest() const {
@@ -68,9 +69,9 @@ class RangeImage {
   Depths over(int left, int right, int top, int bottom) const;
   Depths over_wrapped(const Patch& patch) const;
 
-  Eigen::Isometry3d sensor_from_world_;  ///< of the image: y along the axis if it is spherical
+  Eigen::Isometry3d sensor_from_world_;  ///< For a spherical image, y is along the rotation axis.
   double origin_spread_ = 0.0;
-  std::optional<geometry::Camera> camera_;  ///< none: spherical
+  std::optional<geometry::Camera> camera_;  ///< Empty: spherical image.
   double pixels_per_radian_ = 0.0;
   int width_ = 0, height_ = 0;
   std::vector<Level> levels_;

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The fraction of the segment that is nearest to a point.
+/// Returns the fraction of the segment that is closest to a point.
 double nearest_fraction(const Segment& segment, const Vector3d& point) {
   const Vector3d along = segment.to - segment.from;
   const double squared_length = along.squaredNorm();
@@ -17,7 +17,8 @@ double nearest_fraction(const Segment& segment, const Vector3d& point) {
   return std::clamp((point - segment.from).dot(along) / squared_length, 0.0, 1.0);
 }
 
-/// Ericson 5.1.5: the Voronoi region of the triangle's corners, edges or face that holds the point.
+/// Ericson 5.1.5: finds the Voronoi region of the triangle's corners, edges or face that contains
+/// the point.
 Vector3d nearest_in_triangle(const Vector3d& p, const Triangle& triangle) {
   const auto& [a, b, c] = triangle;
   const Vector3d ab = b - a, ac = c - a, ap = p - a;
@@ -44,12 +45,13 @@ Vector3d nearest_in_triangle(const Vector3d& p, const Triangle& triangle) {
     return b + along_bc / (along_bc + beyond_bc) * (c - b);
   }
   const double sum = va + vb + vc;
-  if (!(sum > 0.0)) return a;  // no area: the caller's edge tests find the nearest point
+  if (!(sum > 0.0)) return a;  // No area: the caller's edge tests find the closest point.
   return a + vb / sum * ab + vc / sum * ac;
 }
 
-/// Where the segment goes through the triangle's face. A miss by rounding near the face's border or
-/// near an end of the segment does no harm: the edge and end tests find that distance.
+/// Returns the intersection of the segment with the triangle's face. Rounding near the border of
+/// the face or an end of the segment is harmless, because the edge and end tests find that
+/// distance.
 std::optional<Vector3d> piercing_point(const Segment& segment, const Triangle& triangle) {
   const auto& [a, b, c] = triangle;
   const Vector3d normal = (b - a).cross(c - a);
@@ -77,14 +79,14 @@ NearestPoints nearest(const Segment& segment, const Vector3d& point) {
   return between(segment.at(nearest_fraction(segment, point)), point);
 }
 
-// Ericson 5.1.9: the unconstrained solution, clamped to one segment, projected onto the other, and
-// back. Nearly parallel segments (below 1e-5 rad) lose digits in it; there the four ends, which are
-// exact whatever the angle, compete with it.
+// Ericson 5.1.9: the unconstrained solution is clamped to one segment, projected onto the other,
+// and vice versa. It is inaccurate for nearly parallel segments (below 1e-5 rad). Therefore the
+// four ends, which are exact for any angle, are compared with it.
 NearestPoints nearest(const Segment& segment, const Segment& other) {
   const Vector3d d1 = segment.to - segment.from, d2 = other.to - other.from;
   const Vector3d r = segment.from - other.from;
   const double a = d1.squaredNorm(), e = d2.squaredNorm(), b = d1.dot(d2);
-  const double determinant = a * e - b * b;  // a e times the squared sine of the angle
+  const double determinant = a * e - b * b;  // a e times the squared sine of the angle.
 
   const auto through = [&](double s) {
     const Vector3d on_other = other.at(nearest_fraction(other, segment.at(s)));
@@ -114,8 +116,9 @@ NearestPoints nearest(const Segment& segment, const Triangle& triangle) {
   return best;
 }
 
-// The squared distance to a box is a convex function of the fraction t along the segment, quadratic
-// between the crossings of the box's six planes; its derivative is continuous and piecewise linear.
+// The squared distance to a box is a convex function of the fraction t along the segment. It is
+// quadratic between the crossings of the six planes of the box, with a continuous, piecewise linear
+// derivative.
 NearestPoints nearest(const Segment& segment, const Eigen::AlignedBox3d& box) {
   const Vector3d along = segment.to - segment.from;
   const auto outside = [&](double t) -> Vector3d {

@@ -1,9 +1,9 @@
-/// Exact distances from a straight segment to the shapes that obstacles are made of. The clearance
-/// proof rests on these few functions. Closed forms in double precision: for coordinates below
-/// 10 km the results are good to 1e-8 m.
+/// Exact distances from a straight segment to the primitives of obstacles. The clearance
+/// verification relies on these functions. They use closed forms in double precision: for
+/// coordinates below 10 km the error is below 1e-8 m.
 ///
-/// Source of the feature-by-feature tests: Ericson, Real-Time Collision Detection (2005), sections
-/// 5.1.5 (point and triangle) and 5.1.9 (two segments), written "Ericson 5.1.5" in the code.
+/// Source of the tests per feature: Ericson, Real-Time Collision Detection (2005), sections 5.1.5
+/// (point and triangle) and 5.1.9 (two segments). The code cites them as "Ericson 5.1.5".
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace skycap::flight {
 
-/// A straight segment; `from` may equal `to`, then it is a point.
+/// Straight segment. It is a point if `from` equals `to`.
 struct Segment {
   Eigen::Vector3d from;
   Eigen::Vector3d to;
@@ -24,7 +24,7 @@ struct Segment {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
-/// The nearest two points of a segment and another shape.
+/// Closest points of a segment and another shape.
 struct NearestPoints {
   double squared_distance;
   Eigen::Vector3d on_segment;
@@ -34,15 +34,15 @@ struct NearestPoints {
 NearestPoints nearest(const Segment& segment, const Eigen::Vector3d& point);
 NearestPoints nearest(const Segment& segment, const Segment& other);
 
-/// Zero distance where the segment pierces the triangle. Triangles without area (needles, points)
-/// are handled as the segments they are.
+/// Returns distance 0 where the segment pierces the triangle. Degenerate triangles are treated as
+/// segments or points.
 NearestPoints nearest(const Segment& segment, const Triangle& triangle);
 
-/// False only if the triangle's plane keeps it `reach` or farther from the segment: a cheap test to
-/// be made before nearest().
+/// Returns false only if the triangle's plane is at least `reach` away from the segment. Cheap test
+/// before nearest().
 bool may_be_nearer(const Segment& segment, const Triangle& triangle, double reach);
 
-/// Zero distance where the segment meets the solid box.
+/// Returns distance 0 where the segment intersects the solid box.
 NearestPoints nearest(const Segment& segment, const Eigen::AlignedBox3d& box);
 
 }  // namespace skycap::flight

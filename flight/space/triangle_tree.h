@@ -1,4 +1,4 @@
-/// Triangles with a tree over them: the nearest to a segment, or whether any is near.
+/// Triangles with a search tree, for the triangle closest to a segment.
 #pragma once
 
 #include <cmath>
@@ -15,11 +15,11 @@ struct TriangleTree {
   std::vector<Triangle> triangles;
   BoundingTree tree;
 
-  /// Has to be called when the triangles are there, before anything is asked.
+  /// Builds the tree. Must be called after the triangles are set and before any query.
   void index();
 
-  /// Calls `found(triangle, nearest points)` for triangles nearer than `reach`, each nearer than
-  /// those before it; `reach` falls to the distance of the last, and to -1 when one is touched.
+  /// Calls `found(triangle, nearest points)` for triangles within `reach` [m], each closer than the
+  /// previous one. `reach` becomes the distance of the last one, or -1 on contact.
   template <typename Found>
   void visit_nearer(const Segment& leg, double& reach, Found&& found) const {
     tree.visit_near(leg, reach, [&](std::uint32_t t) {

@@ -1,4 +1,4 @@
-/// 512 voxels and what is known of each: one bit for free, one for occupied.
+/// Block of 512 voxels with two bits per voxel: free and occupied.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 
 namespace skycap::flight {
 
-/// A cube of voxels within a block.
+/// Cube of voxels within a block.
 struct Cube {
-  Cell low;  ///< its first voxel
-  int edge;  ///< in voxels: 8, 4, 2 or 1
+  Cell low;  ///< First voxel.
+  int edge;  ///< Edge length in voxels: 8, 4, 2 or 1.
 
-  /// The bits of its rows in a word.
+  /// Returns the bits of the cube within a slice.
   std::uint64_t mask() const {
     std::uint64_t bits = 0;
     for (int y = low.y(); y < low.y() + edge; ++y) {
@@ -24,7 +24,7 @@ struct Cube {
   }
 };
 
-/// 8 x 8 x 8 voxels, one bit each: bit x of byte y of word z.
+/// 8 x 8 x 8 bits. Voxel (x, y, z) is bit x of byte y of word z.
 using Slices = std::array<std::uint64_t, 8>;
 
 struct VoxelBlock {

@@ -1,5 +1,4 @@
-/// The voxel blocks of a space by their cells, for queries that look at hundreds of blocks each,
-/// most of which are free as a whole.
+/// Voxel blocks by cell, optimised for queries over hundreds of blocks, most of them entirely free.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +13,24 @@ namespace skycap::flight {
 class VoxelBlocks {
  public:
   struct Found {
-    const VoxelBlock* block = nullptr;  ///< null: there is none
+    const VoxelBlock* block = nullptr;  ///< Null: the cell has no block.
     bool is_all_passable = false;
   };
 
   std::size_t size() const { return blocks_.size(); }
 
-  /// In the order in which they came.
+  /// Returns the keys or blocks in insertion order.
   std::span<const std::uint64_t> keys() const { return keys_; }
   std::span<const VoxelBlock> blocks() const { return blocks_; }
 
-  /// The block of a cell_key(). The pointer holds until the next set().
+  /// Returns the block of a cell_key(). The pointer is valid until the next set().
   Found find(std::uint64_t key) const {
     const Place* const place = places_.find(key);
     if (place == nullptr) return {};
     return {&blocks_[place->index], place->is_all_passable};
   }
 
-  /// Puts a block there, new or in place of the one before; returns whether it is new.
+  /// Inserts or replaces a block. Returns true if it is new.
   bool set(std::uint64_t key, const VoxelBlock& block) {
     const auto [place, is_new] = places_.insert(key, {static_cast<std::uint32_t>(blocks_.size())});
     if (is_new) {

@@ -8,14 +8,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A node counts as a dipole from this many of its radii on; Barill et al. advise 2 and more.
+/// Distance in node radii beyond which a node is approximated by a dipole. Barill et al. recommend
+/// at least 2.
 constexpr double far_radii = 2.5;
 
-/// A surface counts as closed when its area vectors, which then add up to zero, leave no more than
-/// this share of the area.
+/// Maximum sum of area vectors, relative to the area, of a closed surface. Exactly closed surfaces
+/// have a zero sum.
 constexpr double closed_remainder = 0.05;
 
-/// Solid angle of a triangle seen from a point, over 4 pi (Van Oosterom & Strackee 1983).
+/// Returns the solid angle of a triangle divided by 4 pi (Van Oosterom & Strackee 1983).
 double share_of_sphere(const Triangle& triangle, const Vector3d& point) {
   const Vector3d a = triangle[0] - point, b = triangle[1] - point, c = triangle[2] - point;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
@@ -31,7 +32,7 @@ WindingNumber::WindingNumber(const BoundingTree& tree, const std::vector<Triangl
   if (tree.empty()) return;
   const Dipole whole = gather(tree, triangles, 0);
   if (whole.area_vector.norm() > closed_remainder * whole.area) return;
-  double volume = 0.0;  // six times
+  double volume = 0.0;  // Six times the volume.
   for (const auto& [a, b, c] : triangles) {
     volume += (a - whole.centre).dot((b - whole.centre).cross(c - whole.centre));
   }

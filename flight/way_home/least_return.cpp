@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// PX4 holds for 5 s before it returns (COM_FAIL_ACT_T), ArduCopter 5 s over home (RTL_LOIT_TIME);
-/// braking and two corners are left [s].
+/// PX4 holds for 5 s before a return (COM_FAIL_ACT_T), ArduCopter for 5 s above home
+/// (RTL_LOIT_TIME). Braking and two corners account for the rest [s].
 constexpr double waiting_time = 12.0;
 
 double least_height(const ReturnLaw& law) {
@@ -19,9 +19,9 @@ double least_height(const ReturnLaw& law) {
   return std::ceil(std::max(law.landing_climb, has_dji ? least_of_dji : 0.0));
 }
 
-/// Heights to be tried, from the lowest on. None is lower than the route: a vehicle above the
-/// height of return would go home at its own. In whole metres up to `highest`; a route that is as
-/// high as that has the next metre, or its own height where a fence is lower.
+/// Returns the altitudes to test in ascending order. They are not below the route, because a
+/// vehicle above the return altitude returns at its own. They are whole metres up to `highest`. For
+/// a route above that, the next metre is tested, then its own height in case of a lower fence.
 std::vector<double> heights_to_try(double least, double route, double highest) {
   const double lowest = std::max(least, std::ceil(route));
   if (lowest > highest) return {lowest, std::max(least, std::ceil(100.0 * route) / 100.0)};
@@ -36,11 +36,11 @@ double top_of(const std::vector<Segment>& legs, const ReturnLaw& law) {
   return top;
 }
 
-/// The least radii of the proof's balls, one after the other: small ones take long where it is
-/// tight, and the last misses clearances of 2 mm [m].
+/// Minimum ball radii of the proof, tried in turn [m]. Small radii are slow in narrow spaces, and
+/// the last misses clearances of 2 mm.
 constexpr std::array<double, 3> slacks{return_slack, 0.01, 0.002};
 
-/// Proves height after height, and first the leg that has failed last.
+/// Tests one altitude after another, starting with the leg that failed last.
 class LeastReturn {
  public:
   LeastReturn(const FreeSpace& space, const std::vector<Segment>& legs, double clearance,
@@ -81,11 +81,11 @@ class LeastReturn {
   const FreeSpace& space_;
   const std::vector<Segment>& legs_;
   double clearance_, slack_;
-  std::vector<std::size_t> order_;  ///< of the legs
+  std::vector<std::size_t> order_;  ///< Order of the legs.
   std::size_t queries_ = 0;
 };
 
-/// The first of the heights that is proven.
+/// Returns the first verified altitude.
 ReturnSearch least_proven(LeastReturn search, const std::vector<Segment>& legs, ReturnLaw law,
                           double highest) {
   const double ground = law.landings.front().z();
@@ -129,7 +129,7 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
 }
 
 double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place) {
-  // Every landing place is somewhere on the ground: the lowest makes the longest descent.
+  // The lowest landing point has the longest descent.
   double ground = law.landings.front().z();
   for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
   const double top = std::max(law.level, place.z());

@@ -1,4 +1,4 @@
-/// The least height of return at which every way home of a mission is proven.
+/// Minimum return altitude at which every return of a mission is verified.
 #pragma once
 
 #include <optional>
@@ -12,43 +12,46 @@
 
 namespace skycap::flight {
 
-/// A mission's certified ways home.
+/// Verified returns of a mission.
 struct Returns {
-  ReturnLaw law;            ///< at the height of return
-  double height = 0.0;      ///< of return, above the pad, whole metres: what autopilots are told
-  double clearance = 0.0;   ///< proven for every return [m]
-  ReturnProof nearest{};    ///< the return that comes nearest to anything
-  std::string obstacle{};   ///< what that is; empty: nothing is near
-  double energy = 0.0;      ///< of the dearest return from any stop of the route [J]
-  std::size_t queries = 0;  ///< distances asked for: the work done
+  ReturnLaw law;  ///< Law at the return altitude.
+  /// Return altitude above the pad, as set in the autopilot [m]. Whole metres.
+  double height = 0.0;
+  double clearance = 0.0;   ///< Clearance verified for every return [m].
+  ReturnProof nearest{};    ///< Return with the minimum clearance.
+  std::string obstacle{};   ///< Name of the closest obstacle, empty if none is near.
+  double energy = 0.0;      ///< Energy of the most expensive return from any stop of the route [J].
+  std::size_t queries = 0;  ///< Number of distance queries, as a measure of effort.
 };
 
 struct ReturnSearch {
   std::optional<Returns> found;
-  std::string why;  ///< what is in the way of the last height tried, if none is found
-  /// Whether the clearance is kept where the proof failed, at some height: by less than its balls.
+  std::string why;  ///< Reason why no altitude was found: the obstacle at the last tested altitude.
+  /// True if, at some altitude, the clearance is kept and the proof failed only because its balls
+  /// are too large.
   bool fails_by_slack = false;
 };
 
-/// DJI's applications take no lower height of return [m above the pad].
+/// Minimum return altitude in DJI's apps [m above the pad].
 inline constexpr double least_of_dji = 20.0;
 
-/// Looks for the least whole metre above the pad, no lower than the legs themselves, at which the
-/// returns from every point of all legs are proven at the clearance, up to the height `highest`
-/// (z) or, if the legs are that high, a metre above them. Heights are tried one by one, for a
-/// greater one need not be safer where the airspace has a ceiling. `law.level` is not used.
+/// Finds the minimum return altitude in whole metres above the pad at which the returns from every
+/// point of all legs are verified at `clearance` [m]. The altitude is not below the legs. The
+/// search ends at `highest` (z) or 1 m above the legs, whichever is higher. All altitudes are
+/// tested in turn, because under a ceiling a higher one is not always better. `law.level` is
+/// ignored.
 ///
-/// Routes are planned close to what is proven, by balls that lie elsewhere than those of this
-/// proof: where it fails by no more than their size it is tried again with smaller ones.
+/// Route planning leaves little margin and covers legs with different balls than this proof. A
+/// proof that fails by no more than the ball size is repeated with smaller balls.
 ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs,
                           const ReturnLaw& law, double highest, double clearance);
 
-/// The proof at the height that the law has; with smaller balls, too, if need be.
+/// Verifies the returns at the altitude of `law`, with smaller balls if necessary.
 ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& legs,
                            const ReturnLaw& law, double clearance);
 
-/// Electrical energy of the dearest return from a place, landing included, with the waits that
-/// autopilots make before it and over the landing place [J].
+/// Returns the electrical energy of the most expensive return from a position [J]. Includes landing
+/// and the waits of autopilots before the return and above the landing point.
 double return_energy(const Motion& motion, const ReturnLaw& law, const Eigen::Vector3d& place);
 
 }  // namespace skycap::flight

@@ -8,16 +8,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What an autopilot does beside climbing, flying level and landing [m].
+/// Deviations of an autopilot from the common law [m].
 struct Habits {
-  double level_below = 0.0;     ///< level flight may begin this far below the height of return
-  double landing_radius = 0.0;  ///< the descent may begin this far beside the landing place
-  double level_as_it_is = 0.0;  ///< nearer than this it may fly home level, without a climb
-  double lands_at_once = 0.0;   ///< nearer than this it may land where it is
+  double level_below = 0.0;  ///< Maximum distance of the level flight below the return altitude.
+  /// Maximum horizontal distance of the descent from the landing point.
+  double landing_radius = 0.0;
+  double level_as_it_is = 0.0;  ///< Distance below which it may fly home level without a climb.
+  double lands_at_once = 0.0;   ///< Distance below which it may land on the spot.
 };
 
-/// Distances at which DJI's vehicles change their way of flying are taken 3 m wider than the
-/// manuals say: they measure with their own error, and from where they have come to rest.
+/// Tolerance for DJI's switching distances [m]. The vehicle measures them with an error and from
+/// where it has come to rest.
 constexpr double dji_tolerance = 3.0;
 
 constexpr Habits habits_of(Dialect dialect) {
@@ -32,7 +33,7 @@ constexpr Habits habits_of(Dialect dialect) {
   return {.level_as_it_is = 50.0 + dji_tolerance, .lands_at_once = dji_lands_at_once};
 }
 
-/// The widest of what the law's autopilots do.
+/// Returns the maximum deviations of the law's autopilots.
 Habits habits_of(const ReturnLaw& law) {
   Habits all;
   for (const Dialect dialect : law.dialects) {
@@ -51,11 +52,12 @@ double distance_over_ground(const Vector3d& a, const Vector3d& b) {
 
 Vector3d at_height(const Vector3d& place, double z) { return {place.x(), place.y(), z}; }
 
-/// A landing place is taken if it is the nearest by the autopilot's own reckoning, which may be
-/// off by this [m].
+/// Maximum error of the autopilot's own distance estimate when it selects the nearest landing point
+/// [m].
 constexpr double choice_tolerance = 10.0;
 
-/// The landing places that are, or may be taken for, the nearest from some place within `reach`.
+/// Returns the landing points that are nearest, or may appear nearest, from a position within
+/// `reach`.
 std::vector<Vector3d> landings_near(const ReturnLaw& law, const Vector3d& place, double reach) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Vector3d& landing : law.landings) {
@@ -91,7 +93,7 @@ std::vector<ReturnPiece> return_pieces(const ReturnLaw& law, const Vector3d& pla
   const Habits habits = habits_of(law);
   const double top = std::max(law.level, place.z());
   std::vector<ReturnPiece> pieces{{{place, at_height(place, top)}, 0.0, ReturnPart::climb}};
-  // A band of heights is the line through its middle, half of it spread to either side.
+  // A height interval is represented by its middle line with half the interval as spread.
   const double spread = 0.5 * habits.level_below, level = top - spread;
   const double around = reach + law.reserve;
   for (const Vector3d& landing : landings_near(law, place, around)) {

@@ -1,19 +1,22 @@
-/// The way home that an autopilot flies by itself when its pilot, its link or its battery asks for
-/// it, as straight pieces.
+/// Straight-line model of the return that an autopilot flies automatically on pilot command, link
+/// loss or low battery.
 ///
-/// All three go up from where they are to a height of return, level and straight to a landing
-/// place, and down. They differ in what they do beside that:
-/// - ArduCopter (mode_rtl.cpp, with RTL_CONE_SLOPE 0 and RTL_CLIMB_MIN 0) takes the corner between
-///   climb and level flight as a fast waypoint and cuts it within WP_RADIUS, 2 m. Of several
-///   landing places it takes the one nearest to where the return begins.
-/// - PX4 (rtl.cpp, rtl_direct.cpp, with RTL_CONE_ANG 0) flies level from NAV_MC_ALT_RAD, 0.8 m,
-///   below the height of return, and may sink within NAV_ACC_RAD, set to 1 m, of the landing place.
-/// - DJI (the manuals' chapters "RTH") climbs only when it is farther than 50 m from home, older
-///   models 20 m; nearer it flies home level at the height it has, and within 5 m it lands where it
-///   is. Both ways of flying are asked for between 5 and 50 m.
+/// All three autopilots climb to a return altitude, fly level and straight to a landing point, and
+/// descend. They differ in the following details.
 ///
-/// docs/reference/route-formats.md, "Return: parameters per autopilot", says which settings that
-/// takes.
+/// ArduCopter (mode_rtl.cpp, with RTL_CONE_SLOPE 0 and RTL_CLIMB_MIN 0) treats the corner between
+/// climb and level flight as a fast waypoint. It cuts this corner within WP_RADIUS, 2 m. Among
+/// several landing points it selects the one closest to the start of the return.
+///
+/// PX4 (rtl.cpp, rtl_direct.cpp, with RTL_CONE_ANG 0) flies level up to NAV_MC_ALT_RAD, 0.8 m,
+/// below the return altitude. It may descend within NAV_ACC_RAD, set to 1 m, of the landing point.
+///
+/// DJI (manuals, chapters "RTH") climbs only if farther than 50 m from home (older models 20 m).
+/// Closer, it flies home level at its current altitude, and within 5 m it lands on the spot.
+/// Between 5 and 50 m both variants must be free.
+///
+/// For the required settings see docs/reference/route-formats.md, "Return: parameters per
+/// autopilot".
 #pragma once
 
 #include <cstdint>
@@ -27,47 +30,50 @@
 
 namespace skycap::flight {
 
-/// Settings that the law counts on [m]; parameter files make them, and checks ask for no more.
-inline constexpr double ardupilot_waypoint_radius = 2.0;  ///< WP_RADIUS_M
-inline constexpr double px4_altitude_radius = 0.8;        ///< NAV_MC_ALT_RAD
-inline constexpr double px4_landing_radius = 1.0;         ///< NAV_ACC_RAD
+/// Settings that the law assumes [m]. Parameter files set them, and checks require them.
+inline constexpr double ardupilot_waypoint_radius = 2.0;  ///< WP_RADIUS_M.
+inline constexpr double px4_altitude_radius = 0.8;        ///< NAV_MC_ALT_RAD.
+inline constexpr double px4_landing_radius = 1.0;         ///< NAV_ACC_RAD.
 
-/// How far from home DJI's vehicles may land at once: 5 m, by their own measure [m].
+/// Maximum distance from home at which DJI vehicles may land on the spot: 5 m by their own
+/// estimate, plus tolerance [m].
 inline constexpr double dji_lands_at_once = 8.0;
 
-/// Where and how high vehicles return. Heights are z in the local frame.
+/// Landing points and altitude of returns. Heights are z in the local frame.
 struct ReturnLaw {
-  std::vector<Dialect> dialects;          ///< the autopilots whose ways home are all meant
-  double level = 0.0;                     ///< z of the level flight, unless the vehicle is above it
-  std::vector<Eigen::Vector3d> landings;  ///< the pad first, then rally points; on the ground
-  /// Above each landing: from there down the pilot vouches for the column.
+  std::vector<Dialect> dialects;  ///< Autopilots whose variants are all covered.
+  double level = 0.0;  ///< Height z of the level flight, unless the vehicle is higher [m].
+  /// Landing points on the ground: the pad, then rally points.
+  std::vector<Eigen::Vector3d> landings;
+  /// Height above each landing point below which the pilot must check the column [m].
   double landing_climb = 5.0;
-  /// Distances and heights at which vehicles fly otherwise are taken this much wider: for planning,
-  /// so that no leg ends where a proof hangs on how it divides that leg [m].
+  /// Tolerance added to the distances and heights at which vehicles change their behaviour [m].
+  /// Used in planning, so that no leg ends exactly where the proof becomes sensitive to its
+  /// subdivision.
   double reserve = 0.0;
 };
 
 enum class ReturnPart { climb, level, level_as_it_is, descent, landing };
 
-/// Level or upright; the vehicle may be up to `spread` beside it.
+/// Level or vertical piece. The vehicle may be up to `spread` beside it [m].
 struct ReturnPiece {
   Segment line;
   double spread = 0.0;
   ReturnPart part = ReturnPart::climb;
 };
 
-/// "the climb", "the level flight", ... for messages.
+/// Returns the name of a part for messages: "the climb", "the level flight", ...
 const char* name_of(ReturnPart part);
 
-/// The pieces of all ways home from `place`, but the column over the landing place. With `reach`,
-/// those that any place within `reach` of it may have: each of its pieces then has a counterpart
-/// here, none of whose points is farther away than the two places are from each other (the law is
-/// 1-Lipschitz). What is free around these pieces by `reach` more is therefore free around all of
-/// those, which is what prove_returns() rests on.
+/// Returns the pieces of all returns from `place`, except the columns above the landing points.
+/// With `reach` [m], the pieces cover the returns from all positions within `reach`. Every piece of
+/// such a return has a counterpart here, at a distance no greater than that of the two positions
+/// (the law is 1-Lipschitz). Free space around these pieces, extended by `reach`, therefore implies
+/// free space around all those returns. prove_returns() relies on this property.
 std::vector<ReturnPiece> return_pieces(const ReturnLaw& law, const Eigen::Vector3d& place,
                                        double reach = 0.0);
 
-/// The column over each landing place, from `top` down to landing_climb above it.
+/// Returns the column above each landing point, from `top` (z) down to landing_climb above it.
 std::vector<ReturnPiece> landing_columns(const ReturnLaw& law, double top);
 
 }  // namespace skycap::flight

@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The piece that comes nearest to anything, as far as `reach` beyond the clearance matters.
+/// Returns the piece with the minimum clearance, searched up to `reach` beyond the required
+/// clearance.
 ReturnProof nearest_of(const FreeSpace& space, const std::vector<ReturnPiece>& pieces,
                        const Vector3d& from, double clearance, double reach) {
   ReturnProof nearest;
@@ -29,7 +30,7 @@ ReturnProof nearest_of(const FreeSpace& space, const std::vector<ReturnPiece>& p
   return nearest;
 }
 
-/// A part of a leg, by shares of its length.
+/// Part of a leg, as fractions of its length.
 struct Interval {
   double begin, end;
 };
@@ -51,11 +52,12 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
     ReturnProof found =
         nearest_of(space, return_pieces(law, place, reach), place, clearance, reach);
     found.queries += all.queries;
-    const double covered = found.clearance - clearance;  // so far around it the returns are free
+    // Radius within which all returns are free.
+    const double covered = found.clearance - clearance;
     all.queries = found.queries;
     const double needed = std::min(reach, slack);
     if (covered < needed) {
-      // Pieces that are flown from other places than this one decide nothing about it.
+      // Pieces from other start positions do not determine the result at this one.
       const ReturnProof here =
           nearest_of(space, return_pieces(law, place, 0.0), place, clearance, reach);
       all.queries += here.queries;
@@ -68,7 +70,7 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
       found.clearance = std::max(0.0, found.clearance);
       return found;
     }
-    // Half of what could be: then the rest is known to be freer than was asked for.
+    // Half of the possible radius, so that the rest has a known surplus of clearance.
     const double radius = std::max(0.5 * covered, std::min(covered, slack));
     found.clearance = std::min(found.clearance - std::min(reach, radius), all.clearance);
     if (found.clearance < all.clearance) all = found;

@@ -1,9 +1,9 @@
-/// Proof that from every point of a leg every way home is free: no sampling.
+/// Proof that every return from every point of a leg is free, without sampling.
 ///
-/// The distance of a point to what is not free changes by no more than the point moves, and a
-/// return changes by no more than the place where it begins (return_law.h). So when all returns
-/// from a place are free at the clearance and e more, the returns from all places within e of it
-/// are free at the clearance. A leg is covered by such balls, halved where they do not reach.
+/// The distance between a point and an obstacle changes by no more than the point moves. A return
+/// changes by no more than its start position (return_law.h). If all returns from a position are
+/// free at the clearance plus e, those from all positions within e are free at the clearance. The
+/// leg is covered by such balls and is subdivided where they are too small.
 #pragma once
 
 #include <cstddef>
@@ -16,38 +16,43 @@
 
 namespace skycap::flight {
 
-/// Where a return goes, or fails.
+/// Result of the proof: the return with the minimum clearance, or the one that failed.
 struct ReturnProof {
   bool is_proven = false;
-  double clearance = 0.0;  ///< proven lower bound of all returns, at most return_surplus more
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< where the nearest return begins
-  ReturnPiece piece;                               ///< of it
+  /// Verified lower bound of all returns [m]. At most return_surplus above the required clearance.
+  double clearance = 0.0;
+  /// Start of the return with the minimum clearance.
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();
+  ReturnPiece piece;  ///< Closest piece of that return.
   Closest closest{};
-  std::size_t queries = 0;  ///< distances asked for: the work done
+  std::size_t queries = 0;  ///< Number of distance queries, as a measure of effort.
 };
 
-/// The proof needs balls of some size: a leg all of whose returns keep their clearance by less than
-/// this counts as not proven [m].
+/// Minimum ball size of the proof [m]. If all returns of a leg exceed the clearance by less, the
+/// leg counts as not verified.
 inline constexpr double return_slack = 0.05;
 
-/// What the returns of a route are proven at whose legs are certified at `clearance`.
+/// Returns the clearance at which the returns of a route are verified whose legs are verified at
+/// `clearance` [m].
 inline double return_clearance(double clearance) {
   return clearance > return_slack ? clearance - return_slack : 0.0;
 }
 
-/// Returns' clearances are reported up to this much above what was asked for [m].
+/// Maximum surplus of reported return clearances above the required one [m].
 inline constexpr double return_surplus = 1.0;
 
-/// Proves the returns from every point of the leg, the columns over the landing places excepted.
-/// The balls have a radius of `slack` at least.
+/// Verifies the returns from every point of the leg, except the columns above the landing points.
+/// The balls have a radius of at least `slack` [m].
 ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const ReturnLaw& law,
                           double clearance, double slack = return_slack);
 
-/// Proves the columns over the landing places, from `top` down to where they are vouched for.
+/// Verifies the columns above the landing points, from `top` (z) down to the height below which the
+/// pilot must check them.
 ReturnProof prove_landings(const FreeSpace& space, const ReturnLaw& law, double top,
                            double clearance);
 
-/// What is in the way, and where: "the climb from (x, y, z) comes within 0.8 m of the ground".
+/// Returns the obstacle and its position: "the climb from (x, y, z) comes within 0.8 m of the
+/// ground".
 std::string describe(const ReturnProof& failed, const FreeSpace& space);
 
 }  // namespace skycap::flight

@@ -1,5 +1,5 @@
-/// Free space from every point of which there is a proven way home: for planning routes that a lost
-/// link cannot trap.
+/// Free space with a verified return from every point, for routes on which link loss cannot trap
+/// the vehicle.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace skycap::flight {
 
-/// Legs are free here if they are free in another space and all of their returns are proven there.
-/// Distances are that space's. Keeps a reference to it.
+/// Legs are free if they are free in the underlying space and all their returns are verified there.
+/// Distances are those of the underlying space. Keeps a reference to it.
 class ReturnableSpace : public FreeSpace {
  public:
   ReturnableSpace(const FreeSpace& space, ReturnLaw law) : space_(space), law_(std::move(law)) {}
@@ -18,17 +18,17 @@ class ReturnableSpace : public FreeSpace {
   const ReturnLaw& law() const { return law_; }
 
   Closest closest(const Segment& leg, double up_to) const override;
-  /// Returns are proven at return_clearance().
+  /// Verifies returns at return_clearance().
   bool continues_free(const Segment& leg, double clearance) const override;
   double surface_distance(const Eigen::Vector3d& point, double up_to) const override;
   Eigen::AlignedBox3d extent() const override { return space_.extent(); }
   std::string name(const Closest& closest) const override { return space_.name(closest); }
 
-  /// Whether all returns from the points of a polyline are proven.
+  /// Returns true if all returns from the points of a polyline are verified.
   bool has_returns(const std::vector<Eigen::Vector3d>& points, double clearance) const;
 
-  /// Straight up to the height of return, level, and straight down: where the returns from both
-  /// places are free, the first and the last piece of this are, and their points' returns too.
+  /// Returns the path straight up to the return altitude, level, and straight down. If the returns
+  /// from both positions are free, so are the first and last lines and the returns from them.
   std::vector<Eigen::Vector3d> way_over(const Eigen::Vector3d& from,
                                         const Eigen::Vector3d& to) const;
 

@@ -12,11 +12,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Parts of a curve's piece are at least 1/256 of it.
+/// Parts of a curve piece have at least 1/256 of its duration.
 constexpr int most_halvings = 8;
 
-/// All of a piece lies within its hull's radius of its chord, and so do the places where its
-/// returns begin.
+/// The whole piece, and thus the start of each of its returns, is within the hull radius of the
+/// chord.
 bool has_returns(const FreeSpace& space, const CurvePiece& piece, const ReturnLaw& law,
                  double clearance, int halvings_left) {
   const Segment chord{piece.control.front(), piece.control.back()};

@@ -1,4 +1,4 @@
-/// What a route planner asks about ways home: whether there is one, and how else to go.
+/// Tests whether a path has returns, and finds paths that have them. Used in route planning.
 #pragma once
 
 #include <string>
@@ -16,19 +16,20 @@ namespace skycap::flight {
 /// Keeps a reference to `space`.
 class WaysHome {
  public:
-  /// `home` is the place above the pad where routes begin and end; `law` is one to plan by.
+  /// `home` is the position above the pad where routes start and end. `law` is the law to assume in
+  /// planning, see planning_law().
   WaysHome(const FreeSpace& space, const ReturnLaw& law, const Eigen::Vector3d& home,
            double clearance)
       : space_(space), returnable_(space, law), home_(home), clearance_(clearance) {}
 
   const ReturnLaw& law() const { return returnable_.law(); }
 
-  /// What is in the way of a return from there, or of the straight way up and over to the pad,
-  /// which is what with_returns() falls back on; empty: nothing.
+  /// Returns the obstacle of a return from `place`, or of the path straight up and across to the
+  /// pad, which is the fallback of with_returns(). Empty if both are free.
   std::string why_none(const Eigen::Vector3d& place) const;
 
-  /// The way, or, if there is not a proven way home from every point of it, a short one from all of
-  /// whose points there is. Both ends must have one, by why_none().
+  /// Returns `way` if every point of it has a verified return, otherwise a short path that
+  /// satisfies this. Both ends must have a return, see why_none().
   std::vector<Eigen::Vector3d> with_returns(std::vector<Eigen::Vector3d> way,
                                             double worthwhile_saving) const;
 
@@ -39,7 +40,8 @@ class WaysHome {
   double clearance_;
 };
 
-/// Whether all returns from a curve are proven: it lies in the hull of each piece's control points.
+/// Returns true if all returns from a curve are verified. Each piece lies within the hull of its
+/// control points.
 bool has_returns(const FreeSpace& space, const Curve& curve, const ReturnLaw& law,
                  double clearance);
 

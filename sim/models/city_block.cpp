@@ -14,24 +14,24 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double half_side = 98.0;    // of the built-up square [m]
-constexpr double half_street = 11.0;  // to the building line
+constexpr double half_side = 98.0;    // Half side of the built-up square [m].
+constexpr double half_street = 11.0;  // Distance from the street axis to the building line [m].
 constexpr double half_carriageway = 4.5;
-constexpr double front_depth = 40.0;  // of the lots on the street
-constexpr double lane = 9.0;          // between the rows of lots
-constexpr double gap = 5.0;           // between neighbours
+constexpr double front_depth = 40.0;  // Depth of the lots on the street [m].
+constexpr double lane = 9.0;          // Distance between the rows of lots [m].
+constexpr double gap = 5.0;           // Distance between neighbouring buildings [m].
 
 using Kind = Parts (*)(const city::Lot&, RandomNumbers&, const Fineness&);
 
-/// A block under construction.
+/// City block under construction.
 class Block {
  public:
   explicit Block(const CityBlockOptions& options)
       : fineness_(options.fineness), draw_(options.seed) {}
 
   void build_rows() {
-    // One row of street fronts holds the tower, the other the arcade. The backs are courtyard
-    // houses or whatever the draw gives, but one in each row is a courtyard.
+    // One row of fronts contains the tower, the other the arcade. The back buildings are of random
+    // types, but one in each row is a courtyard house.
     const double back_depth = half_side - half_street - front_depth - lane;
     const double front_middle = half_street + 0.5 * front_depth;
     const double back_middle = half_side - 0.5 * back_depth;
@@ -52,7 +52,7 @@ class Block {
   void plant_trees() {
     for (const double side : {-1.0, 1.0}) {
       for (double x = -half_side + 8.0; x < half_side - 6.0; x += draw_.between(13.0, 19.0)) {
-        // Before the arcade they would stand in its walk: keep to the kerb.
+        // Trees are near the kerb, because they would block the walk in front of the arcade.
         plant(draw_.between(6.0, 9.0), {x, side * (half_carriageway + 1.0), 0.1});
       }
       const double lane_middle = half_street + front_depth + 0.5 * lane;
@@ -65,11 +65,11 @@ class Block {
   Parts result() { return std::move(parts_); }
 
  private:
-  /// `count` buildings along x at y = `middle`, fronts turned by `azimuth`; one of them, drawn by
-  /// lot, is of the row's own `kind`.
+  /// Adds `count` buildings along x at y = `middle`, with fronts rotated by `azimuth`. A random one
+  /// has the row's own `kind`.
   void build_row(double middle, double depth, int count, Kind kind, double azimuth) {
     const int special = draw_.integer(0, count - 1);
-    // Shares of the row, so that no lot is less than half as wide as another.
+    // Fractions of the row. No lot is less than half as wide as another.
     std::vector<double> shares;
     double sum = 0.0;
     for (int i = 0; i < count; ++i) sum += shares.emplace_back(draw_.between(1.0, 1.7));

@@ -1,5 +1,5 @@
-/// A block of city houses, drawn from a seed: a scene for aerial surveys with streets to look into,
-/// courtyards to look down into, and an arcade to look under.
+/// Block of city houses, generated from a seed. It tests aerial surveys of streets, courtyards and
+/// an arcade.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,11 @@ struct CityBlockOptions {
   Fineness fineness{0.004};
 };
 
-/// 10 to 16 buildings within 200 m x 200 m round the origin, on z = 0: a street along x, north and
-/// south of it a row of street fronts (one of them over an arcade, one a tower) and behind that a
-/// row of backs (at least one round a courtyard); trees, pavements. Closed solids; the names of a
-/// building's parts start with "building N ", N from 1. The same seed gives the same block.
+/// Generates 10 to 16 buildings within 200 m x 200 m around the origin, on z = 0. Rows of fronts,
+/// with one arcade and one tower, face a street along x from the north and the south. Behind them
+/// are rows of back buildings with at least one courtyard. Trees and pavements are included. All
+/// parts are closed solids. The part names of a building start with "building N ", N from 1.
+/// Deterministic for a seed.
 Parts city_block(const CityBlockOptions& options);
 
 }  // namespace skycap::sim::models

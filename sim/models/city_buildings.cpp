@@ -17,11 +17,11 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-/// What the windows of a building have in common.
+/// Common properties of a building's windows.
 struct Facade {
-  double storey;  ///< height
+  double storey;  ///< Storey height [m].
   double window_width, window_height;
-  double spacing;  ///< from window to window, at least
+  double spacing;  ///< Minimum distance between window axes [m].
   double reveal;
 };
 
@@ -35,7 +35,8 @@ Facade draw_facade(geometry::RandomNumbers& draw) {
   return facade;
 }
 
-/// A box of whole storeys with rows of windows. Within `margin` of the corners there are none.
+/// Returns a box of complete storeys with rows of windows. There are no windows within `margin` of
+/// the corners.
 Mesh storeys(double width, double depth, double foot, int count, const Facade& facade,
              double margin) {
   const PlanCurve plan = PlanCurve::rectangle(width, depth);
@@ -62,7 +63,8 @@ Mesh storeys(double width, double depth, double foot, int count, const Facade& f
   return Tower(wall.bottom).add(build(wall)).close(wall.top);
 }
 
-/// A roof with eaves, hipped on all sides, on walls of that size that end at z = `foot`.
+/// Returns a roof with eaves, hipped on all sides, on walls of the given size that end at z =
+/// `foot`.
 Mesh hipped_roof(double width, double depth, double foot, double slope) {
   const double eaves = 0.5, run = 0.5 * std::min(width, depth) + eaves - 0.15;
   const double w = width + 2.0 * eaves, d = depth + 2.0 * eaves;
@@ -70,15 +72,15 @@ Mesh hipped_roof(double width, double depth, double foot, double slope) {
                level_rectangle(w - 2.0 * run, d - 2.0 * run, foot + slope * run)});
 }
 
-/// A wall round the edge of a flat roof at z = `foot`, also a string course or a cornice.
+/// Returns a parapet around a flat roof at z = `foot`. Also used for string courses and cornices.
 Mesh rim(double width, double depth, double foot, double height, double reach) {
   const Polyline2 section{{-0.35, -0.2}, {reach, -0.2}, {reach, height}, {-0.35, height}};
   Polyline3 path = level_rectangle(width, depth, foot);
-  std::reverse(path.begin(), path.end());  // outwards is left of the way
+  std::reverse(path.begin(), path.end());  // Outwards is to the left of the path.
   return sweep(section, path, Vector3d::UnitZ(), true);
 }
 
-/// Chimneys along the ridge above the line y = `axis`.
+/// Adds chimneys along the ridge above the line y = `axis`.
 void add_chimneys(double width, double axis, double foot, double ridge,
                   geometry::RandomNumbers& draw, Parts& parts) {
   const int count = draw.integer(1, 3);
@@ -95,7 +97,8 @@ void add_chimneys(double width, double axis, double foot, double ridge,
   }
 }
 
-/// Dormers in the slope towards -y, of a roof that rises with `slope` from (y = -half, z = foot).
+/// Adds dormers to the slope towards -y of a roof that rises with `slope` from (y = -half, z =
+/// foot).
 void add_dormers(double width, double half, double foot, double slope, Parts& parts) {
   const int count = static_cast<int>(width / 6.0);
   for (int i = 0; i < count; ++i) {
@@ -104,15 +107,16 @@ void add_dormers(double width, double half, double foot, double slope, Parts& pa
     const double back = std::min(-0.2, -half + (top - foot) / slope + 0.8);
     const Polyline2 outline{
         {x - 0.8, sill}, {x + 0.8, sill}, {x + 0.8, top - 0.5}, {x, top}, {x - 0.8, top - 0.5}};
-    // extrude() works along x; turned by -90 degrees its outline's first axis lies along -y ...
+    // extrude() works along x. After a rotation by -90 degrees, the first axis of the outline would
+    // be along -y.
     Polyline2 mirrored;
     for (const Vector2d& p : outline) mirrored.emplace_back(-p.x(), p.y());
-    // ... so along +90 degrees, x becomes y and the outline runs along -x.
+    // After a rotation by +90 degrees, x becomes y and the outline runs along -x.
     parts.push_back({"dormer", turned(extrude(mirrored, front, back), 0.5 * pi)});
   }
 }
 
-/// A winged or plain house body with its roof.
+/// Adds a wing or a complete house body with its roof.
 void add_wing(double width, double depth, int count, const Facade& facade, double margin,
               bool is_hipped, double slope, const Vector3d& at, double azimuth, Parts& parts) {
   const auto add = [&](const char* name, Mesh mesh) {
@@ -134,7 +138,7 @@ Parts town_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&)
   const int count = draw.integer(2, 5);
   const bool is_hipped = draw.integer(0, 1) == 0;
   const double slope = draw.between(0.7, 1.1);
-  const double front = -0.5 * (lot.depth - depth);  // on the street
+  const double front = -0.5 * (lot.depth - depth);  // At the street.
   Parts parts;
   add_wing(width, depth, count, facade, 1.2, is_hipped, slope, {0.0, 0.0, 0.0}, 0.0, parts);
   const double eaves = count * facade.storey, half = 0.5 * depth + 0.5;
@@ -143,7 +147,7 @@ Parts town_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&)
     const double room = is_hipped ? width - depth : width - 2.0;
     add_dormers(std::max(0.0, room), half, eaves, slope, parts);
   }
-  if (draw.integer(0, 1) == 0) {  // a lower wing towards the back
+  if (draw.integer(0, 1) == 0) {  // Lower wing at the back.
     const double wing = std::min(lot.depth - depth, draw.between(8.0, 14.0));
     if (wing > 4.0) {
       const double x = (draw.integer(0, 1) == 0 ? -1.0 : 1.0) * (0.5 * width - 4.5);
@@ -163,7 +167,7 @@ Parts office(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fine
   const int steps = draw.integer(1, 3);
   for (int i = 0; i < steps; ++i) {
     const int count = draw.integer(2, 4);
-    // Each step starts inside the one below, where its floor is out of sight.
+    // Each step starts inside the one below, where its floor is hidden.
     const double overlap = i == 0 ? 0.0 : 0.3;
     parts.push_back({"walls", storeys(width, depth, foot - overlap, count, facade, 1.0)});
     foot += count * facade.storey - overlap;
@@ -202,7 +206,7 @@ Parts courtyard_house(const Lot& lot, geometry::RandomNumbers& draw, const Finen
   const double slope = draw.between(0.6, 0.9);
   Parts parts;
   for (const double side : {-1.0, 1.0}) {
-    // Front and back run through; the sides run into them, a little behind their ends.
+    // Front and back wings have full width. The side wings end inside them.
     add_wing(width, wing, count, facade, 1.4, true, slope, {0.0, side * 0.5 * (depth - wing), 0.0},
              0.0, parts);
     add_wing(depth - 2.0 * wing + 3.0, wing - 0.6, count - 1, facade, 2.8, false, slope,
@@ -223,13 +227,13 @@ Parts arcade_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness
   add_wing(width, depth, count, facade, 1.5, true, 0.75, {0.0, house_front + 0.5 * depth, 0.0}, 0.0,
            parts);
 
-  // Arches on piers before it, and a terrace over the walk.
+  // Arches on piers in front of the house, and a terrace above the walk.
   const int bays = std::max(3, static_cast<int>(width / 4.2));
   const double bay = width / bays, pier = 0.9, radius = 0.5 * (bay - pier);
   const double springing = 2.6, top = springing + radius + 0.7;
   const double front = house_front - walk, back = front + 0.7;
   const auto facing_front = [&](Mesh mesh) { return turned(std::move(mesh), -0.5 * pi); };
-  // Made at azimuth 0, where x points out of the wall: x = -y of the block.
+  // Created at azimuth 0, where x points out of the wall: x = -y of the block.
   for (int i = 0; i <= bays; ++i) {
     const double y = -0.5 * width + i * bay;
     parts.push_back(
@@ -261,7 +265,7 @@ Parts tower_hall(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&)
   const double front = -0.5 * lot.depth + 0.5 * depth + 2.0;
   add_wing(width, depth, 2, facade, 1.4, false, 1.0, {0.0, front, 0.0}, 0.0, parts);
 
-  // The tower stands half in the front of the hall.
+  // Half of the tower projects from the front of the hall.
   const double side = draw.between(8.0, 9.5);
   const int count = draw.integer(7, 9);
   const double top = count * facade.storey, spire = draw.between(9.0, 14.0);
@@ -275,7 +279,7 @@ Parts tower_hall(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&)
     add("tower string course", rim(side, side, i * facade.storey, 0.1, 0.18));
   }
   add("tower cornice", rim(side, side, top, 0.8, 0.45));
-  // An eight-sided lantern stage and the spire on it.
+  // Octagonal lantern stage with the spire.
   const auto octagon = [&](double radius, double z) {
     Polyline3 ring;
     for (int i = 0; i < 8; ++i) {

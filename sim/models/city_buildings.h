@@ -1,5 +1,5 @@
-/// The kinds of buildings that city_block() draws from. Each fills a lot of `width` x `depth` round
-/// the origin, its front to -y.
+/// Building types of city_block(). Each fills a lot of `width` x `depth` around the origin, with
+/// its front towards -y.
 #pragma once
 
 #include "geometry/random_numbers.h"
@@ -11,15 +11,16 @@ struct Lot {
   double width, depth;
 };
 
-/// A house under a hipped or gabled roof with chimneys and dormers.
+/// Returns a house below a hipped or gabled roof with chimneys and dormers.
 Parts town_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
-/// A flat-roofed block behind a parapet, stepped back towards the top, with plant on the roof.
+/// Returns a flat-roofed block behind a parapet, stepped back towards the top, with equipment on
+/// the roof.
 Parts office(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
-/// Four wings round a court.
+/// Returns four wings around a court.
 Parts courtyard_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
-/// A house whose front stands on arches over the pavement.
+/// Returns a house whose front stands on arches above the pavement.
 Parts arcade_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
-/// A hall with a tall tower under a spire.
+/// Returns a hall with a tall tower below a spire.
 Parts tower_hall(const Lot& lot, geometry::RandomNumbers& draw, const Fineness& fineness);
 
 }  // namespace skycap::sim::models::city

@@ -36,13 +36,13 @@ const models::Family* family_called(std::string_view name) {
   return found == families.end() ? nullptr : &*found;
 }
 
-/// A level square sheet at z = 0, facing up.
+/// Returns a level square sheet at z = 0, facing up.
 Mesh ground(double side) {
   const double h = 0.5 * side;
   return {{{-h, -h, 0.0}, {h, -h, 0.0}, {h, h, 0.0}, {-h, h, 0.0}}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-/// One choice out of three, by the level of detail.
+/// Returns one of three values, according to the level of detail.
 template <typename Value>
 Value by_detail(LevelOfDetail detail, Value coarse, Value standard, Value fine) {
   switch (detail) {

@@ -13,7 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// The rusticated storey up to the pediments: projecting arches and niches in turn.
+/// Returns the rusticated storey up to the pediments, with alternating projecting arches and
+/// niches.
 Band rusticated_storey(const Plan& plan) {
   const RadcliffeTable& t = plan.table;
   Wall wall{PlanCurve::with_projections(t.ground_wall_radius, t.projecting_bays, t.projection_width,
@@ -32,7 +33,7 @@ Band rusticated_storey(const Plan& plan) {
 
   for (int i = 0; i < t.projecting_bays; ++i) {
     const double middle = i * period;
-    // The north arch is the entrance, up the steps; the others start on the base course.
+    // The north arch is the entrance above the steps. The others start on the base course.
     const bool is_entrance = i == t.projecting_bays / 4;
     const double sill =
         is_entrance ? t.base_course_height + 2 * t.course_height : t.base_course_height;
@@ -52,7 +53,8 @@ Band rusticated_storey(const Plan& plan) {
   return build(wall);
 }
 
-/// The course above, round behind the pediments. It stands back by the depth of a joint.
+/// Returns the course above, continuous behind the pediments. It is set back by the depth of a
+/// joint.
 Band upper_courses(const Plan& plan) {
   const RadcliffeTable& t = plan.table;
   const double bottom = t.pediment_level();
@@ -82,7 +84,7 @@ Polyline2 ground_cornice_and_plinth(const Plan& plan) {
       .wave_by(0.08, 0.10, 0.4 * pi)
       .by(0.0, 0.04)
       .to(t.plinth_radius + 0.08, t.ground_stage_top());
-  // The plinth of the order: base, die, cap.
+  // Plinth of the order: base, die, cap.
   const double cap = t.column_foot();
   profile.by(0.0, 0.18)
       .wave_by(-0.08, 0.08, 0.4 * pi)
@@ -93,7 +95,7 @@ Polyline2 ground_cornice_and_plinth(const Plan& plan) {
   return profile.points();
 }
 
-/// The wall behind the columns: windows and niches in two tiers.
+/// Returns the wall behind the columns: windows and niches in two tiers.
 Band middle_stage(const Plan& plan) {
   const RadcliffeTable& t = plan.table;
   Wall wall{PlanCurve::circle(t.wall_radius), t.column_foot(), t.entablature_foot(), {}, {}};
@@ -121,8 +123,8 @@ Band middle_stage(const Plan& plan) {
   return build(wall);
 }
 
-/// Architrave of three fasciae, frieze, and a cornice on dentils and modillions; then the base of
-/// the balustrade and the lead roof up to the drum.
+/// Returns the architrave with three fasciae, the frieze, and a cornice on dentils and modillions.
+/// The base of the balustrade and the lead roof up to the drum follow.
 Polyline2 entablature_and_roof(const Plan& plan) {
   const RadcliffeTable& t = plan.table;
   const double foot = t.entablature_foot(), top = t.balustrade_foot();
@@ -136,21 +138,21 @@ Polyline2 entablature_and_roof(const Plan& plan) {
       .by(0.0, 0.22)
       .wave_by(0.09, 0.09, 0.4 * pi)
       .by(0.0, 0.05)
-      .by(-0.16, 0.03);  // the architrave's cap, weathered back
+      .by(-0.16, 0.03);  // Cap of the architrave with a sloping top.
   profile
-      .to(face, top - 0.88)  // frieze
+      .to(face, top - 0.88)  // Frieze.
       .wave_by(0.08, 0.08, -0.4 * pi)
       .by(0.02, 0.0)
-      .by(0.0, 0.19)  // behind the dentils
+      .by(0.0, 0.19)  // Behind the dentils.
       .by(0.10, 0.01)
       .arc_by(0.10, 0.10, 0.5 * pi)
       .by(0.02, 0.0)
-      .by(0.0, 0.18)                 // behind the modillions
-      .to(reach - 0.16, top - 0.30)  // soffit of the corona
+      .by(0.0, 0.18)                 // Behind the modillions.
+      .to(reach - 0.16, top - 0.30)  // Soffit of the corona.
       .by(0.0, 0.15)
       .wave_by(0.16, 0.11, 0.4 * pi)
       .to(reach, top);
-  // Weathering of the cornice, base of the balustrade, gutter, roof.
+  // Slope of the cornice, base of the balustrade, gutter, roof.
   profile.to(t.balustrade_radius + 0.36, top + 0.06)
       .by(0.0, t.balustrade_base_height - 0.16)
       .by(-0.04, 0.04)
@@ -202,12 +204,12 @@ Polyline2 drum_cornice_and_dome(const Plan& plan) {
       .by(-0.10, 0.04);
   const Meridian meridian(t);
   const int chords = plan.fineness.chords(meridian.radius(), meridian.angle());
-  const double start = (0.24 - 0.04) / meridian.radius();  // above the step just made
+  const double start = (0.24 - 0.04) / meridian.radius();  // Above the step before.
   for (int i = 0; i <= chords; ++i) {
     const double angle = start + (meridian.angle() - start) * i / chords;
     profile.to(meridian.point(angle).x(), meridian.point(angle).y());
   }
-  // The platform of the lantern.
+  // Platform of the lantern.
   const double top = t.lantern_foot();
   profile.to(t.lantern_radius + 0.62, top - 0.02)
       .arc_by(0.0, 0.14, pi)
@@ -232,7 +234,8 @@ Band lantern(const Plan& plan) {
   return build(wall);
 }
 
-/// Cornice and bell-shaped lead cap of the lantern, ball and spike; up to the axis.
+/// Returns the cornice and the bell-shaped lead cap of the lantern, then ball and spike, up to the
+/// axis.
 Polyline2 cap_and_finial(const Plan& plan) {
   const RadcliffeTable& t = plan.table;
   const double foot = t.cap_foot(), r = t.lantern_radius, ball = t.finial_ball_radius;
@@ -243,14 +246,14 @@ Polyline2 cap_and_finial(const Plan& plan) {
       .by(0.0, 0.08)
       .wave_by(0.06, 0.06, 0.4 * pi)
       .to(r + 0.10, foot);
-  // The cap: a bell that ends in a neck under the ball.
+  // Cap: a bell that ends in a neck below the ball.
   const double neck = 0.13, neck_top = foot + t.cap_height;
   profile.arc_to(0.52 * r, foot + 0.62 * t.cap_height, 0.30 * pi)
       .arc_to(neck, neck_top - 0.08, -0.30 * pi)
       .by(0.07, 0.02)
       .by(0.0, 0.05)
       .to(neck, neck_top);
-  // The ball, from the neck to the foot of the spike.
+  // Ball, from the neck to the foot of the spike.
   const double spike = 0.07;
   const double below = std::asin(neck / ball), above = std::asin(spike / ball);
   const double ball_height = ball * (std::cos(below) + std::cos(above));
@@ -265,7 +268,7 @@ Polyline2 cap_and_finial(const Plan& plan) {
 
 geometry::Mesh body(const Plan& plan) {
   const RadcliffeTable& t = plan.table;
-  const int whole = 2 * t.projecting_bays;  // a vertex on the axis of every bay
+  const int whole = 2 * t.projecting_bays;  // One vertex on the axis of every bay.
   Tower tower(0.0);
   tower.add(rusticated_storey(plan))
       .add(upper_courses(plan))

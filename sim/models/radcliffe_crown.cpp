@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-/// Solids on the axis, moved out to (radius, 0, z).
+/// Moves solids from the axis to (radius, 0, z).
 Mesh standing_at(Mesh mesh, double radius, double z) {
   return moved(std::move(mesh), {radius, 0.0, z});
 }
@@ -25,8 +25,8 @@ Mesh baluster(const Plan& plan, double height) {
   profile.to(0.95 * r, -0.03)
       .to(0.95 * r, 0.10 * h)
       .to(0.60 * r, 0.13 * h)
-      .arc_to(0.52 * r, 0.52 * h, 0.45 * pi)  // the belly
-      .to(0.42 * r, 0.78 * h)                 // the neck
+      .arc_to(0.52 * r, 0.52 * h, 0.45 * pi)  // Belly.
+      .to(0.42 * r, 0.78 * h)                 // Neck.
       .arc_by(0.0, 0.07 * h, 0.6 * pi)
       .to(0.46 * r, 0.89 * h)
       .to(0.95 * r, 0.92 * h)
@@ -35,7 +35,7 @@ Mesh baluster(const Plan& plan, double height) {
   return revolve(profile.points(), plan.fineness.circle(r));
 }
 
-/// A vase with a gadrooned bowl, a lid and a pine-cone.
+/// Returns a vase with a gadrooned bowl, a lid and a pine cone.
 Mesh vase(const Plan& plan) {
   const double h = plan.table.vase_height;
   Profile profile(plan.fineness, 0.0, -0.04);
@@ -45,19 +45,19 @@ Mesh vase(const Plan& plan) {
       .by(0.03 * h, 0.015 * h)
       .by(0.0, 0.025 * h)
       .to(0.12 * h, 0.215 * h)
-      .arc_to(0.30 * h, 0.47 * h, 0.40 * pi)  // the bowl
+      .arc_to(0.30 * h, 0.47 * h, 0.40 * pi)  // Bowl.
       .by(-0.015 * h, 0.03 * h)
-      .arc_to(0.20 * h, 0.60 * h, -0.35 * pi)  // the neck
+      .arc_to(0.20 * h, 0.60 * h, -0.35 * pi)  // Neck.
       .arc_to(0.27 * h, 0.66 * h, -0.30 * pi)
       .by(0.0, 0.03 * h)
       .to(0.20 * h, 0.72 * h)
-      .arc_to(0.07 * h, 0.79 * h, -0.3 * pi)  // the lid
-      .arc_to(0.02 * h, 0.99 * h, 0.65 * pi)  // the cone
+      .arc_to(0.07 * h, 0.79 * h, -0.3 * pi)  // Lid.
+      .arc_to(0.02 * h, 0.99 * h, 0.65 * pi)  // Cone.
       .to(0.0, h);
   return revolve(profile.points(), plan.fineness.circle(0.3 * h));
 }
 
-/// A disc in the plane y = const: the eye of a scroll, seen from the buttress' sides.
+/// Returns a disc in the plane y = const: the eye of a scroll on the sides of a buttress.
 Mesh scroll_disc(const Vector2d& centre, double radius, double half_width, const Plan& plan) {
   Profile profile(plan.fineness, 0.0, -half_width);
   profile.to(0.55 * radius, -half_width)
@@ -77,8 +77,8 @@ Mesh scroll_disc(const Vector2d& centre, double radius, double half_width, const
   return disc;
 }
 
-/// A band on the dome along the meridian at azimuth 0; its section at each place is given by the
-/// half width there and points (share of the half width, out of the shell).
+/// Returns a band on the dome along the meridian at azimuth 0. The section at each position results
+/// from the half width there and points (fraction of the half width, distance out of the shell).
 template <typename HalfWidth>
 Mesh on_meridian(const Plan& plan, double from, double to, const Polyline2& section,
                  HalfWidth half_width) {
@@ -153,7 +153,7 @@ void add_buttresses(const Plan& plan, Parts& parts) {
   const double top = level + t.buttress_height, half = 0.5 * t.buttress_width;
   const double lower_scroll = 0.62, upper_scroll = 0.38;
 
-  // A pedestal, then the scroll: out and over the lower volute, in a hollow up to the upper one.
+  // Pedestal, then the scroll: out and over the lower volute, and in a hollow up to the upper one.
   const Mesh pedestal = box({inner, -half - 0.10, foot}, {outer + 0.08, half + 0.10, level + 0.45});
   const Vector2d lower(outer - lower_scroll, level + 0.40 + lower_scroll);
   const Vector2d upper(t.drum_radius + 0.62 + upper_scroll, top - upper_scroll);
@@ -169,7 +169,7 @@ void add_buttresses(const Plan& plan, Parts& parts) {
   one.push_back({"buttress console", console});
   one.push_back({"buttress scroll", scroll_disc(lower, lower_scroll, half + 0.07, plan)});
   one.push_back({"buttress scroll", scroll_disc(upper, upper_scroll, half + 0.05, plan)});
-  // A fillet along its back, and a cap block under the drum's cornice.
+  // Fillet along its back, and a cap block below the drum's cornice.
   one.push_back({"buttress cap", box({inner, -half - 0.06, top - 0.06},
                                      {upper.x() + 0.30, half + 0.06, top + 0.16})});
   one.push_back({"buttress pilaster", box({inner, -half + 0.12, top + 0.10},
@@ -213,7 +213,7 @@ void add_dome_ribs(const Plan& plan, Parts& parts) {
   const RadcliffeTable& t = plan.table;
   const Meridian meridian(t);
   const double from = 0.02, to = meridian.angle() - 0.004, relief = t.rib_relief;
-  // A flat band between two rounded shoulders.
+  // Flat band between two rounded shoulders.
   const Polyline2 section{{-1.0, -0.15},          {1.0, -0.15},         {1.0, 0.45 * relief},
                           {0.78, 0.80 * relief},  {0.55, relief},       {-0.55, relief},
                           {-0.78, 0.80 * relief}, {-1.0, 0.45 * relief}};
@@ -224,7 +224,7 @@ void add_dome_ribs(const Plan& plan, Parts& parts) {
   const Polyline2 round{{-1.0, -0.08},  {1.0, -0.08},    {1.0, 0.3 * r},
                         {0.6, 0.9 * r}, {-0.6, 0.9 * r}, {-1.0, 0.3 * r}};
   const Mesh roll = on_meridian(plan, from, 0.86 * to, round, [&](double) { return r; });
-  // Too thin to show in a coarse model.
+  // Too thin for a coarse model.
   const int rolls = plan.fineness.shows(2.0 * r) ? t.lead_rolls_between_ribs : 0;
   for (int i = 0; i < t.dome_ribs; ++i) {
     const double step = 2.0 * pi / t.dome_ribs, azimuth = i * step;

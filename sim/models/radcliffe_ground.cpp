@@ -11,10 +11,10 @@ namespace {
 using Eigen::Vector2d;
 using std::numbers::pi;
 
-/// The projecting bay with the entrance: the one at azimuth 90 degrees, north.
+/// Returns true for the projecting bay with the entrance, at azimuth 90 degrees (north).
 bool is_north(const Plan& plan, int bay) { return bay == plan.table.projecting_bays / 4; }
 
-/// A bar along the line from `a` to `b` on the glazing, (y, z).
+/// Returns a bar along the line from `a` to `b` on the glazing, in (y, z).
 geometry::Mesh bar(const Vector2d& a, const Vector2d& b, double half_width, double back,
                    double front) {
   const Vector2d side = half_width * Vector2d(a.y() - b.y(), b.x() - a.x()).normalized();
@@ -46,7 +46,7 @@ void add_pediments(const Plan& plan, Parts& parts) {
 void add_keystones(const Plan& plan, Parts& parts) {
   const RadcliffeTable& t = plan.table;
   const auto wedge = [&](double crown, double springing, double height, double back, double front) {
-    // Its sides point to the centre of the arch.
+    // The sides point to the centre of the arch.
     const double half_angle = 0.75 * pi / t.arch_voussoirs;
     const auto at = [&](double radius, double side) {
       const double z = springing + radius * std::cos(half_angle);
@@ -91,7 +91,7 @@ void add_arch_glazing(const Plan& plan, Parts& parts) {
       add({-radius - 0.02, z}, {radius + 0.02, z}, 0.035);
     }
     add({-radius - 0.02, springing}, {radius + 0.02, springing}, 0.08);
-    // The fanlight: rays from the middle of the impost, and a half ring.
+    // Fanlight: rays from the middle of the impost, and a half ring.
     constexpr int rays = 6;
     for (int j = 1; j < rays; ++j) {
       const double angle = pi * j / rays;
@@ -113,7 +113,7 @@ void add_north_steps(const Plan& plan, Parts& parts) {
   const RadcliffeTable& t = plan.table;
   const double landing = t.step_count * t.step_rise, front = t.projection_front;
   const double foot = front + 0.9 + (t.step_count - 1) * t.step_tread;
-  // From the ground up towards the door, a landing before it; (x, z).
+  // From the ground up to the landing in front of the door, in (x, z).
   Polyline2 profile{{front - 0.3, 0.0}, {foot, 0.0}};
   for (int i = 1; i <= t.step_count; ++i) {
     profile.emplace_back(profile.back().x(), i * t.step_rise);
@@ -124,7 +124,7 @@ void add_north_steps(const Plan& plan, Parts& parts) {
   };
   const double half = 0.5 * t.step_width, azimuth = plan.arched_bay(t.projecting_bays / 4);
   parts.push_back({"north steps", turned(along_y(profile, -half, half), azimuth)});
-  // Flanking walls that follow the flight, with a pedestal at the foot.
+  // Flanking walls along the steps, with a pedestal at the foot.
   for (const double side : {-1.0, 1.0}) {
     const double inner = half - 0.08, outer = half + 0.42;
     const double from = side > 0.0 ? inner : -outer, to = side > 0.0 ? outer : -inner;

@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-/// x of a round wall's face at y = `half_width`, where a flat frame must still reach into it.
+/// Returns x of a round wall's face at y = `half_width`, where a flat frame must still intersect
+/// it.
 double face_beside(double radius, double half_width) {
   return std::sqrt(radius * radius - half_width * half_width);
 }
@@ -24,8 +25,8 @@ void add_turned(const Parts& elements, double azimuth, Parts& parts) {
   for (const Part& part : elements) parts.push_back({part.name, turned(part.mesh, azimuth)});
 }
 
-/// A swag of cloth and fruit between two points, (y, z), hanging down by `sag`; fullest in the
-/// middle.
+/// Returns a festoon of cloth and fruit between two points in (y, z), with the depth `sag`. It is
+/// thickest in the middle.
 Mesh swag(const Vector2d& from, const Vector2d& to, double sag, double thickness, double x,
           const Fineness& fineness) {
   const int pieces = 4 * std::clamp(fineness.chords(0.5 * (to - from).norm(), pi), 2, 12);
@@ -36,7 +37,7 @@ Mesh swag(const Vector2d& from, const Vector2d& to, double sag, double thickness
     const Vector2d chord = to - from;
     const Vector2d at = from + share * chord - Vector2d(0.0, sag * (1.0 - across * across));
     const Vector2d ahead = (chord + Vector2d(0.0, 4.0 * sag * across)).normalized();
-    // The lumps are leaves and fruit bound together.
+    // The lumps represent leaves and fruit.
     const double lumps = 1.0 + 0.13 * std::cos(14.0 * pi * share);
     const double radius = thickness * (0.45 + 0.55 * (1.0 - across * across)) * lumps;
     Polyline3& ring = rings.emplace_back();
@@ -49,7 +50,8 @@ Mesh swag(const Vector2d& from, const Vector2d& to, double sag, double thickness
   return loft(rings);
 }
 
-/// A modillion: a bracket under the corona with a scroll at its outer end; (x, z) along y.
+/// Returns a modillion: a bracket below the corona with a scroll at its outer end, as a profile in
+/// (x, z) along y.
 Mesh modillion(double back, double reach, double top, double height, double width,
                const Fineness& fineness) {
   Profile profile(fineness, back, top);
@@ -65,7 +67,7 @@ Mesh modillion(double back, double reach, double top, double height, double widt
 
 void add_columns(const Plan& plan, Parts& parts) {
   const RadcliffeTable& t = plan.table;
-  // What stands inside the wall is left out: the axis is only a little before its face.
+  // Parts inside the wall are omitted: the axis is only slightly in front of its face.
   const Column column{t.column_height, t.column_radius, t.column_radius_at_top,
                       plan.has_fluted_columns ? t.flutes : 0, 0.72 * pi};
   Parts elements = corinthian_column(column, plan.fineness);
@@ -155,7 +157,7 @@ void add_niche_frames(const Plan& plan, Parts& parts) {
   };
   add_tier("lower niche", t.lower_niche_sill, t.lower_niche_height);
   add_tier("upper niche", t.upper_niche_sill, t.upper_niche_height);
-  // A moulded panel over the lower niche, between the tiers.
+  // Moulded panel above the lower niche, between the tiers.
   const double panel_sill = foot + t.lower_niche_sill + t.lower_niche_height + 0.55;
   bay.push_back({"niche panel", box({frame.back, -0.72, panel_sill},
                                     {t.wall_radius + 0.06, 0.72, panel_sill + 0.5})});

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using geometry::Mesh;
 
-// The distinct control points, and for each patch its 4 x 4 of them, row by row. In order: rim,
-// body (two rings), handle, spout, knob, lid, bottom.
+// Distinct control points and, for each patch, its 4 x 4 indices row by row. The order is rim, body
+// (two rings), handle, spout, knob, lid, bottom.
 // clang-format off
 constexpr std::array<std::array<double, 3>, 290> control_points{{
     {1.4, 0, 2.4}, {1.4, -0.784, 2.4}, {0.784, -1.4, 2.4}, {0, -1.4, 2.4}, {1.3375, 0, 2.53125},
@@ -124,7 +124,7 @@ constexpr std::array<std::array<std::uint16_t, 16>, 32> patches{{
 
 using Patch = std::array<std::uint16_t, 16>;
 
-/// The cubic Bernstein polynomials at `t`.
+/// Returns the cubic Bernstein polynomials at `t`.
 std::array<double, 4> bernstein(double t) {
   const double s = 1.0 - t;
   return {s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t};
@@ -142,8 +142,8 @@ Vector3d point_on(const Patch& patch, double u, double v) {
   return point;
 }
 
-/// Gives equal points the same index. Neighbouring patches compute their common edge from the same
-/// control points in a different order, so "equal" is within a rounding to 1e-9 units.
+/// Assigns equal points the same index. Neighbouring patches compute their common edge from the
+/// same control points in a different order, so points are compared after rounding to 1e-9 units.
 class Welder {
  public:
   std::uint32_t index_of(const Vector3d& point, Mesh& mesh) {
@@ -182,7 +182,7 @@ Mesh teapot(int cells) {
         grid.push_back(welder.index_of(point_on(patch, u, v), mesh));
       }
     }
-    // The patches' rows x columns points inwards: (a, b, d) goes round the other way.
+    // Rows x columns of the patches point inwards, so (a, b, d) has the opposite orientation.
     for (std::size_t row = 0; row + 1 < side; ++row) {
       for (std::size_t column = 0; column + 1 < side; ++column) {
         const std::uint32_t a = grid[row * side + column], b = grid[row * side + column + 1];

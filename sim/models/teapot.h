@@ -5,12 +5,12 @@
 
 namespace skycap::sim::models {
 
-/// The teapot in Newell's units, z up, spout towards +x: x from -3 to 3.434, y from -2 to 2, z from
-/// 0 to 3.15. Each patch becomes `cells` x `cells` pairs of triangles; equal vertices are welded
-/// and collapsed triangles dropped, so 16 cells give 8,257 vertices and 16,256 triangles.
+/// Returns the teapot in Newell's units, z up, spout towards +x: x from -3 to 3.434, y from -2 to
+/// 2, z from 0 to 3.15. Each patch becomes `cells` x `cells` pairs of triangles. Equal vertices are
+/// merged and degenerate triangles removed, so 16 cells give 8,257 vertices and 16,256 triangles.
 ///
-/// As Newell left it, it is a set of thin shells and not closed: handle and spout run into the
-/// body, the lid lies above it without touching the rim.
+/// As in Newell's original, the model consists of thin shells and is not closed. Handle and spout
+/// enter the body, and the lid lies above the rim without touching it.
 ///
 /// Throws Error{bad_config} unless `cells` is from 1 to 1000.
 geometry::Mesh teapot(int cells = 16);

@@ -1,4 +1,4 @@
-/// Four numbers at a time, for sources of this folder.
+/// Operations on four numbers at a time. Internal to this folder.
 #pragma once
 
 #include <cmath>
@@ -6,12 +6,12 @@
 
 namespace skycap::sim {
 
-/// Four lanes in one register of any processor: the compiler does not find them by itself in loops
-/// that compare. A comparison gives -1 for true and 0 for false.
+/// Four lanes in one register of any processor. Explicit vectors are required because the compiler
+/// does not vectorise loops with comparisons. A comparison gives -1 for true and 0 for false.
 using FourFloats [[gnu::vector_size(16), gnu::may_alias]] = float;
 using FourInts [[gnu::vector_size(16), gnu::may_alias]] = int;
 
-/// Of lanes that are aligned to 16 bytes.
+/// Returns four lanes from memory that is aligned to 16 bytes.
 template <typename Four, typename Lane>
 Four four(const Lane* lanes) {
   return *reinterpret_cast<const Four*>(lanes);

@@ -1,7 +1,7 @@
-/// Sixteen numbers at a time, in as many registers as the instruction set needs that the including
-/// source is compiled for; and the same operations for one number. All is internal to that source.
-/// Every operation is exact or rounds as IEEE 754 says, so all instruction sets give the same bits.
-/// No argument is ever NaN where least() and greatest() are used.
+/// Operations on sixteen numbers at a time, and the same operations on one number. They use as many
+/// registers as the instruction set of the including source requires, and are internal to it. Every
+/// operation is exact or rounded according to IEEE 754, so all instruction sets give identical
+/// bits. Arguments of least() and greatest() must not be NaN.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ constexpr int part_lanes = 4;
 #endif
 constexpr int part_count = lane_count / part_lanes;
 
-// One register, and in which of its lanes a comparison holds: a bit or all bits of each.
+// One register, and the result of a comparison: one bit per lane, or all bits of each lane.
 using Part [[gnu::vector_size(4 * part_lanes), gnu::may_alias]] = float;
 #if defined(__AVX512F__)
 using PartMask = __mmask16;
@@ -146,7 +146,7 @@ inline Floats chosen(const Mask& mask, const Floats& a, const Floats& b) {
   return each_part<Floats>([&](int i) { return chosen(mask.part[i], a.part[i], b.part[i]); });
 }
 
-// One bit for each lane, and back.
+// Converts a mask to one bit per lane, or vice versa.
 inline std::uint32_t bits(const Mask& mask) {
   std::uint32_t all = 0;
 #pragma GCC unroll 4
@@ -163,7 +163,7 @@ inline bool any(const Mask& mask) {
   return bits(all) != 0;
 }
 
-// Of and to lanes that are aligned to 64 bytes.
+// Loads from or stores to memory that is aligned to 64 bytes.
 inline Floats load(const float* lanes) {
   return each_part<Floats>([&](int i) { return reinterpret_cast<const Part*>(lanes)[i]; });
 }
@@ -188,7 +188,7 @@ inline float least_lane(const Floats& values) {
 }
 inline float greatest_lane(const Floats& values) { return -least_lane(-values); }
 
-// One number, where a template takes either.
+// Scalar mask and operations, for templates that accept vectors or scalars.
 struct Truth {
   bool holds;
 };
@@ -206,7 +206,7 @@ inline float chosen(Truth truth, float a, float b) { return truth.holds ? a : b;
 inline float least_lane(float value) { return value; }
 inline float greatest_lane(float value) { return value; }
 
-// The same number in all lanes.
+// Returns a vector with `value` in all lanes.
 template <typename Lanes>
 Lanes every(float value);
 template <>

@@ -43,7 +43,7 @@ Image read_png(const std::filesystem::path& path) {
     png.format = PNG_FORMAT_RGB;
     Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
     image.pixels.resize(static_cast<std::size_t>(png.width) * png.height);
-    const png_color black = {0, 0, 0};  // what transparent pixels are laid over
+    const png_color black = {0, 0, 0};  // Background of transparent pixels.
     if (png_image_finish_read(&png, &black, image.pixels.data(), 0, nullptr) != 0) return image;
   }
   throw Error(ErrorKind::bad_file, "cannot read the image '" + path.string() + "': " + png.message);

@@ -6,7 +6,7 @@ namespace skycap::sim {
 
 const RayKernels& ray_kernels() {
 #ifdef SKYCAP_X86_64_KERNELS
-  // A single ray meets eight boxes at a time, half a register of AVX-512.
+  // A single ray tests eight boxes at a time, which is half an AVX-512 register.
   static const RayKernels for_avx512 = {avx512_ray_kernels.cast,
                                         avx512_ray_kernels.cast_tile,
                                         avx512_ray_kernels.cast_tile_distances,

@@ -1,7 +1,7 @@
 /// Body of ray_kernels_*.cpp, which define SKYCAP_KERNELS_NAME and include it once each. Those
-/// sources are compiled for different processors, so everything here and in the headers below is
-/// internal to them, and no inline function of a library may be called: the linker would keep any
-/// one copy of it. Contraction to fused multiply-adds is off (CMakeLists.txt).
+/// sources are compiled for different processors, so all content of this file and the headers below
+/// is internal to them. Inline functions of libraries must not be called, because the linker would
+/// keep an arbitrary copy. Contraction to fused multiply-adds is off (CMakeLists.txt).
 
 #include "sim/scene/lanes_body.h"
 #include "sim/scene/ray_kernels.h"
@@ -12,7 +12,7 @@
 namespace skycap::sim {
 namespace {
 
-// Takes rays through a tree, those together whose directions have the same signs.
+// Passes rays through a tree in groups whose directions have equal signs.
 template <typename Work>
 inline void for_each_bundle(const TreeRoot& tree, float padding, const Rays<Floats>& rays,
                             std::uint32_t lanes, Work&& work) {
@@ -104,7 +104,7 @@ void cast_packet(const RayTarget& target, RayPacket& packet, std::uint32_t lanes
 
 template <Wish wish>
 void cast_tile(const RayTarget& target, RayPacket* packets, int count, float reach) {
-  constexpr int least_count = 4;  // for fewer it takes longer than one by one
+  constexpr int least_count = 4;  // Minimum number of packets for which joint casting is faster.
   const bool is_tree =
       target.copies == nullptr && target.tree.ref != 0 && (target.tree.ref & tree_ref_entries) == 0;
   if (is_tree && count >= least_count && cast_together<wish>(target.tree, packets, count, reach)) {

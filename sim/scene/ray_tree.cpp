@@ -22,7 +22,7 @@ using Eigen::Vector3f;
 constexpr unsigned leaf_size = 4;
 static_assert(leaf_size <= tree_ref_entries);
 
-// The triangles in single precision.
+// Triangles in single precision.
 struct RoundedMesh {
   const geometry::Mesh& mesh;
   Vector3d centre;
@@ -134,7 +134,7 @@ float extent_of(const AlignedBox3f& box) {
   return std::max(-box.min().minCoeff(), box.max().maxCoeff());
 }
 
-// Writes the boxes of one block of triangles; gives the extent of all of them.
+// Writes the boxes of one block of triangles. Returns their extent.
 float fill_boxes(const RoundedMesh& mesh, std::size_t first, std::span<RTCBuildPrimitive> boxes) {
   float extent = 0.0F;
   for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -1,9 +1,9 @@
-/// A tree of boxes that rays walk down to the triangles they may hit. Embree builds it; how it lies
-/// in memory is our own, because what is a hit is decided by our own arithmetic (ray_kernels.h).
+/// Bounding volume hierarchy for ray casting. Embree builds it. The memory layout is Skycap's own,
+/// because the hit test is, too (ray_kernels.h).
 ///
-/// Which triangle lies in which leaf depends on the processor, on Embree's version and on nothing
-/// that a result may depend on: of a ray's hits the tree decides neither which there are nor which
-/// is nearest, only how few triangles are looked at.
+/// The assignment of triangles to leaves depends on the processor and Embree's version, but results
+/// do not. The tree affects neither the set of hits nor their order, only the number of triangles
+/// to test.
 #pragma once
 
 #include <memory>
@@ -12,29 +12,31 @@
 #include "geometry/surfaces/mesh.h"
 #include "sim/scene/tree_layout.h"
 
-struct RTCDeviceTy;  // Embree's
+struct RTCDeviceTy;  // Embree type.
 struct RTCBVHTy;
 
 namespace skycap::sim {
 
-/// Throws Error{bad_geometry} if a call of Embree's has failed; without a device, to make one.
+/// Throws Error{bad_geometry} if an Embree call has failed. A null `device` reports the failure to
+/// create one.
 void throw_on_device_error(RTCDeviceTy* device);
 
-/// Owns a tree's memory.
+/// Owner of a tree's memory.
 class RayTree {
  public:
-  /// Over the triangles of a mesh, moved by -`centre` in double precision and then rounded to
-  /// single. `device` sets the number of threads. Throws Error{bad_geometry} if a coordinate is
-  /// beyond single precision or memory runs out.
+  /// Builds a tree over the triangles of a mesh, translated by -`centre` in double precision and
+  /// then rounded to single precision. `device` sets the number of threads. Throws
+  /// Error{bad_geometry} if a coordinate exceeds single precision or memory is insufficient.
   RayTree(RTCDeviceTy* device, const geometry::Mesh& mesh, const Eigen::Vector3d& centre,
           unsigned threads);
-  /// Over boxes of any content: a leaf's entries are their numbers, as std::uint32_t.
+  /// Builds a tree over boxes of any content. Leaf entries are their indices as std::uint32_t.
   RayTree(RTCDeviceTy* device, std::span<const Eigen::AlignedBox3f> boxes);
 
   const TreeRoot& root() const { return root_; }
 
  private:
-  // A tree tells its device when it goes, and does not keep it alive by itself.
+  // Deleter that also keeps the device, because Embree notifies it when a tree is released but does
+  // not keep it alive.
   struct Release {
     RTCDeviceTy* device;
     void operator()(RTCBVHTy* tree) const;

@@ -21,19 +21,19 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-// Linear colours: sandstone, paving, and the light of sun, zenith, horizon and ground.
+// Linear colours of sandstone and paving, and the light of sun, zenith, horizon and ground.
 const Vector3d stone(0.80, 0.71, 0.55);
 const Vector3d paving(0.42, 0.42, 0.38);
 const Vector3d sunlight(1.55, 1.42, 1.15);
 const Vector3d zenith(0.20, 0.36, 0.66);
 const Vector3d horizon(0.66, 0.76, 0.88);
 
-constexpr int rows_at_a_time = 25;  ///< some 0.1 s of work of large scenes
+constexpr int rows_at_a_time = 25;  ///< About 0.1 s of work for large scenes.
 
-/// Seeded with the sample's place, so that any thread may draw it.
+/// Seeded with the position of the sample, so that any thread may compute it.
 using Dice = geometry::ShortRandomNumbers;
 
-/// A unit vector about `normal`, with probability proportional to its cosine to it.
+/// Returns a random unit vector around `normal` with cosine-weighted probability.
 Vector3d cosine_direction(const Vector3d& normal, double u, double v) {
   const Vector3d right = geometry::any_orthogonal(normal), ahead = normal.cross(right);
   const double angle = 2.0 * pi * u, radius = std::sqrt(v);
@@ -46,7 +46,7 @@ Vector3d sky(const Vector3d& direction) {
   return horizon + std::sqrt(height) * (zenith - horizon);
 }
 
-/// The colour that a display shows: a soft shoulder for highlights, then the sRGB curve.
+/// Returns the displayed colour: highlights are compressed, then the sRGB curve is applied.
 Rgb display(const Vector3d& light) {
   Rgb pixel;
   for (int i = 0; i < 3; ++i) {
@@ -58,8 +58,8 @@ Rgb display(const Vector3d& light) {
   return pixel;
 }
 
-/// For every corner of every triangle the normal to shade with: the mean over the triangles round
-/// the vertex that are not bent away farther than the smoothing angle, weighted by area.
+/// Returns the shading normal of every triangle corner. It is the area-weighted mean over the
+/// triangles around the vertex whose angle to this triangle is within the smoothing angle.
 std::vector<Eigen::Vector3f> corner_normals(const Mesh& mesh, double smoothing_angle) {
   const std::size_t count = mesh.triangles.size();
   std::vector<Eigen::Vector3f> areas(count);
@@ -94,7 +94,7 @@ std::vector<Eigen::Vector3f> corner_normals(const Mesh& mesh, double smoothing_a
   return normals;
 }
 
-/// A scene with all that its shading needs.
+/// Scene with its shading data.
 class Renderer {
  public:
   Renderer(const Mesh& mesh, const RenderOptions& options)
@@ -105,10 +105,10 @@ class Renderer {
     const Eigen::AlignedBox3d box = bounding_box(mesh);
     size_ = box.diagonal().norm();
     centre_ = box.center();
-    floor_ = box.min().z() - 1e-4 * size_;  // below a ground sheet of the mesh's own
+    floor_ = box.min().z() - 1e-4 * size_;  // Below a ground sheet of the mesh itself.
   }
 
-  /// `report` is told how many rows are drawn.
+  /// Draws a view. `report` receives the number of completed rows.
   void draw(const RenderView& view, int left, int top, Image& image,
             const std::function<void(int rows)>& report) {
     const Eigen::Isometry3d world_from_camera = camera_pose(view.view);
@@ -129,7 +129,7 @@ class Renderer {
           const double down = (row_in_pixel + dice.uniform()) / side,
                        across = (i % side + dice.uniform()) / side;
           const Vector3d direction = pixel(across, down);
-          // Clipped before the mean: one glaring sample shall not outshine an edge.
+          // Clipped before averaging, so that one bright sample does not dominate an edge.
           sum += light_along(view.view.position, direction, dice).cwiseMin(2.5);
         }
         image.at(left + column, top + static_cast<int>(row)) = display(sum / (side * side));
@@ -145,7 +145,7 @@ class Renderer {
 
  private:
   Vector3d sun_of(const Eigen::Isometry3d& world_from_camera) const {
-    // The image's right is level, so that up x right is the way ahead on the ground.
+    // The right axis of the image is level, so right x up is the forward direction on the ground.
     const Vector3d right = world_from_camera.linear().col(0), up = Vector3d::UnitZ();
     const Vector3d back = right.cross(up);
     const Vector3d on_ground =
@@ -162,7 +162,7 @@ class Renderer {
     if (!hit) return sky(direction);
     const Vector3d point = origin + hit->distance * direction;
     Vector3d normal = hit->normal;
-    if (normal.dot(direction) > 0.0) normal = -normal;  // the inner side of an open mesh
+    if (normal.dot(direction) > 0.0) normal = -normal;  // Inner side of an open mesh.
     Vector3d smooth = smooth_normal(hit->triangle, point);
     if (smooth.dot(normal) < 0.0) smooth = -smooth;
     const Vector3d colour =
@@ -174,7 +174,7 @@ class Renderer {
                        Dice& dice) const {
     const Vector3d point = origin + distance * direction;
     const Vector3d up = Vector3d::UnitZ();
-    // The floor has no edge: it fades into the haze of the horizon.
+    // The floor has no edge and fades into the haze of the horizon.
     const double away = (point - centre_).norm() / size_;
     const double haze = 1.0 - std::exp(-0.01 * away * away);
     if (haze > 0.99) return horizon;
@@ -185,7 +185,7 @@ class Renderer {
     const auto& [ia, ib, ic] = mesh_.triangles[triangle];
     const Vector3d &a = mesh_.vertices[ia], &b = mesh_.vertices[ib], &c = mesh_.vertices[ic];
     const Vector3d area = (b - a).cross(c - a);
-    // Barycentric weights, kept within the triangle against rounding.
+    // Barycentric weights, clamped to the triangle because of rounding.
     const double wb = std::clamp((point - a).cross(c - a).dot(area) / area.squaredNorm(), 0.0, 1.0);
     const double wc = std::clamp((b - a).cross(point - a).dot(area) / area.squaredNorm(), 0.0, 1.0);
     const std::size_t first = 3 * static_cast<std::size_t>(triangle);
@@ -195,21 +195,21 @@ class Renderer {
     return normal.cast<double>().normalized();
   }
 
-  /// The light that arrives at a surface: from the sun unless something is in the way, from the
-  /// open sky, and a little thrown back by what covers the rest of it.
+  /// Returns the light that reaches a surface: direct sunlight unless blocked, light of the open
+  /// sky, and some reflected light from the blocked part of the sky.
   Vector3d incoming(const Vector3d& point, const Vector3d& normal, const Vector3d& smooth,
                     Dice& dice) const {
     const Vector3d start = point + 2e-5 * size_ * normal;
     const double sine = smooth.dot(to_sun_);
     Vector3d light = Vector3d::Zero();
     if (sine > 0.0 && normal.dot(to_sun_) > 0.0) {
-      // The sun as a disc of a degree or so, for soft edges of shadows.
+      // The sun is a disc of about one degree, for soft shadow edges.
       const Vector3d wobble{dice.uniform() - 0.5, dice.uniform() - 0.5, dice.uniform() - 0.5};
       const Vector3d to_sun = to_sun_ + 0.015 * wobble;
       if (!scene_.is_blocked(start, start + 2.0 * size_ * to_sun)) light += sine * sunlight;
     }
     for (int i = 0; i < options_.sky_rays; ++i) {
-      // Strata in u keep the few rays apart.
+      // Strata in u separate the few rays.
       const double u = (i + dice.uniform()) / options_.sky_rays, v = dice.uniform();
       const Vector3d direction = cosine_direction(smooth, u, v);
       const bool is_open = direction.dot(normal) > 0.0 &&
@@ -230,13 +230,14 @@ class Renderer {
   double size_, floor_;
 };
 
-/// The view along `direction` from just so far that all vertices are in the picture.
+/// Returns the view along `direction` from the minimum distance at which all vertices are in the
+/// image.
 RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horizontal_fov,
                        double aspect) {
   const Vector3d centre = bounding_box(mesh).center();
   const Eigen::Matrix3d camera_from_world =
       geometry::camera_pose({centre, direction.normalized()}).linear().transpose();
-  const double slope = 0.95 * std::tan(0.5 * horizontal_fov);  // leaves a margin
+  const double slope = 0.95 * std::tan(0.5 * horizontal_fov);  // Leaves a margin.
   double distance = 0.0;
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) {
@@ -267,7 +268,7 @@ std::vector<RenderView> standard_views(const Mesh& mesh, double aspect) {
   std::vector<RenderView> views{view_of_all(mesh, {0.0, -1.0, -0.04}, fov, aspect),
                                 view_of_all(mesh, {0.80, 0.60, -0.25}, fov, aspect),
                                 view_of_all(mesh, {0.62, 0.70, -0.85}, fov, aspect)};
-  // The detail: the second view through a longer lens, at a third of the height.
+  // Detail: the second view with a longer focal length, at a third of the height.
   RenderView detail = views[1];
   const Eigen::AlignedBox3d box = bounding_box(mesh);
   Vector3d target = box.center();

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A ray around the scene's centre; `direction` is a unit vector.
+/// Returns a ray relative to the scene's centre. `direction` is a unit vector.
 SingleRay make_ray(const Vector3d& origin, const Vector3d& direction) {
   SingleRay ray = {};
   for (int axis = 0; axis < 3; ++axis) {
@@ -32,7 +32,8 @@ Scene::Scene(const geometry::Mesh& mesh, unsigned threads)
 
 Scene::Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads)
     : Scene(std::array{ScenePart{mesh, reflectances, {}}}, threads) {
-  require_one_each(reflectances.size(), "reflectances", mesh);  // none are not the default here
+  // An empty list is not replaced by the default here.
+  require_one_each(reflectances.size(), "reflectances", mesh);
 }
 
 Scene::Scene(std::span<const ScenePart> parts, unsigned threads) {
@@ -104,7 +105,7 @@ std::uint32_t Scene::blocked(std::span<const Sight> sights) const {
     reach[i] = static_cast<float>(length);
     left |= 1U << i;
   }
-  while (left != 0) {  // a packet has one reach
+  while (left != 0) {  // A packet has a single reach.
     const float its_reach = reach[static_cast<std::size_t>(std::countr_zero(left))];
     std::uint32_t lanes = 0;
     for (std::size_t i = 0; i < sights.size(); ++i) {

@@ -1,9 +1,10 @@
-/// A scene made ready for ray casting: the truth, which only `sim/` and the evaluation may ask.
+/// Scene prepared for ray casting. It is the ground truth, which only `sim/` and the evaluation may
+/// access.
 ///
-/// Rays are cast in single precision, so the mesh is moved to around the origin of its own frame in
-/// double precision first; every query takes and gives world coordinates. No ray slips between
-/// triangles that share an edge or a vertex, and what a ray meets depends on nothing but the ray
-/// and the triangles (scene/ray_kernels.h says how).
+/// Rays are cast in single precision. Therefore the mesh is first translated to the origin of its
+/// own frame in double precision. All queries use world coordinates. No ray passes between
+/// triangles that share an edge or a vertex, and a hit depends only on the ray and the triangles
+/// (see scene/ray_kernels.h).
 #pragma once
 
 #include <cstdint>
@@ -20,78 +21,79 @@
 
 namespace skycap::sim {
 
-/// Where a ray first meets the scene.
+/// First intersection of a ray with the scene.
 struct Hit {
-  double distance;         ///< along the ray, in units of its direction's length
-  std::uint32_t triangle;  ///< index into the mesh's triangles
-  Eigen::Vector3d normal;  ///< unit normal of that triangle, by its orientation
+  double distance;         ///< Distance along the ray, in multiples of the direction's length.
+  std::uint32_t triangle;  ///< Index of the mesh triangle.
+  Eigen::Vector3d normal;  ///< Unit normal of the triangle according to its orientation.
 };
 
-/// A mesh of a scene, once or several times; all of it is the caller's.
+/// Mesh of a scene with one or more copies. Refers to data of the caller.
 struct ScenePart {
   const geometry::Mesh& mesh;
-  /// Diffuse reflectance of each triangle, in [0, 1], at the laser's wavelength; none: the default.
+  /// Diffuse reflectance of each triangle at the laser wavelength, in [0, 1]. Empty: the default.
   std::span<const float> reflectances;
-  /// world_from_mesh of each copy, turned and shifted but not scaled; none: once, as it is.
+  /// world_from_mesh of each copy: rotation and translation without scale. Empty: one copy at the
+  /// identity.
   std::span<const Eigen::Isometry3d> places;
-  /// Of each triangle; none: all matt.
+  /// Surface of each triangle. Empty: all matt.
   std::span<const Surface> surfaces = {};
 };
 
-/// Immutable; safe to query from any number of threads.
+/// Immutable and thread-safe.
 class Scene {
  public:
-  /// Of surfaces about which nothing is known: between asphalt and bright stone.
+  /// Reflectance of unspecified surfaces: between asphalt and bright stone.
   static constexpr float default_reflectance = 0.4F;
 
-  /// Builds the ray-casting structure on `threads` threads (zero: all processors). Keeps no
-  /// reference to `mesh`. Throws what geometry::validate() throws.
+  /// Builds the ray-casting structure on `threads` threads (0: all processors). Keeps no reference
+  /// to `mesh`. Throws the same errors as geometry::validate().
   explicit Scene(const geometry::Mesh& mesh, unsigned threads = 0);
-  /// The same with the diffuse reflectance of each triangle, in [0, 1], at the laser's wavelength.
-  /// Throws Error{bad_geometry} if their number is not that of the triangles.
+  /// Builds a scene with the diffuse reflectance of each triangle at the laser wavelength, in [0,
+  /// 1]. Throws Error{bad_geometry} if the number of reflectances differs from that of triangles.
   Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads = 0);
-  /// Several meshes, each any number of times: copies take no memory to speak of. Triangles are
-  /// numbered as if every copy of every part had been appended to one mesh, in that order, and rays
-  /// meet what they would meet of that mesh, but for rounding. Throws the same, also when there
-  /// is no part.
+  /// Builds a scene of several meshes with any number of copies, which take almost no memory.
+  /// Triangle numbers are those of one mesh with all copies of all parts appended in order. Hits
+  /// are those of that mesh, apart from rounding. Throws the errors above, also if there are no
+  /// parts.
   explicit Scene(std::span<const ScenePart> parts, unsigned threads = 0);
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  /// The first surface, of whatever kind, that the ray from `origin` along `direction` (of any
-  /// length) meets at a distance in [0, max_distance]. Exact to single precision of the scene's
-  /// extent.
+  /// Returns the first surface of any kind at a distance in [0, max_distance] from `origin` along
+  /// `direction`. The distance is in multiples of the direction's length. The accuracy is that of
+  /// single precision for the extent of the scene.
   std::optional<Hit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                double max_distance = std::numeric_limits<double>::infinity()) const;
 
-  /// Whether a surface cuts the segment between two points, its ends included. To ask whether a
-  /// point of the surface is visible, end the segment a little before it.
+  /// Returns true if a surface intersects the segment between two points, ends included. To test
+  /// the visibility of a surface point, end the segment slightly before it.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
-  /// A straight line from one place to another.
+  /// Line of sight between two points.
   struct Sight {
     Eigen::Vector3d from, to;
   };
-  /// The most that blocked() takes.
+  /// Maximum number of sights for blocked().
   static constexpr std::size_t most_sights = 16;
-  /// A bit for each of the sights, the lowest for the first: what is_blocked() says of it. Quick
-  /// where they are about as long and run side by side.
+  /// Returns the results of is_blocked() as a bit mask; the lowest bit is the first sight. Fast for
+  /// near-parallel sights of similar length.
   std::uint32_t blocked(std::span<const Sight> sights) const;
 
-  /// Diffuse reflectance of a triangle, in [0, 1].
+  /// Returns the diffuse reflectance of a triangle, in [0, 1].
   float reflectance(std::uint32_t triangle) const {
     return reflectances_.empty() ? default_reflectance : own_reflectance(triangle);
   }
 
-  /// What a triangle does to light.
+  /// Returns the surface type of a triangle.
   Surface surface(std::uint32_t triangle) const;
 
-  /// Whether triangles have reflectances of their own.
+  /// Returns true if triangles have individual reflectances.
   bool has_reflectances() const { return !reflectances_.empty(); }
 
-  /// What the sensors in this folder cast their rays at; defined in scene/scene_trees.h, for
-  /// sources only.
+  /// Geometry that the sensors of this library cast rays at. Defined in scene/scene_trees.h, which
+  /// only sources include.
   struct Trees;
   const Trees& trees() const { return *trees_; }
 
@@ -101,27 +103,27 @@ class Scene {
   float own_reflectance(std::uint32_t triangle) const;
 
   std::unique_ptr<Trees> trees_;
-  std::vector<float> reflectances_;  // of each part's triangles; empty: all the default
+  // Reflectances of the triangles of each part. Empty: the default.
+  std::vector<float> reflectances_;
 };
 
-/// Makes a scene of parts that come one after the other, so that of many tiles but one mesh need be
-/// in memory at a time. Each part is met in a frame of its own, whose place follows from its mesh
-/// and from the centre alone: what a ray meets first is the same, to the bit, whichever further
-/// parts there are, as long as those that it meets are among them, in the same order.
+/// Builds a scene part by part, so that only one of many tile meshes must be in memory. The frame
+/// of each part depends only on its mesh and the centre. A first hit is therefore bit-identical for
+/// any set of further parts, as long as the hit parts are present in the same order.
 class SceneBuilder {
  public:
-  /// Rays will be cast relative to `centre`, which should be about the middle of the scene. Trees
-  /// are built on `threads` threads (zero: all processors).
+  /// Rays are cast relative to `centre`, which should be near the middle of the scene. Trees are
+  /// built on `threads` threads (0: all processors).
   explicit SceneBuilder(const Eigen::Vector3d& centre, unsigned threads = 0);
   SceneBuilder(const SceneBuilder&) = delete;
   SceneBuilder& operator=(const SceneBuilder&) = delete;
   ~SceneBuilder();
 
-  /// Triangles are numbered on from those of the parts before. Keeps no reference. Throws what
-  /// Scene's constructors throw.
+  /// Adds a part. Triangle numbers continue from the previous part. Keeps no reference. Throws the
+  /// errors of Scene's constructors.
   void add(const ScenePart& part);
 
-  /// The scene of all parts, perhaps of none; the builder is of no use any more.
+  /// Returns the scene of all parts, possibly without any. The builder must not be used afterwards.
   Scene finish();
 
  private:

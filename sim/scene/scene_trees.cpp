@@ -18,7 +18,7 @@ std::vector<Eigen::Isometry3d> places_of(const ScenePart& part) {
   return {part.places.begin(), part.places.end()};
 }
 
-/// An error of Embree's goes with its device.
+/// Embree device, which also stores its errors.
 struct Device {
   explicit Device(unsigned threads) {
     const std::string config = "threads=" + std::to_string(geometry::thread_count(threads));
@@ -58,8 +58,8 @@ Eigen::AlignedBox3d moved(const Eigen::AlignedBox3d& box, const Eigen::Isometry3
   return all;
 }
 
-/// Appends what a part says of its triangles to the same of the parts before, which have `before`
-/// triangles; as long as no part says anything, there is nothing.
+/// Appends a property of a part's triangles to those of the previous parts, which have `before`
+/// triangles. The list remains empty until a part has the property.
 template <typename Property>
 void append_property(std::span<const Property> own, std::size_t triangles, std::size_t before,
                      Property usual, std::vector<Property>& all) {
@@ -108,9 +108,9 @@ struct SceneBuilder::Growth {
   unsigned threads;
   std::unique_ptr<Scene::Trees> trees = std::make_unique<Scene::Trees>();
   std::vector<float> reflectances{};
-  std::vector<Eigen::AlignedBox3f> boxes{};  ///< of all copies
-  std::size_t first_triangle = 0;            ///< of the next copy
-  std::size_t own_triangle = 0;              ///< of the next part
+  std::vector<Eigen::AlignedBox3f> boxes{};  ///< Boxes of all copies.
+  std::size_t first_triangle = 0;            ///< First triangle of the next copy.
+  std::size_t own_triangle = 0;              ///< First triangle of the next part.
 };
 
 SceneBuilder::SceneBuilder(const Vector3d& centre, unsigned threads)

@@ -1,4 +1,4 @@
-/// What Scene hides: the trees that rays walk down. For sources of this folder only.
+/// Ray-casting data of Scene. Internal to this library's sources.
 #pragma once
 
 #include <cstdint>
@@ -15,34 +15,37 @@
 namespace skycap::sim {
 
 struct Scene::Trees {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< world position of the rays' origin
-  RayTarget target;                                  ///< at which rays are cast, in that frame
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< World position of the origin for rays [m].
+  RayTarget target;                                  ///< Target of rays, relative to `centre`.
 
   std::vector<RayTree> parts;
-  std::vector<RayTree> over_copies;  ///< one tree, or none: the scene is a single mesh
+  /// Tree over the copies. Empty for a scene with a single mesh.
+  std::vector<RayTree> over_copies;
   std::vector<SceneCopy> copies;
-  std::vector<std::uint32_t> own_triangles;  ///< of each copy, the first among those of all parts
-  std::vector<Surface> surfaces;             ///< of each part's triangles; empty: all matt
+  /// For each copy, index of its first triangle among those of all parts.
+  std::vector<std::uint32_t> own_triangles;
+  std::vector<Surface> surfaces;  ///< Surfaces of the triangles of each part. Empty: all matt.
 
-  /// The triangle, among those of all parts without their copies, that a hit is on.
+  /// Returns the index, among the triangles of all parts without copies, of a hit triangle.
   std::size_t own_triangle(std::uint32_t triangle) const;
-  /// Of the triangle that a hit is on.
+  /// Returns the surface of a hit triangle.
   Surface surface(std::uint32_t triangle) const {
     return surfaces.empty() ? Surface::matt : surfaces[own_triangle(triangle)];
   }
 };
 
-/// Of a single mesh, which is valid.
+/// Builds the trees of a single valid mesh.
 std::unique_ptr<Scene::Trees> grow_tree(const geometry::Mesh& mesh, unsigned threads);
 
-/// A box around all copies of all parts.
+/// Returns a box around all copies of all parts.
 Eigen::AlignedBox3d box_around(std::span<const ScenePart> parts);
 
-/// Throws Error{bad_geometry} if there are so many properties for another number of triangles.
+/// Throws Error{bad_geometry} unless `count` is the number of triangles. `what` is the name of the
+/// property.
 void require_one_each(std::size_t count, const char* what, const geometry::Mesh& mesh);
 
-/// Throws what geometry::validate() throws, and Error{bad_geometry} if a property is not one for
-/// each triangle.
+/// Throws the same errors as geometry::validate(), and Error{bad_geometry} if a property does not
+/// have one value per triangle.
 void require_valid(const ScenePart& part, unsigned threads);
 
 }  // namespace skycap::sim

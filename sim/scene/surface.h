@@ -1,4 +1,4 @@
-/// What surfaces do to the light that a sensor sends out.
+/// Surface types by their effect on the light of a sensor.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,9 @@
 namespace skycap::sim {
 
 enum class Surface : std::uint8_t {
-  matt,   ///< some of it comes back
-  glass,  ///< none of it comes back, whatever is behind
-  mirror  ///< it goes on as mirrored; what comes back then seems to lie straight on
+  matt,   ///< Diffuse reflection with a return.
+  glass,  ///< No return, neither from the glass nor from objects behind it.
+  mirror  ///< Specular reflection. Mirrored objects appear in a straight line behind the surface.
 };
 
 }  // namespace skycap::sim

@@ -16,7 +16,7 @@ Vector3f mirrored(const Vector3f& direction, const Vector3f& normal) {
   return direction - 2.0F * direction.dot(normal) * normal;
 }
 
-/// A ray as it was sent, and what it met.
+/// Emitted ray with its hit.
 class Ray {
  public:
   Ray(const RayPacket& packet, int lane) : lane_(lane) {
@@ -29,7 +29,7 @@ class Ray {
     ray_.triangle = packet.triangle[lane];
   }
 
-  /// Goes on from each mirror until something else is met.
+  /// Continues from each mirror until a different surface is hit.
   void follow(const Scene::Trees& trees, float reach) {
     float way = 0.0F;
     while (ray_.distance >= 0.0F) {
@@ -58,7 +58,7 @@ class Ray {
     Vector3f normal = Vector3f(ray_.normal[0], ray_.normal[1], ray_.normal[2]).normalized();
     if (normal.dot(direction) > 0.0F) normal = -normal;
     const Vector3f place = origin + ray_.distance * direction;
-    // Off the mirror by what rounding may have put the place behind it.
+    // Displaced from the mirror by the rounding error of the position.
     origin = place + 1e-5F * (1.0F + place.cwiseAbs().maxCoeff()) * normal;
     direction = mirrored(direction, normal);
     normals_[mirrors_++] = normal;

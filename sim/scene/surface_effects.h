@@ -1,4 +1,4 @@
-/// Glass and mirrors: what a sensor measures where its rays meet them. For sources of sim only.
+/// Glass and mirrors in sensor measurements. Internal to sim.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace skycap::sim {
 
-/// Casts the lanes of a packet as RayKernels::cast does and follows them as the scene's surfaces
-/// have it: rays that meet glass have no hit, and rays that meet mirrors hit what is mirrored, at
-/// the distance of the whole way. Such a hit's normal is mirrored back, so that it stands to the
-/// ray as sent as the true one does to the ray as it arrived. After eight mirrors a ray is lost.
+/// Casts the lanes of a packet like RayKernels::cast, with the effects of surfaces. Rays that meet
+/// glass have no hit. Rays that meet a mirror hit the mirrored object at the distance of the total
+/// path. The normal is mirrored back, so that its angle to the emitted ray equals the true angle of
+/// incidence. A ray is lost after eight mirrors.
 void cast_at_surfaces(const Scene::Trees& trees, RayPacket& packet, std::uint32_t lanes,
                       float reach);
 

@@ -1,10 +1,10 @@
-/// The way of many packets of rays that run side by side down a tree of triangles, as of a tile of
-/// an image. For the sources that are compiled for one instruction set each.
+/// Joint traversal of a triangle tree by many packets of near-parallel rays, such as those of an
+/// image tile. For sources that are compiled for one instruction set each.
 ///
-/// All packets go down together, by the bounds of all their rays, as far as the nearest boxes that
-/// they may meet, most of them leaves: each packet then begins there, nearest box first, and not at
-/// the root. Where boxes are too many for that, since triangles are small beside the tile, every
-/// packet walks on its own. Which of these is done decides the time alone.
+/// All packets descend together, with common bounds, to the nearest boxes that they may enter, most
+/// of which are leaves. Each packet then starts there, nearest box first, instead of at the root.
+/// If there are too many boxes, because triangles are small compared with the tile, every packet
+/// traverses the tree alone. The choice affects only the computing time.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@
 namespace skycap::sim {
 namespace {
 
-// Where packets begin: boxes, nearest first.
+// Boxes at which packets start, nearest first.
 class Entries {
  public:
   struct Entry {
     const TreeNode* node;
     int child;
-    float near;  // none of the rays enters the box sooner
+    float near;  // Lower bound on the distance at which rays enter the box.
 
     TreeRef ref() const { return node->children[child]; }
     bool is_leaf() const { return (ref() & tree_ref_entries) != 0; }
@@ -34,8 +34,8 @@ class Entries {
   const Entry* begin() const { return entries_; }
   const Entry* end() const { return entries_ + count_; }
 
-  // Those below a node that rays within the bounds enter, and no farther than `reach`. False, with
-  // nothing done, if there is no room for them.
+  // Adds the children of a node that rays within the bounds enter within `reach`. Returns false and
+  // changes nothing if the capacity is insufficient.
   bool add_below(const TreeNode& node, const BundleBounds& bounds, float reach) {
     alignas(64) float near[TreeNode::arity];
     std::uint32_t children = entered(box_distances<false>(node, bounds), reach, near);
@@ -51,8 +51,7 @@ class Entries {
     return true;
   }
 
-  // Puts in place of nodes that rays enter no farther than `expected`, as long as there is room,
-  // what is below them.
+  // Replaces nodes that rays enter within `expected` by their children, while the capacity permits.
   void open_nearest(const BundleBounds& bounds, float reach, float expected) {
     for (int i = 0; i < count_ && entries_[i].near <= expected;) {
       const Entry opened = entries_[i];
@@ -60,7 +59,7 @@ class Entries {
         ++i;
         continue;
       }
-      // What is below it was added behind it.
+      // The children were inserted behind the node.
       --count_;
       for (int later = i; later < count_; ++later) entries_[later] = entries_[later + 1];
     }
@@ -72,7 +71,7 @@ class Entries {
   int count_ = 0;
 };
 
-// The bounds of all rays; false if their directions have not all the same signs.
+// Computes the bounds of all rays. Returns false if the signs of their directions differ.
 inline bool bound(const RayPacket* packets, int count, float extent, BundleBounds& bounds) {
   struct Bounds {
     float least, greatest;
@@ -94,7 +93,7 @@ inline bool bound(const RayPacket* packets, int count, float extent, BundleBound
     const float from = least_lane(least_direction), to = greatest_lane(greatest_direction);
     is_backwards[axis] = from < 0.0F;
     if (is_backwards[axis] && to >= 0.0F) return false;
-    // Division is monotone: the bounds of the inverses are the inverses of the bounds.
+    // Division is monotone, so the bounds of the inverses are the inverses of the bounds.
     const float one = inverse_magnitude(from), other = inverse_magnitude(to);
     inverses[axis] = {least(one, other), greatest(one, other)};
   }
@@ -125,7 +124,7 @@ inline Nearest<Floats> nothing_within(float reach) {
   return {every<Floats>(reach), is_less(zero, zero), zero, {zero, zero, zero}};
 }
 
-// How far its rays go.
+// Casts a packet from the given entries. Returns the distance of its farthest hit.
 template <Wish wish>
 [[gnu::noinline]] float cast_from(const Entries& entries, const TreeRoot& tree,
                                   const BundleBounds& bounds, RayPacket& packet, float reach) {
@@ -149,14 +148,14 @@ template <Wish wish>
   return most;
 }
 
-// False, with nothing done, if they have to be cast one by one.
+// Casts all packets together. Returns false and changes nothing if they must be cast one by one.
 template <Wish wish>
 bool cast_together(const TreeRoot& tree, RayPacket* packets, int count, float reach) {
   BundleBounds bounds;
   if (!bound(packets, count, tree.extent, bounds)) return false;
   Entries entries;
   entries.add_below(*reinterpret_cast<const TreeNode*>(tree.ref), bounds, reach);
-  // Behind what the first packet meets there is most often nothing to be seen by the others either.
+  // Objects behind the hits of the first packet are usually hidden from the others, too.
   const float expected = cast_from<wish>(entries, tree, bounds, packets[0], reach);
   entries.open_nearest(bounds, reach, expected);
   for (int i = 1; i < count; ++i) cast_from<wish>(entries, tree, bounds, packets[i], reach);

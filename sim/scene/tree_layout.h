@@ -1,35 +1,35 @@
-/// How a tree of boxes lies in memory, for those who build it and those who walk down it.
+/// Memory layout of the bounding volume hierarchy, shared by builder and traversal.
 #pragma once
 
 #include <cstdint>
 
 namespace skycap::sim {
 
-/// A node or a leaf. The lowest four bits of its address, all multiples of 16, count a leaf's
-/// entries; a node has none.
+/// Reference to a node or a leaf. Addresses are multiples of 16; the lowest four bits hold the
+/// number of leaf entries, 0 for a node.
 using TreeRef = std::uintptr_t;
 inline constexpr TreeRef tree_ref_entries = 15;
-/// Of nodes from the root to any leaf there are at most so many.
+/// Maximum number of nodes from the root to a leaf.
 inline constexpr unsigned max_tree_depth = 40;
 
-/// Boxes around the triangles below up to eight children. Children that are missing have boxes that
-/// no ray enters.
+/// Boxes around the triangles below up to eight children. Missing children have boxes that no ray
+/// enters.
 struct alignas(64) TreeNode {
   static constexpr int arity = 8;
-  float planes[3][2 * arity];  ///< for each axis the lower bounds, then the upper ones negated
+  float planes[3][2 * arity];  ///< Lower bounds per axis, followed by the negated upper bounds.
   TreeRef children[arity];
 };
 
-/// An entry of a leaf over triangles.
+/// Entry of a triangle leaf.
 struct LeafTriangle {
   float corners[3][3];
   std::uint32_t number;
 };
 
-/// All of a tree that rays need.
+/// Complete tree as seen by rays.
 struct TreeRoot {
   TreeRef ref = 0;
-  float extent = 0.0F;  ///< the greatest magnitude of a coordinate of its boxes
+  float extent = 0.0F;  ///< Maximum magnitude of the box coordinates.
 };
 
 }  // namespace skycap::sim

@@ -1,11 +1,11 @@
-/// The way of rays down a tree. For the sources that are compiled for one instruction set each.
+/// Traversal of a tree by rays. For sources that are compiled for one instruction set each.
 ///
-/// A packet walks as one. The boxes of a node's eight children are met with the bounds of all its
-/// rays at once, and those that pass with every ray. Boxes are padded, so that no ray passes by a
-/// triangle that it hits, and left out only where every ray has met something nearer.
+/// A packet traverses the tree as a unit. The boxes of a node's eight children are first tested
+/// with the bounds of all rays, and the remaining ones with every ray. Boxes are padded so that no
+/// ray misses a triangle that it hits. A box is skipped only if every ray has a nearer hit.
 ///
-/// An axis along which the rays run backwards is mirrored; a box then has its upper bound, negated,
-/// in the place of the lower one.
+/// An axis along which the rays run in negative direction is mirrored. The negated upper bound of a
+/// box then replaces the lower one.
 #pragma once
 
 #include <cstdint>
@@ -17,26 +17,26 @@
 namespace skycap::sim {
 namespace {
 
-// How the rays of a tree of triangles, and of one of copies, pad its boxes, in shares of the
-// greatest coordinate; see TriangleTest::least_area(). A copy's box has to hold all that its own
-// tree's padding and the way into its own frame may add.
+// Padding of boxes in trees of triangles and of copies, relative to the largest coordinate; see
+// TriangleTest::least_area(). The box of a copy must also cover the padding of its own tree and the
+// transformation to its frame.
 constexpr float triangle_padding = 0x1p-16F, copy_padding = 0x1p-13F;
 
-// All rays of a bundle as they meet whole nodes, nearer bounds and then farther ones: the greatest
-// origins, mirrored and padded, and the bounds of the inverse directions.
+// Bounds of all rays of a bundle for testing whole nodes, with near bounds before far bounds. They
+// hold the maximum origins, mirrored and padded, and the range of the inverse directions.
 struct BundleBounds {
-  int nearer[3];  // where in a node's planes the nearer bounds begin
+  int nearer[3];  // Offset of the near bounds within a node's planes.
   float padding;
   Floats origin[3], least_inverse[3], greatest_inverse[3];
 };
 
-// Rays whose directions have the same signs, as they meet boxes.
+// Rays with directions of equal signs, prepared for box tests.
 template <typename Lanes>
 struct Bundle {
   MaskOf<Lanes> active;
-  Lanes origin_for_near[3];  // mirrored and padded
-  Lanes origin_for_far[3];   // the same, negated
-  Lanes inverse[3];          // of the direction's magnitude
+  Lanes origin_for_near[3];  // Mirrored and padded.
+  Lanes origin_for_far[3];   // Mirrored, padded and negated.
+  Lanes inverse[3];          // Inverse magnitude of the direction.
   BundleBounds bounds;
 };
 
@@ -50,11 +50,11 @@ struct Interval {
 
 template <typename Lanes>
 inline Lanes inverse_magnitude(const Lanes& direction) {
-  constexpr float least_direction = 1e-18F;  // keeps the inverse and products with it finite
+  constexpr float least_direction = 1e-18F;  // Keeps the inverse and its products finite.
   return every<Lanes>(1.0F) / greatest(magnitude(direction), every<Lanes>(least_direction));
 }
 
-// Of rays whose origins and inverse directions lie in these intervals.
+// Computes the bounds for rays whose origins and inverse directions lie in the given intervals.
 template <typename Interval>
 [[gnu::always_inline]] inline BundleBounds make_bounds(const Interval (&origins)[3],
                                                        const Interval (&inverses)[3],
@@ -79,7 +79,7 @@ template <typename Interval>
   return bounds;
 }
 
-// Rays within bounds that may be those of more rays.
+// Returns a bundle with the given bounds, which may include further rays.
 template <typename Lanes>
 [[gnu::always_inline]] inline Bundle<Lanes> make_bundle(const Rays<Lanes>& rays,
                                                         const MaskOf<Lanes>& active,
@@ -111,8 +111,8 @@ template <typename Lanes>
                      make_bounds(origins, inverses, is_backwards, extent, padding_share));
 }
 
-// The nearer bounds of eight children along an axis, and their farther ones, both mirrored if need
-// be, the farther ones negated.
+// Returns the near and far bounds of eight children along an axis. Both are mirrored if necessary;
+// the far bounds are negated.
 inline Floats near_and_far(const float* planes, int nearer) {
 #if defined(__AVX512F__)
   return {{(Part)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(planes + nearer)),
@@ -124,8 +124,8 @@ inline Floats near_and_far(const float* planes, int nearer) {
 #endif
 }
 
-// Of distances at which eight boxes are entered and, negated, left again: which boxes rays enter
-// that go no farther than `most`, and where.
+// Returns a bit mask of the boxes that rays enter within `most`, and stores the entry distances in
+// `near`. The arguments are the entry distances and negated exit distances of eight boxes.
 inline std::uint32_t entered(const Floats& near_and_far, float most, float (&near)[8]) {
 #if defined(__AVX512F__)
   const __m512 both = near_and_far.part[0];
@@ -146,8 +146,8 @@ inline std::uint32_t entered(const Floats& near_and_far, float most, float (&nea
 #endif
 }
 
-// No later than any of the rays enters a child of the node, no sooner than any leaves it, the
-// latter negated.
+// Returns lower bounds on the entry distances of a node's children, and negated upper bounds on
+// their exit distances, for all rays.
 template <bool is_one_ray>
 [[gnu::always_inline]] inline Floats box_distances(const TreeNode& node,
                                                    const BundleBounds& bounds) {
@@ -167,7 +167,7 @@ inline void prefetch(TreeRef ref) {
   for (int line = 0; line < 256; line += 64) __builtin_prefetch(memory + line);
 }
 
-// What is still to be visited, the nearest of the latest node last.
+// Stack of nodes to visit. The nearest child of the latest node is on top.
 struct ToVisit {
   struct Place {
     TreeRef ref;
@@ -177,13 +177,13 @@ struct ToVisit {
   Place* end = places;
 
   void push(TreeRef ref, float near) { *end++ = {ref, near}; }
-  // Behind the places from `first` on that are farther.
+  // Inserts an entry behind those from `first` on that are farther.
   void insert(const Place* first, TreeRef ref, float near) {
     Place* place = end++;
     for (; place != first && place[-1].near < near; --place) *place = place[-1];
     *place = {ref, near};
   }
-  // Nothing: all that is left is farther than `most`.
+  // Returns the next entry, or 0 if all remaining ones are beyond `most`.
   TreeRef pop(float most) {
     while (end != places) {
       --end;
@@ -198,7 +198,7 @@ class Walk {
  public:
   Walk(const Bundle<Lanes>& bundle, Nearest<Lanes>& nearest) : bundle_(bundle), nearest_(nearest) {}
 
-  // `test(leaf, active, nearest)` says whether it has found something nearer.
+  // Traverses the tree. `test(leaf, active, nearest)` returns true if it has found a nearer hit.
   template <typename LeafTest>
   [[gnu::always_inline]] void operator()(TreeRef root, const LeafTest& test) {
     float most = farthest();
@@ -213,14 +213,14 @@ class Walk {
     }
   }
 
-  // What has been met up to now is no farther than this.
+  // Returns an upper bound on the distances of the current hits.
   float farthest() const {
     return greatest_lane(chosen(bundle_.active, nearest_.distance, every<Lanes>(-infinity)));
   }
 
-  // Whether one of the rays enters a child.
+  // Returns true if one of the rays enters the child.
   [[gnu::always_inline]] bool is_entered(const TreeNode& node, int child) const {
-    Lanes enter = every<Lanes>(0.0F), leave = -nearest_.distance;  // the latter negated
+    Lanes enter = every<Lanes>(0.0F), leave = -nearest_.distance;  // `leave` is negated.
 #pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
       const float* const near = node.planes[axis] + bundle_.bounds.nearer[axis] + child;
@@ -235,7 +235,7 @@ class Walk {
   }
 
  private:
-  // The child to visit next; the others that have to be visited are noted.
+  // Returns the child to visit next and pushes the other children that rays enter.
   [[gnu::always_inline]] TreeRef enter(const TreeNode& node, float most) {
     alignas(64) float near[TreeNode::arity];
     std::uint32_t children =

@@ -1,12 +1,12 @@
-/// Whether rays hit a triangle, and where: the decisions that ray_kernels.h states. For the sources
-/// that are compiled for one instruction set each.
+/// Ray-triangle test with the decisions specified in ray_kernels.h. For sources that are compiled
+/// for one instruction set each.
 ///
-/// Names as in the paper: x, y and depth of the corners a, b, c are relative to the ray's origin,
-/// sheared so that the ray runs along the depth; u, v, w are twice the signed areas of bc, ca, ab
-/// with the ray. Two products of floats and their difference are rounded monotonically, so that
-/// these areas have their true sign or are zero. Where one is zero, or the triangle is so thin for
-/// the ray that rounding could move the hit out of the padded boxes of the tree, it is decided in
-/// double precision, in which such products are exact.
+/// Names follow the paper: x, y and depth are coordinates of the corners a, b, c relative to the
+/// ray's origin. They are sheared such that the ray runs along the depth. u, v, w are twice the
+/// signed areas of bc, ca, ab with the ray. The rounding of two float products and their difference
+/// is monotone, so these areas have the correct sign or are zero. Double precision, in which such
+/// products are exact, decides two cases: an area is zero, or the triangle is so thin that rounding
+/// could move the hit out of the padded boxes.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 namespace skycap::sim {
 namespace {
 
-// Rays, one or sixteen.
+// Rays: one or sixteen.
 template <typename Lanes>
 struct Rays {
   Lanes origin[3], direction[3];
@@ -26,13 +26,13 @@ struct Rays {
 
 constexpr float infinity = __builtin_inff();
 
-// What rays have met up to now; before the first, no farther than their reach. Where any hit will
-// do, a ray that has one looks for none any nearer: its distance is -infinity.
+// Current hits of rays. Before the first hit, the distance is the reach. If any hit suffices, the
+// distance of a hit is -infinity, so that no nearer one is searched.
 template <typename Lanes>
 struct Nearest {
   Lanes distance;
   MaskOf<Lanes> is_hit;
-  Lanes triangle;  // the bits of its number
+  Lanes triangle;  // Bits of the triangle number.
   Lanes normal[3];
 };
 
@@ -47,7 +47,7 @@ inline Areas<Number> areas(const Number (&x)[3], const Number (&y)[3]) {
   return {x[2] * y[1] - y[2] * x[1], x[0] * y[2] - y[0] * x[2], x[1] * y[0] - y[1] * x[0]};
 }
 
-// Where the ray meets the triangle: the corners' depths, each with its share of the area.
+// Returns the depth of the hit: the corner depths weighted by their areas.
 template <typename Number>
 inline Number mean_depth(const Number& v, const Number& w, const Number& area,
                          const Number (&depth)[3]) {
@@ -59,7 +59,8 @@ struct ShearedTriangle {
   Lanes x[3], y[3], depth[3];
 };
 
-// In double precision; negative where there is no hit. `inverse` is that of the depth's direction.
+// Computes the distance in double precision, negative without a hit. `inverse` is the inverse of
+// the direction along the depth.
 inline float exact_distance(const ShearedTriangle<float>& triangle, float inverse) {
   double x[3], y[3], depth[3];
   for (int i = 0; i < 3; ++i) {
@@ -72,7 +73,8 @@ inline float exact_distance(const ShearedTriangle<float>& triangle, float invers
   const bool is_positive = (u > 0.0) | (v > 0.0) | (w > 0.0);
   const auto distance =
       static_cast<float>(mean_depth(v, w, (u + v) + w, depth) * static_cast<double>(inverse));
-  return is_negative != is_positive ? distance : -1.0F;  // both: beside it; none: seen edge-on
+  // Both signs: the ray misses. Neither: the triangle is seen edge-on.
+  return is_negative != is_positive ? distance : -1.0F;
 }
 [[gnu::noinline]] Floats exact_distance(const ShearedTriangle<Floats>& triangle,
                                         const Floats& inverse) {
@@ -94,7 +96,7 @@ inline float exact_distance(const ShearedTriangle<float>& triangle, float invers
   return load(distances.of);
 }
 
-// Where a hit is as near as the one before it, of which the smaller number counts.
+// Compares triangle numbers: among equal distances, the smaller number wins.
 inline Truth is_smaller(std::uint32_t number, float other) {
   return {number < __builtin_bit_cast(std::uint32_t, other)};
 }
@@ -107,8 +109,8 @@ inline Truth is_smaller(std::uint32_t number, float other) {
   return mask_of(smaller);
 }
 
-// How leaves of triangles are tested. Rays with different main axes go through a tree together, but
-// each is tested along its own.
+// Test of triangle leaves. Rays with different main axes traverse the tree together, but each is
+// tested along its own main axis.
 template <typename Lanes, Wish wish>
 class TriangleTest {
  public:
@@ -133,7 +135,7 @@ class TriangleTest {
     }
   }
 
-  // Whether a ray has met one of the leaf's triangles.
+  // Returns true if a ray hits one of the leaf's triangles.
   bool operator()(TreeRef leaf, const MaskOf<Lanes>&, Nearest<Lanes>& nearest) const {
     bool is_met = false;
     if (is_some_along_[0]) is_met |= test_all<0>(leaf, nearest);
@@ -157,7 +159,7 @@ class TriangleTest {
   [[gnu::always_inline]] bool test(const LeafTriangle& triangle, Nearest<Lanes>& nearest) const {
     const ShearedTriangle<Lanes> sheared = sheared_along<main>(triangle);
     const auto [u, v, w] = areas(sheared.x, sheared.y);
-    // Positive: all areas have the same sign; zero: but for zeros.
+    // Positive: all areas have equal signs. Zero: equal signs except for zeros.
     const Lanes agreement = greatest(least(u, least(v, w)), -greatest(u, greatest(v, w)));
     const Lanes zero = every<Lanes>(0.0F);
     const auto inside = is_at_most(zero, agreement) & is_along_[main];
@@ -190,12 +192,14 @@ class TriangleTest {
     return sheared;
   }
 
-  // From which area on floats are exact enough. Let e be 2^-24, R the greatest coordinate relative
-  // to the ray's origin, which is at least the tree's extent, L what x and y extend over, which is
-  // no less than any of them if the ray is inside, and D what the depth does. Then u, v and w are
-  // each wrong by 4 e L^2 at most, and the depth of the hit by 12 e L^2 D / area, from this area on
-  // less than 192 e R. Rounding the corners adds 7 e R, the mean depth and the distance 8 e R, the
-  // boxes' arithmetic 6 e R: the boxes are padded by 256 e R.
+  // Returns the area above which single precision suffices.
+  //
+  // Let e be 2^-24 and R the largest coordinate relative to the ray's origin, which is at least the
+  // extent of the tree. Let L be the extent of x and y, at least as large as both if the ray is
+  // inside, and D the extent of the depth. Then the error of u, v and w is at most 4 e L^2, and
+  // that of the hit depth 12 e L^2 D / area, which is less than 192 e R above this area. Rounding
+  // adds 7 e R for the corners, 8 e R for mean depth and distance, and 6 e R for the box
+  // arithmetic. The boxes are padded by 256 e R.
   template <int main>
   float least_area(const LeafTriangle& triangle) const {
     float size[3];
@@ -249,12 +253,12 @@ class TriangleTest {
   }
 
   Lanes origin_[3];
-  MaskOf<Lanes> is_along_[3];  // active rays by their main axis
+  MaskOf<Lanes> is_along_[3];  // Active rays by main axis.
   bool is_some_along_[3];
-  Lanes inverse_;   // of the direction along the main axis
-  Lanes shear_[3];  // the direction in units of that
+  Lanes inverse_;   // Inverse of the direction along the main axis.
+  Lanes shear_[3];  // Direction relative to its component along the main axis.
   float least_area_factor_;
-  const SceneCopy* copy_;  // of which these are the triangles, if any
+  const SceneCopy* copy_;  // Copy that contains the triangles, or null.
 };
 
 }  // namespace

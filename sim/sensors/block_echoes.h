@@ -1,4 +1,4 @@
-/// The echoes of a block of shots. For the source of lidar.h.
+/// Echoes of a block of laser pulses. Internal to lidar.h.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace skycap::sim {
 
-/// The n-th echo of every shot, slot by slot.
+/// The n-th echo of every pulse, indexed by slot.
 struct EchoRow {
   std::vector<float> range, cosine, intensity;
   std::vector<std::uint32_t> triangle;
@@ -20,16 +20,17 @@ struct EchoRow {
   void resize(std::size_t slots);
 };
 
-/// Keeps its memory from block to block.
+/// Echo computation that reuses its memory from block to block.
 class BlockEchoes {
  public:
-  std::vector<EchoRow> rows;  ///< as many as a shot may have echoes; the caller's to resize
-  std::vector<int> counts;    ///< of the echoes in each slot
+  std::vector<EchoRow> rows;  ///< One row per possible echo of a pulse. The caller resizes it.
+  std::vector<int> counts;    ///< Number of echoes per slot.
 
-  /// Of beams without a width: a ray is its echo. Takes the arrays of `hits`.
+  /// Computes echoes for beams without width: each ray is one echo. Moves the arrays out of `hits`.
   void find_of_rays(Hits& hits, const Scene& scene, const LidarConfig& config);
 
-  /// Of beams with a width: the rays of a slot follow each other, in the order of `beam`.
+  /// Computes echoes for beams with width. The rays of a slot are consecutive, in the order of
+  /// `beam`.
   void find_of_beams(const Hits& hits, std::span<const BeamSample> beam, const Scene& scene,
                      const LidarConfig& config);
 

@@ -27,12 +27,12 @@ using Eigen::Vector3f;
 using geometry::Scan;
 
 constexpr float no_return = -1.0F;
-constexpr std::uint32_t stereo_stream = 3;  // 0, 1, 2: x, y, z of the points' noise
+constexpr std::uint32_t stereo_stream = 3;  // Streams 0, 1, 2: x, y, z of the point noise.
 
-// What decides whether a hit is a return.
+// Limits of hits that give a return.
 struct Limits {
   float min_depth, max_depth;
-  float min_cosine;  // of the angle of incidence; zero: no limit
+  float min_cosine;  // Minimum cosine of the angle of incidence. 0: no limit.
 };
 
 float min_cosine_of(double max_incidence) {
@@ -72,9 +72,8 @@ void for_each_packet(int left, int right, int top, int bottom, const Work& work)
   }
 }
 
-// Casts the rays of one band of an image like the table's, whose depths go to `depths`, row by row
-// with the table's stride. Rays of the padding are cast like the others, being copies, and their
-// depths are never read.
+// Casts the rays of one band of the image. The depths are written to `depths` row by row with the
+// table's stride. Rays of the padding are copies, and their depths are never read.
 template <typename Rays>
 void cast_band(const Scene::Trees& trees, const RayTable& table, const Rays& rays,
                const Limits& limits, int first_row, float* depths) {
@@ -107,13 +106,13 @@ void cast_band(const Scene::Trees& trees, const RayTable& table, const Rays& ray
   }
 }
 
-// Casts one band of an image that is exposed in motion. A pixel's depth is the mean of its
-// instants', of those with a return, which have to be half of them at least. If they are not of one
-// surface it has none: drivers leave out what mixes two.
+// Casts one band of an image exposed in motion. A pixel's depth is the mean of its instants with a
+// return, which must be at least half of all. If they belong to different surfaces, there is no
+// return, because drivers discard such mixed pixels.
 void cast_moving_band(const Scene::Trees& trees, const RayTable& table,
                       const std::vector<MovingRays>& instants, const Limits& limits, int first_row,
                       float* depths) {
-  constexpr float one_surface = 1.02F;  // greatest depth over the least
+  constexpr float one_surface = 1.02F;  // Maximum ratio of depths on one surface.
   const std::size_t size = static_cast<std::size_t>(table.stride) * band_rows;
   std::vector<float> one(size, no_return), sums(size, 0.0F), counts(size, 0.0F);
   std::vector<float> least(size, std::numeric_limits<float>::infinity()), most(size, 0.0F);
@@ -134,8 +133,8 @@ void cast_moving_band(const Scene::Trees& trees, const RayTable& table,
   }
 }
 
-// Gives each band its place in the scan. Bands are cast in any order but their points lie one after
-// the other, so a band has to wait until those before it are counted.
+// Assigns the position of each band in the scan. Bands are cast in any order but their points are
+// consecutive, so a band must wait until all previous ones are counted.
 class BandPlaces {
  public:
   struct Place {
@@ -145,7 +144,7 @@ class BandPlaces {
 
   explicit BandPlaces(std::size_t bands) : returns_(bands) {}
 
-  /// Counts a band; gives the bands, if any, whose place this makes known.
+  /// Counts a band. Returns the bands whose position becomes known.
   std::vector<Place> count(std::size_t band, std::size_t returns) {
     const std::lock_guard lock(mutex_);
     returns_[band] = returns;
@@ -157,7 +156,7 @@ class BandPlaces {
     return known;
   }
 
-  /// The number of points of all placed bands.
+  /// Returns the number of points of all positioned bands.
   std::size_t points() const { return points_; }
 
  private:
@@ -167,7 +166,7 @@ class BandPlaces {
   std::size_t points_ = 0;
 };
 
-// Replaces the depths of one band by those that triangulation gives.
+// Replaces the depths of one band by those of triangulation.
 void add_stereo_errors(const RayTable& table, const StereoErrors& stereo, const NoiseKey& key,
                        int first_row, float* depths) {
   const auto product = static_cast<float>(stereo.focal_length_px * stereo.baseline);
@@ -204,7 +203,7 @@ std::size_t count_returns(const RayTable& table, int first_row, const float* dep
   return returns;
 }
 
-// What the kernel needs to know to turn any row of depths into points.
+// Returns the row-independent input of the kernel that converts depths to points.
 PinholeRow row_template(const RayTable& table, const Vector3d& position, const NoiseConfig& noise,
                         std::uint64_t frame) {
   PinholeRow row{};
@@ -219,7 +218,7 @@ PinholeRow row_template(const RayTable& table, const Vector3d& position, const N
   return row;
 }
 
-// Writes the points of one band's depths to their place.
+// Writes the points of one band to their position.
 void emit_band(const RayTable& table, PinholeRow row, int first_row, const float* depths,
                std::size_t first_point, Scan& scan) {
   static_assert(sizeof(Vector3f) == 3 * sizeof(float));
@@ -229,12 +228,12 @@ void emit_band(const RayTable& table, PinholeRow row, int first_row, const float
     for (int axis = 0; axis < 3; ++axis) row.row[axis] = table.rows[axis][y];
     row.first_pixel = static_cast<std::uint32_t>(y) * table.width;
     row.noise_index = static_cast<std::uint32_t>(y) * table.stride;
-    if (next == scan.points.size()) return;  // no returns are left
+    if (next == scan.points.size()) return;  // No returns are left.
     next += vector_kernels().emit_row(row, scan.points[next].data(), &scan.pixels[next]);
   }
 }
 
-// The frame whose bands `cast` gives the depths of, as seen from `world_from_camera`.
+// Returns the frame from `world_from_camera`. `cast` computes the depths of a band.
 template <typename Cast>
 Scan frame_of(const DepthCameraConfig& config, const RayTable& table,
               const Eigen::Isometry3d& world_from_camera, std::uint64_t frame, unsigned threads,

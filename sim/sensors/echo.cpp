@@ -29,7 +29,7 @@ Echo merge(std::span<const RayHit> hits, const Sensitivity& sensitivity) {
   return echo;
 }
 
-// Keeps the echoes that the sensor reports; they stay in the order of their ranges.
+// Keeps the echoes that the sensor reports, in the order of their ranges.
 void choose(std::vector<Echo>& echoes, const Beam& beam) {
   const auto most = static_cast<std::size_t>(beam.max_returns);
   if (echoes.size() <= most) return;
@@ -69,7 +69,7 @@ std::vector<Echo> form_echoes(std::span<RayHit> hits, const Sensitivity& sensiti
   const auto by_range = [](const RayHit& a, const RayHit& b) { return a.range < b.range; };
   const auto resolution = static_cast<float>(0.5 * speed_of_light * beam.pulse_length);
   const auto [nearest, farthest] = std::minmax_element(hits.begin(), hits.end(), by_range);
-  const bool is_single = farthest->range - nearest->range < resolution;  // the usual case
+  const bool is_single = farthest->range - nearest->range < resolution;  // Usual case.
   if (!is_single) std::sort(hits.begin(), hits.end(), by_range);
   for (std::size_t first = 0; first < hits.size();) {
     std::size_t end = is_single ? hits.size() : first + 1;
@@ -87,7 +87,7 @@ float range_sigma(const RangeErrors& errors, float range, float cosine) {
   const double quadratic = errors.sigma_per_square_metre * range * range;
   double sigma = std::sqrt(errors.sigma * errors.sigma + linear * linear + quadratic * quadratic);
   if (errors.incidence_power > 0.0) {
-    constexpr double grazing = 1e-3;  // keeps the error finite
+    constexpr double grazing = 1e-3;  // Keeps the error finite.
     sigma /= std::pow(std::max<double>(cosine, grazing), errors.incidence_power);
   }
   return static_cast<float>(sigma);

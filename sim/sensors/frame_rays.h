@@ -1,5 +1,4 @@
-/// The rays of a depth camera's frame, as packets of rays take them: of a camera that stands, and
-/// of one that moves while the frame is exposed.
+/// Rays of a depth camera frame as ray packets, for a stationary or a moving camera.
 #pragma once
 
 #include <algorithm>
@@ -16,32 +15,34 @@
 
 namespace skycap::sim {
 
-/// A packet of rays is four columns wide.
+/// Columns of a ray packet.
 inline constexpr int packet_columns = 4;
 inline constexpr int packet_rows = RayPacket::width / packet_columns;
-inline constexpr int tile_columns = 16, tile_rows = 16;  ///< of the packets that are cast together
+/// Tile of packets that are cast together.
+inline constexpr int tile_columns = 16, tile_rows = 16;
 inline constexpr int packets_in_tile = tile_columns * tile_rows / RayPacket::width;
-inline constexpr int band_rows = 32;  ///< a band of tiles is one thread's piece of work
+inline constexpr int band_rows = 32;  ///< Rows of a band of tiles, which is one task of a thread.
 
-inline constexpr int column_block = 32;  ///< that noise is drawn for at once
+inline constexpr int column_block = 32;  ///< Columns whose noise is drawn together.
 
 inline int rounded_up(int value, int multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
 
-/// The rays of a whole image from one pose, in world axes and of depth 1: sums of a column's and a
-/// row's part. Rows are padded to whole bands, columns with copies of the last to whole blocks.
+/// Rays of an image from one pose, in world axes and with depth 1. A ray is the sum of a column
+/// vector and a row vector. Rows are padded to full bands, and columns with copies of the last one
+/// to full blocks.
 struct RayTable {
   int width, height;
   int stride;
   std::array<std::vector<float>, 3> columns;
   std::array<std::vector<float>, 3> rows;
-  Eigen::Vector3f origin;  ///< in the frame of the scene's trees
+  Eigen::Vector3f origin;  ///< Relative to the centre of the scene's trees.
 
   RayTable(const geometry::Camera& camera, const Eigen::Isometry3d& world_from_camera,
            const Eigen::Vector3d& scene_centre);
 
-  /// What all packets have in common.
+  /// Sets the part that all packets share.
   void begin(RayPacket& packet) const {
     for (int axis = 0; axis < 3; ++axis) {
       for (float& lane : packet.origin[axis]) lane = origin[axis];
@@ -60,7 +61,7 @@ struct RayTable {
   }
 };
 
-/// The same at one instant of each row's exposure, each row from where the camera then is.
+/// Rays at one instant of each row's exposure, each row with its own camera pose.
 class MovingRays {
  public:
   MovingRays(const geometry::Camera& camera, const FrameMotion& motion, int instant,
@@ -82,7 +83,7 @@ class MovingRays {
   }
 
  private:
-  /// A ray is the column's slope times `right`, plus `ahead`.
+  /// A ray is the slope of its column times `right`, plus `ahead`.
   struct Row {
     Eigen::Vector3f right, ahead, origin;
   };

@@ -50,25 +50,26 @@ struct Lidar::Impl {
   LidarConfig config;
   ScanPattern pattern;
   std::vector<BeamSample> beam;
-  std::vector<float> beam_along, beam_across, beam_above;  // its unit rays, in the beam's frame
+  // Unit rays of the beam, in its own frame.
+  std::vector<float> beam_along, beam_across, beam_above;
   bool has_constant_sigma;
-  std::vector<float> biases;        // of each channel
-  std::vector<float> delay_shares;  // of each channel's delay in the firing period
+  std::vector<float> biases;        // Bias of each channel [m].
+  std::vector<float> delay_shares;  // Delay of each channel, as a fraction of the firing period.
 };
 
 namespace {
 
-/// What a block of firings needs on its way. Every thread keeps one, so that a short scan does not
-/// begin with asking for memory.
+/// Buffers of a block of firings. Each thread keeps its own, so that a short scan does not start
+/// with memory allocation.
 struct BlockBuffers {
   BlockPoses poses, believed;
   Shots shots;
-  Rays shots_rays;     // the axes of the shots as they were
-  Rays reported_rays;  // and as the sensor and its carrier believe; only if they differ
-  Rays beam_rays;      // of beams with a width
+  Rays shots_rays;     // True axes of the pulses.
+  Rays reported_rays;  // Axes as estimated by sensor and platform. Only used if they differ.
+  Rays beam_rays;      // Rays of beams with width.
   Hits hits;
   std::vector<float> azimuth_noise, elevation_noise;
-  std::vector<std::vector<float>> range_noise;  // for each return of a shot
+  std::vector<std::vector<float>> range_noise;  // One entry per possible return of a pulse.
   BlockEchoes echoes;
 };
 
@@ -77,7 +78,7 @@ BlockBuffers& buffers_of_thread() {
   return buffers;
 }
 
-// Measures one block after another. Slots are gone through in fours: the same channel in four
+// Measures consecutive blocks. Slots are processed in groups of four: the same channel in four
 // consecutive firings.
 class BlockMeasurement {
  public:
@@ -114,11 +115,11 @@ class BlockMeasurement {
     report(start);
   }
 
-  /// Cuts off what an earlier use of the returns has left.
+  /// Removes the remainder of an earlier use.
   void finish() { returns_.resize(next_); }
 
  private:
-  // The rays of all shots in the world.
+  // Computes the rays of all pulses in the world frame.
   void place(const BlockPoses& poses, Rays& rays) const {
     rays.resize(lidar_.pattern.slots());
     for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
@@ -188,7 +189,7 @@ class BlockMeasurement {
     }
   }
 
-  // One normal for each slot, error and return; only for the errors that are on.
+  // Draws one normal variate per slot, error and return, for active errors only.
   void draw_noise(std::uint64_t block) {
     const auto draw = [&](std::uint32_t stream, std::vector<float>& normals) {
       normals.resize(lidar_.pattern.slots());
@@ -231,8 +232,8 @@ class BlockMeasurement {
     }
   }
 
-  /// The beginnings of the returns' arrays. As locals they stay in registers while bytes are
-  /// stored, which might be anything's for all the compiler knows.
+  /// Pointers to the arrays of returns. As local variables they remain in registers, because stored
+  /// bytes could otherwise alias them.
   struct Destination {
     explicit Destination(LidarReturns& returns)
         : points(returns.points.data()),
@@ -315,7 +316,7 @@ class BlockMeasurement {
     return measured;
   }
 
-  // A point along a ray that is turned by the errors of the sensor's angles.
+  // Returns a point along a ray rotated by the angle errors of the sensor.
   Vector3f misled(const Rays& rays, std::size_t slot, std::size_t firing, float range) const {
     const auto sigma = static_cast<float>(config_.errors.angle_sigma);
     const Vector3f direction = rays.towards(slot);
@@ -351,7 +352,7 @@ class BlockMeasurement {
   &elevation_noise_ = buffers_.elevation_noise;
   std::vector<std::vector<float>>& range_noise_ = buffers_.range_noise;
   BlockEchoes& echoes_ = buffers_.echoes;
-  std::size_t next_ = 0;  // where the next return goes
+  std::size_t next_ = 0;  // Index of the next return.
 };
 
 }  // namespace
@@ -364,14 +365,14 @@ Lidar& Lidar::operator=(Lidar&&) noexcept = default;
 const LidarConfig& Lidar::config() const { return impl_->config; }
 
 std::uint64_t Lidar::firings(const Trajectory& trajectory) const {
-  constexpr double rounding = 1e-9;  // a duration of whole periods has them all
+  constexpr double rounding = 1e-9;  // A duration of whole periods must contain all of them.
   const double duration = trajectory.end() - trajectory.start();
   return static_cast<std::uint64_t>(duration / impl_->config.firing_period + rounding);
 }
 
 LidarReturns Lidar::measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
                             LidarReturns recycled) const {
-  LidarReturns returns = std::move(recycled);  // every entry that is kept is written anew
+  LidarReturns returns = std::move(recycled);  // Every remaining entry is overwritten.
   returns.origin = scene.trees().centre;
   BlockMeasurement measurement(*impl_, scene, flight, returns);
   const std::uint64_t end = firings.first + firings.count;

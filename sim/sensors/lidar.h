@@ -1,9 +1,8 @@
-/// A simulated laser scanner on a moving platform: every shot has its own time and pose.
+/// Simulated laser scanner on a moving platform, with an individual time and pose for every pulse.
 ///
-/// Between two firings the pose is interpolated linearly, rotation matrix included; at a rate of
-/// turn w the direction is then off by at most (w * firing_period)^2 / 8, which is a micrometre at
-/// 100 m for 3 rad/s and 55 microseconds. Where firings are closer than 100 microseconds the
-/// trajectory itself is asked only that often.
+/// Between two firings, the pose is interpolated linearly, including the rotation matrix. At an
+/// angular rate w, the direction error is at most (w * firing_period)^2 / 8, which is 1 um at 100 m
+/// for 3 rad/s and 55 us. The trajectory itself is sampled at most every 100 us.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +17,12 @@
 
 namespace skycap::sim {
 
-/// How the sensor moved, and how its carrier believes that it moved.
+/// True and estimated motion of the sensor.
 struct LidarFlight {
   const Trajectory& flown;
-  const Trajectory& believed;  ///< may be the same object
+  const Trajectory& believed;  ///< Estimated trajectory. May be the same object as `flown`.
   Eigen::Isometry3d body_from_sensor = Eigen::Isometry3d::Identity();
-  /// What the calibration says: with errors of lever arm and boresight.
+  /// Calibrated mount, with errors of lever arm and boresight.
   Eigen::Isometry3d believed_body_from_sensor = Eigen::Isometry3d::Identity();
 };
 
@@ -33,19 +32,20 @@ struct FiringRange {
   std::uint64_t count = 0;
 };
 
-/// Returns in the order in which they were measured; structure of arrays. Points are relative to
-/// `origin`, so that single precision is enough in any world frame.
+/// Returns in the order of measurement, as a structure of arrays. Points are relative to `origin`,
+/// so that single precision suffices in any world frame.
 struct LidarReturns {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< world frame
-  std::vector<Eigen::Vector3f> points;       ///< as reported: measured distance, believed pose
-  std::vector<Eigen::Vector3f> true_points;  ///< of the echo, without any error
-  std::vector<double> times;                 ///< of the shot [s]
-  std::vector<float> intensities;            ///< reflectance * cos(incidence) * share of the beam
-  std::vector<float> scan_angles;            ///< azimuth in the sensor's frame, in (-pi, pi] [rad]
-  std::vector<std::uint32_t> triangles;      ///< of the scene's mesh; of the strongest sub-ray
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< World frame [m].
+  std::vector<Eigen::Vector3f> points;       ///< Reported points: measured range, estimated pose.
+  std::vector<Eigen::Vector3f> true_points;  ///< Error-free points of the echoes.
+  std::vector<double> times;                 ///< Time of the pulse [s].
+  std::vector<float> intensities;  ///< reflectance * cos(incidence) * fraction of the beam.
+  std::vector<float> scan_angles;  ///< Azimuth in the sensor frame, in (-pi, pi] [rad].
+  /// Triangle of the scene's mesh that the strongest sub-ray hits.
+  std::vector<std::uint32_t> triangles;
   std::vector<std::uint16_t> channels;
-  std::vector<std::uint8_t> return_numbers;    ///< counted from 1, by distance
-  std::vector<std::uint8_t> returns_of_shots;  ///< how many returns the shot has in all
+  std::vector<std::uint8_t> return_numbers;    ///< Counted from 1, by range.
+  std::vector<std::uint8_t> returns_of_shots;  ///< Total number of returns of the pulse.
 
   std::size_t size() const { return points.size(); }
   void resize(std::size_t size) {
@@ -61,10 +61,10 @@ struct LidarReturns {
   }
 };
 
-/// A validated scanner. Immutable; safe to use from any number of threads.
+/// Validated scanner. Immutable and thread-safe.
 class Lidar {
  public:
-  /// Throws what LidarConfig::validate() throws.
+  /// Throws the same errors as LidarConfig::validate().
   explicit Lidar(const LidarConfig& config);
   ~Lidar();
   Lidar(Lidar&&) noexcept;
@@ -72,16 +72,16 @@ class Lidar {
 
   const LidarConfig& config() const;
 
-  /// The number of whole firings that a trajectory has time for.
+  /// Returns the number of complete firings during a trajectory.
   std::uint64_t firings(const Trajectory& trajectory) const;
 
-  /// What the scanner measures in some firings, on this thread. A pure function of the firings:
-  /// measuring them in parts, on any threads, gives the same returns. Ranges that are multiples of
-  /// 32 firings waste nothing. The memory of `recycled` is used again.
+  /// Returns the measurements of a range of firings, computed on the calling thread. A pure
+  /// function of the firings: splitting the range gives identical returns. Efficient for ranges in
+  /// multiples of 32 firings. Reuses the memory of `recycled`.
   LidarReturns measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
                        LidarReturns recycled = {}) const;
 
-  struct Impl;  ///< defined in the source, where it serves helpers
+  struct Impl;  ///< Defined in the source file, where helpers use it.
 
  private:
   std::unique_ptr<const Impl> impl_;

@@ -1,5 +1,5 @@
-/// The rays of a block of firings: poses of a moving sensor, rays slot by slot, and what they meet.
-/// For the source of lidar.h.
+/// Rays of a block of firings: poses of the moving sensor, rays by slot, and their hits. Internal
+/// to lidar.h.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +20,14 @@ namespace skycap::sim {
 
 inline constexpr std::uint32_t firings_in_block = ScanPattern::firings_in_block;
 
-/// world_from_sensor at the start of each firing of a block and of the next, relative to a fixed
-/// origin: the nine entries of the rotation, row by row, and the position. Four firings lie
-/// together, as their rays do.
+/// world_from_sensor at the start of each firing of a block and of the next one, relative to a
+/// fixed origin. Entries are the nine elements of the rotation, row by row, and the position. Four
+/// firings are adjacent, like their rays.
 struct BlockPoses {
   float entries[12][firings_in_block + 4];
 };
 
-/// The poses of four consecutive firings.
+/// Poses of four consecutive firings.
 struct FourPoses {
   FourFloats entries[12];
 
@@ -47,7 +47,7 @@ struct FourPoses {
   }
 };
 
-/// Four firings of a channel that fires a share of the firing period later.
+/// Returns the poses for a channel that fires with a delay, as a fraction of the firing period.
 inline FourPoses delayed(FourPoses poses, const FourPoses& next, float share) {
   for (int i = 0; i < 12; ++i) {
     poses.entries[i] += share * (next.entries[i] - poses.entries[i]);
@@ -59,7 +59,7 @@ inline BlockPoses block_poses(const Trajectory& trajectory,
                               const Eigen::Isometry3d& body_from_sensor, double start,
                               double firing_period, const Eigen::Vector3d& origin) {
   constexpr int firings = firings_in_block;
-  constexpr double pose_spacing = 1e-4;  // [s]; how often a trajectory is asked
+  constexpr double pose_spacing = 1e-4;  // Sampling interval of the trajectory [s].
   const double duration = firing_period * firings;
   const int spans = std::clamp(static_cast<int>(std::ceil(duration / pose_spacing)), 1, firings);
   float knots[firings + 1][12];
@@ -85,7 +85,7 @@ inline BlockPoses block_poses(const Trajectory& trajectory,
   return poses;
 }
 
-/// Directions across a beam, along azimuth and along elevation; `up` is the sensor's z axis.
+/// Directions across a beam, along azimuth and elevation. `up` is the sensor's z axis.
 struct AcrossBeam {
   Eigen::Vector3f horizontal, vertical;
 };
@@ -97,7 +97,7 @@ inline AcrossBeam across(const Eigen::Vector3f& direction, const Eigen::Vector3f
   return {horizontal, direction.cross(horizontal)};
 }
 
-/// Rays relative to the centre of the scene's trees, slot by slot.
+/// Rays relative to the centre of the scene's trees, by slot.
 struct Rays {
   std::vector<float> origin[3], direction[3];
 
@@ -121,11 +121,11 @@ struct Rays {
   }
 };
 
-/// What rays meet.
+/// Hits of rays.
 struct Hits {
-  std::vector<int> active;    // which rays to cast: not 0
-  std::vector<float> range;   // negative: nothing
-  std::vector<float> cosine;  // of the angle of incidence, at most 1
+  std::vector<int> active;    // Non-zero: cast the ray.
+  std::vector<float> range;   // Range [m]. Negative: no hit.
+  std::vector<float> cosine;  // Cosine of the angle of incidence, at most 1.
   std::vector<std::uint32_t> triangle;
 
   void resize(std::size_t rays) {
@@ -136,8 +136,8 @@ struct Hits {
   }
 };
 
-/// Casts the active rays; the ranges of the others become negative too. Their number is a multiple
-/// of the packets' width.
+/// Casts the active rays. The other rays get negative ranges. The number of rays must be a multiple
+/// of the packet width.
 inline void cast_rays(const Scene::Trees& trees, float reach, const Rays& rays, Hits& hits) {
   constexpr int width = RayPacket::width;
   const RayKernels& kernels = ray_kernels();

@@ -32,7 +32,7 @@ NavigationProcess::NavigationProcess(const NavigationErrors& errors)
 }
 
 std::array<double, 6> NavigationProcess::next(double elapsed) {
-  constexpr std::uint32_t first_stream = 0x4E415600;  // apart from the sensors' streams
+  constexpr std::uint32_t first_stream = 0x4E415600;  // Separate from the streams of the sensors.
   if (moment_ == 0) elapsed = std::numeric_limits<double>::infinity();
   const double kept =
       errors_.correlation_time > 0.0 ? std::exp(-elapsed / errors_.correlation_time) : 0.0;

@@ -1,4 +1,4 @@
-/// How well a platform knows where it is.
+/// Errors of a platform's navigation solution.
 #pragma once
 
 #include <array>
@@ -6,17 +6,18 @@
 
 namespace skycap::sim {
 
-/// Errors of a navigation solution, each a stationary first-order Gauss-Markov process: standard
-/// deviation sigma, and a correlation that falls to 1/e within `correlation_time`.
+/// Error magnitudes of a navigation solution. Each component is a stationary first-order
+/// Gauss-Markov process with standard deviation sigma, whose correlation falls to 1/e within
+/// `correlation_time`.
 struct NavigationErrors {
-  double horizontal_sigma = 0.0;   ///< of east and of north [m]
-  double vertical_sigma = 0.0;     ///< [m]
-  double tilt_sigma = 0.0;         ///< of roll and of pitch [rad]
-  double heading_sigma = 0.0;      ///< [rad]
-  double correlation_time = 60.0;  ///< [s]
+  double horizontal_sigma = 0.0;   ///< East and north, each [m].
+  double vertical_sigma = 0.0;     ///< Vertical [m].
+  double tilt_sigma = 0.0;         ///< Roll and pitch, each [rad].
+  double heading_sigma = 0.0;      ///< Heading [rad].
+  double correlation_time = 60.0;  ///< Correlation time [s].
   std::uint64_t seed = 0;
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} naming the first field outside its interval.
   void validate() const;
 
   bool are_on() const {
@@ -25,21 +26,21 @@ struct NavigationErrors {
   }
 };
 
-/// The errors of one flight, moment after moment.
+/// Sequence of errors of one flight.
 class NavigationProcess {
  public:
-  /// Throws what NavigationErrors::validate() throws.
+  /// Throws the same errors as NavigationErrors::validate().
   explicit NavigationProcess(const NavigationErrors& errors);
 
-  /// Those of the next moment, so long after the one before [s], which may be infinite: east, north
-  /// and up [m], then small angles about the platform's three axes [rad].
+  /// Returns the errors `elapsed` [s] after the previous call, possibly infinite: east, north and
+  /// up [m], then small angles around the platform's three axes [rad].
   std::array<double, 6> next(double elapsed);
 
  private:
-  static constexpr std::size_t block = 32;  ///< of normals that are drawn at once
+  static constexpr std::size_t block = 32;  ///< Number of normal variates drawn together.
   NavigationErrors errors_;
   std::array<double, 6> sigmas_;
-  std::array<double, 6> states_{};  ///< in units of their sigmas
+  std::array<double, 6> states_{};  ///< In units of their standard deviations.
   std::array<std::array<float, block>, 6> normals_;
   std::uint32_t moment_ = 0;
 };

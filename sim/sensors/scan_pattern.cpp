@@ -13,14 +13,15 @@ using Eigen::Vector3d;
 
 constexpr double turn = 2.0 * std::numbers::pi;
 
-// Angle of something that turns at a constant rate; exact also after days of turning.
+// Returns the angle of a rotation at constant rate. Exact even after days.
 double turned(double rate, double time) {
   const double turns = rate * time;
   return turn * (turns - std::floor(turns));
 }
 
-// Snell's law in vectors; `normal` is unit and against the beam, `ratio` the refractive index
-// before the face over that behind it.
+// Returns the refracted direction according to Snell's law in vector form. `normal` is a unit
+// vector against the beam. `ratio` is the refractive index before the face divided by that behind
+// it.
 Vector3d refract_at_face(const Vector3d& beam, const Vector3d& normal, double ratio) {
   const double cosine = -beam.dot(normal);
   const double squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
@@ -89,7 +90,7 @@ void ScanPattern::aim(std::uint64_t block, Shots& shots) const {
   }
 }
 
-// Four firings together, whose slots of a channel are neighbours.
+// Computes four firings together, whose slots of a channel are adjacent.
 void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t at) const {
   FourFloats angle, cosine, sine;
   for (int i = 0; i < 4; ++i) {
@@ -104,7 +105,7 @@ void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::si
   const auto radius = static_cast<float>(config_.radial_offset);
   const float half_view =
       config_.field_of_view >= turn ? full : static_cast<float>(0.5 * config_.field_of_view);
-  // As locals the arrays' beginnings stay in registers.
+  // As local variables, the array pointers remain in registers.
   float* const direction[3] = {shots.direction[0].data(), shots.direction[1].data(),
                                shots.direction[2].data()};
   float* const origin[3] = {shots.origin[0].data(), shots.origin[1].data(), shots.origin[2].data()};
@@ -120,7 +121,7 @@ void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::si
     put_four(origin[0] + at, radius * (cosine * table.cos_encoder - sine * table.sin_encoder));
     put_four(origin[1] + at, radius * (sine * table.cos_encoder + cosine * table.sin_encoder));
     put_four(origin[2] + at, none + table.height);
-    FourFloats azimuth = angle + table.azimuth;  // in [0, 4 pi)
+    FourFloats azimuth = angle + table.azimuth;  // In [0, 4 pi).
     azimuth -= azimuth > full ? whole : none;
     azimuth -= azimuth > half ? whole : none;
     put_four(azimuths + at, azimuth);

@@ -1,4 +1,4 @@
-/// Where a laser scanner shoots, firing by firing, in its own frame.
+/// Pulse directions of a laser scanner per firing, in its own frame.
 #pragma once
 
 #include <cstdint>
@@ -10,41 +10,41 @@
 
 namespace skycap::sim {
 
-/// The shots of 32 consecutive firings. Their slots are in the order in which packets of rays are
-/// cast: four firings of a channel, then the same four of the channel next to it in elevation.
+/// Pulses of 32 consecutive firings. Slots are in the order of ray packets: four firings of a
+/// channel, then the same four of the channel next in elevation.
 struct Shots {
-  std::vector<float> origin[3];       ///< sensor frame
-  std::vector<float> direction[3];    ///< unit, sensor frame
-  std::vector<float> azimuth;         ///< in (-pi, pi]
-  std::vector<std::uint8_t> is_shot;  ///< 0 outside of the field of view
+  std::vector<float> origin[3];       ///< Sensor frame [m].
+  std::vector<float> direction[3];    ///< Unit vectors, sensor frame.
+  std::vector<float> azimuth;         ///< In (-pi, pi] [rad].
+  std::vector<std::uint8_t> is_shot;  ///< 0 outside the field of view.
 };
 
 class ScanPattern {
  public:
   static constexpr std::uint32_t firings_in_block = 32;
 
-  /// The configuration must be valid.
+  /// `config` must be valid.
   explicit ScanPattern(const LidarConfig& config);
 
   std::size_t slots() const { return firings_in_block * channels_.size(); }
 
-  /// The slot of a channel's shot, `firing` counted in the block.
+  /// Returns the slot of a channel's pulse. `firing` is counted within the block.
   std::size_t slot(std::uint32_t firing, std::size_t channel) const {
     return ((firing / 4) * channels_.size() + rank_[channel]) * 4 + firing % 4;
   }
 
-  /// The shots of firings 32 * block to 32 * block + 31.
+  /// Computes the pulses of firings 32 * block to 32 * block + 31.
   void aim(std::uint64_t block, Shots& shots) const;
 
  private:
   struct ChannelTable {
     float cos_elevation, sin_elevation;
-    float cos_azimuth, sin_azimuth;  // of the laser, turned on during the delay
-    float cos_encoder, sin_encoder;  // of the rotation during the delay
+    float cos_azimuth, sin_azimuth;  // Laser azimuth, including the rotation during the delay.
+    float cos_encoder, sin_encoder;  // Rotation during the delay.
     float height;
-    float azimuth;  // in [0, 2 pi)
+    float azimuth;  // In [0, 2 pi) [rad].
     double delay;
-    Eigen::Vector3d beam;  // before the prisms
+    Eigen::Vector3d beam;  // Direction before the prisms.
   };
 
   void aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t first_slot) const;
@@ -52,12 +52,13 @@ class ScanPattern {
 
   LidarConfig config_;
   std::vector<ChannelTable> channels_;
-  std::vector<std::size_t> rank_;             // of each channel by elevation
-  std::vector<std::size_t> channel_of_rank_;  // the inverse
+  std::vector<std::size_t> rank_;             // Rank of each channel by elevation.
+  std::vector<std::size_t> channel_of_rank_;  // Inverse of `rank_`.
 };
 
-/// A beam of direction `beam` (unit, about along x) after the turning prisms at `time`: Snell's law
-/// at each face, no small-angle formula. Unit.
+/// Returns the direction of a beam after the rotating prisms at `time` [s], as a unit vector.
+/// `beam` is a unit vector approximately along x. Applies Snell's law at each face without
+/// small-angle approximation.
 Eigen::Vector3d refract(const std::vector<WedgePrism>& prisms, double time, Eigen::Vector3d beam);
 
 }  // namespace skycap::sim

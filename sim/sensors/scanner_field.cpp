@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Of the angles of view of an image, and of its pixels.
+/// Returns the camera with the given angles of view and numbers of pixels.
 DepthCameraConfig image_of(const LidarConfig& lidar, double wide, int columns, double high,
                            int rows) {
   DepthCameraConfig config;
@@ -30,20 +30,20 @@ DepthCameraConfig image_of(const LidarConfig& lidar, double wide, int columns, d
   return config;
 }
 
-/// An image as wide and as high as these angles, with a pixel to each ray in its middle.
+/// Returns a camera with the given angles and one pixel per ray at its centre.
 DepthCameraConfig ray_camera(const LidarConfig& lidar, double wide, double columns_step,
                              double high, double rows_step) {
-  // As many pixels as make the middle of the image as dense as the rays.
+  // The number of pixels makes the centre of the image as dense as the rays.
   const auto pixels = [](double angle, double step) {
     return std::max(1, static_cast<int>(std::lround(2.0 * std::tan(0.5 * angle) / step)));
   };
   return image_of(lidar, wide, pixels(wide, columns_step), high, pixels(high, rows_step));
 }
 
-/// Of a ring, by its description.
+/// Field of view of a ring.
 struct Field {
-  double around, around_step;  ///< what is looked at of a turn, and the angle between firings [rad]
-  double up, up_step;          ///< across the turn, and between neighbouring lasers
+  double around, around_step;  ///< Used part of a revolution, and angle between firings [rad].
+  double up, up_step;  ///< Angle across the rotation, and between neighbouring lasers [rad].
 };
 
 Field field_of(const LidarConfig& lidar) {
@@ -53,7 +53,7 @@ Field field_of(const LidarConfig& lidar) {
           highest - lowest + step, step};
 }
 
-/// Of all shots in a period, in an image whose optical frame is turned so.
+/// Returns the directions of all pulses within a period, in the given optical frame.
 std::vector<Vector3d> directions_in(const LidarConfig& lidar, double period,
                                     const Matrix3d& optical_from_scanner) {
   const ScanPattern pattern(lidar);
@@ -73,7 +73,7 @@ std::vector<Vector3d> directions_in(const LidarConfig& lidar, double period,
   return directions;
 }
 
-/// Azimuth and elevation about the x axis [rad] of what looks ahead.
+/// Returns azimuth and elevation around the x axis [rad] of the forward directions.
 std::vector<Vector2d> angles_of(const std::vector<Vector3d>& directions) {
   std::vector<Vector2d> angles;
   for (const Vector3d& d : directions) {
@@ -83,11 +83,12 @@ std::vector<Vector2d> angles_of(const std::vector<Vector3d>& directions) {
   return angles;
 }
 
-/// The share of the cells, so wide in azimuth and elevation about the x axis, in a rectangle of the
-/// image plane that hold a ray.
+/// Returns the fraction of cells in a rectangle of the image plane that contain a ray. Cells have
+/// the given width in azimuth and elevation around the x axis.
 double filled_share(const std::vector<Vector2d>& angles, const Vector2d& half_slopes,
                     double width) {
-  const auto cells = static_cast<int>(std::ceil(0.5 * std::numbers::pi / width));  // each way
+  // In each direction.
+  const auto cells = static_cast<int>(std::ceil(0.5 * std::numbers::pi / width));
   const int across = 2 * cells;
   std::vector<char> is_filled(static_cast<std::size_t>(across) * across, 0);
   for (const Vector2d& angle : angles) {
@@ -95,7 +96,7 @@ double filled_share(const std::vector<Vector2d>& angles, const Vector2d& half_sl
     const int row = cells + static_cast<int>(std::floor(angle.y() / width));
     is_filled[static_cast<std::size_t>(row) * across + column] = 1;
   }
-  // Of the edges between rows, and between columns.
+  // Sines and cosines of the cell edges in both directions.
   std::vector<double> sines, cosines;
   for (int edge = 0; edge <= across; ++edge) {
     const double angle = (edge - cells) * width;
@@ -153,7 +154,7 @@ DepthCameraConfig forward_camera(const LidarConfig& lidar) {
                   "a single-line LiDAR requires flight.vehicle; set it, or use a scanner with "
                   "several lasers, such as ouster_os1_128");
     case ScannerKind::rosette: {
-      Matrix3d optical_from_scanner;  // x right, y down, z forward, of x forward, y left, z up
+      Matrix3d optical_from_scanner;  // x right, y down, z forward, from x forward, y left, z up.
       optical_from_scanner << 0, -1, 0, 0, 0, -1, 1, 0, 0;
       return rosette_camera(lidar, rosette_field(lidar, rosette_period, optical_from_scanner));
     }
@@ -166,11 +167,11 @@ DepthCameraConfig forward_camera(const LidarConfig& lidar) {
 
 DepthCameraConfig side_camera(const LidarConfig& lidar, std::size_t turns) {
   const Field field = field_of(lidar);
-  // Across the axis is the middle of the image, though not of the lasers if more of them look ahead
-  // than back: as wide as there are lasers on both sides.
+  // The centre of the image is perpendicular to the axis. The lasers may not be symmetric around
+  // it. The width covers only angles with lasers on both sides.
   const auto [lowest, highest] = elevations(lidar);
   const double wide = 2.0 * std::max(std::min(-lowest, highest), field.up_step) + field.up_step;
-  const double denser = std::sqrt(static_cast<double>(turns));  // each way
+  const double denser = std::sqrt(static_cast<double>(turns));  // In each direction.
   return ray_camera(lidar, wide, field.up_step / denser, field.around, field.around_step / denser);
 }
 
@@ -187,7 +188,7 @@ RosetteField rosette_field(const LidarConfig& lidar, double period,
   for (const Vector3d& d : directions) {
     field.half_slopes = field.half_slopes.cwiseMax(d.head<2>().cwiseAbs() / d.z());
   }
-  field.half_slopes /= std::numbers::sqrt2;  // the largest rectangle in an ellipse
+  field.half_slopes /= std::numbers::sqrt2;  // Largest rectangle within an ellipse.
   for (const Vector3d& d : directions) {
     const Vector2d slopes = d.head<2>().cwiseAbs() / d.z();
     field.rays += (slopes.array() <= field.half_slopes.array()).all() ? 1 : 0;

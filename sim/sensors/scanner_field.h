@@ -1,5 +1,4 @@
-/// What a laser scanner sees, by its description: the cameras that stand for it when views are
-/// chosen, and how far apart its rays are.
+/// Field of view of a laser scanner: equivalent cameras for view selection, and the ray spacing.
 #pragma once
 
 #include <cstddef>
@@ -12,62 +11,66 @@
 namespace skycap::sim {
 
 enum class ScannerKind {
-  ring,     ///< several lasers turn about an axis: each turn sees a ring, or part of one
-  line,     ///< one laser does: each turn sees a line, and only flying makes a field of lines
-  rosette,  ///< prisms draw a pattern over a round field about x that does not repeat
+  ring,  ///< Several lasers rotate around an axis. Each revolution covers a ring, or part of one.
+  line,  ///< One rotating laser. Each revolution covers a line, so an area requires flight.
+  rosette,  ///< Prisms create a non-repeating pattern in a round field around x.
 };
 
-/// Throws Error{bad_config} if the scanner neither spins nor has prisms.
+/// Returns the kind of a scanner. Throws Error{bad_config} if the scanner neither rotates nor has
+/// prisms.
 ScannerKind kind_of(const LidarConfig& lidar);
 
-/// Of a spinning scanner's lasers [rad].
+/// Elevation range of a rotating scanner's lasers [rad].
 struct Elevations {
   double lowest, highest;
 };
 Elevations elevations(const LidarConfig& lidar);
 
-/// Angle that a scanner turns between two firings [rad].
+/// Returns the rotation angle between two firings [rad].
 double azimuth_step(const LidarConfig& lidar);
 
-/// A rosette is looked at for so long by a scanner that stands [s].
+/// Measuring time of a rosette scanner at rest [s].
 inline constexpr double rosette_period = 0.5;
 
-/// The pinhole camera that stands for a scanner that stops at its views: it sees what a ring does
-/// in the quarter turn before it, or a rosette all over in rosette_period, with as many pixels as
-/// rays are sent there. Throws what kind_of() throws, and Error{bad_config} for a line.
+/// Returns the pinhole camera that approximates a scanner that stops at views. It covers the
+/// forward quarter revolution of a ring, or a rosette within rosette_period, with one pixel per
+/// ray. Throws the same errors as kind_of(), and Error{bad_config} for a single-line scanner.
 DepthCameraConfig forward_camera(const LidarConfig& lidar);
 
-/// The pinhole camera that sees the quarter turn to the side of a ring whose axis is level: as
-/// wide as the lasers spread to either side, with as many pixels as rays are sent there in so many
-/// turns.
+/// Returns the pinhole camera for the sideways quarter revolution of a ring with a level axis. Its
+/// width is the symmetric spread of the lasers. The number of pixels is that of rays in `turns`
+/// revolutions.
 DepthCameraConfig side_camera(const LidarConfig& lidar, std::size_t turns = 1);
 
-/// The pinhole camera that stands for a line which is flown along its axis: as wide as what it
-/// sweeps in a period, seen from the view distance, with a column to each line; a quarter turn
-/// high. Looks at what is flown past one after the other then add up to the rays that it gets,
-/// however far away it is. `way` is what is flown in the period, as a share of the view distance.
+/// Returns the pinhole camera that approximates a single-line scanner flown along its axis. The
+/// width covers the distance flown in `period` [s] at the view distance, with one column per line.
+/// The height covers a quarter revolution. Consecutive images then contain the correct number of
+/// rays for surfaces at any distance. `way` is the distance flown in the period, divided by the
+/// view distance.
 DepthCameraConfig line_camera(const LidarConfig& lidar, double period, double way);
 
-/// What a rosette draws in some time.
+/// Coverage of a rosette within some time.
 struct RosetteField {
-  Eigen::Vector2d half_slopes;  ///< tangents of half a rectangle's angles, wide and high, in which
-                                ///< it shoots everywhere
-  std::size_t rays;             ///< that go there
-  double gap;  ///< cells so wide in azimuth and elevation about the image's x axis hold a ray each,
-               ///< but for one in two hundred [rad]
+  /// Tangents of the half angles, horizontal and vertical, of a fully covered rectangle.
+  Eigen::Vector2d half_slopes;
+  std::size_t rays;  ///< Number of rays in the rectangle.
+  /// Cell size in azimuth and elevation around the image's x axis at which 99.5% of the cells
+  /// contain a ray [rad].
+  double gap;
 };
 
-/// In an image whose optical frame is turned so against the scanner's.
+/// Computes the coverage within `period` [s] in an image with the given rotation from the scanner's
+/// frame to the optical frame.
 RosetteField rosette_field(const LidarConfig& lidar, double period,
                            const Eigen::Matrix3d& optical_from_scanner);
 
-/// The pinhole camera of that rectangle, with a pixel to each ray.
+/// Returns the pinhole camera for that rectangle, with one pixel per ray.
 DepthCameraConfig rosette_camera(const LidarConfig& lidar, const RosetteField& field);
 
-/// The greatest angle between neighbouring rays of one turn of a ring [rad].
+/// Returns the maximum angle between neighbouring rays in one revolution of a ring [rad].
 double ray_spacing(const LidarConfig& lidar);
 
-/// Standard deviation of a range, head-on [m].
+/// Returns the standard deviation of a range at normal incidence [m].
 double range_noise(const LidarConfig& lidar, double range);
 
 }  // namespace skycap::sim

@@ -10,14 +10,14 @@
 namespace skycap::sim {
 namespace {
 
-/// No instrument's lengths, angles and rates come near these; beyond them rays would have no
-/// finite origin or direction.
-constexpr double longest_arm = 100.0;      // between lasers and origin [m]
-constexpr double farthest_range = 1e6;     // [m]
-constexpr double fastest_rotation = 1e6;   // [turns per second]
-constexpr double largest_angle = 100.0;    // [rad]
-constexpr double shortest_period = 1e-9;   // between firings [s]
-constexpr double longest_period = 3600.0;  // [s]
+/// Limits far beyond any instrument. Larger values would give rays without a finite origin or
+/// direction.
+constexpr double longest_arm = 100.0;      // Maximum distance between lasers and origin [m].
+constexpr double farthest_range = 1e6;     // Maximum range [m].
+constexpr double fastest_rotation = 1e6;   // Maximum rotation rate [revolutions per second].
+constexpr double largest_angle = 100.0;    // Maximum angle [rad].
+constexpr double shortest_period = 1e-9;   // Minimum time between firings [s].
+constexpr double longest_period = 3600.0;  // Maximum time between firings [s].
 
 void require_between(double value, double least, double most, const std::string& field) {
   std::ostringstream rule;

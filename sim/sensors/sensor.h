@@ -1,8 +1,8 @@
-/// Laser scanners as data: what a sensor description (sim/sensors/presets/*.yaml) says of one.
+/// Laser scanner models, as described in sim/sensors/presets/*.yaml.
 ///
-/// Sensor frame: x forward, y left, z up. A spinning sensor turns about z, anticlockwise seen from
-/// above when its rate is positive; azimuth is the angle from x towards y, elevation the angle
-/// above the x-y plane. A rosette sensor looks along x.
+/// Sensor frame: x forward, y left, z up. A rotating sensor turns around z, anticlockwise from
+/// above for a positive rate. Azimuth is the angle from x towards y; elevation is the angle above
+/// the x-y plane. A rosette sensor looks along x.
 #pragma once
 
 #include <cstdint>
@@ -12,78 +12,83 @@
 
 namespace skycap::sim {
 
-/// One laser. A firing is one shot of each.
+/// One laser. A firing consists of one pulse per channel.
 struct Channel {
-  double elevation = 0.0;  ///< [rad]
-  double azimuth = 0.0;    ///< added to that of the rotation [rad]
-  double delay = 0.0;      ///< after the firing's start, in [0, firing_period] [s]
-  double height = 0.0;     ///< of the laser above the sensor's origin, along z [m]
+  double elevation = 0.0;  ///< Elevation [rad].
+  double azimuth = 0.0;    ///< Azimuth relative to the rotation [rad].
+  double delay = 0.0;      ///< Delay after the start of the firing, in [0, firing_period] [s].
+  double height = 0.0;     ///< Height of the laser above the sensor's origin, along z [m].
 };
 
-/// A turning wedge of glass: one face square to the optical axis, one inclined.
+/// Rotating glass wedge with one face perpendicular to the optical axis and one inclined face.
 struct WedgePrism {
-  double wedge = 0.0;  ///< angle between the faces [rad]
+  double wedge = 0.0;  ///< Angle between the faces [rad].
   double refractive_index = 1.51;
-  double rotation_rate = 0.0;        ///< about the optical axis, signed [turns per second]
-  double phase = 0.0;                ///< at time zero [rad]
-  bool is_inclined_at_entry = true;  ///< whether the beam meets the inclined face first
+  double rotation_rate = 0.0;  ///< Rate around the optical axis, signed [revolutions per second].
+  double phase = 0.0;          ///< Phase at time zero [rad].
+  bool is_inclined_at_entry = true;  ///< True if the beam enters through the inclined face.
 };
 
-/// Errors of a measured distance, each zero when off. The standard deviation of the noise at
-/// distance R and incidence theta is
+/// Range errors. Zero disables a term. The standard deviation at range R and incidence theta is
 /// sqrt(sigma^2 + (sigma_per_metre R)^2 + (sigma_per_square_metre R^2)^2) /
 /// cos(theta)^incidence_power.
 struct RangeErrors {
-  double sigma = 0.0;  ///< [m]
+  double sigma = 0.0;  ///< Constant term [m].
   double sigma_per_metre = 0.0;
-  double sigma_per_square_metre = 0.0;  ///< stereo: s / (f B)  [1/m]
+  double sigma_per_square_metre = 0.0;  ///< For stereo: s / (f B) [1/m].
   double incidence_power = 0.0;
-  double channel_bias_sigma = 0.0;  ///< of an offset that each channel keeps [m]
-  double range_step = 0.0;          ///< distances are rounded to multiples of it, last of all [m]
-  double angle_sigma = 0.0;         ///< of the reported azimuth and of the elevation [rad]
+  /// Standard deviation of the constant bias of each channel [m].
+  double channel_bias_sigma = 0.0;
+  double range_step = 0.0;  ///< Final rounding step of ranges [m].
+  /// Standard deviation of the reported azimuth and of the elevation [rad].
+  double angle_sigma = 0.0;
 };
 
-/// When a shot returns enough light, by the LiDAR equation for an extended diffuse surface: power
-/// falls with reflectance * cos(incidence) * exp(-2 attenuation R) / R^2. A shot is lost when that
-/// is less than of `reference_reflectance`, faced squarely, at `reference_range` in clear air.
+/// Detection limit from the LiDAR equation for an extended diffuse surface. The received power is
+/// proportional to reflectance * cos(incidence) * exp(-2 attenuation R) / R^2. A pulse is lost
+/// below the power of `reference_reflectance` at normal incidence and `reference_range` in clear
+/// air.
 struct Sensitivity {
-  double reference_range = 0.0;  ///< [m]; zero: nothing is lost
+  double reference_range = 0.0;  ///< Reference range [m]. 0: no pulse is lost.
   double reference_reflectance = 0.1;
-  double attenuation = 0.0;  ///< of the air [1/m]
+  double attenuation = 0.0;  ///< Attenuation of the air [1/m].
 };
 
-/// Which echoes are kept when there are more than the sensor reports.
+/// Selection of echoes if there are more than the sensor reports.
 enum class EchoChoice { first, strongest, last, strongest_and_last };
 
-/// The width of the laser beam. A beam with sub-rays is a Gaussian cone sampled by rays on
-/// concentric rings, each with its share of the energy. Echoes nearer to each other than half the
-/// pulse's length merge into one at their energy-weighted distance (mixed pixels).
+/// Laser beam with finite width: a Gaussian cone, sampled by rays on concentric rings with their
+/// fractions of the energy. Echoes separated by less than half the pulse length merge at their
+/// energy-weighted range (mixed pixels).
 struct Beam {
-  int rings = 0;  ///< of sub-rays around the axis, ring i with 6 i of them; zero: one ray, no width
-  double divergence_horizontal = 0.0;  ///< full angle between the 1/e^2 points, along azimuth [rad]
-  double divergence_vertical = 0.0;    ///< the same along elevation [rad]
-  double pulse_length = 5e-9;          ///< [s]
+  /// Number of rings of sub-rays around the axis; ring i has 6 i rays. 0: a single ray without
+  /// width.
+  int rings = 0;
+  double divergence_horizontal = 0.0;  ///< Full angle between the 1/e^2 points along azimuth [rad].
+  double divergence_vertical = 0.0;  ///< Full angle between the 1/e^2 points along elevation [rad].
+  double pulse_length = 5e-9;        ///< Pulse duration [s].
   int max_returns = 1;
   EchoChoice choice = EchoChoice::strongest;
 };
 
-/// A laser scanner. Its shots are numbered: firing k starts at k * firing_period after the
-/// trajectory's start.
+/// Laser scanner. Firing k starts k * firing_period after the start of the trajectory.
 struct LidarConfig {
-  double firing_period = 1e-4;                    ///< [s]
-  std::vector<Channel> channels = {{}};           ///< in the order in which they fire
-  double rotation_rate = 10.0;                    ///< signed [turns per second]
-  double radial_offset = 0.0;                     ///< of the lasers from the axis of rotation [m]
-  double field_of_view = 2.0 * std::numbers::pi;  ///< around x: no shots outside of it [rad]
-  std::vector<WedgePrism> prisms;  ///< not empty: a rosette sensor, which does not spin
-  double min_range = 0.0;          ///< [m]; nearer surfaces hide what is behind and give no return
-  double max_range = 200.0;        ///< [m]
+  double firing_period = 1e-4;           ///< Time between firings [s].
+  std::vector<Channel> channels = {{}};  ///< In firing order.
+  double rotation_rate = 10.0;           ///< Signed rate [revolutions per second].
+  double radial_offset = 0.0;            ///< Distance of the lasers from the rotation axis [m].
+  /// Field of view around x; there are no pulses outside [rad].
+  double field_of_view = 2.0 * std::numbers::pi;
+  /// If not empty, the scanner is a rosette sensor without rotation.
+  std::vector<WedgePrism> prisms;
+  double min_range = 0.0;    ///< Minimum range [m]. Nearer surfaces block the ray without a return.
+  double max_range = 200.0;  ///< Maximum range [m].
   RangeErrors errors;
   Sensitivity sensitivity;
   Beam beam;
   std::uint64_t seed = 0;
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} naming the first field outside its interval.
   void validate() const;
 };
 

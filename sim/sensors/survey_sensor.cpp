@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using geometry::View;
 
-/// Of the optical frame in the scanner's (x forward, y left, z up): the axis is level in azimuth
-/// and in the middle of the lasers.
+/// Returns the optical frame in the scanner's frame (x forward, y left, z up). The optical axis is
+/// at azimuth zero, in the middle of the lasers.
 Eigen::Isometry3d scanner_from_optical(const LidarConfig& lidar) {
   const auto [lowest, highest] = elevations(lidar);
   const double middle = 0.5 * (lowest + highest);
@@ -40,7 +40,8 @@ void append(const std::vector<LidarReturns>& returns, std::vector<Eigen::Vector3
   }
 }
 
-/// Turn after turn, each from a pose of the scanner, world_from_scanner; `first_turn` numbers them.
+/// Adds one revolution per scanner pose (world_from_scanner). `first_turn` is the number of the
+/// first one.
 void append_turns(const Lidar& lidar, const Scene& scene,
                   const std::vector<Eigen::Isometry3d>& poses, const Carriage& carriage,
                   std::uint64_t first_turn, unsigned threads,
@@ -77,8 +78,8 @@ Eigen::Isometry3d world_from_body(const View& nose) {
   return pose;
 }
 
-/// A way of the body, flown from one nose view to the other from some firing on, and all firings
-/// numbered from zero: it stands before and after.
+/// Returns the body trajectory between two nose views during [`begin`, `end`] [s]. Time starts with
+/// firing zero, and the body is stationary before and after.
 Trajectory way_of(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double begin,
                   double end) {
   const auto stamped = [](double time, const Eigen::Isometry3d& pose) {
@@ -163,8 +164,8 @@ SurveySensor::SurveySensor(const SurveySensorOptions& config, std::uint64_t seed
 std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
   const LidarConfig& lidar = std::get<Lidar>(sensor_).config();
   if (!mount_) return {geometry::camera_pose(view) * scanner_from_optical(lidar).inverse()};
-  // The rays of turns on a way fall between each other's: spread by the R2 sequence, along the axis
-  // (some rays of a turn are as far apart at twenty metres) and between two firings.
+  // The rays of successive revolutions interleave. The R2 sequence distributes them along the axis
+  // and between two firings. At 20 m, some rays of one revolution are as far apart as this spread.
   constexpr double first_ratio = 0.7548776662466927, second_ratio = 0.5698402909980532;
   const Eigen::Isometry3d world_from_scanner =
       world_from_body(geometry::nose_view(*mount_, view)) * mount_->body_from_scanner;
@@ -185,14 +186,15 @@ std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
 void SurveySensor::measure_way(const Lidar& lidar, const Scene& scene, const View& view,
                                const Carriage& carriage, std::uint64_t frame, unsigned threads,
                                std::vector<Eigen::Vector3f>& points) const {
-  constexpr double most_periods = 2.0;  // of a stretch, so that no firing is another scan's
+  // Maximum duration of a stretch in periods, so that scans do not share firings.
+  constexpr double most_periods = 2.0;
   const double firing = lidar.config().firing_period;
   const auto apart = static_cast<std::uint64_t>(std::ceil(most_periods * period_ / firing));
   Eigen::Isometry3d from =
       geometry::camera_pose(view) * scanner_from_optical(lidar.config()).inverse();
   if (mount_) from = world_from_body(geometry::nose_view(*mount_, view));
   Eigen::Isometry3d to = from;
-  // At rest a line shows in a turn what there is to see.
+  // At rest, one revolution of a line contains all measurable points.
   double duration =
       kind_ == ScannerKind::line ? 1.0 / std::abs(lidar.config().rotation_rate) : period_;
   if (carriage.stretch) {
@@ -230,7 +232,8 @@ geometry::Scan SurveySensor::scan(const Scene& scene, const View& view, const Ca
                                   geometry::Scan recycled) const {
   if (const auto* lidar = std::get_if<Lidar>(&sensor_)) {
     geometry::Scan scan = std::move(recycled);
-    // What is fixed to the vehicle looks as its mount has it, whatever was wished for.
+    // A sensor fixed to the vehicle looks in the direction of its mount, regardless of the
+    // requested view.
     const bool is_fixed = mount_ && kind_ == ScannerKind::rosette;
     scan.world_from_sensor = geometry::camera_pose(
         is_fixed ? geometry::scanner_view(*mount_, geometry::nose_view(*mount_, view)) : view);
@@ -261,14 +264,14 @@ geometry::Scan SurveySensor::scan(const Scene& scene, const View& view, const Ca
 
 namespace {
 
-/// Points a second on each metre along the way and each across it, at the view distance.
+/// Returns the point rate per metre along and across the path, at the view distance [1/(s m^2)].
 double points_abeam(const SurveySensorOptions& sensor, double distance) {
   const LidarConfig& lidar = *sensor.scanner;
   const double swath = 2.0 * distance * std::tan(0.5 * sensor.camera.camera.horizontal_fov);
   switch (kind_of(lidar)) {
     case ScannerKind::ring: {
       const geometry::Camera camera(side_camera(lidar).camera);
-      const double rays = camera.focal_length_px().prod() / (distance * distance);  // on a m^2
+      const double rays = camera.focal_length_px().prod() / (distance * distance);  // Per m^2.
       return swath * std::abs(lidar.rotation_rate) * rays;
     }
     case ScannerKind::line:
@@ -285,7 +288,7 @@ double points_abeam(const SurveySensorOptions& sensor, double distance) {
 
 double scanning_speed(const SurveySensorOptions& sensor, double distance, double spacing,
                       double fastest) {
-  // Lines are even, and lie over each other nowhere: what is stored of them is most of what comes.
+  // Lines are even and do not overlap, so most of their points are stored.
   const bool is_even = kind_of(*sensor.scanner) == ScannerKind::line;
   const double apart = (is_even ? 1.0 : 0.5) * spacing;
   return std::min(points_abeam(sensor, distance) * apart * apart, 0.5 * fastest);

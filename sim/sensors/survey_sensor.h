@@ -1,15 +1,16 @@
-/// The simulated sensor of a survey: a depth camera, or a laser scanner.
+/// Simulated sensor of a survey: a depth camera or a laser scanner.
 ///
-/// A scanner's scan is not organised: it has points and no pixels. A scanner that is not flown
-/// stands at each view. A ring turns once there, so that the middle of its lasers, at azimuth zero,
-/// is the view's direction; a rosette looks along it for rosette_period. One that is flown is fixed
-/// to an airframe that keeps level, and a view says where the nose points. The axis of a ring or a
-/// line is level, too: a view's direction is anywhere in what it sweeps, to the left of the axis. A
-/// rosette looks where its mount has it look.
+/// The scan of a scanner has points but no pixels. A hand-held scanner is stationary at each view.
+/// A ring makes one revolution with the middle of its lasers, at azimuth zero, along the view
+/// direction. A rosette looks along it for rosette_period.
 ///
-/// Between two of its scans a ring turns several times, which are measured as if from about the
-/// same place: a scan stands for the piece of the way that it is in the middle of. What a line or a
-/// rosette measures there is simulated shot by shot, each from where it is flown.
+/// A mounted scanner is fixed to a level airframe, and a view defines the heading of the nose. The
+/// axis of a ring or a line is level, too. The view direction is any direction in the plane of its
+/// rotation, to the left of the axis. A rosette looks in the direction of its mount.
+///
+/// Between two scans, a ring makes several revolutions, which are simulated from approximately one
+/// position. Each scan represents the part of the path around it. Pulses of a line or a rosette are
+/// simulated individually along the path.
 #pragma once
 
 #include <cstddef>
@@ -31,93 +32,99 @@
 
 namespace skycap::sim {
 
-/// The turns of one scan are measured from places that are at most half of this from its own, along
-/// the axis [m].
+/// Length along the axis over which the revolutions of one scan are distributed, centred at the
+/// scan position [m].
 inline constexpr double spread_of_turns = 0.25;
 
-/// Where a sensor takes its scans while a survey is flown.
+/// Capture mode of a survey.
 enum class Capture {
-  stops,   ///< at the views, at rest
-  moving,  ///< and on the ways between them
+  stops,   ///< Stationary, at views.
+  moving,  ///< At views and en route.
 };
 
-/// What a survey measures with: a depth camera, or a laser scanner in its place.
+/// Options of the survey's sensor: a depth camera, or a laser scanner.
 struct SurveySensorOptions {
-  /// The camera itself; of a scanner the camera by which planners choose its views, see
-  /// planning_camera(). The seed of its noise is the survey's.
+  /// Depth camera, or the camera by which planners select views for a scanner, see
+  /// planning_camera(). The survey provides its noise seed.
   DepthCameraConfig camera = d435();
-  std::optional<LidarConfig> scanner;  ///< its seed is the survey's
-  std::optional<geometry::ScannerMount>
-      mount;  ///< of a scanner that is flown; others look anywhere
+  std::optional<LidarConfig> scanner;  ///< Laser scanner. The survey provides its seed.
+  /// Mount on a vehicle. Without a mount, the scanner can look in any direction.
+  std::optional<geometry::ScannerMount> mount;
   geometry::Shutter shutter{.exposure = 0.01, .readout = 0.0};
-  double settle = 0.0;  ///< at rest before a picture, for the sensor's own sake [s]
+  double settle = 0.0;  ///< Rest time of the sensor before an exposure [s].
   Capture capture = Capture::stops;
-  double frame_period = 1.0;    ///< between the scans that are taken on the way [s]
-  NavigationErrors navigation;  ///< of the vehicle that carries it; its seed is the survey's
+  double frame_period = 1.0;    ///< Interval between en-route scans [s].
+  NavigationErrors navigation;  ///< Navigation errors of the vehicle. The survey provides the seed.
 
   bool is_moving() const { return capture == Capture::moving; }
-  /// Whether a laser scanner measures all the way, so that nothing is waited for at views.
+  /// Returns true if a laser scanner measures continuously, so that the vehicle need not hold at
+  /// views.
   bool scans_in_flight() const { return mount && is_moving(); }
 };
 
-/// How often a scanner turns in one of its scans: once, or in flight all the time between two.
+/// Returns the number of revolutions per scan: one, or in flight all revolutions between two scans.
 std::size_t turns_of(const SurveySensorOptions& sensor);
 
-/// Field of one scan of a flown rosette scanner, in the frame of its planning camera; nothing for
-/// other scanners. Takes some tenths of a second to compute.
+/// Returns the field of one scan of a mounted rosette scanner, in the frame of its planning camera.
+/// Returns std::nullopt for other scanners. Takes tenths of a second.
 std::optional<RosetteField> flown_rosette(const SurveySensorOptions& sensor);
 
-/// Camera that stands for the mounted or hand-held scanner when views are chosen; `rosette` is
-/// flown_rosette(sensor). The camera of a single-line scanner is about as dense as its rays until
-/// its speed is known. Throws what forward_camera() throws.
+/// Returns the camera that approximates the mounted or hand-held scanner for view selection.
+/// `rosette` is flown_rosette(sensor). For a single-line scanner, the pixel density is that of its
+/// rays until the speed is known. Throws the same errors as forward_camera().
 DepthCameraConfig planning_camera(const SurveySensorOptions& sensor,
                                   const std::optional<RosetteField>& rosette);
 
-/// Between two scans of a scanner in flight, each of which stands for the turns around it [s].
+/// Interval between two scans of a mounted scanner in flight, each of which represents the
+/// revolutions around it [s].
 inline constexpr double scanner_period = 0.5;
 
-/// As fast as a scanner's points on a wall at `distance` are still as dense as they are stored,
-/// `spacing` apart, twice over each way unless they are even lines; no faster than half of what the
-/// vehicle can, `fastest` [m/s].
+/// Returns the maximum speed for the required point density [m/s]. Points on a wall at `distance`
+/// [m] must be at most `spacing` [m] apart. The density is doubled in each direction unless the
+/// lines are even. The speed is limited to half of `fastest`, the vehicle's maximum [m/s].
 double scanning_speed(const SurveySensorOptions& sensor, double distance, double spacing,
                       double fastest);
 
-/// Of a scanner so fixed to the airframe: a ring or a line looks to the left of its axis, level; a
-/// rosette along its x axis.
+/// Returns the mount of a scanner that is fixed to the airframe. A ring or a line looks level, to
+/// the left of its axis. A rosette looks along its x axis.
 geometry::ScannerMount scanner_mount(const LidarConfig& lidar,
                                      const Eigen::Isometry3d& body_from_scanner);
 
-/// How a sensor is really carried, beside the view that it is believed to have.
+/// True motion of a sensor relative to its estimated view.
 struct Carriage {
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();      ///< of its place [m]
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();       ///< small angles about world axes [rad]
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< amid the scan [m/s]
-  Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  ///< about world axes [rad/s]
-  int instants = 0;  ///< that stand for a camera's exposure; zero: it stands meanwhile
-  /// Where a scanner is believed to be meanwhile; none: it stands. A ring's turns are measured from
-  /// about one place all the same.
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< Position error [m].
+  /// Small rotation angles around the world axes [rad].
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  /// Velocity at the middle of the scan [m/s].
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  /// Angular rate around the world axes [rad/s].
+  Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();
+  int instants = 0;  ///< Number of instants that sample a camera's exposure. 0: stationary.
+  /// Estimated path of a scanner during the scan. Empty: stationary. The revolutions of a ring are
+  /// always measured from approximately one position.
   std::optional<geometry::Stretch> stretch;
 
   bool is_exact() const { return turn.isZero(0.0) && shift.isZero(0.0); }
 
-  /// The true pose where this one is believed.
+  /// Returns the true pose for an estimated pose.
   Eigen::Isometry3d true_pose(const Eigen::Isometry3d& believed) const;
 };
 
-/// Immutable; safe to use from any number of threads.
+/// Immutable and thread-safe.
 class SurveySensor {
  public:
-  /// Throws what the sensor's configuration throws when it is not valid.
+  /// Throws if the sensor configuration is invalid.
   SurveySensor(const SurveySensorOptions& config, std::uint64_t seed);
 
-  /// What is measured from `view`, in its optical frame (geometry::camera_pose()). With the seed,
-  /// `frame` alone decides the noise; the result does not depend on `threads` (zero: all
-  /// processors). The memory of `recycled` is used again.
+  /// Returns the scan from `view` in its optical frame (geometry::camera_pose()). Seed and `frame`
+  /// determine the noise. The result does not depend on `threads` (0: all processors). Reuses the
+  /// memory of `recycled`.
   geometry::Scan scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,
                       unsigned threads, geometry::Scan recycled = {}) const;
 
-  /// The same by a sensor that is carried so: its points are where they are thought to be. A
-  /// scanner's velocity is not looked at, since its turns are measured from about one place.
+  /// Returns the scan of a sensor with the given motion. Points are relative to the estimated pose.
+  /// The velocity of a scanner is ignored, because its revolutions are measured from approximately
+  /// one position.
   geometry::Scan scan(const Scene& scene, const geometry::View& view, const Carriage& carriage,
                       std::uint64_t frame, unsigned threads, geometry::Scan recycled = {}) const;
 
@@ -130,9 +137,9 @@ class SurveySensor {
   std::variant<DepthCamera, Lidar> sensor_;
   geometry::Shutter shutter_;
   ScannerKind kind_ = ScannerKind::ring;
-  std::optional<geometry::ScannerMount> mount_;  ///< of a scanner that is flown
-  std::size_t turns_ = 1;                        ///< of a ring that make a scan
-  double period_ = rosette_period;               ///< of other scanners' scans
+  std::optional<geometry::ScannerMount> mount_;  ///< Mount of a scanner on a vehicle.
+  std::size_t turns_ = 1;                        ///< Number of revolutions of a ring per scan.
+  double period_ = rosette_period;               ///< Duration of a scan of other scanners [s].
 };
 
 }  // namespace skycap::sim

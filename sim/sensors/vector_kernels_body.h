@@ -1,10 +1,10 @@
 /// Body of vector_kernels_*.cpp, which define SKYCAP_KERNELS_NAME and include it once each. Those
-/// sources are compiled for different processors, so everything here is internal to them, no
-/// inline function of a library may be called (the linker would keep any one copy of it), and
-/// loops are written so that the compiler vectorises them: no branches, no calls.
+/// sources are compiled for different processors, so all content of this file is internal to them.
+/// Inline functions of libraries must not be called, because the linker would keep an arbitrary
+/// copy. Loops contain no branches or calls, so that the compiler vectorises them.
 ///
-/// Contraction to fused multiply-adds is off (sim/CMakeLists.txt): all instruction sets give the
-/// same bits.
+/// Contraction to fused multiply-adds is off (sim/CMakeLists.txt), so all instruction sets give
+/// identical bits.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace skycap::sim {
 namespace {
 
-constexpr std::size_t block = 32;  // normals come in blocks: `half` pairs of Box and Muller
+constexpr std::size_t block = 32;  // Block of normal variates: `half` Box-Muller pairs.
 constexpr std::size_t half = block / 2;
 
 inline float as_float(std::uint32_t bits) { return __builtin_bit_cast(float, bits); }
@@ -23,9 +23,9 @@ inline float as_signed_float(std::uint32_t bits) {
   return static_cast<float>(static_cast<std::int32_t>(bits));
 }
 
-// Two hashes of an index, chosen by the key. The first is a bijection of 32-bit words with
-// multipliers and shifts near those that C. Wellons' "hash prospector" search found to have the
-// least avalanche bias; a further round makes the second.
+// Two hashes of an index, selected by the key. The first is a bijection of 32-bit words. Its
+// multipliers and shifts are close to those with the least avalanche bias in C. Wellons' "hash
+// prospector" search. A further round gives the second.
 struct Hashes {
   std::uint32_t radius, angle;
 };
@@ -39,8 +39,8 @@ inline Hashes hash(const NoiseKey& key, std::uint32_t spread_index) {
   return {x, y ^ (y >> 16)};
 }
 
-// -2 ln((h + 1/2) / 2^31) for the upper 31 bits h of `bits`; zero or more. The logarithm is split
-// into exponent and mantissa in [sqrt(1/2), sqrt(2)); the polynomial is within 3e-6 of it.
+// Returns -2 ln((h + 1/2) / 2^31) for the upper 31 bits h of `bits`, at least 0. The logarithm is
+// split into exponent and mantissa in [sqrt(1/2), sqrt(2)). The polynomial error is below 3e-6.
 inline float minus_two_log_uniform(std::uint32_t bits) {
   const std::uint32_t uniform = as_bits(as_signed_float(bits >> 1) * 0x1p-31F + 0x1p-32F);
   constexpr std::uint32_t root_half = 0x3F3504F3U;
@@ -56,10 +56,10 @@ inline float minus_two_log_uniform(std::uint32_t bits) {
   return value > 0.0F ? value : 0.0F;
 }
 
-// Cosine and sine of a uniform angle, phi, uniform in one quarter turn, is moved to one of the four
-// by exchanging and negating sine and cosine.
+// Multiplies `radius` by cosine and sine of a uniform angle. The angle phi is uniform in one
+// quarter turn. Exchanging and negating sine and cosine moves it to one of the four quarters.
 inline void scatter(float radius, std::uint32_t angle_bits, float& first, float& second) {
-  const float phi = as_signed_float(angle_bits) * 3.65721684e-10F;  // pi/4 / 2^31
+  const float phi = as_signed_float(angle_bits) * 3.65721684e-10F;  // pi/4 / 2^31.
   const float y = phi * phi;
   const float sine = phi + phi * y * (0.00821185551F * y - 0.16665731F);
   const float cosine = 1.0F + y * ((-0.00136611670F * y + 0.0416614106F) * y - 0.499999820F);
@@ -70,13 +70,14 @@ inline void scatter(float radius, std::uint32_t angle_bits, float& first, float&
   second = signed_radius * as_float(as_bits(sine) ^ difference);
 }
 
-// The normals of `blocks` blocks, the i-th from keys[i] and firsts[i], a multiple of 32. Each step
-// is a loop over all pairs: one pair is a chain of dependent operations far longer than the
-// processor looks ahead, so it needs other pairs to work on meanwhile.
+// Computes `blocks` blocks of normal variates, the i-th from keys[i] and firsts[i], a multiple of
+// 32. Each step is a loop over all pairs. A single pair is a long chain of dependent operations, so
+// the processor needs other pairs to work on in parallel.
 template <std::size_t blocks>
 inline void normal_blocks(const NoiseKey* const (&keys)[blocks],
                           const std::uint32_t (&firsts)[blocks], float (&normals)[blocks][block]) {
-  constexpr std::uint32_t spread = 0x9E3779B1U;  // odd: neighbours differ in all bits
+  // Odd, so that neighbouring indices differ in all bits.
+  constexpr std::uint32_t spread = 0x9E3779B1U;
   std::uint32_t radius_bits[blocks * half], angle_bits[blocks * half];
   float radius[blocks * half];
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -111,7 +112,7 @@ void fill_normals_kernel(const NoiseKey& key, std::uint32_t first, float* normal
   }
 }
 
-// Coordinates of up to 32 pixels from `start` on, returns or not.
+// Computes coordinates of up to 32 pixels from `start` on, regardless of returns.
 inline void block_points(const PinholeRow& row, std::size_t start, std::size_t count,
                          float (&xyz)[3][block]) {
   const bool noisy = row.sigma > 0.0F;

@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-/// Four walls round the inside of `room`, one of them, to -y, with a gate in its middle; no gate if
-/// it is 0 wide.
+/// Adds four walls around `room`. The wall towards -y has a gate in its middle, unless the gate
+/// width is 0.
 void add_walls(const AlignedBox3d& room, double thickness, double gate_width, double gate_height,
                Parts& parts) {
   const Vector3d low = room.min(), high = room.max();
@@ -37,7 +37,7 @@ void add_walls(const AlignedBox3d& room, double thickness, double gate_width, do
   parts.push_back({"lintel", box({middle - half, y0, head}, {middle + half, low.y(), high.z()})});
 }
 
-/// A box of a house under a gabled roof, its ridge along x, round the origin.
+/// Returns a plain house around the origin with a gabled roof, whose ridge is along x.
 Parts plain_house(double width, double depth, double eaves, double slope, RandomNumbers& draw) {
   Parts parts;
   parts.push_back({"walls", block(0.0, 0.0, width, depth, 0.0, eaves)});
@@ -62,7 +62,7 @@ void add_at(Parts&& scene, double azimuth, const Vector3d& at, Parts& parts) {
   }
 }
 
-/// The height of a slope at a place of the plan.
+/// Height of a slope at a position of the plan.
 struct Slope {
   double tilt, azimuth, wave, phase;
 
@@ -72,7 +72,7 @@ struct Slope {
   }
 };
 
-/// The solid between the slope and z = 0 under a square.
+/// Returns the solid between the slope and z = 0 below a square.
 Mesh hill(const Slope& slope, double side) {
   constexpr int steps = 40;
   Mesh mesh;
@@ -112,7 +112,7 @@ FamilyScene hollow_house(RandomNumbers& draw, const Fineness&) {
   const double width = draw.between(13.0, 20.0), depth = draw.between(8.0, 12.0);
   const double storey = draw.between(3.2, 3.8), wall = 0.3;
   const int upper = draw.integer(1, 3);
-  const double share = draw.between(0.4, 0.6);  // of the ground floor, the hall's
+  const double share = draw.between(0.4, 0.6);  // Fraction of the ground floor for the hall.
   const double gate_width = draw.between(3.6, 5.0);
   FamilyScene scene;
   Parts& parts = scene.parts;
@@ -147,7 +147,7 @@ FamilyScene grove(RandomNumbers& draw, const Fineness& fineness) {
   scene.parts = plain_house(width, depth, eaves, slope, draw);
   const int count = draw.integer(7, 11);
   for (int i = 0; i < count; ++i) {
-    // Round the house, their crowns near its walls or against them.
+    // Trees around the house with crowns near or against its walls.
     const double angle = 2.0 * pi * (i + draw.between(0.2, 0.8)) / count;
     const double height = draw.between(5.0, 11.0), gap = draw.between(2.2, 4.5);
     const double x = std::cos(angle), y = std::sin(angle);
@@ -171,7 +171,7 @@ FamilyScene hillside(RandomNumbers& draw, const Fineness&) {
     const double angle = turn + 2.0 * pi * i / count, radius = draw.between(11.0, 15.0);
     const double x = radius * std::cos(angle), y = radius * std::sin(angle);
     const double width = draw.between(8.0, 11.0), depth = draw.between(6.0, 8.0);
-    // The foot of the house is in the ground all round.
+    // The foot of the house is below the ground on all sides.
     double foot = slope(x, y);
     for (int j = 0; j < 16; ++j) {
       const double at = 2.0 * pi * j / 16, reach = 0.5 * std::hypot(width, depth);
@@ -187,7 +187,7 @@ FamilyScene hillside(RandomNumbers& draw, const Fineness&) {
 FamilyScene old_town(RandomNumbers& draw, const Fineness&) {
   FamilyScene scene;
   const int columns = draw.integer(3, 4), rows = 3;
-  const int bridged = draw.integer(0, columns - 2);  // the lane under a house, in the middle row
+  const int bridged = draw.integer(0, columns - 2);  // Lane below a house, in the middle row.
   double x = -0.5 * columns * 12.0;
   for (int i = 0; i < columns; ++i) {
     const double width = draw.between(8.5, 10.5), lane = draw.between(2.6, 4.0);
@@ -196,7 +196,7 @@ FamilyScene old_town(RandomNumbers& draw, const Fineness&) {
       const double depth = draw.between(7.5, 9.5), eaves = draw.between(6.5, 11.0);
       Parts house = plain_house(width, depth, eaves, draw.between(0.8, 1.2), draw);
       add_at(std::move(house), 0.0, {x + 0.5 * width, y + 0.5 * depth, 0.0}, scene.parts);
-      if (i == bridged && j == 1) {  // rooms over the lane, from this house into the next one
+      if (i == bridged && j == 1) {  // Rooms above the lane, from this house into the next one.
         scene.parts.push_back({"rooms over the lane", box({x + width - 0.5, y + 1.5, 3.4},
                                                           {x + width + lane + 0.5, y + 5.5, 6.2})});
         scene.open_rooms.emplace_back(Vector3d(x + width, y + 1.5, 0.0),

@@ -1,6 +1,7 @@
-/// Families of scenes that find the weaknesses of planners: hollow, thin, tall, narrow, glassy.
-/// Each is drawn from a seed, with sizes within stated ranges, stands on z = 0 around the origin,
-/// and is at most 65 m long and 55 m high. What is true of them by construction is told with them.
+/// Families of scenes that expose weaknesses of planners: hollow, thin, tall, narrow or glassy
+/// structures. Each is generated from a seed with sizes within stated ranges. It stands on z = 0
+/// around the origin and is at most 65 m long and 55 m high. Properties that hold by construction
+/// are part of the result.
 #pragma once
 
 #include <array>
@@ -18,13 +19,13 @@ namespace skycap::sim::models {
 
 using geometry::RandomNumbers;
 
-/// A scene of a family: closed solids, and what is known about them.
+/// Scene of a family: closed solids and their known properties.
 struct FamilyScene {
   Parts parts;
-  /// Rooms that nothing gets into and nothing sees into: their walls, floors and ceilings are on
-  /// these boxes.
+  /// Boxes of enclosed rooms without access or visibility from outside. Walls, floors and ceilings
+  /// lie on these boxes.
   std::vector<Eigen::AlignedBox3d> sealed_rooms = {};
-  /// Rooms, decks and passages that a ball of 0.8 m gets into from outside.
+  /// Rooms, decks and passages that a ball of 0.8 m can enter from outside.
   std::vector<Eigen::AlignedBox3d> open_rooms = {};
 };
 
@@ -33,19 +34,19 @@ struct Family {
   FamilyScene (*make)(RandomNumbers& draw, const Fineness& fineness);
 };
 
-/// In alphabetical order:
-///   bridge         three to five arches on piers, with parapets
-///   church         nave, aisles between buttresses, apse, a tower under a spire
-///   factory        a saw-tooth hall, slender chimneys up to 48 m, a pipe rack, tanks
-///   fences         thin walls, railings, poles with wires
-///   garage         four or five open parking decks, a stair tower
-///   glass-house    an office block behind panes that return nothing, and mirrors
-///   grove          a house among trees near its walls
-///   hillside       houses on a slope that is part of the surface
-///   hollow-house   a house with an open hall and sealed rooms
-///   lattice-tower  a braced steel tower of 36 to 48 m
-///   old-town       houses on lanes of 2.6 to 4 m, one lane under a house
-///   statue         a figure with raised arm and staff on a plinth
+/// Returns the families in alphabetical order:
+///   bridge: three to five arches on piers, with parapets;
+///   church: nave, aisles between buttresses, apse, a tower below a spire;
+///   factory: saw-tooth hall, slender chimneys up to 48 m, a pipe rack, tanks;
+///   fences: thin walls, railings, poles with wires;
+///   garage: four or five open parking decks, a stair tower;
+///   glass-house: an office block behind panes without returns, and mirrors;
+///   grove: a house among trees close to its walls;
+///   hillside: houses on a slope that is part of the surface;
+///   hollow-house: a house with an open hall and sealed rooms;
+///   lattice-tower: a braced steel tower of 36 to 48 m;
+///   old-town: houses on lanes of 2.6 to 4 m, one lane below a house;
+///   statue: a figure with raised arm and staff on a plinth.
 std::span<const Family> families();
 
 FamilyScene bridge(RandomNumbers& draw, const Fineness& fineness);

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-/// A buttress against a wall to +y that it leaves at y = 0: stepped, 0.8 m wide.
+/// Returns a stepped buttress, 0.8 m wide, against a wall with its face at y = 0 on the +y side.
 Mesh buttress(double reach, double height) {
   const Polyline2 outline{{-reach, 0.0},
                           {0.1, 0.0},
@@ -26,7 +26,7 @@ Mesh buttress(double reach, double height) {
   return extrude(outline, -0.4, 0.4);
 }
 
-/// Nave and aisles along x, buttresses and pinnacles between the aisles' bays.
+/// Adds nave and aisles along x, with buttresses and pinnacles between the bays of the aisles.
 void add_nave(double length, double nave, double aisle, double eaves, int bays, Parts& parts) {
   const double low = 0.55 * eaves;
   parts.push_back({"nave", block(0.0, 0.0, length, nave, 0.0, eaves)});
@@ -36,7 +36,7 @@ void add_nave(double length, double nave, double aisle, double eaves, int bays, 
     const Mesh body =
         extrude({{inner, 0.0}, {outer, 0.0}, {outer, low}, {inner, low + 0.5 * aisle}},
                 -0.5 * length + 0.2, 0.5 * length - 0.2);
-    // A half turn brings it to the other side; the buttresses are made for the wall to -y.
+    // Buttresses are created for the wall towards -y and rotated by 180 degrees for the other side.
     parts.push_back({"aisle", side > 0.0 ? body : turned(body, pi)});
     for (int i = 0; i <= bays; ++i) {
       const double x = (length - 2.0) * (static_cast<double>(i) / bays - 0.5);
@@ -80,7 +80,7 @@ FamilyScene church(RandomNumbers& draw, const Fineness& fineness) {
         loft({level_rectangle(0.8, 0.8, top - 0.2), level_rectangle(0.8, 0.8, top + 1.6),
               level_rectangle(0.05, 0.05, top + 3.6)});
     parts.push_back({"pinnacle", moved(corner, {x + dx * at, dy * at, 0.0})});
-    // Openings of the belfry: blind, sunk behind a frame of two jambs and a head.
+    // Blind openings of the belfry, recessed behind a frame of two jambs and a head.
     parts.push_back(
         {"jamb", block(x + dx * 1.2, dy * (0.5 * side + 0.1), 0.3, 0.3, top - 6.0, top - 1.0)});
   }
@@ -98,7 +98,8 @@ FamilyScene statue(RandomNumbers& draw, const Fineness& fineness) {
   parts.push_back({"plinth", block(0.0, 0.0, side, side, 0.9, plinth)});
   parts.push_back({"cornice", block(0.0, 0.0, side + 0.6, side + 0.6, plinth - 0.5, plinth - 0.2)});
 
-  // The figure, s times a person: a robe, a torso, a head; one arm raised, one with a staff.
+  // Figure, s times the size of a person: robe, torso and head, one raised arm, one arm with a
+  // staff.
   const double s = draw.between(3.6, 5.0), turn = draw.between(0.0, 2.0 * pi);
   const int chords = std::max(16, fineness.circle(0.3 * s));
   Parts figure;
@@ -135,7 +136,7 @@ FamilyScene glass_house(RandomNumbers& draw, const Fineness&) {
   const int bays = draw.integer(5, 7), floors = draw.integer(4, 6);
   const double bay = draw.between(2.4, 3.2), storey = draw.between(3.2, 3.8);
   const double side = bays * bay, half = 0.5 * side, pane = 0.06;
-  const int mirrored = draw.integer(0, 3);  // the front that is a mirror
+  const int mirrored = draw.integer(0, 3);  // Mirrored front.
   for (int level = 0; level <= floors; ++level) {
     const double z = level * storey;
     parts.push_back({"slab", block(0.0, 0.0, side, side, z, z + 0.3)});
@@ -155,7 +156,7 @@ FamilyScene glass_house(RandomNumbers& draw, const Fineness&) {
   const double top = floors * storey + 0.3;
   parts.push_back({"core", block(0.0, 0.0, 0.4 * side, 0.4 * side, top, top + 3.0)});
   parts.push_back({"plant", block(0.3 * side, 0.3 * side, 2.0, 3.0, top, top + 1.5)});
-  // Behind the panes nothing is measured: rooms from slab to slab.
+  // There are no measurements behind the panes: sealed rooms from slab to slab.
   for (int level = 0; level < floors; ++level) {
     const double inner = half - 0.3 - 0.5 * pane, z = level * storey;
     scene.sealed_rooms.emplace_back(Vector3d(-inner, -inner, z + 0.3),

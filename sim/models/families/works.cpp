@@ -1,4 +1,4 @@
-// Families of engineers' works: a factory, a tower of steel, parking decks, a bridge, fences.
+// Families of engineering structures: a factory, a steel tower, parking decks, a bridge, fences.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-/// A slender chimney at the origin: a shaft with rings, and a flue that is closed just below the
+/// Adds a slender chimney at `at`: a shaft with rings, and a flue that is closed just below the
 /// rim.
 void add_chimney(double radius, double height, const Vector3d& at, const Fineness& fineness,
                  Parts& parts) {
@@ -40,7 +40,7 @@ void add_chimney(double radius, double height, const Vector3d& at, const Finenes
   }
 }
 
-/// Pipes along x on trestles, in two layers.
+/// Adds pipes along x on trestles, in two layers.
 void add_pipe_rack(double length, double y, RandomNumbers& draw, const Fineness& fineness,
                    Parts& parts) {
   const double levels[] = {4.2, 6.0}, half = 0.5 * length;
@@ -66,18 +66,18 @@ void add_pipe_rack(double length, double y, RandomNumbers& draw, const Fineness&
   }
 }
 
-/// Half the width of a lattice tower at a height.
+/// Returns the half width of a lattice tower at a height.
 double tower_half(double z, double height, double foot, double top) {
   const double share = 1.0 - z / height;
   return top + (foot - top) * share * share;
 }
 
-/// An opening between two piers, along y.
+/// Opening between two piers, along y.
 struct Span {
   double from, to;
 };
 
-/// `count` openings of not quite the same width, between piers, in the middle.
+/// Returns `count` centred openings of slightly different widths between piers.
 std::vector<Span> draw_spans(int count, double widest, double pier, RandomNumbers& draw) {
   std::vector<Span> spans;
   double y = 0.0;
@@ -93,7 +93,7 @@ std::vector<Span> draw_spans(int count, double widest, double pier, RandomNumber
   return spans;
 }
 
-/// The outline in (y, z) of what stands on a bridge's piers: a deck on arches.
+/// Returns the outline in (y, z) of the part above a bridge's piers: a deck on arches.
 Polyline2 arched_outline(const std::vector<Span>& spans, double springing, double deck, double end,
                          const Fineness& fineness) {
   Profile outline(fineness, -end, deck);
@@ -113,7 +113,7 @@ FamilyScene factory(RandomNumbers& draw, const Fineness& fineness) {
   const int teeth = draw.integer(3, 5);
   const double depth = teeth * draw.between(4.5, 5.5), rise = draw.between(1.8, 2.6);
   Polyline2 outline{{-0.5 * depth, 0.0}, {0.5 * depth, 0.0}};
-  for (int i = teeth; i > 0; --i) {  // from +y to -y: glazing upright, slopes between
+  for (int i = teeth; i > 0; --i) {  // From +y to -y: vertical glazing with slopes in between.
     const double y = depth * (static_cast<double>(i) / teeth - 0.5);
     outline.emplace_back(y, eaves + rise);
     outline.emplace_back(depth * (static_cast<double>(i - 1) / teeth - 0.5), eaves);
@@ -147,7 +147,7 @@ FamilyScene lattice_tower(RandomNumbers& draw, const Fineness& fineness) {
   const double height = draw.between(36.0, 48.0), foot = draw.between(4.0, 5.5), top = 0.9;
   const int panels = draw.integer(8, 10);
   const auto corner = [&](int level, int side) {
-    // Legs begin within their footings.
+    // Legs start inside their footings.
     const double z = level == 0 ? 0.4 : height * level / panels;
     const double half = tower_half(z, height, foot, top);
     const double x = side == 0 || side == 3 ? -half : half, y = side < 2 ? -half : half;
@@ -184,7 +184,7 @@ FamilyScene garage(RandomNumbers& draw, const Fineness&) {
   const int decks = draw.integer(4, 5);
   const int columns = static_cast<int>(width / 7.0);
   for (int i = 0; i < decks; ++i) {
-    const double z = i * storey;  // of the deck's upper side
+    const double z = i * storey;  // Upper side of the deck.
     parts.push_back(
         {"deck", block(0.0, 0.0, width, depth, z == 0.0 ? 0.0 : z - slab, z == 0.0 ? 0.1 : z)});
     for (const double side : {-1.0, 1.0}) {
@@ -248,7 +248,7 @@ FamilyScene fences(RandomNumbers& draw, const Fineness& fineness) {
     const Mesh wall = block(0.0, 0.0, length, thickness, 0.0, height);
     parts.push_back({"thin wall", moved(turned(wall, azimuth), at)});
   }
-  const double y = draw.between(11.0, 14.0);  // a railing along x, and one along y
+  const double y = draw.between(11.0, 14.0);  // One railing along x, and one along y.
   for (const bool is_along_x : {true, false}) {
     const auto place = [&](double along, double z) {
       return is_along_x ? Vector3d(along, y, z) : Vector3d(-26.0, along, z);
@@ -268,7 +268,7 @@ FamilyScene fences(RandomNumbers& draw, const Fineness& fineness) {
     parts.push_back({"pole", moved(frustum(0.16, 0.11, 0.0, pole, fineness), {x, line, 0.0})});
     parts.push_back({"arm", block(x, line, 0.15, 1.8, pole - 0.6, pole - 0.45)});
     if (i == 0) continue;
-    for (const double side : {-0.8, 0.0, 0.8}) {  // two straight halves of a sagging wire
+    for (const double side : {-0.8, 0.0, 0.8}) {  // Two straight halves of a sagging wire.
       const Vector3d from(x - 16.0, line + side, pole - 0.4), to(x, line + side, pole - 0.4);
       const Vector3d middle = 0.5 * (from + to) - Vector3d(0.0, 0.0, 0.5);
       parts.push_back({"wire", bar(from, middle, 0.012, fineness)});

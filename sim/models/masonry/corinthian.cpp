@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-/// Square plinth, two tori with a scotia between them.
+/// Adds a square plinth and two tori with a scotia between them.
 void add_base(const Column& column, const Fineness& fineness, Parts& parts) {
   const double r = column.foot_radius, half = 1.39 * r;
   parts.push_back({"column plinth", box({-half, -half, -0.03}, {half, half, 0.36 * r})});
@@ -32,14 +32,15 @@ void add_base(const Column& column, const Fineness& fineness, Parts& parts) {
   parts.push_back({"column base", revolve(profile.points(), fineness.circle(1.3 * r))});
 }
 
-/// Straight for a third, then narrowing to the top along a curve that starts upright.
+/// Returns the radius of the shaft: constant for one third, then decreasing to the top along a
+/// curve with a vertical start.
 double shaft_radius(const Column& column, double share) {
   const double above = std::max(0.0, (share - 1.0 / 3.0) * 1.5);
   return column.foot_radius -
          (column.foot_radius - column.top_radius) * above * above * (1.5 - 0.5 * above);
 }
 
-/// One turn of a horizontal section; flutes are hollows between narrow fillets.
+/// Returns one horizontal section. Flutes are hollows between narrow fillets.
 Polyline3 shaft_ring(const Column& column, double radius, double z, bool is_fluted,
                      const Fineness& fineness) {
   Polyline3 ring;
@@ -80,22 +81,22 @@ void add_shaft(const Column& column, double capital_foot, const Fineness& finene
   if (column.flutes > 0) add(1.0, false);
   parts.push_back({"column shaft", loft(rings)});
 
-  const double r = column.top_radius;  // the astragal
+  const double r = column.top_radius;  // Astragal.
   Profile ring(fineness, 0.8 * r, capital_foot - 0.16 * r);
   ring.by(0.22 * r, 0.0).arc_by(0.0, 0.16 * r, 0.97 * pi).by(-0.22 * r, 0.0);
   parts.push_back({"column astragal", revolve_ring(ring.points(), fineness.circle(r))});
 }
 
-/// Measures of the capital. Heights are from its foot.
+/// Dimensions of the capital. Heights are relative to its foot.
 struct Capital {
-  double foot;         ///< z
-  double height;       ///< with the abacus
-  double abacus;       ///< its height
-  double bell_radius;  ///< at the foot
-  double reach;        ///< of the abacus along its diagonals
+  double foot;         ///< Height z.
+  double height;       ///< Including the abacus.
+  double abacus;       ///< Height of the abacus.
+  double bell_radius;  ///< Radius at the foot.
+  double reach;        ///< Extent of the abacus along its diagonals.
 
   double bell_height() const { return height - abacus; }
-  /// The bell flares towards its lip.
+  /// Returns the bell radius, which increases towards the lip.
   double bell_radius_at(double share) const {
     return bell_radius * (0.90 + 0.10 * share + 0.26 * std::pow(share, 4.0));
   }
@@ -114,8 +115,8 @@ void add_bell(const Capital& capital, const Fineness& fineness, Parts& parts) {
       {"capital bell", revolve(profile.points(), fineness.circle(capital.bell_radius))});
 }
 
-/// An acanthus leaf at azimuth 0: it rises along the bell, its edge cut into lobes, its tip curling
-/// over outwards.
+/// Returns an acanthus leaf at azimuth 0. It rises along the bell, with a lobed edge and a tip that
+/// curls outwards.
 Mesh acanthus_leaf(const Capital& capital, double height, double half_width, double lean,
                    const Fineness& fineness) {
   const int along = 2 * std::clamp(fineness.chords(0.25 * height, 1.2 * pi), 2, 36);
@@ -124,7 +125,7 @@ Mesh acanthus_leaf(const Capital& capital, double height, double half_width, dou
   std::vector<Polyline3> rings;
   for (int i = 0; i <= along; ++i) {
     const double t = static_cast<double>(i) / along;
-    // The midrib (distance from the axis, z) and the direction in which the leaf faces.
+    // Midrib (distance from the axis, z), and the direction that the leaf faces.
     Vector2d midrib, facing;
     const double upright = 0.72;
     const double foot_radius = capital.bell_radius_at(0.0);
@@ -146,11 +147,10 @@ Mesh acanthus_leaf(const Capital& capital, double height, double half_width, dou
     const double taper = t < upright ? 0.80 + 0.20 * std::sin(pi * t / upright)
                                      : 0.80 * std::sqrt(std::max(0.02, 1.0 - (t - upright) / 0.30));
     const double width = half_width * lobes * taper;
-    // The front with its midrib and veins, then the back, a keel
-    // against the bell.
+    // Front with midrib and veins, then the back, a keel against the bell.
     Polyline3& ring = rings.emplace_back();
     const auto add = [&](double v, double out) {
-      const double wrap = -0.22 * half_width * v * v;  // the sides bend back round the bell
+      const double wrap = -0.22 * half_width * v * v;  // The sides bend back around the bell.
       const Vector2d at = midrib + (out + wrap) * facing;
       ring.emplace_back(at.x(), width * v, at.y());
     };
@@ -164,12 +164,13 @@ Mesh acanthus_leaf(const Capital& capital, double height, double half_width, dou
   return loft(rings);
 }
 
-/// A scroll in the upright plane at azimuth 0: a ribbon that rises from the bell and winds inwards.
+/// Returns a scroll in the vertical plane at azimuth 0: a ribbon that rises from the bell and winds
+/// inwards.
 Mesh scroll(const Vector2d& from, const Vector2d& eye, double radius, double turns,
             double half_width, double thickness, const Fineness& fineness) {
   Polyline3 path;
   const auto add = [&](const Vector2d& at) { path.emplace_back(at.x(), 0.0, at.y()); };
-  // The stem leaves upwards and meets the spiral at its top.
+  // The stem starts vertically and meets the spiral at its top.
   const Vector2d top = eye + Vector2d(0.0, radius);
   const int stem = fineness.chords((top - from).norm(), 0.5 * pi) + 1;
   for (int i = 0; i < stem; ++i) {
@@ -192,7 +193,7 @@ Mesh scroll(const Vector2d& from, const Vector2d& eye, double radius, double tur
   return sweep(section, path, Vector3d::UnitY(), false);
 }
 
-/// The abacus: four hollowed sides between blunt corners, a cavetto under an ovolo.
+/// Returns the abacus: four concave sides between blunt corners, a cavetto below an ovolo.
 Mesh abacus(const Capital& capital, const Fineness& fineness) {
   const double half_corner = 0.10 * capital.reach;
   const int chords = 2 * fineness.chords(1.4 * capital.reach, 0.25 * pi);
@@ -200,7 +201,7 @@ Mesh abacus(const Capital& capital, const Fineness& fineness) {
   const auto add_ring = [&](double size, double z) {
     Polyline3& ring = rings.emplace_back();
     for (int side = 0; side < 4; ++side) {
-      // From the corner on the right of this side to the one on its left.
+      // From the right corner of this side to the left one.
       const Eigen::Rotation2Dd turn(0.5 * pi * side);
       const Vector2d corner = capital.reach * Vector2d(1.0, 1.0) / std::sqrt(2.0);
       const Vector2d blunt = half_corner * Vector2d(1.0, -1.0) / std::sqrt(2.0);
@@ -220,7 +221,7 @@ Mesh abacus(const Capital& capital, const Fineness& fineness) {
       .to(0.97 * capital.reach, foot + 0.55 * h)
       .by(0.0, 0.07 * h)
       .to(capital.reach, foot + 0.78 * h)
-      .to(capital.reach, foot + h + 0.02);  // into the architrave
+      .to(capital.reach, foot + h + 0.02);  // Into the architrave.
   for (const Vector2d& point : profile.points()) add_ring(point.x() / capital.reach, point.y());
   return loft(rings);
 }

@@ -11,8 +11,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-/// The section of a cornice, counter-clockwise: from its foot at the wall's face out to its upper
-/// edge. First coordinate outwards, second upwards; it reaches `depth` into the wall.
+/// Returns the section of a cornice, counter-clockwise from its foot at the wall's face to its
+/// upper edge. The first coordinate is outwards, the second upwards. It extends `depth` into the
+/// wall.
 Polyline2 cornice_section(double overhang, double height, double depth, const Fineness& fineness) {
   Profile profile(fineness, -depth, 0.0);
   profile.to(0.12 * overhang, 0.0)
@@ -26,7 +27,8 @@ Polyline2 cornice_section(double overhang, double height, double depth, const Fi
   return profile.points();
 }
 
-/// An architrave's section: (across its band, out of the wall), two fasciae and an outer fillet.
+/// Returns the section of an architrave (across its band, out of the wall): two fasciae and an
+/// outer fillet.
 Polyline2 architrave_section(double band, double back, double face, const Fineness& fineness) {
   Profile profile(fineness, 0.0, back);
   profile.to(0.0, face + 0.05)
@@ -37,7 +39,7 @@ Polyline2 architrave_section(double band, double back, double face, const Finene
       .to(band, face + 0.12)
       .to(band, back);
   Polyline2 section = profile.points();
-  std::reverse(section.begin(), section.end());  // counter-clockwise
+  std::reverse(section.begin(), section.end());  // Counter-clockwise.
   return section;
 }
 
@@ -45,7 +47,8 @@ Polyline2 architrave_section(double band, double back, double face, const Finene
 
 void add_pediment(const std::string& name, const Pediment& p, const Fineness& fineness,
                   Parts& parts) {
-  // Level cornice: along one side, the front, and the other side; outwards is left of the way.
+  // Level cornice along one side, the front and the other side. Outwards is to the left of the
+  // path.
   const double inside = std::min(0.3, 0.5 * p.half_width);
   const Polyline3 around{{p.back, p.half_width, p.level},
                          {p.front, p.half_width, p.level},
@@ -55,7 +58,7 @@ void add_pediment(const std::string& name, const Pediment& p, const Fineness& fi
       {name + " cornice", sweep(cornice_section(p.overhang, p.cornice_height, inside, fineness),
                                 around, Vector3d::UnitZ(), false)});
 
-  // The upper edge of the field, from the left end to the right.
+  // Upper edge of the field, from the left end to the right.
   const double eaves = p.level + p.cornice_height, left = -p.half_width;
   Polyline2 edge{{left, eaves}};
   if (p.is_segmental) {
@@ -70,7 +73,7 @@ void add_pediment(const std::string& name, const Pediment& p, const Fineness& fi
   field.insert(field.end(), edge.rbegin(), edge.rend());
   parts.push_back({name + " field", extrude(field, p.back, p.front + 0.02)});
 
-  // Sloping cornices with the roof behind them; beyond the ends they reach over the level cornice.
+  // Sloping cornices with the roof behind them. They extend beyond the ends of the level cornice.
   const Vector2d first = (edge[1] - edge[0]).normalized() * 1.05 * p.overhang;
   edge.front() -= first;
   edge.back() += Vector2d(first.x(), -first.y());
@@ -86,7 +89,7 @@ void add_pediment(const std::string& name, const Pediment& p, const Fineness& fi
 
 void add_frame(const std::string& name, const Frame& f, const Fineness& fineness, Parts& parts) {
   const Polyline2 section = architrave_section(f.band, f.back, f.face, fineness);
-  // Up on the left, over the head, down on the right: outwards is left of the way.
+  // Up on the left, across the head, down on the right. Outwards is to the left of the path.
   const Polyline3 path{{0.0, -f.half_width, f.sill},
                        {0.0, -f.half_width, f.head},
                        {0.0, f.half_width, f.head},
@@ -102,13 +105,13 @@ void add_frame(const std::string& name, const Frame& f, const Fineness& fineness
                               {f.face + 0.11, std::max(from, to), f.head + f.band - 0.01})});
     }
   }
-  // The sill on its two blocks.
+  // Sill on its two blocks.
   const double reach = outer + std::max(0.06, f.lug);
   Polyline2 profile = cornice_section(0.20, 0.16, f.face - f.back, fineness);
   Polyline2 sill;
   for (const Vector2d& point : profile)
     sill.emplace_back(f.face + point.x(), f.sill - 0.16 + point.y());
-  // extrude() works along x: make it along y.
+  // extrude() works along x; the rotation makes it along y.
   parts.push_back({name + " sill", turned(extrude(sill, -reach, reach), -0.5 * pi)});
   for (const double side : {-1.0, 1.0}) {
     const double middle = side * (f.half_width + 0.5 * f.band);

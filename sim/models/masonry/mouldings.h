@@ -1,5 +1,5 @@
-/// Frames, pediments and blocks that are applied to walls. All stand at azimuth 0 with x out of the
-/// wall, y to the right, z up; a wall's curvature under them is taken up by their depth.
+/// Frames, pediments and blocks on walls. All are created at azimuth 0 with x out of the wall, y to
+/// the right and z up. Their depth compensates for the curvature of the wall below.
 #pragma once
 
 #include <string>
@@ -8,37 +8,38 @@
 
 namespace skycap::sim::models {
 
-/// A gable: a level cornice with returns, the field above it, and cornices on its slopes.
+/// Gable: a level cornice with returns, the field above it, and cornices on the slopes.
 struct Pediment {
-  double half_width;  ///< of the wall it crowns
-  double level;       ///< z of the level cornice's lower edge
-  double rise;        ///< of the field
-  double back;        ///< x at which it ends inside the wall
-  double front;       ///< x of the wall's face
-  double overhang;    ///< of the cornices
+  double half_width;  ///< Half width of the wall below.
+  double level;       ///< z of the lower edge of the level cornice.
+  double rise;        ///< Rise of the field.
+  double back;        ///< x of the end inside the wall.
+  double front;       ///< x of the wall's face.
+  double overhang;    ///< Overhang of the cornices.
   double cornice_height;
-  bool is_segmental;  ///< an arc instead of two slopes
+  bool is_segmental;  ///< True: an arc instead of two slopes.
 };
 void add_pediment(const std::string& name, const Pediment& pediment, const Fineness& fineness,
                   Parts& parts);
 
-/// A moulded architrave round three sides of a rectangular opening, lugged at its upper corners if
-/// `lug` is positive, and a sill on two blocks.
+/// Moulded architrave around three sides of a rectangular opening, and a sill on two blocks. The
+/// upper corners have lugs if `lug` is positive.
 struct Frame {
-  double half_width;  ///< of the opening
-  double sill, head;  ///< z of the opening
-  double back, face;  ///< x inside the wall, and x of the wall's face
-  double band;        ///< width of the architrave
-  double lug;         ///< how far the lugs reach out beyond the architrave
+  double half_width;  ///< Half width of the opening.
+  double sill, head;  ///< z of the opening.
+  double back, face;  ///< x inside the wall, and x of the wall's face.
+  double band;        ///< Width of the architrave.
+  double lug;         ///< Extension of the lugs beyond the architrave.
 };
 void add_frame(const std::string& name, const Frame& frame, const Fineness& fineness, Parts& parts);
 
-/// Glazing bars on a panel at x = `face`: `columns` x `rows` panes between y = -+half_width and z =
-/// sill to head.
+/// Adds glazing bars on a panel at x = `face`: `columns` x `rows` panes between y = -+half_width
+/// and z = sill to head.
 void add_glazing_bars(const std::string& name, double half_width, double sill, double head,
                       double face, int columns, int rows, const Fineness& fineness, Parts& parts);
 
-/// An arched architrave: legs from the sill up to the springing and a half circle round the head.
+/// Adds an arched architrave: legs from the sill to the springing, and a semicircle around the
+/// head.
 void add_arched_frame(const std::string& name, const Frame& frame, const Fineness& fineness,
                       Parts& parts);
 

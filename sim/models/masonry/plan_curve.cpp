@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using std::numbers::pi;
 
-constexpr double same_place = 1e-6;  // [m] places closer than this are one
+constexpr double same_place = 1e-6;  // Distance below which points are identical [m].
 
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using std::numbers::pi;
 
-/// The part of a convex or nearly convex polygon below the level z.
+/// Returns the part of a convex or nearly convex polygon below the level z.
 Polyline2 clipped_below(const Polyline2& polygon, double z) {
   Polyline2 result;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -25,8 +25,8 @@ Polyline2 clipped_below(const Polyline2& polygon, double z) {
   return result;
 }
 
-/// A half circle's points from the right end of its diameter over the top to the left end.
-/// Between neighbouring joints of the voussoirs lie equally many chords.
+/// Returns the points of a semicircle from the right end of its diameter across the top to the left
+/// end. The number of chords between neighbouring voussoir joints is constant.
 Polyline2 half_circle(const Vector2d& centre, double radius, int chords) {
   Polyline2 points;
   for (int i = 0; i <= chords; ++i) {
@@ -36,10 +36,10 @@ Polyline2 half_circle(const Vector2d& centre, double radius, int chords) {
   return points;
 }
 
-/// Half a course beside or above an arch: from s = `outer` to the outline of the voussoirs, or to
-/// the axis above them. `curve` is the outline's half, from the springing up to the crown.
+/// Returns half a course beside or above an arch: from s = `outer` to the outline of the voussoirs,
+/// or to the axis above them. `curve` is half of the outline, from the springing to the crown.
 Polyline2 course_beside(const Polyline2& curve, double outer, double bottom, double top) {
-  Polyline2 inner;  // from the bottom up
+  Polyline2 inner;  // From the bottom up.
   const auto add = [&](double s, double z) {
     if (inner.empty() || (inner.back() - Vector2d(s, z)).norm() > 1e-6) inner.emplace_back(s, z);
   };
@@ -63,7 +63,7 @@ Polyline2 course_beside(const Polyline2& curve, double outer, double bottom, dou
   return polygon;
 }
 
-/// A rectangular stone whose level sides are cut so that it can follow a curved plan.
+/// Adds a rectangular stone with subdivided horizontal sides, so that it can follow a curved plan.
 void add_stone(double left, double right, double bottom, double top, int chords, Wall& wall) {
   Polyline2 stone;
   for (int i = 0; i <= chords; ++i) stone.emplace_back(left + (right - left) * i / chords, bottom);
@@ -71,7 +71,7 @@ void add_stone(double left, double right, double bottom, double top, int chords,
   wall.tiles.push_back(stone);
 }
 
-/// One bay of a rusticated wall: an arched opening, its voussoirs, and the courses beside it.
+/// Bay of a rusticated wall: an arched opening, its voussoirs and the courses beside it.
 class ArchedBay {
  public:
   ArchedBay(const Courses& courses, const Opening& opening, const Voussoirs& voussoirs,
@@ -87,8 +87,8 @@ class ArchedBay {
     const Vector2d centre(opening.centre, springing_);
     const double outer_radius = radius_ + voussoirs.height;
     assert(outer_radius < half_width);
-    // Twice as many chords as voussoirs, at least: an odd number of stones still has a vertex at
-    // the crown.
+    // At least twice as many chords as voussoirs, so that an odd number of stones still has a
+    // vertex at the crown.
     chords_each_ = 2 * std::max(1, fineness.chords(outer_radius, 0.5 * pi / voussoirs.count));
     const int chords = chords_each_ * voussoirs.count;
     intrados_ = half_circle(centre, radius_, chords);
@@ -105,7 +105,7 @@ class ArchedBay {
   void add_opening() {
     Opening fitted = opening_;
     fitted.head = intrados_;
-    // A niche's rows need the levels of the courses on both sides of the opening.
+    // The rows of a niche require the course levels on both sides of the opening.
     if (opening_.back == Opening::Back::round) {
       Polyline2 left_side;
       fitted.head.clear();
@@ -144,7 +144,7 @@ class ArchedBay {
     }
   }
 
-  /// Three stones, then two halves between them.
+  /// Three stones, or two halves in between.
   void add_whole_course(bool is_even, double bottom, double top) {
     const std::vector<double> joints =
         is_even ? std::vector<double>{-1.0, -0.36, 0.36, 1.0} : std::vector<double>{-1.0, 0.0, 1.0};
@@ -154,7 +154,7 @@ class ArchedBay {
     }
   }
 
-  /// One stone, then two.
+  /// One stone, or two.
   void add_piers(bool is_even, double bottom, double top) {
     const double centre = opening_.centre;
     const double left = centre - half_width_, right = centre + half_width_;
@@ -191,7 +191,8 @@ class ArchedBay {
   double half_width_, springing_, radius_, widest_chord_;
   Wall& wall_;
   int chords_each_ = 0;
-  Polyline2 intrados_, extrados_;  ///< of the voussoirs, from the right springing to the left one
+  /// Outlines of the voussoirs, from the right springing to the left one.
+  Polyline2 intrados_, extrados_;
 };
 
 }  // namespace

@@ -24,8 +24,8 @@ double distance_to_segment(const Vector2d& point, const Vector2d& a, const Vecto
   return (point - a - share * (b - a)).norm();
 }
 
-/// Douglas and Peucker's simplification of a line: keeps both ends and whatever is farther than
-/// `tolerance` from the line without it.
+/// Returns the line simplified by the method of Douglas and Peucker. It keeps both ends and all
+/// points farther than `tolerance` from the simplified line.
 Polyline2 simplified(const Polyline2& line, double tolerance) {
   std::vector<char> is_kept(line.size(), 0);
   is_kept.front() = is_kept.back() = 1;
@@ -51,14 +51,14 @@ Polyline2 simplified(const Polyline2& line, double tolerance) {
   return result;
 }
 
-/// Turns the triangles round if the surface faces inwards.
+/// Reverses the triangles if the surface faces inwards.
 Mesh facing_outwards(Mesh mesh) {
   if (signed_volume(mesh) >= 0.0) return mesh;
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
 }
 
-/// Triangles between two neighbouring rings of `size` vertices.
+/// Adds triangles between two neighbouring rings of `size` vertices.
 void join_rings(std::uint32_t lower, std::uint32_t upper, std::uint32_t size, Mesh& mesh) {
   for (std::uint32_t i = 0; i < size; ++i) {
     const std::uint32_t next = (i + 1) % size;
@@ -67,7 +67,7 @@ void join_rings(std::uint32_t lower, std::uint32_t upper, std::uint32_t size, Me
   }
 }
 
-/// The area vector of a flat ring (Newell's formula).
+/// Returns the area vector of a flat ring (Newell's formula).
 Vector3d area_vector(const Polyline3& ring) {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -76,7 +76,7 @@ Vector3d area_vector(const Polyline3& ring) {
   return 0.5 * sum;
 }
 
-/// The ring in coordinates of its own plane, counter-clockwise.
+/// Returns the ring in the coordinates of its own plane, counter-clockwise.
 Polyline2 flattened(const Polyline3& ring) {
   const Vector3d normal = area_vector(ring).normalized();
   Vector3d axis = Vector3d::Zero();
@@ -121,7 +121,7 @@ Profile& Profile::arc_to(double x, double y, double angle) {
   const Vector2d start = points_.back(), end(x, y);
   const double radius = (end - start).norm() / (2.0 * std::abs(std::sin(0.5 * angle)));
   const int chords = fineness_.chords(radius, angle);
-  // A point of the arc by the angle gone: inscribed angles give direction and length of its chord.
+  // A point of the arc by its angle: the inscribed angle gives direction and length of the chord.
   for (int i = 1; i < chords; ++i) {
     const double gone = angle * i / chords;
     const Vector2d chord = Eigen::Rotation2Dd(0.5 * (gone - angle)) * (end - start);
@@ -193,8 +193,8 @@ Mesh loft(const std::vector<Polyline3>& rings) {
     const auto end = static_cast<std::uint32_t>(mesh.vertices.size());
     if (end > size) join_rings(end - 2 * size, end - size, size, mesh);
   }
-  // flattened() looks at a ring from the side towards which it turns counter-clockwise; that is
-  // against the way for the first ring if, and only if, it is along the way for the last.
+  // flattened() views a ring from the side on which it is counter-clockwise. For the first ring,
+  // that is against the path direction exactly if it is along the path for the last one.
   const auto last = static_cast<std::uint32_t>(mesh.vertices.size()) - size;
   for (const auto& [a, b, c] : geometry::clip_ears(flattened(rings.front()))) {
     mesh.triangles.push_back({a, c, b});
@@ -232,7 +232,7 @@ Mesh sweep(const Polyline2& section, const Polyline3& path, const Vector3d& up, 
     const bool is_first = !is_closed && i == 0, is_last = !is_closed && i + 1 == count;
     const Vector3d before = left_of_leg(is_first ? 0 : i + count - 1);
     const Vector3d after = is_last ? before : left_of_leg(i);
-    // In the mitre both legs' mouldings are met at their own distance from the path.
+    // At the mitre, the mouldings of both legs have their own distance from the path.
     const Vector3d sideways = (before + after) / (1.0 + before.dot(after));
     Polyline3& ring = rings.emplace_back();
     for (const Vector2d& point : section) {
@@ -264,7 +264,7 @@ Mesh moved(Mesh mesh, const Vector3d& by) {
 
 double signed_volume(const Mesh& mesh) {
   if (mesh.vertices.empty()) return 0.0;
-  const Vector3d origin = mesh.vertices.front();  // near the solid, so that little cancels
+  const Vector3d origin = mesh.vertices.front();  // Close to the solid, which limits cancellation.
   double volume = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
     volume += (mesh.vertices[a] - origin)

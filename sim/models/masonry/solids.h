@@ -1,9 +1,9 @@
-/// The few modelling operations that the procedural scenes are made of. Each gives one closed
-/// surface, every edge shared by exactly two triangles, facing outwards.
+/// Modelling operations for procedural scenes. Each returns one closed surface facing outwards,
+/// whose edges are shared by exactly two triangles.
 ///
-/// Axes: x, y, z in metres, z up. A solid that belongs on a round building is made at azimuth 0,
-/// where x points out of the wall, y along it to the right of someone who faces it, and is then
-/// turned into place about the z axis.
+/// Axes: x, y, z in metres, z up. Solids of a round building are created at azimuth 0, with x out
+/// of the wall and y along it, to the right of an observer who faces it. They are then rotated into
+/// place around the z axis.
 #pragma once
 
 #include <array>
@@ -22,36 +22,37 @@ namespace skycap::sim::models {
 using Polyline2 = std::vector<Eigen::Vector2d>;
 using Polyline3 = std::vector<Eigen::Vector3d>;
 
-/// How finely curves are cut into chords.
+/// Resolution of curves.
 struct Fineness {
-  double chord_error;  ///< the farthest that a chord may stay from its arc [m]
+  double chord_error;  ///< Maximum distance between chord and arc [m].
 
-  /// The number of chords for an arc; at least one for each 60 degrees.
+  /// Returns the number of chords for an arc, at least one per 60 degrees.
   int chords(double radius, double angle) const;
-  /// The number of chords for a full circle, a multiple of `multiple`.
+  /// Returns the number of chords for a full circle, a multiple of `multiple`.
   int circle(double radius, int multiple = 2) const;
-  /// Whether a detail of that size is worth modelling; smaller ones are left out.
+  /// Returns true if a detail of that size [m] is large enough to be modelled.
   bool shows(double size) const { return size > 1.5 * chord_error; }
 };
 
-/// The longest chord for an arc.
+/// Returns the maximum chord length for an arc.
 double chord_length(const Fineness& fineness, double radius);
 
-/// Draws the outline of a moulding. Coordinates are whatever the solid takes: (radius, height) for
-/// revolve(), (sideways, upwards) for sweep(). Consecutive points differ.
+/// Outline of a moulding. Coordinates are those of the solid: (radius, height) for revolve(),
+/// (sideways, upwards) for sweep(). Consecutive points must differ.
 class Profile {
  public:
   Profile(const Fineness& fineness, double x, double y);
-  Profile& to(double x, double y);    ///< straight to (x, y)
-  Profile& by(double dx, double dy);  ///< straight on by (dx, dy)
-  /// Along a circular arc to (x, y) that turns by `angle` in all: to the left if it is positive,
-  /// so that it bulges out to the right of its chord. |angle| < 2 pi.
+  Profile& to(double x, double y);    ///< Adds a line to (x, y).
+  Profile& by(double dx, double dy);  ///< Adds a line by (dx, dy).
+  /// Adds a circular arc to (x, y) with the total rotation `angle`. A positive angle turns left, so
+  /// that the arc bulges to the right of its chord. |angle| < 2 pi.
   Profile& arc_to(double x, double y, double angle);
   Profile& arc_by(double dx, double dy, double angle);
-  /// By two equal arcs, the first turning by `angle`, the second back: a cyma.
+  /// Adds a cyma: two equal arcs, the first with the rotation `angle`, the second with the opposite
+  /// one.
   Profile& wave_by(double dx, double dy, double angle);
-  /// The outline so far, without the points that stay nearer than half a chord error to the outline
-  /// without them: small mouldings go where a coarse model cannot show them.
+  /// Returns the outline without points closer than half a chord error to the simplified outline.
+  /// Coarse models thus omit small mouldings.
   Polyline2 points() const;
 
  private:
@@ -59,38 +60,38 @@ class Profile {
   Polyline2 points_;
 };
 
-/// The solid that `profile` sweeps round the z axis, (radius, height) from its lowest point on the
-/// axis to its highest point on the axis.
+/// Returns the solid of revolution of `profile` around the z axis. The profile (radius, height)
+/// runs from its lowest to its highest point on the axis.
 geometry::Mesh revolve(const Polyline2& profile, int chords);
 
-/// The ring that a closed profile, (radius, height), which stays off the axis, sweeps round it.
+/// Returns the ring of revolution of a closed profile (radius, height) that does not touch the
+/// axis.
 geometry::Mesh revolve_ring(const Polyline2& profile, int chords);
 
-/// The solid between two ends that passes through every ring. The rings have equally many points,
-/// correspond point by point and turn the same way; the two end rings are flat.
+/// Returns the solid through all rings. The rings have the same number of corresponding points and
+/// the same orientation. The two end rings are planar.
 geometry::Mesh loft(const std::vector<Polyline3>& rings);
 
-/// The outline (y, z), extruded along x from `back` to `front`.
+/// Returns the outline (y, z), extruded along x from `back` to `front`.
 geometry::Mesh extrude(const Polyline2& outline, double back, double front);
 
 geometry::Mesh box(const Eigen::Vector3d& smallest, const Eigen::Vector3d& largest);
 
-/// A moulding along a path in a plane: the closed `section` (sideways, upwards) travels along
-/// `path`, sideways being to the left of it seen from the tip of `up`, with mitred corners. A
-/// closed path joins its last point to its first; an open one has square ends.
+/// Returns a moulding along a planar path with mitred corners. The closed `section` (sideways,
+/// upwards) follows `path`, where sideways is to the left as seen from the tip of `up`. A closed
+/// path connects its last point to its first; an open path has square ends.
 geometry::Mesh sweep(const Polyline2& section, const Polyline3& path, const Eigen::Vector3d& up,
                      bool is_closed);
 
-/// `mesh`, turned about the z axis, counter-clockwise seen from above.
+/// Returns `mesh` rotated around the z axis, counter-clockwise from above.
 geometry::Mesh turned(geometry::Mesh mesh, double azimuth);
-/// `mesh`, moved.
+/// Returns `mesh` translated by `by`.
 geometry::Mesh moved(geometry::Mesh mesh, const Eigen::Vector3d& by);
 
-/// The volume that a closed surface encloses; negative if it faces inwards.
+/// Returns the volume inside a closed surface, negative if it faces inwards.
 double signed_volume(const geometry::Mesh& mesh);
 
-/// A building while it is put together: closed solids with the name of what they are. Equal
-/// elements share a name.
+/// Part of a building: closed solids with the name of their element. Equal elements share a name.
 struct Part {
   std::string name;
   geometry::Mesh mesh;
@@ -98,7 +99,7 @@ struct Part {
 };
 using Parts = std::vector<Part>;
 
-/// All parts in one mesh, in their order.
+/// Returns one mesh of all parts, in order.
 geometry::Mesh join(const Parts& parts);
 
 }  // namespace skycap::sim::models

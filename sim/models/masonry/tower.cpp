@@ -54,7 +54,7 @@ Mesh Tower::close(double top) {
 }
 
 void Tower::join_to(const Loop& next) {
-  if (rim_.empty()) {  // the floor, seen from below
+  if (rim_.empty()) {  // The floor, seen from below.
     for (std::size_t i = 0; i < next.size(); ++i) {
       mesh_.triangles.push_back({0, next[(i + 1) % next.size()], next[i]});
     }
@@ -74,7 +74,7 @@ void Tower::join_to(const Loop& next) {
   const auto lower = [&](std::size_t i) { return rim_[i % rim_.size()]; };
   const auto upper = [&](std::size_t j) { return next[(first + j) % next.size()]; };
 
-  // Azimuths along each edge, growing past a full turn.
+  // Azimuths along each edge, increasing beyond a full circle.
   const auto azimuths = [&](const auto& vertex, std::size_t size, double start) {
     std::vector<double> angles{start};
     for (std::size_t i = 1; i <= size; ++i) {
@@ -87,8 +87,8 @@ void Tower::join_to(const Loop& next) {
   const std::vector<double> below = azimuths(lower, rim_.size(), 0.0);
   const std::vector<double> above = azimuths(upper, next.size(), lag);
 
-  // Go round both edges together, always stepping on the one whose next side has its middle first:
-  // so no triangle reaches across a corner where the plan turns out or in.
+  // Both edges are traversed together. Each step is on the edge whose next side has the smaller
+  // mean azimuth, so no triangle crosses a corner of the plan.
   std::size_t i = 0, j = 0;
   while (i < rim_.size() || j < next.size()) {
     const bool step_below =

@@ -1,4 +1,4 @@
-/// Stacks walls and turned profiles into one closed solid.
+/// Combines walls and profiles of revolution into one closed solid.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,29 @@
 
 namespace skycap::sim::models {
 
-/// A surface round the z axis that is open at the bottom and at the top.
+/// Surface around the z axis that is open at the bottom and the top.
 struct Band {
   geometry::Mesh mesh;
-  std::vector<std::uint32_t> bottom, top;  ///< its two edges, counter-clockwise from above
+  std::vector<std::uint32_t> bottom, top;  ///< Boundary edges, counter-clockwise from above.
 };
 
-/// One closed solid about the z axis, made from the bottom up.
+/// Closed solid around the z axis, built from the bottom up.
 class Tower {
  public:
-  /// Starts with a point on the axis, the middle of the floor.
+  /// Starts with a point on the axis, the centre of the floor.
   explicit Tower(double bottom);
-  /// Goes on with a turned profile (radius, height). A flat ring or disc joins it to what is below.
+  /// Adds a profile of revolution (radius, height) or a band. A flat ring or disc connects it to
+  /// the part below.
   Tower& add(const Polyline2& profile, int chords);
   Tower& add(const Band& band);
-  /// Ends with a point on the axis.
+  /// Ends with a point on the axis and returns the solid.
   geometry::Mesh close(double top);
 
  private:
   void join_to(const std::vector<std::uint32_t>& next);
 
   geometry::Mesh mesh_;
-  std::vector<std::uint32_t> rim_;  // the open upper edge; empty while there is only the floor
+  std::vector<std::uint32_t> rim_;  // Open upper edge. Empty while there is only the floor.
 };
 
 }  // namespace skycap::sim::models

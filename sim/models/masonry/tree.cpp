@@ -18,7 +18,7 @@ Parts tree(double height, RandomNumbers& draw, const Fineness& fineness) {
                                           {0.7 * trunk, 0.6 * height},
                                           {0.0, 0.6 * height}},
                                          std::max(6, fineness.circle(trunk)))});
-  // The crown: an egg whose rings are pushed in and out and aside.
+  // Crown: an ovoid with randomly displaced and scaled rings.
   constexpr int rings = 7, sides = 10;
   std::vector<Polyline3> sections;
   for (int i = 0; i <= rings; ++i) {

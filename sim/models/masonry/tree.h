@@ -8,7 +8,7 @@ namespace skycap::sim::models {
 
 using geometry::RandomNumbers;
 
-/// A tree of that height: a trunk and a lumpy crown.
+/// Returns a tree of the given height: a trunk and an irregular crown.
 Parts tree(double height, RandomNumbers& draw, const Fineness& fineness);
 
 }  // namespace skycap::sim::models

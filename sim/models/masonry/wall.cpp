@@ -23,12 +23,12 @@ using Loop = std::vector<std::uint32_t>;
 
 constexpr double same = same_corner;
 
-/// The vertices of a wall under construction, found again by their place on the developed face.
+/// Vertices of a wall under construction, indexed by their position on the developed face.
 class Face {
  public:
   Face(const PlanCurve& plan, Mesh& mesh) : plan_(plan), mesh_(mesh) {}
 
-  /// The vertex at (s, z), `offset` outwards of the plan.
+  /// Returns the vertex at (s, z), displaced outwards from the plan by `offset`.
   std::uint32_t vertex(const Vector2d& place, double offset) {
     const double s = place.x() - plan_.length() * std::floor((place.x() + same) / plan_.length());
     const Vector3d wanted(s, place.y(), offset);
@@ -66,7 +66,7 @@ class Face {
   std::vector<Vector3d> places_;
 };
 
-/// Builds one wall; the steps are in the order of build() below.
+/// Builds one wall. The steps are in the order of build() below.
 class WallBuilder {
  public:
   explicit WallBuilder(const Wall& wall) : wall_(wall), face_(wall.plan, band_.mesh) {}
@@ -91,7 +91,7 @@ class WallBuilder {
     for (std::size_t t = 0; t < rings_.size(); ++t) raise_stone(outlines_[t], rings_[t]);
   }
 
-  /// The sides that only one tile has, as loops with the wall to the left of them.
+  /// Finds sides that belong to a single tile, as loops with the wall to the left.
   void find_edges() {
     std::map<std::uint32_t, std::uint32_t> after;
     for (const auto& [side, unused] : next_) {
@@ -124,7 +124,7 @@ class WallBuilder {
   Band result() { return std::move(band_); }
 
  private:
-  /// A tile as a stone: its face and, from the bottom of the joints, its sides.
+  /// Converts a tile to a stone: its face and, from the bottom of the joints, its sides.
   void raise_stone(const Polyline2& outline, const Loop& ring) {
     if (wall_.joint.depth == 0.0) {
       add_polygon(outline, ring);
@@ -132,7 +132,8 @@ class WallBuilder {
     }
     const std::size_t size = ring.size();
     std::vector<double> widths;
-    std::vector<bool> is_corner;  // of the plan: the stone goes on in the next tile
+    // Corner of the plan, at which the stone continues in the next tile.
+    std::vector<bool> is_corner;
     for (std::size_t i = 0; i < size; ++i) {
       const Vector2d &a = outline[i], &b = outline[(i + 1) % size];
       const bool is_shared = next_.contains({ring[(i + 1) % size], ring[i]});
@@ -152,7 +153,7 @@ class WallBuilder {
     add_polygon(face, face_ring);
   }
 
-  /// The places of a counter-clockwise loop's vertices, in one piece also where s starts again.
+  /// Returns the positions of a counter-clockwise loop, continuous where s wraps around.
   Polyline2 unrolled(const Loop& loop) const {
     Polyline2 places;
     for (const std::uint32_t v : loop) {
@@ -164,7 +165,7 @@ class WallBuilder {
     return places;
   }
 
-  /// Finishes the opening that has this loop as its edge.
+  /// Fills the opening bounded by this loop.
   void fill(const Loop& loop) {
     Polyline2 outline = unrolled(loop);
     Vector2d low = outline[0], high = low;
@@ -204,14 +205,14 @@ class WallBuilder {
   }
 
   void fill_round(const Opening& opening, const Polyline2& outline, const Loop& loop) {
-    // The loop's vertices as the sill, left to right, and the two sides from there up to the crown.
+    // The loop's vertices as the sill, from left to right, and the two sides up to the crown.
     const auto is_sill = [&](const Vector2d& p) { return std::abs(p.y() - opening.sill) < same; };
     const std::size_t size = loop.size();
-    std::size_t start = 0;  // the left end of the sill
+    std::size_t start = 0;  // Left end of the sill.
     while (!(is_sill(outline[start]) && !is_sill(outline[(start + size - 1) % size]))) ++start;
     std::vector<std::size_t> sill{start};
     while (is_sill(outline[(sill.back() + 1) % size])) sill.push_back((sill.back() + 1) % size);
-    const std::size_t rows = (size - sill.size()) / 2 + 1;  // below the crown
+    const std::size_t rows = (size - sill.size()) / 2 + 1;  // Number of rows below the crown.
     assert((size - sill.size()) % 2 == 1 && "a niche's sides mirror each other below one crown");
 
     const int chords = std::max<int>(4, static_cast<int>(rows));
@@ -245,10 +246,10 @@ class WallBuilder {
     for (std::size_t j = 0; j + 1 < row.size(); ++j) add(row[j], row[j + 1], crown);
   }
 
-  /// The floor of a niche, between the sill's edge and its lowest row.
+  /// Adds the floor of a niche, between the edge of the sill and the lowest row.
   void add_floor(const Opening& opening, const std::vector<std::size_t>& sill,
                  const Polyline2& outline, const Loop& loop, const Loop& row) {
-    Polyline2 floor;  // (s, distance inwards)
+    Polyline2 floor;  // (s, distance inwards).
     Loop ring;
     for (const std::size_t i : sill) {
       floor.emplace_back(outline[i].x(), 0.0);
@@ -274,9 +275,9 @@ class WallBuilder {
   const Wall& wall_;
   Band band_;
   Face face_;
-  std::vector<Polyline2> outlines_;  // of the tiles, with all corners of their neighbours
-  std::vector<Loop> rings_;          // the same, at the bottom of the joints
-  std::map<std::pair<std::uint32_t, std::uint32_t>, char> next_;  // the tiles' directed sides
+  std::vector<Polyline2> outlines_;  // Outlines of the tiles with all corners of their neighbours.
+  std::vector<Loop> rings_;          // Outlines at the bottom of the joints.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, char> next_;  // Directed sides of the tiles.
 };
 
 }  // namespace
@@ -305,7 +306,8 @@ Opening rectangular(double centre, double width, double sill, double head, doubl
 Opening arched(double centre, double width, double sill, double crown, double depth,
                const Fineness& fineness) {
   const double radius = 0.5 * width;
-  const int chords = 2 * fineness.chords(radius, 0.5 * pi);  // even: one vertex is the crown
+  // Even, so that one vertex is the crown.
+  const int chords = 2 * fineness.chords(radius, 0.5 * pi);
   Opening opening{centre, radius, sill, depth, Opening::Back::flat, {}};
   for (int i = 0; i <= chords; ++i) {
     const double angle = pi * i / chords;
@@ -317,7 +319,7 @@ Opening arched(double centre, double width, double sill, double crown, double de
 
 std::vector<Polyline2> plain_tiles(double start, double end, double bottom, double top,
                                    const std::vector<Opening>& openings, double max_width) {
-  const double max_height = 4.0 * max_width;  // slimmer triangles would slow ray casting down
+  const double max_height = 4.0 * max_width;  // Thinner triangles would slow down ray casting.
   std::vector<double> stops{start, end};
   for (const Opening& opening : openings) {
     for (const Vector2d& corner : opening.outline()) stops.push_back(corner.x());
@@ -342,7 +344,7 @@ std::vector<Polyline2> plain_tiles(double start, double end, double bottom, doub
                          {left, level(left_low, left_high, i + 1)}});
       }
     };
-    for (const Opening& opening : openings) {  // from the lowest up
+    for (const Opening& opening : openings) {  // In ascending order.
       const double middle = 0.5 * (left + right);
       if (std::abs(middle - opening.centre) > opening.half_width) continue;
       add_tiles_to(opening.sill, opening.sill);

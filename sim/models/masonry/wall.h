@@ -1,8 +1,8 @@
-/// Masonry: walls along a closed plan, laid out as tiles on their developed face, with joints
-/// between the stones and openings sunk into them.
+/// Masonry walls along a closed plan, laid out as tiles on their developed face, with joints
+/// between stones and recessed openings.
 ///
-/// A wall's face is developed into the plane: s runs along the plan, counter-clockwise seen from
-/// above (to the right of someone who looks at the wall), z runs up.
+/// The face of a wall is developed into the plane with coordinates s and z. s runs along the plan,
+/// counter-clockwise from above: to the right of an observer who faces the wall. z is up.
 #pragma once
 
 #include <vector>
@@ -15,31 +15,32 @@
 
 namespace skycap::sim::models {
 
-/// A hole in a wall's face, mirror-symmetric, with a level sill.
+/// Recess in a wall's face, mirror-symmetric with a level sill.
 struct Opening {
   enum class Back {
-    flat,  ///< a panel parallel to the wall: glazing, a door, a blind recess
-    round  ///< a niche: half an ellipse in plan at every height, so a conch under an arch
+    flat,  ///< Panel parallel to the wall: glazing, door or blind recess.
+    round  ///< Niche: half an ellipse in plan at every height, which gives a conch under an arch.
   };
-  double centre;  ///< s of its axis
+  double centre;  ///< Position s of the axis.
   double half_width;
-  double sill;   ///< z
-  double depth;  ///< from the face to the panel, or to the deepest point of the niche
+  double sill;   ///< Height z.
+  double depth;  ///< Distance from the face to the panel, or to the deepest point of the niche.
   Back back = Back::flat;
-  Polyline2 head;  ///< its upper edge, from the right end to the left, in (s, z)
+  Polyline2 head;  ///< Upper edge from the right end to the left, in (s, z).
 
-  /// z at s of the upper edge's piece above `beside`, which is inside the opening.
+  /// Returns z of the upper edge at s, for the piece of the edge above `beside`, which is inside
+  /// the opening.
   double head_height(double s, double beside) const;
-  Polyline2 outline() const;  ///< counter-clockwise
+  Polyline2 outline() const;  ///< Returns the outline, counter-clockwise.
 };
 
-/// An opening under a level lintel at z = `head`.
+/// Returns an opening below a level lintel at z = `head`.
 Opening rectangular(double centre, double width, double sill, double head, double depth);
-/// An opening under a semicircular arch whose crown is at z = `crown`.
+/// Returns an opening below a semicircular arch with the crown at z = `crown`.
 Opening arched(double centre, double width, double sill, double crown, double depth,
                const Fineness& fineness);
 
-/// The joints between the stones of a rusticated wall: V-shaped grooves.
+/// V-shaped grooves between the stones of a rusticated wall [m].
 struct Joint {
   double half_width = 0.0;
   double depth = 0.0;
@@ -47,21 +48,21 @@ struct Joint {
 
 struct Wall {
   PlanCurve plan;
-  double bottom;  ///< z
-  double top;     ///< z
-  /// Polygons in (s, z), counter-clockwise, that cover the face but for the openings without gap or
-  /// overlap. A stone that reaches round a corner of the plan is two tiles.
+  double bottom;  ///< Height z.
+  double top;     ///< Height z.
+  /// Polygons in (s, z), counter-clockwise, which cover the face except the openings without gaps
+  /// or overlaps. A stone around a corner of the plan consists of two tiles.
   std::vector<Polyline2> tiles;
   std::vector<Opening> openings;
   Joint joint = {};
 };
 
-/// Covers the face of a wall from `bottom` to `top` and s from `start` to `end` with tiles no wider
-/// than given and not much higher than wide, leaving out the openings.
+/// Covers the face of a wall from `bottom` to `top` and from s = `start` to `end` with tiles,
+/// except the openings. Tiles are at most `max_width` wide and not much higher than wide.
 std::vector<Polyline2> plain_tiles(double start, double end, double bottom, double top,
                                    const std::vector<Opening>& openings, double max_width);
 
-/// The wall as a surface that is open below and above, openings filled.
+/// Returns the wall as a surface that is open at the bottom and the top, with the openings filled.
 Band build(const Wall& wall);
 
 }  // namespace skycap::sim::models

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Where a side ends up that lies between two corners: in proportion.
+/// Positions the points between two corners in proportion.
 void share_out(const Polyline2& polygon, const std::vector<std::size_t>& bends, Polyline2& moved) {
   const std::size_t size = polygon.size();
   for (std::size_t k = 0; k < bends.size(); ++k) {
@@ -76,7 +76,7 @@ Polyline2 SideSplitter::corners_within(const Vector2d& a, const Vector2d& b) con
     return (p - a).squaredNorm() < (q - a).squaredNorm();
   };
   std::sort(corners.begin(), corners.end(), is_nearer);
-  // The same_corner corner may have been found in two cells.
+  // One corner may have been found in two cells.
   const auto is_same = [](const Vector2d& p, const Vector2d& q) {
     return (p - q).norm() < 3 * same_corner;
   };
@@ -96,7 +96,7 @@ Polyline2 inset(const Polyline2& polygon, const std::vector<double>& distances) 
     const Vector2d out = (polygon[(i + 1) % size] - polygon[i]).normalized();
     bend[i] = cross(in, out);
     if (std::abs(bend[i]) < 1e-6) continue;
-    // Where the two moved sides meet: a point at those distances to the left of both.
+    // Intersection of the two displaced sides: the point at those distances to the left of both.
     result[i] = polygon[i] + (distances[before] * out - distances[i] * in) / bend[i];
     bends.push_back(i);
   }

@@ -1,4 +1,4 @@
-/// Polygons on a wall's developed face: sides shared with neighbours, and stones shrunk by their
+/// Polygons on a wall's developed face: sides shared with neighbours, and stones reduced by their
 /// joints.
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace skycap::sim::models {
 
-inline constexpr double same_corner = 1e-6;  ///< corners closer than this are one [m]
+inline constexpr double same_corner = 1e-6;  ///< Distance below which corners are identical [m].
 
-/// Puts the corners of tiles and openings that lie within a neighbour's side into that side, so
-/// that neighbours share whole sides.
+/// Inserts the corners of tiles and openings that lie on a neighbour's side into that side, so that
+/// neighbours share complete sides.
 class SideSplitter {
  public:
   explicit SideSplitter(const Wall& wall);
@@ -27,15 +27,15 @@ class SideSplitter {
   using Cell = std::array<std::int64_t, 2>;
   static Cell cell_of(const Eigen::Vector2d& place);
 
-  /// The known corners between a and b, in that order.
+  /// Returns the known corners between a and b, in that order.
   Polyline2 corners_within(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
 
   std::map<Cell, Polyline2> cells_;
 };
 
-/// The polygon with each side moved inwards by its own distance. Corners within a straight side
-/// keep their share of its length, so that they stay between its ends however short it gets. So
-/// does the blunter end of a side that would be turned round, beside the tip of a narrow stone.
+/// Returns the polygon with each side moved inwards by its own distance. Corners within a straight
+/// side keep their relative position, so that they remain between its ends. At the tip of a narrow
+/// stone, the blunter end of a side that would be reversed keeps its relative position, too.
 Polyline2 inset(const Polyline2& polygon, const std::vector<double>& distances);
 
 }  // namespace skycap::sim::models
