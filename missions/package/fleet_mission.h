@@ -22,16 +22,18 @@ namespace skycap::missions::package {
 /// Vehicle of a fleet with its verified route. The route has no stations if none are assigned to
 /// the vehicle.
 struct FleetMember {
-  flight::FlightOptions flight;  ///< Options of this vehicle, see FlightOptions::of_vehicle().
+  /// Flight options of this vehicle, see FlightOptions::of_vehicle().
+  flight::FlightOptions flight;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   flight::Route route;
   FlightFiles files;
 };
 
 struct FleetMission {
-  std::vector<FleetMember> members;              ///< One entry per vehicle.
-  std::vector<package::TimetableRow> timetable;  ///< Rows in order of vehicle and sortie.
-  std::vector<flight::Unreached> unreached;      ///< Stations that none of the vehicles can reach.
+  std::vector<FleetMember> members;  ///< Vehicles with their routes.
+  /// Sorties of all vehicles, in order of vehicle and sortie.
+  std::vector<package::TimetableRow> timetable;
+  std::vector<flight::Unreached> unreached;  ///< Stations that none of the vehicles can reach.
   double makespan = 0.0;  ///< Time from the first take-off to the last landing [s].
   double flown = 0.0;     ///< Total flight time of all vehicles [s].
   double delay = 0.0;     ///< Delay of the last landing caused by the separation [s].

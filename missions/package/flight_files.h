@@ -54,7 +54,7 @@ flight::Route plan_flight(const flight::FlightOptions& options, const flight::Fr
 struct FlightFile {
   std::string name;
   std::string heights;         ///< Altitude reference.
-  double min_clearance = 0.0;  ///< Verified [m], see flight::LegProof.
+  double min_clearance = 0.0;  ///< Verified minimum clearance [m], see flight::LegProof.
   std::size_t sortie = 0;      ///< Index of the sortie in the route.
   double duration = 0.0;       ///< Duration with the autopilot that the file is written for [s].
 };
@@ -101,14 +101,14 @@ struct FleetMission;
 
 /// Route and files of a finished survey.
 struct SurveyMission {
-  flight::Route route;  ///< Without stations if planning failed.
+  flight::Route route;  ///< Verified route, without stations if planning failed.
   FlightFiles files;
   /// Limits on motion blur and skew of the images.
   std::optional<flight::PictureBounds> pictures{};
   std::string failure;                ///< Reason why planning failed; empty after success.
-  std::optional<AnewMission> anew{};  ///< Set if replanning was enabled.
+  std::optional<AnewMission> anew{};  ///< Result of replanning, if it was enabled.
   std::optional<FlownAgain> again{};  ///< Coverage of a scanner's mission along the survey's paths.
-  /// Division among several vehicles; null without a fleet.
+  /// Division of the route among several vehicles; null without a fleet.
   std::shared_ptr<const FleetMission> fleet{};
 };
 

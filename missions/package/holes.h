@@ -25,7 +25,8 @@ struct Hole {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double radius = 0.0;           ///< Maximum distance of a patch from the centre [m].
   std::size_t nearest_view = 0;  ///< Index of the view nearest to the centre; 0 without views.
-  double view_distance = 0.0;    ///< Distance of that view from the centre [m]; 0 without views.
+  /// Distance of the nearest view from the centre [m]; 0 without views.
+  double view_distance = 0.0;
 };
 
 /// Missing surface of a survey. The areas of holes, smaller pieces and rest sum to the missing

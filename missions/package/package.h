@@ -39,8 +39,8 @@ struct CoverageFigures {
   std::function<simulation::CoveredAgain(const std::vector<session::ViewInFlight>&)> fly_again = {};
 };
 
-/// Computes the coverage of a simulated survey. The attainable coverage is computed only for
-/// surveys that have ended, unless a stop is requested. Keeps references to `options` and `scene`.
+/// Computes the coverage of a simulated survey. The visible and attainable fractions are left empty
+/// if the survey was interrupted or a stop is requested. Keeps references to `options` and `scene`.
 CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
                                  const session::SurveyRecord& record,
                                  const evaluation::SurveyScene& scene, unsigned threads,
@@ -84,7 +84,7 @@ struct PackageSummary {
   std::optional<Eigen::Vector3d> pad;  ///< Pad of a flown survey.
   std::vector<flight::PadGround> grounds;      ///< Measured ground of the pad and rally points.
   bool has_choice = false;                     ///< Replanning was enabled.
-  std::optional<package::StationPlan> anew{};  ///< Replanned stations, if they were selected.
+  std::optional<package::StationPlan> anew{};  ///< Replanned stations, if the mission uses them.
 
   /// Returns the views of the mission: the replanned stations or the survey's views.
   const std::vector<geometry::View>& stations() const { return anew ? anew->views : views; }
@@ -108,7 +108,7 @@ struct PackagedSurvey {
   std::vector<geometry::View> views;  ///< Views of the mission, PackageSummary::stations().
   std::vector<Way> ways;              ///< Paths to the views.
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<flight::PadGround> grounds;  ///< See PackageSummary::grounds.
+  std::vector<flight::PadGround> grounds;  ///< Measured ground of the pad and rally points.
   flight::MeasuredSpace measured;
 };
 

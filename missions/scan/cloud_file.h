@@ -51,7 +51,8 @@ inline const std::vector<Eigen::Vector3f>& positions_of(const sim::LidarReturns&
 /// Current extent of a growing file.
 struct CloudState {
   CloudTotals totals;
-  std::uint64_t bytes = 0;  ///< Including the header; zero before the header is written.
+  /// File size including the header; zero before the header is written [bytes].
+  std::uint64_t bytes = 0;
 };
 
 /// Encoder of points. Immutable; encode() may be called concurrently.
@@ -93,8 +94,8 @@ class CloudFile {
   /// Appends a chunk. Throws Error{bad_file} if writing fails.
   void append(const CloudChunk& chunk);
 
-  /// Appends the contents of another file of this format up to its extent `grown`. Throws
-  /// Error{bad_file} if that file is too short or if writing fails.
+  /// Appends the contents of another file of the same format up to its extent `grown`. Throws
+  /// Error{bad_file} if the other file is too short or if writing fails.
   void append_file(const std::filesystem::path& other, const CloudState& grown);
 
   /// Completes the header and closes the file. After an interrupted scan, the file is valid with
@@ -123,7 +124,7 @@ class CloudFile {
   std::shared_ptr<const CloudFormat> format_;
   ReturnPosition position_;
   std::unique_ptr<std::FILE, Close> file_;
-  geometry::e57::PageWriter pages_;  ///< Used only for paged formats.
+  geometry::e57::PageWriter pages_;  ///< Page writer, used only for paged formats.
   CloudState state_;
 };
 

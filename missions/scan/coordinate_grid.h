@@ -41,7 +41,7 @@ inline std::int32_t nearest(double number) {
   return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(number + 6755399441055744.0));
 }
 
-/// Returns the bounding box of at least one point.
+/// Returns the bounding box of `points`, which must not be empty.
 Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points);
 
 /// Calls `encode(units)`. `units` converts a point to integer steps relative to the offset and must

@@ -12,7 +12,7 @@
 namespace skycap::missions::scan {
 
 struct LaserCheckpoint {
-  ScanProgress progress;  ///< Firings and points.
+  ScanProgress progress;  ///< Completed firings and points.
   double time = 0.0;      ///< Computation time [s].
   std::vector<CloudState> files;
 };

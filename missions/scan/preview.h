@@ -20,7 +20,8 @@ inline constexpr const char* preview_name = "preview.ply";
 /// have no return.
 double preview_share(double shots);
 
-/// Returns true for a pseudo-random, evenly distributed fraction `share` of all pulses or pixels.
+/// Returns true for a pseudo-random, evenly distributed subset that contains the fraction `share`
+/// of all pulses or pixels.
 bool is_previewed(std::uint64_t time, std::uint64_t number, double share);
 
 /// Equal pieces of a laser scanner's flight.

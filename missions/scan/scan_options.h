@@ -36,13 +36,15 @@ struct FlownScanOptions {
   std::string sensor = "ouster_os1_128";  ///< Name of a preset, or path of a description.
   std::optional<std::string> route;       ///< Route file; replaces the orbit.
   OrbitOptions orbit;
-  ScanCrs crs = ScanCrs::local;  ///< utm requires a georeference.
-  double speed = 5.0;            ///< Speed on routes without times [m/s].
+  /// Coordinate system of LAS and E57 files; utm requires a georeference.
+  ScanCrs crs = ScanCrs::local;
+  double speed = 5.0;  ///< Speed on routes without times [m/s].
   /// Position of the sensor in the body frame [m].
   Eigen::Vector3d mount_position = Eigen::Vector3d::Zero();
   /// Rotation of the sensor about x, then y, then z [rad].
   Eigen::Vector3d mount_rotation = Eigen::Vector3d::Zero();
-  sim::NavigationErrors navigation;  ///< Its seed is replaced by that of the run.
+  /// Navigation errors; their seed is replaced by that of the run.
+  sim::NavigationErrors navigation;
   /// Error of the estimated mount_position [m].
   Eigen::Vector3d lever_arm_error = Eigen::Vector3d::Zero();
   /// Error of the estimated mount_rotation [rad].

@@ -133,7 +133,8 @@ std::string route_text(const std::filesystem::path& file) {
 }
 
 /// Returns the trajectory files of a mission package, one per sortie in order. Returns an empty
-/// list if the mission has no flight.
+/// list if the mission has no flight. Throws Error{bad_file} if it has one but its trajectories
+/// were not exported.
 std::vector<std::filesystem::path> sorties_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   if (std::filesystem::exists(folder / "mission.csv")) return {folder / "mission.csv"};

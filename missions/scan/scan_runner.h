@@ -20,7 +20,7 @@ struct ScanProgress {
 
 struct ScanResult {
   ScanProgress progress;
-  bool is_complete = false;  ///< False after a stop request.
+  bool is_complete = false;  ///< False if a stop request ended the scan.
 };
 
 /// Piece of a flight. Pieces can be measured by separate processes.

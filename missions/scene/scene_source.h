@@ -48,7 +48,7 @@ geometry::Mesh with_copies(const SceneOptions& scene, const geometry::Mesh& plac
 
 /// Scene that sensors measure, with the optical properties of its surfaces.
 struct ReflectingScene {
-  geometry::Mesh model;                ///< First model.
+  geometry::Mesh model;                ///< First of the models.
   std::vector<float> reflectances;     ///< Diffuse reflectance of each triangle.
   std::vector<sim::Surface> surfaces;  ///< Optical type of each triangle; empty if all are matt.
   std::vector<Eigen::Isometry3d> places;

@@ -153,9 +153,7 @@ std::uint32_t checksum(const geometry::Mesh& mesh) {
         {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
   };
   return sum_of(mesh.vertices) ^ static_cast<std::uint32_t>(geometry::split_mix(
-                                     // Hashing one checksum prevents equal checksums from
-                                     // cancelling in the XOR.
-                                     sum_of(mesh.triangles)));
+                                     sum_of(mesh.triangles)));  // Avoids cancellation.
 }
 
 Eigen::AlignedBox3d at(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& place) {

@@ -22,7 +22,7 @@ enum class Opening {
 };
 
 struct StartOptions {
-  std::optional<geometry::View> view;  ///< First view; empty if unspecified.
+  std::optional<geometry::View> view;  ///< First view; empty if it is not specified.
   Opening opening = Opening::none;     ///< Initial pattern of a mission with a vehicle.
 
   // Parameters of the initial pattern.

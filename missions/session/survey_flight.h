@@ -68,11 +68,12 @@ class SurveyFlight {
   /// Returns the path found by the last successful call of can_reach().
   const FlownLeg& way() const;
 
-  /// Returns the en-route views on this path. Times are relative to the departure from the first
-  /// view [s].
+  /// Returns the views of the en-route frames on the path way(). Times are relative to the
+  /// departure from the first view [s].
   std::vector<ViewInFlight> frames(const geometry::View& from, const geometry::View& to) const;
 
-  /// Returns the time on this path until the departure from the second view [s].
+  /// Returns the duration of the path way(), from the departure from the first view until that from
+  /// the second [s].
   double time(const geometry::View& from, const geometry::View& to) const;
 
   /// Returns a path that is verified collision-free with the current knowledge, or an empty value

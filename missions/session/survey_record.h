@@ -20,7 +20,8 @@ namespace skycap::missions::session {
 /// View of the survey with the coverage after it.
 struct JudgedView {
   survey::SurveyedView surveyed;
-  double coverage = 0.0;  ///< NaN for live surveys, which have no ground truth.
+  /// Coverage after the view. NaN for live surveys, which have no ground truth.
+  double coverage = 0.0;
 };
 
 /// Scan of a survey.
@@ -38,8 +39,8 @@ struct SurveyRecord {
   geometry::PointCloud cloud;
   /// Scans that the views of the cloud's points refer to. If empty, they refer to `views`.
   std::vector<TakenScan> scans{};
-  std::vector<std::uint8_t> is_covered;  ///< One entry per sample of the scene.
-  std::optional<FlownSurvey> flown;      ///< Set for missions with a vehicle.
+  std::vector<std::uint8_t> is_covered;  ///< Whether each sample of the scene is covered.
+  std::optional<FlownSurvey> flown;      ///< Flight of a mission with a vehicle; otherwise empty.
 
   /// Final estimate of planners that estimate coverage; otherwise empty.
   std::optional<survey::skycap::SurveyBelief> belief;

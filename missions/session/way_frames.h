@@ -33,7 +33,7 @@ class WayMotion {
   std::vector<ViewInFlight> frames(const FlownLeg& way, const geometry::View& from,
                                    const geometry::View& to, double period) const;
 
-  double rest() const { return rest_; }  ///< Time at rest at a view [s].
+  double rest() const { return rest_; }  ///< Returns the time at rest at a view [s].
 
   /// Returns the times from take-off until the departure from each view [s]: take-off, paths and
   /// rests at views, without the return. `legs` is as in FlownSurvey.

@@ -36,7 +36,7 @@ class CarriedSensor {
 
   sim::SurveySensor sensor_;
   std::uint64_t seed_;
-  std::optional<flight::Vehicle> vehicle_;  ///< Set for cameras on a vehicle.
+  std::optional<flight::Vehicle> vehicle_;  ///< Vehicle that carries a camera; otherwise empty.
   geometry::Camera camera_;
   geometry::Shutter shutter_;
   double distance_ = 0.0;  ///< Distance at which image motion is evaluated [m].

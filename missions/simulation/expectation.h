@@ -26,9 +26,9 @@ struct Expectation {
   double most_time = 0.0;  ///< Max computation time [s].
 };
 
-/// Predicted cost of a feasible mission. Takes a few seconds, because surface samples are observed
-/// from some hundred views and one view of the survey is measured and planned. Throws all errors of
-/// planner and sensor.
+/// Predicts the cost of a feasible mission. Takes a few seconds: it evaluates surface samples from
+/// some hundred views, and measures and plans one view of the survey. Throws all errors of planner
+/// and sensor.
 Expectation expectation(const evaluation::SimulationOptions& options,
                         const evaluation::SurveyScene& scene, const session::RunOptions& run);
 

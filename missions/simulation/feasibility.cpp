@@ -147,7 +147,8 @@ class Inspection {
   }
 
   void check_density() {
-    const double rays = camera_.focal_length_px().prod() / (distance_ * distance_);  // Per m^2.
+    // Rays per m^2.
+    const double rays = camera_.focal_length_px().prod() / (distance_ * distance_);
     const double radius = options_.evaluation.registration_distance;
     // The distance of a sample from the nearest of the four surrounding rays is at most half the
     // diagonal of their square.

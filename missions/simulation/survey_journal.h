@@ -59,7 +59,7 @@ class SurveyJournal {
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path file_;
-  std::string identity_;  ///< First record.
+  std::string identity_;  ///< First record of the journal.
   std::optional<geometry::RecordLog> log_;
   std::vector<ViewRecord> known_;
   std::size_t at_ = 0;  ///< Index of the current view.

@@ -68,8 +68,8 @@ ObjectBuilder::Rings ObjectBuilder::rings_of(const FileObject& object) const {
   return rings;
 }
 
-/// Polygons with their own heights are surfaces unless they are placed on the terrain or have a
-/// height attribute.
+/// Returns false for polygons with their own heights, which are surfaces, unless they are placed on
+/// the terrain or have a height attribute.
 bool ObjectBuilder::is_extruded(const FileObject& object) const {
   const bool is_put = source_.base_on_terrain || source_.height || object.height;
   return contents_.is_outlines && !object.polygons.empty() && (!object.has_heights || is_put);

@@ -63,9 +63,9 @@ struct Prior {
   std::string crs;                      ///< Name of the file's reference system.
   std::size_t dropped_polygons = 0;     ///< Number of polygons without area.
   Eigen::AlignedBox3d box;              ///< Bounding box of all contents in the site frame.
-  /// Ellipsoidal heights; empty if the site's position is unknown.
+  /// Range of ellipsoidal heights; empty if the position of the site is unknown.
   std::optional<HeightRange> ellipsoid_heights;
-  /// Heights AMSL; empty if the geoid undulation is unknown.
+  /// Range of heights AMSL; empty if the geoid undulation is unknown.
   std::optional<HeightRange> sea_level_heights;
   std::vector<std::string>
       notes;  ///< Sentences for the user about substitutes, assumptions and omissions.
@@ -93,8 +93,7 @@ flight::GeodeticPoint middle_of(const Source& source);
 struct Assumptions {
   std::string crs;
   std::optional<HeightDatum> vertical;
-  /// True if outlines without heights and base shall be placed on the terrain.
-  bool has_terrain = false;
+  bool has_terrain = false;  ///< Outlines without heights and base are placed on the terrain.
 };
 
 /// Returns the source completed with the assumptions that its file requires. Information in the

@@ -19,11 +19,11 @@ namespace skycap::missions::site_data {
 
 struct ReferenceRequest {
   std::string crs;  ///< Any definition that PROJ can parse.
-  /// Axis order of a geographic system; otherwise x is always east.
+  /// The axis order of a geographic system is latitude, longitude; otherwise x is always east.
   bool is_latitude_first = false;
   std::optional<HeightDatum> vertical;            ///< Replaces the vertical datum of the system.
   std::optional<HeightDatum> vertical_if_silent;  ///< Vertical datum if the system has none.
-  bool needs_heights = true;                      ///< If false, z is ignored.
+  bool needs_heights = true;                      ///< Heights are required; otherwise z is ignored.
   /// Position of the site, for the selection of operations.
   std::optional<flight::GeodeticPoint> near;
   std::optional<double> takeoff_height;  ///< Ellipsoidal height of the pad [m].

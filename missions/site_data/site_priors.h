@@ -18,10 +18,9 @@ struct SitePriors {
   std::vector<Prior> priors;  ///< Priors in the order of the sources.
   /// Obstacles and terrain.
   std::vector<std::shared_ptr<const flight::PriorObstacle>> obstacles;
-  std::shared_ptr<const Terrain> terrain;  ///< Null without terrain.
-  TerrainHeight
-      ground;  ///< Returns the ground height everywhere, assumed where unknown [m]; may be null.
-  std::string ground_note;           ///< Description of the assumed ground outside the terrain.
+  std::shared_ptr<const Terrain> terrain;  ///< Terrain; null without terrain files.
+  TerrainHeight ground;     ///< Ground height everywhere [m], assumed where unknown; may be null.
+  std::string ground_note;  ///< Description of the assumed ground outside the terrain.
   std::vector<std::string> digests;  ///< Checksums of the contents of the sources, in order.
 };
 

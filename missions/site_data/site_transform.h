@@ -55,8 +55,10 @@ class SiteTransform {
 
   std::filesystem::path file_;
   bool needs_heights_;
-  Eigen::Affine3d prepared_ = Eigen::Affine3d::Identity();  ///< Unit, up axis, offset and place.
-  std::optional<GeodeticTransform> geodetic_;  ///< If empty, prepared_ is the whole transformation.
+  /// Combined transformation by unit, up axis, offset and place.
+  Eigen::Affine3d prepared_ = Eigen::Affine3d::Identity();
+  /// Transformation to WGS84. If empty, prepared_ is the whole transformation.
+  std::optional<GeodeticTransform> geodetic_;
   std::optional<flight::GeodeticPoint> origin_;
   std::string name_;
   std::vector<std::string> notes_;

@@ -47,20 +47,21 @@ struct Place {
 /// `up_axis`, and shifted by `offset`. Then `place` or the reference system converts them to the
 /// site frame; without either, they are in that frame. For maps, `unit` applies only to heights.
 struct Source {
-  std::filesystem::path file;  ///< Absolute path, or relative to the working directory.
+  std::filesystem::path file;  ///< Absolute path, or path relative to the working directory.
   Role role = Role::obstacle;
   Selection select;
-  std::string crs;                      ///< Any definition known to PROJ; empty: from the file.
-  std::optional<HeightDatum> vertical;  ///< Default: datum of the reference system.
-  std::optional<Place> place;           ///< Excludes crs.
+  std::string crs;  ///< Reference system, in any form that PROJ supports (default: from the file).
+  std::optional<HeightDatum> vertical;  ///< Vertical datum (default: that of the reference system).
+  std::optional<Place> place;           ///< Position in the site frame; conflicts with crs.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  std::optional<double> unit;    ///< Metres (default: the file's unit, otherwise 1).
-  std::optional<bool> is_y_up;   ///< Default: from the file, otherwise z up.
+  std::optional<double> unit;    ///< Length of the unit [m] (default: from the file, otherwise 1).
+  std::optional<bool> is_y_up;   ///< The y axis points up (default: from the file, otherwise z).
   bool base_on_terrain = false;  ///< Place extruded polygons on the terrain at their lowest corner.
-  std::optional<double> base;    ///< Alternative base height in the file's vertical datum.
-  std::optional<double> height;  ///< Height of extruded polygons above their base.
-  std::string height_attribute;  ///< Height attribute of a map; empty: known names.
-  double min_height = 0.0;       ///< Height of the lower end above the base.
+  /// Alternative height of the base in the vertical datum of the file.
+  std::optional<double> base;
+  std::optional<double> height;  ///< Height of extruded polygons above their base [m].
+  std::string height_attribute;  ///< Name of the height attribute of a map (default: known names).
+  double min_height = 0.0;       ///< Height of the lower end above the base [m].
   std::optional<double> uncertainty;  ///< Maximum error of the surfaces [m]; see prior.h.
   /// Cube size for downsampling clouds (default: usual_spacing) [m].
   std::optional<double> spacing;

@@ -176,7 +176,7 @@ MaybeTrouble GuidedFlight::fly_leg(const Vector3d& to) {
     const double late = link_.now() - last;
     MaybeTrouble trouble;
     if (late > longest_stall) {
-      listen();  // Process messages received during the stall.
+      listen();  // Processes messages received during the stall.
       trouble = Trouble{TroubleKind::stalled,
                         fmt::format("set points were interrupted for {:.1f} s because this program "
                                     "was suspended; stopping at the current position",

@@ -31,7 +31,7 @@ using Sensor = std::function<geometry::Scan(const geometry::View& wanted,
                                             const geometry::View& taken, std::size_t number)>;
 
 struct FlightOptions {
-  /// Return after a failure; otherwise hold until a pilot takes control.
+  /// Return after a failure instead of holding until a pilot takes control.
   bool returns_on_failure = false;
   double sensing_limit = 60.0;   ///< Maximum duration of a scan [s].
   double planning_limit = 60.0;  ///< Maximum duration of planning the next path [s].
@@ -87,14 +87,16 @@ class LiveFlight {
   /// Verified path from the start of the last path to the position above the pad.
   std::vector<Eigen::Vector3d> home_;
 
-  bool has_climbed_ = false;      ///< If false, the vehicle lands at its current position.
-  bool is_gimbal_noted_ = false;  ///< The user was notified of airframe-relative gimbal reports.
+  /// The climb has been completed; otherwise the vehicle lands at its current position.
+  bool has_climbed_ = false;
+  /// The user has been notified of airframe-relative gimbal reports.
+  bool is_gimbal_noted_ = false;
 
   // Results of background work, which may be written after the end of the flight.
   std::vector<Eigen::Vector3d> way_;  ///< Path to the next view.
   geometry::Scan scan_;
   std::optional<session::FlownLeg> home_found_;
-  bool is_new_ = false;  ///< False if the survey already contained `scan_`.
+  bool is_new_ = false;  ///< False if the survey already contained the last scan.
   std::future<void> work_;
 };
 

@@ -35,7 +35,7 @@ struct ProposalRecord {
 /// Scan or refusal and the proposal that followed. The proposal is missing for en-route scans, and
 /// if the program ended before it was recorded.
 struct LiveEvent {
-  std::optional<ScanRecord> scan;  ///< Empty for a refusal.
+  std::optional<ScanRecord> scan;  ///< Acknowledged scan; empty for a refusal.
   std::string refusal;             ///< Reason for the refusal.
   bool is_rejected = false;  ///< The planner rejected the scan as unusable; it does not count.
   std::optional<ProposalRecord> proposal;

@@ -79,9 +79,9 @@ class LiveSurvey {
 
   const std::vector<survey::SurveyedView>& views() const;
 
-  std::size_t set_aside() const;  ///< Number of scans rejected because of their poses.
+  std::size_t set_aside() const;  ///< Returns the number of scans rejected because of their poses.
 
-  /// Number of scans accepted since the last view, on the path to the proposed view.
+  /// Returns the number of scans accepted since the last view, on the path to the proposed view.
   std::size_t on_way() const;
 
   /// Returns the remaining en-route scans of the current path if the survey takes them

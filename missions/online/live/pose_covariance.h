@@ -17,7 +17,8 @@ struct PoseCovariance {
   using Matrix = Eigen::Matrix<double, 6, 6>;
   using Vector = Eigen::Matrix<double, 6, 1>;
 
-  Matrix matrix = Matrix::Zero();  ///< Symmetric, positive semidefinite.
+  /// Symmetric, positive semidefinite covariance of (x, y, z, rx, ry, rz).
+  Matrix matrix = Matrix::Zero();
 
   /// Returns a diagonal covariance with the given standard deviations along each axis [m] and about
   /// each axis [rad].

@@ -5,8 +5,8 @@
 /// opposite sides (along rows, columns and diagonals, one or two pixels away). One is much nearer
 /// and the other much farther: by 3% of the depth and by more than on a surface at ten degrees to
 /// the line of sight. Unlike on such a surface, the depth varies smoothly beyond these neighbours.
-/// An isolated return has fewer than three of the 24 surrounding pixels at depths that a surface at
-/// more than ten degrees would produce.
+/// An isolated return has fewer than three neighbours among the 24 surrounding pixels that a
+/// surface at more than ten degrees could explain.
 #pragma once
 
 #include <cstddef>

@@ -36,7 +36,7 @@ Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
   return pose;
 }
 
-/// Applies Brown–Conrady distortion to the slopes x/z, y/z of a ray.
+/// Applies Brown-Conrady distortion to the slopes x/z, y/z of a ray.
 Vector2d distorted(const Vector2d& slope, const std::array<double, 5>& coefficients) {
   const auto& [k1, k2, p1, p2, k3] = coefficients;
   const double x = slope.x(), y = slope.y(), r2 = slope.squaredNorm();

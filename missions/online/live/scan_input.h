@@ -21,7 +21,7 @@
 
 namespace skycap::missions::online {
 
-/// Intrinsics of a depth image: pinhole camera with Brown–Conrady distortion, in OpenCV's notation.
+/// Intrinsics of a depth image: pinhole camera with Brown-Conrady distortion, in OpenCV's notation.
 struct Lens {
   Eigen::Vector2d focal_length_px, principal_point_px;
   std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3

@@ -15,7 +15,7 @@ namespace skycap::missions::online {
 /// Address of the server: a Unix socket that only its owner can open, or a local TCP port.
 struct ServerPlace {
   std::filesystem::path socket;       ///< Path of the Unix socket; empty if `port` is set.
-  std::optional<std::uint16_t> port;  ///< Port at 127.0.0.1; 0 selects a free port.
+  std::optional<std::uint16_t> port;  ///< TCP port at 127.0.0.1; 0 selects a free port.
 };
 
 /// Listening socket. The destructor removes the socket file.

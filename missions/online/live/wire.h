@@ -28,7 +28,7 @@ std::string frame_of(const Message& message);
 /// Returns the message {"type": "error", "what": what}.
 Message error_message(const std::string& what);
 
-/// Assembles frames from the data blocks of a socket.
+/// Assembles frames from the chunks of bytes received on a socket.
 class FrameReader {
  public:
   void feed(std::string_view bytes) { buffer_.append(bytes); }

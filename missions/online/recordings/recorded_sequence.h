@@ -20,7 +20,7 @@ struct RecordedFrame {
 struct RecordedSequence {
   std::vector<RecordedFrame> frames;  ///< Frames in recording order.
   std::vector<std::string> notes;     ///< One line for each skipped frame, with the reason.
-  std::vector<std::string> remarks;   ///< Other deviations from the lists.
+  std::vector<std::string> remarks;   ///< Notes about other deviations from the lists.
 };
 
 /// Reads the first `count` frames of a folder, usable or not, in one of two layouts:

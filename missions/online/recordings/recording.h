@@ -16,7 +16,7 @@
 namespace skycap::missions::online {
 
 struct RecordingChoice {
-  RawlogChoice rawlog;            ///< Used only for rawlogs.
+  RawlogChoice rawlog;            ///< Sensor and poses to read; used only for rawlogs.
   std::size_t count = 1'000'000;  ///< Maximum number of frames.
   /// Format of the images in folders; rawlogs contain this information. The file and the pose are
   /// ignored.

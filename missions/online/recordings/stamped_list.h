@@ -22,7 +22,7 @@ struct Stamped {
 
 struct StampedList {
   std::vector<Stamped> lines;      ///< Lines in ascending order of time.
-  std::vector<std::string> notes;  ///< Deviations from the file's contents.
+  std::vector<std::string> notes;  ///< Notes about lines that were not used unchanged.
 };
 
 /// Reads all lines of a list except comments. The last of several lines with the same time is used,

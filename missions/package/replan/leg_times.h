@@ -48,7 +48,8 @@ class LegTimes {
   void for_each_leg(const Stops& stops, Visit visit);
 
   const TourProblem& problem_;
-  std::unordered_map<std::uint64_t, Leg> legs_;  ///< Legs by the numbers of both stops.
+  /// Legs by the numbers of both stops, combined in the key.
+  std::unordered_map<std::uint64_t, Leg> legs_;
 };
 
 }  // namespace skycap::missions::package

@@ -25,7 +25,7 @@ class WayDoses {
   const std::vector<Dose>& doses(const Stop* a, const Stop* b);
 
   const TourProblem& problem_;
-  /// Doses by the numbers of both stops.
+  /// Doses by path; the key contains the numbers of both stops.
   std::unordered_map<std::uint64_t, std::vector<Dose>> doses_;
 };
 

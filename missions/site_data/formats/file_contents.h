@@ -30,7 +30,7 @@ struct FileObject {
   std::string kind;
   std::map<std::string, std::string> attributes;
   std::vector<FilePolygon> polygons;
-  bool has_heights = true;  ///< If false, the z coordinates of the polygons are undefined.
+  bool has_heights = true;  ///< The z coordinates of the polygons are defined.
   geometry::Mesh mesh;      ///< Mesh of formats with triangles.
   /// Heights of the extruded outline [m]. Empty if the polygons are surfaces or the source must
   /// define the height.
@@ -43,7 +43,7 @@ struct FileObject {
   bool is_thin = false;  ///< Outline around a point or a line; used only with a height.
 };
 
-// Members are in the order of their description.
+// The contents of a file, in the order in which messages describe them.
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct FileContents {
   std::string format;  ///< Format name, such as "CityGML 2.0".
@@ -87,7 +87,8 @@ struct FileContents {
     polygon.first_ring = static_cast<std::uint32_t>(ring_begin.size() - 1);
     return polygon;
   }
-  /// Completes a ring of the last added polygon from the corners since the previous ring.
+  /// Completes a ring of `polygon`, the last added polygon, from the corners since the previous
+  /// ring.
   void close_ring(FilePolygon& polygon) {
     ring_begin.push_back(static_cast<std::uint32_t>(corners.size()));
     ++polygon.rings;

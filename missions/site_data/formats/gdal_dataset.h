@@ -47,10 +47,10 @@ class OpenDataset {
  private:
   std::filesystem::path readable(const std::filesystem::path& file);
 
-  CopyFolder copy_;  ///< Must outlive the dataset.
+  CopyFolder copy_;  ///< Copy of the file; must outlive the dataset.
   GDALDataset* dataset_ = nullptr;
   std::vector<std::string> notes_;
-  bool is_immutable_ = false;  ///< SQLite database without a log, opened as immutable.
+  bool is_immutable_ = false;  ///< The SQLite database has no log and is opened as immutable.
 };
 
 /// Returns GDAL's last error message as one line.
