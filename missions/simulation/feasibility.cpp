@@ -161,7 +161,7 @@ class Inspection {
           distance_, std::sqrt(1.0 / rays), radius, distance_ * radius / gap);
     }
     const double spacing = options_.survey.planner.spacing;
-    if (spacing > std::sqrt(3.0) * radius) {  // Even points in a hexagonal lattice leave gaps.
+    if (spacing > std::sqrt(3.0) * radius) {  // Points leave gaps even in a hexagonal lattice.
       warn(
           "the spacing of stored points ({:.4g} m) must be at most "
           "evaluation.coverage_distance ({:.4g} m) for gapless coverage; lower planner.spacing "

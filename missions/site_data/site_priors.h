@@ -16,7 +16,7 @@ namespace skycap::missions::site_data {
 struct SitePriors {
   std::vector<Source> sources;
   std::vector<Prior> priors;  ///< Priors in the order of the sources.
-  /// Obstacles and terrain.
+  /// Obstacles from sources with the roles obstacle and terrain.
   std::vector<std::shared_ptr<const flight::PriorObstacle>> obstacles;
   std::shared_ptr<const Terrain> terrain;  ///< Terrain; null without terrain files.
   TerrainHeight ground;     ///< Ground height everywhere [m], assumed where unknown; may be null.

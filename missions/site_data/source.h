@@ -25,7 +25,7 @@ enum class Role {
 /// Selection from a file. Empty members select everything.
 struct Selection {
   std::vector<std::string> ids;  ///< Ids of objects or of their parents.
-  /// Attributes that must all be equal, as strings.
+  /// Attribute values that an object must have, compared as strings.
   std::map<std::string, std::string> attributes;
   std::filesystem::path within;  ///< Polygon file with its own reference system.
   std::vector<int> classes;      ///< ASPRS classes of a cloud's points.

@@ -23,7 +23,7 @@ namespace skycap::missions::online {
 
 /// Depth image of a CObservation3DRangeScan with intrinsics in OpenCV's notation.
 struct RecordedImage {
-  geometry::DepthImage image;  ///< Pixels without return are 0.
+  geometry::DepthImage image;  ///< Depth image; no-return pixels are 0.
   double unit = 0.001;         ///< Depth per unit of a pixel value [m].
   /// Values are depths along the optical axis; otherwise ranges along the pixel's ray.
   bool is_depth = true;

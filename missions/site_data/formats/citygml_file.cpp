@@ -286,7 +286,8 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   }
 }
 
-/// Reads pos, posList or coordinates; the latter may define separators (GML 3.1.1, 9.1).
+/// Reads pos, posList or coordinates. An element `coordinates` may define separators (GML 3.1.1,
+/// 9.1).
 void Walker::read_positions(pugi::xml_node part, int& dimension) {
   const Name name = local_name(part.name());
   if (name != "posList" && name != "pos" && name != "coordinates") return;

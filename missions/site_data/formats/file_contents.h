@@ -43,7 +43,7 @@ struct FileObject {
   bool is_thin = false;  ///< Outline around a point or a line; used only with a height.
 };
 
-// The contents of a file, in the order in which messages describe them.
+// Contents of a file, with members in the order in which messages describe them.
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct FileContents {
   std::string format;  ///< Format name, such as "CityGML 2.0".

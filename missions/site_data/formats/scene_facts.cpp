@@ -60,8 +60,8 @@ class Entities {
  public:
   explicit Entities(string_view text) : text_(text) {}
 
-  /// Returns the arguments of the entity "#12", which must have the type `type` unless that is
-  /// empty.
+  /// Returns the arguments of the entity with a reference such as "#12". Its type must be `type`
+  /// unless `type` is empty.
   std::optional<string_view> arguments(string_view reference, string_view type) const {
     std::size_t at = 0;
     while ((at = text_.find(reference, at)) != string_view::npos) {
