@@ -41,7 +41,7 @@ std::string figures_text(const MissionFigures& figures) {
 
 std::string percent(double share) { return fmt::format("{:.2f}%", 100.0 * share); }
 
-/// The survey's views, and those of the frames on its ways.
+/// Returns the survey's views and the views of its en-route frames.
 std::vector<geometry::View> all_views_of(const session::SurveyRecord& record) {
   std::vector<geometry::View> views;
   for (const session::JudgedView& judged : record.views) {

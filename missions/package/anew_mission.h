@@ -1,5 +1,5 @@
-/// The mission that was chosen anew (missions/package/replan), beside the survey's: in
-/// summary.json, and as the program prints it.
+/// Output of the replanned mission (missions/package/replan): planning, summary.json and printed
+/// text.
 #pragma once
 
 #include <optional>
@@ -18,35 +18,36 @@
 
 namespace skycap::missions::package {
 
-/// What the choice depends on where that sensor is flown.
+/// Returns the replanning options for a mission with the sensor `sensor`.
 ChoiceOptions choice_options(const sim::SurveySensorOptions& sensor,
                              const session::RunOptions& run);
 
-/// The choice between `present`, the route through the survey's views, and views chosen anew. The
-/// record is of a flown survey that knows its surface. Coverage when it is flown again is measured
-/// where `coverage` says how.
+/// Compares `present`, the route through the survey's views, with replanned views and returns the
+/// better mission. `record` must contain a flown survey with a known surface. The coverage of the
+/// simulated re-flight is computed if `coverage` provides a function for it.
 AnewMission anew_mission(const session::SurveyOptions& options, const ChoiceOptions& choice,
                          const session::SurveyRecord& record, const CoverageFigures& coverage,
                          flight::Route present, const std::stop_token& stop);
 
-/// What these views cover, or scans of a scanner, where `coverage` says how that is measured.
+/// Returns the coverage of a simulated re-flight with these views or, for scanners, scans.
+/// `coverage.fly_again` must be set.
 FlownAgain flown_again(const CoverageFigures& coverage,
                        const std::vector<session::ViewInFlight>& views);
 
-/// For the summary, and what the program prints.
+/// Returns the coverage of a simulated re-flight for the summary (JSON) and for printing (text).
 nlohmann::ordered_json again_json(const FlownAgain& again);
 std::string again_text(const FlownAgain& again);
 
-/// `flight.replanned` of the summary.
+/// Returns `flight.replanned` of the summary.
 nlohmann::ordered_json anew_json(const AnewMission& mission);
 
-/// The stations that it has; nothing if the mission takes the survey's views. Throws what
-/// nlohmann::json throws, and Error{bad_file} on values that no station has; `name` stands for the
-/// file.
+/// Returns the stations of `flight.replanned`, or an empty value if the mission uses the survey's
+/// views. Throws exceptions of nlohmann::json, and Error{bad_file} for invalid values. `name` is
+/// the file name in messages.
 std::optional<package::StationPlan> anew_stations(const nlohmann::ordered_json& json,
                                                   const std::string& name);
 
-/// What the program prints.
+/// Returns the printed text about a replanned mission.
 std::string anew_text(const AnewMission& mission);
 
 }  // namespace skycap::missions::package

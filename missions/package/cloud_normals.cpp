@@ -14,11 +14,11 @@ using Eigen::Vector3f;
 
 constexpr std::size_t points_in_a_task = 4096;
 
-/// The normal of the plane that fits `neighbours` best, towards `to_sensor`.
+/// Returns the normal of the best-fitting plane through `neighbours`, oriented towards the sensor.
 Vector3f plane_normal(std::span<const Vector3f> neighbours, const Vector3f& point,
                       const Vector3f& to_sensor) {
   if (neighbours.size() < 3) return to_sensor;
-  // Sums relative to the point itself: single precision is then enough.
+  // Single precision is sufficient because the sums are relative to `point`.
   Vector3f sum = Vector3f::Zero();
   float xx = 0.0F, xy = 0.0F, xz = 0.0F, yy = 0.0F, yz = 0.0F, zz = 0.0F;
   for (const Vector3f& neighbour : neighbours) {

@@ -10,10 +10,11 @@
 
 namespace skycap::missions::package {
 
-/// For each point the unit normal of the plane through the points within `radius`, on the side of
-/// the sensor that took the point; `sensors` are the views' positions. Where there are too few
-/// neighbours for a plane it is the direction to the sensor. Of a dense cloud, points a quarter of
-/// the radius apart are enough for the plane. Empty if a stop is requested before all are found.
+/// Computes unit normals of the cloud's points, oriented towards the sensor that measured them.
+/// `sensors` contains the positions of the views. Each normal is that of a plane fitted to the
+/// neighbours within `radius` [m]. In dense clouds, the fit uses neighbours at a spacing of a
+/// quarter of the radius. With fewer than three neighbours, the normal is the direction to the
+/// sensor. Returns an empty list if a stop is requested before completion.
 std::vector<Eigen::Vector3f> cloud_normals(const geometry::PointCloud& cloud,
                                            std::span<const Eigen::Vector3d> sensors, double radius,
                                            unsigned threads, const std::stop_token& stop = {});

@@ -12,7 +12,7 @@ using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour covered_surely{0, 110, 60}, covered_hardly{170, 220, 120};
 constexpr Colour amber{255, 170, 0}, red{215, 30, 40}, violet{120, 60, 200};
 
-/// From covered as likely as not to covered for sure.
+/// Interpolates between the colours for coverage probabilities of 0.5 and 1.
 Colour covered_colour(float covered_share) {
   const float sure = std::clamp(2.0F * covered_share - 1.0F, 0.0F, 1.0F);
   Colour colour{};

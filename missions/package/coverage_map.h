@@ -1,4 +1,4 @@
-/// The map that a customer asks for before leaving the site: what is covered, what is missing, why.
+/// Coverage maps for the customer on site: covered surface, missing surface, and the reasons.
 #pragma once
 
 #include <array>
@@ -14,28 +14,28 @@
 
 namespace skycap::missions::package {
 
-/// A point with normal and colour for each piece of surface that the planner knows or guesses, or
-/// that the simulator knows:
-///   green   covered, the darker the surer
-///   amber   seen, but too thinly for the noise
-///   red     never seen; only guessed to be there
-///   violet  known, but no place that the limits allow sees it well
+/// Returns a point with normal and colour for each known or predicted surface patch:
+///
+///     green   covered (darker for higher probability);
+///     amber   observed, but undersampled for the noise;
+///     red     unobserved, only predicted;
+///     violet  known, but without a good view within the limits.
 geometry::AttributedCloud coverage_map(std::span<const survey::skycap::BelievedPatch> patches);
 
-/// The surface's samples as the simulator knows them, a mark for each: what the survey covered,
-/// what could be seen from places that the sensor can get to, and what could be covered at all.
-/// Marks that nobody has asked for are empty.
+/// Ground-truth surface samples with one mark per sample: covered by the survey, visible from
+/// positions that the sensor can reach, and attainable by any view. Marks that were not computed
+/// are empty.
 struct TrueCoverage {
   geometry::SurfaceSamples samples;
   std::vector<std::uint8_t> is_covered, is_visible, is_attainable;
 };
 
-/// Writes them as PLY with normals, the marks as `covered`, `visible` and `attainable`, and
-/// colours: green is covered, red could have been, amber was attained by no view that tried, violet
-/// cannot be seen. Throws Error{bad_file}.
+/// Writes the samples as PLY with normals, the marks `covered`, `visible` and `attainable`, and
+/// colours. Green is covered and violet is not visible. Amber is visible but not attainable, and
+/// red is attainable but not covered. Throws Error{bad_file}.
 void write_true_coverage(const std::filesystem::path& path, const TrueCoverage& truth);
 
-/// What a colour of such a map says; nothing of colours that no map has.
+/// Returns the reason for a colour of a coverage map, or an empty value for other colours.
 std::optional<survey::skycap::MissingReason> reason_of(const std::array<std::uint8_t, 3>& colour);
 
 }  // namespace skycap::missions::package

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What a vehicle may fly: the same tour, either way round.
+/// Routes of a vehicle: the same tour in both directions.
 using Variants = std::vector<flight::Route>;
 
 /// Sorties and their rows in the timetable.
@@ -26,7 +26,7 @@ struct RowedSorties {
   std::vector<TimetableRow> rows;
 };
 
-/// Every sortie of every variant as its own autopilot's file has it.
+/// Returns the sorties of all variants, as in the file for the vehicle's own autopilot.
 RowedSorties sorties_of(const FleetMission& fleet, const std::vector<Variants>& variants) {
   RowedSorties all;
   const auto add = [&](std::size_t v, std::size_t variant, std::size_t i) {
@@ -49,7 +49,7 @@ RowedSorties sorties_of(const FleetMission& fleet, const std::vector<Variants>& 
   return all;
 }
 
-/// Throws Error{bad_config} if a vehicle flies too low over another one's pad.
+/// Throws Error{bad_config} if a vehicle violates the clearance above the pad of another one.
 void check_pads(const FleetMission& fleet, const std::vector<flight::FleetSortie>& sorties) {
   for (const flight::FleetSortie& sortie : sorties) {
     for (std::size_t v = 0; v < fleet.members.size(); ++v) {
@@ -64,7 +64,7 @@ void check_pads(const FleetMission& fleet, const std::vector<flight::FleetSortie
   }
 }
 
-/// Gives every vehicle the variant and the starts by which the last has landed soonest.
+/// Selects the variant and the take-off times of each vehicle that minimise the last landing time.
 void make_timetable(const flight::SeparationRule& rule, std::vector<Variants> variants,
                     FleetMission& fleet) {
   RowedSorties all = sorties_of(fleet, variants);
@@ -98,7 +98,7 @@ void make_timetable(const flight::SeparationRule& rule, std::vector<Variants> va
   }
 }
 
-/// What is free for all of a fleet.
+/// Free space of a whole fleet.
 class FleetSpace {
  public:
   FleetSpace(flight::Obstacles rules, const flight::MeasuredSpace& measured, std::stop_token stop)
@@ -121,7 +121,7 @@ std::vector<flight::FleetMember> flown_members(const std::vector<FleetMember>& m
   return flown;
 }
 
-/// The stations that some vehicle reaches, in the order of the route through all.
+/// Returns the stations that at least one vehicle can reach, in the order of the route through all.
 std::vector<std::uint32_t> order_of(const std::vector<flight::Station>& stations,
                                     const std::vector<flight::Unreached>& unreached) {
   std::vector<std::uint32_t> order;
@@ -134,8 +134,8 @@ std::vector<std::uint32_t> order_of(const std::vector<flight::Station>& stations
   return order;
 }
 
-/// Until every leg of it is certified, quickly first: that tells which legs matter. Throws
-/// Error{bad_config} if there is no way to share.
+/// Divides the stations until all legs of the division are verified. A quick search first
+/// determines the relevant legs. Throws Error{bad_config} if no division exists.
 flight::FleetSplit share(flight::FleetGoal goal, flight::CertifiedCosts& costs,
                          const std::vector<std::uint32_t>& order, unsigned threads) {
   flight::FleetSplit split;

@@ -1,4 +1,4 @@
-/// A finished survey as a mission that several vehicles fly together.
+/// Division of a finished survey among several vehicles.
 #pragma once
 
 #include <memory>
@@ -19,40 +19,46 @@
 
 namespace skycap::missions::package {
 
-/// One vehicle, and its certified route; a route without stations if nothing is left for it.
+/// Vehicle of a fleet with its verified route. The route has no stations if none are assigned to
+/// the vehicle.
 struct FleetMember {
-  flight::FlightOptions flight;  ///< its own, see FlightOptions::of_vehicle()
+  /// Flight options of this vehicle, see FlightOptions::of_vehicle().
+  flight::FlightOptions flight;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   flight::Route route;
   FlightFiles files;
 };
 
 struct FleetMission {
-  std::vector<FleetMember> members;              ///< by vehicle
-  std::vector<package::TimetableRow> timetable;  ///< by vehicle and sortie
-  std::vector<flight::Unreached> unreached;      ///< by any of them
-  double makespan = 0.0;     ///< from the first take-off to the last landing [s]
-  double flown = 0.0;        ///< all together in the air [s]
-  double delay = 0.0;        ///< of the last landing, for the separation's sake [s]
-  flight::FleetBound bound;  ///< of all fleets on legs like these, see flight::CertifiedCosts
-  flight::FleetBound least;  ///< of all fleets whatever their legs
-  double distance = 0.0;     ///< proven between any two at all times, at most reported_distance [m]
+  std::vector<FleetMember> members;  ///< Vehicles with their routes.
+  /// Sorties of all vehicles, in order of vehicle and sortie.
+  std::vector<package::TimetableRow> timetable;
+  std::vector<flight::Unreached> unreached;  ///< Stations that none of the vehicles can reach.
+  double makespan = 0.0;  ///< Time from the first take-off to the last landing [s].
+  double flown = 0.0;     ///< Total flight time of all vehicles [s].
+  double delay = 0.0;     ///< Delay of the last landing caused by the separation [s].
+  /// Lower bound for all fleets with such legs, see flight::CertifiedCosts.
+  flight::FleetBound bound;
+  flight::FleetBound least;  ///< Lower bound for all fleets, independent of the legs.
+  /// Verified minimum distance between vehicles at all times, limited to reported_distance [m].
+  double distance = 0.0;
 };
 
-/// Distances between vehicles are reported up to this [m].
+/// Upper limit of reported distances between vehicles [m].
 inline constexpr double reported_distance = 100.0;
 
-/// Shares the stations of `alone`, the certified route of the first vehicle, among the mission's
-/// fleet, by what certified legs take. Every vehicle's route is planned and certified as
-/// plan_flight() does it; starts are put off until all flights are proven to keep apart. Throws
-/// what plan_route() throws, and Error{bad_config} if the stations cannot be shared out or if a
-/// vehicle flies too low over where another one stands.
+/// Divides the stations of `alone`, the verified route of the first vehicle, among the vehicles.
+/// The division is based on the costs of verified legs. Each vehicle's route is planned and
+/// verified like in plan_flight(). Take-offs are delayed until the separation of all flights is
+/// verified. Throws all errors of plan_route(). Throws Error{bad_config} if the stations cannot be
+/// divided, or if a vehicle violates the clearance to one on the ground.
 FleetMission plan_fleet(const flight::FlightOptions& options, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
                         unsigned threads, const std::stop_token& stop = {});
 
-/// The same with every vehicle's route files in these formats and its own autopilot's (without
-/// `formats`: in package_formats() of each), and the timetable, staged. `name` is the mission's.
+/// Plans the fleet mission like plan_fleet(), and stages its timetable and the route files of each
+/// vehicle. The files are in `formats` and in the native format of the vehicle's autopilot. Without
+/// `formats`, package_formats() is used. `name` is the name of the mission.
 std::shared_ptr<const FleetMission> staged_fleet(
     const std::string& name, const flight::FlightOptions& options,
     const flight::MeasuredSpace& measured, const flight::Route& alone,

@@ -12,7 +12,7 @@ namespace {
 using support::json_of;
 using Json = nlohmann::ordered_json;
 
-/// How far a figure is above what no fleet undercuts [%].
+/// Returns the relative difference between a value and its lower bound [%].
 double gap(double figure, double bound) {
   return bound > 0.0 ? 100.0 * (figure / bound - 1.0) : 0.0;
 }

@@ -1,4 +1,4 @@
-/// What a fleet's mission says of itself.
+/// Text and JSON summary of a fleet's mission.
 #pragma once
 
 #include <string>
@@ -10,10 +10,11 @@
 
 namespace skycap::missions::package {
 
-/// Some lines for the user; with `is_verbose` also how far the fleet is from its lower bounds.
+/// Returns several lines for the user. With `is_verbose`, these include the gap to the lower
+/// bounds.
 std::string fleet_text(const FleetMission& fleet, bool is_verbose);
 
-/// `flight.fleet` of summary.json; `goal` is the text of flight.fleet_goal.
+/// Returns `flight.fleet` of summary.json. `goal` is the value of flight.fleet_goal.
 nlohmann::ordered_json fleet_json(const FleetMission& fleet, const std::string& goal,
                                   const flight::SeparationRule& asked);
 

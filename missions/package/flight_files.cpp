@@ -24,12 +24,12 @@ constexpr std::array formats_of_mavlink{Format::plan, Format::waypoints, Format:
                                         Format::geojson, Format::csv};
 constexpr std::array formats_of_dji{Format::kmz, Format::kml, Format::geojson, Format::csv};
 
-/// A file that is in the local frame needs no place on the Earth.
+/// Returns true for formats in the local frame, which do not require a georeference.
 bool is_local(Format format) {
   return format == Format::csv || format == Format::ned_csv || format == Format::tum;
 }
 
-/// What the mission would have to say for a file of that format; empty if nothing.
+/// Returns the requirement of a format that the mission does not meet; empty if it meets all.
 std::string what_is_missing_for(Format format, const flight::FlightOptions& options) {
   if (is_local(format)) return "";
   if (!options.has_place) {
@@ -42,10 +42,9 @@ std::string what_is_missing_for(Format format, const flight::FlightOptions& opti
   return "requires heights above mean sea level; set site.geoid_undulation";
 }
 
-/// The plan as the format's programs want it: QGroundControl's files in the dialect of PX4 and
-/// Mission Planner's in that of ArduPilot if the vehicle is flown by neither, as those autopilots
-/// fly by default; DJI's with the codes of one of theirs. Size, energy and gimbal stay the
-/// vehicle's.
+/// Adapts the plan to the programs that read the format. For vehicles with another autopilot,
+/// QGroundControl files use the PX4 dialect, Mission Planner files the ArduPilot dialect, and DJI
+/// files the codes of a DJI vehicle. Size, energy and gimbal remain those of the vehicle.
 flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
                               const flight::FlightOptions& options,
                               std::vector<std::string>& notes) {
@@ -67,14 +66,16 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
   return plan;
 }
 
-/// The plan with the ways home of its dialect: those of the route, unless it is written for another
-/// autopilot than those that the route was planned for. Throws Error{bad_config} if there are none.
+/// Sets the returns for the plan's dialect. The route's returns are used if they were planned for
+/// this dialect; otherwise new returns are searched for. Throws Error{bad_config} if there are no
+/// verified returns.
 void certify_dialect(flight::FlightPlan& plan, const flight::FreeSpace& space, double highest) {
   if (!plan.returns) return;
   flight::ReturnLaw law = plan.returns->law;
   if (std::ranges::find(law.dialects, plan.vehicle.dialect) != law.dialects.end()) return;
   law.dialects = {plan.vehicle.dialect};
-  if (plan.vehicle.dialect == Dialect::dji) law.landings.resize(1);  // they know no rally points
+  // DJI vehicles do not support rally points.
+  if (plan.vehicle.dialect == Dialect::dji) law.landings.resize(1);
   std::vector<flight::Segment> legs;
   for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
     legs.push_back({plan.waypoints[i - 1].position, plan.waypoints[i].position});
@@ -90,7 +91,7 @@ void certify_dialect(flight::FlightPlan& plan, const flight::FreeSpace& space, d
 
 bool has_parameters(Format format) { return format == Format::plan || format == Format::waypoints; }
 
-/// The parameter file, read back: it must say what was proven.
+/// Writes the parameter file and reads it back to verify its contents.
 std::string checked_parameters(const flight::FlightPlan& plan) {
   std::string text = flight::write_parameters(plan);
   const flight::Dialect dialect = plan.vehicle.dialect;
@@ -103,13 +104,13 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
   return text;
 }
 
-/// What the file's name begins with if it is a flight's.
+/// Returns the prefix of a route file's name.
 std::string stem_in(std::string_view name) {
   const std::optional<std::size_t> vehicle = vehicle_of_file(name);
   return vehicle ? stem_of(*vehicle) : "mission";
 }
 
-/// Stages a route format by format, sortie by sortie.
+/// Stages a route in each format, sortie by sortie.
 class RouteFiles {
  public:
   RouteFiles(const std::string& name, const flight::FlightOptions& options,
@@ -159,11 +160,11 @@ class RouteFiles {
       write_sortie(format, sortie, number, name, file);
     } catch (const Error& error) {
       folder_.drop(name);
-      if (error.kind() == ErrorKind::bad_file) {  // the disk's fault, not the mission's
+      if (error.kind() == ErrorKind::bad_file) {  // Write errors are not specific to the mission.
         for (const FlightFile& written : files_.written) folder_.drop(written.name);
         throw;
       }
-      // The file has a temporary name until all are written.
+      // Files have temporary names until all are written.
       std::string why = error.what();
       const std::size_t place = why.find(file.string());
       if (place != std::string::npos) why.replace(place, file.string().size(), name);
@@ -171,7 +172,7 @@ class RouteFiles {
     }
   }
 
-  /// Notes and files are listed only once the file is proven.
+  /// Adds notes and files to the lists only after the file is verified.
   void write_sortie(Format format, std::size_t sortie, const std::string& number,
                     const std::string& name, const std::filesystem::path& file) {
     const flight::FormatInfo& info = flight::format_info(format);
@@ -196,16 +197,17 @@ class RouteFiles {
     for (const std::string& note : result.notes) add_note(note);
   }
 
-  const std::string& name_;  ///< the mission's
+  const std::string& name_;  ///< Name of the mission.
   const flight::FlightOptions& options_;
   const flight::Route& route_;
   geometry::OutputFolder& folder_;
-  std::string stem_;  ///< of the names of all files
+  std::string stem_;  ///< Prefix of all file names.
   flight::Obstacles rules_;
   flight::KnownSpace known_;
   flight::JointSpace space_;
   bool has_one_format_ = false;
-  std::map<std::string, std::string> parameters_;  ///< of all sorties: a pilot sets them once
+  /// Parameters of all sorties, because a pilot sets them only once.
+  std::map<std::string, std::string> parameters_;
   FlightFiles files_;
 };
 
@@ -247,7 +249,7 @@ flight::Route plan_flight(const flight::FlightOptions& options, const flight::Fr
                           std::span<const flight::PadGround> grounds, std::stop_token stop) {
   flight::Obstacles rules = options.rules();
   const flight::KnownSpace known(rules);
-  // The climb starts on the measured ground: what was measured there is for the pilot to judge.
+  // The climb starts on the measured ground. The pilot must check the ground at the pad.
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
   const flight::JointSpace joint({&measured, &known});
   const flight::InterruptibleSpace space(joint, std::move(stop));

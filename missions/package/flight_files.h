@@ -1,5 +1,5 @@
-/// A finished survey as missions to be flown again: the route, and its files for autopilots, ground
-/// stations and maps.
+/// Flight plan of a finished survey: the route and its files for autopilots, ground stations and
+/// maps.
 #pragma once
 
 #include <memory>
@@ -21,97 +21,99 @@
 
 namespace skycap::missions::package {
 
-/// A way through space, point by point.
+/// Path as a list of points.
 using Way = std::vector<Eigen::Vector3d>;
 
-/// The flight with its views in the order given, and with the ways to them: as views chosen anew
-/// are flown, or those of the survey in its own order.
+/// Returns the options with a fixed order of views and given paths between them. Replanned views,
+/// and surveys in their own order, are flown with these options.
 flight::FlightOptions in_given_order(flight::FlightOptions options);
 
-/// The flight of a mission's vehicle through views of its survey, proven in what the survey has
-/// measured; ways[i] is how it came to view i from the view before or from above the pad (empty if
-/// that is not known); `grounds` are those of pad and rally points that were measured. Views that
-/// this flight cannot visit are listed in it. Throws what plan_route() throws, and
-/// Error{bad_usage} soon after a stop is requested.
+/// Plans a route through views of a survey, verified in the space that the survey measured. `ways`
+/// contains the survey's path to each view from the previous view or from above the pad. Unknown
+/// paths are empty. `grounds` contains the measured ground of the pad and rally points. The route
+/// lists the views that this flight cannot reach. Throws all errors of plan_route(). Throws
+/// Error{bad_usage} shortly after a stop request.
 flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways,
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
 
-/// The stations of these views, with the rests that the mission asks for.
+/// Returns a station for each view, with the rest times of the mission.
 std::vector<flight::Station> stations_of(const flight::FlightOptions& options,
                                          const std::vector<geometry::View>& views,
                                          const std::vector<Way>& ways);
 
-/// The same through stations that are given with all that is done there.
+/// Plans a verified route through `stations`, including their hold times and actions.
 flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
 
-/// A route file, and how near its flight as read back comes to anything.
+/// Route file and its verified minimum clearance, determined by reading the file back.
 struct FlightFile {
   std::string name;
-  std::string heights;         ///< what they count from
-  double min_clearance = 0.0;  ///< proven [m], see flight::LegProof
-  std::size_t sortie = 0;      ///< of the route
-  double duration = 0.0;       ///< as the autopilot that it is written for flies it [s]
+  std::string heights;         ///< Altitude reference.
+  double min_clearance = 0.0;  ///< Verified minimum clearance [m], see flight::LegProof.
+  std::size_t sortie = 0;      ///< Index of the sortie in the route.
+  double duration = 0.0;       ///< Duration with the autopilot that the file is written for [s].
 };
 
 struct FlightFiles {
   std::vector<FlightFile> written;
-  std::vector<std::string> parameters;  ///< names of the parameter files written with them
-  std::vector<std::string> notes;  ///< what was not written, or what a format leaves out, and why
+  std::vector<std::string> parameters;  ///< Names of the parameter files.
+  std::vector<std::string> notes;  ///< Formats that were skipped or omit information, with reasons.
 };
 
-/// The formats of a mission package: those that this autopilot reads, and those of maps and other
-/// programs.
+/// Returns the formats of a mission package: those of the autopilot, of maps and of other programs.
 std::span<const flight::Format> package_formats(flight::Dialect dialect);
 
-/// Stages the route of the mission `name` in each of the formats; with several sorties a file for
-/// each, "mission-1.plan" and so on, or with another `stem`. Every file is read back and proved. A
-/// format that needs what the mission does not say, such as the geoid's height, or whose file fails
-/// its proof, is left out with a note, unless it is the only one: then that is thrown, as
-/// Error{bad_config} or what export_flight() throws. A file that cannot be written is thrown as
-/// Error{bad_file}. Beside files for MAVLink vehicles their parameters are staged, which say how
-/// high to return.
+/// Stages the route of the mission `name` in each format. Several sorties are written to numbered
+/// files such as "mission-1.plan", with `stem` as the prefix. Each file is read back and verified.
+///
+/// A format is skipped with a note if it requires missing mission keys (for example the geoid
+/// undulation) or if its file fails verification. If it is the only format, this is an error
+/// instead: Error{bad_config} or the error of export_flight(). Throws Error{bad_file} if a file
+/// cannot be written. For MAVLink vehicles, the parameters for the return altitude are also staged.
 FlightFiles stage_flight(const std::string& name, const flight::FlightOptions& options,
                          const flight::Route& route, const flight::FreeSpace& measured,
                          std::span<const flight::Format> formats, geometry::OutputFolder& folder,
                          const std::string& stem = "mission");
 
-/// What a mission covers when it is flown again in the simulator, from an empty cloud and with
-/// other noise: shares of samples.
+/// Coverage of a simulated re-flight with an empty cloud and different noise, as fractions of the
+/// surface samples.
 struct FlownAgain {
-  double all = 0.0;               ///< of the whole surface
-  std::optional<double> visible;  ///< of what admissible views can see
-  /// The same with all points kept, whatever the mission's spacing.
+  double all = 0.0;               ///< Fraction of the whole surface.
+  std::optional<double> visible;  ///< Fraction of the visible surface.
+  /// Fraction of the visible surface if all points are kept, without downsampling.
   std::optional<double> visible_unthinned;
 };
 
-/// A mission whose views were to be chosen anew.
+/// Mission for which replanning was enabled.
 struct AnewMission {
   package::MissionChoice choice;
-  std::optional<FlownAgain> again;           ///< in simulation
-  std::optional<FlownAgain> survey_again{};  ///< of the mission along the survey's views
+  std::optional<FlownAgain> again;  ///< Coverage of the replanned mission; only in simulations.
+  /// Coverage of the mission through the survey's views.
+  std::optional<FlownAgain> survey_again{};
 };
 
 struct FleetMission;
 
-/// The flight of a finished survey and where it was written to.
+/// Route and files of a finished survey.
 struct SurveyMission {
-  flight::Route route;  ///< without stations if there is none
+  flight::Route route;  ///< Verified route, without stations if planning failed.
   FlightFiles files;
-  std::optional<flight::PictureBounds> pictures{};  ///< how sharp they are
-  std::string failure;                ///< why there is no route; empty if there is one
-  std::optional<AnewMission> anew{};  ///< if views were to be chosen anew
-  std::optional<FlownAgain> again{};  ///< of a scanner's mission along the ways of its survey
-  std::shared_ptr<const FleetMission> fleet{};  ///< the same by several vehicles, if there are any
+  /// Limits on motion blur and skew of the images.
+  std::optional<flight::PictureBounds> pictures{};
+  std::string failure;                ///< Reason why planning failed; empty after success.
+  std::optional<AnewMission> anew{};  ///< Result of replanning, if it was enabled.
+  std::optional<FlownAgain> again{};  ///< Coverage of a scanner's mission along the survey's paths.
+  /// Division of the route among several vehicles; null without a fleet.
+  std::shared_ptr<const FleetMission> fleet{};
 };
 
-/// Whether a file of this name is a flight's: in any format, a parameter file or timetable, or in
-/// that format.
+/// Returns true for names of route files (in any format or in `format`). The first overload also
+/// accepts parameter files and timetables.
 bool is_flight_file(std::string_view name);
 bool is_flight_file(std::string_view name, flight::Format format);
 

@@ -26,7 +26,7 @@ std::string return_text(const SurveyMission& flight) {
   return text + "\n";
 }
 
-/// What is flown past its views, by files that can say so.
+/// Describes a fly-through flight and the files that support it.
 std::string passage_text(const flight::Route& route) {
   if (route.options.style != flight::FlightStyle::pass) return "";
   std::size_t views = 0, stops = 0;
@@ -109,7 +109,7 @@ std::string flight_text(const SurveyMission& flight, bool is_verbose) {
   std::string files;
   for (const FlightFile& file : flight.files.written) {
     files += " " + file.name;
-    // Another autopilot than the vehicle's takes another time.
+    // Durations differ if the file is for another autopilot than the vehicle's.
     const double planned = route.sorties[file.sortie].duration;
     if (std::abs(file.duration - planned) < 0.01 * planned) continue;
     files += fmt::format(" ({:.1f} min)", file.duration / 60.0);

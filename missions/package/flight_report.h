@@ -1,4 +1,4 @@
-/// What the program prints about a flight.
+/// Printed text about a flight.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace skycap::missions::package {
 
-/// A line about the survey's own flight.
+/// Returns one line about the flight during the survey.
 std::string flown_text(const flight::FlightOptions& options, const session::SurveyRecord& record);
 
-/// Some lines: the route, its clearance budget, skipped views, files and notes; with `is_verbose`
-/// also how far the tour and the fleet are from their lower bounds.
+/// Returns several lines: route, clearance budget, skipped views, files and notes. With
+/// `is_verbose`, these include the gaps of tour and fleet to their lower bounds.
 std::string flight_text(const SurveyMission& flight, bool is_verbose = false);
 
 }  // namespace skycap::missions::package

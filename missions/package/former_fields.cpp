@@ -34,7 +34,7 @@ constexpr auto fields = std::to_array<Renamed>({
     {"never_seen", "unobserved"},
 });
 
-/// Of the fields "stop_reason", "stop" and "reason".
+/// Values of the fields "stop_reason", "stop" and "reason".
 constexpr auto words = std::to_array<Renamed>({
     {"nowhere_to_go", "no_reachable_view"},
     {"nothing_in_reach", "no_reachable_view"},
@@ -51,7 +51,7 @@ std::string current_in(std::span<const Renamed> names, const std::string& name) 
   return known == names.end() ? name : std::string(known->current);
 }
 
-/// `field` is the former name of the one that `json` is the value of.
+/// `field` is the former name of the field with the value `json`.
 Json with_current_fields(Json json, const std::string& field) {
   if (json.is_array()) {
     for (Json& item : json) item = with_current_fields(std::move(item), field);

@@ -1,4 +1,4 @@
-/// The ground of pads and rally points, as summary.json holds it.
+/// Returns the ground of pads and rally points for summary.json.
 #pragma once
 
 #include <span>
@@ -13,12 +13,14 @@ namespace skycap::missions::package {
 
 nlohmann::ordered_json grounds_json(std::span<const flight::PadGround> grounds);
 
-/// Those that were measured; the others follow from the mission. Throws what nlohmann::json throws,
-/// and Error{bad_file} on values that no ground has; `name` stands for the file.
+/// Reads the measured grounds from summary.json. Other grounds follow from the mission. Throws
+/// exceptions of nlohmann::json, and Error{bad_file} for invalid values. `name` is the file name in
+/// messages.
 std::vector<flight::PadGround> measured_grounds(const nlohmann::ordered_json& list,
                                                 const std::string& name);
 
-/// A line for the user: slopes of the landing points that are known; empty if none is.
+/// Returns one line with the known slopes of the landing points, or an empty string if none is
+/// known.
 std::string grounds_text(std::span<const flight::PadGround> grounds);
 
 }  // namespace skycap::missions::package

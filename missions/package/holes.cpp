@@ -15,13 +15,14 @@ using Eigen::Vector3d;
 using survey::skycap::BelievedPatch;
 using survey::skycap::MissingReason;
 
-/// Neighbours on a surface are one to two of their own sizes apart, and guesses lie more loosely.
+/// Neighbouring patches on a surface are one to two patch sizes apart. Predicted patches are less
+/// dense.
 constexpr double links_per_piece = 3.0;
 constexpr double pieces_of_a_hole = 4.0;
 
 double missing_area(const BelievedPatch& patch) { return patch.area * (1.0 - patch.covered_share); }
 
-/// The side of a square piece of the usual size.
+/// Returns the side length of a square patch of typical area.
 double usual_side(std::span<const BelievedPatch> patches) {
   std::vector<float> areas;
   for (const BelievedPatch& patch : patches) areas.push_back(patch.area);
@@ -31,7 +32,7 @@ double usual_side(std::span<const BelievedPatch> patches) {
   return std::sqrt(static_cast<double>(*middle));
 }
 
-/// Sets that grow together; the smallest member stands for each.
+/// Disjoint sets. The smallest member represents its set.
 class Sets {
  public:
   explicit Sets(std::size_t size) : parents_(size) {
@@ -53,21 +54,23 @@ class Sets {
   std::vector<std::size_t> parents_;
 };
 
-/// How far a piece reaches for others of its hole: by its own size, since guessed pieces may be
-/// much larger than measured ones. The area of a guessed one is less than its size, and a few that
-/// are huge shall not join all.
+/// Returns the maximum distance to other patches of the same hole, based on the patch's own size
+/// because predicted patches may be much larger than measured ones. The size is limited, because
+/// the area of predicted patches underestimates their size and a few very large patches must not
+/// connect all others.
 double link_of(const BelievedPatch& piece, double usual) {
   const double side = std::sqrt(static_cast<double>(piece.area));
   return links_per_piece * std::clamp(side, 0.5 * usual, 4.0 * usual);
 }
 
-/// Joins pieces of one reason of which one reaches the other; `usual` is the side of most.
+/// Connects patches with the same reason if one is within the link distance of the other. `usual`
+/// is the typical side length.
 Sets connected(std::span<const BelievedPatch> pieces, double usual) {
   Sets sets(pieces.size());
   std::vector<double> links;
   for (const BelievedPatch& piece : pieces) links.push_back(link_of(piece, usual));
   const double longest = *std::ranges::max_element(links);
-  // The grid's rounding asks for a little more than is then compared.
+  // The grid search uses a margin for rounding; distances are compared exactly later.
   geometry::PointGrid before((1.0 + 1e-5) * longest);
   std::vector<geometry::Neighbour> near;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -96,7 +99,7 @@ Hole hole_of(std::span<const BelievedPatch> pieces, const std::vector<std::size_
   }
   hole.centre = hole.area > 0.0 ? Vector3d(hole.centre / hole.area)
                                 : pieces[members.front()].position.cast<double>();
-  // Pieces that face all ways have none in common.
+  // Patches that face in all directions have no common normal.
   constexpr double least_agreement = 0.1;
   if (normal.norm() > least_agreement * hole.area) hole.normal = normal.normalized();
   for (const std::size_t i : members) {

@@ -1,4 +1,4 @@
-/// What a survey leaves uncovered, in connected pieces: where, how much, why, and who sees it.
+/// Uncovered surface of a survey, in connected pieces with position, area, reason and nearest view.
 #pragma once
 
 #include <cstddef>
@@ -14,42 +14,45 @@
 
 namespace skycap::missions::package {
 
-/// Uncovered pieces of surface that hang together and are missing for the same reason.
+/// Connected uncovered patches with the same reason.
 struct Hole {
   survey::skycap::MissingReason reason = survey::skycap::MissingReason::none;
-  double area = 0.0;  ///< missing: of each piece the share that is not expected to be covered [m^2]
+  /// Missing area: the sum over patches of area times (1 - expected coverage) [m^2].
+  double area = 0.0;
   std::size_t pieces = 0;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< mean of the pieces by missing area
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit; zero if the pieces face all ways
-  double radius = 0.0;                               ///< of its farthest piece from the centre
-  std::size_t nearest_view = 0;                      ///< to the centre; of no views: 0
-  double view_distance = 0.0;                        ///< from that view [m]; of no views: 0
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< Mean position, weighted by missing area.
+  /// Unit vector; zero if the patches face in all directions.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  double radius = 0.0;           ///< Maximum distance of a patch from the centre [m].
+  std::size_t nearest_view = 0;  ///< Index of the view nearest to the centre; 0 without views.
+  /// Distance of the nearest view from the centre [m]; 0 without views.
+  double view_distance = 0.0;
 };
 
-/// All that is missing. The areas of holes, smaller ones and rest sum to what is missing of the
-/// surface: its area times one less its coverage.
+/// Missing surface of a survey. The areas of holes, smaller pieces and rest sum to the missing
+/// area, which is the area times (1 - coverage).
 struct MissingSurface {
-  double area = 0.0;          ///< of the whole surface [m^2]
-  double link = 0.0;          ///< pieces of usual size this near together are of one hole [m]
-  std::vector<Hole> holes;    ///< of at least `least_hole`, largest first
-  double least_hole = 0.0;    ///< four pieces of usual size [m^2]
-  std::size_t smaller = 0;    ///< how many there are besides
-  double smaller_area = 0.0;  ///< missing in them [m^2]
-  double rest = 0.0;          ///< what even well covered surface is expected to lack [m^2]
+  double area = 0.0;        ///< Total area of the surface [m^2].
+  double link = 0.0;        ///< Maximum gap between patches of typical size in one hole [m].
+  std::vector<Hole> holes;  ///< Holes of at least `least_hole`, in descending order of area.
+  double least_hole = 0.0;  ///< Minimum area of a listed hole: four patches of typical size [m^2].
+  std::size_t smaller = 0;  ///< Number of smaller pieces.
+  double smaller_area = 0.0;  ///< Missing area in smaller pieces [m^2].
+  double rest = 0.0;          ///< Expected missing area in covered patches [m^2].
 };
 
 MissingSurface missing_surface(std::span<const survey::skycap::BelievedPatch> patches,
                                std::span<const geometry::View> views);
 
-/// The surface as the simulator knows it, for planners that believe nothing: a piece for each
-/// sample, covered or not. A sample that no admissible view sees is out of reach; `is_visible` is
-/// empty where nobody has asked.
+/// Converts ground-truth samples to patches, for planners without a surface estimate. Each sample
+/// becomes one covered or unobserved patch. Samples that are not visible from any admissible view
+/// are unreachable. `is_visible` is empty if it was not computed.
 std::vector<survey::skycap::BelievedPatch> true_patches(const geometry::SurfaceSamples& samples,
                                                         double area,
                                                         std::span<const std::uint8_t> is_covered,
                                                         std::span<const std::uint8_t> is_visible);
 
-/// The word for it in files: covered, seen_too_thinly, never_seen, unreachable.
+/// Returns the name of a reason in files: covered, undersampled, unobserved, unreachable.
 const char* name_of(survey::skycap::MissingReason reason);
 
 }  // namespace skycap::missions::package

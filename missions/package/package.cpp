@@ -55,7 +55,7 @@ Json json_of_summary(const std::string& text, const std::string& name) {
        "package");
 }
 
-/// How a flown survey came to a view, of the summary's entry for it.
+/// Returns the path to a view from its entry in the summary of a flown survey.
 Way way_of(const Json& view, const std::string& what) {
   Way way;
   if (!view.contains("way")) return way;
@@ -72,7 +72,7 @@ std::vector<Way> ways_of(const session::FlownSurvey& flown) {
   return ways;
 }
 
-/// By number of the scan.
+/// Returns the sensor positions by scan number.
 std::vector<Eigen::Vector3d> sensor_positions(const session::SurveyRecord& record) {
   std::vector<Eigen::Vector3d> positions;
   for (const session::TakenScan& scan : record.scans) positions.push_back(scan.position);
@@ -83,7 +83,7 @@ std::vector<Eigen::Vector3d> sensor_positions(const session::SurveyRecord& recor
   return positions;
 }
 
-/// For each point of the cloud, the view that it was measured at, or on the way to.
+/// Returns, for each point of the cloud, the view at which or on the path to which it was measured.
 std::vector<std::uint32_t> views_of_points(const session::SurveyRecord& record) {
   std::vector<std::uint32_t> views = record.cloud.views;
   if (record.scans.empty()) return views;
@@ -91,7 +91,7 @@ std::vector<std::uint32_t> views_of_points(const session::SurveyRecord& record) 
   return views;
 }
 
-/// The route of a flown survey, and how its views were chosen.
+/// Plans the route of a flown survey, including replanning.
 void plan_route(const evaluation::SimulationOptions& simulation, const session::RunOptions& run,
                 const session::SurveyRecord& record, const CoverageFigures& coverage,
                 const std::stop_token& stop, SurveyMission& flight) {
@@ -99,7 +99,7 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
   const flight::FlightOptions& options = simulation.survey.flight;
   const bool scans_in_flight = options.capture.scans_in_flight();
   flight.pictures = options.picture_bounds();
-  // What a scanner measures on the ways of the survey it measures on no others.
+  // A scanner's en-route measurements are valid only for the paths of the survey.
   flight.route = plan_flight(scans_in_flight ? in_given_order(options) : options, *flown.measured,
                              flown.pad, views_of(record), ways_of(flown), flown.grounds, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
@@ -121,8 +121,8 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
   flight.route = std::move(flight.anew->choice.route);
 }
 
-/// Does a part of the flight's work. What goes wrong becomes its failure: the survey itself shall
-/// not be lost.
+/// Runs a part of the flight planning. Errors are stored in `flight.failure`, so that the survey
+/// itself is not lost.
 template <typename Work>
 void attempt(SurveyMission& flight, Work work) {
   if (!flight.failure.empty()) return;
@@ -135,7 +135,7 @@ void attempt(SurveyMission& flight, Work work) {
   }
 }
 
-/// Nothing for a survey without a vehicle.
+/// Returns an empty value for a survey without a vehicle.
 std::optional<SurveyMission> planned_mission(const evaluation::SimulationOptions& simulation,
                                              const session::RunOptions& run,
                                              const session::SurveyRecord& record,
@@ -147,13 +147,13 @@ std::optional<SurveyMission> planned_mission(const evaluation::SimulationOptions
   return flight;
 }
 
-/// The free space and the files of the flight.
+/// Stages the free space and the files of the flight.
 void stage_mission(const std::string& name, const flight::FlightOptions& options, unsigned threads,
                    const session::SurveyRecord& record, SurveyMission& flight,
                    geometry::OutputFolder& folder, const std::stop_token& stop) {
   std::ostringstream free_space;
   free_space.exceptions(
-      std::ios::badbit);  // else text is lost without a word where memory is missing
+      std::ios::badbit);  // Without this, text is silently lost when memory is exhausted.
   record.flown->measured->write(free_space);
   folder.write(free_space_name, free_space.str());
   attempt(flight, [&] {
@@ -232,7 +232,8 @@ CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
                                  const std::stop_token& stop) {
   CoverageFigures figures{record.coverage(), {}, {}};
   std::vector<std::uint8_t> is_visible, is_attainable;
-  if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
+  // Skipped after an interruption because the user wants to exit.
+  if (record.stop_reason != survey::StopReason::interrupted) {
     is_visible = scene.visible(threads, stop);
     const auto marks = scene.attainable(is_visible, threads, stop);
     if (stop.stop_requested()) {
@@ -299,7 +300,7 @@ std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
       folder.write("trajectory.tum", trajectory_tum(record));
     }
   });
-  // Last, so that whoever sees the summary sees the rest.
+  // The summary is written last, so that its existence implies that of the other files.
   folder.write(summary_name, summary_json(setup, record, coverage, flight));
   return flight;
 }
@@ -349,7 +350,7 @@ bool is_complete_result(const std::filesystem::path& json_file) {
         geometry::parse_json<Json>(geometry::read_file(json_file, geometry::largest_json));
     return json.is_object() && json.value("complete", Json()) == Json(true);
   } catch (const Error&) {
-    return false;  // there is none
+    return false;  // File does not exist.
   }
 }
 

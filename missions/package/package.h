@@ -1,5 +1,4 @@
-/// The mission package: the files that a survey leaves behind. docs/reference/results.md is the
-/// manual.
+/// Mission package: the result files of a survey (docs/reference/results.md).
 #pragma once
 
 #include <cstdint>
@@ -25,119 +24,123 @@
 
 namespace skycap::missions::package {
 
-/// Coverage of a finished survey: shares of samples. What was not measured is missing.
+/// Coverage of a finished survey as fractions of the surface samples. Empty members were not
+/// measured.
 struct CoverageFigures {
-  double all = 0.0;               ///< of the whole surface
-  std::optional<double> visible;  ///< of what admissible views can see
-  std::optional<double> ceiling;  ///< of the whole surface, attainable
-  /// The surface as the simulator knows it, for the map and the holes of a survey whose planner
-  /// believes nothing; see true_patches().
+  double all = 0.0;               ///< Fraction of the whole surface.
+  std::optional<double> visible;  ///< Fraction of the visible surface.
+  std::optional<double> ceiling;  ///< Attainable fraction of the whole surface.
+  /// Ground-truth surface for the map and the holes of a survey whose planner has no surface
+  /// estimate; see true_patches().
   std::vector<survey::skycap::BelievedPatch> patches = {};
-  std::optional<TrueCoverage> truth = {};  ///< of a simulated survey
-  /// What views cover when they are flown again; null where that cannot be simulated, or the survey
-  /// was interrupted.
+  std::optional<TrueCoverage> truth = {};  ///< Ground-truth coverage of a simulated survey.
+  /// Computes the coverage of a simulated re-flight. Null if a re-flight cannot be simulated or if
+  /// the survey was interrupted.
   std::function<simulation::CoveredAgain(const std::vector<session::ViewInFlight>&)> fly_again = {};
 };
 
-/// What a simulated survey covered of the true surface; what could be covered at all only of one
-/// that has ended, unless a stop is requested. Keeps references to options and scene.
+/// Computes the coverage of a simulated survey. The visible and attainable fractions are left empty
+/// if the survey was interrupted or a stop is requested. Keeps references to `options` and `scene`.
 CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
                                  const session::SurveyRecord& record,
                                  const evaluation::SurveyScene& scene, unsigned threads,
                                  const std::stop_token& stop);
 
-/// Commits what stage_package() and others have staged. A survey that was interrupted goes beside a
-/// complete one instead of over it, into the folder "interrupted", and keeps its journal.
+/// Commits all staged files. An interrupted survey does not overwrite a complete one: it is written
+/// to the folder "interrupted" and keeps its journal.
 void commit_package(const session::SurveyRecord& record, geometry::OutputFolder& folder);
 
-/// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits. A
-/// flown survey's package also holds its route files and free_space.bin, which they were proven in
-/// (flight::MeasuredSpace::write()); what they say is returned. Every number is written with as
-/// many digits as it takes to read the same number back, so equal surveys give equal files; only
-/// summary.json holds times. A stop that is requested leaves the cloud without normals and, while
-/// the route is made, the survey without one, and its failure says so: `skycap export` makes it
-/// later.
+/// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits.
+/// For flown surveys, also stages the route files and the free space in which they were verified,
+/// free_space.bin (flight::MeasuredSpace::write()). Returns the flight of such a survey.
+///
+/// Numbers are written with enough digits to restore their exact values, so that equal surveys give
+/// equal files. Only summary.json contains times. After a stop request the cloud has no normals. If
+/// the route is not complete by then, it is omitted and the flight's `failure` contains the reason.
+/// `skycap export` can plan it later.
 std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
                                            const session::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder,
                                            std::stop_token stop = {});
 
-/// The file of a package that says what the rest is.
+/// File with the description of the package.
 inline constexpr const char* summary_name = "summary.json";
 
-/// Where a flown survey's routes were proven.
+/// File with the free space in which a flown survey's routes were verified.
 inline constexpr const char* free_space_name = "free_space.bin";
 
-/// The page that shows it; void when the mission is planned again.
+/// HTML report; becomes invalid when the mission is planned again.
 inline constexpr const char* report_name = "report.html";
 
-/// What `skycap fly-test` adds to it; void when the mission is planned again.
+/// Result of `skycap fly-test`; becomes invalid when the mission is planned again.
 inline constexpr const char* fly_test_name = "fly_test.json";
 
-/// What a package's summary says of its survey.
+/// Contents of a package's summary.
 struct PackageSummary {
-  config::MissionSetup mission;  ///< with all keys as they were in force
+  config::MissionSetup mission;  ///< Mission with all effective keys.
   std::vector<geometry::View> views;
-  std::vector<Way> ways;                   ///< ways[i] was flown to view i; empty if it is not said
-  std::optional<Eigen::Vector3d> pad;      ///< of a survey that was flown
-  std::vector<flight::PadGround> grounds;  ///< of pad and rally points, where it was measured
-  bool has_choice = false;  ///< whether views were to be chosen anew when it was planned
-  std::optional<package::StationPlan> anew{};  ///< the mission's stations, if they were chosen so
+  std::vector<Way> ways;               ///< ways[i] is the flown path to view i; empty if unknown.
+  std::optional<Eigen::Vector3d> pad;  ///< Pad of a flown survey.
+  std::vector<flight::PadGround> grounds;      ///< Measured ground of the pad and rally points.
+  bool has_choice = false;                     ///< Replanning was enabled.
+  std::optional<package::StationPlan> anew{};  ///< Replanned stations, if the mission uses them.
 
-  /// What is flown: those stations, or the survey's views.
+  /// Returns the views of the mission: the replanned stations or the survey's views.
   const std::vector<geometry::View>& stations() const { return anew ? anew->views : views; }
 };
 
-/// The same of a summary's text; `name` stands for the file in messages.
+/// Parses the text of a package's summary. `name` is the file name in messages.
 PackageSummary parse_package_summary(const std::string& text, const std::string& name,
                                      const std::vector<config::KeyOverride>& overrides = {});
 
-/// Reads a package's summary; `overrides` take the place of the mission's keys. Throws
-/// Error{bad_file} naming the file if it is missing or not as stage_package() wrote it.
+/// Reads the summary of the package in `folder`. `overrides` replace keys of the mission. Throws
+/// Error{bad_file} naming the file if it is missing or invalid.
 PackageSummary read_package_summary(const std::filesystem::path& folder,
                                     const std::vector<config::KeyOverride>& overrides);
 
-/// What a package holds of a flown survey.
+/// Package of a flown survey.
 struct PackagedSurvey {
-  std::string name;  ///< of the mission
-  /// By all keys as they were in force; in_given_order() of stations chosen anew.
+  std::string name;  ///< Name of the mission.
+  /// Options from all effective keys. For replanned stations, those of in_given_order().
   flight::FlightOptions flight;
   session::RunOptions run;
-  std::vector<geometry::View> views;  ///< that are flown: PackageSummary::stations()
-  std::vector<Way> ways;              ///< to them
+  std::vector<geometry::View> views;  ///< Views of the mission, PackageSummary::stations().
+  std::vector<Way> ways;              ///< Paths to the views.
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<flight::PadGround> grounds;  ///< see PackageSummary
+  std::vector<flight::PadGround> grounds;  ///< Measured ground of the pad and rally points.
   flight::MeasuredSpace measured;
 };
 
-/// Whether a JSON file of results is there and says "complete": true.
+/// Returns true if the JSON file of results exists and contains "complete": true.
 bool is_complete_result(const std::filesystem::path& json_file);
 
-/// Reads the package of a flown survey, as read_package_summary() does.
+/// Reads the package of a flown survey. Throws like read_package_summary().
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<config::KeyOverride>& overrides);
 
-/// The views of a survey, in their order.
+/// Returns the views of a survey in order.
 std::vector<geometry::View> views_of(const session::SurveyRecord& record);
 
-/// The pieces of surface that are known: as the planner believes, or else as the simulator knows.
+/// Returns the known surface patches: the planner's estimate if it exists, otherwise the ground
+/// truth.
 std::span<const survey::skycap::BelievedPatch> known_surface(const session::SurveyRecord& record,
                                                              const CoverageFigures& coverage);
 
-/// views.csv: a line for each view.
+/// Returns the contents of views.csv, one line per view.
 std::string views_csv(const session::SurveyRecord& record);
 
-/// trajectory.tum: "timestamp tx ty tz qx qy qz qw" of world_from_camera for each view, the
-/// format of the TUM RGB-D benchmark. Nothing was flown, so a view's number is its timestamp.
+/// Returns the contents of trajectory.tum: "timestamp tx ty tz qx qy qz qw" of world_from_camera
+/// for each view, in the format of the TUM RGB-D benchmark. The timestamp is the view's index,
+/// because views have no capture times.
 std::string trajectory_tum(const session::SurveyRecord& record);
 
-/// summary.json, as docs/reference/results.md describes it.
+/// Returns the contents of summary.json (docs/reference/results.md).
 std::string summary_json(const config::MissionSetup& setup, const session::SurveyRecord& record,
                          const CoverageFigures& coverage,
                          const std::optional<SurveyMission>& flight = {});
 
-/// Planning time of a whole survey by part, in the order of execution.
+/// Returns the total planning time by component, in order of execution.
 std::vector<survey::PartTime> planning_time_by_part(const session::SurveyRecord& record);
 
 }  // namespace skycap::missions::package

@@ -15,14 +15,15 @@ namespace {
 
 using flight::Dialect;
 
-/// One vehicle's part of a mission.
+/// Part of a mission for one vehicle.
 struct Part {
   const flight::FlightOptions& options;
   const flight::Route& route;
   const FlightFiles& files;
 };
 
-/// Names of the written files with this ending, separated by commas; empty if there are none.
+/// Returns the names of the written files with this ending, separated by commas; empty if there are
+/// none.
 std::string names_of(const FlightFiles& files, std::string_view ending) {
   std::string names;
   for (const FlightFile& file : files.written) {
@@ -49,7 +50,7 @@ std::string takeoff_text(const Part& part) {
                      point.longitude_deg, local);
 }
 
-/// What a geofence or rally points add to an upload; empty if the mission has neither.
+/// Returns the additional items of an upload: geofence and rally points. Empty without them.
 std::string plan_extras(const Part& part) {
   const flight::AirspaceOptions& airspace = part.options.airspace;
   const bool has_fence = !airspace.geofence.empty() || !airspace.no_fly.empty();
@@ -159,7 +160,7 @@ std::string part_text(const Part& part, const std::string& whom) {
   return text;
 }
 
-/// Limits of what was verified, which the pilot must check.
+/// Lists the limits of the verification that the pilot must check.
 std::string limits_text(const flight::FlightOptions& options, const SurveyMission& flight) {
   std::string text =
       "Not verified; the pilot must check: moving obstacles, landings at other places than the "
@@ -173,7 +174,7 @@ std::string limits_text(const flight::FlightOptions& options, const SurveyMissio
   return text + ", unobserved airspace outside flight.unknown_box.\n";
 }
 
-/// The slope of pads is known only of some.
+/// Warns about pads with unknown slope.
 std::string slope_warning(const flight::Route& route, const std::string& whose) {
   const std::size_t rally = route.options.returns ? route.options.returns->rally.size() : 0;
   const std::size_t known = route.options.grounds.size();
@@ -186,7 +187,7 @@ std::string slope_warning(const flight::Route& route, const std::string& whose) 
   return "Warning: slope of " + what + " unknown. Inspect the pad and set flight.pad_slope_deg.\n";
 }
 
-/// Minutes that are a range, with its upper end.
+/// Warns if the flight time is a range, with its maximum.
 std::string time_warning(const flight::Route& route, const std::string& whose) {
   const double longest = route.options.conditions.longest_flight;
   if (longest == 1.0 || route.sorties.empty()) return "";

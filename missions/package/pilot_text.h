@@ -1,4 +1,4 @@
-/// What the pilot must do with a planned flight: printed after its summary.
+/// Instructions for the pilot of a planned flight, printed after the summary.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace skycap::missions::package {
 
-/// Numbered steps for the vehicle's own autopilot and for no other, by vehicle of a fleet; then
-/// what was not verified; then warnings, a line "Warning: ..." each. Empty if there is no route.
+/// Returns numbered steps for the autopilot of the vehicle, or of each vehicle of a fleet. These
+/// are followed by a list of unverified conditions and by warnings, one line "Warning: ..." each.
+/// Returns an empty string without a route.
 std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight);
 
 }  // namespace skycap::missions::package

@@ -21,7 +21,7 @@ Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {
           {"points", json_of(leg.points)}};
 }
 
-/// Of a sortie that is flown past its views; null of others.
+/// Returns the fly-through data of a sortie, or null for other sorties.
 Json passage_json(const flight::Route& route, const flight::Sortie& sortie) {
   if (!sortie.passage) return {};
   const flight::Passage& passage = *sortie.passage;

@@ -1,4 +1,4 @@
-/// A certified route as summary.json has it.
+/// Conversion of a verified route to JSON for summary.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,14 +7,14 @@
 
 namespace skycap::missions::package {
 
-/// The route's sorties, each with its legs from above the pad and back there, in metres, seconds
-/// and watt hours. Legs lead from view to view; null stands for the pad.
+/// Returns the route's sorties, each with its legs from above the pad and back, in metres, seconds
+/// and watt hours. Legs connect views; null is the pad.
 nlohmann::ordered_json sorties_json(const flight::Route& route);
 
-/// Views that are left out, with the reasons.
+/// Returns the unreachable views with the reasons.
 nlohmann::ordered_json unreached_json(const std::vector<flight::Unreached>& unreached);
 
-/// The views in the order in which they are flown to.
+/// Returns the views in flight order.
 nlohmann::ordered_json order_json(const flight::Route& route);
 
 }  // namespace skycap::missions::package

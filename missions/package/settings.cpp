@@ -16,12 +16,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Settings as a mission file has them. JSON is YAML, but keys are nested there.
+/// Converts settings to the text of a mission file. JSON is valid YAML, but mission files nest
+/// their keys.
 std::string mission_text(const Json& settings) {
   Json nested = Json::object();
   for (const auto& [former, value] : settings.items()) {
     const std::string path = config::current_path(former);
-    // A pointer with a number in it would grow a list; no key of ours has one.
+    // A JSON pointer with a number would extend an array, but valid keys do not contain numbers.
     if (!config::find_key(path)) {
       throw Error(ErrorKind::bad_file, "settings." + former + " is unknown");
     }
@@ -40,7 +41,7 @@ Json settings_json(const config::MissionSetup& setup) {
   document.threads = setup.run.threads;
   Json values = Json::object();
   for (const config::Key& key : config::mission_keys()) {
-    // A lidar takes the camera's place, whose keys are refused beside it.
+    // A LiDAR replaces the camera, whose keys are then rejected.
     const bool is_of_flight = key.path == "sensor.capture" || key.path == "sensor.frame_period";
     const bool is_of_camera = key.path.starts_with("sensor.") && key.path != "sensor.lidar" &&
                               !(is_of_flight && setup.sensor().mount);

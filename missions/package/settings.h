@@ -1,4 +1,4 @@
-/// A mission's keys as results keep them, so that they can be repeated from the results alone.
+/// Storage of a mission's keys in results, so that the mission can be repeated from its results.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace skycap::missions::package {
 
-/// All keys as they are in force, by their paths; seed and threads are those of the run.
+/// Returns all effective keys by path. Seed and threads are those of the run.
 nlohmann::ordered_json settings_json(const config::MissionSetup& setup);
 
-/// The mission that settings stand for, with overrides; `name` is the file in messages. Throws
-/// Error{bad_file} for what is no key, and what parse_mission() throws.
+/// Restores the mission from stored settings and applies overrides. `name` is the file name in
+/// messages. Throws Error{bad_file} for unknown keys, and all errors of parse_mission().
 config::MissionSetup mission_of_settings(const nlohmann::ordered_json& settings,
                                          const std::string& name,
                                          const std::vector<config::KeyOverride>& overrides = {});

@@ -1,4 +1,4 @@
-/// summary.json: all that a survey says of itself.
+/// Contents of summary.json.
 
 #include <algorithm>
 #include <utility>
@@ -32,10 +32,11 @@ Json json_of(const std::vector<survey::PartTime>& times) {
   return parts;
 }
 
-/// How far what the planner believes of places is true, of what can be seen.
+/// Compares the planner's estimated coverage with the ground truth on the visible surface.
 Json reliability_summary(const survey::skycap::SurveyBelief& belief,
                          const std::optional<TrueCoverage>& truth, double resolution_radius) {
-  if (!truth || truth->is_visible.empty()) return {};  // interrupted, or nobody asks
+  // Empty after an interruption or if it was not computed.
+  if (!truth || truth->is_visible.empty()) return {};
   const double reach = 2.0 * resolution_radius;
   const evaluation::Reliability found = evaluation::reliability(
       belief.patches, truth->samples, truth->is_covered, truth->is_visible, reach);
@@ -49,12 +50,13 @@ Json reliability_summary(const survey::skycap::SurveyBelief& belief,
           {"unknown", {{"covered", found.unknown_covered}, {"share", found.unknown_share}}}};
 }
 
-/// What the planner believes at the end: shares are of the surface, seen and guessed.
+/// Returns the planner's final estimate. Fractions refer to the observed and predicted surface.
 Json belief_summary(const session::SurveyRecord& record, const CoverageFigures& coverage,
                     double resolution_radius) {
   if (!record.belief) return {};
   const survey::skycap::SurveyBelief& belief = *record.belief;
-  // In which way it is complete, or what ended it before that: no two reasons.
+  // Contains either the completion rule or the reason for an early end, so that there is only one
+  // reason.
   const std::string stop =
       record.is_complete() ? record.stop_rule : session::name_of(record.stop_reason);
   return {{"stop", stop},
@@ -70,7 +72,7 @@ Json belief_summary(const session::SurveyRecord& record, const CoverageFigures& 
           {"reliability", reliability_summary(belief, coverage.truth, resolution_radius)}};
 }
 
-/// What is missing, piece by piece: as the planner believes or else as the simulator knows.
+/// Lists the missing surface in connected pieces, from the planner's estimate or the ground truth.
 Json surface_summary(const session::SurveyRecord& record, const CoverageFigures& coverage) {
   const auto patches = known_surface(record, coverage);
   if (patches.empty()) return {};
@@ -118,7 +120,7 @@ bool has_target(const scene::SceneOptions& scene) {
          });
 }
 
-/// How the vehicle comes home when its link, its battery or its pilot asks for it.
+/// Returns the data of the vehicle's return after link loss, low battery or a recall.
 Json return_summary(const SurveyMission& flight) {
   if (!flight.route.returns) return {};
   const flight::Returns& returns = *flight.route.returns;
@@ -140,7 +142,7 @@ Json pictures_summary(const SurveyMission& flight) {
           {"distance_m", flight.pictures->distance}};
 }
 
-/// The flight of the survey and the route in the package, in metres, seconds and watt hours.
+/// Returns the flight of the survey in metres, seconds and watt hours.
 Json survey_flight_summary(const session::FlownSurvey& flown) {
   return {{"length_m", flown.length()},
           {"duration_s", flown.time()},

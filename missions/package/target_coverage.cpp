@@ -14,10 +14,10 @@ namespace {
 
 using site_data::SurfaceKind;
 
-/// Points on an object: enough to tell shares to a tenth of a percent.
+/// Maximum number of points on an object, which resolves fractions of 0.1%.
 constexpr std::size_t most_points = 100'000;
 
-/// Points on it are this share of the radius apart, where that makes fewer.
+/// Number of points per radius, where this gives fewer points.
 constexpr double points_per_radius = 2.0;
 
 struct NamedKind {

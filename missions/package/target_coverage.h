@@ -1,5 +1,5 @@
-/// Coverage of what a mission was to survey, object by object, by the targets among its prior data:
-/// the one figure that needs no truth, and so the same for simulated and for real surveys.
+/// Coverage of each target object in the prior data. It requires no ground truth and is therefore
+/// comparable between simulated and real surveys.
 #pragma once
 
 #include <span>
@@ -12,27 +12,27 @@
 
 namespace skycap::missions::package {
 
-/// A share of the surface that the prior data has.
+/// Coverage of a part of the prior surface.
 struct CoveredPart {
-  std::string name;      ///< of the object; or wall, roof, opening, other
+  std::string name;      ///< Id of the object, or wall, roof, opening, other.
   double area = 0.0;     ///< [m^2]
-  double covered = 0.0;  ///< share with a measurement within the radius
+  double covered = 0.0;  ///< Fraction with a measured point within the radius.
 };
 
 struct TargetCoverage {
   CoveredPart object;
-  std::vector<CoveredPart> kinds;  ///< where its file tells walls from roofs
-  /// Of a measurement from the prior's surface: the registration distance, and what that surface
-  /// may be off.
+  std::vector<CoveredPart> kinds;  ///< Parts by surface kind, if the prior data distinguishes them.
+  /// Maximum distance of a measured point from the prior surface: the sum of the coverage distance
+  /// and the uncertainty of the prior [m].
   double radius = 0.0;
 };
 
-/// Of each object of the targets that has a surface to be seen, in the order of the mission.
+/// Computes the coverage of each target object that has a surface, in mission order.
 std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
                                             double registration_distance,
                                             std::span<const Eigen::Vector3f> measured);
 
-/// A line for each; empty without any.
+/// Returns one line per target, or an empty string without targets.
 std::string target_text(const std::vector<TargetCoverage>& targets);
 
 }  // namespace skycap::missions::package

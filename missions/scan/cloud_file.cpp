@@ -29,7 +29,8 @@ CloudFile::CloudFile(std::filesystem::path path, std::shared_ptr<const CloudForm
   }
   file_.reset(std::fopen(path_.c_str(), "wb"));
   if (!file_) fail();
-  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // chunks are large: no second copy
+  // Unbuffered, because chunks are large and a second copy is unnecessary.
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   put(format_->header(state_));
 }
 
@@ -92,7 +93,7 @@ void CloudFile::finish() {
   if (!header.empty()) {
     if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail();
     put(header);
-    state_.bytes -= header.size();  // in place of the first one
+    state_.bytes -= header.size();  // The final header replaces the first one.
   }
   if (std::fclose(file_.release()) != 0) fail();
 }

@@ -1,4 +1,4 @@
-/// Files of points that are written while they are measured: a scan may be larger than memory.
+/// Point cloud files that are written during a scan, which may be larger than memory.
 #pragma once
 
 #include <array>
@@ -18,29 +18,29 @@
 
 namespace skycap::missions::scan {
 
-/// Beyond this, neighbouring single-precision numbers are 2 mm apart [m].
+/// Coordinate above which adjacent single-precision numbers differ by 2 mm [m].
 inline constexpr double farthest_coordinate = 16384.0;
 
-/// What a file's header says of its points.
+/// Data about the points in a file's header.
 struct CloudTotals {
   std::uint64_t points = 0;
   std::array<std::uint64_t, 15> points_by_return = {};
-  std::uint64_t checksum = 0;  ///< the sum of the chunks', of formats that have one
-  Eigen::AlignedBox3d bounds;  ///< of the coordinates as written
+  std::uint64_t checksum = 0;  ///< Sum of the checksums of the chunks, for formats with a checksum.
+  Eigen::AlignedBox3d bounds;  ///< Bounds of the coordinates as written.
 
   void add(const CloudTotals& more);
 };
 
-/// Points in the file's own bytes. Made on any thread, then appended in order.
+/// Encoded points. Chunks are encoded on any thread and appended in order.
 struct CloudChunk {
   std::vector<std::uint8_t> bytes;
   CloudTotals totals;
 };
 
-/// Which of its two positions a return is written with.
+/// Position of a return in the file.
 enum class ReturnPosition {
-  reported,  ///< measured distance along the believed ray
-  actual,    ///< of the surface that was met
+  reported,  ///< Measured distance along the estimated ray.
+  actual,    ///< Position on the surface that the pulse hit.
 };
 
 inline const std::vector<Eigen::Vector3f>& positions_of(const sim::LidarReturns& returns,
@@ -48,26 +48,27 @@ inline const std::vector<Eigen::Vector3f>& positions_of(const sim::LidarReturns&
   return position == ReturnPosition::reported ? returns.points : returns.true_points;
 }
 
-/// How far a file has grown.
+/// Current extent of a growing file.
 struct CloudState {
   CloudTotals totals;
-  std::uint64_t bytes = 0;  ///< with its beginning; none: it is about to be begun
+  /// File size including the header; zero before the header is written [bytes].
+  std::uint64_t bytes = 0;
 };
 
-/// How points become bytes. Immutable; encode() is safe on any number of threads.
+/// Encoder of points. Immutable; encode() may be called concurrently.
 class CloudFormat {
  public:
   virtual ~CloudFormat() = default;
 
-  /// The beginning of a file that has grown so far; its length does not depend on that.
+  /// Returns the header of a file with the extent `grown`. Its length does not depend on `grown`.
   virtual std::vector<std::uint8_t> header(const CloudState& grown) const = 0;
 
-  /// Whether what follows the header is put into pages with checksums (geometry/io/e57/pages.h);
-  /// the header is whole pages then.
+  /// Returns true if data after the header is written in pages with checksums
+  /// (geometry/io/e57/pages.h). The header then consists of complete pages.
   virtual bool is_paged() const { return false; }
 
-  /// Replaces what is in `chunk`, whose memory is used again. Throws Error{bad_geometry} if the
-  /// format cannot hold a point.
+  /// Encodes the returns into `chunk`, replacing its contents but reusing its memory. Throws
+  /// Error{bad_geometry} if the format cannot represent a point.
   virtual void encode(const sim::LidarReturns& returns, ReturnPosition position,
                       CloudChunk& chunk) const = 0;
 
@@ -77,11 +78,11 @@ class CloudFormat {
   CloudFormat& operator=(const CloudFormat&) = default;
 };
 
-/// A file that grows chunk by chunk, and is valid once it is finished.
+/// File that grows in chunks and is valid after finish().
 class CloudFile {
  public:
-  /// Begins the file, or goes on with one that had once `grown` so far: what it holds beyond that
-  /// is cut off. Throws Error{bad_file} if the file cannot be written, or is shorter.
+  /// Creates the file, or continues one that had the extent `grown` and discards all data after it.
+  /// Throws Error{bad_file} if the file cannot be written or is too short.
   CloudFile(std::filesystem::path path, std::shared_ptr<const CloudFormat> format,
             ReturnPosition position = ReturnPosition::reported,
             const std::optional<CloudState>& grown = {});
@@ -90,18 +91,18 @@ class CloudFile {
     format_->encode(returns, position_, chunk);
   }
 
-  /// Throws Error{bad_file} if the disk does not take it.
+  /// Appends a chunk. Throws Error{bad_file} if writing fails.
   void append(const CloudChunk& chunk);
 
-  /// Appends all that another file of this format held when it had `grown` so far. Throws
-  /// Error{bad_file} if it is shorter, or if the disk does not take it.
+  /// Appends the contents of another file of the same format up to its extent `grown`. Throws
+  /// Error{bad_file} if the other file is too short or if writing fails.
   void append_file(const std::filesystem::path& other, const CloudState& grown);
 
-  /// Completes the header and closes the file. Also after an interrupted scan: what was appended is
-  /// then a valid file. Throws Error{bad_file} if the disk does not take it.
+  /// Completes the header and closes the file. After an interrupted scan, the file is valid with
+  /// the points appended so far. Throws Error{bad_file} if writing fails.
   void finish();
 
-  /// Brings what was appended to the disk. Throws Error{bad_file}.
+  /// Flushes the appended data to disk. Throws Error{bad_file}.
   void sync() const;
 
   std::uint64_t points() const { return state_.totals.points; }
@@ -123,7 +124,7 @@ class CloudFile {
   std::shared_ptr<const CloudFormat> format_;
   ReturnPosition position_;
   std::unique_ptr<std::FILE, Close> file_;
-  geometry::e57::PageWriter pages_;  ///< of a format that is paged
+  geometry::e57::PageWriter pages_;  ///< Page writer, used only for paged formats.
   CloudState state_;
 };
 

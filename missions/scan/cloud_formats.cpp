@@ -17,14 +17,14 @@ namespace {
 using geometry::put_value;
 
 CloudTotals totals_of(const sim::LidarReturns& returns) {
-  CloudTotals totals;  // what these formats' headers need
+  CloudTotals totals;  // Data for the headers of these formats.
   totals.points = returns.size();
   return totals;
 }
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// PLY and PCD differ in their headers only.
+/// Common part of PLY and PCD, which differ only in their headers.
 class RecordFormat : public CloudFormat {
  public:
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
@@ -89,7 +89,7 @@ class XyzFormat final : public CloudFormat {
 
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override {
-    constexpr std::size_t longest_line = 200;  // eight numbers below 1e15 in size
+    constexpr std::size_t longest_line = 200;  // Eight numbers below 1e15.
     chunk.totals = totals_of(returns);
     chunk.bytes.resize(returns.size() * longest_line);
     const auto& points = positions_of(returns, position);
@@ -124,7 +124,7 @@ CoordinateGrid grid_of(const CloudFormatContext& context) {
     grid.crs_wkt = context.projection->wkt();
     centre = context.projection->to_map(centre);
   }
-  // Whole kilometres: a local scene keeps the offset zero.
+  // Rounded to whole kilometres, so that local scenes have a zero offset.
   grid.offset = 1000.0 * (centre / 1000.0).array().round().matrix();
   return grid;
 }

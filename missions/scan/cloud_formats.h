@@ -1,4 +1,4 @@
-/// The formats that `skycap scan` writes points in.
+/// Point cloud formats of `skycap scan`.
 #pragma once
 
 #include <memory>
@@ -13,49 +13,53 @@
 
 namespace skycap::missions::scan {
 
-/// Binary PLY: x y z and intensity as float, time as double, channel as ushort, return_number and
-/// returns as uchar.
+/// Returns binary PLY: x y z and intensity as float, time as double, channel as ushort,
+/// return_number and returns as uchar.
 std::shared_ptr<const CloudFormat> ply_format();
 
-/// Binary PCD 0.7 with the same fields, as the Point Cloud Library reads them.
+/// Returns binary PCD 0.7 with the same fields as ply_format(), readable by the Point Cloud
+/// Library.
 std::shared_ptr<const CloudFormat> pcd_format();
 
-/// A line of x y z intensity time channel return_number returns for each point; tenths of a
-/// millimetre and of a microsecond.
+/// Returns text with one line per point: x y z intensity time channel return_number returns.
+/// Coordinates have a resolution of 0.1 mm, times of 0.1 us.
 std::shared_ptr<const CloudFormat> xyz_format();
 
-/// E57 (ASTM E2807-11), all points of a flight as one scan: cartesianX, Y and Z as scaled integers,
-/// intensity, timeStamp (the shot's), returnIndex and returnCount; coordinateMetadata is the grid's
-/// reference system. Throws what CoordinateGrid::validate() throws.
+/// Returns E57 (ASTM E2807-11) with all points of a flight as one scan. Fields are cartesianX, Y
+/// and Z as scaled integers, intensity, timeStamp (of the pulse), returnIndex and returnCount.
+/// coordinateMetadata contains the grid's reference system. Throws all errors of
+/// CoordinateGrid::validate().
 std::shared_ptr<const CloudFormat> e57_format(const CoordinateGrid& grid,
                                               const std::string& sensor_name);
 
-/// What a format may need to know of the scan; the trajectories must outlive the format.
+/// Scan data that formats may require. The trajectories must outlive the format.
 struct CloudFormatContext {
   std::string sensor_name;
   const sim::LidarConfig& sensor;
   const sim::LidarFlight& flight;
   Eigen::Vector3d scene_centre;
-  /// Where LAS and E57 files have their points; none: in the mission's frame, as all others do.
+  /// Map projection of LAS and E57 files. Null selects the mission frame, which all other formats
+  /// use.
   std::shared_ptr<const flight::UtmProjection> projection;
 };
 
-/// A rawlog of MRPT, for every piece of the scan: CObservationRobotPose "CARRIER" (of the believed
-/// trajectory), of spinning sensors CObservationRotatingScan "LIDAR_RANGES" (the range image of
-/// the strongest returns), and CObservationPointCloud "LIDAR_POINTS" (all returns in the sensor's
-/// frame, free of the motion within the piece). Throws Error{bad_file} if MRPT is not there.
+/// Returns an MRPT rawlog with three observations per piece of the scan. CObservationRobotPose
+/// contains the estimated trajectory. For spinning sensors, CObservationRotatingScan "LIDAR_RANGES"
+/// contains the range image of the strongest returns. CObservationPointCloud "LIDAR_POINTS"
+/// contains all returns in the sensor frame, compensated for the motion within the piece. Throws
+/// Error{bad_file} if MRPT is not available.
 std::shared_ptr<const CloudFormat> rawlog_format(const CloudFormatContext& context);
 
-/// A format's name, its files' ending and how to make it.
+/// Name, file name extension and factory function of a format.
 struct CloudFormatInfo {
   std::string name, ending;
   std::shared_ptr<const CloudFormat> (*make)(const CloudFormatContext& context);
 };
 
-/// The format of that name, such as "las". Throws Error{bad_usage} listing the names.
+/// Returns the format with this name, such as "las". Throws Error{bad_usage} listing the names.
 const CloudFormatInfo& cloud_format_named(const std::string& name);
 
-/// "las, las7, ...".
+/// Returns the names for messages: "las, las7, ...".
 std::string cloud_format_names();
 
 }  // namespace skycap::missions::scan

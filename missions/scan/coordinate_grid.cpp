@@ -31,7 +31,7 @@ Eigen::AlignedBox3d CoordinateGrid::bounds(const Eigen::AlignedBox3d& units) con
 }
 
 Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points) {
-  using FourPoints = Eigen::Array<float, 12, 1>;  // whole registers
+  using FourPoints = Eigen::Array<float, 12, 1>;  // Fills whole vector registers.
   FourPoints lowest = points[0].replicate<4, 1>(), highest = lowest;
   const std::size_t whole = points.size() / 4 * 4;
   for (std::size_t i = 0; i < whole; i += 4) {

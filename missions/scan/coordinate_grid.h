@@ -1,5 +1,5 @@
-/// Coordinates as whole multiples of a length from an offset, 32 bits each: how LAS and E57 files
-/// keep them, in the mission's frame or on a map.
+/// Integer coordinates with 32 bits, scaled and relative to an offset, as in LAS and E57 files.
+/// They are in the mission frame or projected.
 #pragma once
 
 #include <bit>
@@ -16,35 +16,37 @@
 namespace skycap::missions::scan {
 
 struct CoordinateGrid {
-  double scale = 1e-4;                               ///< coordinates are multiples of it [m]
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< near the points as written
-  /// Puts points of the mission's frame on the map; without it they stay local.
+  double scale = 1e-4;  ///< Length of one integer step [m].
+  /// Position near the points in file coordinates [m].
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  /// Map projection of the points. Null keeps the mission frame.
   std::shared_ptr<const flight::UtmProjection> projection;
-  /// The coordinate reference system as OGC WKT; local east-north-up by default.
+  /// Coordinate reference system as OGC WKT. The default is a local east-north-up system.
   std::string crs_wkt =
       "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"mission origin\",0],UNIT[\"metre\",1],"
       "AXIS[\"east\",EAST],AXIS[\"north\",NORTH],AXIS[\"up\",UP]]";
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} naming the first field outside its valid interval.
   void validate() const;
 
-  /// Of coordinates between two places, in multiples of the scale, as they are written. Throws
-  /// Error{bad_geometry} if 32 bits do not hold them.
+  /// Returns the written bounds [m] for bounds in integer steps. Throws Error{bad_geometry} if 32
+  /// bits do not suffice.
   Eigen::AlignedBox3d bounds(const Eigen::AlignedBox3d& units) const;
 };
 
-/// The nearest whole number of one that fits into 32 bits. Adding 1.5 * 2^52 leaves no place for
-/// fractions in a double, and the whole number in its lowest bits: no call, no branch.
+/// Returns the nearest integer of a number in the 32-bit range. Adding 1.5 * 2^52 leaves no
+/// fraction bits in a double and places the integer in its lowest bits. This avoids calls and
+/// branches.
 inline std::int32_t nearest(double number) {
   return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(number + 6755399441055744.0));
 }
 
-/// Smallest and largest coordinates of some points, of which there is at least one.
+/// Returns the bounding box of `points`, which must not be empty.
 Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points);
 
-/// Calls `encode(units)`, where `units` gives a point's coordinates in multiples of the scale from
-/// the offset; every point has to be asked for. Returns the bounds of the points as written; there
-/// is at least one. Throws what CoordinateGrid::bounds() throws.
+/// Calls `encode(units)`. `units` converts a point to integer steps relative to the offset and must
+/// be called for every point. Returns the bounds of the points as written; `points` must not be
+/// empty. Throws all errors of CoordinateGrid::bounds().
 template <typename Encode>
 Eigen::AlignedBox3d encode_on_grid(const CoordinateGrid& grid, const sim::LidarReturns& returns,
                                    const std::vector<Eigen::Vector3f>& points,

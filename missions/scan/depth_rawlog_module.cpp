@@ -1,4 +1,4 @@
-// Depth images as MRPT's own library serialises them, for a rawlog.
+// Encoder of depth images for rawlogs, based on MRPT's serialisation.
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationRobotPose.h>

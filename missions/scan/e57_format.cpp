@@ -13,7 +13,7 @@ namespace {
 
 namespace e57 = geometry::e57;
 
-/// Of the fields, in their order in a record.
+/// Field indices in a record.
 enum Column : std::size_t { x, y, z, intensity, time, return_number, returns_of_shot, columns };
 
 std::vector<e57::Field> fields_on(const CoordinateGrid& grid) {
@@ -91,7 +91,7 @@ class E57Format final : public CloudFormat {
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Vector3d place = units(points[i]);
         for (const Column axis : {x, y, z}) {
-          // What is stored counts from the minimum of 32 bits.
+          // Stored values are relative to the minimum of the 32-bit range.
           const auto stored = static_cast<std::uint32_t>(nearest(place[axis])) ^ 0x80000000U;
           geometry::put_value(values[axis].data(), 4 * i, stored);
         }

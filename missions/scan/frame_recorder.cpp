@@ -42,10 +42,10 @@ nlohmann::ordered_json camera_json(const geometry::Camera& camera, double unit) 
 
 std::string file_name(std::size_t frame) { return fmt::format("depth_{:06}.png", frame); }
 
-/// Images appended to a file as they are taken.
+/// Rawlog of images that is written during the recording.
 class FrameRawlog {
  public:
-  /// Goes on with a file that had once grown to so many bytes.
+  /// Continues a file that had the size `grown` [bytes].
   FrameRawlog(const std::filesystem::path& path, std::uint64_t grown,
               const geometry::Camera& camera, double unit)
       : path_(path),
@@ -72,7 +72,7 @@ class FrameRawlog {
     bytes_written_ += bytes_.size();
   }
 
-  /// Brings it to the disk. How large it is.
+  /// Flushes the file to disk and returns its size [bytes].
   std::uint64_t sync() {
     file_.flush();
     require_written();
@@ -96,7 +96,7 @@ class FrameRawlog {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Adds the chosen points of an image, where its camera believes that they are.
+/// Adds the selected points of an image at their estimated positions.
 void add_preview(const geometry::Scan& scan, const Frame& frame, std::uint32_t number, double share,
                  geometry::PointCloud& preview) {
   const Eigen::Isometry3d believed_from_real =
@@ -109,7 +109,7 @@ void add_preview(const geometry::Scan& scan, const Frame& frame, std::uint32_t n
   }
 }
 
-/// Takes image after image.
+/// Recording of the images in order.
 class FrameRecording {
  public:
   FrameRecording(const sim::Scene& scene, const sim::DepthCamera& camera,
@@ -164,10 +164,10 @@ class FrameRecording {
 
  private:
   static constexpr const char* rawlog_name = "frames.rawlog";
-  // Each takes the disk some milliseconds, for which an interrupted scan must not wait long.
+  // Flushing takes some milliseconds per image, which would delay the end of an interrupted scan.
   static constexpr std::size_t most_not_synced = 16;
 
-  /// Takes over what a checkpoint says. How large the rawlog was.
+  /// Restores the state of a checkpoint. Returns the size of the rawlog [bytes].
   std::uint64_t go_on() {
     try {
       result_ = {options_.begun.at("images").get<std::size_t>(),
@@ -187,7 +187,7 @@ class FrameRecording {
     }
   }
 
-  /// There may be more points, written before a checkpoint that a kill has prevented.
+  /// The file may contain further points that were written after the last checkpoint.
   void read_preview(std::size_t count) {
     geometry::AttributedCloud read = geometry::read_cloud(journal_.path(preview_name));
     count = std::min({count, read.positions.size(), read.views.size()});
@@ -234,9 +234,9 @@ class FrameRecording {
   const FrameOptions& options_;
   double preview_share_ = 1.0;
   FrameResult result_;
-  std::size_t synced_ = 0;  ///< images that are on the disk
+  std::size_t synced_ = 0;  ///< Number of images flushed to disk.
   Clock::time_point start_ = Clock::now();
-  double earlier_ = 0.0;  ///< what runs before this one took [s]
+  double earlier_ = 0.0;  ///< Computation time of previous runs [s].
   geometry::Scan scan_;
   geometry::PointCloud preview_;
   std::optional<FrameRawlog> rawlog_;

@@ -26,7 +26,7 @@ class LasFormat final : public CloudFormat {
               CloudChunk& chunk) const override;
 
  private:
-  /// `units` gives a point's coordinates in multiples of the scale from the offset.
+  /// `units` converts a point to integer steps relative to the offset.
   template <typename Units>
   void encode_points(const sim::LidarReturns& returns, const std::vector<Eigen::Vector3f>& points,
                      const Units& units, CloudChunk& chunk) const;

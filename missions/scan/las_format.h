@@ -1,4 +1,4 @@
-/// Point clouds in LAS 1.4 (ASPRS specification R15), point formats 6 and 7.
+/// Settings of LAS 1.4 files (ASPRS specification R15) with point formats 6 and 7.
 #pragma once
 
 #include <memory>
@@ -9,15 +9,16 @@
 namespace skycap::missions::scan {
 
 struct LasConfig {
-  int point_format = 6;  ///< 7 has a colour too: the intensity as grey
+  int point_format = 6;  ///< Format 7 adds a colour: the intensity as grey.
   CoordinateGrid grid = {};
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  /// Throws Error{bad_config} naming the first field outside its valid interval.
   void validate() const;
 };
 
-/// Intensity is scaled so that a white surface faced squarely has 65535; the channel modulo 256 is
-/// the user data; GPS time is the shot's. Throws what LasConfig::validate() throws.
+/// Returns the LAS format. A white surface at normal incidence has the intensity 65535. User data
+/// contains the channel modulo 256, and GPS time is that of the pulse. Throws all errors of
+/// LasConfig::validate().
 std::shared_ptr<const CloudFormat> las_format(const LasConfig& config);
 
 }  // namespace skycap::missions::scan

@@ -25,7 +25,8 @@ CloudState parse_state(const Json& json) {
   state.bytes = json.at("bytes").get<std::uint64_t>();
   state.totals.points = json.at("points").get<std::uint64_t>();
   json.at("points_by_return").get_to(state.totals.points_by_return);
-  state.totals.checksum = json.value("checksum", std::uint64_t{0});  // earlier versions had none
+  // Not present in checkpoints of earlier versions.
+  state.totals.checksum = json.value("checksum", std::uint64_t{0});
   if (json.contains("low")) {
     state.totals.bounds = {support::vector_of(json["low"]), support::vector_of(json.at("high"))};
   }

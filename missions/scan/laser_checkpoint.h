@@ -1,4 +1,4 @@
-/// How far the recording of a laser scanner had come, as its journal holds it.
+/// Journal checkpoint of a laser scanner's recording.
 #pragma once
 
 #include <string>
@@ -12,14 +12,15 @@
 namespace skycap::missions::scan {
 
 struct LaserCheckpoint {
-  ScanProgress progress;  ///< firings and points
-  double time = 0.0;      ///< that the simulation took [s]
+  ScanProgress progress;  ///< Completed firings and points.
+  double time = 0.0;      ///< Computation time [s].
   std::vector<CloudState> files;
 };
 
 nlohmann::ordered_json json_of(const LaserCheckpoint& checkpoint);
 
-/// Throws Error{bad_file}, beginning with `name`, unless json_of() has made it of so many files.
+/// Restores a checkpoint from json_of(). Throws Error{bad_file} with the prefix `name` if the JSON
+/// is invalid or has another number of files.
 LaserCheckpoint parse_laser_checkpoint(const nlohmann::ordered_json& json, std::size_t files,
                                        const std::string& name);
 

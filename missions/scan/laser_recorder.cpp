@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-/// New files, or those of the checkpoint as they were then.
+/// Opens new files, or those of the checkpoint with their extents at that time.
 std::vector<CloudFile> open_files(std::span<const LaserOutput> outputs, const ScanJournal& journal,
                                   const LaserCheckpoint& begun) {
   std::vector<CloudFile> files;
@@ -57,7 +57,7 @@ LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
   for (std::size_t i = 0; i < files.size(); ++i) {
     files[i].finish();
     outputs[i].bytes = files[i].bytes();
-    // A rawlog without an observation is none.
+    // A rawlog without observations is not valid.
     if (outputs[i].bytes > 0) journal.stage(outputs[i].name, folder);
   }
   return {result, std::move(reached)};
@@ -78,7 +78,7 @@ std::optional<LaserCheckpoint> complete_piece(const fs::path& folder, const std:
     return parse_laser_checkpoint(piece.at("holds"), files, file.string());
   } catch (const Json::exception&) {
     return std::nullopt;
-  } catch (const Error&) {  // it is made again
+  } catch (const Error&) {  // The piece will be measured again.
     return std::nullopt;
   }
 }

@@ -1,5 +1,5 @@
-/// The files of a laser scanner's flight, which an interrupted recording can be gone on with, and
-/// which may be made of pieces of the flight that were recorded one by one.
+/// Recording of a laser scanner's flight to files. An interrupted recording can be resumed, and
+/// pieces of a flight can be recorded separately and joined.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace skycap::missions::scan {
 
-/// A file to be written, and how large it became: with nothing in it it is left out.
+/// Output file and its final size. Empty files are not written.
 struct LaserOutput {
   std::string name;
   std::shared_ptr<const CloudFormat> format;
@@ -26,38 +26,40 @@ struct LaserOutput {
 
 struct LaserResult {
   ScanResult scan;
-  /// Where the scan is at its end, with the time that it took, all runs together, and with the
-  /// outputs as they were before they were finished.
+  /// State at the end of the scan, with the computation time of all runs and the outputs before
+  /// finishing.
   LaserCheckpoint reached;
 };
 
-/// Measures the flight, or the piece of options.piece, into `journal`, going on from `begun` (its
-/// last checkpoint, or null), and stages the outputs in `folder`, whose caller commits. Throws what
-/// run_scan() does, and Error{bad_file} if a file cannot be written or `begun` is of other files.
+/// Records the flight, or the piece options.piece of it, with `journal` and stages the outputs in
+/// `folder`; the caller commits. `begun` is the last checkpoint of the journal, or null. Throws all
+/// errors of run_scan(). Throws Error{bad_file} if a file cannot be written or `begun` refers to
+/// other files.
 LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
                          const sim::LidarFlight& flight, std::span<LaserOutput> outputs,
                          ScanJournal& journal, const nlohmann::ordered_json& begun,
                          geometry::OutputFolder& folder, ScanOptions options);
 
-/// The file that makes a piece complete: what it is of, and what its other files hold.
+/// File that marks a piece as complete. It contains the identity of the piece and the extents of
+/// its files.
 inline constexpr const char* piece_name = "piece.json";
 
-/// The text of piece_name. `identity` is what decides the piece (support::identity_text()).
+/// Returns the contents of piece.json. `identity` identifies the piece (support::identity_text()).
 std::string piece_text(const std::string& identity, const LaserCheckpoint& reached);
 
-/// What a piece that is complete and of that identity holds in so many files; nothing without one.
+/// Returns the final state of the piece in `folder`. Returns an empty value if it is incomplete, or
+/// has another identity or number of files.
 std::optional<LaserCheckpoint> complete_piece(const std::filesystem::path& folder,
                                               const std::string& identity, std::size_t files);
 
-/// A piece that is complete.
+/// Complete piece of a flight.
 struct CompletePiece {
   std::filesystem::path folder;
   LaserCheckpoint holds;
 };
 
-/// Makes the outputs of the whole flight, as record_laser() would have, of all of its pieces in
-/// their order, and stages them in `folder`. Throws Error{bad_file} if a file cannot be read or
-/// written.
+/// Joins all pieces in order and stages the outputs in `folder`. The outputs equal those of
+/// record_laser() for the whole flight. Throws Error{bad_file} if a file cannot be read or written.
 LaserResult join_pieces(std::span<const CompletePiece> pieces, std::span<LaserOutput> outputs,
                         geometry::OutputFolder& folder);
 

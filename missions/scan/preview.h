@@ -1,8 +1,8 @@
-/// preview.ply: of a scan so many points as people can look at, which the page of the scan shows.
+/// preview.ply: a subset of a scan's points for display in the HTML report.
 ///
-/// Binary PLY: x y z as float, in the mission's frame as the carrier believes itself to be, and
-/// view as uint: the piece of the flight that a point is from, or the image. Which shots and pixels
-/// are chosen follows from their times and numbers alone.
+/// Binary PLY with x y z as float, in the mission frame by the estimated trajectory, and view as
+/// uint: the piece of the flight or the image that contains the point. The selection depends only
+/// on the times and numbers of pulses and pixels.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +16,26 @@ namespace skycap::missions::scan {
 
 inline constexpr const char* preview_name = "preview.ply";
 
-/// Of so many shots or pixels, the share that is chosen: all, or about a million and a half, of
-/// which many have no return.
+/// Returns the fraction of pulses or pixels to select: all, or about 1.5 million, many of which
+/// have no return.
 double preview_share(double shots);
 
-/// Whether it is one of the chosen, of which there are about a share; evenly spread, whatever the
-/// regularity of the numbers.
+/// Returns true for a pseudo-random, evenly distributed subset that contains the fraction `share`
+/// of all pulses or pixels.
 bool is_previewed(std::uint64_t time, std::uint64_t number, double share);
 
-/// The pieces of a laser scanner's flight.
+/// Equal pieces of a laser scanner's flight.
 struct PreviewPieces {
-  double start = 0.0;   ///< of the first one [s]
-  double length = 1.0;  ///< of each: whole turns of the scanner, or tenths of a second [s]
+  double start = 0.0;  ///< Start of the first piece [s].
+  /// Length of each piece: complete revolutions of the scanner, or multiples of 0.1 s [s].
+  double length = 1.0;
 };
 
-/// At most a thousand pieces.
+/// Divides the flight into at most one thousand pieces.
 PreviewPieces preview_pieces(const sim::LidarConfig& sensor, const sim::Trajectory& flown);
 
-/// Points farther from the origin than single precision reaches are left out.
+/// Returns the preview format. Points with coordinates above geometry::farthest_single_coordinate
+/// are skipped.
 std::shared_ptr<const CloudFormat> preview_format(const PreviewPieces& pieces, double share);
 
 }  // namespace skycap::missions::scan

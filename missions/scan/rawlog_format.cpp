@@ -1,4 +1,4 @@
-// Loads the module that knows MRPT; see rawlog_module.h.
+// Loader of the module that contains MRPT; see rawlog_module.h.
 #include "missions/scan/cloud_formats.h"
 #include "missions/scan/rawlog_module.h"
 #include "missions/support/module.h"

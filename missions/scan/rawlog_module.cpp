@@ -1,4 +1,4 @@
-// A rawlog of MRPT: observations one after another, each as MRPT's own library serialises it.
+// Encoder of MRPT rawlogs: a sequence of observations in MRPT's own serialisation.
 #include "missions/scan/rawlog_module.h"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ mrpt::poses::CPose3D mrpt_pose(const Isometry3d& pose) {
 class RawlogFormat final : public CloudFormat {
  public:
   explicit RawlogFormat(const RawlogSetup& setup) : setup_(setup) {
-    // Ranges are 16 bits: the smallest whole millimetres that reach far enough.
+    // Ranges have 16 bits. The step is the smallest multiple of a millimetre that covers the
+    // maximum range.
     const double finest = setup.sensor.max_range / std::numeric_limits<std::uint16_t>::max();
     range_step_ = 1e-3 * std::max(1.0, std::ceil(1e3 * finest));
   }
@@ -54,13 +55,13 @@ class RawlogFormat final : public CloudFormat {
   }
 
  private:
-  // Returns as the sensor sees them.
+  // Returns in the sensor frame.
   struct Piece {
-    double time = 0.0;                   // of its first firing
-    std::uint64_t first = 0, count = 0;  // firings
-    std::vector<std::uint64_t> firings;  // of each return
-    std::vector<Vector3d> now;           // in the sensor's frame when the return was measured
-    std::vector<Vector3d> at_start;      // in the sensor's frame at `time`
+    double time = 0.0;                   // Time of the first firing [s].
+    std::uint64_t first = 0, count = 0;  // Range of firings.
+    std::vector<std::uint64_t> firings;  // Firing of each return.
+    std::vector<Vector3d> now;           // Positions in the sensor frame at the time of the return.
+    std::vector<Vector3d> at_start;      // Positions in the sensor frame at `time`.
   };
 
   double firing_time(std::uint64_t firing) const {
@@ -113,7 +114,7 @@ class RawlogFormat final : public CloudFormat {
     return 2.0 * std::numbers::pi * (turns - std::floor(turns));
   }
 
-  // Where the laser beam leaves the sensor.
+  // Returns the position where the laser beam leaves the sensor.
   Vector3d exit_of(std::uint64_t firing, const sim::Channel& channel) const {
     const double angle =
         encoder(firing) + 2.0 * std::numbers::pi * setup_.sensor.rotation_rate * channel.delay;
@@ -150,7 +151,7 @@ class RawlogFormat final : public CloudFormat {
           (piece.now[i] - exit_of(firing, sensor.channels[returns.channels[i]])).norm();
       const auto steps =
           static_cast<std::uint16_t>(std::clamp<long>(std::lround(range / range_step_), 1, 65535));
-      // The image has the strongest return of a shot; the others are in the point cloud.
+      // The image contains the strongest return of a pulse; the point cloud contains all.
       const auto brightness = static_cast<std::uint8_t>(
           std::lround(255.0F * std::clamp(returns.intensities[i], 0.0F, 1.0F)));
       if (scan.rangeImage(row, column) != 0 && scan.intensityImage(row, column) >= brightness) {

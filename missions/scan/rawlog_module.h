@@ -1,7 +1,7 @@
-/// What the rawlog module is told, and how it is entered.
+/// Interface of the rawlog module.
 ///
-/// MRPT's libraries bring 170 others that take 0.2 s to load. They are therefore linked into a
-/// module of their own, which the program loads when somebody asks for a rawlog.
+/// The MRPT libraries depend on about 170 others, which take 0.2 s to load. They are therefore
+/// linked into a separate module that is loaded on demand.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace skycap::missions::scan {
 
-/// A moving sensor: as it was, or as its carrier believes.
+/// Motion of a sensor, actual or estimated.
 struct SensorMotion {
   std::function<Eigen::Isometry3d(double time)> world_from_carrier;
   Eigen::Isometry3d carrier_from_sensor = Eigen::Isometry3d::Identity();
@@ -26,22 +26,23 @@ struct SensorMotion {
 struct RawlogSetup {
   std::string sensor_name;
   sim::LidarConfig sensor;
-  double start = 0.0;  ///< time of firing 0 [s]
+  double start = 0.0;  ///< Time of firing 0 [s].
   SensorMotion reported, actual;
 };
 
-/// An image of a depth camera. The sensor's frame has x forward, y left, z up, as MRPT's has.
+/// Image of a depth camera. The sensor frame has x forward, y left, z up, as in MRPT.
 struct DepthFrame {
   double time = 0.0;  ///< [s]
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   const geometry::DepthImage& image;
   Eigen::Vector2d focal_length_px, principal_point_px;
-  double unit = 0.001;     ///< what one step of the image stands for [m]
+  double unit = 0.001;     ///< Depth per unit of a pixel value [m].
   double max_range = 0.0;  ///< [m]
 };
 
-/// The module's functions. What the first returns is the caller's. The second replaces `bytes` by
-/// a CObservationRobotPose "CARRIER", of the sensor, and a CObservation3DRangeScan "DEPTH".
+/// Entry points of the module. The caller owns the format returned by MakeRawlogFormat.
+/// EncodeDepthFrame replaces `bytes` by a CObservationRobotPose with the pose of the sensor and a
+/// CObservation3DRangeScan "DEPTH".
 using EncodeDepthFrame = void(const DepthFrame& frame, std::vector<std::uint8_t>& bytes);
 inline constexpr const char* encode_depth_frame_name = "skycap_encode_depth_frame";
 using MakeRawlogFormat = CloudFormat*(const RawlogSetup& setup);

@@ -68,9 +68,11 @@ std::string digest_of(const ScanFlight& flight) {
 
 std::function<bool(const Eigen::AlignedBox3d&)> within_reach(const ScanFlight& flight,
                                                              const TimeSpan& span, double range) {
-  constexpr double margin = 1.0;  // beyond rounding, and beams that leave beside the axis
+  // Margin for rounding and for beams that leave the sensor off its axis [m].
+  constexpr double margin = 1.0;
   const double reach = range + flight.mount.real.translation().norm() + margin;
-  std::vector<Eigen::AlignedBox3d> ways;  // between poses the carrier flies straight
+  // Boxes of the straight segments between poses of the platform.
+  std::vector<Eigen::AlignedBox3d> ways;
   Eigen::Vector3d before = flight.route.carrier.pose(span.start).translation();
   const auto fly_to = [&](const Eigen::Vector3d& place) {
     ways.emplace_back(before.cwiseMin(place), before.cwiseMax(place));

@@ -1,4 +1,4 @@
-/// How a mission's sensor is carried while it scans, and how its carrier believes that it is.
+/// Flight of a mission's sensor during a scan: actual and estimated trajectory and mounting.
 #pragma once
 
 #include <cstdint>
@@ -16,30 +16,31 @@
 
 namespace skycap::missions::scan {
 
-/// body_from_sensor: how the sensor sits on its carrier, and how the calibration says that it does.
+/// Pose of the sensor on its platform (body_from_sensor): actual, and estimated by calibration.
 struct Mount {
   Eigen::Isometry3d real, believed;
 };
 
 struct ScanFlight {
   ScanRoute route;
-  sim::Trajectory believed;  ///< of the carrier, by its navigation
+  sim::Trajectory believed;  ///< Trajectory of the platform as estimated by its navigation.
   Mount mount;
 
-  /// The same for a laser scanner. Keeps references to this object.
+  /// Returns the flight of a laser scanner. It keeps references to this object.
   sim::LidarFlight of_scanner() const {
     return {route.carrier, believed, mount.real, mount.believed};
   }
 };
 
-/// The flight of `route_file`, else of the options' route, which is relative to `folder`, else of
-/// their orbit. The seed is that of the navigation's errors. Throws what read_scan_route() throws.
+/// Returns the flight along `route_file`, or along the options' route (relative to `folder`), or
+/// along the options' orbit. `seed` is used for navigation errors. Throws all errors of
+/// read_scan_route().
 ScanFlight scan_flight(const FlownScanOptions& options, std::uint64_t seed,
                        const std::filesystem::path& folder,
                        const std::optional<std::filesystem::path>& route_file, Carrier carrier);
 
-/// Tells it from other flights: a checksum of its poses, as they are and as they are believed to
-/// be, of both mounts and of the times of images.
+/// Returns a checksum that identifies a flight. It covers the actual and estimated poses, both
+/// mounts and the image times.
 std::string digest_of(const ScanFlight& flight);
 
 /// Part of a flight [s].
@@ -47,13 +48,13 @@ struct TimeSpan {
   double start, end;
 };
 
-/// Whether a sensor of that range could see into a box from somewhere on that part of a flight:
-/// surely not, if it says so.
+/// Returns a conservative test for boxes. The result is false only if a sensor with this range
+/// cannot observe the box from any position in `span`.
 std::function<bool(const Eigen::AlignedBox3d& box)> within_reach(const ScanFlight& flight,
                                                                  const TimeSpan& span,
                                                                  double range);
 
-/// Throws Error{bad_config} for what no scan would ever finish.
+/// Throws Error{bad_config} if the scan has too many firings to be simulated.
 void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown);
 
 }  // namespace skycap::missions::scan

@@ -19,16 +19,17 @@ void require_success(const std::error_code& failure, const fs::path& path, const
   throw Error(ErrorKind::bad_file, path.string() + ": " + what + " (" + failure.message() + ")");
 }
 
-/// Another file with the same bytes.
+/// Copies a file.
 void copy_bytes(const fs::path& from, const fs::path& to) {
   std::error_code failure;
   fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
   require_success(failure, to, "cannot be written");
 }
 
-/// The same file under another name, or its bytes. Whether it is the same.
+/// Creates a hard link or, where links are not supported, a copy. Returns true for a link.
 bool link_or_copy(const fs::path& from, const fs::path& to) {
-  std::error_code no_links;  // as on memory cards
+  // Set on file systems without hard links, such as those of memory cards.
+  std::error_code no_links;
   fs::create_hard_link(from, to, no_links);
   if (no_links) copy_bytes(from, to);
   return !no_links;
@@ -57,7 +58,7 @@ bool ScanJournal::is_of(const support::Identity& run, const Json& more) const {
     const std::vector<std::string> records = geometry::read_records(file_).records;
     return !records.empty() && records.front() == support::identity_text(run, more);
   } catch (const Error&) {
-    return false;  // a damaged journal is of nothing
+    return false;  // A damaged journal does not match any scan.
   }
 }
 
@@ -85,7 +86,7 @@ fs::path ScanJournal::path_to_change(const std::string& name) const {
 }
 
 void ScanJournal::checkpoint(const Json& state) {
-  geometry::sync_to_disk(folder_);  // the names of new files
+  geometry::sync_to_disk(folder_);  // Flushes the directory entries of new files.
   log_->append(support::journal_line(state));
 }
 

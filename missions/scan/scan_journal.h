@@ -1,9 +1,9 @@
-/// What a scan leaves while it runs, so that one that was interrupted, by Ctrl-C, a kill or a power
-/// cut, goes on where it was, with the same files as if nothing had happened.
+/// Journal of a running scan. A scan interrupted by Ctrl-C, a kill or a power failure can be
+/// resumed and gives identical files.
 ///
-/// The files grow in a folder of their own beside the results, where nothing is committed yet. Now
-/// and then they are brought to the disk, and a record of the journal says how far they and the
-/// flight had come. What was appended after the last record is cut off and measured again.
+/// The files grow in a folder next to the results, before they are committed. At each checkpoint
+/// they are flushed to disk, and a journal record stores their extents and the progress of the
+/// flight. Data appended after the last record is discarded and measured again.
 #pragma once
 
 #include <filesystem>
@@ -20,40 +20,42 @@ namespace skycap::missions::scan {
 
 class ScanJournal {
  public:
-  /// Of the folder, among the results.
+  /// Name of the journal's folder within the results.
   static constexpr const char* folder_name = "unfinished";
 
-  /// Of a scan whose results are in that folder; nothing is read or written yet.
+  /// Creates the journal of a scan with this results folder. Does not access files.
   explicit ScanJournal(const std::filesystem::path& results);
 
   const std::filesystem::path& file() const { return file_; }
 
-  /// Begins a scan, in place of what was there; or goes on with the one that was interrupted
-  /// there, if there is one (`resumes`), and returns what its last checkpoint() said. Null without
-  /// one. `more` is what beside the identity decides the files. Throws Error{bad_file} naming
-  /// the journal if it is of another scan, saying what is different, or damaged.
+  /// Starts a new scan and discards an existing one. With `resumes`, continues an interrupted scan
+  /// if there is one and returns the state of its last checkpoint(); otherwise returns null. `more`
+  /// contains all inputs that determine the files in addition to the identity. Throws
+  /// Error{bad_file} naming the journal if it is damaged or belongs to another scan; the message
+  /// lists the differences.
   nlohmann::ordered_json open(const support::Identity& run, const nlohmann::ordered_json& more,
                               bool resumes);
 
-  /// Whether a scan of just this was interrupted there, so that open() may go on with it.
+  /// Returns true if an interrupted scan with exactly these inputs exists, which open() can resume.
   bool is_of(const support::Identity& run, const nlohmann::ordered_json& more) const;
 
-  /// Where a file of the scan is.
+  /// Returns the path of a file of the scan.
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 
-  /// The same of a file that is about to change: results that share its bytes keep theirs.
+  /// Returns the path of a file for modification. Results that share the file's data through a hard
+  /// link are not affected.
   std::filesystem::path path_to_change(const std::string& name) const;
 
-  /// Writes down how far the scan has come. The files that the state speaks of must be on the disk;
-  /// their names are brought there.
+  /// Records the progress of the scan. The files that `state` refers to must be on disk; their
+  /// directory entries are flushed here.
   void checkpoint(const nlohmann::ordered_json& state);
 
-  /// Stages a file of the scan for the results. It stays here, too: both share its bytes.
+  /// Stages a file of the scan for the results. The journal's copy remains and shares its data.
   void stage(const std::string& name, geometry::OutputFolder& results) const;
-  /// The same of a file whose bytes are on the disk.
+  /// Stages a file whose data has been flushed to disk, like stage().
   void stage_on_disk(const std::string& name, geometry::OutputFolder& results) const;
 
-  /// Removes all of it: the scan has ended and its results are committed.
+  /// Removes the journal's folder after the results have been committed.
   void close();
 
  private:

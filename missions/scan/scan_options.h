@@ -1,4 +1,4 @@
-/// How a mission's sensor is carried while it scans, as its section `scan` says.
+/// Settings in the section `scan` of a mission file.
 #pragma once
 
 #include <optional>
@@ -12,44 +12,51 @@
 
 namespace skycap::missions::scan {
 
-/// Level circles round a point, from the lowest to the highest, with a straight climb between.
+/// Horizontal circles around a point, from the lowest to the highest, connected by vertical climbs.
 struct OrbitOptions {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< its z is what heights count from
+  /// Centre of the circles. Heights are relative to its z [m].
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 30.0;
-  double lowest = 10.0;   ///< height of the first circle
-  double highest = 30.0;  ///< of the last
-  int circles = 3;        ///< evenly spaced in height
-  double speed = 6.0;     ///< along circles and climbs [m/s]
-  double start = 0.0;     ///< where circles begin: from east, anticlockwise [rad]
+  double lowest = 10.0;   ///< Height of the first circle [m].
+  double highest = 30.0;  ///< Height of the last circle [m].
+  int circles = 3;        ///< Number of circles, at equal height intervals.
+  double speed = 6.0;     ///< Speed on circles and climbs [m/s].
+  double start = 0.0;     ///< Start angle of the circles, anticlockwise from east [rad].
 };
 
-/// In which coordinates a scan's LAS files are.
+/// Coordinate system of the LAS and E57 files of a scan.
 enum class ScanCrs {
-  local,  ///< the mission's frame
-  utm,    ///< UTM on WGS84, in the zone of the frame's origin
+  local,  ///< The mission frame.
+  utm,    ///< UTM on WGS84, in the zone of the frame's origin.
 };
 
-/// What `skycap scan` records, and how well its carrier knows where it is. Body frame: x forward,
-/// y left, z up.
+/// Settings of `skycap scan`, including the navigation errors of the platform. Body frame: x
+/// forward, y left, z up.
 struct FlownScanOptions {
-  std::string sensor = "ouster_os1_128";  ///< a preset, or the path of a description
-  std::optional<std::string> route;       ///< a file; in place of the orbit
+  std::string sensor = "ouster_os1_128";  ///< Name of a preset, or path of a description.
+  std::optional<std::string> route;       ///< Route file; replaces the orbit.
   OrbitOptions orbit;
-  ScanCrs crs = ScanCrs::local;                               ///< utm needs the mission's place
-  double speed = 5.0;                                         ///< along routes without times [m/s]
-  Eigen::Vector3d mount_position = Eigen::Vector3d::Zero();   ///< of the sensor, body frame
-  Eigen::Vector3d mount_rotation = Eigen::Vector3d::Zero();   ///< [rad], about x, then y, then z
-  sim::NavigationErrors navigation;                           ///< its seed is the run's
-  Eigen::Vector3d lever_arm_error = Eigen::Vector3d::Zero();  ///< of the believed mount_position
-  Eigen::Vector3d boresight_error = Eigen::Vector3d::Zero();  ///< of the believed rotation [rad]
-  double frame_period = 1.0;  ///< of a camera along a route with times [s]
-  double depth_unit = 0.001;  ///< of a depth image [m]
+  /// Coordinate system of LAS and E57 files; utm requires a georeference.
+  ScanCrs crs = ScanCrs::local;
+  double speed = 5.0;  ///< Speed on routes without times [m/s].
+  /// Position of the sensor in the body frame [m].
+  Eigen::Vector3d mount_position = Eigen::Vector3d::Zero();
+  /// Rotation of the sensor about x, then y, then z [rad].
+  Eigen::Vector3d mount_rotation = Eigen::Vector3d::Zero();
+  /// Navigation errors; their seed is replaced by that of the run.
+  sim::NavigationErrors navigation;
+  /// Error of the estimated mount_position [m].
+  Eigen::Vector3d lever_arm_error = Eigen::Vector3d::Zero();
+  /// Error of the estimated mount_rotation [rad].
+  Eigen::Vector3d boresight_error = Eigen::Vector3d::Zero();
+  double frame_period = 1.0;  ///< Interval between a camera's images on routes with times [s].
+  double depth_unit = 0.001;  ///< Depth per unit of a pixel value [m].
 
-  /// Where the frame is on the Earth, for routes in such coordinates; nothing: not known.
+  /// Georeference of the frame, required for routes in geodetic coordinates.
   std::optional<flight::Site> site;
-  Eigen::Vector3d pad = Eigen::Vector3d::Zero();  ///< where heights above take-off count from
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();  ///< Reference position of heights above take-off.
 
-  /// How the sensor sits on its carrier, body_from_sensor.
+  /// Returns the pose of the sensor on its platform, body_from_sensor.
   Eigen::Isometry3d mount() const;
 };
 

@@ -31,7 +31,7 @@ sim::StampedPose level_pose(double time, const Vector3d& position, double headin
   return {time, position, Quaterniond(AngleAxisd(heading, Vector3d::UnitZ()))};
 }
 
-/// The pose of a carrier at a view; heading anticlockwise from east.
+/// Returns the pose of the platform at a view. Headings are anticlockwise from east.
 sim::StampedPose pose_at(double time, const View& view, Carrier carrier) {
   if (carrier == Carrier::airframe) {
     return level_pose(time, view.position, std::atan2(view.direction.y(), view.direction.x()));
@@ -89,7 +89,7 @@ std::vector<View> views_of(const std::string& text) {
 
 ScanRoute from_views(const std::vector<View>& views, double speed, Carrier carrier) {
   constexpr double turn_rate = 1.0;    // [rad/s]
-  constexpr double least_time = 1e-3;  // between views at the same place [s]
+  constexpr double least_time = 1e-3;  // Minimum time between views at the same position [s].
   std::vector<sim::StampedPose> poses;
   std::vector<double> image_times;
   double time = 0.0;
@@ -107,9 +107,9 @@ ScanRoute from_views(const std::vector<View>& views, double speed, Carrier carri
   return {sim::Trajectory(std::move(poses)), std::move(image_times)};
 }
 
-/// Level, looking ahead; on climbs as before.
+/// Creates a level flight with the nose forward. Climbs keep the previous heading.
 ScanRoute from_points(const std::vector<Vector3d>& points, double speed) {
-  std::vector<View> views;  // each corner twice: as it is reached, and as it is left
+  std::vector<View> views;  // Each corner occurs twice: at arrival and at departure.
   Vector3d ahead = Vector3d::UnitX();
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Vector3d way = points[i] - points[i - 1];
@@ -132,8 +132,9 @@ std::string route_text(const std::filesystem::path& file) {
   throw Error(ErrorKind::bad_file, file.string() + ": " + error.what());
 }
 
-/// The trajectories of a mission package: of its only sortie, or of all one after the other. Empty
-/// if it is not flown.
+/// Returns the trajectory files of a mission package, one per sortie in order. Returns an empty
+/// list if the mission has no flight. Throws Error{bad_file} if it has one but its trajectories
+/// were not exported.
 std::vector<std::filesystem::path> sorties_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   if (std::filesystem::exists(folder / "mission.csv")) return {folder / "mission.csv"};
@@ -151,7 +152,8 @@ std::vector<std::filesystem::path> sorties_in(const std::filesystem::path& folde
   return files;
 }
 
-/// Sorties one after the other, a moment apart, however long a battery takes to be changed.
+/// Concatenates sorties with a short pause that does not represent the time for changing the
+/// battery.
 ScanRoute from_sorties(const std::vector<std::filesystem::path>& files, double speed,
                        Carrier carrier) {
   constexpr double pause = 1.0;  // [s]
@@ -205,7 +207,8 @@ ScanRoute read_scan_route(const std::filesystem::path& path, const FlownScanOpti
 }
 
 sim::Trajectory orbit_trajectory(const OrbitOptions& orbit) {
-  constexpr double interval = 0.02;  // [s]; at 10 m/s on 30 m the chords are off by 0.2 mm
+  // [s]; at 10 m/s and a radius of 30 m, the chord error is 0.2 mm.
+  constexpr double interval = 0.02;
   const double round = 2.0 * std::numbers::pi * orbit.radius;
   const double step =
       orbit.circles > 1 ? (orbit.highest - orbit.lowest) / (orbit.circles - 1) : 0.0;
@@ -222,7 +225,7 @@ sim::Trajectory orbit_trajectory(const OrbitOptions& orbit) {
                       angle + 0.5 * std::numbers::pi);
   };
   const double duration = length / orbit.speed;
-  constexpr double most_poses = 3e6;  // 16 hours
+  constexpr double most_poses = 3e6;  // 16 hours.
   if (!(duration / interval <= most_poses)) {
     throw Error(ErrorKind::bad_config,
                 "scan.orbit.speed: these circles take " + support::short_text(duration) +
@@ -242,7 +245,7 @@ sim::Trajectory orbit_trajectory(const OrbitOptions& orbit) {
 
 Isometry3d body_from_camera() {
   Isometry3d pose = Isometry3d::Identity();
-  // Columns: the camera's x (right), y (down) and z (forward) in the body's frame.
+  // Columns are the camera's x (right), y (down) and z (forward) in the body frame.
   pose.linear().col(0) = -Vector3d::UnitY();
   pose.linear().col(1) = -Vector3d::UnitZ();
   pose.linear().col(2) = Vector3d::UnitX();

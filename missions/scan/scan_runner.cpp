@@ -15,23 +15,24 @@
 namespace skycap::missions::scan {
 namespace {
 
-/// What is measured at once: so few shots that the returns and their bytes stay in a core's own
-/// cache.
+/// Returns the number of firings per portion, small enough for the returns and their bytes to stay
+/// in the cache of a core.
 std::uint64_t firings_in_portion(const sim::Lidar& lidar) {
   constexpr std::uint64_t shots = 1 << 12, block = 32;
   return std::max<std::uint64_t>(1, shots / (lidar.config().channels.size() * block)) * block;
 }
 
-/// Some thousand shots, ready to be appended to each file.
+/// Some thousand pulses, encoded for each file.
 struct Portion {
-  std::vector<CloudChunk> chunks;  // one for each file
+  std::vector<CloudChunk> chunks;  // One chunk per file.
   std::uint64_t end_firing = 0;
   std::uint64_t points = 0;
   bool is_ready = false;
 };
 
-/// Portions are measured by any thread and appended in order: by whichever thread has just measured
-/// one, if no other is at it. The ring of portions bounds how far measuring may run ahead.
+/// Portions are measured on any thread and appended in order. The thread that has just measured a
+/// portion appends all ready portions unless another thread does so. The size of the ring limits
+/// how far measuring can run ahead.
 class ScanRun {
  public:
   ScanRun(const sim::Scene& scene, const sim::Lidar& lidar, const sim::LidarFlight& flight,
@@ -92,7 +93,8 @@ class ScanRun {
     }
   }
 
-  // The portion to measure next; `portions_` when there is none left or the scan is to stop.
+  // Returns the next portion to measure, or `portions_` when all are measured or a stop is
+  // requested.
   std::uint64_t next_number() {
     std::unique_lock lock(mutex_);
     has_room_.wait(lock, [&] { return is_over_ || measured_ < appended_ + ring_.size(); });
@@ -100,7 +102,7 @@ class ScanRun {
     return is_over_ || measured_ >= portions_ ? portions_ : measured_++;
   }
 
-  // Appends what is ready, beginning with the portion whose turn it is.
+  // Appends all consecutive ready portions.
   void append_from(Portion& measured) {
     std::unique_lock lock(mutex_);
     measured.is_ready = true;
@@ -122,7 +124,7 @@ class ScanRun {
     is_appending_ = false;
   }
 
-  // Only the thread that appends comes here.
+  // Called only by the appending thread.
   void write_down() {
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double> since = now - written_down_;
@@ -147,10 +149,10 @@ class ScanRun {
 
   std::mutex mutex_;
   std::condition_variable has_room_;
-  std::vector<Portion> ring_;  // portion i is at i % size
+  std::vector<Portion> ring_;  // Portion i is at index i % size.
   std::uint64_t measured_ = 0, appended_ = 0;
   bool is_appending_ = false, is_over_ = false;
-  ScanProgress progress_;  // of the thread that appends
+  ScanProgress progress_;  // Used only by the appending thread.
   std::chrono::steady_clock::time_point written_down_ = std::chrono::steady_clock::now();
 };
 

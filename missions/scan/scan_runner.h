@@ -1,4 +1,4 @@
-/// A whole flight of a laser scanner, measured on all cores and handed on piece by piece.
+/// Multithreaded simulation of a whole flight of a laser scanner, with output in small portions.
 #pragma once
 
 #include <cstdint>
@@ -13,44 +13,44 @@
 namespace skycap::missions::scan {
 
 struct ScanProgress {
-  std::uint64_t firings = 0;      ///< where in the flight: measured and written up to here
-  std::uint64_t all_firings = 0;  ///< of the flight
+  std::uint64_t firings = 0;      ///< Number of firings that have been measured and written.
+  std::uint64_t all_firings = 0;  ///< Total number of firings of the flight.
   std::uint64_t points = 0;
 };
 
 struct ScanResult {
   ScanProgress progress;
-  bool is_complete = false;  ///< false: it was stopped
+  bool is_complete = false;  ///< False if a stop request ended the scan.
 };
 
-/// One of the pieces that a flight is measured in, perhaps by different programs.
+/// Piece of a flight. Pieces can be measured by separate processes.
 struct FlightPiece {
-  std::size_t number = 0;  ///< from 0 on
-  std::size_t count = 1;   ///< of all
+  std::size_t number = 0;  ///< Index from 0.
+  std::size_t count = 1;   ///< Number of pieces of the flight.
 };
 
-/// The firings of a piece: those of all pieces are all of the flight's, in about equal shares.
-/// Written one behind the other, they give the bytes of the whole flight in every format.
+/// Returns the firings of a piece. Pieces have approximately equal sizes and cover the whole
+/// flight. In all formats, the concatenated pieces have the bytes of the whole flight.
 sim::FiringRange firings_of(const FlightPiece& piece, const sim::Lidar& lidar,
                             const sim::Trajectory& flown);
 
 struct ScanOptions {
-  unsigned threads = 0;  ///< zero: all processors
-  FlightPiece piece;     ///< which is measured
-  ScanProgress begun;    ///< what the files hold already, of a checkpoint; no firings: nothing
-  /// Called from one thread at a time, `checkpoint_period` after the last time or later, when the
-  /// files hold all of the progress and no more; may be empty.
+  unsigned threads = 0;  ///< Number of threads (0: all processors).
+  FlightPiece piece;     ///< Piece to measure.
+  ScanProgress begun;    ///< Checkpoint to resume from; without firings, a new scan starts.
+  /// Called at intervals of at least `checkpoint_period`, never concurrently. The files then
+  /// contain exactly the data up to the progress. May be empty.
   std::function<void(const ScanProgress&)> checkpoint;
-  double checkpoint_period = 5.0;  ///< [s]
-  /// Called now and then, from one thread at a time; may be empty.
+  double checkpoint_period = 5.0;  ///< Minimum interval between checkpoints [s].
+  /// Called repeatedly with the progress, never concurrently; may be empty.
   std::function<void(const ScanProgress&)> report;
   std::stop_token stop;
 };
 
-/// Measures a piece of `flight`, or what is left of it, and appends the returns to each of `files`,
-/// which the caller finishes, in the order of the shots. Throws Error{bad_file} if no checkpoint
-/// was where options.begun is. The bytes do not depend on the number of threads, and the
-/// memory that is needed does not on the length of the flight.
+/// Measures the whole or remaining piece of `flight` and appends the returns to each file in pulse
+/// order. The caller finishes the files. Throws Error{bad_file} if options.begun does not match a
+/// possible checkpoint. The output does not depend on the number of threads, and the memory usage
+/// does not depend on the length of the flight.
 ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
                     const sim::LidarFlight& flight, std::span<CloudFile> files,
                     const ScanOptions& options);

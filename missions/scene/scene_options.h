@@ -1,4 +1,4 @@
-/// What simulated sensors measure, as a mission's section `scene` says.
+/// Settings in the section `scene` of a mission file: the surface that simulated sensors measure.
 #pragma once
 
 #include <cstdint>
@@ -19,45 +19,48 @@ struct SitePriors;
 
 namespace skycap::missions::scene {
 
-/// Which axis of the model's own frame points up.
+/// Up axis of the model's own frame.
 enum class UpAxis { z, y };
 
-/// What is surveyed, and how it is put into the world. In this order the model is turned upright,
-/// rotated, scaled, and moved so that the middle of the base of its bounding box is at `position`.
+/// Model to survey and its pose. The model is rotated upright, rotated, scaled, and then moved so
+/// that the centre of the base of its bounding box is at `position`.
 struct SceneOptions {
-  std::string model;  ///< builtin:NAME, model:NAME, or the path of a mesh
-  sim::LevelOfDetail detail = sim::LevelOfDetail::standard;  ///< of a builtin model
-  std::uint64_t seed = 1;                                    ///< of a builtin model that is drawn
+  std::string model;  ///< builtin:NAME, model:NAME, or the path of a mesh.
+  /// Level of detail of a built-in model.
+  sim::LevelOfDetail detail = sim::LevelOfDetail::standard;
+  std::uint64_t seed = 1;  ///< Seed of a randomly generated built-in model.
   UpAxis up_axis = UpAxis::z;
-  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< [rad], about x, then y, then z
-  std::optional<double> longest_side;                  ///< of the bounding box, after rotation
-  std::optional<double> scale;                         ///< factor; only one of the two is given
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< Rotation about x, then y, then z [rad].
+  std::optional<double> longest_side;  ///< Longest side of the bounding box after rotation [m].
+  std::optional<double> scale;         ///< Scale factor; conflicts with longest_side.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  /// The model again: x and y from its position [m], and a turn about its own upright [rad].
+  /// Additional copies of the model: x and y offset from its position [m], and rotation about its
+  /// vertical axis [rad].
   std::vector<Eigen::Vector3d> copies;
-  bool ground = false;       ///< whether the sensor also sees a plane under the model
-  bool neighbours = false;   ///< and what stands beside it by prior data
-  double reflectance = 0.4;  ///< diffuse, at the laser's wavelength, where no other is given
-  std::optional<std::string> materials;  ///< a file of reflectances, glass and mirrors, by name
+  bool ground = false;       ///< Add a ground plane or the terrain under the model.
+  bool neighbours = false;   ///< Add neighbouring objects from the prior data.
+  double reflectance = 0.4;  ///< Default diffuse reflectance at the laser's wavelength.
+  /// File with reflectances, glass and mirrors by material name.
+  std::optional<std::string> materials;
 
-  /// The mission's prior data; null: none.
+  /// Prior data of the mission; may be null.
   std::shared_ptr<const site_data::SitePriors> priors;
-  /// The role in the prior data of what is measured in place of `model`: truth or target.
+  /// Role of the prior data that replaces `model`: truth or target.
   std::optional<site_data::Role> truth;
 
-  /// Whether what the sensor measures is prior data.
+  /// Returns true if sensors measure prior data.
   bool is_truth_prior() const { return truth.has_value(); }
 };
 
-/// What of the prior data is measured, as one mesh. Empty if none of it is.
+/// Returns the prior data that sensors measure as one mesh; empty without such data.
 geometry::Mesh prior_truth(const SceneOptions& scene);
 
-/// The surfaces of things in the way but for those that are targets or the truth as well. Files
-/// that hold a target mostly hold what stands around it, and are read once for each role.
+/// Returns the surfaces of obstacles, except those that are also targets or ground truth. Files
+/// with a target typically also contain its surroundings and are read once per role.
 std::vector<const geometry::Mesh*> neighbours_of(const site_data::SitePriors& site);
 
-/// What stands beside the truth by prior data in the way, as one mesh: all that has a surface but
-/// for what is a target or the truth, too. Empty unless the sensor is to see it.
+/// Returns the neighbouring obstacles from the prior data as one mesh, except targets and ground
+/// truth. Empty unless `neighbours` is set.
 geometry::Mesh prior_neighbours(const SceneOptions& scene);
 
 }  // namespace skycap::missions::scene

@@ -30,7 +30,7 @@ using Eigen::Vector3d;
 
 constexpr std::string_view builtin = "builtin:", stored = "model:";
 
-/// Of a model that is not built in.
+/// Returns the file of a model that is not built in.
 std::filesystem::path model_file(const SceneOptions& scene, const std::filesystem::path& folder) {
   return scene.model.starts_with(stored) ? find_model(scene.model.substr(stored.size()))
                                          : folder / scene.model;
@@ -40,7 +40,8 @@ sim::ModelOptions options_of(const SceneOptions& scene) {
   sim::ModelOptions options;
   options.detail = scene.detail;
   options.seed = scene.seed;
-  if (scene.ground) options.has_ground = false;  // the one that is not judged takes its place
+  // The built-in ground is replaced by one that is excluded from the evaluation.
+  if (scene.ground) options.has_ground = false;
   return options;
 }
 
@@ -58,7 +59,8 @@ Vector3d middle_of_base(const Eigen::AlignedBox3d& box) {
   return {box.center().x(), box.center().y(), box.min().z()};
 }
 
-constexpr double most_triangles = 1e7;  // of one mesh: about 2 GiB with the tree that rays search
+// Limit of one mesh, which takes about 2 GiB with its ray casting tree.
+constexpr double most_triangles = 1e7;
 
 geometry::Mesh joined_tiles(const SceneOptions& scene, const std::filesystem::path& folder) {
   geometry::Mesh all;
@@ -102,7 +104,7 @@ Eigen::Affine3d turn_of(const SceneOptions& scene) {
       AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(upright, Vector3d::UnitX()));
 }
 
-/// What a material does to light.
+/// Optical properties of a material.
 struct Material {
   double reflectance;
   sim::Surface surface = sim::Surface::matt;
@@ -135,7 +137,7 @@ std::map<std::string, Material> materials_of(const std::filesystem::path& file,
   return materials;
 }
 
-/// The model in its own frame, with reflectances by the names of its materials.
+/// Returns the model in its own frame with the reflectances of its materials.
 ReflectingScene model_of_materials(const SceneOptions& scene, const std::filesystem::path& folder) {
   if (scene.model.starts_with(builtin)) {
     throw Error(ErrorKind::bad_config, "scene.materials requires a model from a file; " +
@@ -281,7 +283,7 @@ ReflectingScene reflecting_scene(const SceneOptions& scene, const std::filesyste
 }
 
 sim::Scene ReflectingScene::scene(unsigned threads) const {
-  if (places.size() == 1) {  // a single mesh is met faster than a mesh at a place
+  if (places.size() == 1) {  // Ray casting is faster with a single mesh than with an instance.
     geometry::Mesh mesh = model;
     std::vector<float> all = reflectances;
     std::vector<sim::Surface> lit = surfaces;

@@ -1,4 +1,4 @@
-/// From the `scene` of a mission to the mesh that is surveyed.
+/// Loading of the mesh defined by a mission's `scene`.
 #pragma once
 
 #include <filesystem>
@@ -12,70 +12,72 @@
 
 namespace skycap::missions::scene {
 
-/// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh
-/// or of any file of prior data that holds surfaces, relative to `folder`; of tiles
-/// (scene_tiles.h), all as one mesh. Throws Error{bad_file}, {bad_config} or {bad_geometry}, naming
-/// the model, if it is not there, cannot be read, is not a mesh with a surface, or if tiles have
-/// more triangles than a single mesh may.
+/// Returns the mesh of `scene` in its own frame: builtin:NAME, model:NAME, or the path of a mesh or
+/// of a prior data file with surfaces, relative to `folder`. Tiles (scene_tiles.h) are joined to
+/// one mesh. Throws Error{bad_file}, {bad_config} or {bad_geometry} naming the model if it does not
+/// exist, cannot be read, or is not a mesh with a surface. Tiles must not exceed the triangle limit
+/// of a single mesh.
 geometry::Mesh load_model(const SceneOptions& scene, const std::filesystem::path& folder);
 
-/// What the triangles of load_model() do to light; empty if all are matt. Throws the same.
+/// Returns the optical type of each triangle of load_model(); empty if all are matt. Throws like
+/// load_model().
 std::vector<sim::Surface> load_surfaces(const SceneOptions& scene,
                                         const std::filesystem::path& folder);
 
-/// The files that a scanner (a preset's name, or the path of a description) and the scene are read
-/// from, prior data aside. Throws Error{bad_file} for a model:NAME that is nowhere.
+/// Returns the input files of a scanner (preset name or path of a description) and of the scene,
+/// without prior data. Throws Error{bad_file} for a model:NAME that is not stored.
 std::vector<std::filesystem::path> files_of(const SceneOptions& scene,
                                             const std::optional<std::string>& lidar,
                                             const std::filesystem::path& folder);
 
-/// What turns a model upright and as `scene` says, and scales it: all but its place and what
-/// depends on its size.
+/// Returns the rotation and scaling of a model defined by `scene`, without its position and without
+/// scaling to a size.
 Eigen::Affine3d turn_and_scale(const SceneOptions& scene);
 
-/// Turns, scales and places a model as `scene` says, tiles by their own origin. Throws
-/// Error{bad_geometry} if the model has no extent to be scaled by.
+/// Rotates, scales and moves a model as defined by `scene`. Tiles are positioned by their own
+/// origin. Throws Error{bad_geometry} if the model has no extent or its corners are outside the
+/// coordinate range.
 void place_model(const SceneOptions& scene, geometry::Mesh& model);
 
-/// world_from_world, from the first of the scene's models, as place_model() leaves it, to each; the
-/// first included.
+/// Returns the transforms from the first model, as placed by place_model(), to each model, starting
+/// with the identity for the first.
 std::vector<Eigen::Isometry3d> copies_of(const SceneOptions& scene);
 
-/// All of the scene's models as one mesh.
+/// Returns all models of the scene as one mesh.
 geometry::Mesh with_copies(const SceneOptions& scene, const geometry::Mesh& placed_model);
 
-/// What the sensors of a `scene` measure, with what lasers see of its surfaces.
+/// Scene that sensors measure, with the optical properties of its surfaces.
 struct ReflectingScene {
-  geometry::Mesh model;                ///< the first
-  std::vector<float> reflectances;     ///< diffuse, of each of its triangles
-  std::vector<sim::Surface> surfaces;  ///< of each of its triangles; empty: all matt
+  geometry::Mesh model;                ///< First of the models.
+  std::vector<float> reflectances;     ///< Diffuse reflectance of each triangle.
+  std::vector<sim::Surface> surfaces;  ///< Optical type of each triangle; empty if all are matt.
   std::vector<Eigen::Isometry3d> places;
-  geometry::Mesh beside;  ///< surroundings_of() it
+  geometry::Mesh beside;  ///< Result of surroundings_of() for all models.
   std::vector<float> beside_reflectances;
 
-  /// Made ready for rays; copies take no memory to speak of.
+  /// Returns the scene prepared for ray casting. Copies share the memory of the model.
   sim::Scene scene(unsigned threads) const;
-  /// Of the models' bounding box.
+  /// Returns the centre of the bounding box of all models.
   Eigen::Vector3d centre() const;
-  /// Tells it from other scenes: checksums of all of its parts.
+  /// Returns the checksums of all parts, which identify the scene.
   std::string digest() const;
 };
 
-/// The model as placed, its copies, and what is beside it, with the reflectances of `scene`. Throws
-/// what load_model() and place_model() throw, and Error{bad_config} if the file of materials is
-/// wrong.
+/// Returns the placed model, its copies and its surroundings with the reflectances of `scene`.
+/// Throws all errors of load_model() and place_model(), and Error{bad_config} for an invalid
+/// materials file.
 ReflectingScene reflecting_scene(const SceneOptions& scene, const std::filesystem::path& folder);
 
-/// The ground that the sensor sees: the terrain of the mission's prior data, else ground_under().
-/// The box is that around the placed model.
+/// Returns the ground that sensors measure: the terrain of the mission's prior data, otherwise
+/// ground_under(). `model` is the bounding box of the placed model.
 geometry::Mesh ground_of(const SceneOptions& scene, const Eigen::AlignedBox3d& model);
 
-/// What the sensor sees beside the model, which the box is around: the ground and neighbours, as
-/// far as the scene asks for them. Without triangles if it asks for neither.
+/// Returns the surroundings that the scene includes: ground and neighbouring objects. `model` is
+/// the bounding box of the placed model. The mesh is empty if neither is enabled.
 geometry::Mesh surroundings_of(const SceneOptions& scene, const Eigen::AlignedBox3d& model);
 
-/// A square in the plane of the scene's base, ten times as wide as the model, which the box is
-/// around.
+/// Returns a square at the height of the model's base, ten times as wide as the bounding box
+/// `model`.
 geometry::Mesh ground_under(const Eigen::AlignedBox3d& model);
 
 }  // namespace skycap::missions::scene

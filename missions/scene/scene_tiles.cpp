@@ -31,14 +31,14 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-/// One of the entries of a file of tiles.
+/// Entry of a tiles file.
 class TileEntry {
  public:
-  /// `file` is the file of tiles as the scene names it, whose folder paths count from.
+  /// `file` is the path of the tiles file in the scene. Paths in it are relative to its folder.
   TileEntry(support::YamlSection& section, const SceneOptions& scene, const fs::path& file,
             const fs::path& folder)
       : section_(section), place_(fs::path(file).parent_path()), folder_(folder) {
-    one_.ground = scene.ground;  // so that no tile brings its own
+    one_.ground = scene.ground;  // Prevents tiles from having their own ground.
   }
 
   void append_to(std::vector<TileKind>& tiles) {
@@ -97,8 +97,8 @@ class TileEntry {
     return number;
   }
 
-  /// Which of several kinds stands where is drawn from the place's number, so that no pattern
-  /// shows.
+  /// Adds rows and columns of models. The kind at each position is drawn from the position's
+  /// number, so that there is no visible pattern.
   void append_blocks(std::vector<TileKind>& tiles) {
     const std::string model = section_.text("model");
     const bool is_builtin = model.starts_with("builtin:");
@@ -153,7 +153,7 @@ std::uint32_t checksum(const geometry::Mesh& mesh) {
         {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
   };
   return sum_of(mesh.vertices) ^ static_cast<std::uint32_t>(geometry::split_mix(
-                                     sum_of(mesh.triangles)));  // neither undoes the other
+                                     sum_of(mesh.triangles)));  // Avoids cancellation.
 }
 
 Eigen::AlignedBox3d at(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& place) {
@@ -211,7 +211,7 @@ void TiledScene::look_at(Kind& kind) const {
   kind.digest = fmt::format("{:08x}", checksum(mesh));
 }
 
-/// Of all that decides what look_at() finds.
+/// Returns all inputs that determine the result of look_at().
 std::string TiledScene::index_key() const {
   std::string inputs = version;
   const Eigen::Affine3d turn = turn_and_scale(scene_);
@@ -244,7 +244,7 @@ bool TiledScene::read_index(const fs::path& index) {
     return true;
   } catch (const nlohmann::json::exception&) {
     return false;
-  } catch (const Error&) {  // it is made again
+  } catch (const Error&) {  // The index will be created again.
     return false;
   }
 }
@@ -261,7 +261,8 @@ void TiledScene::write_index(const fs::path& index) const {
   try {
     geometry::write_file(index, support::json_text({{"of", index_key()}, {"kinds", kinds}}));
   } catch (const Error&) {
-    // Another task may be writing the same; without it the next one looks at the meshes, too.
+    // Another process may be writing the same file. Without the index, the next run reads the
+    // meshes again.
   }
 }
 

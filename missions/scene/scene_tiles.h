@@ -1,7 +1,7 @@
-/// Scenes of many tiles, which a file NAME.tiles in the place of a mesh describes
-/// (docs/reference/batch-files.md): mesh files that patterns name, and models that stand there
-/// again and again in rows and columns. Such a scene may be larger than memory, since sensors ask
-/// for those tiles alone that they can reach.
+/// Scenes that consist of many tiles, described by a file NAME.tiles instead of a mesh
+/// (docs/reference/batch-files.md). Tiles are mesh files that match patterns, and models repeated
+/// in rows and columns. Such a scene may be larger than memory, because only the tiles within a
+/// sensor's range are loaded.
 #pragma once
 
 #include <cstdint>
@@ -18,47 +18,47 @@
 
 namespace skycap::missions::scene {
 
-/// A mesh that stands in the scene, once or several times.
+/// Mesh with one or more instances in the scene.
 struct TileKind {
-  SceneOptions scene;  ///< names it
-  /// Where its own origin is put, before the whole scene is turned, scaled and placed.
+  SceneOptions scene;  ///< Source of the mesh.
+  /// Positions of the mesh's own origin before the whole scene is rotated, scaled and moved.
   std::vector<Eigen::Vector3d> shifts;
 };
 
-/// Whether the scene is of tiles.
+/// Returns true if the scene consists of tiles.
 bool is_tiled(const SceneOptions& scene);
 
-/// The tiles of such a scene in the order of its file; files of a pattern by name, models by the
-/// seed that they are drawn from, places from south to north and from west to east. Throws Error
-/// naming the file if it is not there or wrong, if no file has a name of a pattern, or if a key of
-/// `scene` is not for tiles.
+/// Returns the tiles of a scene in file order: files of a pattern by name, models by seed,
+/// positions from south to north and from west to east. Throws Error naming the file if it is
+/// missing or invalid or a pattern matches no file. Throws Error also if a key of `scene` does not
+/// apply to tiles.
 std::vector<TileKind> tiles_of(const SceneOptions& scene, const std::filesystem::path& folder);
 
-/// Which parts of a scene are asked for, by boxes around them.
+/// Selects parts of a scene by their bounding boxes.
 using IsWanted = std::function<bool(const Eigen::AlignedBox3d& box)>;
 
-/// What sensors measure of a scene of tiles. Has looked at each mesh, and keeps none.
+/// Scene of tiles. It stores the properties of each mesh, but not the meshes.
 class TiledScene {
  public:
-  /// Reads all meshes, on so many threads, unless the file `index` says what there is to
-  /// know of them; else it will, for whoever asks next. Throws what load_model() throws.
+  /// Reads all meshes with `threads` threads, unless the file `index` contains their properties.
+  /// Otherwise writes this file for later runs. Throws all errors of load_model().
   TiledScene(const SceneOptions& scene, const std::filesystem::path& folder, unsigned threads,
              const std::filesystem::path& index = {});
 
-  /// Of the box around all tiles.
+  /// Returns the centre of the bounding box of all tiles.
   Eigen::Vector3d centre() const { return box_.center(); }
-  /// Tells it from other scenes: checksums of its meshes, and of how they stand.
+  /// Returns a checksum of the meshes and their arrangement, which identifies the scene.
   const std::string& digest() const { return digest_; }
   std::size_t triangles() const { return triangles_; }
 
-  /// Those tiles that are wanted, and what is beside all tiles, made ready for rays. What a ray
-  /// meets of them does not depend on which others are wanted.
+  /// Returns the selected tiles and the surroundings of all tiles, prepared for ray casting. Hits
+  /// on a tile do not depend on the selection of other tiles.
   sim::Scene scene(unsigned threads, const IsWanted& is_wanted) const;
 
  private:
   struct Kind {
     TileKind tile;
-    Eigen::AlignedBox3d box;  ///< of the mesh, turned and scaled
+    Eigen::AlignedBox3d box;  ///< Bounding box of the rotated and scaled mesh.
     std::size_t triangles = 0;
     std::string digest;
   };
@@ -71,7 +71,7 @@ class TiledScene {
 
   SceneOptions scene_;
   std::filesystem::path folder_;
-  geometry::Mesh beside_;  ///< surroundings_of() the tiles
+  geometry::Mesh beside_;  ///< Result of surroundings_of() for the tiles.
   std::vector<Kind> kinds_;
   Eigen::AlignedBox3d box_;
   std::size_t triangles_ = 0;

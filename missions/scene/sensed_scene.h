@@ -1,4 +1,4 @@
-/// What sensors measure on a flight: a model with its copies, or tiles.
+/// Scene that sensors measure during a flight: a model with copies, or tiles.
 #pragma once
 
 #include <filesystem>
@@ -16,18 +16,18 @@ namespace skycap::missions::scene {
 
 class SensedScene {
  public:
-  /// `index` is of tiles, see TiledScene. Throws what reflecting_scene() and TiledScene's
-  /// constructor throw.
+  /// `index` is used only for tiles, see TiledScene. Throws all errors of reflecting_scene() and
+  /// TiledScene().
   SensedScene(const SceneOptions& scene, const std::filesystem::path& folder, unsigned threads,
               const std::filesystem::path& index = {});
 
-  /// Whether scene() is of what is wanted alone.
+  /// Returns true if scene() loads only the selected parts.
   bool is_tiled() const { return std::holds_alternative<TiledScene>(scene_); }
-  /// Of the models' bounding box.
+  /// Returns the centre of the bounding box of all models.
   Eigen::Vector3d centre() const;
-  /// Tells it from other scenes.
+  /// Returns a checksum that identifies the scene.
   std::string digest() const;
-  /// Made ready for rays: all of it, or those tiles that are wanted.
+  /// Returns the whole scene or the selected tiles, prepared for ray casting.
   sim::Scene scene(unsigned threads, const IsWanted& is_wanted) const;
 
  private:

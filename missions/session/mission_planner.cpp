@@ -9,10 +9,11 @@
 namespace skycap::missions::session {
 namespace {
 
-/// That views chosen anew are weighed by: one of eight surfels of a building 40 m high.
+/// Number of targets for replanning, which is one of eight surfels on a building with a height of
+/// 40 m.
 constexpr std::size_t surface_targets = 6000;
 
-/// Takes over what only planners that estimate coverage can say.
+/// Copies the data that only planners with coverage estimates provide.
 void record_belief(const survey::Planner& planner, SurveyRecord& record) {
   const survey::CoverageEstimator* const estimator = planner.estimator();
   if (estimator == nullptr) return;

@@ -1,5 +1,5 @@
-/// A mission's planner with all that has a say in where it may look from: the mission's limits, and
-/// the ways that its vehicle can prove. The same for simulated and live surveys.
+/// Planner of a mission, combined with the mission's limits on views and with the paths that its
+/// vehicle can verify. Used by simulated and live surveys.
 #pragma once
 
 #include <memory>
@@ -17,27 +17,28 @@ namespace skycap::missions::session {
 
 class MissionPlanner {
  public:
-  /// Only a mission with a vehicle needs to know the first view. Throws what survey::make_planner()
-  /// and SurveyFlight throw.
+  /// `first_view` is required only for missions with a vehicle. Throws all errors of
+  /// survey::make_planner() and SurveyFlight.
   MissionPlanner(const SurveyOptions& options, const std::optional<geometry::View>& first_view,
                  const survey::PlannerRun& run);
   ~MissionPlanner();
 
   survey::Planner& planner();
 
-  /// Null without a vehicle.
+  /// Returns null for missions without a vehicle.
   SurveyFlight* flight();
 
-  /// `opening`, and `sensed`, `can_reach` and what goes with them, which refer to this object.
+  /// Returns `opening`, and for missions with a vehicle also `sensed`, `can_reach` and related
+  /// ports. The ports refer to this object.
   survey::SurveyPorts ports();
 
   survey::SurveyLimits limits() const;
 
-  /// What the planner holds and believes at present; the flight is not in it.
+  /// Copies the planner's current cloud and estimate to `record`, without the flight.
   void tell(SurveyRecord& record) const;
 
-  /// Hands over the cloud, the flight, and what the planner believes at the end. Nothing else may
-  /// be called afterwards.
+  /// Moves the cloud, the flight and the planner's final estimate to `record`. No other member
+  /// function may be called afterwards.
   void finish(SurveyRecord& record);
 
  private:

@@ -11,12 +11,12 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using geometry::View;
 
-/// From the box to the opening views: the clearance, the voxels that the box may grow by, and a
-/// reserve.
+/// Returns the distance of the initial views from the box: the clearance, the voxels that the box
+/// may grow by, and a reserve.
 double distance_from_box(const StartOptions& start) { return 1.5 * start.clearance; }
 
-/// How often round the box: once for each band of its height that is no higher than the way is from
-/// the box's middle, or than planners look from.
+/// Returns the number of orbits: one per height band. The height of a band is at most the distance
+/// of the orbit from the centre of the box or, if larger, the view distance.
 unsigned circles_round(const AlignedBox3d& box, const StartOptions& start) {
   constexpr double most = 32.0;
   const double away = 0.5 * box.sizes().head<2>().minCoeff() + distance_from_box(start);
@@ -24,8 +24,8 @@ unsigned circles_round(const AlignedBox3d& box, const StartOptions& start) {
   return static_cast<unsigned>(std::clamp(std::ceil(box.sizes().z() / apart - 1e-9), 1.0, most));
 }
 
-/// Round the box, anticlockwise, the box on the left: once, up and down between two heights, or in
-/// circles from the one to the other, each of whose last sides climbs to the next.
+/// Returns anticlockwise orbits with the box on the left: a single orbit that alternates between
+/// two heights, or several level orbits connected by climbs on their last sides.
 std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
   const AlignedBox3d box = start.box;
   const double spare = distance_from_box(start);
@@ -36,7 +36,8 @@ std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
   const unsigned circles = circles_round(box, start);
   std::vector<View> views;
   for (unsigned i = 0; i <= 4 * circles; ++i) {
-    const auto corner = static_cast<unsigned>((seed + i) % 4);  // from the south west on
+    // Counted from the south-west corner.
+    const auto corner = static_cast<unsigned>((seed + i) % 4);
     const double up = circles == 1 ? i % 2 : std::min(i / 4, circles - 1) / (circles - 1.0);
     const double share = lower_share + up * (upper_share - lower_share);
     const Vector3d place(corner == 1 || corner == 2 ? high.x() : low.x(),
@@ -48,8 +49,8 @@ std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
   return views;
 }
 
-/// To and fro over the box, along its longer side, as far apart as the flight is high over its
-/// foot; what is looked at is to the left of the way and below.
+/// Returns strips along the longer side of the box with a spacing of at most the flight height
+/// above its lower end. The sensor is directed to the left of the path and down.
 std::vector<View> strips(const StartOptions& start, std::uint64_t seed) {
   const AlignedBox3d box = start.box;
   const int along = box.sizes().x() >= box.sizes().y() ? 0 : 1, across = 1 - along;
@@ -74,8 +75,9 @@ std::vector<View> strips(const StartOptions& start, std::uint64_t seed) {
   return views;
 }
 
-/// A line that stands at the box's edge may see nothing of what is in it, and nothing can be
-/// planned from that: such a flight begins within the first strip, and flies back to its beginning.
+/// Inserts a start within the first strip, from which the vehicle flies back to the start of the
+/// strip. At the edge of the box, a single-line LiDAR may observe nothing inside it, which would
+/// prevent planning.
 void begin_inside(std::vector<View>& strips) {
   constexpr double share = 0.25;
   View inside = strips.front();

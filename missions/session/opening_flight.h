@@ -1,5 +1,5 @@
-/// How a survey begins: with a given view, or with a way outside of the unknown box, so that
-/// nothing has to be known of what is in it.
+/// Start of a survey: a given view, or an initial pattern outside the unknown box, which requires
+/// no knowledge of its contents.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +13,32 @@
 
 namespace skycap::missions::session {
 
-/// What a flown survey begins with, before any view is planned: ways outside of the unknown box.
+/// Initial pattern of a flown survey, before the first view is planned. Its path is outside the
+/// unknown box.
 enum class Opening {
   none,
-  orbit,   ///< round the box
-  strips,  ///< to and fro over it
+  orbit,   ///< Orbits around the box.
+  strips,  ///< Parallel strips above the box.
 };
 
 struct StartOptions {
-  std::optional<geometry::View> view;  ///< the first view; nothing: left open
-  Opening opening = Opening::none;     ///< of a mission that is flown
+  std::optional<geometry::View> view;  ///< First view; empty if it is not specified.
+  Opening opening = Opening::none;     ///< Initial pattern of a mission with a vehicle.
 
-  // What the opening is laid out by.
-  Eigen::AlignedBox3d box;     ///< the unknown box
-  double clearance = 0.0;      ///< [m]
-  double lowest = 0.0;         ///< z of the foot of the scene, or the least z of views
-  double view_distance = 1.0;  ///< [m]
-  std::optional<geometry::ScannerMount> mount;  ///< of a scanner that is flown
-  bool sees_lines = false;                      ///< a scanner of a single line
+  // Parameters of the initial pattern.
+  Eigen::AlignedBox3d box;  ///< The unknown box.
+  double clearance = 0.0;   ///< [m]
+  double lowest = 0.0;  ///< Height of the lower end of the scene, or minimum height of views [m].
+  double view_distance = 1.0;                   ///< [m]
+  std::optional<geometry::ScannerMount> mount;  ///< Mount of a scanner on a vehicle.
+  bool sees_lines = false;                      ///< Single-line LiDAR.
 };
 
-/// Round a box, or over it if it is wider than twice its height.
+/// Returns the default pattern: orbits, or strips if the box is wider than twice its height.
 Opening usual_opening(const Eigen::AlignedBox3d& box);
 
-/// The corners of the opening in the order flown; the first is where the survey begins. Empty
-/// without one. The seed says at which corner it begins.
+/// Returns the corners of the initial pattern in flight order, starting with the first view.
+/// Returns an empty list without a pattern. `seed` selects the start corner.
 std::vector<geometry::View> opening_views(const StartOptions& start, std::uint64_t seed);
 
 }  // namespace skycap::missions::session

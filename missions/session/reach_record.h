@@ -1,5 +1,5 @@
-/// What came of the views that were proposed after a scan. Ways are dear to find and so are written
-/// down: a survey that is continued gives the same answers again without looking for them.
+/// Reachability results for the views proposed after a scan. They are recorded because path
+/// planning is expensive: a resumed survey obtains the same results without planning.
 #pragma once
 
 #include <cstddef>
@@ -14,28 +14,30 @@
 namespace skycap::missions::session {
 
 struct ReachRecord {
-  std::size_t refused = 0;    ///< proposals that could not be reached
-  bool is_reached = false;    ///< whether one was found that can be
-  FlownLeg way;               ///< to it, with a vehicle
-  std::size_t unreached = 0;  ///< SurveyFlight::refused() by then
+  std::size_t refused = 0;    ///< Number of unreachable proposals.
+  bool is_reached = false;    ///< True if a reachable proposal was found.
+  FlownLeg way;               ///< Path to the reachable view, for surveys with a vehicle.
+  std::size_t unreached = 0;  ///< Value of SurveyFlight::refused() after these proposals.
 };
 
-/// As it stands in a journal, and back. parse_reach() throws nlohmann's exceptions.
+/// Convert a record to and from its journal entry. parse_reach() throws exceptions of
+/// nlohmann::json.
 nlohmann::ordered_json reach_json(const ReachRecord& record);
 ReachRecord parse_reach(const nlohmann::ordered_json& json);
 
-/// Answers whether views can be reached, and remembers it.
+/// Records whether views are reachable and replays recorded results.
 class ReachMemory {
  public:
   using CanReach = std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)>;
 
-  /// Before the proposals after another scan; `known` is what came of them in an earlier run.
+  /// Starts the proposals after the next scan. `known` is the recorded result of an earlier run.
   void begin(std::optional<ReachRecord> known);
 
-  /// Asks `can_reach` what is not known. `flight` may be null; both outlive the answer's use.
+  /// Returns a function that replays known results and otherwise calls `can_reach`. `flight` may be
+  /// null. `flight` and this object must outlive the returned function.
   CanReach remembering(CanReach can_reach, SurveyFlight* flight);
 
-  /// What has come of the proposals since begin().
+  /// Returns the results since begin().
   const ReachRecord& record() const { return record_; }
 
  private:

@@ -57,7 +57,7 @@ struct SurveyFlight::Impl {
     }
   }
 
-  /// The vehicle at a view: itself without a gimbal.
+  /// Returns the pose of the vehicle at a view. Without a scanner mount, it equals the view.
   geometry::View carrier(const geometry::View& view) const {
     return mount ? geometry::nose_view(*mount, view) : view;
   }
@@ -68,16 +68,18 @@ struct SurveyFlight::Impl {
   flight::KnownSpace rules;
   flight::JointSpace known;
   flight::InterruptibleSpace space;
-  flight::LegPlanner legs;  ///< with returns if autopilots return from its ways by themselves
+  /// Requires returns if autopilots may return from the paths automatically.
+  flight::LegPlanner legs;
   WayMotion motion;
-  std::optional<geometry::ScannerMount> mount;  ///< of a scanner
-  std::optional<flight::SweepRays> rays;        ///< of its scans, if they prove space free
-  /// Among neighbours most places beside the target are not free, and to look for ways to them in
-  /// vain takes long.
+  std::optional<geometry::ScannerMount> mount;  ///< Set for scanners.
+  /// Rays of the scanner's scans if they verify free space.
+  std::optional<flight::SweepRays> rays;
+  /// Next to neighbouring buildings, most positions near the target are not free. Unsuccessful path
+  /// searches would take long.
   bool is_crowded;
   double frame_period;
   unsigned threads;
-  FlownLeg leg;  ///< that the next fly() takes
+  FlownLeg leg;  ///< Next leg for fly().
   Vector3d above_pad = Vector3d::Zero();
   std::vector<flight::PadScan> pads;
   FlownSurvey survey;
@@ -196,7 +198,7 @@ void SurveyFlight::take_in(const geometry::Scan& scan) {
 }
 
 FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {
-  // Less the way to a scan that counts as not taken, if planning was interrupted.
+  // Removes the path to a discarded scan after planning was interrupted.
   if (impl_->survey.legs.size() > views.size()) impl_->survey.legs.resize(views.size());
   std::vector<geometry::View> carriers;
   carriers.reserve(views.size());

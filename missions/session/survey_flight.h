@@ -1,5 +1,5 @@
-/// The vehicle while a survey runs: it goes only where space was proven free with what was known at
-/// that moment.
+/// Vehicle during a survey. It flies only through space that is verified as free with the current
+/// knowledge.
 #pragma once
 
 #include <cstddef>
@@ -19,79 +19,84 @@
 
 namespace skycap::missions::session {
 
-/// A leg as it was flown to a view.
+/// Flown leg to a view.
 struct FlownLeg {
   std::vector<Eigen::Vector3d> points;
-  double clearance = 0.0;  ///< proven, with what was known when it was flown [m], see LegProof
+  /// Clearance verified with the knowledge at the time of the flight [m], see LegProof.
+  double clearance = 0.0;
 };
 
-/// What a flown survey leaves behind.
+/// Result of a flown survey.
 struct FlownSurvey {
   std::shared_ptr<const flight::MeasuredSpace> measured;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<FlownLeg> legs;  ///< legs[i] leads to view i, the first one from above the pad
-  std::size_t refused = 0;     ///< proposed views that could not be reached
-  std::vector<flight::PadGround> grounds{};  ///< of pad and rally points, where it was measured
+  std::vector<FlownLeg> legs;  ///< legs[i] leads to view i; the first leg starts above the pad.
+  std::size_t refused = 0;     ///< Number of proposed views that were unreachable.
+  std::vector<flight::PadGround> grounds{};  ///< Measured ground of the pad and rally points.
 
-  /// From the pad until each view is left [s], see WayMotion::survey_times().
+  /// Times from take-off until the departure from each view [s], see WayMotion::survey_times().
   std::vector<double> times{};
 
-  double time() const { return times.empty() ? 0.0 : times.back(); }  ///< of all views [s]
+  /// Returns the duration of the whole survey [s].
+  double time() const { return times.empty() ? 0.0 : times.back(); }
   double length() const;
-  double min_clearance() const;  ///< of all legs
+  double min_clearance() const;  ///< Returns the minimum clearance of all legs [m].
 };
 
 class SurveyFlight {
  public:
   /// Throws Error{bad_config} if the first view cannot be reached from the pad through space that
-  /// the pilot vouches for, or the ground of pad or rally points is known to be unfit.
+  /// is assumed free (the pilot must check). Throws Error{bad_config} also if the known ground of
+  /// the pad or of rally points is unsuitable.
   SurveyFlight(const flight::FlightOptions& options, const geometry::View& first_view,
                unsigned threads);
   ~SurveyFlight();
 
-  /// Whether views may be there by what is known at present: among neighbours only where it is
-  /// free, and a scanner's only where there is a certified way home. Cheaper than can_reach(),
-  /// which asks more; safe to call in parallel. Throws survey::Interrupted after a stop.
+  /// Returns whether views at this position are currently admissible. Next to neighbouring
+  /// buildings, the position must be free. For scanners, a verified return must exist. Faster and
+  /// less strict than can_reach(). Thread-safe. Throws survey::Interrupted after a stop request.
   bool may_be_at(const Eigen::Vector3d& place) const;
 
-  /// Whether the vehicle can look that way and get there along legs that are proven free, by a
-  /// scanner with a certified way home from all of their points. Throws survey::Interrupted after a
-  /// stop.
+  /// Returns whether the vehicle can aim in this direction and reach the view along verified
+  /// collision-free legs. For scanners, a verified return must exist from all their points. Throws
+  /// survey::Interrupted after a stop request.
   bool can_reach(const Eigen::Vector3d& from, const geometry::View& to);
 
-  /// Lets a stop end can_reach() wherever it is.
+  /// Sets the stop token that interrupts can_reach().
   void stop_on(std::stop_token stop);
 
-  /// The way that the last can_reach() found.
+  /// Returns the path found by the last successful call of can_reach().
   const FlownLeg& way() const;
 
-  /// Views of the frames that a camera which measures on the way takes there, their times counted
-  /// from leaving the first view.
+  /// Returns the views of the en-route frames on the path way(). Times are relative to the
+  /// departure from the first view [s].
   std::vector<ViewInFlight> frames(const geometry::View& from, const geometry::View& to) const;
 
-  /// How long that way takes, until the vehicle leaves the second view [s].
+  /// Returns the duration of the path way(), from the departure from the first view until that from
+  /// the second [s].
   double time(const geometry::View& from, const geometry::View& to) const;
 
-  /// A way from one place to another that is proven free with what is known at present; nothing if
-  /// none is found. What can_reach() found stands.
+  /// Returns a path that is verified collision-free with the current knowledge, or an empty value
+  /// if none is found. Does not change way().
   std::optional<FlownLeg> find_way(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
   const Eigen::Vector3d& pad() const;
-  const Eigen::Vector3d& above_pad() const;  ///< where the take-off's climb ends
+  const Eigen::Vector3d& above_pad() const;  ///< Returns the end of the take-off climb.
 
-  /// Calls of can_reach() that said no.
+  /// Returns the number of unsuccessful calls of can_reach().
   std::size_t refused() const;
 
-  /// Takes over what an earlier run of the same survey found: the way, and how many calls said no.
+  /// Restores the path and the number of unsuccessful calls from an earlier run of the same survey.
   void take_way(FlownLeg way, std::size_t refused);
 
-  /// Flies that way.
+  /// Flies the path returned by way().
   void fly();
 
-  /// Learns from a scan what is free.
+  /// Updates the free space and the pads from a scan.
   void take_in(const geometry::Scan& scan);
 
-  /// The survey with these views; further calls on this object are not allowed.
+  /// Returns the result of a survey with these views. No other member function may be called
+  /// afterwards.
   FlownSurvey finish(const std::vector<geometry::View>& views);
 
  private:

@@ -1,5 +1,5 @@
-/// What a survey in progress works with, simulated or real: its planner, its limits, how the
-/// vehicle flies, and where it begins. Complete; nothing in it is derived by those who use it.
+/// Complete configuration of a running survey, simulated or live: planner, limits, flight and
+/// start. Users derive no further values from it.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,10 @@ struct SurveyOptions {
   StartOptions start;
 };
 
-/// What belongs to one run of a mission, and to no mission.
+/// Options of a single run that are not part of the mission.
 struct RunOptions {
   std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< zero: all processors; does not change a result
+  unsigned threads = 0;  ///< Number of threads (0: all processors). Does not affect results.
 };
 
 }  // namespace skycap::missions::session

@@ -1,4 +1,4 @@
-/// What a survey leaves behind, simulated or live.
+/// Result of a survey, simulated or live.
 #pragma once
 
 #include <cstdint>
@@ -17,35 +17,36 @@
 
 namespace skycap::missions::session {
 
-/// A view of the survey and the coverage after it.
+/// View of the survey with the coverage after it.
 struct JudgedView {
   survey::SurveyedView surveyed;
-  double coverage = 0.0;  ///< NaN where nobody knows the truth: of a live survey
+  /// Coverage after the view. NaN for live surveys, which have no ground truth.
+  double coverage = 0.0;
 };
 
-/// A scan of a survey.
+/// Scan of a survey.
 struct TakenScan {
-  std::uint32_t view = 0;  ///< number of the view that it was taken at, or on the way to
+  std::uint32_t view = 0;  ///< View at which, or on the path to which, the scan was taken.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
-/// What a survey left behind.
+/// Result of a survey.
 struct SurveyRecord {
   std::uint64_t seed = 1;
   unsigned threads = 1;
   survey::StopReason stop_reason = survey::StopReason::complete;
   std::vector<JudgedView> views;
   geometry::PointCloud cloud;
-  /// The scans that the cloud's points are from; without any, each is a view's.
+  /// Scans that the views of the cloud's points refer to. If empty, they refer to `views`.
   std::vector<TakenScan> scans{};
-  std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
-  std::optional<FlownSurvey> flown;      ///< of a mission with a vehicle
+  std::vector<std::uint8_t> is_covered;  ///< Whether each sample of the scene is covered.
+  std::optional<FlownSurvey> flown;      ///< Flight of a mission with a vehicle; otherwise empty.
 
-  /// What a planner that estimates coverage believed at the end; nothing with the others.
+  /// Final estimate of planners that estimate coverage; otherwise empty.
   std::optional<survey::skycap::SurveyBelief> belief;
-  /// The surface that it measured, of a mission whose views are to be chosen anew; else null.
+  /// Measured surface, if replanning is enabled; otherwise null.
   std::shared_ptr<const survey::skycap::GainField> surface;
-  /// The rule by which that planner stopped, see CoverageEstimator::stop_rule(); else empty.
+  /// Completion rule of the planner, see CoverageEstimator::stop_rule(); empty for other planners.
   std::string stop_rule{};
 
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }
@@ -56,10 +57,10 @@ struct SurveyRecord {
   double sensing_time() const;
 };
 
-/// The word for it in files.
+/// Returns the name of a stop reason in files.
 using survey::name_of;
 
-/// The reason of that name. Throws Error{bad_file}.
+/// Returns the stop reason with this name. Throws Error{bad_file}.
 survey::StopReason stop_reason_named(const std::string& name);
 
 }  // namespace skycap::missions::session

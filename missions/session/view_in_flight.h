@@ -1,4 +1,4 @@
-/// A view of a sensor that is flown: where, when, and how the vehicle moves meanwhile.
+/// View of a moving sensor: pose, time and motion.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,13 @@
 
 namespace skycap::missions::session {
 
-/// A view in a flight.
+/// View during a flight.
 struct ViewInFlight {
   geometry::View view;
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the vehicle, in the middle [m/s]
-  double time = 0.0;                                   ///< since some moment before the first [s]
-  /// Of a scanner that measures in flight; none: it stands.
+  /// Velocity of the vehicle at mid-exposure [m/s].
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  double time = 0.0;  ///< Time since an arbitrary start before the first view [s].
+  /// Motion during a continuous scan; empty for a scanner at rest.
   std::optional<geometry::Stretch> stretch{};
 };
 

@@ -19,7 +19,7 @@ double turn_between(const View& from, const View& to) {
   return std::remainder(flight::yaw_of(to) - flight::yaw_of(from), 2.0 * std::numbers::pi);
 }
 
-/// What share of the turn from one view to the other leads to.
+/// Returns the direction after the fraction `share` of the rotation between two views.
 Vector3d direction_between(const View& from, const View& to, double share) {
   const double yaw = flight::yaw_of(from) + share * turn_between(from, to);
   const double pitch =
@@ -31,8 +31,8 @@ struct PlaceInFlight {
   Vector3d position, velocity;
 };
 
-/// Where the vehicle is on a straight piece that it flies in `duration`, `share` of that after it
-/// began it: the profile of no autopilot differs much from that of seven phases.
+/// Returns position and velocity on a straight segment of duration `duration` after the fraction
+/// `share` of this time. The seven-phase profile approximates those of all autopilots.
 PlaceInFlight place_on(const Vector3d& begin, const Vector3d& end, const flight::Motion& motion,
                        double duration, double share) {
   const double distance = (end - begin).norm();
@@ -93,7 +93,7 @@ std::vector<ViewInFlight> WayMotion::frames(const FlownLeg& way, const View& fro
       ++number;
     }
     begun += piece + flight::corner_hold;
-    // A frame that falls into the stop at a corner is taken when the stop is over.
+    // Frames during the stop at a corner are taken after the stop.
   }
   return frames;
 }
@@ -111,7 +111,7 @@ std::vector<double> WayMotion::survey_times(const std::vector<FlownLeg>& legs,
 
 namespace {
 
-/// What is measured on one sortie after the other.
+/// Collects the measurements of all sorties.
 class RouteViews {
  public:
   RouteViews(const flight::FlightOptions& options, const flight::Route& route)
@@ -142,7 +142,7 @@ class RouteViews {
     if (mount_) fly(sortie.back, last, last);
   }
 
-  /// A leg, what a scanner measures on it, and what is measured at its end.
+  /// Adds the en-route scans of a leg and the measurement at its end.
   void fly(const flight::Leg& leg, const View& from, const View& to) {
     const FlownLeg way{leg.points};
     if (mount_) {
@@ -191,7 +191,7 @@ class RouteViews {
   const flight::Route& route_;
   WayMotion motion_;
   double period_;
-  std::optional<geometry::ScannerMount> mount_;  ///< of a scanner
+  std::optional<geometry::ScannerMount> mount_;  ///< Set for scanners.
   double now_ = 0.0;
   std::vector<ViewInFlight> views_;
 };

@@ -1,9 +1,9 @@
-/// A survey's ways in time, and the frames of a sensor that also measures on them.
+/// Timing of a survey's paths, and the frames of sensors that measure en route.
 ///
-/// A camera turns evenly from one view to the next, in yaw and in pitch, so that it never leaves
-/// the gimbal's limits; it turns between frames and stands while it is exposed. A scanner is fixed
-/// to the vehicle, which turns as in the files of its mission: evenly on the way's last straight
-/// piece.
+/// A camera rotates between views at constant rates of yaw and pitch, so that it stays within the
+/// gimbal's limits. It rotates between frames and is at rest during exposure. A scanner is fixed to
+/// the vehicle, which rotates as in the mission's files: at constant rate on the last straight
+/// segment of a path.
 #pragma once
 
 #include <vector>
@@ -20,38 +20,39 @@ namespace skycap::missions::session {
 
 class WayMotion {
  public:
-  /// Of the vehicle, in its weather.
+  /// Uses the vehicle and the weather of `options`.
   explicit WayMotion(const flight::FlightOptions& options);
 
-  /// From leaving a view until the camera looks along `to` at the way's end, with a stop in each
-  /// corner [s].
+  /// Returns the time from the departure from `from` until the camera is aimed at `to` at the end
+  /// of the path, with a stop at each corner [s].
   double time(const FlownLeg& way, const geometry::View& from, const geometry::View& to) const;
 
-  /// Views of the frames on the way, one every `period` [s] from the start, none within half of one
-  /// of the end; their times are from the start. Empty for a way of no length.
+  /// Returns the en-route views at intervals of `period` [s] from the start of the path, except
+  /// within half a period of its end. Times are relative to the start. Returns an empty list for a
+  /// path of zero length.
   std::vector<ViewInFlight> frames(const FlownLeg& way, const geometry::View& from,
                                    const geometry::View& to, double period) const;
 
-  double rest() const { return rest_; }  ///< at a view [s]
+  double rest() const { return rest_; }  ///< Returns the time at rest at a view [s].
 
-  /// How long a survey takes from the pad until it leaves each of its views [s]: take-off, ways,
-  /// and rests at views. The way home is not part of it. `legs` as in FlownSurvey.
+  /// Returns the times from take-off until the departure from each view [s]: take-off, paths and
+  /// rests at views, without the return. `legs` is as in FlownSurvey.
   std::vector<double> survey_times(const std::vector<FlownLeg>& legs,
                                    const std::vector<geometry::View>& views) const;
 
  private:
   flight::Motion motion_;
-  double climb_;     ///< from the pad to where the first way begins [m]
-  double rest_;      ///< at a view [s]
-  bool turns_last_;  ///< on the last piece of a way
+  double climb_;     ///< Height of the climb from the pad to the start of the first path [m].
+  double rest_;      ///< Time at rest at a view [s].
+  bool turns_last_;  ///< Rotation occurs only on the last segment of a path.
 };
 
-/// Views of all that is measured on a route: its pictures, at stations or in passing, or the scans
-/// that a scanner takes from leaving the place above the pad until it is back there.
+/// Returns the views of all measurements on a route: photos at stations or during a fly-through, or
+/// a scanner's scans between departure from and return to the position above the pad.
 std::vector<ViewInFlight> measured_views(const flight::FlightOptions& options,
                                          const flight::Route& route);
 
-/// How sharp frames are that a camera takes at the cruise speed.
+/// Returns the limits on motion blur and skew of images taken at cruise speed.
 flight::PictureBounds moving_bounds_of(const flight::FlightOptions& options);
 
 }  // namespace skycap::missions::session

@@ -14,14 +14,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What moves by less is simulated standing.
+/// Smaller movements are simulated as rest.
 constexpr double least_movement_px = 0.5;
-/// Pixels move by no more than this from one instant of the exposure to the next, unless that
-/// takes more than so many of them.
+/// Maximum pixel motion between two instants of the exposure, and the maximum number of instants,
+/// which takes precedence.
 constexpr double most_step_px = 1.0;
 constexpr int most_instants = 12;
 
-/// A direction that is drawn evenly, by two normals and one more.
+/// Draws a uniformly distributed direction from three normal variates.
 Vector3d direction_of(std::uint64_t seed, std::uint32_t stream, std::uint64_t frame) {
   std::array<float, 32> normals;
   sim::fill_normals(sim::noise_key(seed, stream, frame), 0, normals);

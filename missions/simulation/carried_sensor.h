@@ -1,5 +1,5 @@
-/// The simulated sensor of a survey as a vehicle carries it: in motion or swaying at a stop, and
-/// beside where the vehicle believes to be.
+/// Simulated sensor on a moving vehicle: with motion during flight, hover drift at stops, and
+/// errors of the vehicle's position estimate.
 #pragma once
 
 #include <cstdint>
@@ -20,28 +20,28 @@
 
 namespace skycap::missions::simulation {
 
-/// Scans in the order flown. Without a vehicle, and for movements of less than half a pixel, it is
-/// the sensor itself: nothing is random but its noise.
+/// Takes scans in flight order. Without a vehicle, and for movements of less than half a pixel, the
+/// sensor is simulated at rest, and only its noise is random.
 class CarriedSensor {
  public:
-  /// Throws what the sensor throws.
+  /// Throws all errors of the sensor.
   CarriedSensor(const evaluation::SimulationOptions& options, std::uint64_t seed);
 
   geometry::Scan scan(const sim::Scene& scene, const session::ViewInFlight& view,
                       std::uint64_t frame, unsigned threads, geometry::Scan recycled = {});
 
  private:
-  /// How it moves while it measures.
+  /// Returns the motion of the sensor during a measurement.
   sim::Carriage carriage(const session::ViewInFlight& view, std::uint64_t frame) const;
 
   sim::SurveySensor sensor_;
   std::uint64_t seed_;
-  std::optional<flight::Vehicle> vehicle_;  ///< of a camera that is flown
+  std::optional<flight::Vehicle> vehicle_;  ///< Vehicle that carries a camera; otherwise empty.
   geometry::Camera camera_;
   geometry::Shutter shutter_;
-  double distance_ = 0.0;  ///< at which pixels are counted [m]
+  double distance_ = 0.0;  ///< Distance at which image motion is evaluated [m].
   std::optional<sim::NavigationProcess> navigation_;
-  double last_time_ = 0.0;  ///< of a scan [s]
+  double last_time_ = 0.0;  ///< Time of the last scan [s].
 };
 
 }  // namespace skycap::missions::simulation

@@ -20,15 +20,15 @@ using geometry::View;
 
 constexpr OmniscientConfig few{.candidates = 400, .samples = 2000, .wanted_coverage = {}};
 
-// Bytes of the whole program, from the peaks of the shipped missions' surveys.
+// Bytes of the whole program, from the peak memory of surveys of the shipped missions.
 constexpr double of_program = 5e7;
 constexpr double a_triangle = 150.0;
 constexpr double a_pixel = 50.0;
 constexpr double a_point = 60.0;
 constexpr double seconds_per_minute = 60.0;
-constexpr double packing = 0.7;  // stored points on a square of their spacing
+constexpr double packing = 0.7;  // Stored points per square of their spacing.
 
-/// Views of a planner over those of one who knows the scene, in the surveys of docs/.
+/// Ratio between the numbers of views of a planner and of the oracle in the surveys of docs/.
 struct Share {
   double least, most;
 };
@@ -52,7 +52,8 @@ double way_of(const std::vector<View>& views) {
   return way;
 }
 
-/// Minutes for so many views, if ways between them grow as their number's root: a tour's do.
+/// Returns the flight time for a number of views [min]. The path length grows with the square root
+/// of this number, as for tours.
 double minutes_of(const session::SurveyOptions& options, const std::vector<View>& known,
                   double views) {
   const flight::FlightOptions& flight = options.flight;
@@ -74,7 +75,7 @@ double memory_of(const survey::PlannerOptions& planner, const evaluation::Survey
          a_pixel * pixels + a_point * points;
 }
 
-/// Seconds to measure and plan the first view.
+/// Returns the time to measure and plan the first view [s].
 double time_of_a_view(const evaluation::SimulationOptions& options,
                       const evaluation::SurveyScene& scene, const session::RunOptions& run) {
   const auto planner = survey::make_planner(

@@ -1,4 +1,4 @@
-/// What a survey will take, as far as one can tell before it.
+/// Predicted cost of a survey.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,25 @@
 namespace skycap::missions::simulation {
 
 struct Expectation {
-  std::size_t known_views = 0;  ///< of one who knows the scene: known_cover() by few candidates
-  std::size_t least_views = 0;  ///< times what the mission's planner took in surveys of other
-  std::size_t most_views = 0;   ///< scenes, at least and at most; within the mission's limits
-  double least_minutes = 0.0;   ///< of the flight, by speeds, ways and stops
+  /// Number of views of the oracle: known_cover() with few candidates.
+  std::size_t known_views = 0;
+  /// Min number of views: `known_views` times the min ratio of the mission's planner in other
+  /// surveys.
+  std::size_t least_views = 0;
+  /// Max number of views, from the max ratio. Both are within the mission's limits.
+  std::size_t most_views = 0;
+  double least_minutes = 0.0;  ///< Min flight time from speeds, paths and stops [min].
   double most_minutes = 0.0;
-  double memory = 0.0;      ///< of the whole program [byte], by triangles, pixels and points
-  double least_time = 0.0;  ///< of this machine [s]: the first view, measured and planned,
-  double most_time = 0.0;   ///< times the views
+  /// Memory of the whole program from the numbers of triangles, pixels and points [bytes].
+  double memory = 0.0;
+  /// Min computation time [s]: the time of the first view on this machine times `least_views`.
+  double least_time = 0.0;
+  double most_time = 0.0;  ///< Max computation time [s].
 };
 
-/// Takes a few seconds: samples of the surface seen from some hundred views, and one view of the
-/// survey. Only of a feasible mission. Throws what planner and sensor throw.
+/// Predicts the cost of a feasible mission. Takes a few seconds: it evaluates surface samples from
+/// some hundred views, and measures and plans one view of the survey. Throws all errors of planner
+/// and sensor.
 Expectation expectation(const evaluation::SimulationOptions& options,
                         const evaluation::SurveyScene& scene, const session::RunOptions& run);
 

@@ -21,17 +21,18 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Far beyond what a survey of the largest site takes: another unit was meant.
+// Far above the numbers of views on the largest sites, so that a wrong unit is likely.
 constexpr double most_views = 1e5;
-constexpr std::size_t places_asked_for = 2000;  // of the surface, whether anything sees them
-constexpr double little = 0.1;                  // share of them that is a warning
-constexpr double cut_off = 0.02;                // share of the surface, outside of a box
+constexpr std::size_t places_asked_for = 2000;  // Number of surface samples tested for visibility.
+constexpr double little = 0.1;                  // Fraction of these samples that causes a warning.
+constexpr double cut_off = 0.02;  // Fraction of the surface outside a box that causes a warning.
 
 std::string text_of(const Vector3d& place) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", place.x(), place.y(), place.z());
 }
 
-/// All problems are told, though one may follow from another: what to do about it is said of each.
+/// Reports all problems, even if one may be a consequence of another, because each has its own
+/// remedy.
 class Inspection {
  public:
   Inspection(const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
@@ -110,7 +111,7 @@ class Inspection {
     }
   }
 
-  /// The share of the surface outside of a box, but for what lies on its faces.
+  /// Returns the fraction of the surface outside a box, except for surface on its faces.
   double share_outside(AlignedBox3d box) const {
     const double slack = options_.evaluation.registration_distance;
     box = AlignedBox3d(box.min().array() - slack, box.max().array() + slack);
@@ -146,9 +147,11 @@ class Inspection {
   }
 
   void check_density() {
-    const double rays = camera_.focal_length_px().prod() / (distance_ * distance_);  // a m^2
+    // Rays per m^2.
+    const double rays = camera_.focal_length_px().prod() / (distance_ * distance_);
     const double radius = options_.evaluation.registration_distance;
-    // Four rays round a sample are half a diagonal of their square away from it at most.
+    // The distance of a sample from the nearest of the four surrounding rays is at most half the
+    // diagonal of their square.
     const double gap = std::sqrt(0.5 / rays);
     if (gap > radius) {
       warn(
@@ -158,7 +161,7 @@ class Inspection {
           distance_, std::sqrt(1.0 / rays), radius, distance_ * radius / gap);
     }
     const double spacing = options_.survey.planner.spacing;
-    if (spacing > std::sqrt(3.0) * radius) {  // even points in a hexagonal lattice leave holes
+    if (spacing > std::sqrt(3.0) * radius) {  // Points leave gaps even in a hexagonal lattice.
       warn(
           "the spacing of stored points ({:.4g} m) must be at most "
           "evaluation.coverage_distance ({:.4g} m) for gapless coverage; lower planner.spacing "

@@ -1,4 +1,4 @@
-/// What of a mission cannot work, and what to do about it: said before anything runs.
+/// Check of a mission for impossible settings before a run.
 #pragma once
 
 #include <string>
@@ -10,18 +10,19 @@
 
 namespace skycap::missions::simulation {
 
-/// Whole sentences, each with its remedy.
+/// Results as complete sentences, each with a remedy.
 struct Feasibility {
-  std::vector<std::string> problems;  ///< with which no survey begins
-  std::vector<std::string> warnings;  ///< with which one will hardly be what was meant
+  std::vector<std::string> problems;  ///< Problems that prevent the survey.
+  /// Conditions under which the result is probably not as intended.
+  std::vector<std::string> warnings;
 };
 
-/// Compares the mission's distances with its scene, takes a first scan, and looks for places that
-/// see something. Takes about as long as a view or two.
+/// Compares the mission's distances with its scene, takes a first scan, and searches for positions
+/// with visible surface. Takes about as long as one or two views.
 Feasibility feasibility(const evaluation::SimulationOptions& options,
                         const evaluation::SurveyScene& scene, const session::RunOptions& run);
 
-/// Throws Error{bad_config} with all problems, if there are any.
+/// Throws Error{bad_config} with all problems, if any.
 void require_feasible(const evaluation::SimulationOptions& options,
                       const evaluation::SurveyScene& scene, const session::RunOptions& run);
 

@@ -7,7 +7,7 @@
 namespace skycap::missions::simulation {
 namespace {
 
-/// Keeps the noise of a mission that is flown again apart from the survey's.
+/// Random stream of simulated re-flights, separate from that of surveys.
 constexpr std::uint64_t flown_again_stream = 0x666c6f776e206167;
 
 }  // namespace

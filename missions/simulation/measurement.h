@@ -1,4 +1,5 @@
-/// Views taken by the simulated sensor from an empty cloud, and what they cover of the truth.
+/// Measurement of views with the simulated sensor, starting with an empty cloud, and their coverage
+/// of the ground truth.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +21,13 @@ namespace skycap::missions::simulation {
 
 class Measurement {
  public:
-  /// Throws what the sensor throws. Keeps a reference to the scene.
+  /// Keeps a reference to the scene. Throws all errors of the sensor.
   Measurement(const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
               std::uint64_t seed, unsigned threads);
 
-  /// Frame `number`, from a sensor at rest; the same view has the same noise whenever it is taken.
-  /// Stores what is at the mission's spacing from all that is stored, and gives it back.
+  /// Takes frame `number` with the sensor at rest. Noise depends only on the frame, not on the
+  /// order of views. Stores and returns the points that are at least the mission's spacing away
+  /// from all stored points.
   std::vector<Eigen::Vector3f> take(const geometry::View& view, std::size_t number);
 
   const evaluation::CoverageMeter& meter() const { return meter_; }
@@ -39,16 +41,17 @@ class Measurement {
   evaluation::CoverageMeter meter_;
 };
 
-/// For each of the scene's samples, 1 if it is covered.
+/// Coverage of a simulated re-flight: 1 for each covered sample of the scene.
 struct CoveredAgain {
-  /// By what is stored at the mission's spacing, as a survey stores it: a point that lies near one
-  /// that came before is left out. Of a scanner that measures in flight by all points.
+  /// Coverage by the downsampled cloud, as stored in a survey: points close to earlier points are
+  /// omitted. For continuously measuring scanners, coverage by all points.
   std::vector<std::uint8_t> stored;
-  std::vector<std::uint8_t> measured;  ///< by all points, as a recorder keeps them
+  std::vector<std::uint8_t> measured;  ///< Coverage by all points, as in a recording.
 };
 
-/// What the views cover when they are flown again: from an empty cloud, and with other noise than
-/// the survey of that seed had. Of a scanner that measures in flight the views are its scans.
+/// Computes the coverage of a simulated re-flight of `views`, starting with an empty cloud. The
+/// noise differs from that of the survey with this seed. For continuously measuring scanners,
+/// `views` are the scans.
 CoveredAgain covered_when_flown_again(const evaluation::SimulationOptions& options,
                                       const evaluation::SurveyScene& scene,
                                       const std::vector<session::ViewInFlight>& views,

@@ -23,9 +23,10 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::View;
 
-constexpr std::uint64_t sample_seed = 2;  // other samples than coverage is measured by
+// Gives other samples than those of the coverage measurement.
+constexpr std::uint64_t sample_seed = 2;
 
-/// A place that a candidate sees, and the hazard of its look.
+/// Sample observed by a candidate, and the hazard of the observation.
 struct Look {
   std::uint32_t sample;
   float hazard;
@@ -37,7 +38,7 @@ survey::skycap::Noise true_noise(const sim::NoiseConfig& noise) {
              : survey::skycap::Noise{.isotropic = 0.0, .along_ray = noise.sigma};
 }
 
-/// Weighs views by the true surface.
+/// Evaluation of views with the ground-truth surface.
 class Truth {
  public:
   Truth(const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
@@ -60,7 +61,7 @@ class Truth {
 
   std::size_t size() const { return points_.size(); }
 
-  /// Views that the mission allows, each aimed at a random place.
+  /// Returns admissible views, each aimed at a random sample.
   std::vector<View> candidates(std::size_t count, std::uint64_t seed) const {
     const std::vector<Vector3d> directions =
         evaluation::fibonacci_directions(admissible_.directions);
@@ -106,7 +107,8 @@ class Truth {
   std::vector<Vector3f> points_, normals_;
 };
 
-/// Expected newly covered places of a look, given what the looks before leave uncovered.
+/// Returns the expected number of newly covered samples, given the uncovered fractions after
+/// previous observations.
 double gain_of(const std::vector<Look>& looks, const std::vector<float>& uncovered) {
   double gain = 0.0;
   for (const Look& look : looks) gain += uncovered[look.sample] * (1.0F - std::exp(-look.hazard));
@@ -117,7 +119,7 @@ void cover(const std::vector<Look>& looks, std::vector<float>& uncovered) {
   for (const Look& look : looks) uncovered[look.sample] *= std::exp(-look.hazard);
 }
 
-/// A short open way through all views from the first: nearest neighbour, then 2-opt.
+/// Returns a short open tour from the first view through all others: nearest neighbour, then 2-opt.
 std::vector<std::size_t> short_tour(const std::vector<View>& views) {
   const auto way = [&](std::size_t a, std::size_t b) {
     return (views[a].position - views[b].position).norm();
@@ -148,7 +150,7 @@ std::vector<std::size_t> short_tour(const std::vector<View>& views) {
   return order;
 }
 
-/// The views of the greedy cover, the first view first.
+/// Returns the views of the greedy cover, starting with the first view.
 std::vector<View> greedy_cover(const evaluation::SimulationOptions& options,
                                const evaluation::SurveyScene& scene, std::uint64_t seed,
                                unsigned threads, const OmniscientConfig& config,

@@ -1,5 +1,5 @@
-/// The reference that planners are measured against. It knows the truth, which no planner may: it
-/// picks views by what they really see, and is therefore no planner and not in survey/.
+/// Reference (oracle) for the evaluation of planners. It selects views by their ground-truth
+/// visibility. It is not part of survey/ because planners must not know the ground truth.
 #pragma once
 
 #include <cstddef>
@@ -16,27 +16,27 @@
 namespace skycap::missions::simulation {
 
 struct OmniscientConfig {
-  std::size_t candidates = 1500;  ///< views that it picks from, each aimed at a visible place
-  std::size_t samples = 8000;     ///< of the surface, that candidates are weighed by
-  /// Ends when the measurements cover this share of the surface. Nothing: when no view promises
-  /// `options.oracle.least_gain` of the visible surface any more.
+  std::size_t candidates = 1500;  ///< Number of candidate views, each aimed at a visible position.
+  std::size_t samples = 8000;     ///< Number of surface samples for evaluating candidates.
+  /// Fraction of the surface at which the selection ends. If empty, it ends when no view adds at
+  /// least `options.oracle.least_gain` of the visible surface.
   std::optional<double> wanted_coverage;
 };
 
-/// Views that cover the scene for one who knows it, in the order of the tour; see
-/// survey_omnisciently(), which takes them. Nothing is measured unless a coverage is wanted.
+/// Returns the views selected by survey_omnisciently() in tour order. Nothing is measured unless
+/// `wanted_coverage` is set.
 std::vector<geometry::View> known_cover(const evaluation::SimulationOptions& options,
                                         const evaluation::SurveyScene& scene, std::uint64_t seed,
                                         unsigned threads, const OmniscientConfig& config = {});
 
-/// Surveys the mission's scene knowing all of it: from the mission's first view with that seed, a
-/// greedy cover of the surface by the candidates, flown along a short open tour. How much of a
-/// place a look covers follows from the true noise (survey/dose_model.h); what is reported was
+/// Surveys the mission's scene with full knowledge of it: a greedy cover of the surface by the
+/// candidates, starting with the mission's first view for `seed`, flown along a short open tour.
+/// The coverage of an observation follows from the true noise (survey/dose_model.h). Results are
 /// measured by the simulated sensor and stored at the mission's spacing.
 ///
-/// `record.views` is in the order of the tour. Greedy covers are not optimal, and neither is the
-/// tour, so this bounds the best possible survey from above. Keeps the mission's limits. Throws
-/// what the sensor throws.
+/// `record.views` is in tour order. Greedy cover and tour are not optimal. The number of views and
+/// the distance are therefore upper bounds on those of the best survey. The mission's limits apply.
+/// Throws all errors of the sensor.
 session::SurveyRecord survey_omnisciently(const evaluation::SimulationOptions& options,
                                           const evaluation::SurveyScene& scene, std::uint64_t seed,
                                           unsigned threads, const OmniscientConfig& config = {},

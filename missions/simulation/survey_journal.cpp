@@ -21,7 +21,7 @@ using support::json_of;
 using support::vector_of;
 using Json = nlohmann::ordered_json;
 
-/// The surface's samples stand for the mesh that was found under the model's name.
+/// Identifies the mesh by its samples, because the file of a model may change.
 std::string digest_of(const evaluation::SurveyScene& scene) {
   return support::sha256(std::as_bytes(std::span<const Eigen::Vector3f>(scene.samples().points)));
 }

@@ -1,10 +1,10 @@
-/// What a simulated survey writes down while it runs, so that one that was interrupted, by Ctrl-C,
-/// a kill or a power cut, is continued with the same result as if nothing had happened.
+/// Journal of a simulated survey. A survey interrupted by Ctrl-C, a kill or a power failure can be
+/// resumed with an identical result.
 ///
-/// The first record says which survey it is: version, seed, surface, all keys. Then comes one for
-/// each view: where it was taken, what it measured and added, and the way to the next one. Scans
-/// are not written: the simulated sensor measures the same again, and the planner, told the same,
-/// plans the same, which is checked view by view. Ways are not looked for again.
+/// The first record identifies the survey: version, seed, surface, all keys. Each further record
+/// describes a view: its pose, the numbers of measured and added points, and the path to the next
+/// view. Scans are not stored: the simulated sensor reproduces them, and the planner reproduces its
+/// plans, which is checked for each view. Paths are not planned again.
 #pragma once
 
 #include <cstddef>
@@ -22,32 +22,32 @@
 
 namespace skycap::missions::simulation {
 
-/// The journal's name in the folder of the results; it goes when the survey has ended.
+/// File name in the results folder. The file is removed at the end of the survey.
 inline constexpr const char* journal_name = "survey.journal";
 
 class SurveyJournal {
  public:
-  /// Of a survey that begins: the file is made, in place of what was there, after the first view.
-  /// Of one that continues (`resumes`): reads the file, if there is one. Throws Error{bad_file}
-  /// naming the file if it is of another survey, saying what is different, or not sound.
+  /// For a new survey, the file is created after the first view and replaces an existing one. With
+  /// `resumes`, an existing file is read. Throws Error{bad_file} naming the file if it is damaged
+  /// or belongs to another survey; the message lists the differences.
   SurveyJournal(std::filesystem::path file, const support::Identity& run,
                 const evaluation::SurveyScene& scene, bool resumes);
 
-  /// Views that the file already had.
+  /// Returns the number of views already in the file.
   std::size_t views() const { return known_.size(); }
 
-  /// Has a survey do again what the file says, and write down what it does after that. `flight`
-  /// may be null; both must outlive the survey. What the ports then throw: Error{bad_file} if the
-  /// survey goes another way than the file, or the file cannot be written.
+  /// Modifies the ports so that the survey replays the recorded views and records all later ones.
+  /// `flight` may be null. `ports` and `flight` must outlive the survey. The ports then throw
+  /// Error{bad_file} if the survey deviates from the file or the file cannot be written.
   void attach(survey::SurveyPorts& ports, session::SurveyFlight* flight);
 
  private:
-  /// A view that was taken and what came of it.
+  /// View and its results.
   struct ViewRecord {
     geometry::View view;
-    std::size_t returns = 0;     ///< of the scan
-    std::size_t points = 0;      ///< kept so far
-    session::ReachRecord reach;  ///< of the views proposed after it
+    std::size_t returns = 0;     ///< Number of returns of the scan.
+    std::size_t points = 0;      ///< Number of points in the cloud after the view.
+    session::ReachRecord reach;  ///< Reachability of the views proposed after it.
   };
 
   static std::string text_of(const ViewRecord& record);
@@ -59,10 +59,10 @@ class SurveyJournal {
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path file_;
-  std::string identity_;  ///< the first record
+  std::string identity_;  ///< First record of the journal.
   std::optional<geometry::RecordLog> log_;
   std::vector<ViewRecord> known_;
-  std::size_t at_ = 0;  ///< number of the view that the survey is at
+  std::size_t at_ = 0;  ///< Index of the current view.
   ViewRecord current_;
   session::ReachMemory reach_;
 };

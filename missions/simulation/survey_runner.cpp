@@ -15,13 +15,13 @@ namespace skycap::missions::simulation {
 
 namespace {
 
-/// Where the sensor of a survey is when, and how it moves there.
+/// Time and motion of the sensor during a survey.
 class SurveyClock {
  public:
-  /// `flight` may be null: then a view takes no time.
+  /// `flight` may be null; views then take no time.
   explicit SurveyClock(const session::SurveyFlight* flight) : flight_(flight) {}
 
-  /// The frames of the way that is flown next.
+  /// Returns the en-route views of the next path.
   std::vector<geometry::View> begin_way(const geometry::View& from, const geometry::View& to) {
     frames_ = flight_->frames(from, to);
     next_frame_ = 0;
@@ -30,7 +30,7 @@ class SurveyClock {
     return views;
   }
 
-  /// The next one of them.
+  /// Returns the next en-route view.
   session::ViewInFlight on_way() {
     session::ViewInFlight frame = frames_.at(next_frame_++);
     frame.time += now_;
@@ -86,7 +86,8 @@ session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
       return clock.begin_way(from, to);
     };
   }
-  if (guided.flight() == nullptr) {  // else ways there are proven as measured
+  // With a vehicle, paths are verified in the measured space instead.
+  if (guided.flight() == nullptr) {
     ports.can_reach = [&scene](const Eigen::Vector3d&, const geometry::View& view) {
       return scene.is_reachable(view.position);
     };
@@ -103,7 +104,7 @@ session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
       survey::run_survey(guided.planner(), first_view, guided.limits(), ports, std::move(stop))
           .stop_reason;
   guided.finish(record);
-  // Less what came after the last view, if planning was interrupted.
+  // Removes points measured after the last view if planning was interrupted.
   record.cloud.positions.resize(points_judged);
   record.cloud.views.resize(points_judged);
   record.is_covered = meter.is_covered();

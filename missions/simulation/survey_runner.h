@@ -1,4 +1,4 @@
-/// One simulated survey of a mission, judged while it runs.
+/// Simulation of one survey of a mission with evaluation of each view.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,13 @@
 
 namespace skycap::missions::simulation {
 
-/// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
-/// record does not depend on the threads but for its times. A mission with a vehicle goes only to
-/// views that it can safely reach; without one, whatever the planner, only to places that
-/// scene.is_reachable() knows a way to. `report` is told of each view; it may be empty. Throws what
-/// planner, sensor and session::SurveyFlight throw. With a journal the survey is written down, and
-/// goes on where the journal's ended: the record is the same but for its times.
+/// Surveys the mission's scene with `seed` and `threads` threads (0: all processors). The record
+/// does not depend on the number of threads except for its times.
+///
+/// Missions with a vehicle use only views that the vehicle can reach safely. Other missions use
+/// only positions for which scene.is_reachable() is true. `report` (optional) is called after each
+/// view. With a journal, the survey is recorded and resumes where the journal ends; the record is
+/// the same except for its times. Throws all errors of planner, sensor and session::SurveyFlight.
 session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
                                  const evaluation::SurveyScene& scene, std::uint64_t seed,
                                  unsigned threads, std::stop_token stop = {},

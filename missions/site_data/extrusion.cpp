@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 using Corners = std::vector<Vector3d>;
 
-/// Positive if the ring is counter-clockwise from above.
+/// Returns the signed area, positive for rings that are counter-clockwise from above.
 double area_of(std::span<const Vector3d> ring) {
   double sum = 0.0;
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
@@ -36,7 +36,7 @@ void add_wall(Object& object, const Vector3d& from, const Vector3d& to, const Ve
 bool add_extruded(Object& object, std::span<const Vector3d> bottom, std::span<const Vector3d> top,
                   std::span<const std::uint32_t> begin) {
   Corners floor(bottom.begin(), bottom.end()), roof(top.begin(), top.end());
-  for (std::size_t r = 0; r + 1 < begin.size(); ++r) {  // holes the other way round
+  for (std::size_t r = 0; r + 1 < begin.size(); ++r) {  // Holes have the opposite orientation.
     const auto from = static_cast<std::ptrdiff_t>(begin[r]),
                to = static_cast<std::ptrdiff_t>(begin[r + 1]);
     const bool is_ccw = area_of(bottom.subspan(begin[r], begin[r + 1] - begin[r])) > 0.0;

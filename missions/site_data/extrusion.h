@@ -1,4 +1,4 @@
-/// Solids over flat outlines: what maps know of buildings.
+/// Extrusion of flat building outlines to solids.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace skycap::missions::site_data {
 
-/// Adds the solid between an outline with holes (rings as in geometry::add_polygon) and the same
-/// at another height: `top[i]` is above `bottom[i]`. Floor, roof and walls face outwards. False if
-/// the outline has no area; nothing is added then.
+/// Adds the solid between an outline with holes and the same outline at another height. Rings are
+/// as in geometry::add_polygon(), and `top[i]` is above `bottom[i]`. Floor, roof and walls face
+/// outwards. Returns false and adds nothing if the outline has zero area.
 bool add_extruded(Object& object, std::span<const Eigen::Vector3d> bottom,
                   std::span<const Eigen::Vector3d> top, std::span<const std::uint32_t> begin);
 

@@ -34,7 +34,7 @@ bool begins_with_one_of(string_view text, std::initializer_list<string_view> wan
   return std::ranges::any_of(wanted, [&](string_view begin) { return text.starts_with(begin); });
 }
 
-/// The local name of an XML text's first element; empty if it is no XML.
+/// Returns the local name of the root element; empty if the text is not XML.
 string_view root_of(string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == string_view::npos || text[first] != '<') return {};
@@ -53,14 +53,15 @@ string_view root_of(string_view text) {
 std::optional<Format> format_of_xml(string_view root, string_view text) {
   if (root == "CityModel") return Format::citygml;
   if (root == "FeatureCollection" && text.find("citygml") != string_view::npos) {
-    return Format::citygml;  // what feature servers answer with
+    return Format::citygml;  // Response format of feature servers.
   }
   if (root == "kml" || root == "osm") return Format::map;
   if (root == "COLLADA") return Format::scene;
   return std::nullopt;
 }
 
-/// By the words that GDAL knows Arc/Info's grids by; other text in .asc is a cloud.
+/// Detects Arc/Info grids by the keywords that GDAL recognises. Other text in .asc files is a
+/// cloud.
 bool is_ascii_grid(string_view beginning) {
   const std::string text = geometry::lower_case(beginning.substr(0, 40));
   return begins_with_one_of(text, {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter",
@@ -101,28 +102,28 @@ std::optional<Format> format_by_ending(const std::string& ending, Role role) {
     return Format::map;
   }
   if (is_one_of(ending, {".tif", ".tiff", ".jp2"})) return Format::raster;
-  // Surveys give terrain as lines of x y z, on a grid.
+  // Terrain is commonly distributed as gridded lines of x y z.
   if (ending == ".xyz") return role == Role::terrain ? Format::raster : Format::cloud;
   return std::nullopt;
 }
 
-/// Where a JSON text's string that begins at `quote` ends: behind its closing quote.
+/// Returns the position after the closing quote of the JSON string that starts at `quote`.
 std::size_t end_of_string(string_view text, std::size_t quote) {
   std::size_t place = quote + 1;
   while (place < text.size() && text[place] != '"') place += text[place] == '\\' ? 2 : 1;
   return std::min(place + 1, text.size());
 }
 
-/// What the outermost object of a JSON text says that it is.
+/// Type information in the outermost object of a JSON text.
 struct JsonKind {
-  string_view type;        ///< the value of its key "type"
-  bool has_asset = false;  ///< as glTF has to
+  string_view type;        ///< Value of the key "type".
+  bool has_asset = false;  ///< Has the key "asset", which glTF requires.
 };
 
 JsonKind kind_of_json(string_view text) {
   JsonKind kind;
   int depth = 0;
-  string_view key;  // whose value comes next
+  string_view key;  // Key of the next value.
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
@@ -159,13 +160,14 @@ std::string beginning_of(const fs::path& file) {
   return bytes;
 }
 
-// What is made of them takes three times as much, and up to twenty times.
+// Parse trees of CityGML take three times the size of the text, those of CityJSON up to twenty
+// times.
 constexpr std::size_t largest_citygml = std::size_t{512} << 20,
                       largest_cityjson = std::size_t{128} << 20;
 
 struct Opened {
   Format format;
-  std::string bytes;  ///< all of them, of formats that are parsed whole
+  std::string bytes;  ///< Complete contents, for formats that are parsed as a whole.
 };
 
 Opened open_file(const fs::path& file, Role role) {
@@ -260,7 +262,7 @@ FileContents scene_contents(const Source& source) {
   const std::string ending = geometry::ending_of(file);
   const bool is_gltf =
       ending == ".gltf" || ending == ".glb" || begins_with_one_of(beginning_of(file), {"glTF"});
-  // What assimp would pass over is known before it reads.
+  // Properties that Assimp ignores are checked before it reads the file.
   SceneFacts facts = is_gltf ? gltf_facts(file, gltf_json(file)) : SceneFacts{};
   FileContents contents = read_scene(file);
   if (ending == ".ifc") {
@@ -301,7 +303,7 @@ FileContents parsed(Opened opened, const Source& source, const SiteFrame& site) 
   return cloud_contents(source);
 }
 
-/// Whether it holds neither points nor nodes of a raster.
+/// Returns true for formats with objects, not with points or raster nodes.
 bool holds_objects(Format format) {
   return format == Format::citygml || format == Format::cityjson || format == Format::map ||
          format == Format::scene || format == Format::mesh;
@@ -312,7 +314,7 @@ thread_local ReadOnce* read_once = nullptr;
 }  // namespace
 
 SharedContents read_contents(const Source& source, const SiteFrame& site) {
-  std::error_code ignored;  // the reader says what is wrong with the file
+  std::error_code ignored;  // The reader reports file errors.
   const std::string key =
       fmt::format("{}\n{}\n{}\n{}", fs::canonical(source.file, ignored).string(),
                   source.select.layer, source.height_attribute, source.unit.has_value());
@@ -321,7 +323,8 @@ SharedContents read_contents(const Source& source, const SiteFrame& site) {
   }
   Opened opened = open_file(source.file, source.role);
   const bool keeps = read_once != nullptr && holds_objects(opened.format);
-  if (keeps) read_once->contents_.reset();  // two may be more than memory holds
+  // Free the old contents first because two files may exceed the memory.
+  if (keeps) read_once->contents_.reset();
   auto contents = std::make_shared<FileContents>(parsed(std::move(opened), source, site));
   if (keeps) {
     read_once->key_ = key;

@@ -1,4 +1,5 @@
-/// Any file of prior data, by its content and then by its ending.
+/// Reader of prior data in all formats. The format is detected from the contents, then from the
+/// file name extension.
 #pragma once
 
 #include <memory>
@@ -9,17 +10,17 @@
 
 namespace skycap::missions::site_data {
 
-/// Contents of a file. Points and nodes belong to the caller alone, who may change them; all else
-/// may be shared, see ReadOnce.
+/// Contents of a file. The caller may modify the points and nodes; all other members may be shared
+/// with other callers, see ReadOnce.
 using SharedContents = std::shared_ptr<FileContents>;
 
-/// What the file holds, in its own coordinates; clouds are thinned to the source's spacing. Throws
-/// Error{bad_file} if it is broken, too large or of no known format.
+/// Reads the contents of a file in its own coordinates. Clouds are downsampled to the source's
+/// spacing. Throws Error{bad_file} if the file is damaged, too large or of an unknown format.
 SharedContents read_contents(const Source& source, const SiteFrame& site);
 
-/// While one lives, its thread does not parse a file of objects again that it has parsed last: a
-/// map may be the target, an obstacle, and asked for its own position. Holds the contents of one
-/// file; clouds and rasters are read each time. Has no effect within the life of another one.
+/// Cache for the last object file that the thread has parsed, active during the lifetime of the
+/// object. A map can be target, obstacle and source of the site's position at the same time. The
+/// cache contains one file. Clouds and rasters are not cached. A nested object has no effect.
 class ReadOnce {
  public:
   ReadOnce();
@@ -30,7 +31,7 @@ class ReadOnce {
  private:
   friend SharedContents read_contents(const Source& source, const SiteFrame& site);
 
-  std::string key_;  ///< all that the contents depend on
+  std::string key_;  ///< All parameters that the contents depend on.
   SharedContents contents_;
 };
 

@@ -19,15 +19,15 @@ const Vector3f& node_of(const HeightGrid& grid, std::size_t row, std::size_t lin
   return grid.nodes[row * grid.columns + line];
 }
 
-/// A place beside a node, in cells, at the node's height.
+/// Returns a position offset from a node by `across` and `down` cells, at the node's height.
 Vector3d beside(const HeightGrid& grid, const Vector3f& node, float across, float down) {
   const Eigen::Vector2f place = node.head<2>() + across * grid.right + down * grid.down;
   return Vector3f(place.x(), place.y(), node.z()).cast<double>();
 }
 
-/// Over the part of the grid from row `top` - 1 to row `top` + `step` - 1 and from line `left` - 1
-/// on, as far as cells reach: of the first node's cell the half behind it belongs to that part, of
-/// the last node's the half before it.
+/// Returns the box over the part of the grid that starts at row `top` - 1 and column `left` - 1 and
+/// has `step` cells in each direction. At its start it includes only the second half of the first
+/// cell, at its end only the first half of the last cell.
 AlignedBox3d column_of(const HeightGrid& grid, std::size_t top, std::size_t left,
                        std::size_t step) {
   AlignedBox3d column;
@@ -48,7 +48,7 @@ AlignedBox3d column_of(const HeightGrid& grid, std::size_t top, std::size_t left
   return column;
 }
 
-/// The highest node around one, at the place of that one.
+/// Returns the maximum height of the nodes around a node, at the position of that node.
 Vector3f highest_around(const HeightGrid& grid, std::size_t row, std::size_t line,
                         std::size_t reach) {
   Vector3f highest = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
@@ -65,15 +65,15 @@ Vector3f highest_around(const HeightGrid& grid, std::size_t row, std::size_t lin
   return highest;
 }
 
-/// The square between four nodes, as far as they are there and have heights: above left, above
-/// right, below left, below right.
+/// Square between four nodes: upper left, upper right, lower left, lower right. Nodes that do not
+/// exist or have no height are empty.
 using Square = std::array<std::optional<Vector3f>, 4>;
 
-/// The square whose node below right is at that row and line, or would be.
+/// Returns the square whose lower right node is at the given row and column.
 Square square_at(const HeightGrid& grid, std::size_t row, std::size_t line) {
   Square square;
   for (std::size_t i = 0; i < square.size(); ++i) {
-    const std::size_t r = row + i / 2, c = line + i % 2;  // one too large
+    const std::size_t r = row + i / 2, c = line + i % 2;  // Offset by one.
     if (r == 0 || c == 0 || r > grid.rows || c > grid.columns) continue;
     const Vector3f& node = node_of(grid, r - 1, c - 1);
     if (node.allFinite()) square[i] = node;
@@ -81,8 +81,8 @@ Square square_at(const HeightGrid& grid, std::size_t row, std::size_t line) {
   return square;
 }
 
-/// A place of the square that is `across` and `down` of its sides from each node's own corner,
-/// towards the middle: the mean of what the nodes in `of` say of it.
+/// Returns a position in the square, `across` and `down` from each corner towards the centre. It is
+/// the mean of the positions relative to the nodes in `of`.
 Vector3d place_in(const HeightGrid& grid, const Square& square,
                   std::initializer_list<std::size_t> of, float across, float down) {
   Vector3d sum = Vector3d::Zero();

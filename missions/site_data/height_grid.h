@@ -1,7 +1,8 @@
-/// Heights on a grid: rasters of the ground or of what stands on it, in the site's frame.
+/// Height grids: rasters of the ground or of objects on it, in the site frame.
 ///
-/// A height is that of a whole cell, half a cell each way from its node; between nodes the surface
-/// is taken to be straight. What lies beside a node without a height still has its half cell.
+/// The height of a node applies to its whole cell, which extends half a cell in each direction.
+/// Between nodes, the surface is interpolated linearly. Cells without complete neighbours keep
+/// their half cells.
 #pragma once
 
 #include <cstddef>
@@ -14,31 +15,33 @@
 
 namespace skycap::missions::site_data {
 
-/// In the site's frame it is a little curved and turned: hence all nodes.
+/// Grid of heights. All nodes are stored because the grid is slightly curved and rotated in the
+/// site frame.
 struct HeightGrid {
   std::size_t columns = 0, rows = 0;
-  std::vector<Eigen::Vector3f> nodes;  ///< middles of cells, row by row; NaN: the file has none
-  /// From a node to the next in its row, and to that below it: the same all over the grid, but for
-  /// a few thousandths.
+  std::vector<Eigen::Vector3f> nodes;  ///< Cell centres, row by row; NaN for cells without height.
+  /// Steps to the next node in the row and to the node in the next row. They are constant over the
+  /// grid within a few thousandths.
   Eigen::Vector2f right = Eigen::Vector2f::Zero(), down = Eigen::Vector2f::Zero();
 };
 
-/// Of how many nodes one is kept, each way, so that of large grids at most two million are.
+/// Returns the step for downsampling in each direction, such that at most two million nodes of a
+/// large grid remain.
 std::size_t step_of(const HeightGrid& grid);
 
-/// Every `step`-th node each way, and the last, as high as the highest node less than a step or one
-/// step away: its surface is nowhere below the grid's.
+/// Keeps every `step`-th node in each direction and the last one. Each node gets the maximum height
+/// of all nodes within `step` nodes, so that the surface is nowhere below that of `grid`.
 HeightGrid thinned(const HeightGrid& grid, std::size_t step);
 
-/// Upright boxes over all cells, as high as the highest height that meets each. Their lower ends
-/// mean nothing. Of large grids one box is over step_of() cells each way.
+/// Returns vertical boxes over all cells, each with the maximum height that touches it. Their lower
+/// ends are arbitrary. In large grids, a box covers step_of() cells in each direction.
 std::vector<Eigen::AlignedBox3d> columns_of(const HeightGrid& grid);
 
-/// The triangles between nodes, two in each square of four that all have heights.
+/// Returns two triangles for each square of four nodes with heights.
 std::vector<flight::Triangle> triangles_of(const HeightGrid& grid);
 
-/// The level rest of the cells that triangles_of() leaves out: at the border of the grid,
-/// and beside nodes without heights.
+/// Returns horizontal triangles for the parts of cells that triangles_of() does not cover: at the
+/// border of the grid and next to nodes without heights.
 std::vector<flight::Triangle> rim_of(const HeightGrid& grid);
 
 }  // namespace skycap::missions::site_data

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Flat outlines on the ground have no heights to transform.
+/// Returns false for flat outlines on the terrain, which have no heights to transform.
 bool needs_heights(const Source& source, const FileContents& contents) {
   return !(contents.is_outlines && source.base_on_terrain);
 }
@@ -68,8 +68,8 @@ ObjectBuilder::Rings ObjectBuilder::rings_of(const FileObject& object) const {
   return rings;
 }
 
-/// Polygons with heights of their own are surfaces, unless they are put on the terrain or given
-/// a height.
+/// Returns false for polygons with their own heights, which are surfaces, unless they are placed on
+/// the terrain or have a height attribute.
 bool ObjectBuilder::is_extruded(const FileObject& object) const {
   const bool is_put = source_.base_on_terrain || source_.height || object.height;
   return contents_.is_outlines && !object.polygons.empty() && (!object.has_heights || is_put);
@@ -87,17 +87,17 @@ void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {
   }
 }
 
-/// How high an outline's solid is above its base [m].
+/// Returns the height of an outline's solid above its base [m].
 double ObjectBuilder::height_of(const FileObject& object) const {
   const std::string name = source_.file.string() + ": ";
-  // Another height in its place might be lower than what is there.
+  // Another height could be lower than the actual one.
   if (!object.height_problem.empty()) {
     throw Error(ErrorKind::bad_config, name + one_line(object.id) + " " +
                                            one_line(object.height_problem) +
                                            "; correct it, or exclude the object with select");
   }
   std::optional<double> height = source_.height ? source_.height : object.height;
-  // What is in the way is as high as anybody says.
+  // Obstacles get the maximum of all stated heights.
   if (source_.role == Role::obstacle && object.height) {
     height = std::max(*height, *object.height);
   }
@@ -131,8 +131,9 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
   add_columns(bottom, top, result);
 }
 
-/// The solid from a polygon with heights, on top, down to the ground. Where no terrain is known it
-/// reaches below the plane that is taken for the ground: an obstacle by more than any slope.
+/// Adds the solid between a polygon with heights (top) and the ground. Where the terrain is
+/// unknown, it extends below the assumed ground plane. For obstacles, the depth exceeds that of any
+/// slope.
 void ObjectBuilder::add_draped(const FileObject& object, Object& result) {
   constexpr double below_plane = 100.0;  // [m]
   has_extruded_ = true;
@@ -158,7 +159,7 @@ void ObjectBuilder::add_draped(const FileObject& object, Object& result) {
   add_columns(bottom, top, result);
 }
 
-/// z of the lowest ground below the corners; infinite where it is not known.
+/// Returns the minimum ground height below the corners; infinite where it is unknown.
 double ObjectBuilder::ground_below(std::span<const Vector3d> corners) const {
   double lowest = std::numeric_limits<double>::infinity();
   for (const Vector3d& corner : corners) {
@@ -185,7 +186,7 @@ void ObjectBuilder::add_columns(const Rings& bottom, const Rings& top, Object& r
 void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, double least,
                                   double most) const {
   const double unit = transform_.metres_per_unit().z();
-  double base = std::numeric_limits<double>::infinity();  // in the file's units
+  double base = std::numeric_limits<double>::infinity();  // In the file's units.
   if (source_.base) {
     base = *source_.base / unit;
   } else if (has_heights) {

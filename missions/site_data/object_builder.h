@@ -1,4 +1,4 @@
-/// From a file's polygons and meshes to objects in the site's frame.
+/// Conversion of a file's polygons and meshes to objects in the site frame.
 #pragma once
 
 #include "missions/site_data/formats/file_contents.h"
@@ -8,14 +8,14 @@
 
 namespace skycap::missions::site_data {
 
-/// Builds the objects of one file, one after the other.
+/// Builder of the objects of one file.
 class ObjectBuilder {
  public:
-  /// All must outlive the builder. Throws what SiteTransform throws.
+  /// All arguments must outlive the builder. Throws all errors of SiteTransform.
   ObjectBuilder(const Source& source, const FileContents& contents, const SiteFrame& site,
                 const TerrainHeight& terrain);
 
-  /// Throws Error{bad_config} if outlines lack a base or a height.
+  /// Builds an object. Throws Error{bad_config} if an outline has no base or height.
   Object build(const SelectedObject& selected);
 
   const SiteTransform& transform() const { return transform_; }
@@ -26,9 +26,9 @@ class ObjectBuilder {
  private:
   struct Rings {
     std::vector<Eigen::Vector3d> corners;
-    std::vector<std::uint32_t> begin{0};  ///< as in geometry::add_polygon
-    std::vector<std::size_t> first_ring;  ///< of each polygon
-    std::vector<SurfaceKind> kinds;       ///< of each polygon
+    std::vector<std::uint32_t> begin{0};  ///< Ring offsets as in geometry::add_polygon().
+    std::vector<std::size_t> first_ring;  ///< First ring of each polygon.
+    std::vector<SurfaceKind> kinds;       ///< Surface kind of each polygon.
   };
 
   Rings rings_of(const FileObject& object) const;
@@ -45,7 +45,7 @@ class ObjectBuilder {
   const Source& source_;
   const FileContents& contents_;
   const TerrainHeight& terrain_;
-  double ground_z_;  ///< of the plane that is the ground where no terrain is known
+  double ground_z_;  ///< Height of the ground plane where the terrain is unknown [m].
   SiteTransform transform_;
   std::size_t dropped_ = 0;
   bool has_extruded_ = false;

@@ -18,10 +18,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Whether an object has anything at the level that is asked for.
+/// Returns true if the object has no surface at the requested level of detail.
 bool is_empty(const Object& object) { return object.mesh.triangles.empty(); }
 
-/// The region of `select.within`, in the site's frame.
+/// Region of `select.within` in the site frame.
 class Region {
  public:
   Region(const Source& source, const SiteFrame& site) {
@@ -43,7 +43,7 @@ class Region {
       fail_file(polygons.file, "contains no polygons; select.within requires them");
   }
 
-  /// Without a file everything is inside. A ring within a ring is a hole.
+  /// Returns true for all positions if there is no file. Rings within rings are holes.
   bool contains(const Vector2d& place) const {
     bool is_inside = rings_.empty();
     for (const std::vector<Vector2d>& ring : rings_) {
@@ -56,7 +56,8 @@ class Region {
   std::vector<std::vector<Vector2d>> rings_;
 };
 
-/// Returns what stand-ins for the way to WGS84 may be off [m].
+/// Adds the selected objects. Returns the maximum error of substitute operations in the conversion
+/// to WGS84 [m].
 double add_objects(const Source& source, const SiteFrame& site, const FileContents& contents,
                    const Region& region, const TerrainHeight& terrain, Prior& prior) {
   ObjectBuilder builder(source, contents, site, terrain);
@@ -95,7 +96,7 @@ void add_points(FileContents& contents, const SiteTransform& transform, const Re
   }
 }
 
-/// From node to node about the middle of the raster.
+/// Sets the steps between nodes at the centre of the raster.
 void add_steps(const FileContents& contents, const SiteTransform& transform, HeightGrid& grid) {
   const std::size_t middle = contents.rows / 2 * contents.columns + contents.columns / 2;
   const Vector2d here = contents.nodes[middle].head<2>();
@@ -109,10 +110,10 @@ void add_steps(const FileContents& contents, const SiteTransform& transform, Hei
   grid.down = (places[2] - places[0]).head<2>().cast<float>();
 }
 
-/// What no ground on the Earth is outside of, in metres above any datum.
+/// Range of ground heights on the Earth above any datum [m].
 constexpr double lowest_ground = -500.0, highest_ground = 9000.0;
 
-/// Takes heights away that are none: marks of nothing that the file does not declare.
+/// Removes impossible heights, which are undeclared nodata values.
 void drop_impossible_heights(const Source& source, const SiteTransform& transform,
                              FileContents& contents, Prior& prior) {
   const double unit = transform.metres_per_unit().z();
@@ -163,7 +164,7 @@ void add_grid(FileContents& contents, const SiteTransform& transform, const Regi
   }
 }
 
-/// Calls `visit` with every place of a prior.
+/// Calls `visit` with every position of a prior.
 template <typename Visit>
 void visit_places(const Prior& prior, const Visit& visit) {
   for (const Object& object : prior.objects) {
@@ -175,8 +176,8 @@ void visit_places(const Prior& prior, const Visit& visit) {
   }
 }
 
-/// Box and heights. The lowest and the highest place are found on a ball, which puts no two places
-/// of a site that differ by a millimetre the other way round within a kilometre.
+/// Computes box and height range. The lowest and highest positions are found on a sphere, which
+/// preserves the order of heights that differ by at least one millimetre within a kilometre.
 void measure(const SiteFrame& site, Prior& prior) {
   constexpr double earth_radius = 6.371e6;
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -197,7 +198,7 @@ void measure(const SiteFrame& site, Prior& prior) {
   prior.sea_level_heights = {low.height - *site.undulation, high.height - *site.undulation};
 }
 
-/// Warns of a size that mostly comes from a wrong unit or a lost reference system.
+/// Warns of an extent that typically indicates a wrong unit or a missing reference system.
 void warn_of_size(Prior& prior) {
   constexpr double smallest = 1.0, largest = 5000.0;
   const double size = prior.box.sizes().maxCoeff();
@@ -212,7 +213,8 @@ void warn_of_size(Prior& prior) {
   }
 }
 
-/// Counts objects without an area, which are in the way of nothing, and refuses a file of such.
+/// Adds a note with the number of objects without area, which are not obstacles. Throws if all
+/// objects are of this kind.
 void note_flat_objects(const Source& source, Prior& prior) {
   const auto is_nothing = [](const Object& object) { return !has_area(object.mesh); };
   const auto count = std::ranges::count_if(prior.objects, is_nothing);
@@ -223,7 +225,7 @@ void note_flat_objects(const Source& source, Prior& prior) {
   prior.notes.push_back(std::to_string(count) + " objects without an area are ignored");
 }
 
-/// Throws unless the file has what the role needs.
+/// Throws unless the file contains the data that its role requires.
 void require_use(const Source& source, const Prior& prior) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorKind::bad_config, source.file.string() + ": " + what);
@@ -279,7 +281,7 @@ Prior prior_of(const SharedContents& shared, const Source& source, const SiteFra
   return prior;
 }
 
-/// All coordinates of what is selected of a file.
+/// Returns all selected coordinates of a file.
 std::vector<Vector3d> places_of(const Source& source, const FileContents& contents) {
   std::vector<Vector3d> places = contents.points;
   places.insert(places.end(), contents.nodes.begin(), contents.nodes.end());
@@ -308,7 +310,7 @@ flight::GeodeticPoint middle_of(const Source& source, const FileContents& conten
   std::vector<Vector3d> places = places_of(source, contents);
   for (Vector3d& place : places) place.z() = 0.0;
   transform.to_geodetic(places);
-  Eigen::AlignedBox2d box;  // longitudes within half a turn of the first
+  Eigen::AlignedBox2d box;  // Longitudes are within 180 degrees of the first.
   std::optional<double> first;
   for (const Vector3d& place : places) {
     if (!place.head<2>().allFinite()) continue;
@@ -337,14 +339,15 @@ Source completed(Source source, const Assumptions& assumed) {
   const SharedContents shared = read_contents(source, {});
   const FileContents& contents = *shared;
   if (contents.crs.empty()) source.crs = assumed.crs;
-  if (contents.crs.empty() && source.crs.empty()) return source;  // in the mission's frame
+  // The file is in the mission frame.
+  if (contents.crs.empty() && source.crs.empty()) return source;
   const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
   if (contents.is_outlines && is_flat && assumed.has_terrain && !source.base) {
     source.base_on_terrain = true;
     return source;
   }
   const SiteTransform transform(source, contents, {}, false);
-  // EGM96 may stand in for a geoid whose grid is not installed.
+  // EGM96 may replace a geoid whose grid is not installed.
   const bool may_stand_in =
       transform.has_vertical_datum() && assumed.vertical == HeightDatum::geoid;
   if ((!transform.has_own_heights() || may_stand_in) && !contents.vertical) {
@@ -363,7 +366,8 @@ geometry::Mesh read_surfaces(const std::filesystem::path& file) {
   if (contents.crs.empty()) {
     source.place = Place{};
   } else {
-    source.vertical = HeightDatum::geoid;  // stand-ins will do: heights among each other count
+    // Substitutes are sufficient because only relative heights matter.
+    source.vertical = HeightDatum::geoid;
     site.origin = middle_of(source, contents);
   }
   const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);

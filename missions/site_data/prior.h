@@ -1,8 +1,7 @@
-/// Prior data in the site's frame: x east, y north, z up about the site's origin, in metres, which
-/// is the frame that missions are planned in and exported from (flight/export/geodesy.h).
+/// Prior data in the site frame: x east, y north, z up, in metres relative to the site's origin.
+/// Missions are planned and exported in the same frame (flight/export/geodesy.h).
 ///
-/// What a file says is material to doubt: a prior never proves that space is free, and what is
-/// measured overrules it.
+/// Prior data may be wrong. It never verifies that space is free, and measurements override it.
 #pragma once
 
 #include <cstddef>
@@ -25,83 +24,88 @@
 
 namespace skycap::missions::site_data {
 
-/// A thing with a name in its file: a building, an extruded polygon, a node of a scene.
+/// Named object of a file: a building, an extruded polygon or a node of a scene.
 struct Object {
-  std::string id;    ///< as in the file, or "1", "2", ... in its order
-  std::string kind;  ///< the file's word, such as "Building"; empty: it has none
+  std::string id;    ///< Id in the file, otherwise "1", "2", ... in file order.
+  std::string kind;  ///< Type name in the file, such as "Building"; empty without one.
   std::map<std::string, std::string> attributes;
-  geometry::Mesh mesh;                ///< as it is: maybe open, orientation not trusted
-  std::vector<SurfaceKind> surfaces;  ///< of each triangle
+  geometry::Mesh mesh;  ///< Unmodified mesh, possibly open and with unreliable orientation.
+  std::vector<SurfaceKind> surfaces;  ///< Surface kind of each triangle.
 };
 
-/// Where the site is, as far as it is known.
+/// Position of the site, as far as it is known.
 struct SiteFrame {
-  std::optional<flight::GeodeticPoint> origin;  ///< of the frame
-  std::optional<double> takeoff_z;              ///< of the pad, in the frame
-  double ground_z = 0.0;             ///< of the plane that is the ground where no terrain is known
-  std::optional<double> undulation;  ///< of the geoid above the ellipsoid there
+  std::optional<flight::GeodeticPoint> origin;  ///< Geodetic position of the frame's origin.
+  std::optional<double> takeoff_z;              ///< Height of the pad in the frame [m].
+  double ground_z = 0.0;  ///< Height of the ground plane where the terrain is unknown [m].
+  std::optional<double> undulation;  ///< Geoid undulation at the origin [m].
 };
 
-/// z of the ground at a place of the site; nothing where it is not known.
+/// Returns the ground height at a position, or an empty value where it is unknown [m].
 using TerrainHeight = std::function<std::optional<double>(const Eigen::Vector2d&)>;
 
-/// Least and greatest, in metres.
+/// Min and max height [m].
 struct HeightRange {
   double least = 0.0, most = 0.0;
 };
 
-/// What a file holds, less what `select` leaves out.
+/// Selected contents of a file.
 struct Prior {
   Role role = Role::obstacle;
-  /// The source's; else 0.3 of meshes, points and grids, 1.0 of extruded outlines; and on top of
-  /// either what EGM96 or another stand-in in the way to WGS84 may be off, as PROJ states it.
+  /// Maximum position error [m]. The default is 0.3 for meshes, points and grids, and 1.0 for
+  /// extruded outlines. The accuracies of substitute transformations such as EGM96, as stated by
+  /// PROJ, are added.
   double uncertainty = 0.0;
   std::vector<Object> objects;
-  std::vector<Eigen::Vector3f> points;           ///< of a cloud, thinned
-  HeightGrid grid;                               ///< of a raster; empty: it is none
-  std::string format;                            ///< such as "CityGML 2.0"
-  std::string crs;                               ///< that its coordinates were in, by name
-  std::size_t dropped_polygons = 0;              ///< without area
-  Eigen::AlignedBox3d box;                       ///< of all of it, in the site's frame
-  std::optional<HeightRange> ellipsoid_heights;  ///< if the site is known
-  std::optional<HeightRange> sea_level_heights;  ///< if the geoid there is, too
+  std::vector<Eigen::Vector3f> points;  ///< Downsampled points of a cloud.
+  HeightGrid grid;                      ///< Height grid of a raster; otherwise empty.
+  std::string format;                   ///< Format name, such as "CityGML 2.0".
+  std::string crs;                      ///< Name of the file's reference system.
+  std::size_t dropped_polygons = 0;     ///< Number of polygons without area.
+  Eigen::AlignedBox3d box;              ///< Bounding box of all contents in the site frame.
+  /// Range of ellipsoidal heights; empty if the position of the site is unknown.
+  std::optional<HeightRange> ellipsoid_heights;
+  /// Range of heights AMSL; empty if the geoid undulation is unknown.
+  std::optional<HeightRange> sea_level_heights;
   std::vector<std::string>
-      notes;  ///< sentences for the user: stand-ins, guesses, what was left out
+      notes;  ///< Sentences for the user about substitutes, assumptions and omissions.
 };
 
-/// Whether it is a surface at all.
+/// Returns true if the mesh has a non-zero area.
 bool has_area(const geometry::Mesh& mesh);
 
-/// Reads a file by its content, then by its ending. Throws Error in one line that opens with the
-/// file: {bad_file} if it is broken, too large (2 GB; 40 million cells; 50 million polygons), or
-/// of no known format; {bad_config} if the source does not say what is needed (crs, vertical, base,
-/// height, takeoff), says what the file has no use for, gives it a role that it cannot play
-/// (targets are objects; the ground has an area and is no points), or puts anything farther than 50
-/// km from the site. `terrain` is asked where `base_on_terrain` is set.
+/// Reads a file; the format is detected from its contents, then from its extension. Throws Error
+/// with a one-line message that starts with the file name.
+///
+/// Throws {bad_file} if the file is damaged, too large (2 GB; 40 million cells; 50 million
+/// polygons), or of unknown format. Throws {bad_config} if a required key of the source is missing
+/// (crs, vertical, base, height, takeoff) or a key does not apply to the file. Throws {bad_config}
+/// also for data more than 50 km from the site and for unsuitable roles: targets require objects,
+/// and terrain requires surfaces and excludes points. `terrain` is used if `base_on_terrain` is
+/// set.
 Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain = {});
 
-/// Where on the Earth the middle of what is selected of a file is, without its height: for those
-/// who do not know their site yet. Throws what read_prior() throws, and Error{bad_config} if the
-/// file has no reference system.
+/// Returns the geodetic centre of the selected data, without height, to derive the position of a
+/// site. Throws all errors of read_prior(), and Error{bad_config} without a reference system.
 flight::GeodeticPoint middle_of(const Source& source);
 
-/// What a file is taken to mean where it does not say it.
+/// Default assumptions about a file where it lacks information.
 struct Assumptions {
   std::string crs;
   std::optional<HeightDatum> vertical;
-  bool has_terrain = false;  ///< outlines that have neither heights nor a base stand on it
+  bool has_terrain = false;  ///< Outlines without heights and base are placed on the terrain.
 };
 
-/// The source with those of the assumptions that its file needs; what the file says itself stays.
-/// Throws what read_prior() throws.
+/// Returns the source completed with the assumptions that its file requires. Information in the
+/// file has priority. Throws all errors of read_prior().
 Source completed(Source source, const Assumptions& assumed);
 
-/// All surfaces of a file as one mesh in metres with z up, about the middle of what they are in:
-/// what simulated sensors see of a site. Throws what read_prior() throws.
+/// Returns all surfaces of a file as one mesh in metres with z up, relative to the centre of its
+/// coordinates, for simulated sensors. Throws all errors of read_prior().
 geometry::Mesh read_surfaces(const std::filesystem::path& file);
 
-/// Height of the geoid EGM96 above WGS84's ellipsoid, from PROJ's grid. Throws Error{bad_file} if
-/// PROJ or the grid is not installed.
+/// Returns the undulation of the EGM96 geoid relative to the WGS84 ellipsoid [m], from PROJ's grid.
+/// Throws Error{bad_file} if PROJ or the grid is not installed.
 double egm96_undulation(double latitude_deg, double longitude_deg);
 
 }  // namespace skycap::missions::site_data

@@ -8,7 +8,7 @@
 namespace skycap::missions::site_data {
 namespace {
 
-/// What it is made of: "3 objects of 154 triangles, 20 points".
+/// Describes the contents: "3 objects of 154 triangles, 20 points".
 std::string contents_of(const Prior& prior) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };

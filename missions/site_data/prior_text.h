@@ -1,4 +1,4 @@
-/// Prior data in words.
+/// Text descriptions of prior data.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace skycap::missions::site_data {
 
-/// As mission files say it.
+/// Returns the name as in mission files.
 const char* name_of(Role role);
 const char* name_of(HeightDatum datum);
 
-/// Some lines for each source: what it holds, where that is, what its reader noted. Empty without
-/// any.
+/// Returns several lines per source: contents, extent and notes of the reader. Returns an empty
+/// string without sources.
 std::string text_of(const SitePriors& site);
 
 }  // namespace skycap::missions::site_data

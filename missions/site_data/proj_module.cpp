@@ -1,5 +1,5 @@
-// The module that knows PROJ, whose database takes longer to open than most verbs take to run;
-// reference_system.cpp loads it.
+// Module with PROJ, loaded by reference_system.cpp on demand. Opening PROJ's database takes longer
+// than most commands.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -28,11 +28,11 @@ struct Destroy {
 using ContextPtr = std::unique_ptr<PJ_CONTEXT, Destroy>;
 using ObjectPtr = std::unique_ptr<PJ, Destroy>;
 
-constexpr const char* ellipsoidal = "EPSG:4979";  // WGS84 with heights
-constexpr const char* surface = "EPSG:4326";      // WGS84 without
+constexpr const char* ellipsoidal = "EPSG:4979";  // WGS84 with heights.
+constexpr const char* surface = "EPSG:4326";      // WGS84 without heights.
 constexpr const char* egm96 = "EPSG:4326+5773";
 
-/// What an operation may be off to stand in for the best one [m].
+/// Maximum accuracy value of a substitute for the best operation [m].
 constexpr double farthest_stand_in = 5.0;
 
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorKind::bad_config, what); }
@@ -47,12 +47,12 @@ ContextPtr offline_context() {
   return context;
 }
 
-/// A coordinate operation, and what PROJ says of it.
+/// Coordinate operation and its properties according to PROJ.
 struct Operation {
-  ObjectPtr object;  ///< east before north, in degrees or metres
+  ObjectPtr object;  ///< Axis order is east, north; units are degrees or metres.
   bool is_best = true;
-  std::string missing;     ///< grids of the best one, if it is not
-  double accuracy = -1.0;  ///< [m]; negative: not stated
+  std::string missing;     ///< Missing grids of the best operation.
+  double accuracy = -1.0;  ///< [m]; negative if unknown.
 };
 
 std::string stated(double accuracy) {
@@ -63,14 +63,14 @@ std::string stated(double accuracy) {
   return text + " m";
 }
 
-/// Finds operations for a site.
+/// Search for operations for a site.
 class OperationFinder {
  public:
   OperationFinder(PJ_CONTEXT* context, const std::optional<flight::GeodeticPoint>& near)
       : context_(context), near_(near) {}
 
-  /// The best operation, or the best of those whose grids are there; without an object if there is
-  /// none.
+  /// Returns the best operation with available grids, and whether it is the best of all. Returns an
+  /// empty object if there is none.
   Operation find(const PJ* from, const char* target) const {
     const ObjectPtr to(proj_create(context_, target));
     const std::unique_ptr<PJ_OBJ_LIST, Destroy> list(
@@ -101,7 +101,8 @@ class OperationFinder {
                                                              PROJ_GRID_AVAILABILITY_IGNORED);
     proj_operation_factory_context_set_allow_ballpark_transformations(context_, factory, 0);
     if (near_) {
-      constexpr double reach = 0.01;  // [degrees]: the site, not its country
+      // [degrees]; limits the area to the site instead of the country.
+      constexpr double reach = 0.01;
       const auto wrapped = [](double longitude) { return std::remainder(longitude, 360.0); };
       proj_operation_factory_context_set_area_of_interest(
           context_, factory, wrapped(near_->longitude_deg - reach),
@@ -129,15 +130,15 @@ class OperationFinder {
   std::optional<flight::GeodeticPoint> near_;
 };
 
-/// What a transform needs for as long as it is used.
+/// Objects that a transformation uses during its lifetime.
 struct Chain {
   ContextPtr context;
   bool is_latitude_first = false;
-  bool has_heights = true;  ///< else z means nothing
-  ObjectPtr position;       ///< to longitude and latitude, and to the height if `moves_height`
+  bool has_heights = true;  ///< If false, z is ignored.
+  ObjectPtr position;  ///< Conversion to longitude and latitude, and to height if `moves_height`.
   bool moves_height = false;
-  double height_unit = 1.0;  ///< metres, of heights that `position` does not move
-  ObjectPtr height;          ///< then from the geoid's heights to the ellipsoid's, if it is there
+  double height_unit = 1.0;  ///< Unit in metres of heights that `position` does not convert.
+  ObjectPtr height;          ///< Optional subsequent conversion from geoid to ellipsoidal heights.
   double added_height = 0.0;
 
   void apply(std::span<Vector3d> points) const;
@@ -164,14 +165,14 @@ void Chain::apply(std::span<Vector3d> points) const {
   for (Vector3d& point : points) point.z() += added_height;
 }
 
-/// A reference system and its part on the map.
+/// Reference system and its horizontal part.
 struct System {
   ObjectPtr whole, horizontal;
   bool has_own_heights = false, is_compound = false, is_geographic = false;
-  double unit = 1.0, height_unit = 1.0;  ///< metres; 1 of degrees, and without own heights
+  double unit = 1.0, height_unit = 1.0;  ///< Metres; 1 for degrees and without own heights.
 };
 
-/// Metres; 1 if the system has no such axis.
+/// Returns the unit of an axis in metres; 1 if the system has no such axis.
 double unit_of_axis(PJ_CONTEXT* context, const PJ* system, int axis) {
   const ObjectPtr axes(proj_crs_get_coordinate_system(context, system));
   double unit = 1.0;
@@ -180,7 +181,7 @@ double unit_of_axis(PJ_CONTEXT* context, const PJ* system, int axis) {
   return unit;
 }
 
-/// A system that is not bound to a transformation.
+/// Returns the source system of a bound CRS, or the system itself.
 ObjectPtr unbound(PJ_CONTEXT* context, ObjectPtr system) {
   if (proj_get_type(system.get()) != PJ_TYPE_BOUND_CRS) return system;
   return ObjectPtr(proj_get_source_crs(context, system.get()));
@@ -228,7 +229,7 @@ std::string stand_in(const char* standing, const std::string& what, const Operat
          "; its accuracy by PROJ: " + stated(operation.accuracy);
 }
 
-/// Heights count from `vertical`, not from what the system says.
+/// Applies the vertical datum `vertical` instead of that of the system.
 void add_stated_heights(Chain& chain, const OperationFinder& finder,
                         const ReferenceRequest& request, GeodeticTransform& result) {
   if (*request.vertical == HeightDatum::takeoff) {
@@ -247,8 +248,8 @@ void add_stated_heights(Chain& chain, const OperationFinder& finder,
   chain.height = std::move(operation.object);
 }
 
-/// The whole way at once, heights as the system has them; false if its best operation is not to be
-/// had and EGM96 may stand in.
+/// Uses one operation for position and height in the system's own datum. Returns false if the best
+/// operation is not available and EGM96 may be used instead.
 bool takes_own_heights(Chain& chain, const OperationFinder& finder, const System& system,
                        const ReferenceRequest& request, GeodeticTransform& result) {
   Operation operation = finder.find(system.whole.get(), ellipsoidal);

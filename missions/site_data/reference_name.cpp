@@ -12,7 +12,7 @@ struct Name {
   std::string_view authority, epsg;
 };
 
-/// Of the German surveys (AdV, "Kurzbezeichnungen der Koordinatenreferenzsysteme").
+/// Names of the German surveys (AdV, "Kurzbezeichnungen der Koordinatenreferenzsysteme").
 constexpr std::array<Name, 14> horizontal_names = {{
     {"ETRS89_UTM31", "25831"},
     {"ETRS89_UTM32", "25832"},
@@ -50,10 +50,10 @@ std::string_view number_of(const Names& names, std::string_view authority) {
   return {};
 }
 
-/// What a name of the German surveys means: a map, heights, and a model of the geoid, which PROJ
-/// chooses itself, with stars and perhaps blanks between.
+/// Parts of a German survey's name: a horizontal system, heights, and a geoid model, which PROJ
+/// selects automatically. They are separated by asterisks and optional spaces.
 struct AdvName {
-  std::string_view horizontal, vertical;  ///< EPSG numbers; empty: not known
+  std::string_view horizontal, vertical;  ///< EPSG numbers; empty if unknown.
   bool names_heights = false;
 };
 
@@ -86,7 +86,7 @@ std::string name_by_numbers(const std::string& crs) {
   std::string name;
   int systems = 0;
   for (std::size_t at = upper.find("EPSG"); at != std::string::npos; at = upper.find("EPSG", at)) {
-    // "EPSG::25832", "EPSG:6.9:25832", "EPSG/0/25832", "epsg.xml#25832".
+    // Examples: "EPSG::25832", "EPSG:6.9:25832", "EPSG/0/25832", "epsg.xml#25832".
     const std::size_t end = std::min(upper.find_first_of(", +", at), upper.size());
     std::size_t last = end;
     while (last > at && std::isdigit(static_cast<unsigned char>(upper[last - 1])) != 0) --last;

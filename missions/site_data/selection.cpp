@@ -13,7 +13,7 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-/// An object, what it is part of, and so on, outwards. Throws Error{bad_file} if that never ends.
+/// Returns an object and all its ancestors, from the inside out. Throws Error{bad_file} for cycles.
 Indices lineage(const Source& source, const FileContents& contents, std::size_t object) {
   constexpr std::size_t deepest = 64;
   Indices result{object};
@@ -68,7 +68,7 @@ bool has_levels(const FileContents& contents) {
   });
 }
 
-/// Whether anything of it is extruded; ObjectBuilder::is_extruded() decides it for each object.
+/// Returns true if any object is extruded. ObjectBuilder::is_extruded() decides for each object.
 bool has_solids(const Source& source, const FileContents& contents) {
   if (!contents.is_outlines) return false;
   return source.base_on_terrain || source.height ||

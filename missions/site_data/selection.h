@@ -1,4 +1,4 @@
-/// What of a file is meant: which objects, at which level of detail.
+/// Selection of objects and levels of detail of a file.
 #pragma once
 
 #include <cstddef>
@@ -9,23 +9,23 @@
 
 namespace skycap::missions::site_data {
 
-/// One thing of a Prior and the objects of the file that it is made of: a building with its parts.
+/// Object of a Prior and the file objects that it consists of, such as a building with its parts.
 struct SelectedObject {
-  std::size_t object = 0;            ///< that gives name, kind and attributes
-  std::vector<std::size_t> members;  ///< itself and what is part of it; only those with surfaces
+  std::size_t object = 0;            ///< Object that defines name, kind and attributes.
+  std::vector<std::size_t> members;  ///< The object and its parts, limited to those with surfaces.
 };
 
-/// In the order of the file. Without ids and attributes, each object that is part of no other is
-/// one; with them, the outermost ones that match. Throws Error{bad_config} if an id or the
-/// attributes match nothing: the message names some that are there.
+/// Returns the selected objects in file order. Without ids and attributes, these are all objects
+/// without a parent; otherwise the outermost matching objects. Throws Error{bad_config} with
+/// examples of existing values if an id or the attributes match no object.
 std::vector<SelectedObject> select_objects(const Source& source, const FileContents& contents);
 
-/// The polygons of an object at the level that is asked for; else its highest. Polygons of no level
-/// are always among them.
+/// Returns the polygons of an object at the requested level of detail, by default at its highest.
+/// Polygons without a level are always included.
 std::vector<FilePolygon> select_polygons(const FileObject& object, std::optional<double> lod);
 
-/// Throws Error{bad_config} naming the first key of the source that the file has no use for, and
-/// what it is for: whoever gave it meant something by it.
+/// Throws Error{bad_config} naming the first key of the source that does not apply to the file, and
+/// the purpose of the key.
 void refuse_unused(const Source& source, const FileContents& contents);
 
 }  // namespace skycap::missions::site_data

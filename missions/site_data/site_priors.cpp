@@ -19,7 +19,8 @@ std::uint32_t crc_of(const std::vector<Item>& items) {
       {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(Item)});
 }
 
-/// Of what was read: the same file at another place, or in another format, is the same prior.
+/// Computes the checksum of the data, so that the same data in another file or format is the same
+/// prior.
 std::string digest_of(const Prior& prior) {
   std::vector<std::uint32_t> sums{crc_of(prior.points), crc_of(prior.grid.nodes)};
   for (const Object& object : prior.objects) {
@@ -39,7 +40,7 @@ flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior
     if (has_area(object.mesh)) obstacle.surfaces.push_back({object.id, object.mesh});
   }
   obstacle.points = prior.points;
-  // Of those in a cube of that side one is left.
+  // Downsampling keeps one point per cube of this size.
   obstacle.point_radius = std::numbers::sqrt3 * source.spacing.value_or(usual_spacing);
   obstacle.columns = columns_of(prior.grid);
   obstacle.uncertainty = prior.uncertainty;

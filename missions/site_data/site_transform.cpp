@@ -24,20 +24,21 @@ std::string place_text(double latitude_deg, double longitude_deg) {
   return "latitude " + decimal(latitude_deg, 6) + ", longitude " + decimal(longitude_deg, 6);
 }
 
-/// y up, as modellers have it, to z up: what faced the viewer faces south.
+/// Returns the rotation from y up, as in modelling software, to z up. The front side then faces
+/// south.
 Eigen::Matrix3d upright(const Source& source, const FileContents& contents) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   if (source.is_y_up.value_or(contents.is_y_up.value_or(false))) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   return turn;
 }
 
-/// Whether coordinates may well be longitude and latitude: all of them are within their limits, and
-/// either it is a map, or the cells of a raster would be smaller than a centimetre.
+/// Returns true if the coordinates may be longitude and latitude. All must be within the limits of
+/// degrees, and the file must be a map or a raster with cells smaller than a centimetre.
 bool may_be_degrees(const FileContents& contents) {
   const auto is_geodetic = [](const Vector3d& place) {
     return std::abs(place.x()) <= 180.0 && std::abs(place.y()) <= 90.0;
   };
-  constexpr double smallest_cell = 0.01;  // in metres or degrees
+  constexpr double smallest_cell = 0.01;  // In metres or degrees.
   if (!contents.nodes.empty()) {
     return contents.right.norm() < smallest_cell &&
            std::ranges::all_of(contents.nodes, is_geodetic);
@@ -73,7 +74,7 @@ SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
   }
 }
 
-/// Throws if the file's heights are in a unit that is not known, and the source does not say it.
+/// Throws if the unit of the file's heights is unknown and the source does not define it.
 void SiteTransform::require_unit(const Source& source, const FileContents& contents) const {
   if (contents.unknown_unit.empty() || source.unit) return;
   throw Error(ErrorKind::bad_config, file_.string() + ": has heights in the unknown unit '" +
@@ -95,7 +96,8 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
   const Place place = source.place.value_or(Place{});
   const double unit = source.unit.value_or(contents.unit.value_or(1.0));
   const Eigen::AngleAxisd heading(-place.heading, Vector3d::UnitZ());
-  // A transform times a mere matrix would take its columns for points.
+  // The conversion to Affine3d is required because a transform times a plain matrix would treat its
+  // columns as points.
   const double up = source.unit ? unit : contents.height_unit.value_or(unit);
   const Eigen::Affine3d upright_metres(
       Eigen::Matrix3d(Vector3d(unit, unit, up).asDiagonal() * upright(source, contents)));

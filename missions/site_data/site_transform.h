@@ -1,4 +1,4 @@
-/// From the coordinates of a file to the site's frame: the one way in for all formats.
+/// Transformation from file coordinates to the site frame, used for all formats.
 #pragma once
 
 #include <optional>
@@ -15,34 +15,35 @@
 
 namespace skycap::missions::site_data {
 
-/// Farther from the site nothing is taken to be meant [m].
+/// Maximum distance of data from the site [m].
 inline constexpr double farthest_from_site = 50'000.0;
 
 class SiteTransform {
  public:
-  /// Without `needs_heights` z is not looked at, and places come out at the height of the site's
-  /// origin. What names no reference system is in the mission's frame. Throws Error{bad_config} if
-  /// source, file and site together do not say where things are; what geodetic_transform() throws.
+  /// Without `needs_heights`, z is ignored and results have the height of the site's origin.
+  /// Without a reference system, coordinates are in the mission frame. Throws Error{bad_config} if
+  /// source, file and site do not define the position of the data. Throws all errors of
+  /// geodetic_transform().
   SiteTransform(const Source& source, const FileContents& contents, const SiteFrame& site,
                 bool needs_heights = true);
 
-  /// Moves coordinates of the file to the site's frame. Throws Error{bad_config} if one is farther
-  /// than 50 km from the site or has no image.
+  /// Transforms file coordinates to the site frame in place. Throws Error{bad_config} if a result
+  /// is more than 50 km from the site or undefined.
   void to_site(std::span<Eigen::Vector3d> coordinates) const;
 
-  /// The same as far as WGS84: longitude and latitude in degrees, ellipsoid height. Only of files
-  /// with a reference system.
+  /// Transforms file coordinates to WGS84 longitude and latitude in degrees and ellipsoidal height
+  /// in metres. Requires a reference system.
   void to_geodetic(std::span<Eigen::Vector3d> coordinates) const;
 
-  /// How long units of the file are, east, north and up, near a coordinate.
+  /// Returns the lengths of the file's units in east, north and up direction near the data [m].
   Eigen::Vector3d metres_per_unit() const { return metres_per_unit_; }
   const std::string& crs() const { return name_; }
-  /// Whether the reference system says what heights count from.
+  /// Returns true if the reference system defines the vertical datum.
   bool has_own_heights() const { return geodetic_ && geodetic_->has_own_heights; }
-  /// Whether that is a datum beside the map's, as a geoid is.
+  /// Returns true if the vertical datum is separate from the horizontal system, such as a geoid.
   bool has_vertical_datum() const { return geodetic_ && geodetic_->is_compound; }
   const std::vector<std::string>& notes() const { return notes_; }
-  /// What stand-ins on the way to WGS84 may be off [m].
+  /// Returns the maximum error of substitute operations in the conversion to WGS84 [m].
   double stand_in_error() const { return geodetic_ ? geodetic_->stand_in_error : 0.0; }
 
  private:
@@ -54,8 +55,10 @@ class SiteTransform {
 
   std::filesystem::path file_;
   bool needs_heights_;
-  Eigen::Affine3d prepared_ = Eigen::Affine3d::Identity();  ///< unit, up axis, offset, place
-  std::optional<GeodeticTransform> geodetic_;               ///< without: prepared_ does it all
+  /// Combined transformation by unit, up axis, offset and place.
+  Eigen::Affine3d prepared_ = Eigen::Affine3d::Identity();
+  /// Transformation to WGS84. If empty, prepared_ is the whole transformation.
+  std::optional<GeodeticTransform> geodetic_;
   std::optional<flight::GeodeticPoint> origin_;
   std::string name_;
   std::vector<std::string> notes_;

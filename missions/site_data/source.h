@@ -1,5 +1,5 @@
-/// What a mission file says of one file of prior data: maps, city models, terrain, earlier scans.
-/// Plain data under `prior`; docs/reference/mission-file.md lists the keys.
+/// Settings of a file of prior data: maps, city models, terrain, earlier scans. These are the
+/// values under `prior` in a mission file (docs/reference/mission-file.md).
 #pragma once
 
 #include <filesystem>
@@ -14,54 +14,57 @@
 
 namespace skycap::missions::site_data {
 
-/// What a file is to a survey. None of them ever proves that space is free.
+/// Role of a file in a survey. No role ever verifies that space is free.
 enum class Role {
-  target,    ///< is surveyed: the planner's first guesses, and what coverage is told of
-  obstacle,  ///< is in the way of every leg
-  terrain,   ///< the ground: clearance over it, take-off, the base of extruded polygons
-  truth,     ///< stands in for `scene.model`
+  target,    ///< Object to survey: defines the initial predicted surface and the reported coverage.
+  obstacle,  ///< Obstacle for all legs.
+  terrain,   ///< Ground for clearance, take-off and the base of extruded polygons.
+  truth,     ///< Replaces `scene.model`.
 };
 
-/// What of a file is meant; what is empty selects everything.
+/// Selection from a file. Empty members select everything.
 struct Selection {
-  std::vector<std::string> ids;                   ///< of objects, or of objects they are part of
-  std::map<std::string, std::string> attributes;  ///< all must be equal, as text
-  std::filesystem::path within;                   ///< a file of polygons, in its own coordinates
-  std::vector<int> classes;                       ///< ASPRS classes of a cloud's points
-  std::string layer;                              ///< of a file with several
-  std::optional<double> lod;                      ///< level of detail; else each object's highest
+  std::vector<std::string> ids;  ///< Ids of objects or of their parents.
+  /// Attribute values that an object must have, compared as strings.
+  std::map<std::string, std::string> attributes;
+  std::filesystem::path within;  ///< Polygon file with its own reference system.
+  std::vector<int> classes;      ///< ASPRS classes of a cloud's points.
+  std::string layer;             ///< Layer of a file with several layers.
+  std::optional<double> lod;     ///< Level of detail (default: the highest of each object).
 };
 
-/// Clouds are thinned to it where nothing is said: a quarter of the clearance that vehicles keep at
-/// least, as voxels are [m].
+/// Default spacing of downsampled clouds [m]: a quarter of the minimum clearance of vehicles, like
+/// voxels.
 inline constexpr double usual_spacing = 0.25;
 
-/// Where a file without a coordinate reference system is in the site's frame.
+/// Position of a file without a coordinate reference system in the site frame.
 struct Place {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the file's origin
-  double heading = 0.0;  ///< of the file's y axis, clockwise from north [rad]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Position of the file's origin [m].
+  double heading = 0.0;  ///< Heading of the file's y axis, clockwise from north [rad].
 };
 
-/// In this order a coordinate of the file is multiplied by `unit`, turned upright by `up_axis`,
-/// moved by `offset`, and brought into the site's frame by `place` or by the reference system;
-/// without either it is in that frame. On maps `unit` is of heights alone.
+/// Prior data file with its settings. File coordinates are multiplied by `unit`, rotated upright by
+/// `up_axis`, and shifted by `offset`. Then `place` or the reference system converts them to the
+/// site frame; without either, they are in that frame. For maps, `unit` applies only to heights.
 struct Source {
-  std::filesystem::path file;  ///< absolute, or as from the running program
+  std::filesystem::path file;  ///< Absolute path, or path relative to the working directory.
   Role role = Role::obstacle;
   Selection select;
-  std::string crs;                      ///< anything PROJ knows; empty: the file's
-  std::optional<HeightDatum> vertical;  ///< else the reference system's
-  std::optional<Place> place;           ///< excludes crs
+  std::string crs;  ///< Reference system, in any form that PROJ supports (default: from the file).
+  std::optional<HeightDatum> vertical;  ///< Vertical datum (default: that of the reference system).
+  std::optional<Place> place;           ///< Position in the site frame; conflicts with crs.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  std::optional<double> unit;         ///< metres; else the file's, else 1
-  std::optional<bool> is_y_up;        ///< else as the file says, else z is
-  bool base_on_terrain = false;       ///< of extruded polygons: where the lowest corner stands
-  std::optional<double> base;         ///< or this height, in the file's vertical datum
-  std::optional<double> height;       ///< of extruded polygons above their base
-  std::string height_attribute;       ///< of maps: the one that is it; empty: those that are known
-  double min_height = 0.0;            ///< they begin so far above their base
-  std::optional<double> uncertainty;  ///< bound of what the file's surfaces may be off; see prior.h
-  std::optional<double> spacing;      ///< else usual_spacing: clouds keep one point a cube of it
+  std::optional<double> unit;    ///< Length of the unit [m] (default: from the file, otherwise 1).
+  std::optional<bool> is_y_up;   ///< The y axis points up (default: from the file, otherwise z).
+  bool base_on_terrain = false;  ///< Place extruded polygons on the terrain at their lowest corner.
+  /// Alternative height of the base in the vertical datum of the file.
+  std::optional<double> base;
+  std::optional<double> height;  ///< Height of extruded polygons above their base [m].
+  std::string height_attribute;  ///< Name of the height attribute of a map (default: known names).
+  double min_height = 0.0;       ///< Height of the lower end above the base [m].
+  std::optional<double> uncertainty;  ///< Maximum error of the surfaces [m]; see prior.h.
+  /// Cube size for downsampling clouds (default: usual_spacing) [m].
+  std::optional<double> spacing;
 };
 
 }  // namespace skycap::missions::site_data

@@ -12,11 +12,11 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// What is level this near to the lowest vertex is the foot [m].
+/// Maximum height above the lowest vertex of horizontal surfaces that belong to the foot [m].
 constexpr double foot_height = 0.5;
-constexpr double level = 0.9;  // z of such a normal, up or down
+constexpr double level = 0.9;  // Minimum absolute z of the normal of a horizontal surface.
 
-/// How far beside a surface it is asked whether that is inside of the object [m].
+/// Distance from the surface at which positions are tested for being inside the object [m].
 constexpr float probe_distance = 0.05F;
 
 Vector3d area_vector(const geometry::Mesh& mesh, std::size_t triangle) {
@@ -29,7 +29,7 @@ SurfaceKind kind_of(const Object& object, std::size_t triangle) {
   return triangle < object.surfaces.size() ? object.surfaces[triangle] : SurfaceKind::unknown;
 }
 
-/// The object's visible triangles, and which of the object's each is.
+/// Visible triangles of the object and their indices in the object.
 struct VisiblePart {
   geometry::Mesh mesh;
   std::vector<std::size_t> triangles;
@@ -76,7 +76,7 @@ SurfacePoints spread_over(const Object& object, std::size_t most, double spacing
     const Vector3f &position = samples.points[i], &normal = samples.normals[i];
     const bool is_turned = is_inside(position + probe_distance * normal);
     if (is_turned && is_inside(position - probe_distance * normal))
-      continue;  // solid on both sides
+      continue;  // Solid on both sides.
     points.positions.push_back(position);
     points.normals.push_back(is_turned ? Vector3f(-normal) : normal);
     points.kinds.push_back(kind_of(object, part.triangles[samples.triangles[i]]));

@@ -1,4 +1,4 @@
-/// Points spread over what can be seen of an object.
+/// Sample points on the visible surface of an object.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,18 @@
 
 namespace skycap::missions::site_data {
 
-/// Structure of arrays.
+/// Points as a structure of arrays.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<Eigen::Vector3f> normals;  ///< outward, as far as the object is closed
+  std::vector<Eigen::Vector3f> normals;  ///< Outward normals where the object is closed.
   std::vector<SurfaceKind> kinds;
   double area_of_each = 0.0;
 };
 
-/// At random with equal density, about one in a square of `spacing`, but no more than `most`; the
-/// same object gives the same points. What is said to be ground, and what lies level at the foot
-/// of the object, is left out, and so is what has solid on both sides: no sensor sees it.
+/// Samples the object at random with uniform density: about one point per square of side `spacing`
+/// [m], at most `most` points. The result is deterministic. Excluded are surfaces that sensors
+/// cannot observe: ground surfaces, horizontal surfaces at the foot of the object, and surfaces
+/// with solid on both sides.
 SurfacePoints spread_over(const Object& object, std::size_t most, double spacing);
 
 }  // namespace skycap::missions::site_data

@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 using flight::NearestPoints;
 using flight::Segment;
 
-/// Beyond every height on the Earth [m].
+/// Exceeds all heights on the Earth [m].
 constexpr double far = 2e4;
 
 }  // namespace

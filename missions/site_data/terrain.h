@@ -1,4 +1,4 @@
-/// The ground as files say it is: heights on a grid, or a surface of triangles.
+/// Ground from terrain files: height grids or triangle surfaces.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,15 @@ namespace skycap::missions::site_data {
 
 class Terrain {
  public:
-  /// Of the grids and surfaces of these; a terrain has no points.
+  /// Uses the grids and surfaces of `priors`, which must not contain points.
   explicit Terrain(const std::vector<const Prior*>& priors);
   ~Terrain();
 
-  /// z of the highest ground there, or of a large grid up to a few cells away; nothing where no
-  /// file has any.
+  /// Returns the maximum ground height at a position, in large grids within a few cells of it.
+  /// Returns an empty value where the terrain is unknown [m].
   std::optional<double> height(const Eigen::Vector2d& place) const;
 
-  /// All of it.
+  /// Returns the whole terrain as a mesh.
   geometry::Mesh surface() const;
 
  private:
@@ -30,7 +30,7 @@ class Terrain {
   std::unique_ptr<const Impl> impl_;
 };
 
-/// The triangles, each with vertices of its own.
+/// Returns a mesh of the triangles without shared vertices.
 geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles);
 
 }  // namespace skycap::missions::site_data

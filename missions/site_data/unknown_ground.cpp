@@ -19,11 +19,12 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double finest = 0.25;  ///< between points of the lattice [m]
+constexpr double finest = 0.25;  ///< Minimum spacing of the lattice [m].
 constexpr double most_cells = 2000.0;
 constexpr float none = -std::numeric_limits<float>::infinity();
 
-/// Ground that is this near to a point is there: rounding loses none at a border [m].
+/// Tolerance for ground at a lattice point, so that rounding does not exclude points on borders
+/// [m].
 constexpr double near = 1e-6;
 
 AlignedBox2d extent_of(const std::vector<flight::PriorObstacleConfig>& terrain) {
@@ -40,7 +41,7 @@ AlignedBox2d extent_of(const std::vector<flight::PriorObstacleConfig>& terrain) 
   return extent;
 }
 
-/// The highest known ground at each point of a lattice over all of it.
+/// Maximum known ground height at each point of a lattice over the terrain.
 class Lattice {
  public:
   explicit Lattice(const std::vector<flight::PriorObstacleConfig>& terrain)
@@ -63,7 +64,7 @@ class Lattice {
   Vector2d point(int column, int row) const {
     return box_.min() + Vector2d(column * step_.x(), row * step_.y());
   }
-  /// Heights at the corners of a cell.
+  /// Returns the heights at the corners of a cell.
   std::array<float, 4> corners(int column, int row) const {
     return {height(column, row), height(column + 1, row), height(column, row + 1),
             height(column + 1, row + 1)};
@@ -89,7 +90,8 @@ class Lattice {
     }
   }
 
-  /// As high as its highest corner: its slope within a cell of the lattice is no matter.
+  /// Adds a triangle with the height of its highest corner. Its slope within a cell is not
+  /// relevant.
   void add_triangle(const flight::Triangle& triangle) {
     AlignedBox3d box;
     for (const Vector3d& corner : triangle) box.extend(corner);
@@ -132,7 +134,7 @@ class Lattice {
   std::vector<float> heights_;
 };
 
-/// Cells of the lattice with a corner where no ground is known, in connected gaps.
+/// Connected gaps of lattice cells with a corner without known ground.
 class Gaps {
  public:
   explicit Gaps(const Lattice& lattice)
@@ -151,11 +153,11 @@ class Gaps {
   }
 
   struct Gap {
-    bool is_surrounded = true;  ///< by known ground
-    float highest = none;       ///< ground beside it
+    bool is_surrounded = true;  ///< Enclosed by known ground.
+    float highest = none;       ///< Maximum height of the adjacent ground.
     std::size_t cells = 0;
   };
-  /// The gap a cell is in; null: its ground is known.
+  /// Returns the gap of a cell, or null if its ground is known.
   const Gap* at(int column, int row) const {
     const std::int32_t gap = gap_of_[index(column, row)];
     return gap < 0 ? nullptr : &gaps_[static_cast<std::size_t>(gap)];
@@ -205,12 +207,12 @@ class Gaps {
   std::vector<Gap> gaps_;
 };
 
-/// One flat column; its lower end means nothing.
+/// Returns a flat column. Its lower end is arbitrary.
 AlignedBox3d column_over(const Vector2d& low, const Vector2d& high, double top) {
   return {Vector3d(low.x(), low.y(), top - 1.0), Vector3d(high.x(), high.y(), top)};
 }
 
-/// The gaps, a column for each run of cells in a row.
+/// Adds the gaps as one column per run of cells in a row.
 void add_gaps(const Lattice& lattice, const Gaps& gaps, double plane_z,
               std::vector<AlignedBox3d>& columns) {
   for (int row = 0; row < lattice.rows(); ++row) {
@@ -227,7 +229,7 @@ void add_gaps(const Lattice& lattice, const Gaps& gaps, double plane_z,
   }
 }
 
-/// Everything beyond a box, up to `top`.
+/// Adds everything outside a box up to the height `top`.
 void add_beyond(const AlignedBox2d& box, double top, std::vector<AlignedBox3d>& columns) {
   constexpr double far = 5e4;
   const Vector2d &low = box.min(), &high = box.max();

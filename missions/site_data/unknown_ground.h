@@ -1,6 +1,5 @@
-/// What counts as the ground where files of terrain have none: between tiles, beside a tile that is
-/// turned against the site, in holes, and beyond all of them. That a file has no ground there does
-/// not say that there is none.
+/// Assumed ground where terrain files have none: between tiles, next to rotated tiles, in holes,
+/// and outside all tiles. Missing data does not imply missing ground.
 #pragma once
 
 #include <string>
@@ -10,21 +9,23 @@
 
 namespace skycap::missions::site_data {
 
-/// A gap that known ground surrounds is as high as the highest ground beside it; everything else is
-/// the plane at a given height. Gaps are looked for on a lattice of a quarter of a metre, or of a
-/// two-thousandth of the terrain's longer side if that is more: narrower ones count for nothing.
+/// Ground model for unknown areas. A gap that is enclosed by known ground gets the maximum height
+/// of the adjacent ground. All other areas are a horizontal plane at a given height. Gaps are
+/// detected on a lattice with a spacing of 0.25 m or, if larger, 1/2000 of the longer side of the
+/// terrain. Narrower gaps are ignored.
 class UnknownGround {
  public:
-  /// `terrain` is what is known, its surfaces and columns; at least one of them has some area.
+  /// `terrain` contains the known surfaces and columns, with a non-zero total area.
   UnknownGround(const std::vector<flight::PriorObstacleConfig>& terrain, double plane_z);
 
-  /// z of it at a place; where the ground is known, of the plane.
+  /// Returns the assumed ground height at a position [m]. Where the ground is known, returns the
+  /// height of the plane.
   double height(const Eigen::Vector2d& place) const;
 
-  /// As uncertain as the most uncertain terrain.
+  /// Returns the assumed ground as an obstacle with the maximum uncertainty of the terrain.
   const flight::PriorObstacleConfig& obstacle() const { return obstacle_; }
 
-  /// In one sentence for the user.
+  /// Returns a one-sentence description for the user.
   const std::string& note() const { return note_; }
 
  private:

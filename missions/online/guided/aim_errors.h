@@ -1,4 +1,4 @@
-/// How far a vehicle at a view is from being at rest there and looking as it is asked to.
+/// Position, speed and aiming errors of a vehicle at a view.
 #pragma once
 
 #include <string>
@@ -7,20 +7,21 @@
 
 namespace skycap::missions::online {
 
-inline constexpr double rest_speed = 0.2;  ///< a vehicle that is slower stands [m/s]
+/// Speed below which the vehicle counts as at rest [m/s].
+inline constexpr double rest_speed = 0.2;
 inline constexpr double aim_tolerance = 2.0 * geometry::radians_per_degree;
 
 struct AimErrors {
-  double position = 0.0;       ///< from its place [m]
+  double position = 0.0;       ///< Distance from the target position [m].
   double speed = 0.0;          ///< [m/s]
-  double turn = 0.0;           ///< of the heading, without a sign [rad]
-  double pitch = 0.0;          ///< of the camera, from the horizon [rad]
-  double asked_pitch = 0.0;    ///< [rad]
-  double vehicle_pitch = 0.0;  ///< nose up [rad]
+  double turn = 0.0;           ///< Absolute heading error [rad].
+  double pitch = 0.0;          ///< Measured camera pitch relative to the horizon [rad].
+  double asked_pitch = 0.0;    ///< Commanded camera pitch relative to the horizon [rad].
+  double vehicle_pitch = 0.0;  ///< Pitch of the airframe, positive nose up [rad].
 };
 
-/// Which of position, speed, heading and gimbal is off, and by how much, for messages; empty if
-/// none is. `arrival` is how far it may be from its place [m].
+/// Describes the errors that exceed their tolerances, for messages. Returns an empty string if all
+/// are within tolerance. `arrival` is the position tolerance [m].
 std::string failures_of(const AimErrors& errors, double arrival);
 
 }  // namespace skycap::missions::online

@@ -1,5 +1,5 @@
-/// Between the mission's frame and what an autopilot knows of places: latitude, longitude, and the
-/// height above where it was armed, which is the pad.
+/// Conversion between the mission frame and the autopilot's positions: latitude, longitude, and
+/// height above home. Home is the pad, where the vehicle was armed.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ class FlightFrame {
 
  private:
   flight::LocalFrame frame_;
-  double home_height_;  ///< above the ellipsoid [m]
+  double home_height_;  ///< Ellipsoidal height of the pad [m].
 };
 
 }  // namespace skycap::missions::online

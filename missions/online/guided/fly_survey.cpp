@@ -10,7 +10,8 @@
 namespace skycap::missions::online {
 namespace {
 
-/// The climb is proven from so much above the clearance on, where the ground is no matter [m].
+/// Margin above the clearance from which the climb is verified, so that the ground is not an
+/// obstacle [m].
 constexpr double ground_spare = 0.5;
 
 GuidedLimits limits_of(const flight::FlightOptions& flight) {

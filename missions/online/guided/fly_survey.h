@@ -1,4 +1,4 @@
-/// A mission's live survey, flown.
+/// Entry point for flying a mission's live survey.
 #pragma once
 
 #include <stop_token>
@@ -10,13 +10,14 @@
 
 namespace skycap::missions::online {
 
-/// Throws Error{bad_config} naming the key if the mission cannot be flown from here: without an
-/// ArduPilot's vehicle, or without a place on the Earth.
+/// Throws Error{bad_config} naming the key if the mission has no ArduPilot vehicle, no
+/// georeference, or en-route scans.
 void require_flyable(const flight::FlightOptions& flight);
 
-/// Flies the survey on the autopilot behind `port`, from the pad and back to it or until there is
-/// trouble; returns when nothing is left that goes on beside the flight. `flight`, that
-/// of the survey's options, must be flyable; options that follow from it are filled in.
+/// Flies the survey with the autopilot behind `port`. The flight starts and ends at the pad unless
+/// a problem occurs. Returns after all background work has finished. `flight` contains the survey's
+/// flight options and must satisfy require_flyable(); dependent entries of `options` are filled in
+/// here.
 FlightEnd fly_survey(const flight::FlightOptions& flight, LiveSurvey& survey,
                      flight::mavlink::Port& port, Sensor sensor, FlightOptions options,
                      const std::stop_token& stop);

@@ -9,14 +9,15 @@ namespace {
 
 constexpr double degree = geometry::radians_per_degree;
 
-constexpr double turning = 2.0;  ///< after which the camera stands still [s]
+constexpr double turning = 2.0;  ///< Time after which the camera is at rest [s].
 
-/// So much motion of the vehicle is needed to tell, and the slope of the report by it that decides:
-/// 0 against the horizon, -1 against the vehicle.
+/// Minimum vehicle motion for a decision, and the slope of the report over the vehicle's pitch that
+/// decides. The slope is 0 relative to the horizon and -1 relative to the airframe.
 constexpr double needed_squares = 20.0 * degree * degree;
 constexpr double decisive_slope = -0.5;
 
-/// In steady wind the vehicle's tilt does not change: the report is off by it, for so many reports.
+/// In steady wind the vehicle's tilt is constant. The report then differs by this tilt for this
+/// number of consecutive reports.
 constexpr double least_tilt = 1.5 * degree, tolerance = 1.0 * degree;
 constexpr std::size_t enough_steady = 10;
 
@@ -38,7 +39,7 @@ void GimbalReport::hear(double now, double reported, double vehicle_pitch) {
                                                      products_ < decisive_slope * vehicle_squares_);
 }
 
-// Welford's sums, about the means of each aim.
+// Updates the sums about the mean of each aim with Welford's algorithm.
 void GimbalReport::weigh(double reported, double vehicle_pitch) {
   if (count_++ == 0) mean_reported_ = mean_vehicle_ = 0.0;
   const double share = 1.0 / static_cast<double>(count_);

@@ -22,16 +22,17 @@ using Eigen::Vector3d;
 using geometry::radians_per_degree;
 namespace mavlink = flight::mavlink;
 
-/// MAV_CMD numbers that missions do not have, and ArduCopter's numbers of its modes.
+/// MAV_CMD numbers that mission files do not use, and ArduCopter's mode numbers.
 constexpr std::uint16_t set_mode = 176, arm = 400;
 constexpr std::uint32_t guided_mode = 4, land_mode = 9;
 
-constexpr double period = 0.1;            ///< of set points [s]
-constexpr double settle_patience = 20.0;  ///< for rest and aim, beyond what a leg takes [s]
-constexpr double mode_patience = 5.0;     ///< [s]
+constexpr double period = 0.1;  ///< Interval between set points [s].
+/// Time limit for coming to rest and aiming, in addition to the leg time [s].
+constexpr double settle_patience = 20.0;
+constexpr double mode_patience = 5.0;  ///< [s]
 
-/// Set points that come later than this one after the other: the vehicle is stopped [s]. Up to then
-/// it has flown on as far as they would have led it.
+/// Maximum delay between two set points before the vehicle is stopped [s]. Up to this delay, the
+/// vehicle has flown as far as the missing set points would have led it.
 constexpr double longest_stall = 1.0;
 
 double turn_between(double a, double b) {
@@ -42,8 +43,8 @@ std::string place_text(const Vector3d& place) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f})", place.x(), place.y(), place.z());
 }
 
-/// A trouble, and what has come up while the vehicle came to rest: the later one decides what may
-/// be done.
+/// Combines a trouble with one that occurred while the vehicle came to rest. The later one
+/// determines the further actions.
 Trouble joined(const Trouble& first, const MaybeTrouble& later) {
   if (!later) return first;
   return {later->kind, first.what + "; then " + later->what};
@@ -175,7 +176,7 @@ MaybeTrouble GuidedFlight::fly_leg(const Vector3d& to) {
     const double late = link_.now() - last;
     MaybeTrouble trouble;
     if (late > longest_stall) {
-      listen();  // what was said meanwhile
+      listen();  // Processes messages received during the stall.
       trouble = Trouble{TroubleKind::stalled,
                         fmt::format("set points were interrupted for {:.1f} s because this program "
                                     "was suspended; stopping at the current position",
@@ -196,8 +197,7 @@ MaybeTrouble GuidedFlight::fly_leg(const Vector3d& to) {
   return std::nullopt;
 }
 
-/// Stops on the leg and holds there. Returns what is wrong then: the trouble, and what has come up
-/// since.
+/// Stops on the leg and holds position. Returns the trouble, combined with any later one.
 Trouble GuidedFlight::give_up(const flight::ScriptedLeg& leg, double time, const Trouble& trouble) {
   if (trouble.kind == TroubleKind::pilot) return trouble;
   if (trouble.kind == TroubleKind::stalled) {
@@ -211,7 +211,7 @@ Trouble GuidedFlight::give_up(const flight::ScriptedLeg& leg, double time, const
     brake(leg, time);
   }
   const bool is_heard = trouble.kind != TroubleKind::link && trouble.kind != TroubleKind::position;
-  // Who is off his leg holds where he is: no way back to it is proven.
+  // A vehicle off its leg holds its position, because no path back to the leg is verified.
   hold_after(trouble);
   if (!is_heard || trouble.kind == TroubleKind::off_leg) return trouble;
   return joined(trouble, come_to_rest(leg_));
@@ -232,7 +232,7 @@ void GuidedFlight::brake(const flight::ScriptedLeg& leg, double time) {
   flown_.push_back(place_);
 }
 
-/// Holds until the vehicle is at rest at its place, on the leg that it came on.
+/// Holds until the vehicle is at rest at the hold position, on the given leg.
 MaybeTrouble GuidedFlight::come_to_rest(const flight::Segment& leg) {
   const double end = link_.now() + settle_patience;
   while (!is_at(place_)) {
@@ -291,7 +291,7 @@ Trouble GuidedFlight::hold_on() {
     hold_for_a_moment();
     const MaybeTrouble trouble = watch_link(link_.state(), mode_, link_.now());
     if (!trouble) heard = link_.now();
-    // Heard again, it holds where it has flown on to meanwhile.
+    // When the link is restored, the vehicle holds at the position reached in the meantime.
     if (!trouble && is_lost) place_ = stopping_place(leg_);
     is_lost = trouble && trouble->kind == TroubleKind::link;
     if (trouble && trouble->kind == TroubleKind::pilot) return *trouble;
@@ -318,7 +318,8 @@ MaybeTrouble GuidedFlight::land(const Vector3d& pad) {
   return std::nullopt;
 }
 
-/// Sent so that the vehicle would come to rest before the leg's end if nothing else arrived.
+/// Sends a set point from which the vehicle would stop before the end of the leg without further
+/// messages.
 flight::SetPoint GuidedFlight::send_on(const flight::ScriptedLeg& leg,
                                        const flight::SetPoint& point) {
   const flight::SetPoint sent = with_stopping_speed(leg, point);
@@ -363,7 +364,7 @@ AimErrors GuidedFlight::errors_at(const geometry::View& view) const {
           .vehicle_pitch = link_.state().pitch().value_or(0.0)};
 }
 
-/// What makes it unknown where the vehicle is, or whose it is.
+/// Returns a trouble if the position or the control of the vehicle is uncertain.
 MaybeTrouble GuidedFlight::watch_place(const flight::Segment& leg) const {
   if (MaybeTrouble trouble = watch_link(link_.state(), mode_, link_.now())) return trouble;
   const double off = std::sqrt(nearest(leg, position()).squared_distance);

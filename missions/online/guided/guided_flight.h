@@ -1,15 +1,15 @@
-/// Flies a vehicle along legs that are given to it, and notices when something is wrong.
+/// Flies an ArduCopter in GUIDED mode along given legs and monitors it for failures.
 ///
-/// ArduCopter in mode GUIDED. Between two stops it is sent set points, ten a second, that move
-/// along the straight leg as the vehicle can: position and velocity. Told only where to go,
-/// ArduCopter would rise and sink at its own pace and leave the line. When set points cease it
-/// flies on for three seconds with the velocity of the last (GUID_TIMEOUT), which is therefore
-/// never more than what comes to rest before the leg's end. Nothing is sent that is not on a leg.
+/// Between two stops, position and velocity set points follow the straight leg at 10 Hz, within the
+/// vehicle's dynamics. With position targets alone, ArduCopter would climb and descend at its own
+/// rate and leave the line. When set points stop arriving, ArduCopter continues with the last
+/// velocity for three seconds (GUID_TIMEOUT). The commanded velocity is therefore limited so that
+/// the vehicle stops before the end of the leg. All set points are on the current leg.
 ///
-/// A leg that is given up is braked on, and counts as the vehicle's leg until it is at rest: the
-/// vehicle lags behind its set points and flies past the last of them. If this program stands still
-/// for longer than a second, the vehicle stops where it has flown on to, not where the set points
-/// ended.
+/// To abandon a leg, the vehicle brakes along it. The leg remains the current leg until the vehicle
+/// is at rest, because the vehicle lags behind its set points and overshoots the last one. If this
+/// program stalls for more than one second, the vehicle stops at the position that it has reached
+/// meanwhile.
 ///
 /// Sources: ArduPilot's ArduCopter/GCS_Mavlink.cpp, mode_guided.cpp and mode.h; MAVLink's common
 /// message set.
@@ -38,50 +38,52 @@ namespace skycap::missions::online {
 
 class GuidedFlight {
  public:
-  /// Keeps a reference to the link. Once a stop is requested every step ends with trouble.
+  /// Keeps a reference to `link`. After a stop request, every step returns a trouble.
   GuidedFlight(flight::mavlink::AutopilotLink& link, FlightFrame frame,
                const flight::Motion& motion, const GuidedLimits& limits, std::stop_token stop);
 
-  /// Arms and climbs straight up to a place. The vehicle must be prepared (preflight.h).
+  /// Arms the motors and climbs vertically to the position `above`. Requires a vehicle prepared by
+  /// prepare() (preflight.h).
   MaybeTrouble take_off(const Eigen::Vector3d& above);
 
-  /// Whether it has taken off from here and not landed yet.
+  /// Returns true between take-off by this object and landing.
   bool is_flying() const { return is_flying_; }
 
-  /// Begins to turn vehicle and camera to look as at `view`.
+  /// Starts to turn the vehicle and the camera to the direction of `view`.
   MaybeTrouble aim(const geometry::View& view);
 
-  /// Flies a proven way, which begins where the vehicle holds, from stop to stop.
+  /// Flies a verified path leg by leg. The path must start at the hold position.
   MaybeTrouble fly(const std::vector<Eigen::Vector3d>& way);
 
-  /// Waits until the vehicle is at rest and the camera looks as at `view`.
+  /// Waits until the vehicle is at rest and the camera is aimed in the direction of `view`.
   MaybeTrouble settle(const geometry::View& view);
 
-  /// Holds until something is done; trouble if that takes longer than `limit` [s].
+  /// Holds position until `is_done` returns true. Returns `too_late` after `limit` seconds.
   MaybeTrouble hold_until(const std::function<bool()>& is_done, double limit,
                           const Trouble& too_late);
 
-  /// Holds until somebody takes control or nothing is heard any more, and says which.
+  /// Holds position until another station takes control or the link is lost. Returns the reason.
   Trouble hold_on();
 
-  /// Lands where it is, over `pad`.
+  /// Lands at the current position, which must be above `pad`.
   MaybeTrouble land(const Eigen::Vector3d& pad);
 
-  /// From now on neither a stop nor an empty battery changes anything.
+  /// Starts the return. From then on, stop requests and low battery are ignored.
   void begin_return() { is_returning_ = true; }
 
-  /// Below this share of the battery there is trouble.
+  /// Sets the battery level (fraction of a full charge) below which steps return a trouble.
   void need_battery(double share) { battery_needed_ = share; }
 
-  /// From where it holds back to where the way began that it flew last.
+  /// Returns the path from the hold position back to the start of the last path.
   std::vector<Eigen::Vector3d> way_back() const { return {flown_.rbegin(), flown_.rend()}; }
 
-  /// The way flown last is not needed to come back.
+  /// Discards the last path when it is not required for the return.
   void forget_way() { flown_ = {place_}; }
 
-  /// Where the vehicle takes itself to be, and the camera to look.
+  /// Returns the estimated vehicle position and camera direction.
   geometry::View view() const;
-  /// Whether the gimbal was found to report its pitch against the vehicle (gimbal_report.h).
+  /// Returns true if the gimbal was detected to report pitch relative to the airframe
+  /// (gimbal_report.h).
   bool reports_against_vehicle() const { return gimbal_.is_against_vehicle(); }
   std::optional<double> battery() const { return link_.state().battery(); }
 
@@ -112,12 +114,12 @@ class GuidedFlight {
   flight::Motion motion_;
   GuidedLimits limits_;
   std::stop_token stop_;
-  std::uint32_t mode_ = 0;                           ///< that we have set
-  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  ///< where it holds, or shall
+  std::uint32_t mode_ = 0;                           ///< Last flight mode set by this program.
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  ///< Current or next hold position.
   std::vector<Eigen::Vector3d> flown_;
-  flight::Segment leg_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< flown last
+  flight::Segment leg_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< Last flown leg.
   GimbalReport gimbal_;
-  double yaw_ = 0.0, pitch_ = 0.0;  ///< asked for [rad]
+  double yaw_ = 0.0, pitch_ = 0.0;  ///< Commanded heading and camera pitch [rad].
   double battery_needed_ = 0.0;
   bool is_flying_ = false, is_returning_ = false;
 };

@@ -1,15 +1,18 @@
-/// What is asked of a flight that is guided from here.
+/// Tolerances and time limits of a guided flight.
 #pragma once
 
 namespace skycap::missions::online {
 
 struct GuidedLimits {
-  double corridor = 1.0;    ///< how far from its leg the vehicle may take itself to be [m]
-  double arrival = 0.3;     ///< how near to a stop it has to come [m]
-  double hold = 0.5;        ///< at rest and aimed before a scan [s]
-  double patience = 60.0;   ///< for a vehicle to be heard and to know where it is [s]
-  double pad_radius = 2.0;  ///< how far from the pad it may stand [m]
-  double pad_height = 1.0;  ///< how far from its height it may take itself to be [m]
+  /// Maximum distance from the current leg, by the vehicle's position estimate [m].
+  double corridor = 1.0;
+  double arrival = 0.3;  ///< Maximum distance from a stop at arrival [m].
+  double hold = 0.5;     ///< Time at rest and aimed before a scan [s].
+  /// Time limit for the first message and for a valid position estimate [s].
+  double patience = 60.0;
+  double pad_radius = 2.0;  ///< Maximum horizontal distance from the pad before take-off [m].
+  /// Maximum error of the estimated height on the pad before take-off [m].
+  double pad_height = 1.0;
 };
 
 }  // namespace skycap::missions::online

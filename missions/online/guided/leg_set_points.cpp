@@ -8,16 +8,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// GUID_TIMEOUT: so long ArduCopter flies on with the velocity of its last set point [s].
+/// Time for which ArduCopter continues with the last velocity (GUID_TIMEOUT) [s].
 constexpr double set_point_life = 3.0;
-constexpr double reaction = 1.0;       ///< until it has begun to brake [s]
-constexpr double least_advance = 0.2;  ///< two periods of set points [s]
+constexpr double reaction = 1.0;       ///< Delay until the vehicle starts to brake [s].
+constexpr double least_advance = 0.2;  ///< Two set point intervals [s].
 
 }  // namespace
 
 flight::SetPoint with_stopping_speed(const flight::ScriptedLeg& leg, flight::SetPoint point) {
   const double left = (leg.to - point.position).norm(), speed = point.velocity.norm();
-  // Of t v + v^2 / (2 a) = left: it flies on, and brakes.
+  // Solves t v + v^2 / (2 a) = left: flight at constant speed, then braking.
   constexpr double t = set_point_life + reaction;
   const double most = leg.acceleration * (std::sqrt(t * t + 2.0 * left / leg.acceleration) - t);
   if (speed > most) point.velocity *= most / speed;

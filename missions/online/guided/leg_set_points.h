@@ -1,4 +1,4 @@
-/// Set points on a straight leg for an autopilot that flies on with the velocity of the last one.
+/// Set points on a straight leg for an autopilot that continues with the last velocity received.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,16 +8,18 @@
 
 namespace skycap::missions::online {
 
-/// The set point with a velocity from which the vehicle comes to rest before the leg's end, even if
-/// no other follows.
+/// Returns `point` with its velocity limited so that the vehicle stops before the end of the leg
+/// even if no further set point arrives.
 flight::SetPoint with_stopping_speed(const flight::ScriptedLeg& leg, flight::SetPoint point);
 
-/// The time on the leg whose set point is next, `late` seconds after `sent`, which was that of
-/// `time`: where its velocity has led the vehicle to, so that it never flies back [s].
+/// Returns the leg time of the next set point [s]. The last set point, `sent`, had leg time `time`
+/// and was sent `late` seconds ago. The result is at or beyond the position reached with the
+/// velocity of `sent`, so that the vehicle never flies backwards.
 double time_after(const flight::ScriptedLeg& leg, double jerk, double time,
                   const flight::SetPoint& sent, double late);
 
-/// Where a vehicle that flies along a leg comes to rest if it brakes now, on the leg.
+/// Returns the point of the leg where a vehicle on it comes to rest if it brakes now with
+/// `acceleration` [m/s^2].
 Eigen::Vector3d stopping_place(const flight::Segment& leg, const Eigen::Vector3d& position,
                                const Eigen::Vector3d& velocity, double acceleration);
 

@@ -9,13 +9,13 @@ namespace {
 
 namespace mavlink = flight::mavlink;
 
-/// EKF_STATUS_FLAGS: attitude, velocity, place on the Earth and height are known; and none of those
-/// that say that it is only guessed.
+/// EKF_STATUS_FLAGS: attitude, velocity, absolute position and height must be valid. Flags of an
+/// uncertain estimate must not be set.
 constexpr std::uint16_t estimates_needed = 1 | 2 | 4 | 16 | 32, guesses = 128 | 1024;
 
-constexpr double heartbeat_patience = 5.0;  ///< heartbeats come once a second
-constexpr double position_patience = 1.5;   ///< positions come ten times a second
-constexpr double silence_patience = 0.75;   ///< something comes with each of them
+constexpr double heartbeat_patience = 5.0;  ///< Heartbeats are sent at 1 Hz.
+constexpr double position_patience = 1.5;   ///< Positions are sent at 10 Hz.
+constexpr double silence_patience = 0.75;   ///< At least one message arrives with each position.
 
 }  // namespace
 
@@ -41,7 +41,7 @@ MaybeTrouble watch_link(const mavlink::VehicleState& state, std::uint32_t mode, 
   const double silence = now - state.last_heard().value();
   const double without_beat = now - heartbeat.time;
   const double age = now - state.position().value().time;
-  // What else it said just after its last position makes a silence no shorter.
+  // Other messages shortly after the last position do not shorten the silence.
   const bool is_silent = age > position_patience && silence > silence_patience;
   if (is_silent || without_beat > heartbeat_patience) {
     return Trouble{TroubleKind::link,

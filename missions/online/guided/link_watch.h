@@ -1,4 +1,4 @@
-/// Whether an autopilot is still heard, knows where it is, and does what it was told from here.
+/// Monitoring of the link, the vehicle's position estimate and its flight mode.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,14 @@
 
 namespace skycap::missions::online {
 
-/// Whether the vehicle's estimator is sure of attitude, velocity, place and height.
+/// Returns true if the estimator reports valid attitude, velocity, position and height.
 bool is_sure_of_place(const flight::mavlink::VehicleState& state);
 
-/// Where the vehicle takes itself to be; its position must have been heard.
+/// Returns the estimated position in the mission frame. A position message must have been received.
 Eigen::Vector3d place_of(const flight::mavlink::VehicleState& state, const FlightFrame& frame);
 
-/// What is wrong at `now` with a vehicle in flight that was told to be in `mode`.
+/// Returns the current problem of a flying vehicle that was commanded to `mode`, if any. `now` is
+/// the link time [s].
 MaybeTrouble watch_link(const flight::mavlink::VehicleState& state, std::uint32_t mode, double now);
 
 }  // namespace skycap::missions::online

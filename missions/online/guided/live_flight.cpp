@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Whether it is known where the vehicle is, so that it can be flown along a proven way.
+/// Returns true if the vehicle's position is known, so that it can fly a verified path.
 bool may_return(TroubleKind kind) {
   switch (kind) {
     case TroubleKind::pilot:
@@ -51,7 +51,7 @@ FlightEnd LiveFlight::run() {
 MaybeTrouble LiveFlight::begin() {
   const Vector3d spot = vehicle_.view().position;
   here_ = {spot.x(), spot.y(), above_pad_.z()};
-  // The vehicle stands beside the pad's middle: its own column is climbed.
+  // The vehicle may stand off the centre of the pad and climbs vertically from its position.
   const double vouched = std::min(pad_.z() + options_.vouched, above_pad_.z());
   const auto climb = survey_.flight()->find_way({spot.x(), spot.y(), vouched}, here_);
   const auto over = survey_.flight()->find_way(here_, above_pad_);
@@ -88,8 +88,8 @@ MaybeTrouble LiveFlight::visit(const geometry::View& view) {
   return plan();
 }
 
-/// The way that was proposed with the view leads there from the view before; a flight that goes on
-/// with a survey begins above the pad.
+/// Uses the proposed path if it starts at the current position. Otherwise plans a path: a resumed
+/// survey starts above the pad.
 void LiveFlight::search_way(const geometry::View& view) {
   way_ = survey_.proposal().way.points;
   if (!way_.empty() && way_.front() == here_) return;
@@ -106,7 +106,7 @@ MaybeTrouble LiveFlight::find_way(const geometry::View& view) {
   return Trouble{TroubleKind::planner, "no verified path from the vehicle's position to the view"};
 }
 
-/// For the way there and back, and home from here.
+/// Checks that the battery suffices for the path to the view, back, and the return from here.
 MaybeTrouble LiveFlight::check_battery() {
   const double there = share_for(way_);
   const double home =
@@ -129,7 +129,8 @@ double LiveFlight::share_for(const std::vector<Vector3d>& way) const {
     const Vector3d leg = way[i] - way[i - 1];
     energy += motion_.leg_energy(leg, motion_.leg_time(leg));
   }
-  // usable_energy() is what full batteries have above the reserve, the model's error allowed for.
+  // usable_energy() is the energy of full batteries above the reserve, with a margin for model
+  // error.
   return energy / motion_.usable_energy() * (1.0 - motion_.conditions().reserve);
 }
 
@@ -159,7 +160,7 @@ MaybeTrouble LiveFlight::plan() {
         TroubleKind::pose,
         "scan rejected: pose inconsistent with the map at the vehicle's estimated position"};
   }
-  // Else it came here by ways that were proven when it flew them.
+  // Otherwise the return uses the paths flown so far, which were verified before they were flown.
   home_ = home_found_ ? home_found_->points : way_home();
   vehicle_.forget_way();
   return std::nullopt;

@@ -1,9 +1,10 @@
-/// A live survey flown: to a view along its proven way, a scan there, the next view; and home.
+/// Flight of a live survey: repeats verified path, scan and planning until the survey ends, then
+/// returns to the pad.
 ///
-/// Whatever goes wrong, the vehicle holds where it is on the leg, and then, if that is asked for
-/// and it is known where it is, flies home: back along the leg, along a way to the pad that was
-/// proven before the leg was begun, and down. Nothing else is flown. The survey stays as it is in
-/// its folder, and goes on when it is flown again.
+/// After any failure the vehicle holds position on its leg. If requested, and if its position is
+/// known, it then returns: back along the leg, along a path to the pad that was verified before the
+/// leg was started, and down. No other paths are flown. The survey is kept in its folder and
+/// continues with the next flight.
 #pragma once
 
 #include <cstddef>
@@ -24,37 +25,39 @@
 
 namespace skycap::missions::online {
 
-/// Takes scan `number` of the view that is wanted; the camera takes itself to be at `taken`. Throws
-/// Error if there is none.
+/// Takes scan `number` for the view `wanted`. `taken` is the estimated camera pose. Throws Error if
+/// no scan is available.
 using Sensor = std::function<geometry::Scan(const geometry::View& wanted,
                                             const geometry::View& taken, std::size_t number)>;
 
 struct FlightOptions {
-  bool returns_on_failure = false;  ///< else the vehicle holds until somebody takes control
-  double sensing_limit = 60.0;      ///< that a scan may take [s]
-  double planning_limit = 60.0;     ///< that the next way may take [s]
-  double vouched = 2.5;             ///< of the climb, the first metres that the pilot answers for
-  std::function<void(const std::string&)> note = [](const std::string&) {};  ///< what happens
-  std::function<void()> show = [] {};  ///< called after each scan, beside the flight
-  /// Has work done beside the flight.
+  /// Return after a failure instead of holding until a pilot takes control.
+  bool returns_on_failure = false;
+  double sensing_limit = 60.0;   ///< Maximum duration of a scan [s].
+  double planning_limit = 60.0;  ///< Maximum duration of planning the next path [s].
+  /// Height of the first part of the climb, which is assumed free (the pilot must check) [m].
+  double vouched = 2.5;
+  /// Receives progress messages.
+  std::function<void(const std::string&)> note = [](const std::string&) {};
+  std::function<void()> show = [] {};  ///< Called after each scan, in the background.
+  /// Runs work in the background of the flight.
   std::function<std::future<void>(std::function<void()>)> launch = [](std::function<void()> work) {
     return std::async(std::launch::async, std::move(work));
   };
 };
 
 struct FlightEnd {
-  MaybeTrouble trouble;     ///< why it ended before the survey was over
-  bool has_landed = false;  ///< on the pad, from here
+  MaybeTrouble trouble;     ///< Reason for an early end of the survey.
+  bool has_landed = false;  ///< True after a landing on the pad under this program's control.
 };
 
 class LiveFlight {
  public:
-  /// Keeps references. The survey must be one with a vehicle.
+  /// Keeps references to `survey` and `vehicle`. The survey must have a vehicle.
   LiveFlight(LiveSurvey& survey, GuidedFlight& vehicle, const flight::Motion& motion, Sensor sensor,
              FlightOptions options);
 
-  /// Flies from a vehicle that is prepared (preflight.h) to the end of the survey, or of the
-  /// flight.
+  /// Flies from a prepared vehicle (preflight.h) to the end of the survey or of the flight.
   FlightEnd run();
 
  private:
@@ -80,17 +83,20 @@ class LiveFlight {
   Eigen::Vector3d pad_, above_pad_;
   Sensor sensor_;
   FlightOptions options_;
-  Eigen::Vector3d here_ = Eigen::Vector3d::Zero();  ///< where the last way ended
-  std::vector<Eigen::Vector3d> home_;  ///< proven, from where the last way began to above the pad
+  Eigen::Vector3d here_ = Eigen::Vector3d::Zero();  ///< End of the last path.
+  /// Verified path from the start of the last path to the position above the pad.
+  std::vector<Eigen::Vector3d> home_;
 
-  bool has_climbed_ = false;      ///< else it lands where it is
-  bool is_gimbal_noted_ = false;  ///< that its reports are against the vehicle
+  /// The climb has been completed; otherwise the vehicle lands at its current position.
+  bool has_climbed_ = false;
+  /// The user has been notified of airframe-relative gimbal reports.
+  bool is_gimbal_noted_ = false;
 
-  // What goes on beside the flight leaves its results here, and may do so after the flight.
-  std::vector<Eigen::Vector3d> way_;  ///< to the next view
+  // Results of background work, which may be written after the end of the flight.
+  std::vector<Eigen::Vector3d> way_;  ///< Path to the next view.
   geometry::Scan scan_;
   std::optional<session::FlownLeg> home_found_;
-  bool is_new_ = false;  ///< the scan
+  bool is_new_ = false;  ///< False if the survey already contained the last scan.
   std::future<void> work_;
 };
 

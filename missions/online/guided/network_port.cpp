@@ -21,7 +21,7 @@ namespace {
 
 using Kind = NetworkAddress::Kind;
 
-constexpr std::size_t largest_read = 1 << 16;  // a datagram is no larger
+constexpr std::size_t largest_read = 1 << 16;  // Upper limit of the size of a datagram.
 
 [[noreturn]] void refuse(const std::string& text, const std::string& what) {
   throw Error(ErrorKind::bad_usage, "--connect " + text + ": " + what);
@@ -88,7 +88,7 @@ double NetworkPort::now() const {
 
 void NetworkPort::send(std::span<const std::uint8_t> bytes) {
   if (!has_peer_) return;
-  // What the network does not take is lost, as anything else on a link.
+  // Data that the network does not accept is dropped like other losses on a link.
   while (!bytes.empty()) {
     const ssize_t count = ::send(handle_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (count <= 0) return;
@@ -113,7 +113,7 @@ flight::mavlink::Bytes NetworkPort::receive(double patience) {
   const ssize_t count = ::recvfrom(handle_, bytes.data(), bytes.size(), MSG_DONTWAIT,
                                    reinterpret_cast<sockaddr*>(&sender), &size);
   bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
-  if (bytes.empty()) {  // a connection that is gone, or a datagram of nothing
+  if (bytes.empty()) {  // Closed connection or empty datagram.
     std::this_thread::sleep_for(std::chrono::milliseconds(std::min(wait, 10)));
   } else if (!has_peer_) {
     hear_only(&sender, size);

@@ -1,4 +1,4 @@
-/// A link over the network: datagrams or a connection, by the clock on the wall.
+/// MAVLink port over UDP or TCP in real time.
 #pragma once
 
 #include <cstdint>
@@ -8,29 +8,30 @@
 
 namespace skycap::missions::online {
 
-/// Where an autopilot is met.
+/// Network address of an autopilot.
 struct NetworkAddress {
   enum class Kind {
-    udp_wait,  ///< udp: its datagrams come to an address of this machine
-    udp_send,  ///< udpout: it waits for datagrams at its own address
-    tcp,       ///< tcp: it waits for a connection at its own address
+    udp_wait,  ///< udp: receives datagrams at an address of this machine.
+    udp_send,  ///< udpout: sends datagrams to the autopilot's address.
+    tcp,       ///< tcp: connects to the autopilot's address.
   };
   Kind kind = Kind::udp_wait;
-  std::uint32_t host = 0;  ///< IPv4, of this machine's byte order
+  std::uint32_t host = 0;  ///< IPv4 address in host byte order.
   std::uint16_t port = 0;
 
   bool is_of_this_machine() const { return (host >> 24) == 127; }
 };
 
-/// Reads udp:HOST:PORT, udpout:HOST:PORT or tcp:HOST:PORT, HOST being an IPv4 address. Throws
-/// Error{bad_usage}.
+/// Parses udp:HOST:PORT, udpout:HOST:PORT or tcp:HOST:PORT, where HOST is an IPv4 address. Throws
+/// Error{bad_usage} for other input.
 NetworkAddress parse_address(const std::string& text);
 
-/// Of those who send datagrams to us only the first is heard: MAVLink does not say who speaks.
+/// Port that accepts datagrams only from the first sender, because MAVLink does not authenticate
+/// senders.
 class NetworkPort : public flight::mavlink::Port {
  public:
-  /// `pace` seconds of now() pass in one on the wall: for tests with an autopilot that is as fast.
-  /// Throws Error{bad_usage} if the address cannot be had.
+  /// Opens the socket. now() advances `pace` seconds per second of real time, for tests with an
+  /// accelerated autopilot. Throws Error{bad_usage} if the address is not available.
   explicit NetworkPort(const NetworkAddress& address, double pace = 1.0);
   NetworkPort(const NetworkPort&) = delete;
   NetworkPort& operator=(const NetworkPort&) = delete;

@@ -22,7 +22,7 @@ constexpr std::uint8_t ardupilot = 3;                                           
 constexpr std::array<std::uint8_t, 8> multicopters{2, 3, 4, 13, 14, 15, 29, 35};  ///< MAV_TYPE
 constexpr double listening_period = 0.1;                                          ///< [s]
 
-/// A message and how often it is wanted [1/s].
+/// Message and its requested rate [1/s].
 struct Wish {
   std::uint32_t id;
   double rate;
@@ -33,7 +33,7 @@ constexpr std::array<Wish, 5> wishes{{{mavlink::GlobalPosition::id, 10.0},
                                       {mavlink::SystemStatus::id, 1.0},
                                       {mavlink::EstimatorStatus::id, 2.0}}};
 
-/// Listens until it is so; `late` says what is missing.
+/// Processes messages until `is_so` returns true. `late` describes the missing condition.
 template <class IsSo, class Late>
 MaybeTrouble wait_until(mavlink::AutopilotLink& link, double patience, const std::stop_token& stop,
                         const IsSo& is_so, const Late& late) {
@@ -106,7 +106,8 @@ MaybeTrouble check_pad(const mavlink::VehicleState& state, const FlightFrame& fr
 MaybeTrouble prepare(mavlink::AutopilotLink& link, const FlightFrame& frame, const Vector3d& pad,
                      const GuidedLimits& limits, const std::stop_token& stop) {
   if (MaybeTrouble trouble = find_vehicle(link, limits.patience, stop)) return trouble;
-  for (const Wish& wish : wishes) {  // an autopilot that refuses may send it all the same
+  // An autopilot that rejects the request may still send the message.
+  for (const Wish& wish : wishes) {
     constexpr double microseconds = 1e6;
     link.command(set_message_interval,
                  {static_cast<float>(wish.id), static_cast<float>(microseconds / wish.rate)});

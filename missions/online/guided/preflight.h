@@ -1,4 +1,4 @@
-/// Before a flight that is guided from here: is there a vehicle that can be flown, on the pad?
+/// Checks before a guided flight: a suitable vehicle is connected and is on the pad.
 #pragma once
 
 #include <stop_token>
@@ -12,8 +12,9 @@
 
 namespace skycap::missions::online {
 
-/// Waits for ArduCopter to be heard, asks it to say what is needed, and waits until it is sure
-/// where it is: disarmed, on the pad.
+/// Waits for messages of an ArduCopter, requests the required message rates, and waits for a valid
+/// position estimate. The vehicle must be disarmed and on the pad. Returns the first check that
+/// fails.
 MaybeTrouble prepare(flight::mavlink::AutopilotLink& link, const FlightFrame& frame,
                      const Eigen::Vector3d& pad, const GuidedLimits& limits,
                      const std::stop_token& stop);

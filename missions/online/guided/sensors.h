@@ -1,4 +1,4 @@
-/// Where the scans of a flown survey come from.
+/// Sources of the scans of a flown survey.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,16 @@
 
 namespace skycap::missions::online {
 
-/// Scans that another program leaves in a folder. For scan 7 the file scan-0007.pose is written, in
-/// one line as parse_pose_text() reads it, when the vehicle is at rest at the view; the
-/// scan is the file scan-0007.EXT that then appears (.ply, .pcd, .las, .laz, .e57, .xyz or .png),
-/// in the sensor's optical frame, which gets that name when it is whole. `input` says how depth
-/// images are read. The sensor gives up when the stop is requested or after `patience` [s] by the
-/// clock on the wall, with Error{bad_file}. Throws that, too, if the folder is none.
+/// Returns a sensor that reads scans which another program writes to `folder`. For scan 7, the
+/// sensor writes scan-0007.pose when the vehicle is at rest at the view. The file has one line in
+/// the format of parse_pose_text().
+///
+/// The other program then writes scan-0007.EXT (.ply, .pcd, .las, .laz, .e57, .xyz or .png) in the
+/// sensor's optical frame. It must rename the file to that name only when the file is complete.
+/// `input` specifies how depth images are read.
+///
+/// The sensor throws Error{bad_file} after a stop request or after `patience` seconds of real time.
+/// Throws Error{bad_file} if `folder` is not a folder.
 Sensor folder_sensor(const flight::FlightOptions& flight, const LiveOptions& live,
                      const std::filesystem::path& folder, ScanInput input, double patience,
                      std::stop_token stop);

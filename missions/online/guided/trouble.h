@@ -1,4 +1,4 @@
-/// What may go wrong with a flight: a normal answer of each of its steps.
+/// Failures of a flight, which its steps return as ordinary results.
 #pragma once
 
 #include <optional>
@@ -7,24 +7,24 @@
 
 namespace skycap::missions::online {
 
-/// Why a flight does not go on.
+/// Reason why a flight cannot continue.
 enum class TroubleKind {
-  refused,      ///< the autopilot does not do what it is asked to, or not as it should
-  pilot,        ///< somebody else has taken control
-  link,         ///< nothing is heard of the vehicle
-  position,     ///< it does not know where it is
-  off_leg,      ///< it is not where it is flown to
-  battery,      ///< it is time to go home
-  planner,      ///< the next leg does not come
-  sensor,       ///< the scan does not come
-  pose,         ///< the scan does not fit what is known: nobody knows where the vehicle is
-  stalled,      ///< this program stood still, and the vehicle flew on
-  interrupted,  ///< the user asked to stop
+  refused,      ///< The autopilot rejects a command or executes it incorrectly.
+  pilot,        ///< Another station has taken control.
+  link,         ///< The link to the vehicle is lost.
+  position,     ///< The vehicle's position estimate is invalid.
+  off_leg,      ///< The vehicle has left its leg.
+  battery,      ///< The battery requires a return.
+  planner,      ///< Planning the next leg failed or timed out.
+  sensor,       ///< The scan failed or timed out.
+  pose,         ///< The scan contradicts the map, so the vehicle's position is unknown.
+  stalled,      ///< This program stalled while the vehicle continued to fly.
+  interrupted,  ///< The user requested a stop.
 };
 
 struct Trouble {
   TroubleKind kind;
-  std::string what;  ///< for the user
+  std::string what;  ///< Message for the user.
 };
 
 inline Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }

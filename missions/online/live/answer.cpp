@@ -48,7 +48,7 @@ Json way_json(const session::FlownLeg& way) {
   return points;
 }
 
-/// The next frames on the way, as many as go into the header of a message.
+/// Returns the next en-route frames, limited by the size of a message header.
 Json frames_json(const std::vector<session::ViewInFlight>& frames,
                  const flight::FlightOptions& flight) {
   constexpr std::size_t most = 64;
@@ -62,7 +62,7 @@ Json frames_json(const std::vector<session::ViewInFlight>& frames,
   return json;
 }
 
-/// What a motion is like that brings a scan onto what is known.
+/// Describes the motion that aligns a scan with the map.
 std::string motion_text(const PoseFinding& pose) {
   std::string text = fmt::format("moved by {:.3f} m and rotated by {:.2f} deg", pose.shift,
                                  pose.turn / geometry::radians_per_degree);

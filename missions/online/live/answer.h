@@ -1,4 +1,4 @@
-/// What a live survey answers.
+/// Answers of a live survey.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace skycap::missions::online {
 
-/// What to do next as a JSON object in one line: docs/reference/live-protocol.md describes it.
-/// `flight` is that of the survey's options.
+/// Returns the next action as a one-line JSON object (docs/reference/live-protocol.md). `flight`
+/// contains the survey's flight options.
 std::string answer_json(const LiveSurvey& survey, const flight::FlightOptions& flight);
 
-/// The same in one line for people.
+/// Returns the next action as one line of text for the user.
 std::string answer_text(const LiveSurvey& survey);
 
 }  // namespace skycap::missions::online

@@ -18,7 +18,7 @@ std::string kept_scan(const geometry::Scan& scan) {
   geometry::PlyElement vertex{"vertex", scan.points.size(), {}};
   vertex.add(geometry::PlyType::float32, {"x", "y", "z"});
   if (is_organised) vertex.add(geometry::PlyType::uint32, {"pixel"});
-  // Without a comment: the bytes are part of the identity of scans in journals.
+  // No comment line in the header: the bytes are part of a scan's identity in journals.
   std::string bytes = geometry::ply_header({&vertex, 1}, "");
   constexpr std::size_t largest_point = 16;  // [bytes]
   bytes.reserve(bytes.size() + largest_point * scan.points.size());
@@ -62,7 +62,7 @@ std::string digest_of(std::string_view bytes) {
 }
 
 geometry::Scan read_kept_scan(const std::filesystem::path& file, const std::string& sha256) {
-  constexpr std::size_t largest = std::size_t{384} << 20;  // [byte]
+  constexpr std::size_t largest = std::size_t{384} << 20;  // [bytes]
   const std::string bytes = geometry::read_file(file, largest);
   if (digest_of(bytes) != sha256) {
     throw Error(ErrorKind::bad_file,

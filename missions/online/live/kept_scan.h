@@ -1,6 +1,6 @@
-/// A scan on disk exactly as the planner took it in, so that the same is planned of it again: a
-/// binary PLY file of x y z (float, world frame) and, of an organised scan, pixel (uint), which any
-/// viewer of clouds opens. The pose, in full precision, stands in the survey's journal.
+/// Returns the scan as a binary PLY file that reproduces the planner's input exactly, so that
+/// replays give the same plan. The vertices have x y z (float, world frame) and, for organised
+/// scans, pixel (uint). The pose is stored in the survey's journal in full precision.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,15 @@ namespace skycap::missions::online {
 
 std::string kept_scan(const geometry::Scan& scan);
 
-/// The points and pixels of such a file; `name` opens every message. Throws Error{bad_file}.
+/// Reads points and pixels of a file written by kept_scan(). `name` is the prefix of error
+/// messages. Throws Error{bad_file}.
 geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes);
 
-/// SHA-256, in hexadecimal digits, as the journal has it of such a file's bytes.
+/// Returns the SHA-256 checksum of a file's bytes in hexadecimal digits, as stored in the journal.
 std::string digest_of(std::string_view bytes);
 
-/// The same of a file whose digest is known. Throws Error{bad_file} if it has another.
+/// Reads a file written by kept_scan(). Throws Error{bad_file} if its checksum differs from
+/// `sha256`.
 geometry::Scan read_kept_scan(const std::filesystem::path& file, const std::string& sha256);
 
 }  // namespace skycap::missions::online

@@ -42,7 +42,7 @@ PoseFinding parse_finding(const Json& json) {
   return finding;
 }
 
-/// Whole, with the turn as it is.
+/// Returns the complete finding, with the rotation in radians.
 Json journal_json(const PoseFinding& finding) {
   Json json = finding_json(finding);
   json["turn"] = finding.turn;
@@ -176,7 +176,7 @@ Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::stri
   if (!(stretch < sloppiness && turn.determinant() > 0.0)) {
     refuse("must be a rotation without scale or reflection");
   }
-  // Trackers let rotations drift; ours stay as they are, to the last bit.
+  // Trackers let rotations drift. Rotations written by Skycap remain bit-identical.
   if (stretch > rounding) {
     pose.linear() = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
   }

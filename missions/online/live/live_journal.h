@@ -1,4 +1,4 @@
-/// The records of a live survey's journal. For its source.
+/// Records of a live survey's journal, for its implementation only.
 #pragma once
 
 #include <optional>
@@ -15,29 +15,29 @@
 
 namespace skycap::missions::online {
 
-/// A scan that was acknowledged.
+/// Record of an acknowledged scan.
 struct ScanRecord {
   std::string id;
-  std::string file;                                                     ///< in the survey's folder
-  std::string sha256;                                                   ///< of the file
-  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< as given
-  std::optional<PoseFinding> pose;  ///< what was found of it, if poses are checked
-  bool is_on_way = false;           ///< to the view that is proposed, which stands
+  std::string file;    ///< Path relative to the survey's folder.
+  std::string sha256;  ///< SHA-256 checksum of the file.
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< Pose as received.
+  std::optional<PoseFinding> pose;  ///< Result of the pose check, if pose checks are enabled.
+  bool is_on_way = false;  ///< True for an en-route scan, which leaves the proposed view unchanged.
 };
 
-/// What was proposed after a scan or a refusal.
+/// Proposal after a scan or a refusal.
 struct ProposalRecord {
   std::optional<geometry::View> view;
   std::optional<survey::StopReason> end;
   session::ReachRecord reach;
 };
 
-/// Something that happened to the survey, and what followed if the program lived to say so. Nothing
-/// follows a scan on the way.
+/// Scan or refusal and the proposal that followed. The proposal is missing for en-route scans, and
+/// if the program ended before it was recorded.
 struct LiveEvent {
-  std::optional<ScanRecord> scan;  ///< or a refusal
-  std::string refusal;             ///< its reason
-  bool is_rejected = false;        ///< a scan that the planner cannot work with: it does not count
+  std::optional<ScanRecord> scan;  ///< Acknowledged scan; empty for a refusal.
+  std::string refusal;             ///< Reason for the refusal.
+  bool is_rejected = false;  ///< The planner rejected the scan as unusable; it does not count.
   std::optional<ProposalRecord> proposal;
 
   bool is_on_way() const { return scan && scan->is_on_way; }
@@ -48,16 +48,17 @@ std::string refusal_text(const std::string& reason);
 std::string rejection_text(const std::string& reason);
 std::string text_of(const ProposalRecord& proposal);
 
-/// The events of a journal without its first record. Throws Error{bad_file} naming `file` and the
-/// line if a record is none of the above.
+/// Parses all records of a journal except the first. Throws Error{bad_file} naming `file` and the
+/// line of a record of unknown type.
 std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file);
 
-/// What was found of a pose, as answers and journals have it. In the journal `correction` is whole.
+/// Returns the result of a pose check as in answers and journals. Journals store the full
+/// `correction`.
 nlohmann::ordered_json finding_json(const PoseFinding& finding);
 
-/// A pose as twelve numbers, row after row of [rotation | position], and back. Throws
-/// Error{bad_file} unless it is at a place and turns without stretching, within a hundredth: such a
-/// one is made a rotation.
+/// Converts a pose to twelve numbers, the rows of [rotation | position], and back. parse_pose()
+/// orthonormalises matrices that differ from a rotation by less than 0.01. It throws
+/// Error{bad_file} for larger differences and for invalid positions.
 nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose);
 Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::string& what);
 

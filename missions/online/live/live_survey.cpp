@@ -37,7 +37,7 @@ fs::path made_folder(const fs::path& folder) {
                                        failure.message() + "); use a folder that you can write to");
 }
 
-/// `sha256` is that of the scan as it is kept.
+/// Computes the id of a scan. `sha256` is the checksum of the stored scan.
 std::string id_of(const std::string& sha256, const Eigen::Isometry3d& world_from_sensor,
                   const std::optional<PoseCovariance>& covariance) {
   std::string text = sha256 + pose_json(world_from_sensor).dump();
@@ -98,8 +98,8 @@ struct LiveSurvey::Impl {
     return {steps->views().size(), steps->passed()};
   }
 
-  /// Where the way from a scan begins: at the view that was proposed, if the vehicle is as near to
-  /// it as the errors that the clearance already holds let it be.
+  /// Returns the start of the path after a scan. This is the proposed view if the sensor is within
+  /// the position and tracking errors that the clearance includes, otherwise the sensor's position.
   Vector3d departure_after(const geometry::Scan& scan) const {
     const Vector3d place = scan.sensor_position();
     const double errors = options.flight.position_error + options.flight.tracking_error;
@@ -117,7 +117,7 @@ struct LiveSurvey::Impl {
         continue;
       }
       if (event.is_on_way()) continue;
-      if (!known) {  // a kill came before it was written down
+      if (!known) {  // The program was killed before the proposal was recorded.
         write_down(text_of(*event.proposal));
       } else if (!is_same(*known, *event.proposal)) {
         throw Error(
@@ -154,7 +154,7 @@ struct LiveSurvey::Impl {
     return finding;
   }
 
-  /// A scan that is not used: what was proposed stands, but nobody knows where the sensor is.
+  /// Rejects a scan. The proposed view remains, but the sensor position is unknown.
   void leave_aside(LiveEvent& event) {
     numbers.emplace(event.scan->id, next_number(event.is_on_way()));
     ++set_aside;
@@ -164,7 +164,7 @@ struct LiveSurvey::Impl {
     if (!event.is_on_way()) event.proposal = ProposalRecord{proposal.view, proposal.end, {}};
   }
 
-  /// A scan from the way: what was proposed stands, and so does the way there.
+  /// Adds an en-route scan. The proposed view and the path to it remain.
   void pass(const LiveEvent& event, const geometry::Scan& scan) {
     numbers.emplace(event.scan->id, next_number(true));
     taken.push_back({static_cast<std::uint32_t>(steps->views().size()), scan.sensor_position()});
@@ -183,9 +183,9 @@ struct LiveSurvey::Impl {
     remembered = kept.size();
   }
 
-  /// Takes in an event and fills in what is proposed after it. False if it was a scan that the
-  /// planner cannot work with: `why` says so, what is to be written down is `unwritten`, and the
-  /// planner has to begin anew.
+  /// Processes an event and fills in the proposal after it. Returns false for a scan that the
+  /// planner rejects as unusable. `why` then contains the reason and `unwritten` the pending
+  /// record, and the planner must be reset.
   bool happen(LiveEvent& event, const geometry::Scan& scan) {
     if (event.scan && event.scan->pose && event.scan->pose->is_wrong) {
       leave_aside(event);
@@ -227,7 +227,7 @@ struct LiveSurvey::Impl {
     if (view && guide->flight() != nullptr && !is_lost) proposal.way = reach.record().way;
   }
 
-  /// What cannot be written now is written before anything else is.
+  /// Records that cannot be written now are written before any other record.
   void write_down(const std::string& text) {
     unwritten = text;
     catch_up();
@@ -239,7 +239,7 @@ struct LiveSurvey::Impl {
     unwritten.reset();
   }
 
-  /// Brings a scan to the disk and takes it in. False if it is known.
+  /// Stores a scan and processes it. Returns false if its id is known.
   bool bring(const geometry::Scan& scan, const std::string& given_id,
              const std::optional<PoseCovariance>& covariance, bool is_on_way) {
     const std::string bytes = kept_scan(scan), sha256 = digest_of(bytes);
@@ -287,7 +287,7 @@ struct LiveSurvey::Impl {
     }
     record.scans = taken;
     for (session::TakenScan& scan :
-         record.scans) {  // also from the way to a view that was not taken
+         record.scans) {  // Includes scans on the path to a view that was not taken.
       scan.view = std::min(scan.view, static_cast<std::uint32_t>(record.views.size() - 1));
     }
     return record;
@@ -299,7 +299,7 @@ struct LiveSurvey::Impl {
       if (events.back().proposal) write_down(text_of(*events.back().proposal));
       return;
     }
-    replay();  // the planner may have taken in a part of the scan
+    replay();  // The planner may have processed a part of the scan.
     catch_up();
     throw Error(ErrorKind::bad_geometry, why);
   }
@@ -316,13 +316,13 @@ struct LiveSurvey::Impl {
   session::ReachMemory reach;
   Proposal proposal;
   Vector3d departure = Vector3d::Zero();
-  std::map<std::string, ScanNumber> numbers;  ///< of scans by their ids
-  std::vector<session::TakenScan> taken;      ///< those that were used
+  std::map<std::string, ScanNumber> numbers;  ///< Numbers of the scans by id.
+  std::vector<session::TakenScan> taken;      ///< Accepted scans.
   std::size_t set_aside = 0;
   std::optional<PoseCheck> poses;
-  std::size_t remembered = 0;            ///< points of the planner's cloud that `poses` has
-  std::string why;                       ///< the last scan was rejected
-  std::optional<std::string> unwritten;  ///< record that the disk did not take
+  std::size_t remembered = 0;  ///< Number of points of the planner's cloud that `poses` contains.
+  std::string why;             ///< Reason for rejecting the last scan.
+  std::optional<std::string> unwritten;  ///< Record that could not be written yet.
 };
 
 LiveSurvey::LiveSurvey(const session::SurveyOptions& options, const LiveOptions& live,

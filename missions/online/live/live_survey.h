@@ -1,10 +1,10 @@
-/// A survey whose scans come from outside, one at a time, and which lives in a folder: whatever
-/// happens to the program, the next one goes on where the last scan was acknowledged.
+/// Survey with scans from an external source, stored in a folder. After a program crash, the survey
+/// resumes at the last acknowledged scan.
 ///
-/// The folder holds `live.journal`, a log of records (geometry::RecordLog): first which survey it
-/// is, then each scan, each refusal, and what was proposed after each; and `scans/`, the scans as
-/// the planner took them in. Opening the folder plans all of them again; proposals must come out
-/// the same to the last bit. Ways are not looked for again.
+/// The folder contains `live.journal` and `scans/`. The journal is a record log
+/// (geometry::RecordLog): the identity of the survey, then each scan, each refusal and the proposal
+/// after it. `scans/` contains the scans as input to the planner. Opening the folder replays all
+/// scans, and the proposals must be bit-identical. Paths are not planned again.
 #pragma once
 
 #include <cstddef>
@@ -27,45 +27,46 @@
 
 namespace skycap::missions::online {
 
-/// What to do next.
+/// Next action of a live survey.
 struct Proposal {
-  std::size_t number = 0;  ///< what happened so far: scans and refusals
-  /// Where to take the next scan. Nothing: the survey is over, or the first scan may be from
-  /// anywhere.
+  std::size_t number = 0;  ///< Number of scans and refusals so far.
+  /// View of the next scan. Empty if the survey is complete or if the first scan may be taken from
+  /// any view.
   std::optional<geometry::View> view;
-  /// With a vehicle: the way there, proven through measured free space, and its clearance [m].
+  /// For surveys with a vehicle: path to the view, verified collision-free in free space, with its
+  /// clearance [m].
   session::FlownLeg way;
-  /// Why there is no view; nothing before the first scan.
+  /// Reason why the survey has no next view. Empty before the first scan.
   std::optional<survey::StopReason> end;
-  /// What was found of the pose of the scan before, if it was looked at. One that was set aside
-  /// stays here until a scan is used: nobody knows where the sensor is, and no way is given.
+  /// Pose check of the previous scan, if it was checked. After a rejected scan, it remains until a
+  /// scan is accepted. During that time the sensor position is unknown and `way` is empty.
   std::optional<PoseFinding> pose;
 
   bool warns_of_pose() const { return pose && pose->is_wrong; }
 };
 
-/// How many views were used before a scan and, of one from the way to the next view, how many scans
-/// on that way.
+/// Number of views used before a scan. For en-route scans, also the number of scans already taken
+/// on that path.
 struct ScanNumber {
   std::size_t view = 0;
   std::optional<std::size_t> on_way{};
   bool operator==(const ScanNumber&) const = default;
 };
 
-/// Where a live survey begins.
+/// Initial conditions of a live survey.
 struct LiveStart {
-  /// Proposed for the first scan; nothing: that may be from anywhere. A survey with a vehicle needs
-  /// it.
+  /// View proposed for the first scan. If empty, the first scan may be taken from any view.
+  /// Required for surveys with a vehicle.
   std::optional<geometry::View> view;
-  std::optional<survey::ViewSphere> sphere;  ///< of volumetric planners whose settings give none
+  /// View sphere for volumetric planners without one in their settings.
+  std::optional<survey::ViewSphere> sphere;
 };
 
 class LiveSurvey {
  public:
-  /// Opens the folder of a survey, or begins one in it, on so many threads (zero: all processors).
-  /// Throws Error{bad_file} naming the file if the folder is of another survey than `identity`,
-  /// which says what differs, is damaged, or in use by another program; and what MissionPlanner
-  /// throws.
+  /// Opens the survey in `folder` or creates a new one, with `threads` threads (0: all processors).
+  /// Throws Error{bad_file} naming the file if the survey's identity differs from `identity`, or if
+  /// the folder is damaged or in use by another program. Also throws all errors of MissionPlanner.
   LiveSurvey(const session::SurveyOptions& options, const LiveOptions& live,
              const support::Identity& identity, const std::filesystem::path& folder,
              const LiveStart& start, unsigned threads);
@@ -73,48 +74,50 @@ class LiveSurvey {
 
   const Proposal& proposal() const;
 
-  /// What the planner holds at present.
+  /// Returns the planner with its current state.
   const survey::Planner& planner() const;
 
   const std::vector<survey::SurveyedView>& views() const;
 
-  std::size_t set_aside() const;  ///< scans whose poses were wrong
+  std::size_t set_aside() const;  ///< Returns the number of scans rejected because of their poses.
 
-  /// Scans used since the last view, on the way to the one that is proposed.
+  /// Returns the number of scans accepted since the last view, on the path to the proposed view.
   std::size_t on_way() const;
 
-  /// What is still to be scanned on that way, if the survey measures there (CaptureOptions), with
-  /// times since the vehicle left the last view. Empty where no way is proven.
+  /// Returns the remaining en-route scans of the current path if the survey takes them
+  /// (CaptureOptions). Times count from the departure from the last view [s]. Returns an empty list
+  /// if no path is verified.
   std::vector<session::ViewInFlight> frames() const;
 
-  /// The number that a scan was taken in under, if there is one with this id.
+  /// Returns the number of the scan with this id, if it exists.
   std::optional<ScanNumber> number_of(const std::string& id) const;
 
-  /// Brings a scan to the disk, looks at its pose (LiveOptions), and plans, or sets it aside.
-  /// One whose id is known is acknowledged and ignored: false. An empty id is scan_id()'s. Without
-  /// a covariance it is that of LiveOptions. Throws Error{bad_geometry} for a scan that the planner
-  /// cannot work with, and Error{bad_file} if the disk takes no more; then nothing has changed.
+  /// Stores a scan, checks its pose (LiveOptions), and plans with it or rejects it. Returns false
+  /// if a scan with this id exists; the scan is then acknowledged and ignored. An empty `id` stands
+  /// for scan_id(). The default covariance is that of LiveOptions. Throws Error{bad_geometry} if
+  /// the scan is unusable for the planner, and Error{bad_file} if it cannot be stored. The survey
+  /// is then unchanged.
   bool add(const geometry::Scan& scan, const std::string& id,
            const std::optional<PoseCovariance>& covariance = {});
 
-  /// The same with a scan from the way to the proposed view, which stands. Throws Error{bad_usage}
-  /// where no such scan is wanted: before the first view, when the survey is over, and unless the
-  /// survey measures on the way.
+  /// Adds an en-route scan like add(). The proposed view remains. Throws Error{bad_usage} before
+  /// the first view, after the end of the survey, and if the survey takes no en-route scans.
   bool add_on_way(const geometry::Scan& scan, const std::string& id,
                   const std::optional<PoseCovariance>& covariance = {});
 
-  /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
+  /// Rejects the proposed view and plans another one. Throws Error{bad_usage} if no view is
+  /// proposed.
   void refuse(const std::string& reason);
 
-  /// What knows the ways of the vehicle; null without one.
+  /// Returns the path planner of the vehicle, or null for surveys without a vehicle.
   session::SurveyFlight* flight();
 
-  /// The survey so far, to be looked at: interrupted, if a view is still proposed; without its
-  /// flight.
+  /// Returns the current record for display, without the flight. The record is marked as
+  /// interrupted while a view is proposed.
   session::SurveyRecord so_far() const;
 
-  /// The survey so far, for a package: interrupted, if a view is still proposed. The folder stays
-  /// as it is; this object may only be destroyed afterwards.
+  /// Returns the current record for a package, marked as interrupted while a view is proposed. The
+  /// folder remains unchanged. Afterwards, this object may only be destroyed.
   session::SurveyRecord finish();
 
  private:
@@ -122,9 +125,9 @@ class LiveSurvey {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The id of a scan that has none: a digest of pose, points and pixels, and of the pose's
-/// covariance: one that was set aside may come again with a larger one. add() needs it, too, and
-/// has it for less.
+/// Returns the default id of a scan: a checksum of pose, points, pixels and pose covariance.
+/// Including the covariance allows a rejected scan to be sent again with a larger one. add()
+/// computes the same id more efficiently from the stored file's checksum.
 std::string scan_id(const geometry::Scan& scan,
                     const std::optional<PoseCovariance>& covariance = {});
 

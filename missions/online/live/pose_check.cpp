@@ -16,24 +16,27 @@ using geometry::Registration;
 using geometry::RigidDirection;
 using geometry::SurfacePatch;
 
-constexpr std::size_t most_patch_points = 100'000;  // of a scan, that become patches
+// Maximum number of points of a scan that are combined into patches.
+constexpr std::size_t most_patch_points = 100'000;
 constexpr std::size_t most_patches = 1500;
 constexpr std::size_t least_matches = 50;
-constexpr double sigmas = 5.0;  // beyond, nobody says chance
+// Deviations above this number of standard deviations are significant.
+constexpr double sigmas = 5.0;
 
 struct Patches {
   std::vector<SurfacePatch> patches;
-  std::size_t level = 0;  // of the maps
+  std::size_t level = 0;  // Index of the map.
 };
 
-/// Whether noise leaves them much flatter than they are wide.
+/// Returns true if most patches are much flatter than wide despite noise.
 bool are_flat(const std::vector<SurfacePatch>& patches, double radius) {
   constexpr double flat = 0.15;
   const auto is_flat = [&](const SurfacePatch& patch) { return patch.deviation <= flat * radius; };
   return 2 * std::ranges::count_if(patches, is_flat) >= std::ssize(patches);
 }
 
-/// The scan's patches, as small as noise lets most of them be flat; none if it never does.
+/// Returns the patches of the scan with the smallest radius at which most are flat. Returns no
+/// patches if no radius suffices.
 Patches patches_of(const geometry::ScanSpan& scan, std::span<const geometry::SurfaceMap> maps) {
   for (std::size_t level = 0; level < maps.size(); ++level) {
     const double radius = maps[level].radius();
@@ -45,21 +48,21 @@ Patches patches_of(const geometry::ScanSpan& scan, std::span<const geometry::Sur
   return {};
 }
 
-/// What a pose's covariance lets its scan be moved along a direction: one standard deviation.
+/// Returns the standard deviation that a pose's covariance permits along a direction.
 double deviation_along(const RigidDirection& direction, const Registration& found,
                        const Vector3d& sensor, const PoseCovariance& covariance) {
-  // Of a pose's error t, w about the sensor s: d . (t + w x (m - s)) + (L w) . (L turn).
+  // For a pose error t, w about the sensor s: d . (t + w x (m - s)) + (L w) . (L turn).
   PoseCovariance::Vector along;
   along << direction.displacement, (found.middle - sensor).cross(direction.displacement) +
                                        found.size * found.size * direction.turn;
   return covariance.deviation(along);
 }
 
-/// Whether the surfaces' own errors and the pose's explain the motion.
+/// Returns true if the errors of the surfaces and of the pose explain the motion.
 bool is_explained(const Registration& found, const Vector3d& sensor,
                   const PoseCovariance& covariance, double radius) {
-  // What patches have in common by curvature, edges and uneven noise does not average out; what it
-  // moves along a direction is the more, the less the surface shows of that.
+  // Errors that patches share due to curvature, edges and uneven noise do not average out. They
+  // shift the scan more in directions that the surface constrains less.
   const double common = std::hypot(0.02 * radius, 0.2 * found.deviation);
   const double own = 1.5 * found.error / std::sqrt(static_cast<double>(found.matches));
   return std::ranges::all_of(found.directions, [&](const RigidDirection& direction) {
@@ -70,7 +73,7 @@ bool is_explained(const Registration& found, const Vector3d& sensor,
   });
 }
 
-/// Whether a correction is one that the pose's covariance allows, as a whole.
+/// Returns true if the pose's covariance permits the whole correction.
 bool is_allowed(const Isometry3d& correction, const Vector3d& sensor,
                 const PoseCovariance& covariance, double radius) {
   const Eigen::AngleAxisd turn(correction.linear());

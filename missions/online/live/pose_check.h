@@ -1,10 +1,11 @@
-/// Whether a scan was taken from where its pose says, by what earlier scans measured.
+/// Check of a scan's pose against earlier scans.
 ///
-/// Two things give a wrong pose away. Where the scan and the kept cloud show the same surface, the
-/// motion that would bring one onto the other (geometry/points/registration.h) is more than the
-/// pose's sigma and the errors of both surfaces explain. And of what was measured before much is
-/// missing where the scan saw through it, or the other way round: that finds jumps which are too
-/// large for surfaces to meet again.
+/// Two tests detect a wrong pose. First, where the scan and the kept cloud show the same surface,
+/// registration (geometry/points/registration.h) gives the motion between them. The pose is wrong
+/// if the pose's standard deviation and the errors of both surfaces do not explain this motion.
+/// Second, the scan must not see through a large fraction of the earlier measurements, nor earlier
+/// scans through its points. The second test detects errors that are too large for the surfaces to
+/// overlap.
 #pragma once
 
 #include <array>
@@ -24,32 +25,35 @@
 
 namespace skycap::missions::online {
 
-/// What was found of a scan's pose.
+/// Result of the check of a scan's pose.
 struct PoseFinding {
-  std::size_t matches = 0;    ///< places that both scan and kept cloud show
-  double error = 0.0;         ///< median distance there across the surface, as given [m]
-  double shift = 0.0;         ///< of the sensor, that would make them fit [m]
-  double turn = 0.0;          ///< [rad]
-  double seen_through = 0.0;  ///< share of what should be seen that was seen through
-  int unobservable = 0;       ///< ways to move, of six, which the common surface does not show
-  bool is_checked = false;    ///< there is enough in common
-  bool is_wrong = false;      ///< the scan is set aside
-  std::optional<Eigen::Isometry3d> correction;  ///< applied: true from given, in the world
+  std::size_t matches = 0;  ///< Surface patches visible in both the scan and the kept cloud.
+  /// Median distance between matching patches along the normal, for the given pose [m].
+  double error = 0.0;
+  double shift = 0.0;         ///< Translation of the sensor that aligns scan and cloud [m].
+  double turn = 0.0;          ///< Rotation that aligns scan and cloud [rad].
+  double seen_through = 0.0;  ///< Fraction of expected surface points that were seen through.
+  /// Number of degrees of freedom, of six, that the common surface does not constrain.
+  int unobservable = 0;
+  bool is_checked = false;  ///< True if the overlap is sufficient for a check.
+  bool is_wrong = false;    ///< True if the scan is rejected.
+  /// Applied correction: transform from given to corrected coordinates, in the world frame.
+  std::optional<Eigen::Isometry3d> correction;
 };
 
-/// The scan as from a corrected pose, to the last bit whenever it is done.
+/// Returns the scan transformed by `correction`. The result is deterministic to the last bit.
 geometry::Scan corrected(geometry::Scan scan, const Eigen::Isometry3d& correction);
 
 class PoseCheck {
  public:
-  /// Surfaces are compared in pieces of `radius`, or of two, four or eight times that where noise
-  /// leaves no surface in smaller ones. With `registers` poses are corrected, if the correction is
-  /// what their covariance explains.
+  /// Compares surfaces in patches of `radius` [m], or of two, four or eight times this radius where
+  /// noise does not permit smaller patches. With `registers`, poses are corrected if their
+  /// covariance explains the correction.
   PoseCheck(double radius, bool registers);
 
   PoseFinding find(const geometry::ScanSpan& scan, const PoseCovariance& covariance);
 
-  /// Remembers a scan that is used, and the points that were kept of it.
+  /// Adds an accepted scan and `kept`, the points of it that were kept.
   void remember(const geometry::ScanSpan& scan, std::span<const Eigen::Vector3f> kept);
 
  private:
@@ -58,8 +62,8 @@ class PoseCheck {
                       const PoseCovariance& covariance, const geometry::SurfaceMap& map) const;
 
   bool registers_;
-  std::array<geometry::SurfaceMap, 4> maps_;  ///< from fine to coarse
-  std::deque<RangeImage> last_;               ///< of the last scans
+  std::array<geometry::SurfaceMap, 4> maps_;  ///< Surface maps in order of increasing patch radius.
+  std::deque<RangeImage> last_;               ///< Range images of the most recent scans.
 };
 
 }  // namespace skycap::missions::online

@@ -17,8 +17,8 @@ namespace {
 
 using Matrix = PoseCovariance::Matrix;
 
-constexpr double farthest = 100.0, widest = 90.0;  // of one standard deviation [m, degrees]
-constexpr double rounding = 1e-6;                  // of correlations, as floats have it
+constexpr double farthest = 100.0, widest = 90.0;  // Maximum standard deviations [m, degrees].
+constexpr double rounding = 1e-6;                  // Tolerance of correlations, for float input.
 constexpr std::array<const char*, 6> names{"x", "y", "z", "rx", "ry", "rz"};
 
 double largest_deviation(const Eigen::Matrix3d& covariance) {
@@ -38,7 +38,7 @@ Matrix matrix_of(const std::vector<double>& numbers) {
   return matrix;
 }
 
-/// What keeps a matrix from being a pose's covariance; empty if nothing does.
+/// Returns the reason why a matrix is not a valid pose covariance; empty if it is valid.
 std::string fault_of(const Matrix& matrix) {
   Matrix correlations = Matrix::Identity();
   for (int i = 0; i < 6; ++i) {

@@ -1,9 +1,9 @@
-/// How well a pose is known.
+/// Uncertainty of a pose.
 ///
-/// A covariance as ROS's PoseWithCovariance has it: of x, y, z and of the turns about x, y and z,
-/// in this order, in m^2, m rad and rad^2. All six are along and about the axes of the mission's
-/// frame, whichever way the sensor looks, and the turns are about the sensor: true from given is
-/// p + t and exp(w) R with (t, w) of this covariance.
+/// Covariance as in ROS's PoseWithCovariance: x, y, z and rotations about x, y, z, in this order,
+/// in m^2, m rad and rad^2. All six refer to the axes of the mission frame, independent of the
+/// sensor's orientation. Rotations are about the sensor. The true pose is p + t and exp(w) R, where
+/// p and R are the given pose and (t, w) has this covariance.
 #pragma once
 
 #include <string>
@@ -17,29 +17,34 @@ struct PoseCovariance {
   using Matrix = Eigen::Matrix<double, 6, 6>;
   using Vector = Eigen::Matrix<double, 6, 1>;
 
-  Matrix matrix = Matrix::Zero();  ///< symmetric, positive semidefinite
+  /// Symmetric, positive semidefinite covariance of (x, y, z, rx, ry, rz).
+  Matrix matrix = Matrix::Zero();
 
-  /// One standard deviation [m] along and [rad] about each axis.
+  /// Returns a diagonal covariance with the given standard deviations along each axis [m] and about
+  /// each axis [rad].
   static PoseCovariance of(double position, double angle);
 
-  double position() const;  ///< largest standard deviation along any axis [m]
-  double angle() const;     ///< and about any [rad]
+  double position() const;  ///< Returns the maximum standard deviation along any axis [m].
+  double angle() const;     ///< Returns the maximum standard deviation about any axis [rad].
 
-  double deviation(const Vector& direction) const;  ///< of direction . (t, w)
+  /// Returns the standard deviation of direction . (t, w).
+  double deviation(const Vector& direction) const;
 
-  /// How many standard deviations an error (t, w) is, Mahalanobis's distance, if it has independent
-  /// errors of `position` and `angle`, both above zero, along and about each axis as well.
+  /// Returns the Mahalanobis distance of an error (t, w). Independent errors with standard
+  /// deviations `position` [m] along and `angle` [rad] about each axis are added to the covariance.
+  /// Both must be positive.
   double distance(const Vector& error, double position, double angle) const;
 
-  /// 21 numbers: the upper triangle by rows.
+  /// Returns the 21 numbers of the upper triangle, row by row.
   std::vector<double> triangle() const;
 };
 
-/// Reads "metres degrees". Throws Error{bad_usage}, `what` opens the message.
+/// Parses "metres degrees". Throws Error{bad_usage} with `what` as the prefix of the message.
 PoseCovariance parse_pose_sigma(const std::string& text, const std::string& what);
 
-/// Reads 36 numbers, by rows, or the 21 of the upper triangle by rows. Throws Error{bad_usage} for
-/// what is no covariance: not symmetric, not positive semidefinite, or beyond 100 m or 90 degrees.
+/// Parses 36 numbers, row by row, or the 21 numbers of the upper triangle, row by row. Throws
+/// Error{bad_usage} unless the matrix is symmetric and positive semidefinite with standard
+/// deviations up to 100 m and 90 degrees.
 PoseCovariance parse_pose_covariance(const std::string& text, const std::string& what);
 
 }  // namespace skycap::missions::online

@@ -9,12 +9,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int side = 96;  // cells along an edge of the cube
+constexpr int side = 96;  // Cells along an edge of the cube.
 constexpr std::size_t cell_count = std::size_t{6} * side * side;
 constexpr std::size_t most_points = 400'000;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// The cell that a direction falls into. It must have a length.
+/// Returns the cell of a non-zero direction.
 std::size_t cell_of(const Vector3d& direction) {
   Eigen::Index axis = 0;
   const double length = direction.cwiseAbs().maxCoeff(&axis);

@@ -1,4 +1,4 @@
-/// How far a scan saw in every direction: whoever stands in front of that was seen through.
+/// Visibility of a point relative to the ranges of a scan.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,26 @@
 namespace skycap::missions::online {
 
 enum class Sight {
-  unknown,  ///< the scan has too few returns there
-  hidden,   ///< behind what the scan measured
-  there,    ///< where the scan measured something
-  through,  ///< the scan measured farther: nothing was there
+  unknown,  ///< The scan has too few returns in this direction.
+  hidden,   ///< The point is behind the measured surface.
+  there,    ///< The point is on the measured surface.
+  through,  ///< The scan measured a longer range, so the point is in free space.
 };
 
-/// Ranges by direction: the six faces of a cube about the sensor, in cells of about a degree. A
-/// cell speaks for itself only together with the eight around it, so that edges are nobody's.
+/// Ranges by direction: the six faces of a cube around the sensor, in cells of about one degree. A
+/// cell is evaluated together with its eight neighbours, so that results at edges are `unknown`.
 class RangeImage {
  public:
-  /// Of some hundred thousand points, spread evenly over the scan.
+  /// Uses up to some hundred thousand points, evenly distributed over the scan.
   explicit RangeImage(const geometry::ScanSpan& scan);
 
-  /// What the scan says of a point in the world frame, measured to `tolerance` [m].
+  /// Returns the visibility of a point in the world frame. `tolerance` is the range error [m].
   Sight sight(const Eigen::Vector3d& point, double tolerance) const;
 
  private:
   struct Cell {
-    float nearest, farthest;  ///< of the nine cells; nearest above farthest: unknown
+    /// Min and max of the nine cells. Unknown if `nearest` exceeds `farthest`.
+    float nearest, farthest;
   };
   Eigen::Vector3d sensor_;
   std::vector<Cell> cells_;

@@ -9,10 +9,11 @@
 namespace skycap::missions::online {
 namespace {
 
-constexpr double steepest = 5.67;    // tangent of 80 degrees
-constexpr double least_jump = 0.03;  // of the depth: coarser than the steps that depths come in
+constexpr double steepest = 5.67;  // Tangent of 80 degrees.
+// Fraction of the depth, larger than the quantisation steps of depth images.
+constexpr double least_jump = 0.03;
 
-/// Depths by pixel; zero where there is no return.
+/// Depths by pixel; 0 for no-return pixels.
 class DepthGrid {
  public:
   DepthGrid(const geometry::Scan& scan, const geometry::Camera& camera)
@@ -65,7 +66,7 @@ class DepthGrid {
     return depths_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
                    static_cast<std::size_t>(column)];
   }
-  /// How much depth changes from pixel to pixel on the steepest surface.
+  /// Returns the maximum depth change between adjacent pixels on a single surface.
   double step(double depth) const { return steepest * pixel_size_ * depth; }
 
   bool is_between(int row, int column, int down, int right) const {
@@ -84,7 +85,7 @@ class DepthGrid {
   }
 
   int width_, height_;
-  double pixel_size_;  // at a depth of one
+  double pixel_size_;  // Pixel size at depth 1.
   std::vector<float> depths_;
 };
 

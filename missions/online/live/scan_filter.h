@@ -1,12 +1,12 @@
-/// What depth cameras return where nothing is.
+/// Removal of depth camera artefacts.
 ///
-/// At the edge of a near surface a pixel sees this one and the one behind, and many a camera
-/// returns a depth between the two: a flying pixel. It is told by its neighbours on opposite sides
-/// (along rows, columns and diagonals, one or two pixels away): one is much nearer, the other much
-/// farther, as on a surface that the line of sight meets at less than ten degrees, and by 3 % of
-/// the depth; but unlike on such a surface, beyond them depth goes on evenly. An isolated return
-/// has fewer than three others among the 24 pixels around it that a surface at more than ten
-/// degrees would put there.
+/// At the edge of a near surface, a pixel covers this surface and the one behind it, and many
+/// cameras return a depth between the two: a flying pixel. It is detected by its neighbours on
+/// opposite sides (along rows, columns and diagonals, one or two pixels away). One is much nearer
+/// and the other much farther: by 3% of the depth and by more than on a surface at ten degrees to
+/// the line of sight. Unlike on such a surface, the depth varies smoothly beyond these neighbours.
+/// An isolated return has fewer than three neighbours among the 24 surrounding pixels that a
+/// surface at more than ten degrees could explain.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ struct LeftOut {
   std::size_t flying = 0, isolated = 0;
 };
 
-/// Takes flying pixels and isolated returns out of an organised scan of that camera; the rest stays
-/// as it is. A scan without pixels stays whole.
+/// Removes flying pixels and isolated returns from an organised scan of `camera`. Other points and
+/// scans without pixels remain unchanged.
 LeftOut remove_flying_pixels(geometry::Scan& scan, const geometry::Camera& camera);
 
 }  // namespace skycap::missions::online

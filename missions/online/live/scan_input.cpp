@@ -22,7 +22,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// From position and quaternion.
+/// Returns the pose given by position and quaternion.
 Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
   const Eigen::Quaterniond turn(n[6], n[3], n[4], n[5]);
   if (!(std::abs(turn.norm() - 1.0) < 1e-2)) {
@@ -36,7 +36,7 @@ Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
   return pose;
 }
 
-/// Brown and Conrady's distortion of the slopes x/z, y/z of a ray.
+/// Applies Brown-Conrady distortion to the slopes x/z, y/z of a ray.
 Vector2d distorted(const Vector2d& slope, const std::array<double, 5>& coefficients) {
   const auto& [k1, k2, p1, p2, k3] = coefficients;
   const double x = slope.x(), y = slope.y(), r2 = slope.squaredNorm();
@@ -57,8 +57,8 @@ struct Seen {
   std::uint32_t point;
 };
 
-/// Puts the points, in the optical frame, into the pixels that the camera sees them in: of those in
-/// one pixel the nearest.
+/// Assigns points in the optical frame to the pixels of the camera. Keeps the nearest point of each
+/// pixel.
 void organise(std::span<const Vector3d> points, const geometry::Camera& camera, ScanFound& found) {
   std::vector<Seen> seen;
   seen.reserve(points.size());
@@ -74,7 +74,7 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
   const auto is_before = [](const Seen& a, const Seen& b) {
     return std::tie(a.pixel, a.depth, a.point) < std::tie(b.pixel, b.depth, b.point);
   };
-  // Images of the survey's own camera come in its order.
+  // Points of the survey's own camera are already sorted.
   if (!std::ranges::is_sorted(seen, is_before)) std::ranges::sort(seen, is_before);
   const auto last = std::unique(seen.begin(), seen.end(),
                                 [](const Seen& a, const Seen& b) { return a.pixel == b.pixel; });
@@ -88,20 +88,20 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
   }
 }
 
-/// The slopes that a lens distorts into those that are wanted; nothing where there are none.
+/// Inverts the distortion. Returns an empty value if the iteration does not converge.
 std::optional<Vector2d> undistorted(const Vector2d& wanted, const Lens& lens) {
   Vector2d slope = wanted;
   constexpr int most_rounds = 50;
   for (int round = 0; round < most_rounds; ++round) {
     const Vector2d error = wanted - distorted(slope, lens.distortion);
-    // A thousandth of a pixel is far below what depth sensors tell apart.
+    // 0.001 pixel is far below the resolution of depth sensors.
     if (error.cwiseProduct(lens.focal_length_px).norm() < 1e-3) return slope;
     slope += error;
   }
   return std::nullopt;
 }
 
-/// The points of a cloud's file in the optical frame.
+/// Reads the points of a cloud in the optical frame.
 std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
   const Isometry3d sensor_from_file =
       input.is_in_world ? input.world_from_sensor.inverse() : Isometry3d::Identity();
@@ -112,15 +112,15 @@ std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
   return points;
 }
 
-/// A lens whose principal point is far from the image's middle, by the same factor in both
-/// directions, is that of an image of another size.
+/// Throws if the intrinsics are those of an image of another size. This is assumed if the principal
+/// point is far from the image centre by the same factor in both directions.
 void require_same_size(const geometry::DepthImage& image, const Lens& lens) {
   const Vector2d middle(0.5 * (image.width - 1), 0.5 * (image.height - 1));
   const Vector2d factor = middle.cwiseQuotient(lens.principal_point_px);
   constexpr double most = 1.4, same = 1.25;
   const double size = std::sqrt(factor.x() * factor.y()), skew = factor.x() / factor.y();
   const bool is_same_size = size < most && size > 1.0 / most;
-  // A single row or column, and a cropped image, say nothing.
+  // Single rows or columns and cropped images do not permit a decision.
   if (!(size > 0.0) || is_same_size || !(skew < same && skew > 1.0 / same)) return;
   throw Error(
       ErrorKind::bad_file,

@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto patience = std::chrono::seconds(30);
-constexpr int poll_period = 100;  // [ms]: how late a stop may be noticed
+constexpr int poll_period = 100;  // Maximum delay in the detection of a stop request [ms].
 
 [[noreturn]] void fail(const std::string& place, const std::string& what) {
   throw Error(ErrorKind::bad_usage, place + ": " + what);
@@ -50,13 +50,13 @@ class Handle {
   int handle_;
 };
 
-/// Whether there is something to read within `milliseconds`.
+/// Returns true if data is available within `milliseconds`.
 bool is_readable(int handle, int milliseconds) {
   pollfd wanted{handle, POLLIN, 0};
   return ::poll(&wanted, 1, milliseconds) > 0;
 }
 
-/// False if the client does not take it within the time that it is given.
+/// Returns false if the client does not accept the message within the time limit.
 bool send_all(int handle, const Message& message) {
   const std::string frame = frame_of(message);
   std::string_view rest = frame;
@@ -73,8 +73,8 @@ bool send_all(int handle, const Message& message) {
   return rest.empty();
 }
 
-/// Says something to a client that is let go, and waits a moment for it to listen: what it has sent
-/// and nobody reads would otherwise have the connection torn down before.
+/// Sends a final message and waits briefly for the client to read it. Unread data of the client
+/// would otherwise reset the connection before the message is delivered.
 void dismiss(int handle, const Message& message) {
   send_all(handle, message);
   ::shutdown(handle, SHUT_WR);
@@ -85,16 +85,16 @@ void dismiss(int handle, const Message& message) {
   }
 }
 
-/// A client, from its coming to its going.
+/// Connected client.
 class Client {
  public:
   explicit Client(Handle handle) : handle_(std::move(handle)) {}
 
-  /// Reads what has come and answers it. False, with a reason, when the client is gone or let go.
+  /// Reads and answers messages. Returns false with a reason when the client is disconnected.
   bool serve(Session& session, std::string& reason) {
     try {
       return receive(reason) && answer(session, reason);
-    } catch (const Error& failure) {  // what it sends are no messages
+    } catch (const Error& failure) {  // Invalid message.
       reason = failure.what();
       dismiss(handle_.get(), error_message(reason));
       return false;
@@ -165,10 +165,10 @@ Handle unix_listener(const std::filesystem::path& path) {
   struct stat status {};
   if (::lstat(name.c_str(), &status) == 0) {
     if (!S_ISSOCK(status.st_mode)) fail(name, "exists and is not a socket; use another path");
-    ::unlink(name.c_str());  // a killed server left it
+    ::unlink(name.c_str());  // Left by a killed server.
   }
   Handle listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const mode_t mask = ::umask(0177);  // for its owner alone
+  const mode_t mask = ::umask(0177);  // Only the owner may open the socket.
   const bool is_made = is_bound(listener.get(), address);
   const std::string why = is_made ? "" : last_error();
   ::umask(mask);

@@ -1,4 +1,4 @@
-/// Serves a live survey on a socket, to one client at a time.
+/// Socket server for a live survey, with one client at a time.
 #pragma once
 
 #include <cstdint>
@@ -12,28 +12,28 @@
 
 namespace skycap::missions::online {
 
-/// Where clients come in: a Unix socket that only its owner may open, or a port of this machine.
+/// Address of the server: a Unix socket that only its owner can open, or a local TCP port.
 struct ServerPlace {
-  std::filesystem::path socket;       ///< either this
-  std::optional<std::uint16_t> port;  ///< or this, of 127.0.0.1 alone; 0: any that is free
+  std::filesystem::path socket;       ///< Path of the Unix socket; empty if `port` is set.
+  std::optional<std::uint16_t> port;  ///< TCP port at 127.0.0.1; 0 selects a free port.
 };
 
-/// A socket that waits for clients. Removes its file when it goes out of scope.
+/// Listening socket. The destructor removes the socket file.
 class Server {
  public:
-  /// Throws Error{bad_usage} if the place is taken or cannot be had.
+  /// Throws Error{bad_usage} if the address is in use or not available.
   explicit Server(ServerPlace place);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   ~Server();
 
-  /// What a client has to be told: "unix:PATH" or "tcp:127.0.0.1:PORT".
+  /// Returns the address for clients: "unix:PATH" or "tcp:127.0.0.1:PORT".
   const std::string& address() const { return address_; }
 
-  /// Answers clients, one after the other, until the survey is finished or a stop is requested. A
-  /// second client at the same time is told so and sent away; one that sends what is no message, or
-  /// no more than a part of one for half a minute, is told so and let go. `note` is told what
-  /// happened, in a line. Throws nothing that a client does.
+  /// Serves one client after another until the survey is finished or a stop is requested. A second
+  /// simultaneous client receives an error message and is disconnected. The same applies to clients
+  /// that send invalid messages or an incomplete message for 30 s. `note` receives one-line log
+  /// messages. Client errors do not cause exceptions.
   void run(Session& session, const std::function<void(const std::string&)>& note,
            const std::stop_token& stop);
 

@@ -29,7 +29,7 @@ std::vector<Value> values_at(const std::string& payload, std::size_t begin, std:
   return values;
 }
 
-/// A whole number, zero or more; up to 2^32 - 1.
+/// Reads an integer from 0 to 2^32 - 1.
 std::uint32_t count_at(const Json& header, const char* key) {
   const Json& number = header.at(key);
   constexpr auto most = std::numeric_limits<std::uint32_t>::max();
@@ -41,7 +41,7 @@ std::uint32_t count_at(const Json& header, const char* key) {
   return number.get<std::uint32_t>();
 }
 
-/// A row of numbers as text, for the parsers of text.
+/// Returns an array of numbers as a string for the string parsers.
 std::string row_at(const Json& header, const char* key) {
   std::string text;
   for (const Json& number : header.at(key)) text += number.dump() + " ";
@@ -52,7 +52,7 @@ Eigen::Isometry3d pose_of(const Json& header) {
   return parse_pose_text(row_at(header, "pose"), "pose");
 }
 
-/// A scan's own.
+/// Returns the covariance of a scan's header, if present.
 std::optional<PoseCovariance> covariance_of(const Json& header) {
   constexpr const char *sigma = "pose_sigma", *covariance = "pose_covariance";
   if (header.contains(sigma) && header.contains(covariance)) {
@@ -83,7 +83,7 @@ void require_payload(const Message& message, std::size_t size, const std::string
                  what_takes + std::to_string(size));
 }
 
-/// Points in the world frame, as floats, and then the pixels if there are some.
+/// Reads points in the world frame (floats), followed by pixels if present.
 geometry::Scan cloud_scan(const Message& message) {
   const auto count = count_at(message.header, "points");
   const bool has_pixels = message.header.value("has_pixels", false);
@@ -100,7 +100,7 @@ geometry::Scan cloud_scan(const Message& message) {
   return scan;
 }
 
-/// Points in the sensor's optical frame, as floats; as a file of them.
+/// Reads points in the sensor's optical frame (floats), like a cloud file.
 ScanFound sensor_cloud_scan(const Message& message, const flight::CaptureOptions& capture,
                             const LiveOptions& live) {
   const auto count = count_at(message.header, "points");
@@ -245,7 +245,7 @@ Message Session::refuse(const Message& message) {
     refuse_message("refuse: unknown proposal " + std::to_string(id) + "; the current one is " +
                    std::to_string(present_id));
   }
-  // One that was refused already is acknowledged.
+  // A proposal that was already refused is acknowledged.
   if (id == present_id) {
     survey_.refuse(message.header.value("reason", std::string("not stated")));
     has_changed_ = true;

@@ -1,5 +1,4 @@
-/// What a live survey answers to a client's messages: docs/reference/live-protocol.md describes
-/// them.
+/// Handler of the messages of a live survey's clients (docs/reference/live-protocol.md).
 #pragma once
 
 #include <functional>
@@ -14,18 +13,19 @@ namespace skycap::missions::online {
 
 class Session {
  public:
-  /// Keeps references to the survey and its options; `mission` is the mission's name. `finish`
-  /// writes the package and returns what is to be said of it; the survey is over for this program
-  /// then, unless it throws. `show` is called by settle().
+  /// Keeps references to the survey and its options. `mission` is the mission's name. `finish`
+  /// writes the package and returns its summary. Unless `finish` throws, the survey is then closed.
+  /// settle() calls `show`.
   Session(
       std::string mission, const flight::FlightOptions& flight, const LiveOptions& live,
       LiveSurvey& survey, std::function<std::string()> finish, std::function<void()> show = [] {});
 
-  /// One answer for each message. What is wrong with a message is answered as
-  /// {"type": "error", "what": ...} and changes nothing.
+  /// Returns one answer per message. Errors are answered with {"type": "error", "what": ...} and
+  /// leave the survey unchanged.
   Message answer(const Message& message);
 
-  /// To be called when an answer is sent: shows what has changed with it, if something has.
+  /// Calls `show` if the last message has changed the survey. Must be called after its answer was
+  /// sent.
   void settle();
 
   bool is_finished() const { return is_finished_; }

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are made by copying numbers");
 
-using Lengths = std::array<std::uint32_t, 3>;  // header, payload, checksum
+using Lengths = std::array<std::uint32_t, 3>;  // Header, payload, checksum.
 
 void require(bool is_right, const std::string& what) {
   if (!is_right) throw Error(ErrorKind::bad_file, "the message " + what);

@@ -1,9 +1,9 @@
-/// Messages of live surveys on a socket: docs/reference/live-protocol.md describes them. A frame is
+/// Messages of live surveys on a socket (docs/reference/live-protocol.md). A frame consists of
 ///
 ///     u32 bytes of the header    u32 bytes of the payload    u32 CRC-32 of both
 ///     header: a JSON object      payload: numbers
 ///
-/// in little-endian byte order. Whatever arrives is either a whole, sound frame or an error.
+/// in little-endian byte order. Received data is either a complete, valid frame or an error.
 #pragma once
 
 #include <cstddef>
@@ -25,17 +25,17 @@ struct Message {
 
 std::string frame_of(const Message& message);
 
-/// {"type": "error", "what": what}
+/// Returns the message {"type": "error", "what": what}.
 Message error_message(const std::string& what);
 
-/// Puts frames together from the pieces that a socket gives.
+/// Assembles frames from the chunks of bytes received on a socket.
 class FrameReader {
  public:
   void feed(std::string_view bytes) { buffer_.append(bytes); }
 
-  /// The next message; nothing before it is whole. Throws Error{bad_file} for lengths beyond the
-  /// limits, a wrong checksum, or a header that is no JSON object: nothing that follows can be
-  /// trusted then.
+  /// Returns the next message, or an empty value until it is complete. Throws Error{bad_file} for
+  /// lengths above the limits, a wrong checksum, or a header that is not a JSON object. The data
+  /// after such an error is unusable.
   std::optional<Message> next();
 
   bool is_within_message() const { return !buffer_.empty(); }

@@ -1,4 +1,4 @@
-// Loads the module that knows MRPT.
+// Loader of the module that contains MRPT.
 #include "missions/online/recordings/rawlog_reader.h"
 
 #include "geometry/error.h"

@@ -1,8 +1,8 @@
-/// Rawlogs of MRPT, read by MRPT's own library: scans, and what they say of where they are from.
+/// Reader of the scans and poses in MRPT rawlogs, based on the MRPT library.
 ///
-/// A rawlog is a row of observations, or of sensory frames with the carrier's movements between
-/// them, compressed by gzip or not. MRPT's libraries are in a module that is loaded when somebody
-/// asks for a rawlog, as for writing one, and read in a process of their own (reader_process.h).
+/// A rawlog is a sequence of observations, or of sensory frames with the platform's movements
+/// between them, optionally compressed by gzip. The MRPT libraries are in a module that is loaded
+/// on demand. They read files in a separate process (reader_process.h).
 #pragma once
 
 #include <array>
@@ -21,53 +21,58 @@
 
 namespace skycap::missions::online {
 
-/// An image of CObservation3DRangeScan, with its lens in the notation of OpenCV's calibration.
+/// Depth image of a CObservation3DRangeScan with intrinsics in OpenCV's notation.
 struct RecordedImage {
-  geometry::DepthImage image;  ///< 0 is no return
-  double unit = 0.001;         ///< what one step stands for [m]
-  bool is_depth = true;        ///< along the optical axis; else along the pixel's ray
+  geometry::DepthImage image;  ///< Depth image; no-return pixels are 0.
+  double unit = 0.001;         ///< Depth per unit of a pixel value [m].
+  /// Values are depths along the optical axis; otherwise ranges along the pixel's ray.
+  bool is_depth = true;
   Eigen::Vector2d focal_length_px, principal_point_px;
   std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3
 };
 
-/// A scan. Its sensor's optical frame has x right, y down, z forward; MRPT's sensors have x
-/// forward, y left, z up.
+/// Scan of a rawlog. The optical frame of its sensor has x right, y down, z forward. MRPT's sensor
+/// frames have x forward, y left, z up.
 struct RawlogScan {
-  std::size_t number = 0;  ///< of the observation in the file, from 0
-  std::string label;       ///< of the sensor
-  double time = 0.0;       ///< [s] since 1970
-  Eigen::Isometry3d carrier_from_sensor = Eigen::Isometry3d::Identity();  ///< optical frame
-  std::optional<Eigen::Isometry3d> moved;  ///< start from carrier, by the movements before it
-  std::variant<RecordedImage, std::vector<Eigen::Vector3f>> content;  ///< or points, optical frame
-  std::string fault;  ///< why the content cannot be used; empty if it can
+  std::size_t number = 0;  ///< Index of the observation in the file, from 0.
+  std::string label;       ///< Label of the sensor.
+  double time = 0.0;       ///< Seconds since 1970.
+  /// Pose of the optical frame.
+  Eigen::Isometry3d carrier_from_sensor = Eigen::Isometry3d::Identity();
+  /// Pose of the platform relative to its start, from the accumulated movements.
+  std::optional<Eigen::Isometry3d> moved;
+  /// Depth image, or points in the optical frame.
+  std::variant<RecordedImage, std::vector<Eigen::Vector3f>> content;
+  std::string fault;  ///< Reason why the content is unusable; empty if it is usable.
 };
 
 enum class PoseSource {
-  estimate,  ///< CObservationRobotPose: somebody's estimate in 6 dimensions
-  odometry,  ///< CObservationOdometry: wheels, in the plane
+  estimate,  ///< CObservationRobotPose: 6-DoF estimate from another program.
+  odometry,  ///< CObservationOdometry: planar wheel odometry.
 };
 
 struct RawlogPose {
   PoseSource source = PoseSource::estimate;
-  double time = 0.0;                                                     ///< [s] since 1970
-  Eigen::Isometry3d world_from_carrier = Eigen::Isometry3d::Identity();  ///< x forward, z up
+  double time = 0.0;  ///< Seconds since 1970.
+  /// Platform frame: x forward, z up.
+  Eigen::Isometry3d world_from_carrier = Eigen::Isometry3d::Identity();
 };
 
 class RawlogReader {
  public:
   virtual ~RawlogReader() = default;
 
-  /// What comes next of the above; what else there is in the file is passed over. Nothing at the
-  /// end. Throws Error{bad_file} naming the file and the entry for what MRPT cannot read, and for a
-  /// file that ends within an entry.
+  /// Returns the next scan or pose and skips other entries. Returns an empty value at the end.
+  /// Throws Error{bad_file} naming the file and the entry if MRPT cannot read it or the file ends
+  /// within an entry.
   virtual std::optional<std::variant<RawlogScan, RawlogPose>> next() = 0;
 };
 
-/// Opens a rawlog. Images and clouds that it keeps in other files are looked for where MRPT does,
-/// in NAME_Images beside it. Throws Error{bad_file}.
+/// Opens a rawlog. External images and clouds are searched for in the folder NAME_Images next to
+/// the file, as in MRPT. Throws Error{bad_file}.
 std::unique_ptr<RawlogReader> open_rawlog(const std::filesystem::path& file);
 
-/// The module's function; what it returns is the caller's.
+/// Entry point of the module. The caller owns the returned object.
 using MakeRawlogReader = RawlogReader*(const std::filesystem::path& file);
 inline constexpr const char* make_rawlog_reader_name = "skycap_make_rawlog_reader";
 

@@ -1,4 +1,4 @@
-// Reads rawlogs with MRPT; rawlog_reader.cpp loads the module.
+// Reader of rawlogs based on MRPT. rawlog_reader.cpp loads this module.
 #include <cmath>
 #include <deque>
 #include <utility>
@@ -24,7 +24,7 @@ namespace {
 using Eigen::Isometry3d;
 using Entry = std::variant<RawlogScan, RawlogPose>;
 
-/// RawlogBytes as MRPT wants them.
+/// Adapter of RawlogBytes to MRPT's archive interface.
 class Archive final : public mrpt::serialization::CArchive {
  public:
   explicit Archive(const std::filesystem::path& file) : bytes_(file) {}
@@ -40,7 +40,7 @@ class Archive final : public mrpt::serialization::CArchive {
   RawlogBytes bytes_;
 };
 
-/// The message in what MRPT throws, which has lines before and behind it.
+/// Extracts the message from an MRPT exception, whose text has lines before and after it.
 std::string message_of(const std::exception& failure) {
   std::string text = failure.what();
   constexpr std::string_view begin = "Message:";
@@ -49,7 +49,7 @@ std::string message_of(const std::exception& failure) {
   return text.substr(0, std::min<std::size_t>(text.find('\n'), 200));
 }
 
-/// The folder of what a rawlog keeps in other files: MRPT's own detectImagesDirectory passes over
+/// Returns the folder of the rawlog's external files. MRPT's detectImagesDirectory() does not find
 /// folders.
 std::string images_of(const std::filesystem::path& file) {
   std::string name = file.filename().string();
@@ -87,7 +87,8 @@ class Reader final : public RawlogReader {
                                          " cannot be read: " + what);
   }
 
-  /// The file's next object, or none with `is_at_end_`.
+  /// Returns the next object of the file. At the end, returns an empty object and sets
+  /// `is_at_end_`.
   mrpt::serialization::CSerializable::Ptr read_object() {
     try {
       auto object = archive_.ReadObject();
@@ -154,7 +155,7 @@ class Reader final : public RawlogReader {
   }
 
   std::filesystem::path file_;
-  std::string images_;  ///< folder of what the rawlog keeps in other files
+  std::string images_;  ///< Folder of the rawlog's external files.
   Archive archive_;
   std::deque<Entry> found_;
   std::optional<Isometry3d> moved_;

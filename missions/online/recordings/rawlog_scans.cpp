@@ -21,14 +21,14 @@ using Eigen::Vector3f;
 using mrpt::img::DistortionModel;
 using Points = std::vector<Vector3f>;
 
-/// MRPT's axes of a sensor from those of its optical frame.
+/// Returns the rotation from the optical frame to MRPT's sensor frame.
 Isometry3d sensor_from_optical() {
   Isometry3d turn = Isometry3d::Identity();
   turn.linear() = (Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
   return turn;
 }
 
-/// Points x y z of a sensor in its optical frame.
+/// Converts points x y z from MRPT's sensor frame to the optical frame.
 Points in_optical(std::span<const float> x, std::span<const float> y, std::span<const float> z) {
   Points points;
   points.reserve(x.size());
@@ -39,7 +39,7 @@ Points in_optical(std::span<const float> x, std::span<const float> y, std::span<
   return points;
 }
 
-/// What keeps a camera's parameters from being a Lens; empty if nothing does.
+/// Returns the reason why a camera's parameters are not valid intrinsics; empty if they are valid.
 std::string fault_of(const mrpt::img::TCamera& camera) {
   const auto is_focal = [](double length) { return std::isfinite(length) && length > 0.0; };
   if (!is_focal(camera.fx()) || !is_focal(camera.fy()) || !std::isfinite(camera.cx()) ||
@@ -57,14 +57,15 @@ std::string fault_of(const mrpt::img::TCamera& camera) {
   return is_known ? "" : "distortion coefficients beyond k1 k2 p1 p2 k3, or not finite";
 }
 
-/// A name in the folder of the rawlog's images, and none elsewhere on this machine.
+/// Returns true if the name is within the folder of the rawlog's images. Other paths on this
+/// machine are not read.
 bool is_beside(const std::string& name) {
   const std::filesystem::path path = name;
   const bool leaves = std::ranges::find(path, std::filesystem::path("..")) != path.end();
   return name.size() > 2 && path.is_relative() && !leaves;
 }
 
-/// What keeps a file of an observation from being read; empty if nothing does.
+/// Returns the reason why an observation's external file cannot be read; empty after success.
 template <typename Observation>
 std::string fault_of_load(const Observation& observation, const std::string& name) {
   if (!is_beside(name)) return "stored in '" + name + "', outside the rawlog's folder";
@@ -76,10 +77,10 @@ std::string fault_of_load(const Observation& observation, const std::string& nam
   }
 }
 
-/// Of pixels or points, as of a depth image in a file.
+/// Returns true if the number of pixels or points exceeds that of the largest depth image file.
 bool is_too_much(std::ptrdiff_t count) { return count > geometry::most_depth_pixels; }
 
-/// Takes the points in, unless there are too many.
+/// Adds the points, or sets `fault` if there are too many.
 void put_points(RawlogScan& scan, std::span<const float> x, std::span<const float> y,
                 std::span<const float> z) {
   if (is_too_much(std::ssize(x))) {

@@ -1,4 +1,4 @@
-/// Scans of MRPT's classes. For the module.
+/// Conversion of MRPT observations to scans, for the module only.
 #pragma once
 
 #include <optional>
@@ -18,9 +18,10 @@ namespace skycap::missions::online {
 
 Eigen::Isometry3d isometry_of(const mrpt::poses::CPose3D& pose);
 
-/// The scan in an observation, without number, label, time and movement: of CObservation3DRangeScan
-/// the range image, or its points if it has none; CObservationPointCloud; CObservationVelodyneScan.
-/// Nothing for other classes. May throw what MRPT throws.
+/// Returns the scan in an observation, without number, label, time and movement. Supported are
+/// CObservation3DRangeScan (range image, otherwise points), CObservationPointCloud and
+/// CObservationVelodyneScan. Returns an empty value for other classes. Throws all exceptions of
+/// MRPT.
 std::optional<RawlogScan> scan_of(const mrpt::obs::CObservation& observation);
 
 }  // namespace skycap::missions::online

@@ -12,10 +12,10 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// What a rawlog may have, which its compressed bytes do not bound.
+/// Limits on the contents of a rawlog, which its compressed size does not bound.
 constexpr std::size_t most_poses = 3'000'000, most_sensors = 64, longest_label = 256;
 
-/// As they are in messages.
+/// Formats labels for messages.
 std::string quoted(const std::vector<std::string>& labels) {
   std::string text;
   for (const std::string& label : labels) text += (text.empty() ? "'" : ", '") + label + "'";
@@ -28,7 +28,7 @@ std::vector<Vector3d> points_of(const RecordedImage& range, std::size_t& without
                   .distortion = range.distortion};
   std::vector<Vector3d> points = points_of(range.image, lens, range.unit, without_return);
   if (range.is_depth) return points;
-  // Such a point's depth is its range so far.
+  // The image contains ranges, so the depth of each point is converted from its range.
   for (Vector3d& point : points) point *= point.z() / point.norm();
   return points;
 }

@@ -1,4 +1,4 @@
-/// The scans of a rawlog with their poses, one after another: a rawlog may be larger than memory.
+/// Sequential access to the scans of a rawlog with their poses. A rawlog may be larger than memory.
 #pragma once
 
 #include <cstddef>
@@ -20,34 +20,35 @@
 namespace skycap::missions::online {
 
 struct RawlogChoice {
-  std::string sensor;  ///< label of the one whose scans are wanted; needed if there are several
-  /// A TUM trajectory of that sensor's optical frame, in place of what the rawlog says.
+  std::string sensor;  ///< Label of the sensor to read. Required if the rawlog has several sensors.
+  /// TUM trajectory of the sensor's optical frame. Replaces the poses of the rawlog.
   std::optional<std::filesystem::path> poses;
 };
 
 struct RawlogFrame {
-  std::string id;  ///< the sensor's label and the number of the observation
-  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< optical frame
+  std::string id;  ///< Label of the sensor and index of the observation.
+  /// Pose of the optical frame.
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   RawlogScan scan;
 };
 
-/// Poses are those of the trajectory that is given; else the rawlog's CObservationRobotPose; else
-/// its actions' movements, added up from the first; else its CObservationOdometry. Those with times
-/// are paired as in recorded_sequence.h. Without a trajectory the sensor is where `sensorPose` has
-/// it on the carrier.
+/// Scans of one sensor with poses. Poses are taken from the first available source: the given
+/// trajectory, CObservationRobotPose, the accumulated movements of the rawlog's actions,
+/// CObservationOdometry. Poses with times are matched as in recorded_sequence.h. Without a
+/// trajectory, `sensorPose` defines the pose of the sensor on the platform.
 class RawlogSequence {
  public:
-  /// Reads the rawlog once for its poses, and tells `report` how far it is; it may be empty. `note`
-  /// is told, in a line, of each scan that is left out, and why. Throws Error{bad_file} for what
-  /// cannot be read or has no poses or scans, and Error{bad_usage} if a sensor must be chosen.
+  /// Reads the whole rawlog once for its poses. `report` (optional) receives the progress. `note`
+  /// receives one line for each skipped scan with the reason. Throws Error{bad_file} if the file
+  /// cannot be read or has no poses or no scans, and Error{bad_usage} if a sensor must be chosen.
   RawlogSequence(std::filesystem::path file, const RawlogChoice& choice,
                  std::function<void(const std::string&)> note,
                  const std::function<void(const std::string&)>& report = {});
 
-  /// What poses are taken from, for the user.
+  /// Returns the description of the pose source for the user.
   const std::string& pose_source() const { return pose_source_; }
 
-  /// The next scan that can be used; nothing at the end. Throws Error{bad_file}.
+  /// Returns the next usable scan, or an empty value at the end. Throws Error{bad_file}.
   std::optional<RawlogFrame> next();
 
  private:
@@ -66,7 +67,7 @@ class RawlogSequence {
   std::unique_ptr<RawlogReader> reader_;
 };
 
-/// A rawlog's scan as one of the survey's.
+/// Converts a rawlog's scan to a scan of the survey.
 ScanFound scan_of(const RawlogFrame& frame, const flight::CaptureOptions& capture,
                   const LiveOptions& live);
 

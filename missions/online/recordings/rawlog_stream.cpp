@@ -15,7 +15,7 @@ RawlogBytes::RawlogBytes(const std::filesystem::path& file) : file_(gzopen(file.
 RawlogBytes::~RawlogBytes() { gzclose(file_); }
 
 std::size_t RawlogBytes::read(void* buffer, std::size_t count) {
-  constexpr std::size_t most = std::size_t{1} << 30;  // zlib counts in int
+  constexpr std::size_t most = std::size_t{1} << 30;  // zlib counts bytes with int.
   auto* to = static_cast<char*>(buffer);
   std::size_t done = 0;
   while (done < count) {

@@ -1,4 +1,4 @@
-/// The bytes of a rawlog for MRPT. For the module.
+/// Byte stream of a rawlog, for the module only.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,24 @@
 
 namespace skycap::missions::online {
 
-/// A file, compressed by gzip or not. Unlike MRPT's own stream it tells damage from the end.
+/// File, optionally compressed by gzip. Unlike MRPT's own stream, it distinguishes damage from the
+/// end of the file.
 class RawlogBytes {
  public:
-  /// Throws Error{bad_file}.
+  /// Throws Error{bad_file} if the file cannot be opened.
   explicit RawlogBytes(const std::filesystem::path& file);
   RawlogBytes(const RawlogBytes&) = delete;
   RawlogBytes& operator=(const RawlogBytes&) = delete;
   ~RawlogBytes();
 
-  /// So many bytes, or as many as there are.
+  /// Reads up to `count` bytes and returns their number. Fewer bytes are read at the end of the
+  /// file.
   std::size_t read(void* buffer, std::size_t count);
 
   std::uint64_t position() const { return position_; }
 
-  /// What is wrong with the compressed file, if it is; complete once the end is reached.
+  /// Returns the description of a compression error, or an empty string. Complete only after the
+  /// end of the file was reached.
   std::string damage() const;
 
  private:

@@ -16,7 +16,7 @@ enum class Tag : std::uint8_t { image, points, pose, end, error };
 
 using support::PipeWriter;
 
-/// A pose's matrix by columns.
+/// Pose matrix in column-major order.
 using PoseNumbers = std::array<double, 16>;
 
 void put_pose(PipeWriter& pipe, const Eigen::Isometry3d& pose) {
@@ -56,7 +56,7 @@ void put_scan(PipeWriter& pipe, const RawlogScan& scan) {
   }
 }
 
-/// All that the child does.
+/// Main function of the child process.
 void read_all(PipeWriter& pipe, const std::function<std::unique_ptr<RawlogReader>()>& make) {
   try {
     const auto reader = make();

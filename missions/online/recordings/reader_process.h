@@ -1,6 +1,6 @@
-/// A reader of rawlogs in a process of its own. MRPT believes the counts that a file states: a
-/// hostile one makes it run out of memory or of its arrays. There that ends the reader, in a
-/// message, and not the program that keeps a survey.
+/// Rawlog reader in a separate process. MRPT does not validate the element counts in a file, so
+/// that a malicious file can exhaust memory or exceed array bounds. In a separate process this ends
+/// the reader with an error message, not the program that runs a survey.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,9 @@
 
 namespace skycap::missions::online {
 
-/// What `make` makes, and what that reads, in a child process that may take 2 GiB of memory more
-/// than this one has. `name` opens the message if the child dies. Throws Error{bad_file}.
+/// Runs the reader created by `make` in a child process and returns its entries. The child may use
+/// up to 2 GiB more memory than this process. `name` is the prefix of the message if the child
+/// crashes. Throws Error{bad_file}.
 std::unique_ptr<RawlogReader> read_apart(
     const std::string& name, const std::function<std::unique_ptr<RawlogReader>()>& make);
 

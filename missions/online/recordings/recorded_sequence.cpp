@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_pose = 1 << 16;  // [byte]
+constexpr std::size_t largest_pose = 1 << 16;  // [bytes]
 
-/// Adds the frame with the pose that `pose` reads, or a note that says why not.
+/// Adds a frame with the pose returned by `pose`, or a note with the reason for skipping it.
 template <typename Pose>
 void add_frame(RecordedSequence& sequence, const std::string& id, const fs::path& file, Pose pose) {
   try {
@@ -27,7 +27,7 @@ void add_frame(RecordedSequence& sequence, const std::string& id, const fs::path
   }
 }
 
-/// The file that a list names: paths may be in quotes, and separated as on Windows.
+/// Returns the path of a list entry. Entries may be quoted or use Windows separators.
 fs::path listed_file(const fs::path& folder, std::string name) {
   if (name.size() > 1 && name.front() == name.back() &&
       (name.front() == '"' || name.front() == '\'')) {
@@ -57,7 +57,7 @@ RecordedSequence read_tum(const fs::path& folder, std::size_t count) {
 
 constexpr std::string_view image_ending = ".depth.png";
 
-/// The images of the 7-Scenes layout, by name.
+/// Returns the images of the 7-Scenes layout, sorted by name.
 std::vector<fs::path> numbered_images(const fs::path& folder) {
   std::vector<fs::path> images;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {

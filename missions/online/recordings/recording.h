@@ -1,4 +1,4 @@
-/// What somebody recorded, whatever it was recorded in: scans with poses, one after another.
+/// Common interface of recordings in all formats: a sequence of scans with poses.
 #pragma once
 
 #include <cstddef>
@@ -16,33 +16,35 @@
 namespace skycap::missions::online {
 
 struct RecordingChoice {
-  RawlogChoice rawlog;            ///< for rawlogs alone
-  std::size_t count = 1'000'000;  ///< so many of its frames
-  /// How images of folders are read; rawlogs say that themselves. `file` and pose are not used.
+  RawlogChoice rawlog;            ///< Sensor and poses to read; used only for rawlogs.
+  std::size_t count = 1'000'000;  ///< Maximum number of frames.
+  /// Format of the images in folders; rawlogs contain this information. The file and the pose are
+  /// ignored.
   ScanInput image;
 };
 
 struct Frame {
-  std::string id;                   ///< what the recording calls it
-  std::string name;                 ///< for the user
-  std::function<ScanFound()> scan;  ///< reads it; throws Error{bad_file}
+  std::string id;                   ///< Identifier of the frame in the recording.
+  std::string name;                 ///< Name of the frame for the user.
+  std::function<ScanFound()> scan;  ///< Reads the scan. Throws Error{bad_file}.
 };
 
 class Recording {
  public:
   virtual ~Recording() = default;
 
-  /// What poses are taken from, for the user, where a recording may have several.
+  /// Returns the description of the pose source for the user, or an empty string if the format has
+  /// only one.
   virtual std::string pose_source() const = 0;
 
-  /// The next frame that can be used; nothing at the end. Throws Error{bad_file}.
+  /// Returns the next usable frame, or an empty value at the end. Throws Error{bad_file}.
   virtual std::optional<Frame> next() = 0;
 };
 
-/// A rawlog, if it is a file, or else a folder as in recorded_sequence.h, whose scans become the
-/// survey's. `note` is told, in a line, of each frame that is left out, and why; `report`, how far
-/// it is in what it has to read first. Throws Error{bad_file},
-/// and Error{bad_usage} for a choice that it does not have.
+/// Opens a rawlog (file) or a sequence in a folder (recorded_sequence.h) and converts its scans for
+/// a survey. `note` receives one line for each skipped frame with the reason. `report` receives the
+/// progress of the initial reading. Throws Error{bad_file}, and Error{bad_usage} for a choice that
+/// the recording does not have.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
                                           const RecordingChoice& choice,
                                           const flight::CaptureOptions& capture,

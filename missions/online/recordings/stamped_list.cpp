@@ -10,7 +10,7 @@
 namespace skycap::missions::online {
 
 StampedList read_list(const std::filesystem::path& file) {
-  constexpr std::size_t largest = std::size_t{1} << 28;  // [byte]
+  constexpr std::size_t largest = std::size_t{1} << 28;  // [bytes]
   const std::string name = file.string(), text = geometry::read_file(file, largest);
   StampedList list;
   std::size_t repeated = 0;

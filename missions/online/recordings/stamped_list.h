@@ -1,4 +1,4 @@
-/// Lists of the TUM layout: a time and what was then, line by line.
+/// Lists in TUM layout: a time and further values in each line.
 #pragma once
 
 #include <algorithm>
@@ -21,20 +21,21 @@ struct Stamped {
 };
 
 struct StampedList {
-  std::vector<Stamped> lines;      ///< times ascend
-  std::vector<std::string> notes;  ///< what was not taken as it stands in the file
+  std::vector<Stamped> lines;      ///< Lines in ascending order of time.
+  std::vector<std::string> notes;  ///< Notes about lines that were not used unchanged.
 };
 
-/// The lines of a list that are not comments. Of lines of one time, which trackers write when they
-/// correct a pose, the last counts. Throws Error{bad_file} with file and line if times descend.
+/// Reads all lines of a list except comments. The last of several lines with the same time is used,
+/// because trackers write them to correct a pose. Throws Error{bad_file} naming file and line if
+/// times descend.
 StampedList read_list(const std::filesystem::path& file);
 
-/// The pose of a trajectory, `x y z qx qy qz qw` behind each time, that is nearest to a time.
-/// Throws Error{bad_file} naming `file` if it is none, or more than 20 ms off.
+/// Returns the trajectory pose nearest to `time` [s]. Lines have the form `time x y z qx qy qz qw`.
+/// Throws Error{bad_file} naming `file` if the pose is invalid or more than 20 ms away.
 Eigen::Isometry3d pose_at(std::span<const Stamped> poses, double time, const std::string& file);
 
-/// The item whose `time` is nearest; times ascend. Throws Error{bad_file}, which `what` opens, if
-/// it is more than 20 ms off.
+/// Returns the item nearest to `time` [s]. Times must ascend. Throws Error{bad_file} with the
+/// prefix `what` if it is more than 20 ms away.
 template <typename Item>
 const Item& nearest_pose(std::span<const Item> items, double time, const std::string& what) {
   constexpr double most_apart = 0.02;  // [s]

@@ -13,16 +13,17 @@ namespace {
 
 constexpr std::string_view header = "vehicle,name,sortie,file,start_s,landing_s,pad_x,pad_y,pad_z";
 constexpr std::string_view stem = "fleet-";
-constexpr std::size_t largest_timetable = 1 << 20;  ///< [byte], of thousands of sorties
+/// Maximum file size [bytes], sufficient for thousands of sorties.
+constexpr std::size_t largest_timetable = 1 << 20;
 
-/// A whole number from 1 on as an index from 0; nothing if the text is none.
+/// Converts an integer from 1 to an index from 0. Returns an empty value for other text.
 std::optional<std::size_t> index_in(std::string_view text) {
   const std::optional<double> number = flight::to_number(text);
   if (!number || *number < 1.0 || *number > 1e6 || *number != std::floor(*number)) return {};
   return static_cast<std::size_t>(*number) - 1;
 }
 
-/// Reads one row; problems are thrown with the place.
+/// Parser of one row. Error messages start with file name and line.
 class RowReader {
  public:
   RowReader(std::string place, std::span<const std::string> vehicles)
@@ -78,7 +79,7 @@ class RowReader {
   }
 
   std::string place_;
-  std::span<const std::string> vehicles_;  ///< of the mission
+  std::span<const std::string> vehicles_;  ///< Vehicles of the mission.
 };
 
 }  // namespace

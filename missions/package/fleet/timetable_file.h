@@ -1,10 +1,10 @@
-/// timetable.csv: when each sortie of a fleet takes off, from where, and by which file.
+/// Timetable of a fleet (timetable.csv): time, pad and route file of each sortie.
 ///
 ///     vehicle,name,sortie,file,start_s,landing_s,pad_x,pad_y,pad_z
 ///     1,m350_rtk,1,fleet-1.kmz,0,231.25,-38.4,124,0
 ///
-/// Vehicles and sorties count from 1, times from the first take-off; pads are in the mission's
-/// frame. The file is the one that the vehicle's own autopilot flies.
+/// Vehicles and sorties count from 1. Times are relative to the first take-off. Pads are in the
+/// mission frame. Each file is in the format of the vehicle's own autopilot.
 #pragma once
 
 #include <cstddef>
@@ -25,37 +25,40 @@ namespace skycap::missions::package {
 inline constexpr const char* timetable_name = "timetable.csv";
 
 struct TimetableRow {
-  std::size_t vehicle = 0;  ///< of flight.vehicles, from 0
-  std::string name;         ///< what stands there
-  std::size_t sortie = 0;   ///< of the vehicle, from 0
-  std::string file;         ///< beside the timetable
-  double start = 0.0;       ///< [s]
-  double landing = 0.0;     ///< [s]
+  std::size_t vehicle = 0;  ///< Index in flight.vehicles, from 0.
+  std::string name;         ///< Name of the vehicle in flight.vehicles.
+  std::size_t sortie = 0;   ///< Index of the vehicle's sortie, from 0.
+  std::string file;         ///< File name in the folder of the timetable.
+  double start = 0.0;       ///< Take-off time [s].
+  double landing = 0.0;     ///< Landing time [s].
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
 };
 
 std::string timetable_csv(std::span<const TimetableRow> rows);
 
-/// Throws Error{bad_file}, "FILE:LINE: what is wrong", for the first row that is no row, whose
-/// vehicle is not the mission's, whose file is not beside it, or that stands there twice.
+/// Reads a timetable. Throws Error{bad_file}, "FILE:LINE: what is wrong", for the first invalid
+/// row. A row is also invalid if it is a duplicate, if its vehicle is not in the mission, or if its
+/// file is missing.
 std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
                                          const flight::FlightOptions& options);
 
-/// What the names of a vehicle's route files begin with: "fleet-1" for the first.
+/// Returns the prefix of a vehicle's route file names, such as "fleet-1" for the first vehicle.
 std::string stem_of(std::size_t vehicle);
 
-/// The vehicle that a file of that name is for, counted from 0; nothing if it is for no fleet's.
+/// Returns the index of the vehicle that a route file belongs to, or an empty value for files
+/// without a fleet prefix.
 std::optional<std::size_t> vehicle_of_file(std::string_view name);
 
-/// Whether a file of that name is the timetable or one of a fleet's vehicles.
+/// Returns true for the timetable and for route files of a fleet.
 bool is_fleet_file(std::string_view name);
 
-/// The flight of the vehicle that a route file is for, from the pad that the timetable beside the
-/// file says; of other files the flight itself. Throws as read_timetable().
+/// Returns the flight options of the vehicle of a route file, with the pad from the timetable in
+/// the same folder. For files without a fleet prefix, returns `options`. Throws like
+/// read_timetable().
 flight::FlightOptions flight_of_file(const std::filesystem::path& file,
                                      const flight::FlightOptions& options);
 
-/// The format that an autopilot flies itself.
+/// Returns the native format of an autopilot.
 flight::Format own_format(flight::Dialect dialect);
 
 }  // namespace skycap::missions::package

@@ -16,14 +16,14 @@ namespace {
 using Eigen::Vector3d;
 using support::short_text;
 
-/// Landings are written as they are computed; files round places to centimetres [s].
+/// Tolerance of landing times, because route files round positions to centimetres [s].
 constexpr double landing_tolerance = 0.5;
 
 std::string title_of(const TimetableRow& row) {
   return "vehicle " + std::to_string(row.vehicle + 1) + ", " + row.file;
 }
 
-/// Rows with their flights.
+/// Verification of all rows and their flights.
 class Proof {
  public:
   Proof(const std::filesystem::path& path, const flight::FlightOptions& options)

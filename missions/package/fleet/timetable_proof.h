@@ -1,4 +1,4 @@
-/// Proves from a timetable and its route files alone that vehicles keep apart.
+/// Verification of the separation between vehicles, based only on a timetable and its route files.
 #pragma once
 
 #include <filesystem>
@@ -12,42 +12,44 @@
 
 namespace skycap::missions::package {
 
-/// What a vehicle does with a route file: stretch by stretch, and in time.
+/// Flight of a vehicle through a route file: path segments and timing.
 struct FlownFile {
   flight::FlownRoute route;
-  flight::FlightScript script;  ///< a leg for each of its pieces
+  flight::FlightScript script;  ///< One leg for each segment of the route.
 };
 
-/// The flight of a file with that content; `own` is that of its vehicle, with the pad as its
-/// take-off. Throws Error{bad_file} with the file's first problem.
+/// Simulates the flight of a file with this content. `own` contains the flight options of its
+/// vehicle, which takes off from its pad. Throws Error{bad_file} with the first problem of the
+/// file.
 FlownFile flown_file(const flight::FlightOptions& own, const std::string& content,
                      flight::Format format);
 
-/// Of the file of a row of the timetable at `path`. Errors name it.
+/// Simulates the flight of a row's file in the folder of the timetable `path`. Error messages
+/// contain the file name.
 FlownFile flown_file(const std::filesystem::path& path, const TimetableRow& row,
                      const flight::FlightOptions& options);
 
 struct TimetableProof {
-  flight::Problems problems;  ///< rows and pairs that are not proven
+  flight::Problems problems;  ///< Rows and pairs that could not be verified.
   std::size_t sorties = 0;
-  double makespan = 0.0;  ///< until the last landing [s]
-  double distance = 0.0;  ///< proven lower bound between any two in the air, at most `up_to` [m]
+  double makespan = 0.0;  ///< Time of the last landing [s].
+  /// Verified lower bound on the distance between airborne vehicles, limited to `up_to` [m].
+  double distance = 0.0;
 };
 
-/// Flies every file as its vehicle would and holds the flights to flight.separation at all times,
-/// each as early or late as flight.timing_tolerance allows; to flight.clearance from where others
-/// stand on the ground; to the landings that the timetable states; and to one sortie after another
-/// of each vehicle. Throws Error{bad_file} if the timetable or a file cannot be read.
+/// Simulates all route files and verifies four conditions. Vehicles keep flight.separation at all
+/// times, for all timing errors within flight.timing_tolerance. They keep flight.clearance to
+/// vehicles on the ground. Landings match the timetable. The sorties of a vehicle do not overlap.
+/// Throws Error{bad_file} if the timetable or a file cannot be read.
 TimetableProof prove_timetable(const std::filesystem::path& path,
                                const flight::FlightOptions& options, double up_to);
 
-/// All sorties of a timetable, ready for the simulator. Throws as prove_timetable().
+/// Returns all sorties of a timetable for the simulator. Throws like prove_timetable().
 std::vector<flight::FleetFlight> fleet_flights(const std::filesystem::path& path,
                                                const flight::FlightOptions& options);
 
-/// The views that a vehicle has not certainly photographed by the time `after` its timetable began,
-/// being late by as much as flight.timing_tolerance allows: places that its files photograph from.
-/// Throws as prove_timetable().
+/// Returns the camera positions in a vehicle's files whose photos may be missing at the time
+/// `after` [s] because of delays up to flight.timing_tolerance. Throws like prove_timetable().
 std::vector<Eigen::Vector3d> left_by(const std::filesystem::path& path,
                                      const flight::FlightOptions& options, std::size_t vehicle,
                                      double after);

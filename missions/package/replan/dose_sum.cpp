@@ -7,12 +7,12 @@
 namespace skycap::missions::package {
 namespace {
 
-constexpr float steps = 256.0F;          ///< of hazard 1
-constexpr std::size_t most_hazard = 16;  ///< from there on nothing is missing
-/// Shares and weights as whole numbers: together with a million targets they fit into 64 bits.
+constexpr float steps = 256.0F;          ///< Steps per unit of hazard.
+constexpr std::size_t most_hazard = 16;  ///< Hazard above which the uncovered fraction is zero.
+/// Scales of the integer fractions and weights. Sums over a million targets fit into 64 bits.
 constexpr double one_share = 0x1p24, one_weight = 0x1p20;
 
-/// exp(-hazard) by hazard.
+/// Returns the table of exp(-hazard) by quantised hazard.
 std::span<const std::uint64_t> missing_shares() {
   static const auto table = [] {
     std::array<std::uint64_t, most_hazard* static_cast<std::size_t>(steps)> shares{};

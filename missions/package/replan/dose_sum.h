@@ -1,6 +1,6 @@
-/// What a set of views covers: the dose that each target gets of all their looks
-/// (survey/skycap/dose_model.h), kept up to date while views come and go. Everything is counted in
-/// whole numbers, so that the order of coming and going leaves no trace.
+/// Coverage of a set of views: the total hazard of each target over all observations
+/// (survey/skycap/dose_model.h), updated incrementally. Integer arithmetic makes the result
+/// independent of the order of additions and removals.
 #pragma once
 
 #include <cstdint>
@@ -11,35 +11,35 @@
 
 namespace skycap::missions::package {
 
-/// A look as it is counted.
+/// Quantised observation.
 struct Dose {
   std::uint32_t target;
-  std::uint32_t hazard;  ///< in 1/256
+  std::uint32_t hazard;  ///< Hazard in units of 1/256.
 };
 
 std::vector<Dose> doses_of(std::span<const survey::skycap::Look> looks);
 
 class DoseSum {
  public:
-  /// Weighs the targets by their area; there must be one that has some.
+  /// Weights targets by area. At least one target must have a non-zero area.
   explicit DoseSum(std::span<const survey::skycap::GainField::Target> targets);
 
   void add(std::span<const Dose> doses);
-  /// Of a view that was added.
+  /// Removes the doses of a view that was added before.
   void remove(std::span<const Dose> doses);
 
-  /// Expected covered share of the targets' area.
+  /// Returns the expected covered fraction of the targets' area.
   double covered() const;
-  /// Expected area of a target that lacks a measurement, in units of its own.
+  /// Returns the expected uncovered area of a target, in internal integer units.
   std::uint64_t missing(std::uint32_t target) const;
   std::uint32_t size() const { return static_cast<std::uint32_t>(weights_.size()); }
 
  private:
-  std::span<const std::uint64_t> shares_;  ///< missing by hazard
+  std::span<const std::uint64_t> shares_;  ///< Uncovered fractions by hazard.
   std::vector<std::uint64_t> weights_;
   std::vector<std::uint32_t> hazards_;
-  std::uint64_t all_ = 0;      ///< sum of the weights, with nothing covered
-  std::uint64_t missing_ = 0;  ///< of it
+  std::uint64_t all_ = 0;      ///< Weighted sum with zero coverage.
+  std::uint64_t missing_ = 0;  ///< Uncovered part of `all_`.
 };
 
 }  // namespace skycap::missions::package

@@ -3,16 +3,16 @@
 namespace skycap::missions::package {
 namespace {
 
-/// What a way round something is guessed to take, more than the straight line: a longer way, and a
-/// stop in a corner or two.
+/// Estimated factor and additional time [s] of a path around an obstacle: longer length, and stops
+/// at one or two corners.
 constexpr double blocked_share = 1.15, blocked_time = 4.0;
 
-/// Legs kept; then all are forgotten.
+/// Maximum number of cached legs; the cache is then cleared.
 constexpr std::size_t most_legs = 1U << 16;
 
 }  // namespace
 
-/// `visit(leg, from, to)` returns whether to go on.
+/// Calls `visit(leg, from, to)` for each leg until it returns false.
 template <typename Visit>
 void LegTimes::for_each_leg(const Stops& stops, Visit visit) {
   if (stops.empty()) return;

@@ -1,4 +1,4 @@
-/// The stops of a tour, and what its legs take.
+/// Stops of a tour and durations of its legs.
 #pragma once
 
 #include <cstdint>
@@ -11,35 +11,36 @@
 
 namespace skycap::missions::package {
 
-/// A view with what it brings.
+/// View with the doses of its observations.
 struct Stop {
   geometry::View view;
-  std::uint32_t number;  ///< no other stop of a search has it; from 1 on
+  std::uint32_t number;  ///< Number that is unique within a search, from 1.
   std::vector<Dose> doses{};
 };
 
-/// In the order of a tour. Tours share them: most differ in a stop or two.
+/// Stops in tour order. Tours share their stops because most of them differ in only one or two.
 using Stops = std::vector<std::shared_ptr<const Stop>>;
 
-/// Finds the time of each leg once. Keeps a reference to the problem.
+/// Cache of leg durations. Keeps a reference to the problem.
 class LegTimes {
  public:
   explicit LegTimes(const TourProblem& problem) : problem_(problem) {}
 
-  /// Of a tour [s], rests included; legs that nobody has asked about yet count as free.
+  /// Returns a lower bound on the duration of a tour [s], including rest times. Unchecked legs
+  /// count as free.
   double least(const Stops& stops);
 
-  /// Asks whether one more leg of the tour is free, if there is one.
+  /// Checks one more leg of the tour for collisions. Returns false if all legs have been checked.
   bool ask_next(const Stops& stops);
 
-  /// Of a tour whose every leg has been asked about, and for its ways home too.
+  /// Checks all legs and the returns from them. Returns the duration of the tour [s].
   double proven(const Stops& stops);
 
  private:
   double bends(const Stops& stops) const;
 
   struct Leg {
-    double straight = -1.0;  ///< negative: not known yet
+    double straight = -1.0;  ///< Duration [s]; negative if unknown.
     bool is_asked = false, is_proven = false, is_blocked = false;
   };
 
@@ -47,7 +48,8 @@ class LegTimes {
   void for_each_leg(const Stops& stops, Visit visit);
 
   const TourProblem& problem_;
-  std::unordered_map<std::uint64_t, Leg> legs_;  ///< by the numbers of both ends
+  /// Legs by the numbers of both stops, combined in the key.
+  std::unordered_map<std::uint64_t, Leg> legs_;
 };
 
 }  // namespace skycap::missions::package

@@ -24,25 +24,26 @@ using geometry::View;
 using survey::skycap::GainField;
 using survey::skycap::Look;
 
-/// Views keep this much more than the clearance: room to prove the legs from there.
+/// Margin of views in addition to the clearance, so that the legs from them can be verified [m].
 constexpr double spare_clearance = 0.05;
 
-/// Covered shares that differ by less are the same: what the same views cover when they are flown
-/// again differs by several times as much.
+/// Tolerance for equal coverage. Repeated simulated flights with the same views differ by several
+/// times this value.
 constexpr double equal_coverage = 5e-4;
 
-/// What a view counts that is passed [s]: without a price there would be so many that moving one
-/// brings nothing.
+/// Penalty per view in fly-through capture [s]. Without it, tours would have so many views that
+/// moves of single views have no effect.
 constexpr double price_of_passing = 0.3;
 
-/// How much longer it takes to find what a way of a scanner sees than what a view does: tens of
-/// scans of three looks. So many times fewer moves are tried.
+/// Ratio of computation times for a scanner's path (tens of scans of three views) and a view. The
+/// number of moves is reduced by this factor.
 constexpr std::size_t dearer_ways = 12;
 
-/// Tours past their views have so many times more of them than those that they begin from.
+/// Factor of the number of moves for fly-through tours, which have this many times more views than
+/// the initial tour.
 constexpr std::size_t more_passed_views = 2;
 
-/// The highest place of a route.
+/// Returns the maximum height of a route.
 double top_of(const flight::Route& route) {
   double top = route.options.takeoff.z() + route.options.takeoff_climb;
   for (const flight::Station& station : route.stations) {
@@ -51,13 +52,14 @@ double top_of(const flight::Route& route) {
   return top;
 }
 
-/// Whether views are passed: else stopping is faster, and views are chosen for that.
+/// Returns true for fly-through routes. Otherwise stops are faster, and views are selected for
+/// stops.
 bool is_passed(const flight::Route& route) {
   return std::ranges::any_of(
       route.sorties, [](const flight::Sortie& sortie) { return sortie.passage.has_value(); });
 }
 
-/// The problem of a mission, and what it asks.
+/// Tour problem of a mission and the data that it refers to.
 class MissionProblem {
  public:
   MissionProblem(const flight::FlightOptions& flight, const survey::PlannerOptions& planner,
@@ -127,7 +129,8 @@ class MissionProblem {
 
   const TourProblem& problem() const { return problem_; }
 
-  /// What a route promises: its views, or with a scanner all its ways as they are flown.
+  /// Returns the predicted coverage of a route: that of its views or, for scanners, of its flown
+  /// paths.
   double promised(const flight::Route& route) const {
     if (!mount_) return covered_by(problem_, picture_views(route));
     const std::vector<View> views = views_of(route);
@@ -145,7 +148,7 @@ class MissionProblem {
     return covered.covered();
   }
 
-  /// A station of a scanner says where the nose points.
+  /// Converts stations to views. Stations of a scanner define the direction of the vehicle's nose.
   std::vector<View> views_of(const flight::Route& route) const {
     std::vector<View> views;
     for (const flight::Station& station : route.stations) {
@@ -154,7 +157,7 @@ class MissionProblem {
     return views;
   }
 
-  /// Stations and ways of a route as it is flown.
+  /// Returns the stations and paths of a route as flown.
   StationPlan stations_of(const flight::Route& route) const {
     StationPlan plan{views_of(route), {}};
     plan.ways.resize(plan.views.size());
@@ -174,7 +177,8 @@ class MissionProblem {
     return costs_.aimed_time(leg, &here, &there);
   }
 
-  /// Without a stop but above the pad, where half of the ramp up or down to speed is lost.
+  /// Returns the duration of a fly-through path [s]. Stops occur only above the pad, where half of
+  /// the acceleration ramp is lost.
   double passing_time(const View* from, const View* to) const {
     const Vector3d way = place(to) - place(from);
     if (way.norm() == 0.0) return from == nullptr || to == nullptr ? 0.0 : turn_time(*from, *to);
@@ -188,14 +192,14 @@ class MissionProblem {
     return std::min(motion_.leg_speed(direction), passing_->speed);
   }
 
-  /// What is lost by beginning or ending a way at rest.
+  /// Returns the time lost by starting or ending a path at rest [s].
   double ramp_loss(const Vector3d& direction) const {
     const double acceleration = motion_.leg_acceleration(direction);
     return 0.5 *
            (passing_speed(direction) / acceleration + acceleration / motion_.vehicle().mode.jerk);
   }
 
-  /// As the turn: nothing straight on, a stop where the way turns back.
+  /// Returns the time lost in a bend [s]: zero for a straight path, that of a stop for a reversal.
   double bend_time(const Vector3d& before, const Vector3d& after) const {
     if (before.norm() == 0.0 || after.norm() == 0.0) return 0.0;
     const Vector3d in = before.normalized(), out = after.normalized();
@@ -212,19 +216,21 @@ class MissionProblem {
     return mount_ ? geometry::nose_view(*mount_, view) : view;
   }
 
-  /// Where a scanner looks for a nose: in three quarters of its ring, since what is above has been
-  /// looked at from above or not at all, or where its field is.
+  /// Returns the viewing directions of a scanner for a direction of the nose. These are three
+  /// quarters of the ring, because surfaces above are observed from above or not at all, or the
+  /// field of view.
   std::vector<View> looks_of(const View& nose) const {
     const View view = geometry::scanner_view(*mount_, nose);
     if (kind_ == sim::ScannerKind::rosette) return {view};
-    constexpr double almost = 1e-3;  // straight down has no sides
+    constexpr double almost = 1e-3;  // Avoids the undefined azimuth of the vertical direction.
     return {view,
             {view.position, -view.direction},
             {view.position, (almost * view.direction - Vector3d::UnitZ()).normalized()}};
   }
 
-  /// What the scans on a way see, one every sweep_step_. The nose turns on the last piece; at home
-  /// it points as at the other end. Lines see what they sweep at the view distance.
+  /// Returns the observations of scans along a path at intervals of sweep_step_. The nose rotates
+  /// on the last segment. At home, it points in the direction of the other end. Single-line LiDARs
+  /// observe the area that they sweep at the view distance.
   std::vector<Look> way_looks(const std::vector<Vector3d>& points, const View* from,
                               const View* to) const {
     const View begin = carrier(from != nullptr ? *from : *to);
@@ -232,7 +238,7 @@ class MissionProblem {
     const double turn = std::remainder(flight::yaw_of(carrier(to != nullptr ? *to : *from)) - yaw,
                                        2.0 * std::numbers::pi);
     std::vector<View> views;
-    std::vector<float> shares;  // of each view's looks that are had
+    std::vector<float> shares;  // Relative hazard of the observations of each view.
     for (std::size_t i = 1; i < points.size(); ++i) {
       const Vector3d way = points[i] - points[i - 1];
       const auto count = std::max(1L, std::lround(way.norm() / sweep_step_));
@@ -256,8 +262,9 @@ class MissionProblem {
     return all;
   }
 
-  /// Of sweep_step_, that each of so many scans on a straight way sweeps, at the view distance to
-  /// the left, while the nose turns clockwise by `turn`.
+  /// Returns the length that each of `count` scans on a straight path sweeps, relative to
+  /// sweep_step_. The length is measured at the view distance to the left while the nose rotates
+  /// clockwise by `turn`.
   float swept_share(const Vector3d& way, const Vector3d& nose, double turn, long count) const {
     const double swept = way.dot(nose) + problem_.view_distance * turn;
     return static_cast<float>(std::abs(swept) / static_cast<double>(count) / sweep_step_);
@@ -271,16 +278,16 @@ class MissionProblem {
   double clearance_;
   flight::ReturnableSpace returnable_;
   flight::LegCosts costs_;
-  std::optional<flight::PassRules> passing_;     ///< if views are passed
-  std::optional<geometry::ScannerMount> mount_;  ///< of a scanner that measures all the way
+  std::optional<flight::PassRules> passing_;     ///< Set for fly-through capture.
+  std::optional<geometry::ScannerMount> mount_;  ///< Set for scanners that measure continuously.
   sim::ScannerKind kind_;
-  double sweep_step_;  ///< between its scans [m]
+  double sweep_step_;  ///< Distance between scans [m].
   unsigned threads_;
   Vector3d home_;
   TourProblem problem_;
 };
 
-/// Nothing if there is no such route: then what was there before is flown.
+/// Returns an empty value if planning the route fails. The previous route is then used.
 std::optional<flight::Route> certified(const PlanRoute& plan, const std::vector<View>& views) {
   try {
     return plan({views, std::vector<std::vector<Vector3d>>(views.size())});
@@ -322,7 +329,7 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
   choice.anew = choice.survey;
   choice.route = std::move(present);
   const double least = choice.survey.promised - equal_coverage;
-  // What a scanner covers depends on the ways, too: those that can be flown.
+  // The coverage of a scanner also depends on the paths that can be flown.
   const double wanted = problem.way_looks ? least : covered_by(problem, surveyed) - equal_coverage;
   const auto cost = [&](const MissionFigures& figures) {
     return figures.duration +

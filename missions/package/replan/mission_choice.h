@@ -1,9 +1,9 @@
-/// The mission that a survey leaves, chosen anew: stations from which a flight covers what the
-/// survey's views cover, as far as the planner knows the surface, in fewer seconds.
+/// Replanning of a finished survey: selects stations that cover the surface known to the planner as
+/// well as the survey's views, in less flight time.
 ///
-/// Nothing here knows the scene: what views see is decided by the planner's own surfels
-/// (survey/skycap/view_gain.h), where they may be by the space that was measured free, and what is
-/// written is a certified route.
+/// Replanning does not use the scene. The planner's surfels define what views observe
+/// (survey/skycap/view_gain.h), and the free space of the survey defines where views are allowed.
+/// The result is a verified route.
 #pragma once
 
 #include <cstddef>
@@ -24,49 +24,51 @@
 
 namespace skycap::missions::package {
 
-/// What a mission takes and what it brings.
+/// Cost and coverage of a mission.
 struct MissionFigures {
   double duration = 0.0;  ///< [s]
   double length = 0.0;
   std::size_t views = 0;
-  std::size_t pieces = 0;  ///< the vehicle stops after each
-  double promised = 0.0;   ///< expected covered share of what the survey measured
+  std::size_t pieces = 0;  ///< Number of path segments; the vehicle stops after each.
+  double promised = 0.0;   ///< Predicted covered fraction of the surface measured by the survey.
 };
 
-/// The figures of a certified route.
+/// Returns the figures of a verified route with the given predicted coverage.
 MissionFigures figures_of(const flight::Route& route, double promised);
 
-/// Stations in an order that is kept, and how to come to each from the one before or from above the
-/// pad; no way where it is to be found.
+/// Stations in fixed order, with the path to each from the previous station or from above the pad.
+/// Empty paths are planned later.
 struct StationPlan {
   std::vector<geometry::View> views;
   std::vector<std::vector<Eigen::Vector3d>> ways;
 };
 
 struct MissionChoice {
-  flight::Route route;     ///< the better one of the two
-  bool is_anew = false;    ///< whether that is the one chosen anew
-  StationPlan stations;    ///< of the route
-  MissionFigures survey;   ///< of the survey's views that have a way home
-  MissionFigures anew;     ///< of the best found; as `survey` if nothing better was
-  double computing = 0.0;  ///< that it took, certified routes included [s]
+  flight::Route route;    ///< The better of the two routes.
+  bool is_anew = false;   ///< True if the replanned route is the better one.
+  StationPlan stations;   ///< Stations of the route.
+  MissionFigures survey;  ///< Figures of the survey's views that have a verified return.
+  /// Figures of the best replanned mission; equal to `survey` if no better one was found.
+  MissionFigures anew;
+  double computing = 0.0;  ///< Computation time including verification of routes [s].
 };
 
-/// The certified route through views in the order given.
+/// Plans a verified route through views in fixed order.
 using PlanRoute = std::function<flight::Route(const StationPlan&)>;
 
-/// What the choice depends on besides flight and planner.
+/// Options for replanning in addition to those of flight and planner.
 struct ChoiceOptions {
   SearchSettings search;
-  sim::ScannerKind scanner = sim::ScannerKind::ring;  ///< of one that measures all the way
-  unsigned threads = 0;  ///< zero: all processors; does not change the result
+  sim::ScannerKind scanner = sim::ScannerKind::ring;  ///< Type of a continuously measuring scanner.
+  unsigned threads = 0;  ///< Number of threads (0: all processors). Does not affect the result.
 };
 
-/// Begins from `present`, the route through the survey's views that have a proven way home, and
-/// falls back on it: the choice never promises less, and is slower only where it covers what else
-/// the survey has seen from `surveyed`, its views and those of frames on its ways, at the price in
-/// `options`. `space` is what the route is proven in. Tours that `plan` throws an Error at are not
-/// flown. If a stop is requested, the choice is what was found by then.
+/// Improves `present`, the route through the survey's views with a verified return, and falls back
+/// to it. The selected mission never has a lower predicted coverage. It is slower only if it
+/// additionally covers surface observed from `surveyed`, at the price set in `options`. `surveyed`
+/// contains the survey's views and its en-route frames. Routes are verified in `space`. Tours for
+/// which `plan` throws an Error are rejected. After a stop request, returns the best mission found
+/// so far.
 MissionChoice choose_mission(const flight::FlightOptions& flight,
                              const survey::PlannerOptions& planner, const ChoiceOptions& options,
                              const survey::skycap::GainField& surface,

@@ -13,17 +13,19 @@ namespace {
 using Eigen::Vector3d;
 using geometry::View;
 
-/// How often each kind of move is proposed, of a hundred.
+/// Frequency of each kind of move [%].
 constexpr std::size_t shifts = 56, drops = 6, replacements = 10, joins = 10, additions = 4,
-                      carries = 7;  // the rest turns parts of the tour round
-/// Of a hundred moves where views are passed: one is added on the way.
+                      carries = 7;  // The remaining moves reverse a part of the tour.
+/// Frequency of moves that add a view en route in fly-through capture [%].
 constexpr std::size_t additions_on_way = 20;
-/// Shifts of a view, small or large, and of what it is aimed at, in view distances.
+/// Standard deviations of small and large shifts of a view and of shifts of its aim, in view
+/// distances.
 constexpr double small_shift = 0.036, large_shift = 0.12, aim_shift = 0.1;
-constexpr double large_share = 0.4;  ///< of the shifts
-/// A new view looks at its target from so many view distances, up to so far off the normal.
+constexpr double large_share = 0.4;  ///< Fraction of large shifts.
+/// Range of distances of new views from their targets in view distances, and maximum angle to the
+/// normal.
 constexpr double nearest = 0.4, farthest = 1.3, most_tilt = 1.22;  // 70 degrees
-/// New views look at the one of so many targets that misses most.
+/// New views observe the target with the most missing area out of this number of random targets.
 constexpr int targets_drawn = 6;
 
 }  // namespace
@@ -89,7 +91,7 @@ View TourMoves::shifted(const View& view, double shift, double aim) {
 std::optional<Move> TourMoves::shift(const Stops& stops, double scale) {
   const std::size_t i = below(stops.size());
   const double step = random_.uniform() < large_share ? large_shift : small_shift;
-  // Where the camera aims moves by itself, the place by itself, or both.
+  // Shifts the aim, the position, or both.
   const std::size_t which = below(3);
   const View view = shifted(stops[i]->view, which == 0 ? 0.0 : scale * step,
                             which == 1 ? 0.0 : scale * aim_shift);
@@ -121,7 +123,7 @@ std::optional<Move> TourMoves::join(const Stops& stops) {
   const Vector3d position = a.position + share * (b.position - a.position);
   const Vector3d aim = a.position + d * a.direction +
                        share * (b.position - a.position + d * (b.direction - a.direction));
-  if ((aim - position).norm() < 0.1 * d) return std::nullopt;  // they look at each other
+  if ((aim - position).norm() < 0.1 * d) return std::nullopt;  // The views face each other.
   const View between = shifted(geometry::look_at(position, aim), large_shift, aim_shift);
   Move move{stops, {stops[i], stops[i + 1]}, stop(between)};
   move.stops[i] = move.added;
@@ -137,9 +139,10 @@ std::optional<Move> TourMoves::add(const Stops& stops, const DoseSum& covered) {
   return move;
 }
 
-/// Where the way comes nearest to where the target would best be seen from, or beside that.
+/// Adds a view where the path is closest to the best position for observing the target, with a
+/// random offset along the path.
 std::optional<Move> TourMoves::add_on_way(const Stops& stops, const DoseSum& covered) {
-  constexpr double beside = 0.2;  // view distances
+  constexpr double beside = 0.2;  // Standard deviation in view distances.
   const auto& target = problem_.targets[missing_target(covered)];
   const Vector3d seen = target.position.cast<double>();
   const Vector3d best = seen + problem_.view_distance * target.normal.cast<double>();
@@ -186,12 +189,12 @@ std::optional<Move> TourMoves::turn(const Stops& stops) {
   return move;
 }
 
-/// Where leg `leg` begins, and the one before it ends.
+/// Returns the start of leg `leg`, which is the end of the previous leg.
 Vector3d TourMoves::end_of_leg(const Stops& stops, std::size_t leg) const {
   return leg == 0 || leg == stops.size() + 1 ? problem_.home : stops[leg - 1]->view.position;
 }
 
-/// Where it is the least detour.
+/// Inserts the view at the position with the smallest detour.
 void TourMoves::insert(Move& move, const View& view) {
   const auto place = [&](std::size_t i) { return end_of_leg(move.stops, i); };
   std::size_t best = 0;

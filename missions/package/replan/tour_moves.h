@@ -1,4 +1,4 @@
-/// Proposals of how a tour might be changed: the moves that the search tries.
+/// Random modifications of a tour (moves) for the search.
 #pragma once
 
 #include <optional>
@@ -12,26 +12,27 @@
 
 namespace skycap::missions::package {
 
-/// A tour that differs from another in these stops.
+/// Modified tour and its difference from the original.
 struct Move {
-  Stops stops;                    ///< of the changed tour
-  Stops removed;                  ///< of the other one
-  std::shared_ptr<Stop> added{};  ///< what it brings is not known yet; null: none
+  Stops stops;                    ///< Stops of the modified tour.
+  Stops removed;                  ///< Stops of the original that were removed.
+  std::shared_ptr<Stop> added{};  ///< New stop without computed doses; null for moves without one.
 };
 
-/// Keeps references to problem and numbers.
+/// Generator of random moves. Keeps references to `problem` and `random`.
 class TourMoves {
  public:
   TourMoves(const TourProblem& problem, geometry::RandomNumbers& random)
       : problem_(problem), random_(random) {}
 
-  /// A stop of this search.
+  /// Creates a stop with a unique number.
   std::shared_ptr<Stop> stop(const geometry::View& view);
 
-  /// Moves one view and its aim, by steps of `scale` (1 at first, less as the search settles);
-  /// drops one, replaces one by any other or two by one, adds one, takes one or several to another
-  /// place in the order, or turns a part of it round. `covered` is what the tour covers. Nothing if
-  /// what was drawn cannot be.
+  /// Draws a random move. A move shifts a view and its aim, removes a view, replaces a view, joins
+  /// two views into one, or adds a view. It may also move a sequence of views to another position
+  /// in the order or reverse a part of the tour. `scale` is the relative step size, which starts at
+  /// 1 and decreases. `covered` is the coverage of the tour. Returns an empty value if the drawn
+  /// move is not possible.
   std::optional<Move> propose(const Stops& stops, const DoseSum& covered, double scale);
 
  private:

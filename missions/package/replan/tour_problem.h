@@ -1,6 +1,5 @@
-/// A flight that is to cover a surface in few seconds, as the search for it sees it: what views
-/// see, where they may be, and how long the ways between them take. Who knows it is not asked:
-/// tests make up small worlds.
+/// Abstract tour problem: cover a surface in minimum time. Visibility, admissibility and travel
+/// times are injected so that tests can use synthetic scenes.
 #pragma once
 
 #include <functional>
@@ -20,40 +19,46 @@ struct TourProblem {
 
   std::span<const survey::skycap::GainField::Target> targets;
   std::function<std::vector<survey::skycap::Look>(const View&)> looks;
-  /// What is seen on the straight way between two views, null being home; the same in both
-  /// directions. Empty: nothing is measured on ways.
+  /// Returns the observations on the straight path between two views, where null is the home
+  /// position. The result must be the same in both directions. Empty if the sensor does not measure
+  /// en route.
   std::function<std::vector<survey::skycap::Look>(const View* from, const View* to)> way_looks{};
 
-  /// The view of a target from a direction (unit) and distance, as turned as limits need; nothing
-  /// if they leave none.
+  /// Returns the view of a target from a direction (unit vector) and distance [m], adjusted to the
+  /// limits. Returns an empty value if the limits allow no such view.
   std::function<std::optional<View>(const Eigen::Vector3d& target, const Eigen::Vector3d& towards,
                                     double distance)>
       view_of;
-  /// Whether the camera can be there and look that way. Of cheap limits, then of proven space.
+  /// Return whether the camera may have this pose: by inexpensive limits, and by verified free
+  /// space.
   std::function<bool(const View&)> is_allowed, is_in_free_space;
-  /// Whether there is a proven way home from there: asked last, of views that would be taken.
+  /// Returns true if a verified return from the view exists. Evaluated last because it is
+  /// expensive.
   std::function<bool(const View&)> has_way_home;
 
-  Eigen::Vector3d home = Eigen::Vector3d::Zero();  ///< the place above the pad
-  /// The straight way from view to view, until the camera looks right [s]; null stands for
-  /// home, where the flight begins and ends.
+  Eigen::Vector3d home = Eigen::Vector3d::Zero();  ///< Position above the pad.
+  /// Returns the duration of the straight path between two views, including the final rotation of
+  /// the camera [s]. Null is the home position, where the flight starts and ends.
   std::function<double(const View* from, const View* to)> straight_time;
-  /// Whether that way is proven free; then, whether there is a proven way home from all of it,
-  /// which takes far longer to find out and is asked of tours alone that may be the best.
+  /// Return whether the straight path is verified collision-free, and whether verified returns
+  /// exist from all of it. The second check is much slower and is used only for candidates for the
+  /// best tour.
   std::function<bool(const View*from, const View*to)> is_free, has_returns;
 
-  double time_per_view = 0.0;  ///< at rest, or to keep views few where they are passed [s]
-  /// Of flights that pass their views: what is lost in the bend at one, between the one before and
-  /// the next [s]; null stands for home. Empty: every view is stopped at.
+  /// Time at rest per view [s]. For fly-through capture, a penalty that limits the number of views.
+  double time_per_view = 0.0;
+  /// Returns the time lost at a view because of the bend of a fly-through path [s]. Null is the
+  /// home position. Empty if the vehicle stops at every view.
   std::function<double(const View* before, const View& at, const View* after)> bend_time{};
-  double view_distance = 0.0;  ///< d: from where views are taken as a rule
+  double view_distance = 0.0;  ///< Default distance d of views from the surface [m].
 };
 
-/// A flight through views in their order, above the pad at both ends.
+/// Tour through views in order. It starts and ends above the pad.
 struct FoundTour {
   std::vector<geometry::View> views;
-  double time = 0.0;     ///< rests at views included, ways that are not straight by guess [s]
-  double covered = 0.0;  ///< expected share of the targets' area
+  /// Duration including rest times at views; estimated for paths that are not straight [s].
+  double time = 0.0;
+  double covered = 0.0;  ///< Expected covered fraction of the targets' area.
 };
 
 }  // namespace skycap::missions::package

@@ -16,7 +16,7 @@ namespace {
 
 using geometry::View;
 
-/// Steps of moved views shrink to this share while the temperature falls.
+/// Final relative step size of moved views.
 constexpr double last_scale = 0.3;
 
 std::vector<View> viewed_from(const Stops& stops) {
@@ -25,7 +25,7 @@ std::vector<View> viewed_from(const Stops& stops) {
   return views;
 }
 
-/// A tour, what it covers and what it takes.
+/// State of the search: a tour with its coverage and duration.
 class Search {
  public:
   Search(const TourProblem& problem, const std::vector<View>& tour, double wanted,
@@ -81,8 +81,7 @@ class Search {
     return time + price_ * std::max(0.0, wanted_ - covered_.covered());
   }
 
-  /// Makes the tour the changed one, if that costs at most `worst`. What is cheap to find out is
-  /// found out first.
+  /// Applies the move if the new cost is at most `worst`. Inexpensive checks are made first.
   bool take(const Move& move, double worst) {
     if (legs_.least(move.stops) > worst) return false;
     if (move.added) {
@@ -122,7 +121,7 @@ class Search {
     if (is_best()) best_ = FoundTour{viewed_from(stops_), time_, covered};
   }
 
-  /// The fastest tour with a stop less that covers enough.
+  /// Returns the fastest tour with one stop less that still has the required coverage.
   std::optional<Stops> least_without_one() {
     std::optional<Stops> best;
     double least = std::numeric_limits<double>::infinity();
@@ -150,7 +149,7 @@ class Search {
   DoseSum covered_;
   Stops stops_;
   double time_ = 0.0;
-  double price_ = 0.0;  ///< of the whole surface [s]
+  double price_ = 0.0;  ///< Cost of missing the whole surface [s].
   std::optional<FoundTour> best_;
 };
 

@@ -7,10 +7,10 @@
 namespace skycap::missions::package {
 namespace {
 
-/// Ways kept, some ten thousand bytes each; then all are forgotten.
+/// Maximum number of cached paths, each of some ten thousand bytes; the cache is then cleared.
 constexpr std::size_t most_ways = 1U << 13;
 
-/// The stop with the lower number first; null, number zero, is home.
+/// Path between two stops, with the lower number first. Null (number zero) is the home position.
 struct StopWay {
   const Stop *first, *second;
 
@@ -20,7 +20,7 @@ struct StopWay {
   }
 };
 
-/// By key.
+/// Returns the paths of a tour sorted by key.
 std::vector<StopWay> ways_of(const Stops& stops) {
   std::vector<StopWay> ways;
   for (std::size_t i = 0; i <= stops.size() && !stops.empty(); ++i) {

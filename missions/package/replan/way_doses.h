@@ -1,4 +1,4 @@
-/// What is measured on the ways of a tour, for flights that measure all the time.
+/// Observations on the paths of a tour, for sensors that measure continuously.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,22 @@
 
 namespace skycap::missions::package {
 
-/// Finds the doses of each straight way once; either direction gives the same. Keeps a reference to
-/// the problem.
+/// Cache of the doses of each straight path, which are independent of its direction. Keeps a
+/// reference to the problem.
 class WayDoses {
  public:
   explicit WayDoses(const TourProblem& problem) : problem_(problem) {}
 
-  /// Takes the ways of one tour out of the sum, and adds those of the other. Of ways that both have
-  /// nothing is asked.
+  /// Replaces the doses of the tour `from` in the sum by those of the tour `to`. Paths in both
+  /// tours are not evaluated.
   void change(DoseSum& sum, const Stops& from, const Stops& to);
 
  private:
   const std::vector<Dose>& doses(const Stop* a, const Stop* b);
 
   const TourProblem& problem_;
-  std::unordered_map<std::uint64_t, std::vector<Dose>> doses_;  ///< by the numbers of both ends
+  /// Doses by path; the key contains the numbers of both stops.
+  std::unordered_map<std::uint64_t, std::vector<Dose>> doses_;
 };
 
 }  // namespace skycap::missions::package

@@ -1,4 +1,4 @@
-/// Whether a vehicle that flies a route file comes home safely from every point of it.
+/// Verification of the returns from every point of a route file.
 #pragma once
 
 #include <filesystem>
@@ -15,13 +15,13 @@ namespace skycap::missions::package {
 
 struct ReturnCheck {
   bool is_safe = false;
-  std::string text;  ///< one line for the user
+  std::string text;  ///< One line of text for the user.
 };
 
-/// Proves the returns of the autopilot that reads the file, at the height of return that is given,
-/// or that the file says, or the parameter file beside it; where none does, the least safe one is
-/// looked for and said. Home is on the ground below the route's first point. Throws
-/// Error{bad_file} for a parameter file that cannot be read.
+/// Verifies the returns of the autopilot that reads the file. The return altitude is taken from
+/// `return_height`, the route file, or the parameter file in the same folder. If none specifies it,
+/// the result contains the minimum verified altitude. Home is on the ground below the first point
+/// of the route. Throws Error{bad_file} for an unreadable parameter file.
 ReturnCheck check_returns(const std::filesystem::path& file,
                           const std::optional<double>& return_height,
                           const flight::FlightOptions& options, const flight::FreeSpace& space,

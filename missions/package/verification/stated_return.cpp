@@ -21,7 +21,8 @@ std::optional<StatedHeight> stated_by_parameters(const std::filesystem::path& ro
       flight::parameters_name(dialect, vehicle ? stem_of(*vehicle) : "mission");
   const std::filesystem::path file = route.parent_path() / name;
   if (name.empty() || !std::filesystem::exists(file)) return std::nullopt;
-  constexpr std::size_t largest = 1 << 20;  // [byte]; a vehicle has some thousand parameters
+  // Maximum file size [bytes]; a vehicle has some thousand parameters.
+  constexpr std::size_t largest = 1 << 20;
   const std::string text = geometry::read_file(file, largest);
   try {
     const std::vector<flight::Parameter> parameters = flight::read_parameters(text);

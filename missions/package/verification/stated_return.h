@@ -1,4 +1,4 @@
-/// How high a vehicle returns that flies a route file, as far as the files say.
+/// Return altitude of a vehicle as specified in its files.
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,20 @@
 
 namespace skycap::missions::package {
 
-/// The autopilot that flies such a file, by its name; nobody by itself if it is for maps or
-/// set-point followers.
+/// Returns the autopilot for a route file, based on the file name. Returns an empty value for map
+/// and set-point files.
 std::optional<flight::Dialect> dialect_of(const std::filesystem::path& file,
                                           const flight::Vehicle& vehicle);
 
-/// A height of return above take-off, and who says so.
+/// Return altitude above take-off [m] and its source.
 struct StatedHeight {
   double height = 0.0;
   std::string by;
-  flight::Problems problems;  ///< settings by which the vehicle would return in another way
+  flight::Problems problems;  ///< Settings that would change the return in other ways.
 };
 
-/// The height that is given, or that the route file says, or the parameter file beside it. Throws
-/// Error{bad_file} for a parameter file that cannot be read.
+/// Returns the given altitude, or the one in the route file, or the one in the parameter file in
+/// the same folder. Throws Error{bad_file} for an unreadable parameter file.
 std::optional<StatedHeight> stated_height(const std::filesystem::path& route,
                                           const std::optional<double>& given,
                                           flight::Dialect dialect);

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The triangles of which some part is above that height.
+/// Returns the triangles that are at least partly above `height`.
 geometry::Mesh above(geometry::Mesh mesh, double height) {
   std::erase_if(mesh.triangles, [&](const auto& triangle) {
     return std::ranges::all_of(triangle,
@@ -21,7 +21,7 @@ geometry::Mesh above(geometry::Mesh mesh, double height) {
   return mesh;
 }
 
-/// The triangles above and below the ground round a place.
+/// Returns the triangles within `radius` of a position in plan view.
 std::vector<flight::Triangle> triangles_at(const geometry::Mesh& mesh, const Vector3d& place,
                                            double radius) {
   const Eigen::AlignedBox2d around(place.head<2>().array() - radius,
@@ -36,8 +36,8 @@ std::vector<flight::Triangle> triangles_at(const geometry::Mesh& mesh, const Vec
   return near;
 }
 
-/// Of all heights of the mesh there, within a metre of `z` and what a slope of 45 degrees explains,
-/// the one nearest to it.
+/// Returns the height of the mesh nearest to `z` within `reach`, which is one metre plus the height
+/// difference of a slope of 45 degrees.
 std::optional<double> height_at(const std::vector<flight::Triangle>& triangles,
                                 const Eigen::Vector2d& at, double z, double reach) {
   const flight::Segment plumb{{at.x(), at.y(), z - reach}, {at.x(), at.y(), z + reach}};

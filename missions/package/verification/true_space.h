@@ -1,4 +1,4 @@
-/// A mission's site as it truly is: the scene's mesh and the rules.
+/// Ground-truth space of a mission's site: the scene's mesh and the airspace rules.
 #pragma once
 
 #include <vector>
@@ -14,13 +14,14 @@ namespace skycap::missions::package {
 
 struct TrueSpace {
   flight::KnownSpace everywhere;
-  flight::KnownSpace over_pad;  ///< without the ground that a pad at that height stands on
+  flight::KnownSpace over_pad;  ///< Space without the ground under a pad at the given height.
 };
 
 TrueSpace true_space(const flight::FlightOptions& options, const geometry::Mesh& model,
                      double pad_height);
 
-/// The ground of pad and rally points as the mesh has it; where it has none, what else is known.
+/// Returns the ground of the pad and rally points from the mesh. Where the mesh has no ground,
+/// returns the ground from other sources.
 std::vector<flight::PadGround> true_grounds(const flight::FlightOptions& options,
                                             const geometry::Mesh& model,
                                             const Eigen::Vector3d& pad);

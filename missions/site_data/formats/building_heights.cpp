@@ -15,13 +15,13 @@ namespace {
 using std::string_view;
 
 constexpr double storey =
-    3.0;  ///< height of a level of a building where only those are counted [m]
+    3.0;  ///< Assumed height of a storey if only the number of storeys is known [m].
 constexpr double foot = 0.3048, inch = 0.0254;
 
-/// Attributes of Shapefiles have so many characters at most, and keep them in other formats.
+/// Maximum length of attribute names in Shapefiles, which other formats often retain.
 constexpr std::size_t longest_shapefile_name = 10;
 
-/// A number that a text begins with, and what follows it without blanks between.
+/// Number at the start of a text and the following text without leading spaces.
 struct Quantity {
   double number = 0.0;
   string_view rest;
@@ -40,7 +40,8 @@ std::optional<Quantity> quantity_of(string_view text) {
   return Quantity{*number, geometry::trimmed(text.substr(end))};
 }
 
-/// Metres of a unit's name; nothing if it is unknown. No name stands for metres.
+/// Returns the length of a unit in metres, or an empty value for unknown names. An empty name
+/// stands for metres.
 std::optional<double> metres_of_unit(string_view name) {
   std::string unit = geometry::lower_case(name);
   std::erase(unit, '.');
@@ -59,7 +60,7 @@ std::optional<double> metres_of_unit(string_view name) {
   return std::nullopt;
 }
 
-/// "7'4\"" and "7 ft 4 in".
+/// Parses "7'4\"" and "7 ft 4 in".
 std::optional<double> feet_and_inches(string_view text) {
   const std::size_t mark = text.find_first_of("'f");
   if (mark == string_view::npos) return std::nullopt;
@@ -84,7 +85,7 @@ std::optional<double> one_length(string_view text) {
     if (const std::optional<double> unit = metres_of_unit(quantity->rest)) {
       return quantity->number * *unit;
     }
-    // The unit may stand behind the second number of a range alone.
+    // In a range, only the second number may have a unit.
     if (quantity->rest.starts_with('-') || quantity->rest.starts_with("\xE2\x80\x93")) {
       const std::size_t dash = quantity->rest.starts_with('-') ? 1 : 3;
       const std::optional<Quantity> most = quantity_of(quantity->rest.substr(dash));
@@ -95,7 +96,7 @@ std::optional<double> one_length(string_view text) {
   return feet_and_inches(text);
 }
 
-/// The greatest of a list; nothing if one of it is not understood.
+/// Returns the maximum of a list, or an empty value if an entry cannot be parsed.
 std::optional<double> greatest_of(string_view text,
                                   const std::function<std::optional<double>(string_view)>& read) {
   std::optional<double> greatest;
@@ -118,7 +119,7 @@ std::optional<double> one_count(string_view text) {
     const std::size_t plus = std::min(text.find('+', 1), text.size());
     const std::optional<Quantity> part = quantity_of(text.substr(0, plus));
     if (!part) return std::nullopt;
-    if (!part->rest.empty()) {  // "2-3"
+    if (!part->rest.empty()) {  // For example "2-3".
       if (plus != text.size() || !part->rest.starts_with('-')) return std::nullopt;
       const std::optional<Quantity> most = quantity_of(part->rest.substr(1));
       if (!most || !most->rest.empty()) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<double> one_count(string_view text) {
   }
 }
 
-/// Small letters, and one sign between words.
+/// Converts a name to lower case with one separator between words.
 std::string plain_name(string_view name) {
   std::string plain = geometry::lower_case(name);
   for (char& c : plain) {
@@ -139,7 +140,7 @@ std::string plain_name(string_view name) {
   return plain;
 }
 
-/// The value of the first attribute that is there and not empty.
+/// Name and value of the first non-empty attribute.
 struct Found {
   std::string name, value;
 };
@@ -164,7 +165,7 @@ class HeightReader {
   }
 
  private:
-  /// The attribute with one of the names, written in any way, or what a Shapefile left of it.
+  /// Finds the attribute with one of the names, in any spelling or truncated by a Shapefile.
   std::optional<Found> find(const FileObject& object, std::span<const string_view> names) const {
     for (const string_view name : names) {
       for (const auto& [key, value] : object.attributes) {
@@ -198,7 +199,7 @@ class HeightReader {
         ++by_height_;
         return;
       }
-      ++without_meaning_;  // -1 and 0 stand for unknown
+      ++without_meaning_;  // -1 and 0 stand for unknown.
     }
     read_storeys(object);
   }
@@ -258,7 +259,7 @@ class HeightReader {
       object.min_height = metres_of(found->value);
       if (!object.min_height) ++without_min_;
     } else if (const auto level = find(object, levels)) {
-      // Of "building_m" a Shapefile may as well mean a material.
+      // In Shapefiles, "building_m" may also be an abbreviation of the material.
       const std::optional<double> count = storeys_of(level->value);
       if (count) object.min_height = storey * *count;
     }

@@ -1,6 +1,6 @@
-/// Heights of buildings from the attributes of maps: OpenStreetMap's tags, which others use, too
-/// (wiki.openstreetmap.org/wiki/Simple_3D_Buildings), Overture's and Microsoft's names, and what
-/// Shapefiles make of them.
+/// Building heights from map attributes. Supported names are OpenStreetMap's tags
+/// (wiki.openstreetmap.org/wiki/Simple_3D_Buildings), those of Overture and Microsoft, and their
+/// abbreviations in Shapefiles.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace skycap::missions::site_data {
 
-/// A length in metres from text as mappers write it: "12.5", "12,5 m", "40 ft", "7'4\"", and of
-/// lists and ranges ("12;13", "10-12") the greatest. Nothing if it is none of these.
+/// Parses a length in metres: "12.5", "12,5 m", "40 ft", "7'4\"". Lists and ranges ("12;13",
+/// "10-12") give their maximum. Other text gives an empty value.
 std::optional<double> metres_of(std::string_view text);
 
-/// A number of storeys: "4", "2;5" (the greatest), "3+1" (the sum).
+/// Parses a number of storeys: "4", "2;5" (maximum), "3+1" (sum).
 std::optional<double> storeys_of(std::string_view text);
 
-/// Sets height and min_height of each outline from its attributes, where the file's reader has not.
-/// `height_attribute` names the one that is the height; empty: those that are known. A height that
-/// is there but cannot be understood goes to FileObject::height_problem. Adds notes on what was
-/// counted, guessed or left out.
+/// Sets height and min_height of each outline from its attributes unless the file's reader has set
+/// them. `height_attribute` is the name of the height attribute; empty selects the known names.
+/// Unreadable heights are stored in FileObject::height_problem. Adds notes with the numbers of
+/// read, estimated and missing heights.
 void read_building_heights(FileContents& contents, const std::string& height_attribute);
 
-/// Names of an object's attributes, for a message: "name, levels, ..."; "none" if it has none.
+/// Returns the names of an object's attributes for messages: "name, levels, ...", or "none".
 std::string attribute_names(const FileObject& object);
 
 }  // namespace skycap::missions::site_data

@@ -1,4 +1,4 @@
-/// Which cells of a cubic grid were met already: what thins clouds while they are read.
+/// Set of occupied cells of a cubic grid, for downsampling clouds while reading.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,12 @@
 
 namespace skycap::missions::site_data {
 
-/// A set of whole cells.
+/// Set of integer cells.
 class CellSet {
  public:
-  /// Whether the cell of a place, in cells from anywhere, is new. Cells repeat after two million
-  /// in each direction: clouds are narrower.
+  /// Adds the cell that contains `place`, in units of cells. Returns true if the cell is new. Cell
+  /// indices wrap around after two million cells in each direction, which exceeds the extent of
+  /// clouds.
   bool add(const Eigen::Vector3d& place) {
     std::uint64_t key = 0;
     for (const double coordinate : place) {

@@ -13,7 +13,7 @@
 namespace skycap::missions::site_data {
 namespace {
 
-constexpr int deepest = 200;  // real files reach 25
+constexpr int deepest = 200;  // Maximum nesting; real files have up to 25 levels.
 
 using Name = std::string_view;
 
@@ -32,7 +32,7 @@ bool is_polygon(Name name) {
   return is_one_of(name, std::array<Name, 4>{"Polygon", "Triangle", "Rectangle", "PolygonPatch"});
 }
 
-/// Inside a building, not there at all, or in coordinates of its own.
+/// Returns true for elements that are inside buildings, virtual, or in their own coordinates.
 bool is_left_out(Name name) {
   return is_one_of(
       name, std::array<Name, 10>{"ClosureSurface", "Room", "BuildingRoom", "InteriorWallSurface",
@@ -40,7 +40,7 @@ bool is_left_out(Name name) {
                                  "BuildingFurniture", "relativeGMLGeometry", "relativeGeometry"});
 }
 
-/// Things with an identifier that are no objects.
+/// Returns true for elements that have identifiers but are not objects.
 bool is_no_feature(Name name) {
   return is_one_of(
       name, std::array<Name, 8>{"CityModel", "Address", "Envelope", "Appearance",
@@ -63,7 +63,7 @@ SurfaceKind kind_named(Name name) {
   return SurfaceKind::unknown;
 }
 
-/// "lod2MultiSurface" is of level 2.
+/// Parses the level of detail, for example 2 in "lod2MultiSurface".
 std::optional<double> level_of(Name name) {
   if (!name.starts_with("lod") || name.size() < 4 || name[3] < '0' || name[3] > '9') {
     return std::nullopt;
@@ -85,13 +85,13 @@ pugi::xml_node child(pugi::xml_node node, Name wanted) {
   return {};
 }
 
-/// What is known of an element by those around it.
+/// Context of an element, from the enclosing elements.
 struct Surroundings {
   std::optional<std::size_t> object;
   SurfaceKind kind = SurfaceKind::unknown;
   std::optional<double> lod;
   int dimension = 3;
-  bool is_done = false;  ///< nothing in it is of use, or it was read already
+  bool is_done = false;  ///< The contents are not needed or were already read.
   bool is_address = false;
 };
 
@@ -114,7 +114,7 @@ class Walker final : public pugi::xml_tree_walker {
     return true;
   }
 
-  /// What is known at the end only: kinds of polygons that a wall or roof refers to.
+  /// Completes data that is known only at the end: kinds of polygons referenced by walls or roofs.
   void finish();
 
  private:
@@ -133,12 +133,13 @@ class Walker final : public pugi::xml_tree_walker {
   const std::filesystem::path& file_;
   FileContents& contents_;
   std::size_t most_objects_;
-  std::vector<Surroundings> around_;  ///< of the elements from the root to here
+  /// Contexts of the elements from the root to the current one.
+  std::vector<Surroundings> around_;
   std::map<std::string, std::size_t> left_out_;
-  std::unordered_map<std::string, SurfaceKind> kind_of_;  ///< by identifiers that were referred to
-  std::unordered_map<std::string, Place> unknown_;        ///< polygons without a kind
+  std::unordered_map<std::string, SurfaceKind> kind_of_;  ///< Kinds by referenced identifier.
+  std::unordered_map<std::string, Place> unknown_;        ///< Polygons without a kind.
   std::size_t polygons_ = 0, rings_without_place_ = 0, rings_without_heights_ = 0;
-  std::vector<double> numbers_;  // kept for its memory
+  std::vector<double> numbers_;  // Member to reuse its memory.
 };
 
 void Walker::enter(pugi::xml_node node, Surroundings& here) {
@@ -174,7 +175,7 @@ void Walker::enter(pugi::xml_node node, Surroundings& here) {
   enter_object(node, name, here);
 }
 
-/// The reference system that an element names for what is in it.
+/// Sets the reference system that an element defines for its contents.
 void Walker::take_system(pugi::xml_node node) {
   const std::string crs = attribute(node, "srsName").as_string();
   if (crs.empty() || crs == contents_.crs) return;
@@ -246,7 +247,8 @@ void Walker::read_polygon(pugi::xml_node node, Surroundings& here) {
   }
 }
 
-/// A ring's corners, empty if it is not of straight lines or has no heights: those have no area.
+/// Reads the corners of a ring. Rings with curves or without heights are empty, so that they have
+/// no area.
 void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   const pugi::xml_node ring = child(boundary, "LinearRing");
   take_system(ring);
@@ -284,7 +286,8 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   }
 }
 
-/// Of pos, posList or coordinates; the last may say what is between its numbers (GML 3.1.1, 9.1).
+/// Reads pos, posList or coordinates. An element `coordinates` may define separators (GML 3.1.1,
+/// 9.1).
 void Walker::read_positions(pugi::xml_node part, int& dimension) {
   const Name name = local_name(part.name());
   if (name != "posList" && name != "pos" && name != "coordinates") return;
@@ -321,7 +324,7 @@ void Walker::finish() {
                             " rings without heights ignored (srsDimension 2)");
 }
 
-/// By the namespaces of its root.
+/// Returns the version from the namespaces of the root.
 std::string version_of(pugi::xml_node root) {
   for (const char* version : {"3.0", "2.0", "1.0"}) {
     for (const pugi::xml_attribute attribute : root.attributes()) {
@@ -334,11 +337,12 @@ std::string version_of(pugi::xml_node root) {
   return "CityGML";
 }
 
-/// GML's names of authorities stand for their order of axes, latitude first; short ones do not.
+/// Returns true for names of authorities, for which GML defines the axis order latitude first.
+/// Short names do not imply it.
 bool is_by_authority(Name crs) { return crs.starts_with("urn:") || crs.starts_with("http"); }
 
-/// Bytes that the text, its tree and its corners take: 64 for a node of pugixml, 40 for an
-/// attribute; what is kept of a text besides; 24 for a corner, twice while the list of them grows.
+/// Returns the memory required for the text, its tree and its corners: 64 bytes per pugixml node
+/// and 40 per attribute, copies of texts, and 24 bytes per corner, doubled while the list grows.
 std::size_t xml_tree_bytes(std::string_view xml) {
   std::size_t bytes = xml.size();
   const auto is_gap = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };

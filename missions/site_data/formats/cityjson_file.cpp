@@ -31,7 +31,7 @@ bool is_inside_a_building(const std::string& type) {
          type == "ClosureSurface";
 }
 
-/// How the vertices of a geometry become places.
+/// Conversion of a geometry's vertices to coordinates.
 struct VertexPlaces {
   const Json* vertices = nullptr;
   Vector3d scale = Vector3d::Ones(), translation = Vector3d::Zero();
@@ -51,7 +51,8 @@ Vector3d vector_of(const Json& numbers) {
   return {numbers.at(0).get<double>(), numbers.at(1).get<double>(), numbers.at(2).get<double>()};
 }
 
-/// How often lists are nested around the surfaces of a type's boundaries; none: it has no surfaces.
+/// Returns the nesting depth of the surfaces in the boundaries of a geometry type; empty for types
+/// without surfaces.
 std::optional<int> nesting_of(const std::string& type) {
   if (type == "MultiSurface" || type == "CompositeSurface") return 0;
   if (type == "Solid") return 1;
@@ -83,12 +84,12 @@ class Reader {
   std::size_t polygons_ = 0, left_out_ = 0, without_surfaces_ = 0, without_level_ = 0,
               without_kind_ = 0;
 
-  // Of the geometry that is being read.
+  // State of the geometry that is being read.
   FileObject* object_ = nullptr;
   VertexPlaces places_;
   Eigen::Affine3d placed_ = Eigen::Affine3d::Identity();
   std::optional<double> lod_;
-  const Json* surfaces_ = nullptr;  ///< semantics
+  const Json* surfaces_ = nullptr;  ///< Semantics of the surfaces.
 };
 
 void Reader::read_header(const Json& root) {
@@ -97,7 +98,7 @@ void Reader::read_header(const Json& root) {
     if (const auto crs = metadata->find("referenceSystem"); crs != metadata->end()) {
       contents_.crs = crs->is_string() ? crs->get<std::string>() : "";
     } else if (const auto old = metadata->find("crs"); old != metadata->end()) {
-      contents_.crs = "EPSG:" + std::to_string(old->at("epsg").get<int>());  // version 0.x
+      contents_.crs = "EPSG:" + std::to_string(old->at("epsg").get<int>());  // Version 0.x.
     }
   }
   if (const auto transform = root.find("transform"); transform != root.end()) {
@@ -151,7 +152,8 @@ void Reader::read_objects(const Json& root) {
   }
 }
 
-/// A level of detail, as a number or as text; nothing if it is none: drawn at all levels.
+/// Returns the level of detail, which may be a number or a string. Empty for geometries that belong
+/// to all levels.
 std::optional<double> Reader::level_of(const Json& geometry) {
   const auto found = geometry.find("lod");
   if (found == geometry.end()) return std::nullopt;
@@ -220,7 +222,7 @@ void Reader::read_boundaries(const Json& boundaries, int nesting, const Json* va
   }
 }
 
-/// What the semantics say of a surface; null: nothing.
+/// Returns the semantics of a surface, or null.
 const Json* Reader::surface_of(const Json* value) {
   if (value == nullptr || !value->is_number_integer() || surfaces_ == nullptr) return nullptr;
   const auto index = value->get<std::int64_t>();
@@ -275,8 +277,8 @@ void Reader::finish() {
   }
 }
 
-/// Bytes that the text and its tree take: values of 16 bytes in lists that grow by doubling, lists,
-/// maps and strings with what the heap adds to each.
+/// Returns the memory required for the text and its tree. Values have 16 bytes in lists that double
+/// as they grow. Lists, maps and strings include heap overhead.
 std::size_t json_tree_bytes(std::string_view json) {
   std::size_t bytes = json.size();
   for (const char c : json) {
@@ -288,7 +290,7 @@ std::size_t json_tree_bytes(std::string_view json) {
   return bytes;
 }
 
-/// A file of one JSON text, or of one a line.
+/// Parses a file of one JSON text, or of one text per line.
 std::vector<Json> texts_of(const std::filesystem::path& file, std::string_view bytes) {
   std::vector<Json> texts;
   texts.push_back(geometry::parse_json<Json>(bytes));

@@ -1,5 +1,5 @@
-/// Earlier scans as prior data, larger than memory if need be, thinned while they are read: LAS,
-/// compressed (LAZ, COPC) or not, and E57.
+/// Readers of point clouds as prior data: LAS, compressed (LAZ, COPC) or not, and E57. Files may be
+/// larger than memory, because points are downsampled while reading.
 #pragma once
 
 #include <functional>
@@ -10,19 +10,19 @@
 namespace skycap::missions::site_data {
 
 struct CloudThinning {
-  double spacing = 1.0;  ///< one point a cube of this side is kept [m]
-  /// How long the file's units are [m], once its reference system is known.
+  double spacing = 1.0;  ///< Side of the cubes of which one point each is kept [m].
+  /// Returns the length of the file's units [m]. Called when the reference system is known.
   std::function<Eigen::Vector3d(const FileContents&)> metres_per_unit;
 };
 
-/// The points of those classes, of none named all but noise (7, 18); the reference system is that
-/// of the file's records, as WKT or as EPSG numbers of its GeoKeys. Withheld points are passed
-/// over. Throws Error{bad_file}.
+/// Reads the points of the given classes, or all points except noise (7, 18) if `classes` is empty.
+/// The reference system is taken from the file's records, as WKT or as EPSG numbers of the GeoKeys.
+/// Withheld points are skipped. Throws Error{bad_file}.
 FileContents read_las(const std::filesystem::path& file, const std::vector<int>& classes,
                       const CloudThinning& thinning);
 
-/// The points of all scans; the reference system is the file's coordinateMetadata. Points that are
-/// marked as invalid are passed over. Throws Error{bad_file}.
+/// Reads the points of all scans. The reference system is the file's coordinateMetadata. Points
+/// marked as invalid are skipped. Throws Error{bad_file}.
 FileContents read_e57(const std::filesystem::path& file, const CloudThinning& thinning);
 
 }  // namespace skycap::missions::site_data

@@ -38,7 +38,7 @@ constexpr std::array<Unit, 19> units{{{1, 0.0254, "the inch"},
                                       {23, 3.0 * us_foot, "the US survey yard"},
                                       {24, 5280.0 * us_foot, "the US survey mile"}}};
 
-/// Pairs of lines: a code and its value.
+/// Reader of the line pairs of a DXF file: a code and its value.
 class Pairs {
  public:
   explicit Pairs(string_view text) : text_(geometry::without_mark(text)) {}
@@ -65,7 +65,7 @@ class Pairs {
 struct Header {
   std::optional<int> unit;  ///< $INSUNITS
   bool is_imperial = false;
-  std::size_t thick = 0;  ///< entities with a thickness
+  std::size_t thick = 0;  ///< Number of entities with a thickness.
 };
 
 Header header_of(string_view text) {

@@ -1,4 +1,4 @@
-/// The header of a DXF drawing, which GDAL passes over: what its lengths are in.
+/// Reader of the linear unit in the header of DXF drawings, which GDAL ignores.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace skycap::missions::site_data {
 
-/// Sets the unit that the text's $INSUNITS names (AutoCAD's DXF reference, HEADER), and notes what
-/// was taken, and entities with a thickness, which is not read. Throws Error{bad_file} for a unit
-/// that is not known, if `has_unit` does not say that the source names one.
+/// Sets the unit from the text's $INSUNITS (AutoCAD DXF reference, HEADER). Adds notes about the
+/// unit and about entities with a thickness, which is not supported. Throws Error{bad_file} for an
+/// unknown unit unless `has_unit` is set, which means that the source defines the unit.
 void take_dxf_unit(const std::filesystem::path& file, std::string_view text, bool has_unit,
                    FileContents& contents);
 

@@ -19,17 +19,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Once: the settings hold for the whole program, in which nothing else uses GDAL.
+/// Configures GDAL once. The settings apply to the whole process, which does not use GDAL
+/// elsewhere.
 void prepare_gdal() {
   static std::once_flag once;
   std::call_once(once, [] {
     CPLSetErrorHandler(CPLQuietErrorHandler);
     CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
-    CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");  // neither reads nor writes .aux.xml
+    // Disables reading and writing of .aux.xml files.
+    CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");
     CPLSetConfigOption("GDAL_HTTP_MAX_RETRY", "0");
     CPLSetConfigOption("OGR_SQLITE_LOAD_EXTENSIONS", nullptr);
-    CPLSetConfigOption("OSM_USE_CUSTOM_INDEXING", "NO");  // wants nodes in the order of their ids
-    // Indices of large .osm files go there, not to the folder that the program was started in.
+    // The custom index requires nodes in ascending order of id.
+    CPLSetConfigOption("OSM_USE_CUSTOM_INDEXING", "NO");
+    // Large .osm files have their indices there instead of in the working directory.
     std::error_code failure;
     const fs::path temporary = fs::temp_directory_path(failure);
     if (!failure) CPLSetConfigOption("CPL_TMPDIR", temporary.c_str());
@@ -44,7 +47,8 @@ bool is_database(const fs::path& file) {
   return std::string(beginning.data(), 15) == "SQLite format 3";
 }
 
-/// The file whose name goes on with `more`, such as "town.gpkg-wal", if something is in it.
+/// Returns true if a non-empty file exists whose name is that of `file` plus `more`, such as
+/// "town.gpkg-wal".
 bool has_beside(const fs::path& file, const char* more) {
   std::error_code failure;
   const auto size = fs::file_size(file.string() + more, failure);
@@ -77,8 +81,8 @@ void CopyFolder::make(const fs::path& file) {
   path_ = name;
 }
 
-/// The file itself, or a copy where reading would write beside it: a database with a log, and a
-/// Shapefile whose index is missing.
+/// Returns the file itself, or a copy if reading would write next to it. This applies to databases
+/// with a log and Shapefiles without an index.
 fs::path OpenDataset::readable(const fs::path& file) {
   if (is_database(file)) {
     const bool has_log = has_beside(file, "-wal") || has_beside(file, "-journal");
@@ -118,8 +122,8 @@ OpenDataset::OpenDataset(const fs::path& file, unsigned kind,
   std::vector<const char*> list = drivers;
   list.push_back(nullptr);
   CPLErrorReset();
-  CPLSetConfigOption("SHAPE_RESTORE_SHX", "NO");  // writes beside the file
-  // An absolute name is never one of GDAL's own, such as /vsicurl/ or "MEM:".
+  CPLSetConfigOption("SHAPE_RESTORE_SHX", "NO");  // Restoring would write next to the file.
+  // Absolute paths cannot match GDAL's special names such as /vsicurl/ or "MEM:".
   const std::string name = fs::absolute(file).lexically_normal().string();
   if (name.starts_with("/vsi")) fail_file(file, "has a file name that GDAL does not support");
   const std::string opened = readable(name).string();

@@ -1,6 +1,6 @@
-/// How this program opens files with GDAL, for the sources of its module: no driver that follows
-/// names to other files or hosts, no files of others beside the one that is named, and nothing is
-/// written beside it: what a driver would write to is read from a copy.
+/// Restricted access to files with GDAL, for the sources of its module. Excluded are drivers that
+/// follow references to other files or hosts, and companion files with other names. Files are never
+/// written next to the input: if a driver would write there, it reads a copy instead.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ class OGRSpatialReference;
 
 namespace skycap::missions::site_data {
 
-/// A folder for copies, removed with all that is in it. Without a path there is none.
+/// Temporary folder for copies, removed by the destructor. Created by make().
 class CopyFolder {
  public:
   CopyFolder() = default;
@@ -21,7 +21,7 @@ class CopyFolder {
   CopyFolder& operator=(const CopyFolder&) = delete;
   ~CopyFolder();
 
-  /// Makes the folder, in that for temporary files. Throws Error{bad_file} that names the file.
+  /// Creates the folder in the system's temporary folder. Throws Error{bad_file} naming `file`.
   void make(const std::filesystem::path& file);
   const std::filesystem::path& path() const { return path_; }
 
@@ -29,7 +29,7 @@ class CopyFolder {
   std::filesystem::path path_;
 };
 
-/// A file that is open, and the copy that it may be read from.
+/// Open dataset, read from the file or from a copy of it.
 class OpenDataset {
  public:
   /// Opens a file for reading with one of the drivers. Throws Error{bad_file} with GDAL's reason.
@@ -41,22 +41,22 @@ class OpenDataset {
 
   GDALDataset& operator*() const { return *dataset_; }
   GDALDataset* operator->() const { return dataset_; }
-  /// What was done to read it, for the user.
+  /// Returns notes for the user about the steps taken to read the file.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   std::filesystem::path readable(const std::filesystem::path& file);
 
-  CopyFolder copy_;  ///< outlives the dataset
+  CopyFolder copy_;  ///< Copy of the file; must outlive the dataset.
   GDALDataset* dataset_ = nullptr;
   std::vector<std::string> notes_;
-  bool is_immutable_ = false;  ///< a database that nobody writes to while it is read
+  bool is_immutable_ = false;  ///< The SQLite database has no log and is opened as immutable.
 };
 
-/// What GDAL last complained of, in one line.
+/// Returns GDAL's last error message as one line.
 std::string gdal_complaint();
 
-/// As WKT that PROJ reads; empty if there is none.
+/// Returns the reference system as WKT for PROJ; empty without a system.
 std::string wkt_of(const OGRSpatialReference* system);
 
 }  // namespace skycap::missions::site_data

@@ -1,4 +1,4 @@
-// Maps of polygons by GDAL; geodata_file.cpp loads the module.
+// Reader of map polygons based on GDAL. geodata_file.cpp loads this module.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace skycap::missions::site_data {
 namespace {
 
-/// Half the width of what is made of points and lines that state a height [m].
+/// Half the width of the outlines around points and lines that have a height [m].
 constexpr double pole_radius = 0.5, wall_radius = 0.25;
 
 class MapReader {
@@ -48,7 +48,8 @@ class MapReader {
   FileContents& contents_;
   std::string driver_;
   bool has_system_ = false;
-  Eigen::Vector2d units_per_metre_ = Eigen::Vector2d::Ones();  ///< of the layer, at the feature
+  /// Units of the layer per metre at the feature.
+  Eigen::Vector2d units_per_metre_ = Eigen::Vector2d::Ones();
   std::size_t polygons_ = 0, others_ = 0, cables_ = 0, no_structures_ = 0, without_geometry_ = 0,
               thin_ = 0, raised_ = 0, extruded_ = 0;
 };
@@ -68,7 +69,7 @@ void MapReader::read(const std::string& layer) {
   driver_ = dataset_.GetDriverName();
   contents_.format = driver_;
   contents_.is_outlines = true;
-  contents_.is_map = driver_ != "DXF";  // a drawing is in metres or another unit of length
+  contents_.is_map = driver_ != "DXF";  // Drawings use a linear unit.
   if (is_kml()) contents_.vertical = HeightDatum::geoid;
   if (driver_ == "GeoJSON") contents_.vertical = HeightDatum::ellipsoid;  // RFC 7946
   if (!layer.empty()) require_layer(layer);
@@ -86,7 +87,7 @@ void MapReader::read(const std::string& layer) {
 
 void MapReader::take_system(OGRLayer& layer) {
   std::string wkt = wkt_of(layer.GetSpatialRef());
-  // A GeoPackage has names for systems that nobody named.
+  // GeoPackages contain placeholder names for undefined systems.
   if (wkt.find("\"Undefined ") != std::string::npos) wkt.clear();
   if (!has_system_) contents_.crs = wkt;
   has_system_ = true;
@@ -99,7 +100,7 @@ void MapReader::take_system(OGRLayer& layer) {
   }
 }
 
-/// How long a metre is in the layer's units.
+/// Sets the number of the layer's units per metre.
 void MapReader::take_units(OGRLayer& layer, double latitude) {
   const OGRSpatialReference* const system = layer.GetSpatialRef();
   if (system == nullptr) {
@@ -149,8 +150,8 @@ void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
   contents_.objects.push_back(std::move(object));
 }
 
-/// Elsewhere a third coordinate is a height; in KML its mode says what it is. `highest` is that of
-/// the highest corner.
+/// Interprets the third coordinate. In KML, the altitude mode defines its meaning; in other formats
+/// it is a height. `highest` is the maximum of the corners.
 void MapReader::read_altitudes(FileObject& object, double highest) {
   const auto mode = object.attributes.find("altitudeMode");
   const std::string name = mode == object.attributes.end() ? "" : mode->second;
@@ -161,7 +162,7 @@ void MapReader::read_altitudes(FileObject& object, double highest) {
     object.reaches_ground = true;
     ++extruded_;
   }
-  // On land the floor of the sea is the ground.
+  // On land, the sea floor is the ground.
   const bool is_relative = name == "relativeToGround" || name == "relativeToSeaFloor";
   if (has_corners && is_relative && highest > 0.0) {
     object.height = highest;
@@ -221,8 +222,8 @@ void MapReader::read_geometry(const OGRGeometry& geometry, FileObject& object) {
   }
 }
 
-/// Closed lines of drawings are polygons, and those of OpenStreetMap that are parts of buildings or
-/// other structures. A line with a height is a wall.
+/// Reads a line. Closed lines are polygons in drawings, and in OpenStreetMap if they are parts of
+/// buildings or other structures. Lines with a height are walls.
 void MapReader::read_line(const OGRLineString& line, FileObject& object) {
   const bool is_closed = line.get_IsClosed() != 0 && line.getNumPoints() > 3;
   const bool is_part =
@@ -250,7 +251,7 @@ void MapReader::add_corner(double x, double y, double z) {
   contents_.corners.push_back(corner);
 }
 
-/// Eight corners around a circle, as wide as the object says that it is.
+/// Adds an octagon around a point with the width of the object's attributes.
 void MapReader::add_pole(const OGRPoint& point, FileObject& object) {
   object.is_thin = true;
   object.has_heights |= point.Is3D() != 0;
@@ -269,7 +270,7 @@ void MapReader::add_pole(const OGRPoint& point, FileObject& object) {
   ++thin_;
 }
 
-/// A rectangle around each piece.
+/// Adds a rectangle around each segment.
 void MapReader::add_wall(const OGRLineString& line, FileObject& object) {
   object.is_thin = true;
   object.has_heights |= line.Is3D() != 0;

@@ -1,4 +1,4 @@
-// Rasters of heights by GDAL; geodata_file.cpp loads the module.
+// Reader of height rasters based on GDAL. geodata_file.cpp loads this module.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -16,7 +16,7 @@ namespace skycap::missions::site_data {
 namespace {
 
 struct Unit {
-  const char* name;  ///< in small letters
+  const char* name;  ///< Name in lower case.
   double metres;
 };
 
@@ -63,7 +63,7 @@ void take_unit(const std::string& given, FileContents& contents) {
   }
 }
 
-/// The alpha band of a dataset; null if there is none.
+/// Returns the alpha band of a dataset, or null.
 GDALRasterBand* alpha_of(GDALDataset& dataset) {
   for (int i = 2; i <= dataset.GetRasterCount(); ++i) {
     GDALRasterBand* const band = dataset.GetRasterBand(i);
@@ -72,14 +72,14 @@ GDALRasterBand* alpha_of(GDALDataset& dataset) {
   return nullptr;
 }
 
-/// A band of heights, with what else says that a cell has none: a mask, and an alpha band of any
-/// type, of which GDAL itself takes bytes alone for a mask.
+/// Height band with all markers of missing cells: a mask, and an alpha band of any type. GDAL uses
+/// only byte alpha bands as masks.
 class HeightBand {
  public:
   HeightBand(const std::filesystem::path& file, GDALDataset& dataset, GDALRasterBand& band)
       : file_(file), band_(band), columns_(band.GetXSize()) {
     none_ = band.GetNoDataValue(&has_none_);
-    // Of nodata the mask says nothing new, and rounds as it likes.
+    // The nodata mask adds no information and its rounding is unspecified.
     const int flags = band.GetMaskFlags();
     const bool has_mask = (flags & GMF_ALL_VALID) == 0 && (flags & GMF_NODATA) == 0;
     if (has_mask) masks_.push_back(band.GetMaskBand());
@@ -88,11 +88,11 @@ class HeightBand {
     opacities_.resize(static_cast<std::size_t>(columns_));
   }
 
-  /// NaN where there is none.
+  /// Returns a row of heights; NaN marks missing cells.
   const std::vector<double>& row(int number) {
     read(band_, number, heights_);
     for (double& height : heights_) {
-      // Some files write their mark of nothing in single precision, and state it in double.
+      // Some files store the nodata value in single precision but declare it in double precision.
       const bool is_none =
           has_none_ != 0 && (height == none_ || height == static_cast<float>(none_));
       height = is_none || !std::isfinite(height) ? std::numeric_limits<double>::quiet_NaN()
@@ -132,7 +132,7 @@ void read_rows(const std::filesystem::path& file, GDALDataset& dataset, GDALRast
   for (int j = 0; j < band.GetYSize(); ++j) {
     const std::vector<double>& row = heights.row(j);
     for (std::size_t i = 0; i < contents.columns; ++i) {
-      const double x = static_cast<double>(i) + 0.5, y = j + 0.5;  // a cell's middle
+      const double x = static_cast<double>(i) + 0.5, y = j + 0.5;  // Centre of a cell.
       contents.nodes.emplace_back(affine[0] + affine[1] * x + affine[2] * y,
                                   affine[3] + affine[4] * x + affine[5] * y, row[i]);
     }
@@ -149,7 +149,7 @@ void refuse_pictures(const std::filesystem::path& file, GDALRasterBand& band) {
   }
 }
 
-/// Bands beside the first that are no mask.
+/// Adds a note about further bands that are not masks.
 void note_bands(GDALDataset& dataset, FileContents& contents) {
   int others = 0;
   for (int i = 2; i <= dataset.GetRasterCount(); ++i) {

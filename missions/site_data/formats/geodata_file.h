@@ -1,4 +1,5 @@
-/// Maps and terrain by GDAL, models of scenes by assimp: each is loaded when it is needed.
+/// Readers of maps and terrain based on GDAL, and of scenes based on Assimp. The libraries are
+/// loaded on demand.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +9,18 @@
 
 namespace skycap::missions::site_data {
 
-/// Polygons of a map: GeoJSON, GPKG, Shapefile, KML, OSM (.osm, .pbf), DXF, FlatGeobuf. Outlines
-/// are two-dimensional polygons; heights of buildings are those that their attributes state. Points
-/// and lines are passed over, with a note, but for closed lines of DXF. Throws Error{bad_file}, and
-/// Error{bad_config} if there is no such layer.
+/// Reads the polygons of a map: GeoJSON, GPKG, Shapefile, KML, OSM (.osm, .pbf), DXF, FlatGeobuf.
+/// Two-dimensional polygons are outlines, and building heights are taken from their attributes.
+/// Points and lines are skipped with a note, except closed lines of DXF. Throws Error{bad_file},
+/// and Error{bad_config} if the layer does not exist.
 FileContents read_map(const std::filesystem::path& file, const std::string& layer);
 
-/// The first band of a raster of heights: GeoTIFF, ASCII grid, XYZ, JPEG 2000. Throws
+/// Reads the first band of a height raster: GeoTIFF, ASCII grid, XYZ, JPEG 2000. Throws
 /// Error{bad_file}.
 FileContents read_raster(const std::filesystem::path& file);
 
-/// A scene: glTF, GLB, Collada, FBX, IFC, 3DS. Its nodes are objects, with y up as assimp hands
-/// all of them on. Throws Error{bad_file}.
+/// Reads a scene: glTF, GLB, Collada, FBX, IFC, 3DS. Nodes become objects with y up, as in Assimp's
+/// output. Throws Error{bad_file}.
 FileContents read_scene(const std::filesystem::path& file);
 
 }  // namespace skycap::missions::site_data

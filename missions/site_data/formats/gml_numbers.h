@@ -1,4 +1,4 @@
-/// Coordinates as text in GML.
+/// Parser of coordinate text in GML.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,14 @@
 
 namespace skycap::missions::site_data {
 
-/// What an element `coordinates` says of its text; empty: as by default, a point, a comma and a
-/// blank.
+/// Separators from the attributes of a `coordinates` element. Empty members have the defaults
+/// point, comma and space.
 struct GmlSeparators {
-  std::string decimal, of_coordinates, of_places;  ///< attributes decimal, cs, ts
+  std::string decimal, of_coordinates, of_places;  ///< Attributes decimal, cs and ts.
 };
 
-/// Appends the numbers of a text, apart by white space, commas or other separators. Throws
-/// Error{bad_file} for what is no finite number.
+/// Appends the numbers in `text`, separated by white space, commas or the given separators. Throws
+/// Error{bad_file} for text that is not a finite number.
 void append_gml_numbers(const std::filesystem::path& file, std::string_view text,
                         const GmlSeparators& separators, std::vector<double>& numbers);
 

@@ -10,7 +10,7 @@ namespace {
 std::optional<double> metres_of_unit(int epsg) {
   if (epsg == 9001) return 1.0;
   if (epsg == 9002) return 0.3048;
-  if (epsg == 9003) return 1200.0 / 3937.0;  // the US survey foot
+  if (epsg == 9003) return 1200.0 / 3937.0;  // US survey foot.
   return std::nullopt;
 }
 
@@ -19,7 +19,7 @@ void name_reference_system(const geometry::LasReferenceSystem& stated, FileConte
   const int horizontal = stated.projected != 0 ? stated.projected : stated.geographic;
   if (stated.wkt.empty() && horizontal != 0) {
     contents.crs = "EPSG:" + std::to_string(horizontal);
-    // 5001 to 5199 are no reference systems, and out of use (GeoTIFF 1.0, 6.3.4.1).
+    // Values from 5001 to 5199 are obsolete and not reference systems (GeoTIFF 1.0, 6.3.4.1).
     const bool is_system = stated.vertical != 0 && stated.vertical / 200 != 25;
     if (is_system) contents.crs += "+" + std::to_string(stated.vertical);
   }

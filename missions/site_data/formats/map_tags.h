@@ -1,4 +1,4 @@
-/// What the attributes of a map's objects say that they are, for the sources of its module.
+/// Interpretation of the attributes of map objects, for the sources of the module.
 #pragma once
 
 #include <map>
@@ -8,23 +8,23 @@
 
 namespace skycap::missions::site_data {
 
-/// Adds OSM's further tags, as GDAL writes them: "key"=>"value","key"=>"value", with \ before
+/// Adds OSM's additional tags in GDAL's notation: "key"=>"value","key"=>"value", with \ before
 /// quotes.
 void add_tags(const std::string& text, std::map<std::string, std::string>& attributes);
 
-/// The number that an attribute begins with; 0 if there is none.
+/// Returns the number at the start of an attribute, or 0 without one.
 double number_of(const FileObject& object, const char* key);
 
-/// Whether an attribute is there and says other than "no".
+/// Returns true if the attribute exists and is not "no".
 bool has_tag(const FileObject& object, const char* key);
 
-/// Whether one of its attributes may be a height.
+/// Returns true if one of the attributes may be a height.
 bool may_state_height(const FileObject& object);
 
-/// Whether an area of OpenStreetMap stands for something that is in the way.
+/// Returns true if an OpenStreetMap area represents a physical structure.
 bool is_structure(const FileObject& object);
 
-/// Whether it is a line of electricity or of a cableway.
+/// Returns true for power lines and cableways.
 bool is_cable(const FileObject& object);
 
 }  // namespace skycap::missions::site_data

@@ -1,18 +1,18 @@
-/// What numbers and surfaces of files of prior data mean.
+/// Semantics of heights and surfaces in prior data.
 #pragma once
 
 #include <cstdint>
 
 namespace skycap::missions::site_data {
 
-/// What heights of a file count from.
+/// Vertical datum of the heights in a file.
 enum class HeightDatum {
-  ellipsoid,  ///< WGS84's
-  geoid,      ///< the file's own if PROJ has its grid, else EGM96, with a note
-  takeoff,    ///< the pad
+  ellipsoid,  ///< WGS84 ellipsoid.
+  geoid,      ///< The file's geoid if PROJ has its grid, otherwise EGM96 with a note.
+  takeoff,    ///< The take-off pad.
 };
 
-/// What a file says that a surface is.
+/// Surface type according to the file.
 enum class SurfaceKind : std::uint8_t { unknown, wall, roof, ground, opening, other };
 
 }  // namespace skycap::missions::site_data

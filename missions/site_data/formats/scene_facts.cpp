@@ -19,8 +19,8 @@ namespace {
 using Json = nlohmann::json;
 using std::string_view;
 
-/// Extensions that say how surfaces look or what they are, not where they are. The prefix
-/// KHR_materials_ is of that kind as well.
+/// Extensions that do not affect the position of surfaces, in addition to those with the prefix
+/// KHR_materials_.
 constexpr std::array<string_view, 14> harmless{
     "KHR_lights_punctual",    "KHR_texture_transform",
     "KHR_texture_basisu",     "KHR_xmp",
@@ -30,7 +30,7 @@ constexpr std::array<string_view, 14> harmless{
     "EXT_feature_metadata",   "KHR_animation_pointer",
     "EXT_lights_image_based", "KHR_draco_mesh_compression"};
 
-/// Those that move or hide surfaces though a file may call them optional.
+/// Extensions that move or hide surfaces, even if a file declares them optional.
 constexpr std::array<string_view, 4> deciding{"CESIUM_RTC", "EXT_mesh_gpu_instancing",
                                               "KHR_mesh_quantization", "MSFT_lod"};
 
@@ -55,12 +55,13 @@ bool is_deciding(string_view name) { return std::ranges::find(deciding, name) !=
                       ", which is not supported; save the scene without it");
 }
 
-/// An entity of an IFC file: what is between the parentheses.
+/// Access to the arguments of an IFC file's entities, which are in parentheses.
 class Entities {
  public:
   explicit Entities(string_view text) : text_(text) {}
 
-  /// The arguments of "#12", of type `type` if that is given.
+  /// Returns the arguments of the entity with a reference such as "#12". Its type must be `type`
+  /// unless `type` is empty.
   std::optional<string_view> arguments(string_view reference, string_view type) const {
     std::size_t at = 0;
     while ((at = text_.find(reference, at)) != string_view::npos) {
@@ -74,7 +75,7 @@ class Entities {
     return std::nullopt;
   }
 
-  /// The arguments of the first entity of a type.
+  /// Returns the arguments of the first entity of a type.
   std::optional<string_view> first(string_view type) const {
     std::size_t at = 0;
     while ((at = upper_find(type, at)) != string_view::npos) {
@@ -86,7 +87,7 @@ class Entities {
   }
 
  private:
-  /// Types are written in capitals, as a rule; else in small letters.
+  /// Finds a type name in upper case, otherwise in lower case.
   std::size_t upper_find(string_view type, std::size_t at) const {
     const std::size_t upper = text_.find(type, at);
     if (upper != string_view::npos) return upper;
@@ -109,7 +110,7 @@ class Entities {
   string_view text_;
 };
 
-/// Arguments apart by commas outside of parentheses and texts.
+/// Splits arguments at commas outside parentheses and strings.
 std::vector<std::string> split(string_view arguments) {
   std::vector<std::string> parts(1);
   int depth = 0;
@@ -128,7 +129,7 @@ std::vector<std::string> split(string_view arguments) {
   return parts;
 }
 
-/// "#12" and the like in a text.
+/// Returns the references in a text, such as "#12".
 std::vector<std::string> references_in(string_view text) {
   std::vector<std::string> references;
   for (std::size_t at = text.find('#'); at != string_view::npos; at = text.find('#', at + 1)) {
@@ -139,7 +140,8 @@ std::vector<std::string> references_in(string_view text) {
 }
 
 std::optional<double> number_within(const std::string& text) {
-  const std::size_t begin = text.find('(') + 1;  // of "IFCLENGTHMEASURE(0.3048)", or 0
+  // After the parenthesis of "IFCLENGTHMEASURE(0.3048)", or 0.
+  const std::size_t begin = text.find('(') + 1;
   const std::string number(geometry::trimmed(text.substr(begin, text.find(')') - begin)));
   std::string plain = number;
   if (plain.ends_with('.')) plain.pop_back();
@@ -165,7 +167,7 @@ std::optional<double> prefix_of(const std::string& name) {
   return prefix->factor;
 }
 
-/// Metres of an IfcSIUnit of length.
+/// Returns the length of an IfcSIUnit [m].
 std::optional<double> si_length(const Entities& entities, const std::string& reference) {
   const auto arguments = entities.arguments(reference, "IFCSIUNIT");
   if (!arguments) return std::nullopt;
@@ -174,10 +176,10 @@ std::optional<double> si_length(const Entities& entities, const std::string& ref
   return prefix_of(parts[2]);
 }
 
-/// How the unit of length of an IFC file is given.
+/// Linear unit of an IFC file.
 struct LengthUnit {
-  bool is_si = false;            ///< which assimp applies
-  std::optional<double> metres;  ///< else
+  bool is_si = false;            ///< SI unit, which Assimp applies.
+  std::optional<double> metres;  ///< Length of other units.
   std::string name;
 };
 
@@ -230,7 +232,7 @@ void note_map_conversion(const Entities& entities, SceneFacts& facts) {
 SceneFacts gltf_facts(const std::filesystem::path& file, string_view json) {
   SceneFacts facts;
   const Json root = geometry::parse_json<Json>(geometry::without_mark(json));
-  if (root.is_discarded() || !root.is_object()) return facts;  // assimp says what is wrong
+  if (root.is_discarded() || !root.is_object()) return facts;  // Assimp reports the error.
   for (const std::string& name : names_in(root, "extensionsRequired")) {
     if (!is_harmless(name)) refuse_extension(file, name);
   }
@@ -263,7 +265,7 @@ SceneFacts ifc_facts(const std::filesystem::path& file, string_view text, bool h
                                    Json(*unit->metres).dump() + " m"));
   }
   note_map_conversion(entities, facts);
-  // What files of IFC2X3 have for it.
+  // IFC2X3 uses this property set for the georeference.
   if (geometry::lower_case(text).find("'epset_mapconversion'") != std::string::npos) {
     facts.notes.emplace_back(
         "it contains a georeference (ePset_MapConversion), which is not supported; set place");

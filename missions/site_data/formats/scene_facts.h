@@ -1,5 +1,5 @@
-/// What decides where a scene's surfaces are and assimp passes over: glTF's extensions, the units
-/// and places of IFC.
+/// Properties that affect the position of a scene's surfaces but that Assimp ignores: glTF
+/// extensions, and the units and georeferences of IFC.
 #pragma once
 
 #include <filesystem>
@@ -11,18 +11,18 @@
 namespace skycap::missions::site_data {
 
 struct SceneFacts {
-  std::optional<double> unit;      ///< metres of what assimp hands on, if that is not 1
-  std::vector<std::string> notes;  ///< sentences for the user
+  std::optional<double> unit;  ///< Length of the unit in Assimp's output [m], if it differs from 1.
+  std::vector<std::string> notes;  ///< Sentences for the user.
 };
 
-/// Throws Error{bad_file} if a glTF text needs an extension that is not read.
+/// Throws Error{bad_file} if the glTF file requires an unsupported extension.
 SceneFacts gltf_facts(const std::filesystem::path& file, std::string_view json);
 
-/// Throws Error{bad_file} if an IFC text does not say what its lengths are in, and `has_unit` does
-/// not say that the source does.
+/// Throws Error{bad_file} if the IFC file has no known linear unit, unless `has_unit` is set, which
+/// means that the source defines the unit.
 SceneFacts ifc_facts(const std::filesystem::path& file, std::string_view text, bool has_unit);
 
-/// The JSON of a glTF file, text or binary; empty if it is cut short.
+/// Returns the JSON of a glTF file, text or binary; empty if the file is truncated.
 std::string gltf_json(const std::filesystem::path& file);
 
 }  // namespace skycap::missions::site_data

@@ -1,5 +1,5 @@
-// Scenes, read by assimp in a process of its own: files that are damaged make it crash or never
-// end.
+// Reader of scenes. Assimp runs in a separate process because damaged files can cause crashes or
+// infinite loops.
 #include <cstdint>
 #include <exception>
 #include <filesystem>
@@ -54,7 +54,7 @@ void put_error(PipeWriter& pipe, const std::string& what) {
   pipe.put_text(what);
 }
 
-/// All that the child does.
+/// Main function of the child process.
 void read_nodes(PipeWriter& pipe, ReadScene* read, const std::filesystem::path& file) {
   std::vector<SceneNode> nodes;
   try {
@@ -68,7 +68,7 @@ void read_nodes(PipeWriter& pipe, ReadScene* read, const std::filesystem::path& 
   put_nodes(pipe, nodes);
 }
 
-/// Processor time that a sound file takes assimp at most, with much to spare [s].
+/// Returns an upper limit of Assimp's processor time for valid files, with a large margin [s].
 unsigned most_seconds(const std::filesystem::path& file) {
   constexpr std::uintmax_t megabyte = 1'000'000;
   return static_cast<unsigned>(8 + 4 * (std::filesystem::file_size(file) / megabyte));

@@ -1,4 +1,4 @@
-// Scenes by assimp; scene_file.cpp loads the module, in a process of its own.
+// Reader of scenes based on Assimp. scene_file.cpp loads this module in a separate process.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -20,9 +20,9 @@
 namespace skycap::missions::site_data {
 namespace {
 
-constexpr int deepest = 60;  ///< of nodes, as of objects in selection.cpp
+constexpr int deepest = 60;  ///< Maximum nesting of nodes, as for objects in selection.cpp.
 
-/// "%20" and the like as the characters that they stand for.
+/// Decodes percent-encoded characters such as "%20".
 std::string decoded(const std::string& name) {
   std::string result;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -36,8 +36,8 @@ std::string decoded(const std::string& name) {
   return result;
 }
 
-/// Opens files of one folder and those below it: buffers and materials of a scene, and nothing that
-/// a scene names elsewhere. Names may be those of addresses (RFC 3986).
+/// File access restricted to one folder and its subfolders, which contain buffers and materials of
+/// a scene. Names may be URI references (RFC 3986).
 class OneFolder final : public Assimp::DefaultIOSystem {
  public:
   explicit OneFolder(const std::filesystem::path& file) : folder_(folder_of(file)) {}
@@ -58,7 +58,8 @@ class OneFolder final : public Assimp::DefaultIOSystem {
     return std::mismatch(folder_.begin(), folder_.end(), folder.begin(), folder.end()).first ==
            folder_.end();
   }
-  /// A text with a mark of UTF-8 is handed on without it: most of assimp's readers do not know it.
+  /// Returns the stream without a UTF-8 byte order mark, which most of Assimp's readers do not
+  /// support.
   static Assimp::IOStream* without_mark(Assimp::IOStream* stream) {
     std::array<char, 3> beginning{};
     const bool is_marked = stream->Read(beginning.data(), 1, 3) == 3 &&
@@ -68,12 +69,12 @@ class OneFolder final : public Assimp::DefaultIOSystem {
       return stream;
     }
     const std::size_t size = stream->FileSize() - 3;
-    auto* const bytes = new std::uint8_t[size];  // its owner is the stream
+    auto* const bytes = new std::uint8_t[size];  // Owned by the stream.
     const std::size_t read = stream->Read(bytes, 1, size);
     delete stream;
     return new Assimp::MemoryIOStream(bytes, read, true);
   }
-  /// Links are followed, so that none leads out.
+  /// Resolves links, so that they cannot lead out of the folder.
   static std::filesystem::path folder_of(const std::filesystem::path& file) {
     std::error_code failure;
     return std::filesystem::weakly_canonical(file, failure).parent_path();
@@ -137,7 +138,7 @@ void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from
   const bool is_mirrored = world_from_node.linear().determinant() < 0.0;
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
-    if (face.mNumIndices != 3) continue;  // points and lines
+    if (face.mNumIndices != 3) continue;  // Points and lines.
     if (std::max({face.mIndices[0], face.mIndices[1], face.mIndices[2]}) >= mesh.mNumVertices) {
       fail_file(file_, "has a face with vertices that do not exist, in " + object.id);
     }
@@ -152,7 +153,7 @@ void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from
 extern "C" void skycap_read_scene(const std::filesystem::path& file,
                                   std::vector<SceneNode>& nodes) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new OneFolder(file));  // the importer owns it
+  importer.SetIOHandler(new OneFolder(file));  // Owned by the importer.
   const aiScene* const scene =
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_GlobalScale |
                                            aiProcess_ValidateDataStructure);

@@ -1,4 +1,4 @@
-/// What assimp finds in a file, for its module and whoever loads it.
+/// Output of the Assimp module, shared by the module and its loader.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ namespace skycap::missions::site_data {
 
 struct SceneNode {
   std::string id;
-  std::optional<std::size_t> parent;  ///< a node before it
-  geometry::Mesh mesh;                ///< in the scene's frame, whose y is up, in metres
+  std::optional<std::size_t> parent;  ///< Index of the parent node, which precedes this node.
+  geometry::Mesh mesh;                ///< Mesh in the scene frame with y up [m].
 };
 
-/// The module's function. Throws Error{bad_file}.
+/// Entry point of the module. Throws Error{bad_file}.
 using ReadScene = void(const std::filesystem::path& file, std::vector<SceneNode>& nodes);
 inline constexpr const char* read_scene_name = "skycap_read_scene";
 
