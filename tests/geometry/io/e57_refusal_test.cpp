@@ -3,6 +3,9 @@
 #include <random>
 #include <string>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "tests/geometry/io/e57_reading.h"
 
 namespace skycap::geometry {

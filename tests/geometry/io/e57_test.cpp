@@ -5,6 +5,8 @@
 #include <random>
 #include <string>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include "geometry/io/cloud_io.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/e57/crc32c.h"
 #include "geometry/io/file.h"

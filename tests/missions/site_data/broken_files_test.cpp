@@ -3,6 +3,9 @@
 
 #include <random>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "tests/missions/site_data/cube_files.h"
 #include "tests/support/complaint.h"

@@ -1,5 +1,8 @@
 // What CityGML leaves to its reader: levels of detail, parts, references, openings, three versions.
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/site_data/formats/file_contents.h"

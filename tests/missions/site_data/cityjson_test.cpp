@@ -1,5 +1,8 @@
 // CityJSON of all versions, as one text and as lines.
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/site_data/file_reader.h"

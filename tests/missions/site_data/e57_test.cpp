@@ -1,5 +1,8 @@
 // E57 files as prior data: where their own words put them, however large they are.
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "missions/site_data/formats/file_contents.h"
 #include "tests/missions/site_data/cube_files.h"

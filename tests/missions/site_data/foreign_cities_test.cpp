@@ -2,6 +2,9 @@
 #include <iterator>
 #include <sstream>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "missions/site_data/prior.h"
 #include "missions/site_data/reference_system.h"

@@ -1,4 +1,6 @@
 // Polygons, lines and points of Google Earth: what extrude and the altitude modes mean, and KMZ.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include "geometry/error.h"

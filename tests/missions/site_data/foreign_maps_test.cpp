@@ -2,6 +2,9 @@
 // what a file without a system, an index or a known attribute is told.
 #include <fstream>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/site_data/formats/building_heights.h"

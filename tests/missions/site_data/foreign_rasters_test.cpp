@@ -1,4 +1,7 @@
 // Rasters whose holes are marked in other ways than by a declared number.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "missions/site_data/prior.h"
 #include "tests/missions/site_data/gdal_files.h"

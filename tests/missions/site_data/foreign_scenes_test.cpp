@@ -1,6 +1,9 @@
 // Scenes whose units, extensions and names assimp passes over.
 #include <fstream>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "missions/site_data/prior.h"
 #include "tests/missions/site_data/cube_files.h"

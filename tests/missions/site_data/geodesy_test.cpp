@@ -5,6 +5,8 @@
 #include <fstream>
 
 #include <GeographicLib/UTMUPS.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "geometry/error.h"
 #include "missions/site_data/prior.h"

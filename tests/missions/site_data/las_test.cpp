@@ -2,6 +2,9 @@
 
 #include <fstream>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "missions/site_data/formats/file_contents.h"
 #include "tests/missions/site_data/cube_files.h"

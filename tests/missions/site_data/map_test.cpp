@@ -1,5 +1,8 @@
 // Outlines from maps, rasters and their traps.
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "tests/missions/site_data/cube_files.h"

@@ -1,5 +1,8 @@
 // One block in many formats is one box.
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "tests/missions/site_data/cube_files.h"
 #include "tests/support/complaint.h"

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <random>
 
+#include <gtest/gtest.h>
+
 #include "flight/space/clearance.h"
 #include "geometry/error.h"
 #include "missions/site_data/site_priors.h"

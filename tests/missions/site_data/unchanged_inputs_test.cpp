@@ -3,6 +3,9 @@
 #include <fstream>
 #include <iterator>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
 #include "missions/site_data/prior.h"
