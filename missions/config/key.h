@@ -52,7 +52,7 @@ struct Key {
   KeyType type = KeyType::text;
   std::string unit;  ///< printed unit; empty for dimensionless numbers
   KeyRange range;
-  /// permitted words; for a number, accepted in addition to numeric values
+  /// Permitted words; for a number, accepted in addition to numeric values.
   std::vector<std::string> choices;
   bool is_required = false;
   std::string fallback;  ///< description of the default where it is not a fixed value
