@@ -23,8 +23,8 @@ struct ChosenTargets {
 };
 
 /// Selects targets from the first of `files`. Throws Error{bad_config} if no target is selected or
-/// two selected objects have the same identifier. Also throws Error{bad_config} if base heights
-/// differ by more than 2 m and there is no terrain. Throws the errors of site_data::read_prior().
+/// two selected objects have the same identifier. Also throws it if base heights differ by more
+/// than 2 m and the district has no terrain. Throws the errors of site_data::read_prior().
 ChosenTargets choose_targets(const DistrictFile& district,
                              const std::vector<site_data::Source>& files);
 
