@@ -6,7 +6,7 @@
 
 namespace skycap::missions::support {
 
-/// Returns "KEY is 3; it must be ..." if `what` begins with "is" or another predicate, otherwise
+/// Returns "KEY is 3; it must be ..." if `what` begins with a predicate such as "is", otherwise
 /// "KEY: what".
 std::string about_key(std::string_view key, std::string_view what);
 
