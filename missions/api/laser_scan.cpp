@@ -14,13 +14,14 @@
 namespace skycap::missions::api {
 namespace {
 
-/// As many firings as a part's returns stay in a processor's cache, in whole blocks of noise.
+/// Returns the number of firings per part. Its returns fit into the processor cache; it is a
+/// multiple of the noise block size.
 std::uint64_t firings_in_part(std::size_t channels) {
   constexpr std::uint64_t shots_in_part = 1 << 12, block = 32;
   return std::max<std::uint64_t>(1, shots_in_part / (channels * block)) * block;
 }
 
-/// A piece is a quarter of a million shots.
+/// A piece contains about 250,000 pulses.
 constexpr std::size_t parts_in_piece = 64;
 
 sim::LidarConfig scanner_of(const Mission::Contents& contents, const ScanRequest& request) {

@@ -1,5 +1,4 @@
-/// The flight of a laser scanner over a mission's scene, measured piece by piece: the points that
-/// `skycap scan` writes.
+/// Simulated laser scan of a mission's scene in pieces, with the same points as `skycap scan`.
 #pragma once
 
 #include <cstddef>
@@ -14,22 +13,23 @@
 
 namespace skycap::missions::api {
 
-/// What takes the place of the mission's.
+/// Overrides of the mission's scan settings.
 struct ScanRequest {
-  std::optional<std::string> sensor;           ///< a preset's name, or a description's path
-  std::optional<std::filesystem::path> route;  ///< any file that `skycap scan --route` takes
+  std::optional<std::string> sensor;  ///< name of a preset, or path of a sensor description
+  std::optional<std::filesystem::path> route;  ///< any file accepted by `skycap scan --route`
 };
 
-/// Needs memory for a piece, however long the flight.
+/// Scan iterator. Its memory use does not depend on the length of the flight.
 class LaserScan {
  public:
-  /// Throws Error{bad_config} if the sensor is a camera, and what is wrong with scene, sensor or
-  /// route.
+  /// Prepares the scan. Throws Error{bad_config} if the sensor is a camera, and Error for an
+  /// invalid scene, sensor or route.
   LaserScan(const Mission& mission, const ScanRequest& request);
   ~LaserScan();
 
-  /// The next returns in the order in which they were measured, in parts; nothing when the flight
-  /// is over. Valid until the next call. They do not depend on the number of threads.
+  /// Returns the next returns in chronological order, divided into parts, or an empty span at the
+  /// end of the flight. The span is valid until the next call. The returns do not depend on the
+  /// number of threads.
   std::span<const sim::LidarReturns> next();
 
  private:
@@ -40,5 +40,5 @@ class LaserScan {
 }  // namespace skycap::missions::api
 
 namespace skycap::missions {
-namespace library = api;  ///< the name in programs of users
+namespace library = api;  ///< public name for user programs
 }

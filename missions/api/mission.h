@@ -1,5 +1,5 @@
-/// A mission file in the hands of another program: read, checked and completed as `skycap plan`
-/// does it.
+/// Access to missions from other programs: reads, checks and completes mission files as `skycap
+/// plan` does.
 #pragma once
 
 #include <cstdint>
@@ -14,43 +14,44 @@
 
 namespace skycap::missions::api {
 
-/// A value that takes the place of the file's.
+/// Override of a mission key.
 struct Setting {
-  std::string key;    ///< such as "planner.name"
-  std::string value;  ///< as the file would say it
+  std::string key;    ///< key path, such as "planner.name"
+  std::string value;  ///< value in the notation of a mission file
 };
 
-/// Immutable; copies share what they hold and may be used from any number of threads.
+/// Immutable mission. Copies share their contents and may be used concurrently.
 class Mission {
  public:
-  /// Throws Error{bad_file} if the file cannot be read, and Error{bad_config} with one line,
-  /// "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
+  /// Reads a mission file. Throws Error{bad_file} if it cannot be read. Throws Error{bad_config}
+  /// with the one-line message "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
   static Mission load(const std::filesystem::path& file, const std::vector<Setting>& settings = {});
 
-  /// The same of a mission in memory; `name` stands for the file in messages, and its folder is
-  /// where relative paths start.
+  /// Reads a mission from a string. `name` is the file name in messages; its folder is the base of
+  /// relative paths. Throws Error{bad_config} as load().
   static Mission parse(const std::string& text, const std::string& name,
                        const std::vector<Setting>& settings = {});
 
   const std::string& name() const;
   std::uint64_t seed() const;
 
-  /// The camera by which planners choose views; of a laser scanner, the one that stands for it.
+  /// Returns the camera model that planners use. For a laser scanner, it is an equivalent camera.
   const geometry::CameraConfig& camera() const;
 
-  /// A surface point with a measurement this near is covered: r_d.
+  /// Returns the coverage distance r_d [m], the maximum distance of a measurement from covered
+  /// surface.
   double coverage_distance() const;
 
-  /// The model of the scene, placed, without ground: the truth, which no planner may see. Throws
-  /// Error{bad_file} or Error{bad_geometry} if there is none.
+  /// Returns the placed scene model without the ground. It is the ground truth, which planners must
+  /// not access. Throws Error{bad_file} or Error{bad_geometry} for missions without a model.
   geometry::Mesh model() const;
 
-  /// The planner that the mission names, which has seen nothing yet. What it does in a survey
-  /// depends on nothing but the scans it is given. Throws Error{bad_config} if the planner needs
-  /// what follows from the scene and no key says it.
+  /// Creates the mission's planner without any measurements. Its decisions depend only on the scans
+  /// that it receives. Throws Error{bad_config} if a required value would be derived from the scene
+  /// and the key is not set.
   std::unique_ptr<survey::Planner> planner() const;
 
-  struct Contents;  ///< defined in mission_contents.h, for sources of this folder only
+  struct Contents;  ///< defined in mission_contents.h, private to this folder
   const Contents& contents() const { return *contents_; }
 
  private:
@@ -62,5 +63,5 @@ class Mission {
 }  // namespace skycap::missions::api
 
 namespace skycap::missions {
-namespace library = api;  ///< the name in programs of users
+namespace library = api;  ///< public name for user programs
 }

@@ -1,4 +1,4 @@
-/// What is in a mission's handle.
+/// Private contents of api::Mission.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@ namespace skycap::missions::api {
 
 struct Mission::Contents {
   config::MissionSetup setup;
-  std::filesystem::path folder;  ///< where relative paths start
+  std::filesystem::path folder;  ///< base of relative paths
 };
 
 }  // namespace skycap::missions::api

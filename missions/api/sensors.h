@@ -1,4 +1,4 @@
-/// Descriptions of sensors: those that come with Skycap, and files of one's own.
+/// Reads sensor descriptions: presets and user files.
 #pragma once
 
 #include <string>
@@ -9,18 +9,19 @@
 
 namespace skycap::missions::api {
 
-/// The names of the descriptions that come with Skycap, in alphabetical order.
+/// Returns the names of the presets in alphabetical order.
 std::vector<std::string> sensor_names();
 
-/// The depth camera of that name, or that the .yaml file of that path describes. Throws
-/// Error{bad_config} with the known names, or if it is a laser scanner, and Error{bad_file}.
+/// Returns the depth camera of a preset or .yaml file. Throws Error{bad_config} if the name is
+/// unknown or denotes a laser scanner. Throws Error{bad_file} if the file cannot be read.
 sim::DepthCameraConfig depth_camera(const std::string& name_or_file);
 
-/// The same of a laser scanner.
+/// Returns the laser scanner of a preset or .yaml file. Throws Error{bad_config} if the name is
+/// unknown or denotes a camera. Throws Error{bad_file} if the file cannot be read.
 sim::LidarConfig laser_scanner(const std::string& name_or_file);
 
 }  // namespace skycap::missions::api
 
 namespace skycap::missions {
-namespace library = api;  ///< the name in programs of users
+namespace library = api;  ///< public name for user programs
 }

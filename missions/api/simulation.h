@@ -1,5 +1,5 @@
-/// What stands for the world in `skycap plan`: a mission's scene and the sensor that measures it,
-/// for survey loops of one's own.
+/// Simulated world of `skycap plan` for custom survey loops: a mission's scene and the sensor that
+/// measures it.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,20 @@
 
 namespace skycap::missions::api {
 
-/// Immutable; safe to use from any number of threads.
+/// Immutable after construction; may be used concurrently.
 class Simulation {
  public:
-  /// Makes the scene ready. Throws Error{bad_file} or Error{bad_geometry} if the mission has no
-  /// model, or none that can be measured.
+  /// Loads the scene. Throws Error{bad_file} or Error{bad_geometry} if the mission has no model, or
+  /// an unusable one.
   explicit Simulation(const Mission& mission);
   ~Simulation();
 
-  /// Where `skycap plan` begins. Throws Error{bad_config} if the mission's limits leave no place.
+  /// Returns the first view of `skycap plan`. Throws Error{bad_config} if no position is within the
+  /// mission's limits.
   geometry::View first_view() const;
 
-  /// What the mission's sensor measures from `view`, with its noise; with the mission's seed,
-  /// `frame` alone decides the noise. A survey counts its frames from 0.
+  /// Returns the mission sensor's measurement from `view`, including noise. The noise depends only
+  /// on the mission's seed and on `frame`, which a survey counts from 0.
   geometry::Scan scan(const geometry::View& view, std::uint64_t frame) const;
 
  private:
@@ -34,5 +35,5 @@ class Simulation {
 }  // namespace skycap::missions::api
 
 namespace skycap::missions {
-namespace library = api;  ///< the name in programs of users
+namespace library = api;  ///< public name for user programs
 }

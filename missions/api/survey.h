@@ -1,4 +1,4 @@
-/// A whole survey of a mission's scene, as `skycap plan` makes it.
+/// Complete simulated survey of a mission's scene, as performed by `skycap plan`.
 #pragma once
 
 #include <filesystem>
@@ -15,34 +15,37 @@
 namespace skycap::missions::api {
 
 struct SurveyRequest {
-  /// Where to write the mission package, the same bytes that `skycap plan --out` writes but for
-  /// times. Nothing: nowhere; a mission with a vehicle then has no route.
+  /// Folder for the mission package. Its files are identical to those of `skycap plan --out`,
+  /// except for times. Without a folder, nothing is written, and missions with a vehicle have no
+  /// route.
   std::optional<std::filesystem::path> folder;
-  /// Told of each view and of the covered share after it, on the thread that plans. May be empty.
+  /// Callback with each view and the coverage after it, called on the planning thread. May be
+  /// empty.
   std::function<void(const survey::SurveyedView&, double coverage)> report;
-  std::stop_token stop;  ///< ends the survey after the view that is being planned
+  std::stop_token stop;  ///< ends the survey after the current view
 };
 
 struct Survey {
   survey::StopReason end = survey::StopReason::complete;
   std::vector<survey::SurveyedView> views;
-  std::vector<double> coverages;  ///< covered share of the surface after each view
+  std::vector<double> coverages;  ///< covered fraction of the surface after each view
   geometry::PointCloud cloud;
-  std::optional<double> visible_coverage;     ///< share of what admissible views can see
-  std::optional<double> attainable_coverage;  ///< share of the surface that could be covered at all
-  std::string summary;                        ///< the text of summary.json
-  std::string failure;                        ///< why there is no route; empty if none is missing
+  /// Covered fraction of the surface visible from admissible views.
+  std::optional<double> visible_coverage;
+  std::optional<double> attainable_coverage;  ///< attainable fraction of the surface
+  std::string summary;                        ///< contents of summary.json
+  std::string failure;  ///< reason for a missing route; empty without an error
 
   double coverage() const { return coverages.empty() ? 0.0 : coverages.back(); }
 };
 
-/// Surveys the scene in simulation. Throws Error, naming the mission, for what is wrong with the
-/// scene or the folder. An interrupted survey in a folder with a complete one goes into a folder
-/// `interrupted` within it.
+/// Simulates the survey. Throws Error with the mission name if the scene or the folder is invalid.
+/// An interrupted survey does not overwrite a complete one but is written to the subfolder
+/// `interrupted`.
 Survey plan(const Mission& mission, const SurveyRequest& request = {});
 
 }  // namespace skycap::missions::api
 
 namespace skycap::missions {
-namespace library = api;  ///< the name in programs of users
+namespace library = api;  ///< public name for user programs
 }

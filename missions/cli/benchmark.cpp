@@ -27,11 +27,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A mission as one of the contestants surveys it, and its trials so far, by seed.
+/// Mission with a contestant, and its trials so far, ordered by seed.
 struct Entry {
   std::string title;
   const batch::Contestant* contestant;
-  std::vector<std::shared_ptr<batch::Setup>> setups;  ///< of each trial; one, or one a scene
+  /// Setup of each trial; shared, or one per generated scene.
+  std::vector<std::shared_ptr<batch::Setup>> setups;
   std::vector<std::optional<batch::Trial>> trials;
 
   std::uint64_t seed(std::size_t trial) const { return setups[trial]->mission.run.seed + trial; }
@@ -45,7 +46,8 @@ std::vector<const batch::Contestant*> chosen_contestants(const std::vector<std::
   }
 }
 
-/// The scenes that stand in for the missions' own; one without a name: none does.
+/// Returns the model families that replace the missions' scenes. An empty name keeps the mission's
+/// scene.
 std::vector<std::string> chosen_scenes(const std::vector<std::string>& names) {
   if (names.empty()) return {""};
   const auto families = sim::model_families();
@@ -59,10 +61,11 @@ std::vector<std::string> chosen_scenes(const std::vector<std::string>& names) {
   return names;
 }
 
-/// One planner on one mission, or on as many scenes of a family in its place as there are trials.
+/// Creates the entry of a planner on a mission. With a model family `scene`, each trial has its own
+/// generated scene.
 Entry entry_of(const fs::path& file, const batch::Contestant* contestant, const std::string& scene,
                const BenchmarkOptions& options, const config::Report& report) {
-  // Nothing is flown unless the user says so: as in the paper, the sensor moves freely.
+  // By default no vehicle is used: as in the paper, the sensor moves freely.
   std::vector<config::KeyOverride> overrides{{"benchmark", "flight.vehicle", "none"}};
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
   Entry entry{"", contestant, {}, {}};
@@ -158,7 +161,7 @@ class Benchmark {
   void run_entries(Choice is_chosen) {
     std::vector<batch::Item> items;
     std::vector<std::optional<batch::Trial>*> trials;
-    // Seeds outermost: whoever stops early has some trials of everything.
+    // The outer loop is over seeds, so that an interrupted run has trials of every entry.
     for (std::size_t trial = 0; trial < options_.trials; ++trial) {
       for (Entry& entry : entries_) {
         if (!is_chosen(entry)) continue;
@@ -173,7 +176,7 @@ class Benchmark {
     }
   }
 
-  /// Paper §IV-B: a volumetric survey has as many views as SEE needed at most.
+  /// Limits volumetric surveys to the maximum number of views used by SEE (paper §IV-B).
   void take_view_limits_from_see() {
     for (Entry& entry : entries_) {
       if (!entry.contestant->is_volumetric || gives_view_limit(*entry.setups.front())) continue;

@@ -4,8 +4,8 @@
 
 namespace skycap::missions::cli {
 
-/// The text of --version, without a line feed at its end: version; then a line each for commit,
-/// compiler and build.
+/// Returns the output of --version without a trailing line feed: the version, then one line each
+/// for commit, compiler and build.
 std::string build_text();
 
 }  // namespace skycap::missions::cli

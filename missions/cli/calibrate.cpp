@@ -17,7 +17,7 @@ namespace {
 
 using flight::Calibration;
 
-/// With as many digits as a fit is good for.
+/// Formats a number with the digits that are significant in a fit.
 std::string figure(double value) { return fmt::format("{:.5g}", value); }
 
 std::string vehicle_text(const Calibration& calibration, const std::string& preset,
@@ -73,7 +73,7 @@ std::string report(const Calibration& calibration, const flight::Vehicle& before
   return text;
 }
 
-/// Throws Error{bad_file} if the fitted figures are none that a mission can name.
+/// Throws Error{bad_file} if the fitted values are not valid in a vehicle file.
 void require_readable(const std::string& text, const std::string& name) {
   try {
     config::read_vehicle(text, name);

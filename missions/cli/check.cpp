@@ -32,7 +32,7 @@
 namespace skycap::missions::cli {
 namespace {
 
-/// What the mission says of a file; the pad and the views are those of the package it lies in.
+/// Returns the facts for checking a file. The pad and the views are taken from its package.
 flight::FlightFacts facts_of(const flight::FlightOptions& flight,
                              const std::filesystem::path& route) {
   flight::FlightFacts facts = flight.facts();
@@ -47,7 +47,7 @@ flight::FlightFacts facts_of(const flight::FlightOptions& flight,
   return facts;
 }
 
-/// The corners of all that is flown beside the pad.
+/// Returns the corners of all pieces that are not flown over the pad.
 std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
   std::vector<Eigen::Vector3d> places;
   for (const flight::FlownPiece& piece : route.pieces) {
@@ -58,7 +58,7 @@ std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
   return places;
 }
 
-/// Errors of the mission's model name the mission, too.
+/// Loads the mission's model. Errors are prefixed with the mission file.
 geometry::Mesh model_of(const scene::SceneOptions& scene, const std::filesystem::path& file) {
   try {
     return evaluation::placed_model(scene, file.parent_path());
@@ -67,7 +67,7 @@ geometry::Mesh model_of(const scene::SceneOptions& scene, const std::filesystem:
   }
 }
 
-/// Says what of the ground that the file takes off from and lands on is unfit; whether none is.
+/// Prints unsuitable ground at the take-off and landing points. Returns whether all are suitable.
 bool check_pads(const std::string& file, const flight::FlightOptions& flight,
                 const geometry::Mesh& model, const Eigen::Vector3d& pad, const Console& console) {
   if (!flight.is_flown()) return true;
@@ -82,7 +82,8 @@ bool check_pads(const std::string& file, const flight::FlightOptions& flight,
   return are_fit;
 }
 
-/// Proves from a fleet's timetable and the files that it names that its vehicles keep apart.
+/// Verifies the separation of a fleet's vehicles from its timetable and the route files named
+/// there.
 int check_timetable(const CheckOptions& options, const flight::FlightOptions& flight,
                     const Console& console) {
   if (!flight.is_fleet()) {
@@ -104,7 +105,7 @@ int check_timetable(const CheckOptions& options, const flight::FlightOptions& fl
   return proof.problems.empty() ? 0 : 1;
 }
 
-/// Proves what a route file's vehicle flies against the mission's scene as it truly is.
+/// Verifies the flight of a route file against the mission's ground-truth scene.
 int check_route_file(const CheckOptions& options, const flight::FlightOptions& given,
                      const geometry::Mesh& model, const Console& console) {
   const std::string file = options.route->string();
@@ -147,7 +148,7 @@ int check_route_file(const CheckOptions& options, const flight::FlightOptions& g
   return is_fine && returns.is_safe && are_pads_fit ? 0 : 1;
 }
 
-/// k by the values of all keys, of planners that do not use it, too.
+/// Returns k from the values of all keys, also for planners that do not use it.
 int core_threshold(const nlohmann::ordered_json& keys) {
   survey::see::SeeConfig see{.density = keys.at("planner.density"),
                              .resolution_radius = keys.at("planner.resolution_radius")};
@@ -167,14 +168,14 @@ std::string scene_text(const survey::PlannerOptions& planner, int core_threshold
       scene.view_distance(), planner.spacing, core_threshold);
 }
 
-/// An estimate: two digits, and zeros after them.
+/// Formats an estimate with two significant digits.
 std::string rough_text(double number) {
   if (!(number > 0.0)) return "0";
   const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
   return support::short_text(unit * std::round(number / unit));
 }
 
-/// "12 to 20", or one number where they are the same.
+/// Returns "12 to 20", or one number if both are equal.
 std::string range_text(double least, double most) {
   const std::string low = rough_text(least), high = rough_text(most);
   return low == high ? low : low + " to " + high;
@@ -192,7 +193,7 @@ std::string expectation_text(const simulation::Expectation& expected) {
       rough_text(1e-6 * expected.memory), range_text(expected.least_time, expected.most_time));
 }
 
-/// Says whether a survey of the mission can work, and what it will take.
+/// Prints whether a survey of the mission is possible, and its estimated effort.
 int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
                  ProgressLine& progress, const Console& console) {
   const std::string file = options.mission.string();
@@ -216,7 +217,7 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
     console.out << text << std::flush;
     return found.problems.empty() ? 0 : 1;
   } catch (const Error& error) {
-    // What goes wrong with the model follows from the mission; say which.
+    // Errors of the model are reported with the mission file.
     throw Error(error.kind(), file + ": " + error.what());
   }
 }
@@ -224,7 +225,7 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
-  if (options.prints_setup) {  // of live missions, too
+  if (options.prints_setup) {  // also for missions without a scene
     console.out << config::setup_text(read_shown(config::read_live_mission, options, console));
     return 0;
   }

@@ -28,7 +28,7 @@
 namespace skycap::missions::cli {
 namespace {
 
-/// What planner.name may be.
+/// Returns a list of all planner names.
 std::string planner_list() {
   std::string list;
   for (const survey::PlannerTitle& title : survey::planner_titles) {
@@ -304,7 +304,7 @@ void add_completion(CLI::App& app, const Console& console, Action& action) {
   });
 }
 
-/// One line for the user, whatever the message holds.
+/// Prints a one-line error message, even if `message` contains line feeds. Returns `exit_code`.
 int report_failure(const Console& console, const std::string& message, int exit_code) {
   console.err << "skycap: error: " << printable_line(message) << "\n" << std::flush;
   return exit_code;
@@ -317,7 +317,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
   app.get_formatter()->column_width(28);
   Action action;
   try {
-    // So that tests and comparisons can do on this processor what another one would.
+    // Allows tests to emulate processors with fewer instruction sets.
     // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets variables
     if (const char* const widest = std::getenv("SKYCAP_INSTRUCTION_SET")) {
       geometry::limit_instruction_set(widest);
@@ -350,7 +350,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
                   "unknown command '" + arguments[0] + "'; expected one of: " + verbs);
     }
     std::vector<std::string> reversed = with_current_options(arguments, console);
-    std::ranges::reverse(reversed);  // as CLI11 wants it
+    std::ranges::reverse(reversed);  // CLI11 expects reversed arguments
     app.parse(reversed);
     if (!action) {
       throw Error(ErrorKind::bad_usage,
@@ -367,7 +367,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
   } catch (const Error& failure) {
     return report_failure(console, failure.what(), 2);
   } catch (const std::filesystem::filesystem_error& failure) {
-    // A loop of links, a folder that may not be entered: the system's word on a path of the user's.
+    // System errors for user paths, such as symbolic link loops or missing permissions.
     const std::string text = failure.path1().string() + ": " + failure.code().message();
     return report_failure(console, text, 2);
   } catch (const std::bad_alloc&) {

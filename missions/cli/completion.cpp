@@ -9,12 +9,12 @@ namespace skycap::missions::cli {
 namespace {
 
 struct CompletedOption {
-  std::string name;  ///< with its dashes
+  std::string name;  ///< including its dashes
   std::string description;
   bool has_value = false;
 };
 
-/// The long options of a command; --help is one of them.
+/// Returns the long options of a command, including --help.
 std::vector<CompletedOption> options_of(const CLI::App& command) {
   std::vector<CompletedOption> options;
   for (const CLI::Option* option : command.get_options()) {
@@ -28,7 +28,8 @@ std::vector<CompletedOption> options_of(const CLI::App& command) {
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
 
-/// In single quotes of a shell. `escaped` characters get a backslash, too.
+/// Quotes a string for a shell with single quotes. Characters in `escaped` are prefixed with a
+/// backslash.
 std::string quoted(const std::string& text, const std::string& escaped = "") {
   std::string result = "'";
   for (const char c : text) {
@@ -87,7 +88,7 @@ std::string zsh_script(const CLI::App& app) {
     for (const CompletedOption& option : options_of(command)) {
       const std::string spec = option.name + (option.has_value ? "=" : "") + "[" +
                                option.description + "]" + (option.has_value ? ":value:_files" : "");
-      // Brackets and colons of a description would end it.
+      // Brackets and colons would end the description.
       const auto open = spec.find('['), close = spec.rfind(']');
       std::string description;
       for (const char c : spec.substr(open + 1, close - open - 1)) {

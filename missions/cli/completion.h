@@ -1,4 +1,4 @@
-/// Scripts that complete commands and options in a shell.
+/// Shell completion scripts for commands and options.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@ class App;
 
 namespace skycap::missions::cli {
 
-/// The script for "bash", "zsh" or "fish", made from the commands and options of `app`.
+/// Returns the completion script for `shell` ("bash", "zsh" or "fish"), generated from the commands
+/// and options of `app`.
 std::string completion_script(const CLI::App& app, const std::string& shell);
 
 }  // namespace skycap::missions::cli

@@ -1,4 +1,4 @@
-/// Where a verb writes to, and how it is asked to stop.
+/// Output streams and stop requests of a command.
 #pragma once
 
 #include <atomic>
@@ -12,30 +12,30 @@
 
 namespace skycap::missions::cli {
 
-/// The program's surroundings, so that tests can put themselves in their place.
+/// Interface between a command and its environment, which tests can replace.
 struct Console {
   std::ostream& out;             ///< results
   std::ostream& err;             ///< progress, warnings and errors
-  bool err_is_terminal = false;  ///< whether progress is shown, in one line that is rewritten
+  bool err_is_terminal = false;  ///< whether to show progress in a single rewritten line
   std::stop_token stop = {};     ///< requested by Ctrl-C
-  /// How many HoldsResults there are. While there is none, Ctrl-C ends the program at once.
+  /// Number of HoldsResults objects. While it is zero, Ctrl-C ends the program immediately.
   std::atomic<int>* results_held = nullptr;
-  const std::atomic<int>* ending_signal = nullptr;  ///< that requested the stop; zero before
+  const std::atomic<int>* ending_signal = nullptr;  ///< signal that requested the stop, or zero
 };
 
-/// Says what is amiss, in one line, where the verb goes on all the same.
+/// Prints a one-line warning. The command continues.
 inline void warn(const Console& console, const std::string& what) {
   console.err << "skycap: warning: " << printable_line(what) << "\n" << std::flush;
 }
 
-/// What a shell says of a program that a signal has ended, or 1.
+/// Returns the exit code of an interrupted command: 128 + SIGTERM after SIGTERM, otherwise 1.
 inline int interrupted_exit_code(const Console& console) {
   const bool is_ended = console.ending_signal && *console.ending_signal == SIGTERM;
   return is_ended ? 128 + SIGTERM : 1;
 }
 
-/// While it lives, the verb has results that Ctrl-C must not lose: it watches Console::stop and
-/// brings them to the disk within two seconds.
+/// Marks a scope with unsaved results that Ctrl-C must not discard. Within this scope the command
+/// monitors Console::stop and saves its results within two seconds of a request.
 class HoldsResults {
  public:
   explicit HoldsResults(const Console& console) : count_(console.results_held) {
@@ -51,8 +51,8 @@ class HoldsResults {
   std::atomic<int>* count_;
 };
 
-/// One line on a terminal that each call overwrites; nothing where there is no terminal. Cleared
-/// when it goes out of scope.
+/// Progress line on a terminal that each call overwrites. It prints nothing if the output is not a
+/// terminal, and is cleared on destruction.
 class ProgressLine {
  public:
   ProgressLine(const Console& console, bool is_quiet)
@@ -67,7 +67,7 @@ class ProgressLine {
     has_text_ = true;
   }
 
-  /// Shows what it is told. Not for longer than the line lives.
+  /// Returns a callback for show(). It must not outlive this object.
   std::function<void(const std::string&)> teller() {
     return [this](const std::string& text) { show(text); };
   }
@@ -83,8 +83,8 @@ class ProgressLine {
   bool has_text_ = false;
 };
 
-/// The mission that a verb is given, by config::read_mission() or one like it. Where that takes
-/// long, since there is much prior data, it shows how far it is.
+/// Reads a command's mission with `read`, such as config::read_mission(), and shows the progress.
+/// Reading may be slow for missions with large prior data.
 template <class Read, class Options>
 auto read_shown(const Read& read, const Options& options, const Console& console) {
   bool is_quiet = false;

@@ -39,7 +39,7 @@ int district_verb(const ItemOptions& options, const Console& console) {
     return batch::prepare(district, out, progress.teller());
   }();
   ItemRun run(options, "district", batch::campaign_of(district, prepared, out), out, console);
-  // The flight of what is there, the figures and the page.
+  // Plans the joint flight of completed surveys and writes the results and the HTML report.
   return run.run([&](const Collected& all, geometry::OutputFolder& folder) {
     const std::vector<SurveyedTarget> targets = surveyed(prepared, all);
     const batch::DistrictFlight flight = batch::plan_district(

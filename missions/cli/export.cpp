@@ -15,14 +15,15 @@
 namespace skycap::missions::cli {
 namespace {
 
-/// A survey's stations, and who is to fly to them from where.
+/// Waypoints of a survey, with the vehicle and pad of the flight.
 struct Task {
   flight::FlightOptions flight;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   std::vector<flight::Station> stations;
 };
 
-/// What a lost vehicle of the package's fleet has left, for the rest of the fleet.
+/// Returns the waypoints not yet visited by a lost fleet vehicle, as a task for the remaining
+/// vehicles.
 Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& survey, Task task) {
   const flight::FlightOptions& flight = survey.flight;
   const std::size_t lost = *options.lost - 1, count = flight.fleet.vehicles.size();

@@ -28,7 +28,7 @@ namespace {
 
 using flight::Dialect;
 
-/// Flights are looked at up to this much farther than the clearance [m].
+/// Distances are evaluated up to this value above the clearance [m].
 constexpr double surplus_of_interest = 5.0;
 
 std::string name_of(Dialect dialect) {
@@ -36,7 +36,7 @@ std::string name_of(Dialect dialect) {
   return dialect == Dialect::px4 ? "PX4" : "ArduPilot";
 }
 
-/// The route files that autopilots fly, by name.
+/// Returns the route files for autopilots, ordered by name.
 std::vector<std::filesystem::path> flown_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -53,7 +53,7 @@ std::vector<std::filesystem::path> flown_files(const std::filesystem::path& fold
                   " contains no autopilot mission; plan it with flight.vehicle and a georeference");
 }
 
-/// What the package knows to be free, and what its flights are judged against.
+/// Package to be tested, with its free space and the spaces that flights are evaluated against.
 class TestedPackage {
  public:
   TestedPackage(const FlyTestVerbOptions& options, package::PackagedSurvey survey)
@@ -92,7 +92,8 @@ class TestedPackage {
     return {script_of(route, motion), motion, law_of(file, dialect, pad, return_height)};
   }
 
-  /// Legs are certified at the clearance; vehicles may stray by the errors that are a part of it.
+  /// Returns the clearance criteria. Legs are verified with the full clearance; flown paths may
+  /// deviate by the errors included in it.
   std::vector<flight::Judge> judges(double position_error) const {
     const double certified = flight::return_clearance(flight().clearance) - flight::rounding_bound;
     const double strayed = certified - flight().tracking_error - position_error;
@@ -106,7 +107,7 @@ class TestedPackage {
   }
 
  private:
-  /// The pad of a fleet's vehicle, or the package's.
+  /// Returns the pad of a fleet vehicle, or the package's pad.
   Eigen::Vector3d pad_of(const flight::FlightOptions& own) const {
     return flight().is_fleet() ? own.takeoff.value_or(pad()) : pad();
   }
@@ -136,7 +137,7 @@ class TestedPackage {
   std::optional<package::TrueSpace> truth_;
 };
 
-/// What each judge's nearest flight came nearest to.
+/// Returns the obstacle nearest to any flight, for each judge.
 std::vector<std::string> nearest_obstacles(const TestedFile& file) {
   std::vector<std::string> names;
   for (std::size_t j = 0; j < file.judges.size(); ++j) {
@@ -183,7 +184,7 @@ TestedFile test_file(const FlyTestVerbOptions& options, const TestedPackage& pac
   return tested;
 }
 
-/// All vehicles of a fleet at once; nothing if the package holds none.
+/// Tests the joint flight of a fleet. Returns nullopt if the package has no fleet.
 std::optional<flight::FleetFlightTest> test_fleet(const FlyTestVerbOptions& options,
                                                   const TestedPackage& package,
                                                   const Console& console) {
@@ -202,7 +203,7 @@ std::optional<flight::FleetFlightTest> test_fleet(const FlyTestVerbOptions& opti
   return fly_fleet(package::fleet_flights(table, flown), flown.fleet.rule(), strays, test);
 }
 
-/// Results that are not whole go beside whole ones instead of over them.
+/// Commits the results. Incomplete results do not overwrite complete ones.
 void commit(geometry::OutputFolder& folder, bool is_complete) {
   if (!is_complete && package::is_complete_result(folder.path() / package::fly_test_name)) {
     folder.move_to("interrupted");

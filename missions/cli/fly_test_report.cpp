@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double joules_per_wh = 3600.0;
 
-/// Some figure of many flights, ascending.
+/// Sorted values of one quantity over many flights.
 class Distribution {
  public:
   explicit Distribution(std::vector<double> values) : values_(std::move(values)) {
@@ -27,7 +27,7 @@ class Distribution {
 
   bool is_empty() const { return values_.empty(); }
 
-  /// The least value that is not below that share of them.
+  /// Returns the percentile by the nearest-rank method.
   double percentile(double percent) const {
     const auto rank = std::ceil(0.01 * percent * static_cast<double>(values_.size()));
     return values_[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
@@ -46,7 +46,7 @@ class Distribution {
   std::vector<double> values_;
 };
 
-/// Of the flights that `counts` holds for.
+/// Returns the distribution of a figure over the flights that satisfy `counts`.
 Distribution distribution(const TestedFile& file,
                           const std::function<double(const TestFlight&)>& figure,
                           const std::function<bool(const TestFlight&)>& counts) {
@@ -90,7 +90,7 @@ Json json_of_flight(const TestFlight& flight) {
   return json;
 }
 
-/// The flight that came nearest.
+/// Returns the flight with the smallest distance.
 const TestFlight& nearest_flight(const TestedFile& file, std::size_t judge) {
   return *std::ranges::min_element(file.test.flights, {}, [judge](const TestFlight& flight) {
     return flight.flown.nearest[judge].closest.distance;

@@ -1,4 +1,4 @@
-/// What a test of flights found, for the user and as JSON.
+/// Reports of flight tests as text and JSON.
 #pragma once
 
 #include <span>
@@ -12,26 +12,26 @@
 
 namespace skycap::missions::cli {
 
-/// One route file and how its flights went.
+/// Results of the flight test of one route file.
 struct TestedFile {
   std::string name;
   std::string autopilot;
   std::vector<flight::Judge> judges;
   flight::FlyTest test;
-  double battery = 0.0;                ///< what it holds when full [J]
-  std::vector<std::string> obstacles;  ///< by judge, what a flight came nearest to
+  double battery = 0.0;                ///< energy of the full battery [J]
+  std::vector<std::string> obstacles;  ///< name of the nearest obstacle, by judge
 };
 
-/// Flights and returns that came nearer to anything than they may, and flights that the battery did
-/// not last for.
+/// Returns the number of flights and returns that violate the clearance or exceed the battery's
+/// energy.
 std::size_t failures(const TestedFile& file);
 
-/// Some lines for the user.
+/// Returns a summary of several lines.
 std::string text_of(const TestedFile& file);
 
 nlohmann::ordered_json json_of(const TestedFile& file);
 
-/// The same of a fleet that flew together.
+/// Return the reports of a joint fleet flight.
 std::string text_of(const flight::FleetFlightTest& test);
 nlohmann::ordered_json json_of(const flight::FleetFlightTest& test);
 

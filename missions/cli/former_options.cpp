@@ -55,7 +55,7 @@ std::vector<std::string> with_current_options(std::vector<std::string> arguments
 
 void warn_of_former_names(std::span<const std::filesystem::path> files,
                           std::span<const config::KeyOverride> overrides, const Console& console) {
-  constexpr std::size_t largest = std::size_t{16} << 20;  // of a campaign or district [byte]
+  constexpr std::size_t largest = std::size_t{16} << 20;  // of a campaign or district file [byte]
   for (const std::filesystem::path& file : files) {
     if (file.extension() != ".yaml" && file.extension() != ".yml") continue;
     try {
@@ -73,14 +73,14 @@ void warn_of_former_names(std::span<const std::filesystem::path> files,
                                     : "; use the current names") +
                         until);
     } catch (const Error&) {
-      continue;  // the verb will say why it cannot be read
+      continue;  // the command reports that it is unreadable
     }
   }
   try {
     const auto names = config::former_names_in(overrides);
     if (!names.empty()) warn(console, "--set: " + config::text_of(names) + until);
   } catch (const Error&) {
-    return;  // likewise
+    return;  // the command reports the error
   }
 }
 

@@ -1,4 +1,4 @@
-/// Options of version 0.1 that version 0.2 accepts. Removed with 0.3.
+/// Options of version 0.1 that version 0.2 still accepts. They will be removed in 0.3.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,13 @@
 
 namespace skycap::missions::cli {
 
-/// The arguments of the program with current options; warns of each that was replaced.
+/// Replaces former options in the program's arguments, with a warning for each replacement.
 std::vector<std::string> with_current_options(std::vector<std::string> arguments,
                                               const Console& console);
 
-/// Warns, in one line each, of files and overrides with names of version 0.1. The files are
-/// missions, campaigns or districts; what cannot be read is left to who reads it next.
+/// Prints a one-line warning for each file or override that contains names of version 0.1. The
+/// files are missions, campaigns or districts. Unreadable files are ignored here, because the
+/// command that reads them reports the error.
 void warn_of_former_names(std::span<const std::filesystem::path> files,
                           std::span<const config::KeyOverride> overrides, const Console& console);
 

@@ -1,4 +1,5 @@
-// skycap init: a commented mission for a sensor, a vehicle and a target without a georeference.
+// skycap init: creates a commented mission for a sensor, a vehicle and a target without a
+// georeference.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -29,18 +30,18 @@ using Eigen::Vector3d;
 using support::yaml_quoted;
 
 struct InitOptions {
-  std::string target;  ///< a mesh file, builtin:NAME, model:NAME, or "room"
+  std::string target;  ///< mesh file, builtin:NAME, model:NAME, or "room"
   std::string sensor = "intel_d435", vehicle = "none";
-  std::vector<double> size = {6.0, 4.0, 2.8};  ///< of a room [m]
+  std::vector<double> size = {6.0, 4.0, 2.8};  ///< dimensions of a room [m]
   fs::path out = "mission.yaml";
 
   bool is_room() const { return target == "room"; }
   bool is_flown() const { return vehicle != "none"; }
 };
 
-/// What the mission is made for; lengths in metres.
+/// Values of the proposed mission; lengths in metres.
 struct Proposal {
-  AlignedBox3d target;  ///< in the mission's frame
+  AlignedBox3d target;  ///< bounding box in the mission frame
   double coverage_distance = 0.0, view_distance = 0.0, clearance = 0.0;
   config::SensorDescription sensor;
 };
@@ -53,13 +54,13 @@ std::string box_text(const AlignedBox3d& box) {
   return fmt::format("{{min: {}, max: {}}}", vector_text(box.min()), vector_text(box.max()));
 }
 
-/// Rounded to two digits.
+/// Rounds to two significant digits.
 double rounded(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
   return unit * std::round(value / unit);
 }
 
-/// As from the mission file's folder; names of models stay.
+/// Returns a model name unchanged, or a file path relative to the mission's folder.
 std::string model_text(const std::string& model, const fs::path& mission) {
   if (model.starts_with("builtin:") || model.starts_with("model:")) return yaml_quoted(model);
   const fs::path folder = fs::absolute(mission).lexically_normal().parent_path();
@@ -81,7 +82,8 @@ double max_range(const config::SensorDescription& sensor) {
   return std::get<sim::LidarConfig>(sensor.sensor).max_range;
 }
 
-/// Vehicle radius, errors and a margin, to the next half metre.
+/// Returns the clearance [m]: vehicle radius, errors and a margin, rounded up to a multiple of 0.5
+/// m.
 double clearance_of(const std::string& name) {
   constexpr double margin = 0.5, unit = 0.5;
   const flight::FlightOptions usual;
@@ -241,7 +243,7 @@ int init(const InitOptions& options, const Console& console) {
   const std::string text = head_text(options) + sensor_text(options, proposal) +
                            planner_text(options, proposal) + limits_text(options, proposal) +
                            flight_text(options, proposal);
-  config::parse_mission(text, options.out.string());  // what it says must go together
+  config::parse_mission(text, options.out.string());  // throws if values conflict
   geometry::write_file(options.out, text);
   console.out << options.out.string() << ": mission for " << options.target << "; next: skycap "
               << (options.is_room() ? "next " + options.out.string() + " --survey survey"

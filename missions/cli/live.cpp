@@ -1,4 +1,4 @@
-// The verbs of live surveys: next and finish, one call at a time, serve, and fly.
+// Commands of live surveys: next, finish, serve and fly.
 #include <memory>
 #include <string>
 #include <utility>
@@ -71,7 +71,7 @@ online::ScanInput input_of(const NextOptions& options, const std::filesystem::pa
   return input;
 }
 
-/// What of a scan was not taken in.
+/// Returns a description of the rejected parts of a scan.
 std::string left_out_text(const online::ScanFound& found) {
   std::string text;
   const auto add = [&](std::size_t count, const char* what) {
@@ -101,7 +101,7 @@ void add_scan(const NextOptions& options, const std::string& name, const online:
               << std::flush;
 }
 
-/// The frames of a recording that the survey does not have yet, one after another.
+/// Adds the frames of a recording that are not yet in the survey, in order.
 void add_recording(const NextOptions& options, const flight::FlightOptions& flight,
                    const online::LiveOptions& live, online::LiveSurvey& survey,
                    const Console& console) {
@@ -126,7 +126,7 @@ void add_recording(const NextOptions& options, const flight::FlightOptions& flig
   }
 }
 
-/// Shows the survey so far in the folder's page, which a browser reads again.
+/// Writes the HTML report of the current state, which browsers reload.
 void show_survey(const LiveOptions& options, const config::MissionSetup& setup,
                  const online::LiveSurvey& survey, const Console& console) {
   if (!options.has_report || survey.views().empty()) return;
@@ -138,13 +138,13 @@ void show_survey(const LiveOptions& options, const config::MissionSetup& setup,
         options.survey / package::report_name,
         report::live_page(summary, setup.survey(), setup.scene(), std::move(so_far),
                           {proposal.view, proposal.way.points}));
-  } catch (const Error& error) {  // a page shall not cost a survey
+  } catch (const Error& error) {  // report errors must not end a survey
     warn(console, "no report: " + std::string(error.what()));
   }
 }
 
 struct Finished {
-  std::string text;  ///< for the user
+  std::string text;  ///< message for the user
   bool has_route = true;
 };
 
@@ -306,13 +306,13 @@ int serve(const ServeOptions& options, const Console& console) {
 
 namespace {
 
-/// A survey that is flown on an autopilot.
+/// Options of a survey flown with an autopilot.
 struct FlyOptions : LiveOptions {
-  std::string connect;               ///< online::parse_address()
-  std::string sensor = "simulated";  ///< or a folder that scans come to
-  std::string on_failure = "hold";   ///< or return
-  std::string lens;                  ///< of depth images
-  double depth_unit = 0.001;         ///< of depth images [m]
+  std::string connect;               ///< address for online::parse_address()
+  std::string sensor = "simulated";  ///< "simulated", or a folder that receives scans
+  std::string on_failure = "hold";   ///< "hold" or "return"
+  std::string lens;                  ///< camera intrinsics of depth images
+  double depth_unit = 0.001;         ///< unit of depth values in images [m]
   bool is_quiet = false;
 };
 
@@ -329,7 +329,8 @@ online::Sensor sensor_of(const FlyOptions& options, const evaluation::Simulation
                                online::FlightOptions{}.sensing_limit, console.stop);
 }
 
-/// Exit code 0: the survey is over, the vehicle has landed, and the package has a route.
+/// Flies a live survey. Returns exit code 0 if the survey is complete, the vehicle has landed and
+/// the package has a route.
 int fly_live(const FlyOptions& options, const Console& console) {
   const online::NetworkAddress address = online::parse_address(options.connect);
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);

@@ -13,7 +13,7 @@
 namespace skycap::missions::cli {
 namespace {
 
-/// Adds the scene's sphere to an identity whose keys leave it open.
+/// Adds the scene's view sphere to an identity if the keys do not specify it.
 support::Identity with_sphere(support::Identity identity, const survey::ViewSphere& sphere) {
   for (support::Setting& setting : identity.settings) {
     if (setting.value != "-") continue;

@@ -1,5 +1,5 @@
-/// Opens live surveys. Those of missions with a scene are rehearsals: they begin where `plan` does,
-/// and their sensor may be simulated.
+/// Opens live surveys. With a scene, a live survey is a rehearsal: it starts from the same view as
+/// `plan`, and its sensor may be simulated.
 #pragma once
 
 #include <filesystem>
@@ -13,16 +13,17 @@
 
 namespace skycap::missions::cli {
 
-/// Opens the live survey of a mission in a folder. Its first view is the mission's, if it says one;
-/// a mission that has a scene, too, begins where `plan` does: the scene is then loaded, relative
-/// paths from `mission_folder` on. Throws what SurveyScene and LiveSurvey throw.
+/// Opens the live survey of a mission in `survey_folder`. The first view is taken from the mission,
+/// if set. For missions with a scene, the scene is loaded and the start is that of `plan`.
+/// `mission_folder` is the base of relative paths in the scene. Throws the errors of SurveyScene
+/// and LiveSurvey.
 std::unique_ptr<online::LiveSurvey> open_survey(const config::MissionSetup& setup,
                                                 const std::filesystem::path& mission_folder,
                                                 const std::filesystem::path& survey_folder);
 
-/// The mission's simulated sensor in the mission's scene, at the place where the vehicle takes
-/// itself to be: hardware in the loop. Throws Error{bad_config} if the mission has no scene, and
-/// what SurveyScene throws.
+/// Returns the mission's simulated sensor for hardware-in-the-loop tests. It measures the mission's
+/// scene from the vehicle's estimated pose. Throws Error{bad_config} if the mission has no scene,
+/// and the errors of SurveyScene.
 online::Sensor simulated_sensor(const evaluation::SimulationOptions& options,
                                 const std::filesystem::path& mission_folder,
                                 const session::RunOptions& run);

@@ -15,10 +15,10 @@
 
 namespace {
 
-/// Ctrl-C, what ends services and batch jobs, and a terminal that is closed.
+/// Signals of Ctrl-C, service managers and schedulers, and closed terminals.
 constexpr int ending_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
-/// A signal handler may do next to nothing, but it may post a semaphore and set a number.
+/// The semaphore and the number are among the few objects that a signal handler may modify.
 sem_t interrupted;
 std::atomic<int> ending_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -26,11 +26,12 @@ static_assert(std::atomic<int>::is_always_lock_free);
 extern "C" void on_interrupt(int signal_number) {
   ending_signal = signal_number;
   ::sem_post(&interrupted);
-  for (const int signal : ending_signals) std::signal(signal, SIG_DFL);  // the second one ends it
+  // A second signal ends the program.
+  for (const int signal : ending_signals) std::signal(signal, SIG_DFL);
 }
 
-/// Ends the program where no result is at stake: files appear under their names by one renaming,
-/// and the next run sweeps up what was begun.
+/// Ends the program when no results are unsaved. Files are committed by a single rename, and the
+/// next run removes incomplete files.
 [[noreturn]] void leave(bool is_terminal) {
   const std::string_view text =
       is_terminal ? "\r\033[Kskycap: interrupted\n" : "skycap: interrupted\n";
@@ -53,7 +54,7 @@ int main(int argc, char** argv) {
     if (results_held == 0) leave(is_terminal);
   });
   for (const int signal : ending_signals) {
-    // What a parent has the program ignore, as nohup does, it goes on ignoring.
+    // Signals ignored by the parent process, for example with nohup, remain ignored.
     if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 
@@ -62,6 +63,6 @@ int main(int argc, char** argv) {
       arguments,
       {std::cout, std::cerr, is_terminal, stop.get_token(), &results_held, &ending_signal});
   watcher.request_stop();
-  ::sem_post(&interrupted);  // wakes the watcher, to end it
+  ::sem_post(&interrupted);  // wakes the watcher thread to end it
   return exit_code;
 }

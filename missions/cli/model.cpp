@@ -49,10 +49,10 @@ void obtain_if_missing(const std::string& name, const Console& console) {
   }
 }
 
-/// A scene in sandstone, and what is known of its site in the colours of its roles.
+/// Scene in a sandstone colour, with prior data in the colours of its roles.
 struct ColouredMesh {
   geometry::Mesh mesh;
-  std::vector<Eigen::Vector3f> colours;  ///< of the triangles; empty: all are of sandstone
+  std::vector<Eigen::Vector3f> colours;  ///< colours of the triangles; empty: sandstone
 
   void add(const geometry::Mesh& more, const Eigen::Vector3f& colour) {
     geometry::append(mesh, more);
@@ -60,13 +60,14 @@ struct ColouredMesh {
   }
 };
 
-/// A mission's scene, and what it simulates; nothing if it is flown live.
+/// Scene of a mission with its simulated model, which is empty for live surveys.
 struct Site {
   scene::SceneOptions scene;
   geometry::Mesh model;
 };
 
-/// The targets and as much around them as they are large: a tile may hold a whole town.
+/// Returns the targets' box, enlarged on each side by its longest edge, because a map tile may
+/// contain a whole town.
 std::optional<Eigen::AlignedBox3d> around_targets(const site_data::SitePriors& site) {
   const geometry::Mesh targets = surfaces_of(site, site_data::Role::target);
   if (targets.triangles.empty()) return std::nullopt;
@@ -75,7 +76,7 @@ std::optional<Eigen::AlignedBox3d> around_targets(const site_data::SitePriors& s
   return Eigen::AlignedBox3d(box.min() - reach, box.max() + reach);
 }
 
-/// All of it, or what is near.
+/// Returns the whole site, or its objects near a box.
 ColouredMesh coloured_site(const Site& given, const std::optional<Eigen::AlignedBox3d>& near) {
   const auto& [scene, model] = given;
   if (!scene.priors) return {model, {}};

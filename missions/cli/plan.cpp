@@ -37,7 +37,7 @@ std::string progress_text(const std::string& name, std::size_t views,
                      percent(judged.coverage), seconds(planning_time));
 }
 
-/// A line of the --verbose table: planning time of one view, in milliseconds by part.
+/// Returns a row of the --verbose table: planning times of one view by part [ms].
 std::string times_row(std::size_t view, const session::JudgedView& judged) {
   const survey::PlanningStep& step = judged.surveyed.step;
   std::string row;
@@ -129,7 +129,8 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
                                 folder.path())
                 << std::flush;
   }
-  // A flown survey ends with views that nobody can reach; at the start it has not begun.
+  // A flown survey ends normally when no view is reachable. If that applies to the first view, the
+  // survey failed.
   const bool went_through =
       is_over &&
       (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1) &&
@@ -149,7 +150,7 @@ int plan_trials(const PlanOptions& options, const config::MissionSetup& mission,
     items.push_back(
         {setup, seed, folder.path() / "items" / ("seed_" + std::to_string(seed) + ".json")});
   }
-  std::vector<batch::Trial> trials;  // those that were finished before are not run again
+  std::vector<batch::Trial> trials;  // includes trials completed by earlier runs
   for (auto& done : runner.run(items)) {
     if (done) trials.push_back(std::move(done->trial));
   }
@@ -160,7 +161,7 @@ int plan_trials(const PlanOptions& options, const config::MissionSetup& mission,
   write_page("trials.json", options.has_report, folder, console);
   if (trials.size() < options.trials &&
       package::is_complete_result(folder.path() / "trials.json")) {
-    folder.move_to("interrupted");  // the trials themselves are kept, and not run again
+    folder.move_to("interrupted");  // completed trials are kept and not repeated
   }
   folder.commit();
   if (!options.is_quiet) {
@@ -186,7 +187,7 @@ int plan(const PlanOptions& options, const Console& console) {
     simulation::require_feasible(setup.simulation, scene, setup.run);
     return plan_once(options, setup, scene, folder, console);
   } catch (const Error& error) {
-    // What goes wrong during the survey follows from the mission; say which.
+    // Errors during the survey are reported with the mission file.
     throw Error(error.kind(), options.mission.string() + ": " + error.what());
   }
 }

@@ -1,4 +1,4 @@
-// skycap presets: the vehicles and sensors that the program knows.
+// skycap presets: lists the built-in vehicles and sensors.
 #include <memory>
 #include <string>
 #include <variant>
@@ -46,7 +46,8 @@ Json json_of(const flight::Vehicle& vehicle) {
           {"endurance_min", vehicle.endurance_min}};
 }
 
-/// The horizontal and vertical angles that a scanner covers, as far as channels and rotation say.
+/// Returns the horizontal and vertical field of view of a scanner, as far as it follows from
+/// channels and rotation.
 Json json_of(const sim::LidarConfig& scanner) {
   Json json{{"kind", scanner.prisms.empty() ? "spinning LiDAR" : "rosette LiDAR"},
             {"min_range_m", scanner.min_range},

@@ -3,7 +3,8 @@
 namespace skycap::missions::cli {
 namespace {
 
-/// Terminals obey U+0080 to U+009F, too, which UTF-8 writes as C2 and the number.
+/// Returns whether a character is a control character. Terminals also interpret U+0080 to U+009F,
+/// which UTF-8 encodes as C2 followed by the code.
 bool is_control(char before, char character) {
   const auto code = static_cast<unsigned char>(character);
   if (code < 0x20 || code == 0x7F) return true;
@@ -19,7 +20,7 @@ bool is_continuation(char character) {
 std::string printable_line(std::string text) {
   constexpr std::size_t longest = 2000, head = 1400, tail = 500;
   if (text.size() > longest) {
-    std::size_t end = head, begin = text.size() - tail;  // not within a character
+    std::size_t end = head, begin = text.size() - tail;  // does not split a multi-byte character
     while (is_continuation(text[end])) --end;
     while (begin < text.size() && is_continuation(text[begin])) ++begin;
     text = text.substr(0, end) + " ... " + text.substr(begin);

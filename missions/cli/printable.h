@@ -1,5 +1,5 @@
-/// What reaches the terminal. Names and texts of foreign files may hold anything, also sequences
-/// that a terminal obeys.
+/// Sanitises terminal output. Names and text from external files may contain terminal control
+/// sequences.
 #pragma once
 
 #include <streambuf>
@@ -7,12 +7,12 @@
 
 namespace skycap::missions::cli {
 
-/// The text as one line: each control character (also those of ISO 8859-1, in UTF-8) becomes a
-/// space, ends of lines too, and what is longer than 2000 bytes loses its middle.
+/// Converts text to a single line. Each control character, including line feeds and UTF-8 encoded
+/// C1 controls, is replaced by a space. Text longer than 2000 bytes is shortened in the middle.
 std::string printable_line(std::string text);
 
-/// Passes text on to another buffer, control characters other than ends of lines and tabs as
-/// spaces. Whoever writes through it learns when the other one fails.
+/// Forwards output to another buffer and replaces control characters, except line feeds and tabs,
+/// by spaces. Write errors of the target buffer are propagated.
 class PrintableBuffer : public std::streambuf {
  public:
   explicit PrintableBuffer(std::streambuf& target) : target_(target) {}

@@ -11,7 +11,7 @@ namespace skycap::missions::cli {
 
 int rewrite(const std::filesystem::path& mission, const std::filesystem::path& out,
             const Console& console) {
-  constexpr std::size_t largest = 1 << 20;  // of a mission [byte]
+  constexpr std::size_t largest = 1 << 20;  // of a mission file [byte]
   const std::string file = mission.string();
   const std::string text = geometry::read_file(mission, largest);
   const std::string current = config::with_current_names(text, file);

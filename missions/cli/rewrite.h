@@ -1,4 +1,4 @@
-/// Writes missions with current names.
+/// Rewrites missions with current key and value names.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace skycap::missions::cli {
 
-/// Writes the text of a mission file with the current names of keys and values to `out`, comments
-/// and layout kept, and prints which names it replaced. Returns exit code 0. Throws
-/// Error{bad_config} for a mission that is not right, or that config::with_current_names() refuses.
+/// Writes a mission file with current key and value names to `out` and prints the replacements.
+/// Comments and layout are preserved. Returns exit code 0. Throws Error{bad_config} if the mission
+/// is invalid, and the errors of config::with_current_names().
 int rewrite(const std::filesystem::path& mission, const std::filesystem::path& out,
             const Console& console);
 

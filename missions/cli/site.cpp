@@ -17,20 +17,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What heights may count from where there is no pad yet.
+/// Altitude references supported without a pad.
 constexpr std::array datums{site_data::HeightDatum::ellipsoid, site_data::HeightDatum::geoid};
 
 struct SiteOptions {
-  fs::path map;                         ///< file that holds the target and its neighbours
-  std::vector<std::string> ids;         ///< of the target; either this
-  std::string at;                       ///< or LATITUDE,LONGITUDE of a click on it
-  std::vector<std::string> attributes;  ///< or KEY=VALUE, all of which it has
-  std::string crs, vertical;            ///< as the keys of prior of these names
-  std::optional<double> base, height;   ///< the same
+  fs::path map;                         ///< file with the target and its neighbours
+  std::vector<std::string> ids;         ///< identifiers of the target; either these
+  std::string at;                       ///< or LATITUDE,LONGITUDE of a position on it
+  std::vector<std::string> attributes;  ///< or KEY=VALUE attributes, all of which must match
+  std::string crs, vertical;            ///< as the `prior` keys of the same names
+  std::optional<double> base, height;   ///< as the `prior` keys of the same names
   std::optional<fs::path> terrain;
   std::vector<fs::path> obstacles;
   std::string vehicle = "generic";
-  std::optional<fs::path> out;  ///< the mission file; default: site.yaml
+  std::optional<fs::path> out;  ///< mission file; default: site.yaml
 };
 
 [[noreturn]] void refuse(const std::string& option, const std::string& given,
@@ -82,15 +82,15 @@ std::string page_of(const std::string& name, const evaluation::SimulationOptions
                               options.survey.flight.takeoff);
 }
 
-/// Writes a first mission file and the page that shows it; never over an older file.
+/// Writes a first mission file and its HTML report. Existing files are not overwritten.
 int propose_site(const SiteOptions& options, const Console& console) {
   const fs::path file = options.out.value_or("site.yaml");
   if (file.extension() != ".yaml" && file.extension() != ".yml") {
     refuse("--out", file.string(), "a name that ends in .yaml");
   }
   const fs::path picture = fs::path(file).replace_extension(".html");
-  // First, since the mission names its files as seen from there, and a result that a kill has cut
-  // short is completed.
+  // Opened first, because the mission's file names are relative to the folder. This also completes
+  // an interrupted commit.
   geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   for (const fs::path& result : {file, picture}) {
     if (!fs::exists(result)) continue;

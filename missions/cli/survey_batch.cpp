@@ -33,7 +33,7 @@ SurveyRunner::SurveyRunner(std::string verb, const Console& console, bool is_qui
 
 batch::Records SurveyRunner::run(const std::vector<batch::Item>& items,
                                  const std::function<void(const Error&)>& failed) {
-  for (const batch::Item& item : items) {  // finished ones are not counted
+  for (const batch::Item& item : items) {  // completed surveys are not counted
     Kind& kind = kinds_[item.setup->kind];
     if (kind.announced == 0) continue;
     --kind.announced;
@@ -163,8 +163,8 @@ void ItemRun::tell_failure(const Error& error, std::size_t items, bool is_alone)
        items == 1 ? std::string(error.what()) : fmt::format("{} items: {}", items, error.what()));
 }
 
-/// Runs what is not finished; returns how many items are done. What fails is told of; others go
-/// on. Throws Error if there is but one item.
+/// Runs pending items and returns the number of completed items. Failures are reported while other
+/// items continue. Throws Error if the range has a single item.
 std::size_t ItemRun::work_on(const batch::ItemRange& range) {
   const auto tell = [&](const Error& error, std::size_t items) {
     tell_failure(error, items, range.size() == 1);
@@ -184,7 +184,7 @@ std::size_t ItemRun::work_on(const batch::ItemRange& range) {
   return done;
 }
 
-/// What is there. The same items give the same, whatever ran where.
+/// Returns the existing results. They do not depend on which machines ran the items.
 Collected ItemRun::collected() {
   Collected all;
   const auto keep = [&](const std::vector<batch::Item>& items) {

@@ -1,5 +1,5 @@
-/// Many surveys as a verb: run here with a line that says how far they are, or as tasks of an
-/// engine for many jobs. For plan --trials, benchmark, campaign and district.
+/// Runs batches of surveys locally with a progress line, or as tasks of a scheduler. Used by `plan
+/// --trials`, `benchmark`, `campaign` and `district`.
 #pragma once
 
 #include <cstddef>
@@ -19,22 +19,22 @@
 
 namespace skycap::missions::cli {
 
-/// Runs surveys with a line that says how many are done and how long the rest will take, from the
-/// mean duration of surveys of the same kind (a mission and its planner), or of any where none of
-/// that kind is over yet.
+/// Runs surveys and shows the number of completed surveys and the remaining time. The estimate uses
+/// the mean duration of completed surveys of the same kind (mission and planner). Until one has
+/// completed, it uses the mean of all kinds.
 class SurveyRunner {
  public:
-  /// `verb` begins the line; up to `threads` surveys run at a time, zero: as many as there are
-  /// processors. With `has_report` packages get their pages.
+  /// `verb` is the prefix of the progress line. Up to `threads` surveys run concurrently; zero
+  /// selects the number of processors. `has_report` adds HTML reports to the packages.
   SurveyRunner(std::string verb, const Console& console, bool is_quiet, unsigned threads,
                bool has_report = false);
 
-  /// See batch::run_items(): of failures `failed` is told, if there is one.
+  /// Runs the items with batch::run_items(). `failed`, if set, is called for each failure.
   batch::Records run(const std::vector<batch::Item>& items,
                      const std::function<void(const Error&)>& failed = {});
 
-  /// So many surveys of a kind will come, unless they turn out to be finished. run() counts those
-  /// that were not announced.
+  /// Adds expected surveys of a kind to the progress total. run() adds surveys that were not
+  /// announced.
   void announce(const std::string& kind, std::size_t surveys);
 
   void say(const std::string& text);
@@ -61,10 +61,10 @@ class SurveyRunner {
 };
 
 struct ItemOptions {
-  std::filesystem::path file;                ///< that says what is surveyed
+  std::filesystem::path file;                ///< file that lists the missions
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
   TaskOptions task;
-  std::optional<unsigned> threads;  ///< default: all processors, of one task one
+  std::optional<unsigned> threads;  ///< default: all processors, or one for a single task
   bool lists = false;
   bool has_report = true;
   bool is_quiet = false;
@@ -72,39 +72,41 @@ struct ItemOptions {
   std::filesystem::path folder(const std::string& name) const;
 };
 
-/// Adds all of them; `what` the file is called.
+/// Adds the options of ItemOptions. `what` is the placeholder for the file in the help.
 void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what);
 
-/// What there is of an item.
+/// Result of one item, if it exists.
 struct CollectedItem {
-  std::size_t number;  ///< in the manifest
-  std::string title;   ///< of its mission
+  std::size_t number;  ///< index in the manifest
+  std::string title;   ///< mission title
   const batch::Contestant* contestant;
-  std::filesystem::path folder;              ///< of its result
-  std::optional<batch::TrialRecord> record;  ///< nothing: it is missing
+  std::filesystem::path folder;              ///< folder of the result
+  std::optional<batch::TrialRecord> record;  ///< nullopt if the result is missing
 };
 
-/// All items of missions that can be read, by mission, variant, planner and seed.
+/// All items whose missions are readable, ordered by mission, variant, planner and seed.
 struct Collected {
   std::vector<CollectedItem> items;
 
   std::size_t done() const;
-  /// "; missing 3, 7, ...", of the first twenty; nothing of none.
+  /// Returns "; missing 3, 7, ..." with up to 20 items, or an empty string if the results are
+  /// complete.
   std::string missing_text() const;
 };
 
-/// The items of a campaign as the options ask for: all here, one task, or a job of an engine.
+/// Executes the items of a campaign according to the options: all locally, one task, or a scheduler
+/// job.
 class ItemRun {
  public:
-  /// Stages and commits the results of what was collected; returns the exit code. The manifest and
-  /// the times are staged already.
+  /// Stages and commits the collected results and returns the exit code. The manifest and the
+  /// timings are already staged.
   using Collect = std::function<int(const Collected&, geometry::OutputFolder&)>;
 
-  /// `verb` as on the command line.
+  /// `verb` is the command name.
   ItemRun(const ItemOptions& options, std::string verb, batch::CampaignFile file,
           std::filesystem::path out, const Console& console);
 
-  /// Returns the exit code.
+  /// Runs the items and collects the results. Returns the exit code.
   int run(const Collect& collect);
 
   const batch::Manifest& manifest() const { return manifest_; }
@@ -124,8 +126,8 @@ class ItemRun {
   SurveyRunner runner_;
 };
 
-/// Ends the program when it does not end by itself soon after a signal: a large scene that is being
-/// made ready cannot be stopped. Nothing is lost by it, since results appear whole by one renaming.
+/// Terminates the program if it does not end soon after a signal, because scene loading cannot be
+/// interrupted. No results are lost: they are committed by a single rename.
 class LastResort {
  public:
   explicit LastResort(const Console& console);

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Has an engine run the job. Behind a job that is over, the results are made here; behind a queued
-/// one, a job does it.
+/// Submits the job to a scheduler. The results are collected here if the job is complete, or by a
+/// second job if it is queued.
 int submit(const TaskWork& work, const TaskOptions& options, const Console& console) {
   geometry::OutputFolder folder(work.job.out);
   if (work.submitting) work.submitting(folder);
@@ -42,7 +42,7 @@ int submit(const TaskWork& work, const TaskOptions& options, const Console& cons
   return submission.is_accepted ? 0 : 1;
 }
 
-/// The items of one task. Others may be at other items of the same work.
+/// Runs the items of one task. Other tasks of the same work may run concurrently.
 int run_task(const TaskWork& work, const TaskOptions& options, const Console& console) {
   const std::size_t task = batch::task_index(options.index.value(), batch::program_environment());
   const batch::ItemRange range =

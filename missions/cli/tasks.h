@@ -1,4 +1,4 @@
-/// Work in numbered items: all of it here, or as the tasks of an engine for many jobs.
+/// Runs numbered items of work: all locally, or as tasks of a scheduler.
 #pragma once
 
 #include <cstddef>
@@ -14,43 +14,45 @@
 
 namespace skycap::missions::cli {
 
-/// "; missing 3, 7, ...", of the first twenty; nothing of none.
+/// Returns "; missing 3, 7, ..." with up to 20 items, or an empty string for an empty list.
 std::string missing_text(const std::vector<std::size_t>& missing);
 
 struct TaskWork {
-  batch::JobRequest job;  ///< its command begins with the verb; its chunk follows from the options
+  /// The command starts with its name; the chunk size follows from the options.
+  batch::JobRequest job;
   bool is_quiet = false;
-  std::function<void(geometry::OutputFolder&)> submitting{};  ///< stages what else a job leaves
-  /// Does items that are not complete, until a stop is requested; returns how many are complete.
+  std::function<void(geometry::OutputFolder&)> submitting{};  ///< stages additional files of a job
+  /// Runs incomplete items of a range until a stop is requested. Returns the number of complete
+  /// items.
   std::function<std::size_t(const batch::ItemRange&)> work{};
-  /// Says whether the results are complete, and the items gone.
+  /// Returns whether the results are complete and the pieces removed.
   std::function<bool()> is_collected{};
-  /// Makes and commits the results of what is complete; returns the exit code.
+  /// Creates and commits results from all complete items. Returns the exit code.
   std::function<int(geometry::OutputFolder&)> collect{};
 };
 
-/// Does of the work what the options say: a task, all of it, a job for an engine, or the results of
-/// what is complete. Returns the exit code. Throws what batch::task_index() and batch::submit()
-/// throw.
+/// Executes the work according to the options: one task, all items, submission to a scheduler, or
+/// collection of completed items. Returns the exit code. Throws the errors of batch::task_index()
+/// and batch::submit().
 int run_tasks(const TaskWork& work, const TaskOptions& options, const Console& console);
 
-/// Where all pieces of results are kept while they are not complete.
+/// Returns the folder that contains the pieces of incomplete results.
 std::filesystem::path folder_of_pieces(const std::filesystem::path& results);
-/// Where one of so many is.
+/// Returns the folder of one piece.
 std::filesystem::path folder_of_piece(const std::filesystem::path& results, std::size_t number,
                                       std::size_t pieces);
 
-/// A result that is made in pieces.
+/// Interface for a result that is computed in pieces.
 class PieceWork {
  public:
   virtual ~PieceWork() = default;
 
-  /// Does a piece, unless it is complete among the results. False if it was interrupted.
+  /// Computes a piece unless it is already complete. Returns false if interrupted.
   virtual bool do_piece(std::size_t number) = 0;
-  /// Whether it is complete. Keeps what join() needs of it.
+  /// Returns whether a piece is complete, and stores its data for join().
   virtual bool take_piece(std::size_t number) = 0;
-  /// Makes and commits the results of all pieces, which were taken in their order; returns the exit
-  /// code.
+  /// Joins all pieces, which were passed to take_piece() in order, and commits the result. Returns
+  /// the exit code.
   virtual int join(geometry::OutputFolder& folder) = 0;
 
  protected:
@@ -59,9 +61,9 @@ class PieceWork {
   PieceWork& operator=(const PieceWork&) = default;
 };
 
-/// run_tasks() of a job whose items are pieces, which are removed when the results are there.
-/// `summary` is the file that says in these whether they are complete; `begin` reads what the work
-/// is about.
+/// Executes a job whose items are pieces, as run_tasks(). The pieces are removed once the results
+/// are complete. `summary` is the result file that indicates completeness; `begin` reads the
+/// inputs.
 int run_pieces(const batch::JobRequest& job, const TaskOptions& options, bool is_quiet,
                const std::string& summary, const std::function<std::unique_ptr<PieceWork>()>& begin,
                const Console& console);

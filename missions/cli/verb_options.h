@@ -1,4 +1,5 @@
-/// What the options of verbs share. For the source of command_line.h, and CLI11 with it.
+/// Helpers for command-line options shared by several commands. Only sources that define options
+/// include it, because it includes CLI11.
 #pragma once
 
 #include <filesystem>
@@ -16,31 +17,31 @@
 
 namespace skycap::missions::cli {
 
-/// A verb that is ready to run, once the arguments are read.
+/// Command with parsed arguments, ready to run.
 using Action = std::function<int()>;
 
-/// Values for keys of the mission file, as given by options.
+/// Mission keys set by command-line options.
 struct KeyOptions {
   std::string planner, seed, threads, max_views;
   bool uses_prior_as_truth = false;
-  std::vector<std::string> set;  ///< KEY=VALUE
+  std::vector<std::string> set;  ///< entries of the form KEY=VALUE
 
-  /// Throws Error{bad_usage} if one of `set` has no equals sign.
+  /// Returns the options as overrides. Throws Error{bad_usage} if an entry of `set` has no equals
+  /// sign.
   std::vector<config::KeyOverride> overrides() const;
 };
 
 void add_set_option(CLI::App& verb, KeyOptions& keys);
 
-/// Options of a verb whose work are items, which it calls `item`; all but the chunk exclude each
-/// other. Returns those that do.
+/// Adds the options of a command that processes items; `item` is the noun in the help. All options
+/// except the chunk size are mutually exclusive. Returns the mutually exclusive options.
 std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
                                            const std::string& item);
 
-/// A number between two others; unlike CLI::Range it takes no NaN for one.
+/// Returns a validator for numbers in a closed interval. Unlike CLI::Range, it rejects NaN.
 CLI::Validator number_between(double least, double most);
 
-/// Verbs whose options stand in their own sources: a first mission for a site or a model, presets,
-/// live surveys (next, serve, finish, fly), campaigns, districts, models, exports.
+/// Add commands whose options are defined in their own source files.
 void add_site(CLI::App& app, const Console& console, Action& action);
 void add_live(CLI::App& app, const Console& console, Action& action);
 void add_campaign(CLI::App& app, const Console& console, Action& action);
@@ -50,7 +51,7 @@ void add_export(CLI::App& app, const Console& console, Action& action);
 void add_init(CLI::App& app, const Console& console, Action& action);
 void add_presets(CLI::App& app, const Console& console, Action& action);
 
-/// The files with keys that a verb is given.
+/// Returns the input files that may contain mission keys.
 template <class Options>
 std::vector<std::filesystem::path> files_of(const Options& options) {
   if constexpr (requires { options.missions; }) {
@@ -66,7 +67,7 @@ std::vector<std::filesystem::path> files_of(const Options& options) {
   }
 }
 
-/// Makes the verb an action that runs it with the options that are given.
+/// Registers a callback that runs the command with the parsed options.
 template <class Options>
 void run(CLI::App& verb, std::shared_ptr<Options> options,
          int (*run_verb)(const Options&, const Console&), const Console& console, Action& action) {
@@ -78,7 +79,7 @@ void run(CLI::App& verb, std::shared_ptr<Options> options,
   });
 }
 
-/// The same with those that are keys of the mission file as its overrides.
+/// Registers a callback as run() and passes mission-key options as overrides.
 template <class Options>
 void run_with_keys(CLI::App& verb, std::shared_ptr<Options> options,
                    const std::shared_ptr<KeyOptions>& keys,

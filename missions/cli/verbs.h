@@ -1,5 +1,5 @@
-/// The verbs of the program. Each takes its options, writes to the console, and returns the exit
-/// code: 0 done, 1 the answer is "no". Bad input is thrown as Error.
+/// Commands of the program. Each function returns the exit code: 0 success, 1 negative result.
+/// Invalid input is reported by throwing Error.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@
 
 namespace skycap::missions::cli {
 
-/// Of work in numbered items that engines for many jobs may run.
+/// Options for work in numbered items that a scheduler can run.
 struct TaskOptions {
-  std::optional<std::string> index;   ///< of one task, see batch::task_index()
-  std::size_t chunk = 0;              ///< items of a task; zero: one, or as the engine likes it
-  bool collects = false;              ///< works on none, and makes the results of what is complete
-  std::optional<std::string> engine;  ///< that runs all tasks
+  std::optional<std::string> index;   ///< index of the task, see batch::task_index()
+  std::size_t chunk = 0;              ///< items per task; zero: one, or the scheduler's default
+  bool collects = false;              ///< collects completed items without running any
+  std::optional<std::string> engine;  ///< scheduler that runs all tasks
 
   bool is_given() const { return index || engine || collects || chunk > 0; }
 };
@@ -28,216 +28,224 @@ struct PlanOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
   std::vector<config::KeyOverride> overrides;
-  std::size_t trials = 0;  ///< zero: one survey, with a mission package
-  bool resumes = false;  ///< goes on with an interrupted survey, if there is one; trials always do
-  bool has_report = true;  ///< the page beside the other results, too
+  std::size_t trials = 0;  ///< zero: a single survey with a mission package
+  bool resumes = false;    ///< resumes an interrupted survey; trials are always resumed
+  bool has_report = true;  ///< whether to write an HTML report
   bool is_quiet = false;
   bool is_verbose = false;
 };
 
-/// Surveys a mission's scene in simulation and writes the mission package, or the trials' files.
-/// Exit code 1 if the survey was interrupted, could not go anywhere from its first view, or leaves
-/// no route.
+/// Simulates the survey of a mission and writes the mission package or the results of trials.
+/// Returns exit code 1 if the survey was interrupted, no view is reachable from the first, or no
+/// route exists.
 int plan(const PlanOptions& options, const Console& console);
 
-/// Of which live survey.
+/// Options that identify a live survey.
 struct LiveOptions {
   std::filesystem::path mission;
-  std::filesystem::path survey;  ///< its folder
-  bool has_report = true;        ///< the page, too
+  std::filesystem::path survey;  ///< folder of the survey
+  bool has_report = true;        ///< whether to write an HTML report
   std::vector<config::KeyOverride> overrides;
 };
 
 struct NextOptions : LiveOptions {
-  std::optional<std::filesystem::path> scan;       ///< to be taken in first
-  std::string pose;                                ///< of the scan's sensor; either this
-  std::optional<std::filesystem::path> pose_file;  ///< or this
-  std::string pose_sigma;                          ///< of the pose; either this
-  std::string pose_covariance;                     ///< or this; default: the mission's
-  std::string lens;                                ///< of a depth image
-  double depth_unit = 0.001;                       ///< of a depth image [m]
-  bool is_in_world = false;                        ///< the points of a cloud
-  bool is_on_way = false;                          ///< the scan is, to the view
-  std::string id;                                  ///< of the scan; default: its digest
-  std::optional<std::filesystem::path> dataset;    ///< a recording to be taken in, in its place
-  std::string sensor;                              ///< label in a rawlog
-  std::optional<std::filesystem::path> poses;      ///< of a rawlog's sensor; default: its own
-  std::size_t until = 1'000'000;                   ///< so many of its frames
-  std::optional<std::string> refusal;              ///< why the proposed view is not wanted
+  std::optional<std::filesystem::path> scan;       ///< scan that is added first
+  std::string pose;                                ///< sensor pose of the scan; either this
+  std::optional<std::filesystem::path> pose_file;  ///< or this file
+  std::string pose_sigma;                          ///< standard deviations of the pose; either this
+  std::string pose_covariance;  ///< or this covariance; default: from the mission
+  std::string lens;             ///< camera intrinsics of a depth image
+  double depth_unit = 0.001;    ///< unit of depth values in an image [m]
+  bool is_in_world = false;     ///< whether the cloud's points are in the world frame
+  bool is_on_way = false;       ///< whether the scan was captured en route
+  std::string id;               ///< identifier of the scan; default: its checksum
+  std::optional<std::filesystem::path> dataset;  ///< recording to add instead of a scan
+  std::string sensor;                            ///< sensor label in a rawlog
+  /// Poses of a rawlog's sensor; default: those in the rawlog.
+  std::optional<std::filesystem::path> poses;
+  std::size_t until = 1'000'000;       ///< maximum number of frames from the recording
+  std::optional<std::string> refusal;  ///< reason for rejecting the proposed view
   bool is_json = false;
   bool is_quiet = false;
 };
 
-/// Says where a live survey is to measure next. Exit code 0: there; 10: nowhere, it is over; 11:
-/// every view that is wanted was refused; 12: the last scan was set aside, its pose is wrong.
+/// Prints the next view of a live survey. Exit codes: 0 next view; 10 survey complete; 11 all
+/// useful views were rejected; 12 last scan rejected because its pose is wrong.
 int next(const NextOptions& options, const Console& console);
 
-/// Writes the mission package of a live survey into its folder; exit code 1 if it has no route. The
-/// survey may go on afterwards.
+/// Writes the mission package of a live survey into its folder. The survey may be continued
+/// afterwards. Returns exit code 1 if the package has no route.
 int finish(const LiveOptions& options, const Console& console);
 
 struct ServeOptions : LiveOptions {
-  std::optional<std::filesystem::path> socket;  ///< a Unix socket; either this
-  std::optional<std::uint16_t> port;            ///< or this, of 127.0.0.1
+  std::optional<std::filesystem::path> socket;  ///< path of a Unix socket; either this
+  std::optional<std::uint16_t> port;            ///< or a TCP port on 127.0.0.1
   bool is_quiet = false;
 };
 
-/// Serves a live survey on a socket until a client finishes it; prints the address. Exit code 1 if
-/// it was interrupted before, or has no route.
+/// Serves a live survey on a socket until a client finishes it, and prints the address. Returns
+/// exit code 1 if the survey is interrupted or has no route.
 int serve(const ServeOptions& options, const Console& console);
 
 struct BenchmarkOptions {
   std::vector<std::filesystem::path> missions;
-  std::vector<std::string> planners = {"all"};  ///< of contestants(), or "all"
-  /// Of sim::model_families(), or "all": each in the missions' scenes' place, a new one drawn with
-  /// each trial's seed. None: the missions' own.
+  std::vector<std::string> planners = {"all"};  ///< names from contestants(), or "all"
+  /// Names from sim::model_families(), or "all". A model of each family replaces the missions'
+  /// scene model; each trial's seed generates a different model. Empty: the missions' own models.
   std::vector<std::string> scenes;
-  std::size_t trials = 10;                   ///< of each planner on each mission
+  std::size_t trials = 10;                   ///< trials per planner and mission
   std::optional<std::filesystem::path> out;  ///< default: results/benchmark
   std::vector<config::KeyOverride> overrides;
-  unsigned threads = 0;    ///< zero: all processors; a survey has one
-  bool has_report = true;  ///< the page beside the other results, too
+  unsigned threads = 0;    ///< concurrent single-threaded surveys; zero: one per processor
+  bool has_report = true;  ///< whether to write an HTML report
   bool is_quiet = false;
 };
 
-/// Compares planners on missions, as the paper does: surveys from the same starts, Tables 1 and 2,
-/// curves. What an earlier run in the same folder has finished is not run again. Exit code 1
-/// if it was interrupted.
+/// Compares planners on missions as in the paper: surveys from identical starts, Tables 1 and 2,
+/// and coverage curves. Completed surveys of an earlier run in the folder are reused. Returns exit
+/// code 1 if interrupted.
 int benchmark(const BenchmarkOptions& options, const Console& console);
 
 struct CheckOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> route;
-  std::optional<double> return_height;  ///< that the vehicle is set to, above take-off
-  bool prints_setup = false;            ///< the resolved setup instead of checking the scene
+  std::optional<double> return_height;  ///< vehicle's return altitude above the take-off point [m]
+  bool prints_setup = false;            ///< prints the resolved setup instead of checking the scene
   std::vector<config::KeyOverride> overrides;
 };
 
-/// Checks a mission file and its scene; says what follows from it. With a route: proves that each
-/// of its legs, and each return from it, keeps the mission's clearance from the scene, the ground
-/// and the site's rules; exit code 1, with a list, if one does not.
+/// Checks a mission file and its scene, and prints derived values. With a route, it verifies that
+/// each leg and return keeps the clearance and the site's rules. The clearance is checked against
+/// the scene and the ground. Returns exit code 1 and prints a list if one does not.
 int check(const CheckOptions& options, const Console& console);
 
 struct ExportOptions {
-  std::filesystem::path package;             ///< folder that plan() wrote
-  std::vector<std::string> formats;          ///< flight::formats() by name
-  std::optional<std::filesystem::path> out;  ///< folder; default: the package
-  std::optional<std::size_t> lost;  ///< vehicle of the fleet whose stations the rest share, from 1
-  std::optional<double> after;      ///< when it was lost, by the timetable [s]
+  std::filesystem::path package;             ///< package folder written by plan()
+  std::vector<std::string> formats;          ///< names from flight::formats()
+  std::optional<std::filesystem::path> out;  ///< output folder; default: the package
+  /// Number of the lost fleet vehicle, from 1, whose waypoints are reassigned.
+  std::optional<std::size_t> lost;
+  std::optional<double> after;  ///< time of the loss in the fleet's timetable [s]
   std::vector<config::KeyOverride> overrides;
 };
 
-/// Plans a flight through the views of a finished survey and writes it in other formats, or for
-/// another vehicle. Exit code 1 if no view can be visited.
+/// Plans a flight through the views of a completed survey and writes it in other formats or for
+/// another vehicle. Returns exit code 1 if no view is reachable.
 int export_package(const ExportOptions& options, const Console& console);
 
 struct FlyTestVerbOptions {
-  std::filesystem::path package;               ///< folder that plan() wrote
-  std::optional<std::filesystem::path> out;    ///< folder; default: the package
-  std::optional<std::filesystem::path> truth;  ///< mission file whose scene is judged against, too
+  std::filesystem::path package;             ///< package folder written by plan()
+  std::optional<std::filesystem::path> out;  ///< output folder; default: the package
+  /// Mission file whose scene is used as ground truth for the clearance.
+  std::optional<std::filesystem::path> truth;
   std::size_t flights = 100;
-  std::size_t returns = 1000;            ///< from anywhere; one more from each second of the flight
-  std::optional<double> wind_speed;      ///< the strongest; default: the mission's, at least 5 m/s
-  std::optional<double> position_error;  ///< the greatest; default: the mission's
-  std::optional<double> return_height;   ///< that the vehicle is set to, above take-off
+  /// Returns from random states; one more from each second of the flight.
+  std::size_t returns = 1000;
+  /// Maximum wind speed [m/s]; default: from the mission, at least 5 m/s.
+  std::optional<double> wind_speed;
+  std::optional<double> position_error;  ///< maximum position error [m]; default: from the mission
+  std::optional<double> return_height;   ///< vehicle's return altitude above the take-off point [m]
   std::vector<config::KeyOverride> overrides;
   bool is_quiet = false;
 };
 
-/// Flies every route file of a package many times in the simulator, in wind and with failsafes.
-/// Writes fly_test.json. Exit code 1 if a flight came nearer to anything than the clearance less
-/// the errors that it allows for, if its battery would not have lasted, or if it was interrupted.
+/// Simulates repeated flights of every route file in a package, with wind and failsafes, and writes
+/// fly_test.json. Returns exit code 1 if interrupted, if the battery is insufficient, or if a
+/// flight violates the clearance. Permitted errors are deducted from the clearance.
 int fly_test(const FlyTestVerbOptions& options, const Console& console);
 
 struct CalibrateOptions {
-  std::filesystem::path log;                 ///< ArduPilot's .bin, or .csv
-  std::string vehicle;                       ///< preset that the one that flew is like
-  std::optional<std::filesystem::path> out;  ///< default: LOG.yaml, without the log's own ending
-  std::optional<double> mass;                ///< flown, in place of the preset's [kg]
-  std::optional<double> battery_wh;          ///< in place of the preset's
-  double air_density = 1.225;                ///< of that day [kg/m^3]
+  std::filesystem::path log;  ///< ArduPilot .bin log or .csv file
+  std::string vehicle;        ///< preset most similar to the vehicle flown
+  /// Default: LOG.yaml, where LOG is the stem of the log.
+  std::optional<std::filesystem::path> out;
+  std::optional<double> mass;        ///< mass in flight [kg]; default: from the preset
+  std::optional<double> battery_wh;  ///< battery energy [Wh]; default: from the preset
+  double air_density = 1.225;        ///< air density during the flight [kg/m^3]
 };
 
-/// Fits a vehicle's power and minutes to a log of its flight and writes it as a vehicle file.
+/// Fits a vehicle's power and endurance to a flight log and writes a vehicle file.
 int calibrate(const CalibrateOptions& options, const Console& console);
 
 struct ScanVerbOptions {
   std::filesystem::path mission;
-  std::optional<std::filesystem::path> route;  ///< in place of the mission's
+  std::optional<std::filesystem::path> route;  ///< route file; default: from the mission
   std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
-  std::optional<std::string> sensor;           ///< in place of the mission's
-  /// Of a laser scanner's points; of a camera's images only "rawlog" counts, beside the PNG files.
+  std::optional<std::string> sensor;           ///< sensor preset or file; default: from the mission
+  /// Formats of a laser scanner's points. For depth cameras, only "rawlog" has an effect; it is
+  /// written in addition to the PNG files.
   std::vector<std::string> formats = {"las"};
-  bool with_truth = false;  ///< also where the surfaces really were
-  bool resumes = false;     ///< goes on with an interrupted scan, if there is one
-  bool has_report = true;   ///< the page beside the other results, too
-  std::size_t pieces = 0;   ///< of the flight, each measured by itself; zero: all at once
-  TaskOptions task;         ///< whose items are pieces
+  bool with_truth = false;  ///< also records ground-truth points
+  bool resumes = false;     ///< resumes an interrupted scan
+  bool has_report = true;   ///< whether to write an HTML report
+  std::size_t pieces = 0;   ///< number of separately recorded pieces; zero: not divided
+  TaskOptions task;         ///< tasks whose items are pieces
   std::vector<config::KeyOverride> overrides;
   bool is_quiet = false;
 };
 
-/// Flies a route in the simulator and records what the sensor measures on the way. Exit code 1 if
-/// the flight was interrupted, or if a piece of it is missing.
+/// Simulates the flight along a route and records the sensor's measurements. Returns exit code 1 if
+/// interrupted or if a piece is missing.
 int scan(const ScanVerbOptions& options, const Console& console);
 
 struct EvaluateOptions {
-  std::filesystem::path cloud;     ///< either this
-  std::filesystem::path mesh;      ///< or this: a surface, by points spread over it
-  std::string model;               ///< builtin:NAME, model:NAME, a mesh, or a mission file
-  std::optional<double> distance;  ///< r_d; a mission file says its own
+  std::filesystem::path cloud;     ///< point cloud; either this
+  std::filesystem::path mesh;      ///< or a mesh, evaluated at points sampled on its surface
+  std::string model;               ///< builtin:NAME, model:NAME, mesh file or mission file
+  std::optional<double> distance;  ///< coverage distance r_d [m]; default: from the mission file
   std::size_t samples = 100'000;
-  std::size_t pieces = 0;                    ///< of a cloud, each judged by itself; zero: all
-  std::optional<std::filesystem::path> out;  ///< where pieces and what is made of them go
-  TaskOptions task;                          ///< whose items are pieces
-  unsigned threads = 0;                      ///< zero: all processors
+  std::size_t pieces = 0;  ///< separately evaluated pieces of a cloud; zero: not divided
+  std::optional<std::filesystem::path> out;  ///< output folder for the pieces and their results
+  TaskOptions task;                          ///< tasks whose items are pieces
+  unsigned threads = 0;                      ///< zero: one per processor
   bool is_json = false;
   bool is_quiet = false;
 };
 
-/// Says how much of a model a cloud or a mesh covers, and how accurate it is. Exit code 1 if a
-/// piece is missing.
+/// Prints the coverage and accuracy of a cloud or mesh with respect to a model. Returns exit code 1
+/// if a piece is missing.
 int evaluate(const EvaluateOptions& options, const Console& console);
 
 struct ReconstructOptions {
   std::filesystem::path cloud;
-  std::optional<std::filesystem::path> out;  ///< default: CLOUD_mesh.ply beside the cloud
+  std::optional<std::filesystem::path> out;  ///< default: CLOUD_mesh.ply in the cloud's folder
   int depth = 0;
   double spacing = 0.0;
   double least_density = 0.2;
   unsigned threads = 0;
 };
 
-/// Writes the surface of a cloud as a mesh (reconstruction.h).
+/// Reconstructs a mesh from a cloud (reconstruction.h) and writes it to a file.
 int reconstruct_cloud(const ReconstructOptions& options, const Console& console);
 
 struct ModelOptions {
-  std::string name;  ///< of a builtin or obtainable model, or a mission file
+  std::string name;  ///< builtin or downloadable model, or a mission file
   std::optional<std::filesystem::path> out;
   std::optional<std::filesystem::path> render;
-  std::optional<std::string> detail;  ///< in place of scene.detail
+  std::optional<std::string> detail;  ///< overrides scene.detail
 };
 
-/// Obtains a model if it is not on the machine, and writes or renders it.
+/// Downloads a model if it is not installed, and writes or renders it.
 int model(const ModelOptions& options, const Console& console);
 
 struct ReportOptions {
-  std::filesystem::path folder;              ///< of results
-  std::optional<std::filesystem::path> out;  ///< of a folder with one page; default: in the folder
-  std::size_t points = 0;                    ///< shown at most; zero: the report's default
+  std::filesystem::path folder;  ///< folder of results
+  /// Output file, for a folder with one report; default: in the folder.
+  std::optional<std::filesystem::path> out;
+  std::size_t points = 0;  ///< maximum number of displayed points; zero: the report's default
 };
 
-/// Writes the pages that show a folder of results, as the verbs that left them do.
+/// Writes the HTML reports of a results folder, as the commands that produced the results do.
 int report_results(const ReportOptions& options, const Console& console);
 
 struct ViewOptions {
-  std::filesystem::path what;                  ///< folder of results, cloud, or mission file
-  std::optional<std::filesystem::path> out;    ///< the page; default: beside what is shown
-  std::vector<config::KeyOverride> overrides;  ///< of a mission
+  std::filesystem::path what;                  ///< results folder, cloud or mission file
+  std::optional<std::filesystem::path> out;    ///< HTML file; default: in the folder of `what`
+  std::vector<config::KeyOverride> overrides;  ///< overrides for a mission file
 };
 
-/// Writes the pages of a folder, a cloud or a mission's scene and opens them in the browser; says
-/// where they are.
+/// Writes HTML reports of a results folder, cloud or mission scene and opens them in the browser.
+/// Prints their paths.
 int view(const ViewOptions& options, const Console& console);
 
 }  // namespace skycap::missions::cli

@@ -42,8 +42,8 @@ std::vector<report::MadePage> pages_of(const ViewOptions& options, const config:
   return {{options.out.value_or(file), report::cloud_page(what)}};
 }
 
-/// Whether a browser was told to show the file. Programs without a screen start browsers of text,
-/// which wait for a terminal.
+/// Opens a file in a browser and returns whether that succeeded. Without a display it is not tried,
+/// because xdg-open would start a text browser that waits for a terminal.
 bool is_opened(const fs::path& file) {
   const bool has_screen =
       std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;

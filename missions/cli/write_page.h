@@ -1,4 +1,4 @@
-/// The page that a verb leaves beside its other results.
+/// HTML reports of commands.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace skycap::missions::cli {
 
-/// Stages the page of staged results, if it is wanted and nobody waits for the program to end:
-/// `skycap report` makes it later. Warns if it cannot be made.
+/// Stages the HTML report of staged results if `is_wanted`. After a stop request the report is
+/// skipped with a warning; `skycap report` creates it later. Also warns if the report cannot be
+/// created.
 void write_page(const std::string& results, bool is_wanted, geometry::OutputFolder& folder,
                 const Console& console);
 

@@ -19,22 +19,22 @@ using Eigen::Vector3d;
 using sim::ScannerKind;
 using site_data::Role;
 
-/// A volumetric survey's V where neither mission nor benchmark says it: the paper's for its last
-/// two models.
+/// Default of V for volumetric surveys outside a benchmark: the paper's value for its last two
+/// models.
 constexpr std::size_t usual_view_limit = 130;
 
-/// scene.model of a mission whose targets stand in as truth.
+/// scene.model of missions whose targets serve as ground truth.
 constexpr const char* targets_as_truth = "prior";
 
-/// Of one object, for the planner to guess by.
+/// Maximum number of points per target in the prior surface.
 constexpr std::size_t most_target_points = 300'000;
 
 bool has_role(const MissionDocument& document, Role role) {
   return std::ranges::find(document.prior, role, &site_data::Source::role) != document.prior.end();
 }
 
-/// How the scans of a scanner that is flown prove space free; nothing if they do not: lines prove
-/// nothing between them.
+/// Returns how scans of a flown scanner provide free space. Returns nullopt for single-line
+/// scanners, because the space between their scan lines is unobserved.
 std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   const sim::LidarConfig& scanner = *sensor.scanner;
@@ -42,9 +42,9 @@ std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) 
   const double lever_arm = sensor.mount.value().body_from_scanner.translation().norm();
   switch (kind_of(scanner)) {
     case ScannerKind::ring: {
-      // The turn's own cells, a little wider, so that a ray falls into each. Rays begin beside the
-      // vehicle's place by the lever arm, half of what it flies in a turn, and what the turns are
-      // spread by.
+      // The cells are slightly larger than those of a revolution, so that each contains a ray. The
+      // ray origins deviate from the vehicle position by the lever arm, half the distance flown per
+      // revolution, and the spacing of the revolutions.
       constexpr double wider = 1.02;
       return flight::SweepRays{.spacing = wider * ray_spacing(scanner),
                                .axis = Vector3d::UnitX(),
@@ -52,8 +52,8 @@ std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) 
                                                 0.5 * speed / std::abs(scanner.rotation_rate)};
     }
     case ScannerKind::rosette: {
-      // Rays of a pattern that is drawn in flight do not fall between each other as they do at
-      // rest, but as if at random: cells of at least four times as many rays.
+      // In flight, the rays of a rosette do not interleave as at rest but are distributed almost
+      // randomly. The cells are enlarged to contain at least four times as many rays.
       constexpr double wider = 2.0;
       const double flown = sensor.is_moving() ? speed * sensor.frame_period : 0.0;
       return flight::SweepRays{.spacing = wider * document.sensor.rosette.value().gap,
@@ -101,8 +101,9 @@ flight::CaptureOptions capture_options(const MissionDocument& document) {
   return capture;
 }
 
-/// What a stop costs, as metres of way at the cruise speed: the rest, and the ramps of the straight
-/// pieces that lead there, two and a half in surveys of buildings.
+/// Returns the cost of a stop as an equivalent path length [m] at cruise speed. It includes the
+/// rest and the acceleration phases of the straight segments before it: 2.5 on average in surveys
+/// of buildings.
 double price_of_stop(const flight::FlightOptions& flight) {
   constexpr double pieces = 2.5, long_way = 100.0;
   const flight::Motion motion(flight.flown(), flight.route(Vector3d::Zero()).conditions);
@@ -112,8 +113,8 @@ double price_of_stop(const flight::FlightOptions& flight) {
          (flight.rest_before() + flight.rest_after() + pieces * (ramps + flight::corner_hold));
 }
 
-/// What a view costs the planner skycap besides the way to it, as metres of way, by planner.goal;
-/// nothing if that is the planner's own price.
+/// Returns the cost of a view for the planner skycap, excluding the path to it, as a path length
+/// [m] according to planner.goal. Returns nullopt if the planner's own default applies.
 std::optional<double> view_price_of(const MissionDocument& document,
                                     const flight::FlightOptions& flight) {
   if (document.planner.goal == PlannerGoal::views) return std::nullopt;
@@ -131,7 +132,7 @@ survey::skycap::SkycapConfig skycap_config(const MissionDocument& document,
                                       .limits = view_limits(document),
                                       .stop = document.planner.skycap_stop,
                                       .ideas = document.planner.skycap_ideas};
-  // Told of the budgets, it looks for the best view that is still in reach.
+  // With the limits, the planner selects the best view that is still within reach of them.
   const LimitsSection& limits = document.limits;
   config.stop.most_length = limits.options.max_distance;
   if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
@@ -144,7 +145,7 @@ survey::skycap::SkycapConfig skycap_config(const MissionDocument& document,
     config.counts_ways = scanner && kind_of(*scanner) != ScannerKind::ring;
     config.sees_lines = scanner && kind_of(*scanner) == ScannerKind::line;
   }
-  if (flight.is_flown()) {  // as if they were the same along and about all axes
+  if (flight.is_flown()) {  // isotropic approximation of the pose errors
     const sim::NavigationErrors& poses = document.scan.navigation;
     const auto mean = [](double twice, double once) {
       return std::sqrt((2.0 * twice * twice + once * once) / 3.0);
@@ -172,11 +173,12 @@ survey::volumetric::VolumetricConfig volumetric_config(
   return config;
 }
 
-/// The surfaces of the targets for a planner to guess by; null without any.
+/// Returns the surfaces of the targets as prior surface for the planner, or null without targets.
 std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(
     const site_data::SitePriors& site, const geometry::CameraConfig& camera, double distance) {
   auto surface = std::make_shared<survey::skycap::PriorSurface>();
-  // Four pixels are the finest resolution of the planner: a point each is enough.
+  // Spacing of the points: the planner's finest resolution is four pixels, so that one point each
+  // suffices.
   const double pixel = distance / geometry::Camera(camera).focal_length_px().minCoeff();
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     if (site.sources[i].role != Role::target) continue;
@@ -274,11 +276,11 @@ survey::ViewLimits view_limits(const MissionDocument& document) {
   }
   if (document.flight.is_flown()) {
     const flight::Vehicle& vehicle = document.flight.options.flown();
-    if (!sensor.mount) {  // which is on no gimbal
+    if (!sensor.mount) {  // only cameras are mounted on a gimbal
       result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
       result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
     } else if (kind_of(*sensor.scanner) == ScannerKind::rosette) {
-      constexpr double hair = 1e-5;  // less than no way up or down is a limit that nothing keeps
+      constexpr double hair = 1e-5;  // tolerance, so that the pitch interval is not empty
       result.least_pitch = std::max(result.least_pitch, sensor.mount->look_pitch - hair);
       result.most_pitch = std::min(result.most_pitch, sensor.mount->look_pitch + hair);
     }

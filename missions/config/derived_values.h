@@ -1,5 +1,5 @@
-/// Values that follow from several keys of a document that is being completed: for resolve() and
-/// the checks across keys. Each is valid once what it follows from is, in the order of resolve().
+/// Values that resolve() and the cross-key checks derive from several keys of a document. Each
+/// function requires that the keys it depends on are already completed, in the order of resolve().
 #pragma once
 
 #include <cstddef>
@@ -15,49 +15,50 @@
 
 namespace skycap::missions::config {
 
-/// Whether the document says where on the Earth it is.
+/// Returns whether the document has a georeference (latitude and longitude).
 bool has_place(const MissionDocument& document);
 
-/// The origin of its frame; at 0 N 0 E if it has no place.
+/// Returns the georeference of the frame's origin, or 0° N 0° E if the document has none.
 flight::Site site_of(const MissionDocument& document);
 
-/// The settings of SEE and SEE++ with what every planner uses.
+/// Returns the settings of SEE and SEE++, including the sampling settings shared by all planners.
 survey::see::SeeConfig see_config(const MissionDocument& document);
 
-/// epsilon: as given, or rho^(-1/2).
+/// Returns epsilon, the point spacing [m]: planner.spacing, or rho^(-1/2) if the key is missing.
 double spacing_of(const MissionDocument& document);
 
-/// From how far planners look at a surface: planner.view_distance, else where the sensor's pixels
-/// are as dense as planner.density wants points.
+/// Returns the distance between views and surfaces [m]: planner.view_distance, or else the distance
+/// at which the sensor's pixel density equals planner.density.
 double view_distance_of(const MissionDocument& document);
 
-/// Where space must be measured to be free; empty: nowhere.
+/// Returns the box in which unobserved space is treated as occupied; an empty box disables this.
 Eigen::AlignedBox3d unknown_box_of(const MissionDocument& document);
 
-/// z below which everything is solid: the scene's, or of a terrain its lowest place less what that
-/// may be off, if it is lower.
+/// Returns the z [m] below which everything is solid. This is the scene's base height, or the
+/// minimum terrain height minus its uncertainty if that is lower.
 double ground_height_of(const MissionDocument& document);
 
-/// The least z of a view that limits.ground_clearance allows; nothing without it.
+/// Returns the minimum z of a view [m] according to limits.ground_clearance, if that key is set.
 std::optional<double> least_view_height(const MissionDocument& document);
 
-/// The limits of site, limits and the vehicle together, heights as z in the mission's frame.
+/// Combines the view limits of `site`, `limits` and the vehicle. Heights are z in the mission frame
+/// [m].
 survey::ViewLimits view_limits(const MissionDocument& document);
 
-/// The most views of a survey: the document's, and for volumetric planners V if that is less.
+/// Returns the maximum number of views. For volumetric planners it is limited by V as well.
 std::size_t view_limit(const MissionDocument& document);
 
-/// Whether the document has a target, or something in the way, among its prior data.
+/// Return whether the prior data contains a target or an obstacle, respectively.
 bool has_target(const MissionDocument& document);
 bool has_obstacle(const MissionDocument& document);
 
-/// The role of the prior data that stands in for scene.model: truth, or the targets if scene.model
-/// is "prior"; nothing if none does.
+/// Returns the role of the prior data used as ground truth instead of scene.model. It is `truth`,
+/// or `target` if scene.model is "prior"; nullopt if scene.model provides the scene.
 std::optional<site_data::Role> truth_role(const MissionDocument& document);
 
 flight::FlightOptions flight_options(const MissionDocument& document);
 
-/// With the limits and the prior surface.
+/// Includes the view limits and, for the planner skycap, the prior surface.
 survey::PlannerOptions planner_options(const MissionDocument& document,
                                        const flight::FlightOptions& flight);
 

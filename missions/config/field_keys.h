@@ -1,5 +1,5 @@
-/// Which key of the mission file gives a field that a library's validate() complains of. Libraries
-/// know their own fields only.
+/// Mapping from option fields to mission keys. The libraries' validate() functions report field
+/// names only; this table translates them to the keys that users set.
 #pragma once
 
 #include <array>
@@ -7,13 +7,13 @@
 
 namespace skycap::missions::config {
 
-/// A field as validate() names it, and its key.
+/// Field name in messages of validate() and its mission key.
 struct FieldKey {
   std::string_view field, key;
 };
 
-/// Of the options of planners, cameras and navigation; a field of the same name has the same key in
-/// all of them.
+/// Fields of planner, camera and navigation options. Fields of the same name share one key in all
+/// options.
 inline constexpr auto field_keys = std::to_array<FieldKey>({
     // geometry::CameraConfig, sim::DepthCameraConfig
     {"width", "sensor.width"},
@@ -30,7 +30,7 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     {"least_pitch", "limits.max_pitch_deg"},
     {"geofence", "site.geofence"},
     {"no_fly", "site.no_fly"},
-    // what several planners use
+    // shared by several planners
     {"density", "planner.density"},
     {"resolution_radius", "planner.resolution_radius"},
     {"resolution", "planner.resolution_radius"},
@@ -77,7 +77,7 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     {"navigation.correlation_time", "scan.navigation.correlation_time"},
 });
 
-/// The key of a field; empty if no key gives it.
+/// Returns the key of a field, or an empty string if no key sets the field.
 constexpr std::string_view key_of_field(std::string_view field) {
   for (const FieldKey& known : field_keys) {
     if (known.field == field) return known.key;

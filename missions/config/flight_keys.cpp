@@ -1,11 +1,11 @@
-// The keys of `site` and `flight`: where the survey is, and how it is flown.
+// Keys of the sections `site` and `flight`: location of the survey and flight execution.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 
 namespace skycap::missions::config {
 namespace {
 
-/// A list whose numbers are metres.
+/// Creates a list key with the unit metre.
 template <class Field>
 Key metre_list_key(std::string path, KeyType type, Field field, std::string meaning) {
   Key key = list_key(std::move(path), type, field, std::move(meaning));
@@ -14,17 +14,17 @@ Key metre_list_key(std::string path, KeyType type, Field field, std::string mean
   return key;
 }
 
-/// The field of the flight's settings that `member` points to.
+/// Returns an accessor of a member of the flight options.
 auto flight(auto member) {
   return [member](auto& m) -> auto& { return m.flight.options.*member; };
 }
 
-/// The same of what follows from other keys where it is not given.
+/// Returns an accessor of a member of FlightSection.
 auto section(auto member) {
   return [member](auto& m) -> auto& { return m.flight.*member; };
 }
 
-/// The key `flight.rally`: places on the ground.
+/// Creates the key `flight.rally`: positions on the ground.
 Key rally_key() {
   Key key =
       metre_list_key("flight.rally", KeyType::vectors, flight(&flight::FlightOptions::rally),
@@ -35,12 +35,13 @@ Key rally_key() {
   return key;
 }
 
-/// The field of the fleet's settings that `member` points to.
+/// Returns an accessor of a member of the fleet options.
 auto fleet(auto member) {
   return [member](auto& m) -> auto& { return m.flight.options.fleet.*member; };
 }
 
-/// A key that a mission without a fleet has no value of; `fallback` says what a fleet has.
+/// Removes the value of a key for missions without a fleet. `fallback` describes the default for a
+/// fleet.
 Key of_fleet(std::string fallback, Key key) {
   key.fallback = std::move(fallback);
   key.get = [get = key.get](const MissionDocument& mission) -> std::optional<KeyValue> {
@@ -49,7 +50,7 @@ Key of_fleet(std::string fallback, Key key) {
   return key;
 }
 
-/// The key `flight.vehicles`: a list of texts without a unit.
+/// Creates the key `flight.vehicles`: a list of strings without a unit.
 Key vehicles_key() {
   Key key = list_key("flight.vehicles", KeyType::texts, fleet(&flight::FleetOptions::names),
                      "Several vehicles, each as in flight.vehicle, that share the mission's views. "
@@ -59,7 +60,7 @@ Key vehicles_key() {
   return key;
 }
 
-/// The key `flight.pads`: a place on the ground for each vehicle.
+/// Creates the key `flight.pads`: one ground position per vehicle.
 Key pads_key() {
   Key key = metre_list_key("flight.pads", KeyType::vectors, fleet(&flight::FleetOptions::pads),
                            "Take-off and landing points of flight.vehicles, in the same order.");
@@ -68,7 +69,7 @@ Key pads_key() {
   return key;
 }
 
-/// Several vehicles at once.
+/// Returns the keys of fleets.
 std::vector<Key> fleet_keys() {
   return {
       vehicles_key(),
@@ -89,7 +90,7 @@ std::vector<Key> fleet_keys() {
   };
 }
 
-/// The key `flight.extra_unknown_boxes`: boxes of neighbours.
+/// Creates the key `flight.extra_unknown_boxes`: boxes around neighbours.
 Key unknown_beside_key() {
   Key key = metre_list_key(
       "flight.extra_unknown_boxes", KeyType::vectors, section(&FlightSection::unknown_beside),
@@ -100,7 +101,7 @@ Key unknown_beside_key() {
   return key;
 }
 
-/// What proves a leg.
+/// Returns the keys that determine how legs are verified.
 std::vector<Key> safety_keys() {
   return {
       text_key(
@@ -140,7 +141,7 @@ std::vector<Key> safety_keys() {
   };
 }
 
-/// How the legs are flown.
+/// Returns the keys that determine how legs are flown.
 std::vector<Key> conduct_keys() {
   return {
       otherwise("on the ground beside unknown_box, near the first view",

@@ -14,7 +14,7 @@ namespace {
 using support::YamlEntry;
 using support::YamlNode;
 
-/// A key, by its current section and its former last part. "[]" is the items of a list.
+/// Former key in its current section, with its current last part. "[]" denotes list items.
 struct FormerKey {
   std::string_view path, current;
 };
@@ -42,7 +42,7 @@ constexpr auto former_keys = std::to_array<FormerKey>({
     {"scan.orbit.highest", "max_height"},
 });
 
-/// A value of a key, by the key's current path.
+/// Former value of a key, given by the key's current path.
 struct FormerValue {
   std::string_view path, former, current;
 };
@@ -54,14 +54,14 @@ constexpr auto former_values = std::to_array<FormerValue>({
     {"flight.style", "pass", "fly-through"},
 });
 
-/// What was replaced, as the file has it.
+/// Replaced names as they appear in the file.
 struct Replacement {
   int line = 1;
-  std::string key, current_key;      ///< as in the file; the same if the key is not former
+  std::string key, current_key;      ///< equal if the key is not former
   std::string value, current_value;  ///< both empty if the value is not former
 };
 
-/// Replaces former names in a tree and notes what it replaced.
+/// Replaces former names in a tree and records the replacements.
 class Renaming {
  public:
   explicit Renaming(const std::string& name) : name_(name) {}
@@ -75,7 +75,7 @@ class Renaming {
       const std::string current = current_path(former);
       const std::string key = entry.key;
       if (current != former) {
-        // A key whose section is former, too, is as it is below the current section.
+        // Keys in a former section are relative to the current section.
         entry.key = current.substr(prefix.size());
         require_single(node, entry, former, current);
         names_.push_back({entry.line, former, current});
@@ -115,8 +115,8 @@ bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
 }
 
-/// Where `word` is in `line` from `begin` on as a whole word; of a key a colon follows. npos: it is
-/// not.
+/// Returns the position of `word` as a whole word in `line`, from `begin`. A key must be followed
+/// by a colon. Returns npos if it is not found.
 std::size_t find_word(const std::string& line, const std::string& word, bool is_key,
                       std::size_t begin) {
   for (auto at = line.find(word, begin); at != std::string::npos; at = line.find(word, at + 1)) {
@@ -138,7 +138,7 @@ bool are_equal(const YamlNode& a, const YamlNode& b) {
          });
 }
 
-/// The lines of a text, each with its end.
+/// Splits text into lines, including their line ends.
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t at = 0; at < text.size();) {
@@ -222,7 +222,7 @@ std::string with_current_names(const std::string& text, const std::string& name)
   Renaming renaming(name);
   renaming.rename(wanted, "");
   std::vector<std::string> lines = lines_of(text);
-  std::vector<std::size_t> begins(lines.size(), 0);  // from where a line is not yet rewritten
+  std::vector<std::size_t> begins(lines.size(), 0);  // start of the part not yet rewritten, by line
   for (const Replacement& one : renaming.replaced_) {
     const auto number = static_cast<std::size_t>(one.line) - 1;
     const bool is_key = one.value.empty();

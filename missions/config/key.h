@@ -1,5 +1,5 @@
-/// One key of the mission file: its name, what it takes, what it means, and which field of
-/// MissionDocument it stands for.
+/// Description of one mission key: its path, value type and range, documentation, and the
+/// MissionDocument field it is bound to.
 #pragma once
 
 #include <cstdint>
@@ -24,23 +24,23 @@ enum class KeyType {
   boolean,
   choice,
   vector,
-  polygon,  ///< corners [x, y], three or more
-  volumes,  ///< a list of {corners, floor, ceiling}
-  vectors,  ///< a list of lists of three numbers
-  texts,    ///< a list of texts
+  polygon,  ///< three or more corners [x, y]
+  volumes,  ///< list of {corners, floor, ceiling}
+  vectors,  ///< list of [x, y, z]
+  texts,    ///< list of strings
   integers,
-  pairs,    ///< a map from texts to texts
-  sources,  ///< a list of maps, each with the keys Key::items
+  pairs,    ///< map from strings to strings
+  sources,  ///< list of maps with the keys in Key::items
 };
 
-/// Which numbers a key takes; for a vector, each of its three.
+/// Permitted range of a number. For a vector, it applies to each component.
 struct KeyRange {
   double least = -std::numeric_limits<double>::max();
   double most = std::numeric_limits<double>::max();
   bool excludes_least = false;
 };
 
-/// A value as the file says it, in the file's unit. Text and choices are both text.
+/// Value in the unit of the mission file. Strings and choices are both stored as std::string.
 using KeyValue =
     std::variant<bool, std::int64_t, double, std::string, Eigen::Vector3d,
                  std::vector<Eigen::Vector2d>, std::vector<geometry::Prism>,
@@ -48,20 +48,21 @@ using KeyValue =
                  std::map<std::string, std::string>, std::vector<site_data::Source>>;
 
 struct Key {
-  std::string path;  ///< such as "planner.density"
+  std::string path;  ///< full path, such as "planner.density"
   KeyType type = KeyType::text;
-  std::string unit;  ///< as printed; empty for pure numbers
+  std::string unit;  ///< printed unit; empty for dimensionless numbers
   KeyRange range;
-  std::vector<std::string> choices;  ///< of a number: words that it takes as well
+  /// Permitted words; for a number, accepted in addition to numeric values.
+  std::vector<std::string> choices;
   bool is_required = false;
-  std::string fallback;  ///< in words, when the default is not a value
-  std::string meaning;   ///< one sentence for the user
-  /// The keys of each map of a list. They set and get the last of the mission's list.
+  std::string fallback;  ///< description of the default where it is not a fixed value
+  std::string meaning;   ///< user documentation, one sentence
+  /// Keys of each map in a list. Their accessors operate on the last element of the mission's list.
   std::vector<Key> items;
 
-  /// Puts a value of the right type and range into a mission.
+  /// Stores a value in a mission. The value must have the key's type and be in range.
   std::function<void(MissionDocument&, const KeyValue&)> set;
-  /// The value in a mission; nothing if it is left to be derived.
+  /// Returns the value in a mission, or nullopt if resolve() derives it.
   std::function<std::optional<KeyValue>(const MissionDocument&)> get;
 };
 

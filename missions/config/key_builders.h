@@ -1,4 +1,4 @@
-/// How the tables of keys are written down: one call for each key, which binds it to its field.
+/// Builders for the key tables. Each call describes one key and binds it to its document field.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@
 
 namespace skycap::missions::config {
 
-inline constexpr double far_away = 1e9;  // no survey is larger [m]
+inline constexpr double far_away = 1e9;  // upper bound for lengths in a survey [m]
 
 constexpr KeyRange above(double least, double most = far_away) { return {least, most, true}; }
 constexpr KeyRange between(double least, double most) { return {least, most, false}; }
 
-/// How a field of one type is read and written; its numbers are `factor` times the file's.
+/// Type-erased read and write access to a field. Field values are `factor` times the file's values.
 struct FieldAccess {
   void (*write)(void* field, double factor, const KeyValue& value);
-  /// Nothing if the field is left to be derived.
+  /// Returns nullopt if the field is an empty optional, whose value is derived later.
   std::optional<KeyValue> (*read)(const void* field, double factor);
 };
 
@@ -81,12 +81,12 @@ inline constexpr FieldAccess access_to{write_field<Stored>, read_field<Stored>};
 
 }  // namespace detail
 
-/// Which field of MissionDocument a key stands for: where it is, and how its type is read and
-/// written. Made of a function that returns a reference to the field. A field of type std::optional
-/// is left to be derived when the key is missing; an enumeration is a number.
+/// Binding of a key to a MissionDocument field, with read and write access. Constructed from a
+/// function that returns a reference to the field. Empty std::optional fields are derived later.
+/// Enumerations are accessed as integers.
 struct BoundField {
   template <class Field, class Reference = std::invoke_result_t<Field, MissionDocument&>>
-  BoundField(Field field)  // implicit, so that tables name fields alone
+  BoundField(Field field)  // implicit, so that key tables list only the accessor
       : place([field](MissionDocument& mission) -> void* { return &field(mission); }),
         find([field](const MissionDocument& mission) -> const void* { return &field(mission); }),
         access(&detail::access_to<std::remove_reference_t<Reference>>) {
@@ -98,23 +98,23 @@ struct BoundField {
   const FieldAccess* access;
 };
 
-/// The key that stands for a field. `factor` turns the file's numbers into the field's.
+/// Creates a key for a field. Values in the file are multiplied by `factor` when stored.
 Key key_for(std::string path, KeyType type, BoundField field, std::string meaning,
             double factor = 1.0);
 
-/// A key whose value is a list or map; an empty one stands for none.
+/// Creates a key with a list or map value. An empty list or map counts as missing.
 Key list_key(std::string path, KeyType type, BoundField field, std::string meaning);
 
 Key text_key(std::string path, BoundField field, std::string meaning);
 
-/// A key whose values have a unit and a range. The field holds them times `factor`.
+/// Creates a key with a unit and a range. Values are multiplied by `factor` when stored.
 Key quantity_key(KeyType type, std::string path, std::string unit, KeyRange range, BoundField field,
                  std::string meaning, double factor = 1.0);
 
 Key number_key(std::string path, std::string unit, KeyRange range, BoundField field,
                std::string meaning);
 
-/// A number of degrees whose field is in radians.
+/// Creates a key in degrees whose field is in radians.
 Key angle_key(std::string path, KeyRange range, BoundField field, std::string meaning);
 
 Key integer_key(std::string path, std::string unit, KeyRange range, BoundField field,
@@ -125,25 +125,26 @@ Key boolean_key(std::string path, BoundField field, std::string meaning);
 Key vector_key(std::string path, std::string unit, KeyRange range, BoundField field,
                std::string meaning);
 
-/// Three numbers of degrees whose field is in radians.
+/// Creates a key of three angles in degrees whose field is in radians.
 Key angles_key(std::string path, KeyRange range, BoundField field, std::string meaning);
 
-/// A key for an enumeration whose values, from 0 on, are called `choices`.
+/// Creates a key for an enumeration. `choices` names its values, starting with value 0.
 Key choice_key(std::string path, std::vector<std::string> choices, BoundField field,
                std::string meaning);
 
-/// Says in words what happens without the key.
+/// Sets the description of the default, for keys without a fixed default value.
 Key otherwise(std::string fallback, Key key);
 
 Key required(Key key);
 
-/// A key for one corner of an optional box, which the first of the two keys brings about.
+/// Creates a key for one corner of an optional box. Setting either corner creates the box; the
+/// other corner is then unbounded (±far_away).
 template <class Field>
 Key box_corner(std::string path, Field field, bool is_upper, std::string meaning) {
   Key key;
   key.path = std::move(path);
   key.type = KeyType::vector;
-  key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
+  key.unit = std::string(1, 'm');  // avoids a false warning of GCC 12 for string literals
   key.range = between(-far_away, far_away);
   key.meaning = std::move(meaning);
   key.set = [field, is_upper](MissionDocument& mission, const KeyValue& value) {
@@ -162,7 +163,7 @@ Key box_corner(std::string path, Field field, bool is_upper, std::string meaning
   return key;
 }
 
-/// One list of several.
+/// Concatenates lists of keys.
 std::vector<Key> joined(std::initializer_list<std::vector<Key>> lists);
 
 }  // namespace skycap::missions::config

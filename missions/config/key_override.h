@@ -1,15 +1,15 @@
-/// A change to a mission from outside of its file.
+/// Override of a mission key from outside the mission file.
 #pragma once
 
 #include <string>
 
 namespace skycap::missions::config {
 
-/// A value given beside the file that takes the place of the file's, such as --seed 3.
+/// Value that replaces a key's value in the file, such as --seed 3.
 struct KeyOverride {
-  std::string origin;  ///< what messages call it, such as "--seed"
-  std::string path;    ///< the key, such as "seed"
-  std::string value;   ///< as the file would say it
+  std::string origin;  ///< source named in messages, such as "--seed"
+  std::string path;    ///< key path, such as "seed"
+  std::string value;   ///< value in YAML notation, as in a mission file
 };
 
 }  // namespace skycap::missions::config

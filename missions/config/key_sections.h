@@ -1,4 +1,4 @@
-/// The sections of the mission file, in the order of its manual: the one list of where keys stand.
+/// Sections of the mission file in the order of the reference manual.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ std::vector<Key> live_keys();
 std::vector<Key> prior_keys();
 
 struct KeySection {
-  std::string_view name;  ///< which its keys begin with; empty for those of no section
+  std::string_view name;  ///< prefix of the section's keys; empty for top-level keys
   std::vector<Key> (*keys)();
 };
 

@@ -10,7 +10,7 @@
 namespace skycap::missions::config {
 namespace {
 
-/// The sources without the folders of their files.
+/// Returns the sources with file names instead of paths.
 std::vector<site_data::Source> wherever_they_lie(std::vector<site_data::Source> sources) {
   for (site_data::Source& source : sources) {
     source.file = source.file.filename();
@@ -39,14 +39,14 @@ std::vector<support::Setting> survey_settings(
     }
     const auto value = key.get(document);
     std::string text = value ? to_text(*value) : "-";
-    // A description in a file is identified by its content, not by its path.
+    // Vehicle files are identified by their content, not by their path.
     if (key.path == "flight.vehicle" && vehicle_checksum) {
       text = fmt::format("description {:08x}", *vehicle_checksum);
     }
     if (key.path == "prior") text = to_text(wherever_they_lie(document.prior));
     settings.push_back({key.path, std::move(text)});
   }
-  // Of prior data what it holds, too.
+  // Prior data is identified by its content as well.
   if (!document.scene.priors) return settings;
   std::size_t number = 0;
   for (const std::string& digest : document.scene.priors->digests) {
@@ -62,7 +62,7 @@ std::string attainable_inputs(const MissionDocument& document) {
     const auto value = key.get(document);
     inputs += "\n" + key.path + " " + (value ? to_text(*value) : "-");
   }
-  // Terrain is the ground that hides things, and bounds the heights of views.
+  // Terrain hides surface and limits view heights, as part of the prior data.
   if (!document.scene.priors) return inputs;
   for (const std::string& digest : document.scene.priors->digests) inputs += "\n" + digest;
   return inputs;

@@ -1,4 +1,4 @@
-/// The keys of a document as texts.
+/// String representations of a document's keys, used to identify surveys and cached results.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace skycap::missions::config {
 
-/// All keys in the order of the table but name, seed and threads, and what publications report;
-/// then what the prior data holds. `vehicle_checksum` is the CRC-32 of the vehicle's description
-/// where that is a file.
+/// Returns all keys in table order, except name, seed, threads and the published reference results.
+/// The prior data's checksums follow. `vehicle_checksum` is the CRC-32 of the vehicle description
+/// if that is a file; it replaces the path.
 std::vector<support::Setting> survey_settings(const MissionDocument& document,
                                               const std::optional<std::uint32_t>& vehicle_checksum);
 
-/// The text of all keys that decide what of a scene is visible and attainable, and of what the
-/// prior data holds; each line begins with a line feed.
+/// Returns the keys and prior-data checksums that determine visible surface and attainable
+/// coverage. Each entry begins with a line feed.
 std::string attainable_inputs(const MissionDocument& document);
 
 }  // namespace skycap::missions::config

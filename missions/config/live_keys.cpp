@@ -1,4 +1,4 @@
-// The keys of `live`: what is made of scans that come from outside.
+// Keys of the section `live`: processing of scans from external sensors.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 

@@ -1,7 +1,7 @@
-/// A mission as its file says it. Plain data: a section for each of the file's, which holds the
-/// options of the libraries by value for keys that are used as they stand, and optionals for those
-/// that follow from others where they are not given. read_mission_document() fills it,
-/// docs/reference/mission-file.md lists every key.
+/// Contents of a mission file as plain data, with one struct per section. Keys used unchanged are
+/// stored in the libraries' option structs. Keys whose default is derived from others are
+/// std::optional. read_mission_document() fills the document; docs/reference/mission-file.md
+/// documents every key.
 #pragma once
 
 #include <cstddef>
@@ -35,37 +35,37 @@
 namespace skycap::missions::config {
 
 enum class SensorPreset {
-  d435,             ///< Intel RealSense D435: 848 x 480 pixels, 69.4 x 42.5 degrees
-  high_resolution,  ///< 2400 x 1750 pixels, 60 x 40 degrees (paper §IV-A, Radcliffe Camera)
+  d435,             ///< Intel RealSense D435: 848 x 480 pixels, 69.4° x 42.5°
+  high_resolution,  ///< 2400 x 1750 pixels, 60° x 40° (paper §IV-A, Radcliffe Camera)
 };
 
 struct SensorSection {
   SensorPreset preset = SensorPreset::d435;
-  /// In place of the camera: a laser scanner's preset, or the path of a description.
+  /// Laser scanner used instead of the camera: a preset or the path of a sensor description.
   std::optional<std::string> lidar;
   sim::SurveySensorOptions options;
-  /// Field of a flown rosette scanner; resolve() computes it once.
+  /// Field of view of a rosette scanner in flight. Cached by resolve(), as it is costly to compute.
   std::optional<sim::RosetteField> rosette;
 };
 
 enum class PlannerPreset {
-  paper,     ///< the published parameters
-  building,  ///< what keeps SEE++ from stalling on large scenes: docs/explanation/see.md
+  paper,     ///< published parameters
+  building,  ///< prevents SEE++ from stalling on large scenes: docs/explanation/see.md
 };
 
-/// What the planner skycap spares.
+/// Quantity that the planner skycap minimises.
 enum class PlannerGoal {
-  minutes,  ///< a view costs the seconds that its stop takes, or one view distance of way
-  views,    ///< a view costs three view distances of way
+  minutes,  ///< a view costs the duration of a stop, or one view distance of path without a vehicle
+  views,    ///< a view costs three view distances of path
 };
 
-/// How densely a surface is measured, and from where, whatever the planner.
+/// Sampling density and view distance, used by all planners.
 struct SamplingSection {
-  double density = 146'000.0;                    ///< rho, wanted points per m^3
-  double resolution_radius = 0.017;              ///< r
-  std::optional<double> spacing;                 ///< epsilon, least distance of kept points
-  std::optional<double> view_distance;           ///< d
-  std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are dropped
+  double density = 146'000.0;           ///< rho, required points per m^3
+  double resolution_radius = 0.017;     ///< r [m]
+  std::optional<double> spacing;        ///< epsilon, minimum distance between stored points [m]
+  std::optional<double> view_distance;  ///< d [m]
+  std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are discarded
 };
 
 struct PlannerSection {
@@ -73,70 +73,73 @@ struct PlannerSection {
   PlannerGoal goal = PlannerGoal::views;
   PlannerPreset preset = PlannerPreset::paper;
   SamplingSection sampling;
-  survey::see::SeeConfig see;  ///< what SEE and SEE++ alone use
+  survey::see::SeeConfig see;  ///< settings used only by SEE and SEE++
   survey::skycap::StopRule skycap_stop;
   survey::skycap::SkycapIdeas skycap_ideas;
-  survey::volumetric::VolumetricSettings volumetric;  ///< of the planners rsv to ae
+  survey::volumetric::VolumetricSettings volumetric;  ///< settings of the planners rsv to ae
 };
 
-/// The first view. Without a position it is drawn at random by the seed.
+/// First view. Without a position, the seed determines a random one.
 struct StartSection {
   std::optional<Eigen::Vector3d> position;
-  std::optional<Eigen::Vector3d> look_at;    ///< a point; with a position, either this
-  std::optional<Eigen::Vector3d> direction;  ///< or this is given
+  std::optional<Eigen::Vector3d> look_at;    ///< target point; with a position, either this
+  std::optional<Eigen::Vector3d> direction;  ///< or `direction` is required
 };
 
 struct LimitsSection {
-  survey::SurveyLimits options;            ///< but max_time, which max_minutes says
-  std::optional<double> max_minutes;       ///< of the flight
-  std::optional<double> ground_clearance;  ///< of a view, above the z of `scene.position`
-  double stand_off = 0.0;                  ///< least distance of a view from all that was measured
-  double lowest_pitch = -std::numbers::pi / 2.0;  ///< of the gimbal [rad], down is negative
-  double highest_pitch = std::numbers::pi / 2.0;  ///< [rad]
+  survey::SurveyLimits options;       ///< max_time is not set here but derived from max_minutes
+  std::optional<double> max_minutes;  ///< maximum flight time [min]
+  /// Minimum height of a view above the z of `scene.position` [m].
+  std::optional<double> ground_clearance;
+  double stand_off = 0.0;  ///< minimum distance between a view and all measured points [m]
+  double lowest_pitch = -std::numbers::pi / 2.0;  ///< minimum gimbal pitch [rad], negative is down
+  double highest_pitch = std::numbers::pi / 2.0;  ///< maximum gimbal pitch [rad]
 };
 
-/// The airspace over the site, in the mission's frame: x east, y north, z up.
+/// Airspace limits in the mission frame: x east, y north, z up [m].
 struct SiteSection {
-  std::vector<Eigen::Vector2d> geofence;  ///< polygon to stay inside of; empty: none
-  std::vector<geometry::Prism> no_fly;    ///< to stay outside of
-  std::optional<double> lowest_height;    ///< least z
-  std::optional<double> highest_height;   ///< greatest z
+  /// Polygon that contains all views and paths; empty: unlimited.
+  std::vector<Eigen::Vector2d> geofence;
+  std::vector<geometry::Prism> no_fly;   ///< prisms that no view or path may enter
+  std::optional<double> lowest_height;   ///< minimum z [m]
+  std::optional<double> highest_height;  ///< maximum z [m]
 };
 
-/// Where the local frame (x east, y north, z up) is on the Earth. Missing: files that need it are
-/// not written.
+/// Georeference of the local frame (x east, y north, z up). Without it, files that require
+/// geographic coordinates are not written.
 struct Georeference {
-  std::optional<double> latitude_deg;      ///< of the frame's origin on WGS84
-  std::optional<double> longitude_deg;     ///< east positive
-  double ellipsoid_height = 0.0;           ///< of the origin
-  std::optional<double> geoid_undulation;  ///< height of the geoid above the ellipsoid there
+  std::optional<double> latitude_deg;      ///< WGS84 latitude of the frame's origin
+  std::optional<double> longitude_deg;     ///< WGS84 longitude of the origin, positive east
+  double ellipsoid_height = 0.0;           ///< ellipsoidal height of the origin [m]
+  std::optional<double> geoid_undulation;  ///< geoid height above the ellipsoid at the origin [m]
 };
 
 struct FlightSection {
-  /// Plain keys; what follows from others is not in it yet.
+  /// Options set directly by keys. resolve() adds derived options to a copy.
   flight::FlightOptions options;
-  std::optional<Eigen::AlignedBox3d> unknown_box;  ///< where space must be measured to be free
-  std::vector<Eigen::Vector3d> unknown_beside;     ///< corners of further such boxes, two of each
+  std::optional<Eigen::AlignedBox3d> unknown_box;  ///< box in which unobserved space is occupied
+  /// Lower and upper corners of further such boxes, alternating.
+  std::vector<Eigen::Vector3d> unknown_beside;
   session::Opening opening = session::Opening::none;
 
   bool is_flown() const { return options.vehicle_name != "none"; }
 };
 
-/// What a publication reports for this scene, printed beside the results of trials.
+/// Published results for this scene, printed next to the results of trials.
 struct ReferenceSection {
   std::optional<double> views;
-  std::optional<double> coverage;       ///< share, not percent
-  std::optional<double> planning_time;  ///< [s] for a survey
+  std::optional<double> coverage;       ///< fraction, not percent
+  std::optional<double> planning_time;  ///< duration of all planning in a survey [s]
   std::optional<double> distance;
 };
 
-/// A mission as its file says it, and where the file says what.
+/// Contents of a mission file and the source location of each key.
 struct MissionDocument {
-  std::string file;                                        ///< what messages call it
-  std::map<std::string, std::string, std::less<>> places;  ///< of the keys given: "FILE:LINE", or
-                                                           ///< an override's origin
+  std::string file;  ///< file name in messages
+  /// Location of each given key: "FILE:LINE", or the origin of an override.
+  std::map<std::string, std::string, std::less<>> places;
 
-  std::string name;  ///< names the results' folder
+  std::string name;  ///< mission name, used for the results folder
   scene::SceneOptions scene;
   SensorSection sensor;
   PlannerSection planner;
@@ -151,12 +154,12 @@ struct MissionDocument {
   online::LiveOptions live;
   ReferenceSection paper;
   std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< zero: all processors
+  unsigned threads = 0;  ///< 0: one per processor
 
   bool gives(std::string_view key) const;
 
-  /// Throws Error{bad_config}, one line: "FILE:LINE: key KEY WHAT". A key that is not given stands
-  /// in the first line.
+  /// Throws Error{bad_config} with the one-line message "FILE:LINE: key KEY WHAT". Line 1 is
+  /// reported for keys that are not in the file.
   [[noreturn]] void refuse(std::string_view key, const std::string& what) const;
 };
 

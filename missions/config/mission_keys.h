@@ -1,5 +1,5 @@
-/// Every key of the mission file, in one table: the reader, the JSON Schema and the page
-/// docs/reference/mission-file.md are all made from it.
+/// Table of all mission keys. The reader, the JSON Schema and docs/reference/mission-file.md are
+/// generated from it.
 #pragma once
 
 #include <span>
@@ -10,22 +10,22 @@
 
 namespace skycap::missions::config {
 
-/// All keys, those of a section together.
+/// Returns all keys, grouped by section.
 std::span<const Key> mission_keys();
 
-/// The key with that path, or null.
+/// Returns the key with the given path, or null.
 const Key* find_key(std::string_view path);
 
-/// The words for what a key takes, such as "a number above 0".
+/// Returns a description of permitted values, such as "a number above 0".
 std::string expected_value(const Key& key);
 
-/// A value as a mission file would say it.
+/// Formats a value in the notation of a mission file.
 std::string to_text(const KeyValue& value);
 
-/// The JSON Schema of the mission file, for editors: missions/mission.schema.json.
+/// Returns the JSON Schema of the mission file for editors (missions/mission.schema.json).
 std::string mission_json_schema();
 
-/// The table of keys of docs/reference/mission-file.md.
+/// Returns the key table of docs/reference/mission-file.md.
 std::string mission_key_table();
 
 }  // namespace skycap::missions::config

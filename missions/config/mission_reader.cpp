@@ -22,22 +22,22 @@
 namespace skycap::missions::config {
 namespace {
 
-constexpr std::size_t largest_file = 1 << 20;  // [byte]; a mission has a few thousand
+constexpr std::size_t largest_file = 1 << 20;  // [byte]; missions typically have a few thousand
 
-/// A value and where it stands.
+/// YAML value with its location.
 struct Given {
-  std::string file;   ///< or an option's name
-  std::string place;  ///< "FILE:LINE" or an option's name
+  std::string file;   ///< file name or option name
+  std::string place;  ///< "FILE:LINE" or option name
   support::YamlNode node;
 };
 
-/// The values of a mission by key, checked to be known but not yet read.
+/// Values by key path. The keys are known; the values are not yet parsed.
 using GivenValues = std::map<std::string, Given, std::less<>>;
 
-/// The keys that a map may have, and what messages call it.
+/// Keys permitted in a map, and their prefix in messages.
 struct KnownKeys {
   std::span<const Key> keys;
-  std::string of;  ///< comes before the key, such as "prior[0]."
+  std::string of;  ///< prefix of keys in messages, such as "prior[0]."
   std::string file;
 
   const Key* find(std::string_view path) const {
@@ -54,7 +54,7 @@ struct KnownKeys {
   throw Error(ErrorKind::bad_config, place + ": key " + support::about_key(key, what));
 }
 
-/// The current key of an override, and its value with current names.
+/// Returns the current key path of an override, and its value with current names.
 std::pair<std::string, Given> given_by(const KeyOverride& change) {
   std::string path = current_path(change.path);
   if (!find_key(path)) fail(change.origin, path, unknown_key_message(path, mission_keys()));
@@ -63,7 +63,7 @@ std::pair<std::string, Given> given_by(const KeyOverride& change) {
   return {std::move(path), {change.origin, change.origin, std::move(value)}};
 }
 
-/// Files the values of a map, and of the maps in it, under their keys.
+/// Collects the values of a map and its nested maps by key path.
 void collect(const support::YamlNode& map, const std::string& prefix, const KnownKeys& known,
              GivenValues& values) {
   for (const support::YamlEntry& entry : map.entries) {
@@ -109,7 +109,7 @@ bool contains(const KeyRange& range, double value) {
   return value <= range.most && (range.excludes_least ? value > range.least : value >= range.least);
 }
 
-/// The node's number if it is one, finite, and in range.
+/// Returns the node's value if it is a finite number within `range`.
 std::optional<double> number_in(const support::YamlNode& node, const KeyRange& range) {
   if (node.kind != support::YamlNode::Kind::scalar || node.is_quoted) return std::nullopt;
   const auto number = parsed<double>(node.text);
@@ -189,7 +189,7 @@ std::optional<KeyValue> pairs_in(const support::YamlNode& node) {
   return pairs;
 }
 
-/// A number, or one of the words that the key takes as well.
+/// Returns a number, or one of the words that the key also accepts.
 std::optional<KeyValue> number_or_word(const Key& key, const support::YamlNode& node) {
   const bool is_word = node.kind == support::YamlNode::Kind::scalar &&
                        std::ranges::find(key.choices, node.text) != key.choices.end();
@@ -197,7 +197,7 @@ std::optional<KeyValue> number_or_word(const Key& key, const support::YamlNode& 
   return number_in(node, key.range);
 }
 
-/// The node's value as `key` takes it; nothing if it does not.
+/// Returns the node's value in the type of `key`, or nullopt if it is invalid.
 std::optional<KeyValue> value_for(const Key& key, const support::YamlNode& node) {
   if (key.type == KeyType::vector) return vector_in(node, key.range);
   if (key.type == KeyType::polygon) return polygon_in(node);
@@ -239,7 +239,7 @@ void apply(const Given& given, const Key& key, MissionDocument& mission,
   key.set(mission, *value);
 }
 
-/// One map of a list of them; `places` learns where its keys stand.
+/// Reads one map of a list. The locations of its keys are stored in `result.places`.
 site_data::Source source_in(const support::YamlNode& node, const KnownKeys& known,
                             MissionDocument& result) {
   const std::string place = known.file + ":" + std::to_string(node.line);
@@ -272,7 +272,7 @@ void apply_sources(const Given& given, const Key& key, MissionDocument& result) 
   key.set(result, sources);
 }
 
-/// Sets up what the named presets stand for, before the other keys override it.
+/// Applies the presets, before other keys override their values.
 void apply_presets(MissionDocument& mission) {
   if (mission.sensor.preset == SensorPreset::high_resolution) {
     mission.sensor.options.camera = sim::high_resolution();
@@ -306,7 +306,7 @@ GivenValues collected(const std::string& text, const std::string& name,
   collect(root, "", {mission_keys(), "", name}, values);
   for (const KeyOverride& change : overrides) {
     auto [path, given] = given_by(change);
-    // What a publication reports is for the planner that the file names.
+    // Published results do not apply to another planner than that in the file.
     if (path == "planner.name") {
       std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("paper."); });
     }
@@ -338,7 +338,7 @@ MissionDocument mission_from(const std::string& text, const std::string& name,
   return result;
 }
 
-/// Keys and texts are shown as they were written; what would break the line becomes a space.
+/// Replaces control characters by spaces, so that messages with user input remain a single line.
 std::string one_line(std::string message) {
   std::ranges::replace_if(message, is_control_character, ' ');
   return message;

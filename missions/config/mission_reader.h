@@ -1,5 +1,5 @@
-/// Reads mission files and checks each key by itself. docs/reference/mission-file.md is the manual
-/// of the format; config/resolve.h checks the keys against each other and completes them.
+/// Reads mission files and checks each key separately. docs/reference/mission-file.md documents the
+/// format. config/resolve.h checks combinations of keys and derives missing values.
 #pragma once
 
 #include <filesystem>
@@ -11,21 +11,22 @@
 
 namespace skycap::missions::config {
 
-/// Reads a mission. Names of version 0.1 are accepted (former_names.h). Presets come first, keys
-/// override them wherever they stand. Every value is checked to be of its key's type and in its
-/// range.
+/// Reads a mission file and applies `overrides`. Names of version 0.1 are accepted
+/// (former_names.h). Keys override presets regardless of their order in the file. The type and
+/// range of every value are checked.
 ///
-/// Throws Error{bad_file} if the file cannot be read, and Error{bad_config} with one line,
-/// "FILE:LINE: key PATH WHAT IS WRONG; what would be right", for the first thing that is unknown,
-/// missing, mistyped or out of range.
+/// Throws Error{bad_file} if the file cannot be read. Throws Error{bad_config} for the first
+/// unknown, missing, mistyped or out-of-range key. The message is one line: "FILE:LINE: key PATH
+/// WHAT IS WRONG; what would be right".
 MissionDocument read_mission_document(const std::filesystem::path& file,
                                       const std::vector<KeyOverride>& overrides = {});
 
-/// The same for a mission that is already in memory; `name` stands for the file in messages.
+/// Reads a mission from a string. `name` is the file name in messages. Throws Error{bad_config} as
+/// read_mission_document().
 MissionDocument parse_mission_document(const std::string& text, const std::string& name,
                                        const std::vector<KeyOverride>& overrides = {});
 
-/// Gives keys of a document other values, as if its file said so. Throws as the above.
+/// Applies overrides to a document. Throws Error{bad_config} for unknown keys and invalid values.
 void override_keys(MissionDocument& document, const std::vector<KeyOverride>& changes);
 
 }  // namespace skycap::missions::config

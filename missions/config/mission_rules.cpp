@@ -61,11 +61,12 @@ void check_capture(const MissionDocument& given) {
   }
 }
 
-/// Keys that say nothing without several vehicles.
+/// Keys that require several vehicles.
 constexpr const char* keys_of_fleets[] = {"flight.pads", "flight.fleet_goal", "flight.separation",
                                           "flight.timing_tolerance"};
 
-/// What two vehicles' places may be off together, and their sizes.
+/// Returns the minimum separation [m]: the radii of the two largest vehicles plus twice the
+/// position and tracking errors.
 double least_separation(const flight::FlightOptions& flight) {
   std::vector<double> radii;
   for (const flight::Vehicle& vehicle : flight.fleet.vehicles) radii.push_back(vehicle.radius);
@@ -239,7 +240,7 @@ void lead_fleet(MissionDocument& given) {
   flight::FlightOptions& flight = given.flight.options;
   flight::FleetOptions& fleet = flight.fleet;
   if (fleet.names.empty()) {
-    // A fleet of one is a vehicle once it is resolved.
+    // A resolved fleet of one vehicle is a single vehicle.
     if (given.gives("flight.vehicles") && given.flight.is_flown()) {
       if (!fleet.pads.empty()) {
         given.refuse("flight.pads", "requires flight.vehicles");
@@ -302,7 +303,8 @@ void check_view_limits(const MissionDocument& given) {
 
 namespace {
 
-/// Throws if the candidates' sphere, where both of its keys are given, is below the least height.
+/// Throws if the candidates' sphere is entirely below the minimum height. Applies only if both
+/// sphere keys are set.
 void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
   const survey::volumetric::VolumetricSettings& settings = config.settings;
   if (!settings.sphere_centre || !settings.sphere_radius || !config.least_height) return;
@@ -318,7 +320,8 @@ void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
 
 namespace {
 
-/// The message with the key in place of every field that it names by a word of its own.
+/// Replaces field names in a message by mission keys. Only words with an underscore are treated as
+/// field names.
 std::string in_keys(std::string_view message) {
   const auto is_of_name = [](char c) { return c == '_' || c == '.' || (c >= 'a' && c <= 'z'); };
   std::string text;
@@ -346,7 +349,7 @@ void check_planner(const MissionDocument& given) {
       validate_sphere(*volumetric);
     }
   } catch (const Error& error) {
-    // "FIELD is 3; it must be ...", or a sentence about several fields.
+    // Message: "FIELD is 3; it must be ...", or a sentence about several fields.
     const std::string_view message = error.what();
     const std::string_view field = message.substr(0, message.find(' '));
     const std::string_view key = key_of_field(field);

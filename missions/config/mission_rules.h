@@ -1,39 +1,40 @@
-/// Which keys of a mission do not go together, though each is fine alone. Every check throws
-/// Error{bad_config} as MissionDocument::refuse(), naming one of the keys, for the first rule that
-/// is broken.
+/// Checks of key combinations. Each check throws Error{bad_config} through
+/// MissionDocument::refuse() for the first violated rule, naming one of the keys involved.
 #pragma once
 
 #include "missions/config/mission_document.h"
 
 namespace skycap::missions::config {
 
-/// The mission's name, its model and the box around it.
+/// Checks the mission name, the scene's model and planner.scene_box.
 void check_scene(const MissionDocument& given);
 
-/// What a mission without a scene has to say of its own.
+/// Checks that a mission without a scene sets planner.scene_box and, with a vehicle,
+/// start.position.
 void check_live(const MissionDocument& given);
 
-/// The first view.
+/// Checks the first view.
 void check_start(const MissionDocument& given);
 
-/// The depth camera.
+/// Checks the depth camera and the capture mode.
 void check_sensor(const MissionDocument& given);
 
-/// The place on the Earth; with a vehicle: what is left of the clearance, the climb and the wind.
+/// Checks the georeference. With a vehicle, it also checks the clearance budget, the take-off
+/// climb, the wind limit and the flight mode.
 void check_flight(const MissionDocument& given);
 
-/// Has the first of the fleet's vehicles fly the survey; a fleet of one is none. Throws if keys
-/// about vehicles and pads contradict.
+/// Selects the first vehicle of the fleet for the survey flight. A fleet of one vehicle is
+/// converted to a single vehicle. Throws Error{bad_config} if vehicle and pad keys conflict.
 void lead_fleet(MissionDocument& given);
 
-/// What check_flight() asks of the first vehicle, of the others, too; and of all together that they
-/// have a place on the Earth and a separation that holds their errors.
+/// Applies check_flight() to the other vehicles of the fleet. The fleet must have a georeference,
+/// fly with stops, and keep a separation of at least the vehicles' radii and position errors.
 void check_fleet(const MissionDocument& given);
 
-/// Where views may be and which way they may look, once the ground clearance is known.
+/// Checks the height and pitch limits of views. Requires a completed limits.ground_clearance.
 void check_view_limits(const MissionDocument& given);
 
-/// The settings of the planner that the mission names, and of no other.
+/// Checks the settings of the mission's planner; settings of other planners are ignored.
 void check_planner(const MissionDocument& given);
 
 }  // namespace skycap::missions::config

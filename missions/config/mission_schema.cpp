@@ -1,4 +1,4 @@
-// The table of keys in words: for error messages, for editors, and for the manual.
+// Descriptions of the key table for error messages, editors and the manual.
 #include <sstream>
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double unlimited = std::numeric_limits<double>::max();
 
-/// Twelve digits: more would show that degrees are stored as radians.
+/// Formats with twelve digits, which hides rounding errors of angles stored in radians.
 std::string number_text(double value) { return fmt::format("{:.12g}", value); }
 
 std::string range_text(const KeyRange& range) {
@@ -39,12 +39,12 @@ std::string listed(const std::vector<std::string>& choices) {
   return text;
 }
 
-/// What a key is when it is left out: a value, or words.
+/// Returns the default of a key: a value or a description.
 std::string default_text(const Key& key) {
   if (key.is_required) return "required";
   if (!key.fallback.empty()) return key.fallback;
   MissionDocument blank;
-  blank.prior.emplace_back();  // for the keys of a list's maps
+  blank.prior.emplace_back();  // for keys of maps in a list
   return to_text(*key.get(blank));
 }
 
@@ -142,7 +142,7 @@ Json section_schema() {
   return {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
 }
 
-/// Adds `key` to the schema of the section that holds it, making the sections on the way.
+/// Adds `key` to the schema of its section; missing parent sections are created.
 void add_to_schema(const Key& key, Json& root) {
   Json* section = &root;
   std::string_view rest = key.path;
@@ -243,7 +243,7 @@ std::string mission_json_schema() {
               {"description", "A survey to be planned and simulated with `skycap plan`."}};
   schema.update(section_schema());
   for (const Key& key : mission_keys()) add_to_schema(key, schema);
-  // Which keys exclude or need each other.
+  // Mutually exclusive and dependent keys.
   schema["properties"]["scene"]["not"] = {{"required", {"longest_side", "scale"}}};
   schema["properties"]["start"]["dependencies"] = {
       {"position", {{"oneOf", {{{"required", {"look_at"}}}, {{"required", {"direction"}}}}}}},

@@ -1,6 +1,5 @@
-/// A mission ready to be run: one options struct for each part of the program, complete, and the
-/// texts of the keys that they came from. It is not changed after resolve(); what belongs to one
-/// run is in RunOptions.
+/// A resolved mission: complete options for each module, and the key values that they were derived
+/// from. It is immutable after resolve(). Settings of a single run are in RunOptions.
 #pragma once
 
 #include <memory>
@@ -19,30 +18,30 @@ namespace skycap::missions::config {
 
 struct MissionDocument;
 
-/// What a publication reports for a scene, printed beside the results of trials.
+/// Published results for a scene, printed next to the results of trials.
 struct ReferenceResults {
   std::optional<double> views;
-  std::optional<double> coverage;       ///< share, not percent
-  std::optional<double> planning_time;  ///< [s] for a survey
+  std::optional<double> coverage;       ///< fraction, not percent
+  std::optional<double> planning_time;  ///< duration of all planning in a survey [s]
   std::optional<double> distance;
 };
 
 struct MissionSetup {
-  std::string name;  ///< names the results' folder
+  std::string name;  ///< mission name, used for the results folder
   evaluation::SimulationOptions simulation;
-  std::optional<std::string> lidar;  ///< the preset or description of the scanner that surveys
+  std::optional<std::string> lidar;  ///< preset or description of the surveying laser scanner
   scan::FlownScanOptions scan;
   online::LiveOptions live;
   ReferenceResults reference;
-  session::RunOptions run;  ///< as the mission gives them, or an option of the command line
+  session::RunOptions run;  ///< values from the mission file or from command-line options
 
-  /// All keys that decide how a survey goes, as texts: what an unfinished survey has to be
-  /// continued with, and what makes two trials the same.
+  /// All keys that affect the survey, as strings. They must match for an unfinished survey to be
+  /// resumed, and they identify equivalent trials.
   std::vector<support::Setting> settings;
-  /// What the keys say, completed: for results that keep them.
+  /// Document with all derived values, for results that store the mission.
   std::shared_ptr<const MissionDocument> document;
   struct Source;
-  std::shared_ptr<const Source> source;  ///< what it was resolved from, see with_keys()
+  std::shared_ptr<const Source> source;  ///< inputs of resolve(), for with_keys()
 
   const session::SurveyOptions& survey() const { return simulation.survey; }
   const flight::FlightOptions& flight() const { return simulation.survey.flight; }
@@ -52,8 +51,8 @@ struct MissionSetup {
   support::Identity identity() const { return {run.seed, settings}; }
   bool is_live() const { return scene().model.empty() && !scene().is_truth_prior(); }
 
-  /// The value of a key as a mission file would say it; "-" where it has none. Throws
-  /// std::out_of_range for what is no key.
+  /// Returns the value of a key in mission-file notation, or "-" if it has no value. Throws
+  /// std::out_of_range for an unknown key.
   std::string text(std::string_view key) const;
 };
 

@@ -1,4 +1,4 @@
-// The keys of `planner`.
+// Keys of the section `planner`.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 #include "survey/planners/planner_names.h"
@@ -8,12 +8,12 @@ namespace {
 
 using See = survey::see::SeeConfig;
 
-/// The field of SEE's settings that `member` points to.
+/// Returns an accessor of a member of SEE's settings.
 auto see(auto member) {
   return [member](auto& m) -> auto& { return m.planner.see.*member; };
 }
 
-/// The same of what every planner uses.
+/// Returns an accessor of a member of the sampling settings of all planners.
 auto sampling(auto member) {
   return [member](auto& m) -> auto& { return m.planner.sampling.*member; };
 }
@@ -59,7 +59,7 @@ std::vector<Key> which_planner() {
   };
 }
 
-/// How measurements are kept and classified.
+/// Returns the keys of point storage and classification.
 std::vector<Key> density_keys() {
   const auto scene_box = [](auto& m) -> auto& { return m.planner.sampling.scene_box; };
   return {
@@ -109,7 +109,7 @@ std::vector<Key> density_keys() {
   };
 }
 
-/// What hides frontiers, and where a clear view of them is looked for.
+/// Returns the keys of frontier occlusion and of the search for unoccluded views.
 std::vector<Key> occlusion_keys() {
   return {
       choice_key("planner.offset_line", {"sight_line", "normal"}, see(&See::offset_line),
@@ -145,7 +145,7 @@ std::vector<Key> occlusion_keys() {
   };
 }
 
-/// Which view is next, and when a frontier is given up.
+/// Returns the keys of view selection and of discarding frontiers.
 std::vector<Key> choice_of_view_keys() {
   return {
       boolean_key("planner.visibility_graph", see(&See::visibility_graph),

@@ -12,7 +12,7 @@ std::string named_from(const std::filesystem::path& folder, const std::string& n
 PresetText preset_text(const std::string& kind, const std::string& name_or_file,
                        std::span<const PresetFile> presets) {
   if (name_or_file.ends_with(".yaml")) {
-    constexpr std::size_t largest = 1 << 20;  // [byte]; a description has about a thousand
+    constexpr std::size_t largest = 1 << 20;  // [byte]; descriptions have about a thousand
     const std::string text = geometry::read_file(name_or_file, largest);
     if (text.empty()) throw Error(ErrorKind::bad_file, name_or_file + ": is empty");
     return {text, name_or_file};
@@ -22,7 +22,7 @@ PresetText preset_text(const std::string& kind, const std::string& name_or_file,
     if (preset.name == name_or_file) return {std::string(preset.text), name_or_file + ".yaml"};
     known += (known.empty() ? "" : ", ") + std::string(preset.name);
   }
-  constexpr std::size_t longest = 60;  // of a name in a message
+  constexpr std::size_t longest = 60;  // of names in messages
   const std::string named =
       name_or_file.size() <= longest ? name_or_file : name_or_file.substr(0, longest) + "...";
   throw Error(ErrorKind::bad_config, "unknown " + kind + " " + named +

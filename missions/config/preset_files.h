@@ -1,4 +1,4 @@
-/// The texts of the descriptions that come with the program: sim/sensors/presets/*.yaml and
+/// Sensor and vehicle descriptions compiled into the program: sim/sensors/presets/*.yaml and
 /// flight/motion/presets/*.yaml.
 #pragma once
 
@@ -10,25 +10,26 @@
 namespace skycap::missions::config {
 
 struct PresetFile {
-  std::string_view name;  ///< of the file, without its extension
+  std::string_view name;  ///< file name without extension
   std::string_view text;
 };
 
-/// In alphabetical order.
+/// Return the presets in alphabetical order.
 std::span<const PresetFile> sensor_preset_files();
 std::span<const PresetFile> vehicle_preset_files();
 
 struct PresetText {
   std::string text;
-  std::string file;  ///< what messages call it
+  std::string file;  ///< file name in messages
 };
 
-/// A name that a mission gives: that of a preset, or a path that counts from the mission's folder.
+/// Resolves a name from a mission file: preset names are unchanged, and paths are relative to the
+/// mission's folder.
 std::string named_from(const std::filesystem::path& folder, const std::string& name);
 
-/// The preset of that name, or what the file of that path holds if it ends in .yaml. Throws
-/// Error{bad_config} with the known names, saying what `kind` of thing they are, or
-/// Error{bad_file}.
+/// Returns the preset with the given name, or the contents of a file if the name ends in .yaml.
+/// Throws Error{bad_config} with a list of known names for an unknown preset; `kind` is the noun in
+/// this message. Throws Error{bad_file} if the file cannot be read.
 PresetText preset_text(const std::string& kind, const std::string& name_or_file,
                        std::span<const PresetFile> presets);
 

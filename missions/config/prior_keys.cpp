@@ -1,4 +1,4 @@
-// The key `prior`, and those of each map in its list.
+// Key `prior` and the keys of the maps in its list.
 #include <algorithm>
 
 #include "geometry/angle.h"
@@ -13,7 +13,7 @@ using site_data::HeightDatum;
 using site_data::Role;
 using site_data::Source;
 
-/// The words for these, which have to be all of their kind, in order.
+/// Returns the names of all values of an enumeration, in order.
 template <typename Word>
 std::vector<std::string> names_of(std::initializer_list<Word> all) {
   std::vector<std::string> names;
@@ -21,7 +21,7 @@ std::vector<std::string> names_of(std::initializer_list<Word> all) {
   return names;
 }
 
-/// The field of the list's last source that `member` points to.
+/// Return accessors of a member of the list's last source.
 auto source(auto member) {
   return [member](auto& m) -> auto& { return m.prior.back().*member; };
 }
@@ -29,14 +29,14 @@ auto selection(auto member) {
   return [member](auto& m) -> auto& { return m.prior.back().select.*member; };
 }
 
-/// A text that may be left out.
+/// Creates an optional string key.
 template <class Field>
 Key optional_text_key(std::string path, std::string fallback, Field field, std::string meaning) {
   Key key = list_key(std::move(path), KeyType::text, field, std::move(meaning));
   return otherwise(std::move(fallback), std::move(key));
 }
 
-/// A text that is a path.
+/// Creates a key with a path.
 template <class Field>
 Key path_key(std::string path, Field field, std::string meaning) {
   Key key;
@@ -92,7 +92,7 @@ Key base_key() {
   Key key;
   key.path = "base";
   key.type = KeyType::number;
-  key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
+  key.unit = std::string(1, 'm');  // avoids a false warning of GCC 12 for string literals
   key.range = between(-1e4, 1e4);
   key.choices = {"terrain"};
   key.meaning = "Base height of extruded polygons.";
@@ -109,7 +109,7 @@ Key base_key() {
   return otherwise("from the file", key);
 }
 
-/// A key of the optional place, which the first of them brings about.
+/// Creates a key of the optional georeference, which is created when the first of its keys is set.
 template <class Value>
 Key place_key(std::string path, KeyType type, std::string unit, KeyRange range, double factor,
               Value site_data::Place::*member, std::string meaning) {
@@ -132,7 +132,7 @@ Key place_key(std::string path, KeyType type, std::string unit, KeyRange range, 
   return key;
 }
 
-/// Which file, what it is for, and where it is.
+/// Returns the keys of file, role and georeference.
 std::vector<Key> place_keys() {
   return {
       required(path_key("file", source(&Source::file),
@@ -165,7 +165,7 @@ std::vector<Key> place_keys() {
   };
 }
 
-/// Which part of it.
+/// Returns the keys that select a part of a file.
 std::vector<Key> selection_keys() {
   using site_data::Selection;
   const auto all = [](Key key) { return otherwise("all", std::move(key)); };
@@ -188,7 +188,7 @@ std::vector<Key> selection_keys() {
   };
 }
 
-/// How it is understood.
+/// Returns the keys that specify the interpretation of a file.
 std::vector<Key> meaning_keys() {
   return {
       base_key(),

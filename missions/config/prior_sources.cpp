@@ -1,4 +1,4 @@
-// The prior data of a document: its keys checked, its files read.
+// Prior data of a document: key checks and file access.
 #include "missions/config/prior_sources.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ std::string key_of(std::size_t source, const std::string& key) {
   return "prior[" + std::to_string(source) + "]." + key;
 }
 
-/// A path counts from the mission's folder.
+/// Resolves a path relative to the mission's folder.
 void make_absolute(std::filesystem::path& path, const std::filesystem::path& folder) {
   if (path.empty()) return;
   path = std::filesystem::absolute(folder / path);
@@ -42,7 +42,8 @@ void check_source(const MissionDocument& document, std::size_t i) {
   }
 }
 
-/// What a package kept of a mission gives every key, most of them as they are by default.
+/// Returns whether a key differs from its default. Its presence is not sufficient, because missions
+/// in packages specify every key.
 bool differs_from_default(const MissionDocument& document, const char* path) {
   const Key& key = *find_key(path);
   const auto text = [&](const MissionDocument& given) {

@@ -1,14 +1,15 @@
-/// Steps of resolve() that are about prior data.
+/// Steps of resolve() that handle prior data.
 #pragma once
 
 #include "missions/config/resolve.h"
 
 namespace skycap::missions::config {
 
-/// Makes the paths of prior data absolute: a package holds the mission elsewhere.
+/// Makes the paths of prior data absolute, because a package stores the mission in another folder.
 void make_sources_absolute(MissionDocument& document);
 
-/// What is truth has to have surfaces, and is where its file says.
+/// Checks that ground truth from prior data contains surfaces and that no key transforms it. Throws
+/// Error{bad_config}.
 void check_truth(const MissionDocument& document);
 
 }  // namespace skycap::missions::config

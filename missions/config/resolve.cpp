@@ -26,15 +26,15 @@ namespace {
 using Eigen::Vector3d;
 using sim::ScannerKind;
 
-/// How far beside its place on a map a target is looked for, unless it may be off by more [m].
+/// Default margin around targets in the scene box, unless their uncertainty is larger [m].
 constexpr double most_beside_targets = 3.0;
 
 std::filesystem::path folder_of(const MissionDocument& document) {
   return std::filesystem::path(document.file).parent_path();
 }
 
-/// What a vehicle is called in results. A path counts from the mission's folder, and is kept whole:
-/// the package holds the mission elsewhere.
+/// Returns the vehicle name in results. Paths relative to the mission's folder are made absolute,
+/// because a package stores the mission in another folder.
 std::string vehicle_name(const MissionDocument& document, const std::string& given) {
   if (!given.ends_with(".yaml")) return given;
   return std::filesystem::absolute(named_from(folder_of(document), given)).string();
@@ -49,7 +49,7 @@ flight::Vehicle read_vehicle_of(const MissionDocument& document, const std::stri
   }
 }
 
-/// CRC-32 of the description of a vehicle that is given as a file; nothing for a preset.
+/// Returns the CRC-32 of a vehicle description file, or nullopt for a preset.
 std::optional<std::uint32_t> checksum_of_vehicle(const MissionDocument& document,
                                                  const std::string& given) {
   constexpr std::size_t max_bytes = 1 << 20;
@@ -58,7 +58,7 @@ std::optional<std::uint32_t> checksum_of_vehicle(const MissionDocument& document
   return geometry::crc32_of(geometry::read_file(file, max_bytes));
 }
 
-/// The scanner that `sensor.lidar` names.
+/// Reads the scanner named by `sensor.lidar`.
 sim::LidarConfig read_scanner(const MissionDocument& document) {
   const SensorDescription description =
       find_sensor(named_from(folder_of(document), *document.sensor.lidar));
@@ -70,9 +70,9 @@ sim::LidarConfig read_scanner(const MissionDocument& document) {
   return *lidar;
 }
 
-/// Fixes the scanner to the vehicle. Where no key says otherwise the axis of one that spins lies
-/// along the flight, so that it sees both sides of the way, what is below and what is above; one
-/// that looks one way looks to the left and down. It measures all the way.
+/// Mounts the scanner on the vehicle. By default, the axis of a rotating scanner is along the
+/// flight direction, so that it observes both sides, the ground and the sky. A scanner with a
+/// limited field of view faces left and down by default. The scanner measures continuously.
 void mount_scanner(MissionDocument& document) {
   sim::SurveySensorOptions& sensor = document.sensor.options;
   const sim::LidarConfig& lidar = *sensor.scanner;
@@ -106,7 +106,7 @@ void mount_scanner(MissionDocument& document) {
   if (!document.gives("sensor.frame_period")) sensor.frame_period = sim::scanner_period;
 }
 
-/// Puts the scanner in the camera's place.
+/// Replaces the camera by the scanner.
 void complete_scanner(MissionDocument& document, const Profiles& profiles) {
   if (!document.sensor.lidar) return;
   document.sensor.options.scanner = profiles.scanner;
@@ -120,8 +120,9 @@ void complete_scanner(MissionDocument& document, const Profiles& profiles) {
   }
 }
 
-/// How far aside a rosette's points are displaced, whose directions are far less exact than those
-/// of turning lasers: also those of the ground at the pad, which is seen from all over the box.
+/// Returns the lateral standard deviation of a rosette's points [m], whose angular errors are much
+/// larger than those of rotating scanners. The distance is the diagonal of the unknown box, because
+/// the ground at the pad is observed from its far side as well.
 double noise_aside(const MissionDocument& document) {
   const sim::LidarConfig& scanner = *document.sensor.options.scanner;
   const Eigen::AlignedBox3d box = unknown_box_of(document);
@@ -129,7 +130,8 @@ double noise_aside(const MissionDocument& document) {
   return scanner.errors.angle_sigma * box.sizes().head<2>().norm();
 }
 
-/// A line's camera is as wide as it flies in a period.
+/// Sets the camera model of a single-line scanner. Its width is the distance flown in a frame
+/// period.
 void derive_line_camera(MissionDocument& document) {
   sim::SurveySensorOptions& sensor = document.sensor.options;
   if (kind_of(*sensor.scanner) != ScannerKind::line) return;
@@ -140,7 +142,7 @@ void derive_line_camera(MissionDocument& document) {
                   document.flight.options.cruise_speed * sensor.frame_period / distance);
 }
 
-/// What follows from the scanner for the flight, where no key says otherwise.
+/// Derives flight options from the scanner for keys that are not set.
 void derive_scanner_flight(MissionDocument& document) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   if (!sensor.mount) return;
@@ -148,7 +150,7 @@ void derive_scanner_flight(MissionDocument& document) {
   if (!document.gives("flight.initial_pattern")) {
     document.flight.opening = session::usual_opening(unknown_box_of(document));
   }
-  // What is measured on the ways is measured on those of the survey.
+  // En-route measurements are made on the legs of the survey, so that its order is kept.
   const bool keeps_views = flight.views == flight::MissionViews::survey;
   if (!document.gives("flight.order") && keeps_views) flight.order = flight::VisitOrder::survey;
   if (!document.gives("flight.cruise_speed")) {
@@ -157,8 +159,8 @@ void derive_scanner_flight(MissionDocument& document) {
   }
   derive_line_camera(document);
   if (!document.gives("flight.map_error")) {
-    // What is farther off than five deviations is rare among a hundred million points. Twice the
-    // view distance is as far as what is flown near to is measured from.
+    // Points with errors above five standard deviations are rare among 100 million points. Surfaces
+    // near the path are measured from up to twice the view distance.
     constexpr double deviations = 5.0;
     const double noise = range_noise(*sensor.scanner, 2.0 * view_distance_of(document));
     flight.map_error =
@@ -167,9 +169,10 @@ void derive_scanner_flight(MissionDocument& document) {
   if (!document.gives("scan.sensor")) document.scan.sensor = *document.sensor.lidar;
 }
 
-/// Where no more points fit in, one is within the spacing of every place of the surface: that is as
-/// near as the registration distance asks, with a fifth of it left to the noise. Points nearer to
-/// each other than a camera's rays no view could measure.
+/// Derives the point spacing. If no further point fits, every surface position is within the
+/// spacing of a stored point. The spacing is 80% of the coverage distance; the rest is a margin for
+/// noise. It is not smaller than the distance between camera rays, because no view could provide
+/// such points.
 void derive_spacing(MissionDocument& document) {
   if (document.gives("planner.spacing")) return;
   constexpr double share = 0.8;
@@ -182,12 +185,12 @@ void derive_spacing(MissionDocument& document) {
   document.planner.sampling.spacing = std::min(spacing_of(document), covering);
 }
 
-/// What the building preset derives from other values, where no key says otherwise.
+/// Derives values of the building preset for keys that are not set.
 ///
-/// At building scale the published psi looks at a small part of the sight line only, and targets
-/// hidden by the building itself are taken for visible; it is therefore the whole line. One view
-/// proposal within a twentieth of d keeps the number of proposals below tau. Smooth walls are
-/// measured so evenly that by the published k they have no frontiers at their rims.
+/// At building scale, the published psi covers only a small part of the sight line, so that targets
+/// hidden by the building appear visible. Therefore psi is the whole sight line. Proposing one view
+/// per d/20 keeps the number of proposals below tau. Smooth walls are measured so evenly that the
+/// published k yields no frontiers at their edges.
 void derive_building_preset(MissionDocument& document) {
   if (document.planner.preset != PlannerPreset::building) return;
   survey::see::SeeConfig& see = document.planner.see;
@@ -204,18 +207,18 @@ void derive_building_preset(MissionDocument& document) {
   }
 }
 
-/// The least height of views where no key says it.
+/// Derives the minimum height of views if the key is not set.
 void derive_ground_clearance(MissionDocument& document) {
   std::optional<double>& clearance = document.limits.ground_clearance;
-  // A little more, so that a view at the limit can be proven.
+  // A small margin, so that paths to a view at the limit can be verified.
   if (document.flight.is_flown() && !clearance) {
     clearance = document.flight.options.clearance + 0.01;
   }
   if (document.scene.ground && !clearance) clearance = 0.0;
 }
 
-/// So far beside targets their surface is looked for: not where neighbours are that the sensor will
-/// see.
+/// Returns the margin around targets within which their surface is expected [m]. It does not extend
+/// to neighbours that the sensor observes.
 double beside_targets_of(const MissionDocument& document, const Eigen::AlignedBox3d& targets) {
   const site_data::SitePriors& site = *document.scene.priors;
   double beside = most_beside_targets;
@@ -231,10 +234,9 @@ double beside_targets_of(const MissionDocument& document, const Eigen::AlignedBo
   return beside;
 }
 
-/// planner.scene_box where the mission has none but targets: around them, with 3 m on every side,
-/// or half of the way to the nearest neighbour that the sensor sees, if that is less, or what they
-/// may be off, if that is more. Where views are taken from must not be in it: there nothing is free
-/// before it is measured.
+/// Derives planner.scene_box from the targets. The margin is 3 m, or half the distance to the
+/// nearest observable neighbour if that is smaller. It is at least the targets' uncertainty. Views
+/// must be outside the box, because space inside it is unobserved before the survey.
 void derive_scene_box(MissionDocument& document) {
   std::optional<Eigen::AlignedBox3d>& scene_box = document.planner.sampling.scene_box;
   if (scene_box || !document.scene.priors) return;
@@ -245,7 +247,7 @@ void derive_scene_box(MissionDocument& document) {
   box.min().array() -= beside;
   box.max().array() += beside;
   if (document.scene.ground || document.flight.is_flown()) {
-    // The ground is no target: what is so near to it counts as the ground.
+    // Points close to the ground count as ground, which is not a target.
     const double ground =
         document.scene.position.z() + 2.0 * document.evaluation.registration_distance;
     if (ground < box.max().z()) box.min().z() = std::max(box.min().z(), ground);
@@ -253,7 +255,7 @@ void derive_scene_box(MissionDocument& document) {
   scene_box = box;
 }
 
-/// Everything that prior data is not needed for, and the checks of it.
+/// Completes and checks all keys that do not depend on prior data.
 void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   flight::FlightOptions& flight = document.flight.options;
   flight.vehicle_name = vehicle_name(document, flight.vehicle_name);
@@ -268,11 +270,12 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
       flight.position_error = std::max(flight.position_error, vehicle.position_error);
     }
   }
-  // What flies is there to be done soon: the paper's planners are for comparison.
+  // Flown missions use the planner skycap by default; the paper's planners serve for comparison.
   if (document.flight.is_flown() && !document.gives("planner.name")) {
     document.planner.name = survey::PlannerName::skycap;
   }
-  // A scanner that captures in motion without being asked to leaves the goal as it is.
+  // Only an explicit sensor.capture changes the default goal; a scanner's default of moving capture
+  // does not.
   if (document.gives("sensor.capture") && document.sensor.options.is_moving() &&
       !document.gives("planner.goal")) {
     document.planner.goal = PlannerGoal::minutes;
@@ -284,7 +287,7 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   derive_spacing(document);
 }
 
-/// The rest, once prior data is known.
+/// Completes the keys that depend on prior data.
 void complete_with_priors(MissionDocument& document,
                           std::shared_ptr<const site_data::SitePriors> priors) {
   make_sources_absolute(document);
@@ -318,7 +321,7 @@ scan::FlownScanOptions scan_options(const MissionDocument& document) {
   return options;
 }
 
-/// The options of all libraries from a document that is complete.
+/// Returns the options of all modules for a completed document.
 MissionSetup setup_of(const MissionDocument& document,
                       const std::optional<std::uint32_t>& vehicle_checksum) {
   MissionSetup setup{.name = document.name};
@@ -346,7 +349,7 @@ MissionSetup setup_of(const MissionDocument& document,
 
 }  // namespace
 
-/// A document with all that it was resolved with, so that it can be resolved again.
+/// Inputs of resolve(), stored to resolve the mission again with other keys.
 struct MissionSetup::Source {
   MissionDocument document;
   Profiles profiles;
@@ -367,10 +370,10 @@ Profiles read_profiles(const MissionDocument& document) {
   if (!flight.fleet.names.empty()) {
     profiles.vehicle_checksum = checksum_of_vehicle(document, flight.fleet.names.front());
   }
-  for (const char* name : {"generic", "generic_ardupilot", "m350_rtk"}) {  // one of each dialect
+  for (const char* name : {"generic", "generic_ardupilot", "m350_rtk"}) {  // one per dialect
     profiles.stand_ins.push_back(find_vehicle(name));
   }
-  MissionDocument led = document;  // whose contradictions come before those of its sensor
+  MissionDocument led = document;  // reports conflicts of fleet keys before those of the sensor
   led.flight.options.fleet.vehicles = profiles.fleet;
   lead_fleet(led);
   if (!document.sensor.lidar) return profiles;
@@ -422,7 +425,7 @@ MissionSetup resolve(MissionDocument document, const Report& report) {
     const std::optional<double> geoid = geoid_undulation(document);
     return resolve(std::move(document), profiles, nullptr, geoid);
   }
-  MissionDocument checked = document;  // errors in its keys are reported before files are read
+  MissionDocument checked = document;  // reports errors of keys before prior data is read
   complete_own_keys(checked, profiles);
   const std::optional<double> geoid = geoid_undulation(checked);
   auto priors = read_priors(checked, site_frame(checked, geoid), report);

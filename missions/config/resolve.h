@@ -1,9 +1,8 @@
-/// From what a mission file says to what is run.
+/// Converts a mission document to a setup that can be run.
 ///
-/// A document is completed in a stated order (docs/development/architecture.md): profiles of
-/// vehicle and sensor, the frame of the site, prior data in this frame, then the values that follow
-/// from others. resolve() is a function of its arguments alone, and of a document that it has
-/// completed itself it makes the same setup.
+/// A document is completed in a fixed order (docs/development/architecture.md): vehicle and sensor
+/// profiles, site frame, prior data in this frame, then derived values. resolve() is a pure
+/// function of its arguments. Resolving a completed document again results in the same setup.
 #pragma once
 
 #include <cstdint>
@@ -20,62 +19,66 @@
 
 namespace skycap::missions::config {
 
-/// Told what is being done, where that may take long. May be empty.
+/// Callback for progress messages of long operations. May be empty.
 using Report = std::function<void(const std::string& what)>;
 
-/// What the names in a document stand for.
+/// Vehicles and scanner named in a document.
 struct Profiles {
   std::optional<flight::Vehicle> vehicle;
-  std::optional<std::uint32_t> vehicle_checksum;  ///< CRC-32 of the first vehicle's file, if any
+  /// CRC-32 of the first vehicle's file; nullopt for presets
+  std::optional<std::uint32_t> vehicle_checksum;
   std::vector<flight::Vehicle> fleet;
-  std::vector<flight::Vehicle> stand_ins;  ///< see FlightOptions
+  std::vector<flight::Vehicle> stand_ins;  ///< vehicles of other autopilots, see FlightOptions
   std::optional<sim::LidarConfig> scanner;
 };
 
-/// Reads the descriptions of vehicles and of the scanner that the document names. Throws
-/// Error{bad_config} as MissionDocument::refuse().
+/// Reads the vehicle and scanner descriptions named in the document. Throws Error{bad_config}
+/// through MissionDocument::refuse().
 Profiles read_profiles(const MissionDocument& document);
 
-/// EGM96's undulation where a geoid is asked for and no key says it; nothing where PROJ does not
-/// have it, or nobody asks.
+/// Returns the EGM96 undulation [m] at the site if a vehicle or prior data requires it and no key
+/// sets it. Returns nullopt if the PROJ grid is not installed.
 std::optional<double> geoid_undulation(const MissionDocument& document);
 
-/// The frame that prior data is read in. `geoid` is its undulation at the site, if it is known.
+/// Returns the frame in which prior data is read. `geoid` is the undulation at the site [m], if
+/// known.
 site_data::SiteFrame site_frame(const MissionDocument& document, std::optional<double> geoid);
 
-/// Reads the prior data of a document that is checked as far as that needs; null if it has none.
-/// Throws Error{bad_config} as MissionDocument::refuse(), naming the key of the source. `report` is
-/// told which file it is at: there may be thousands.
+/// Reads the prior data of a document; returns null without prior data. The document's own keys
+/// must already be checked. Throws Error{bad_config} through MissionDocument::refuse() for the key
+/// of the source. `report` receives the name of each file, as there may be thousands.
 std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& document,
                                                          const site_data::SiteFrame& frame,
                                                          const Report& report = {});
 
-/// Fills in the values that follow from others, and checks that the keys go together and that the
-/// mission's planner can work with its settings. Throws Error{bad_config} as
-/// MissionDocument::refuse() for the first that is wrong.
+/// Derives missing values, and checks the key combinations and the planner's settings. Throws
+/// Error{bad_config} through MissionDocument::refuse() for the first violation.
 MissionSetup resolve(MissionDocument document, const Profiles& profiles,
                      std::shared_ptr<const site_data::SitePriors> priors,
                      std::optional<double> geoid = {});
 
-/// The same with all that the document asks for read from files.
+/// Reads the profiles, geoid undulation and prior data that the document names, and then resolves
+/// it. Throws Error{bad_config} and Error{bad_file}.
 MissionSetup resolve(MissionDocument document, const Report& report = {});
 
-/// The setup of the same mission with other values of some keys; prior data is not read again.
+/// Resolves the mission again with changed keys. Prior data is not read again. Mission name and run
+/// options are preserved.
 MissionSetup with_keys(const MissionSetup& setup, const std::vector<KeyOverride>& changes);
 
-/// read_mission_document() and resolve(); throws what they throw, and Error{bad_config} if the
-/// mission has no scene: it is for live surveys.
+/// Reads and resolves a mission file. Throws the errors of read_mission_document() and resolve().
+/// Also throws Error{bad_config} if the mission has no scene, as required for live surveys only.
 MissionSetup read_mission(const std::filesystem::path& file,
                           const std::vector<KeyOverride>& overrides = {},
                           const Report& report = {});
 
-/// The same with or without a scene. Throws Error{bad_config} naming a key that a mission without
-/// one has to give.
+/// Reads and resolves a mission file with or without a scene. Throws Error{bad_config} for keys
+/// that a mission without a scene requires.
 MissionSetup read_live_mission(const std::filesystem::path& file,
                                const std::vector<KeyOverride>& overrides = {},
                                const Report& report = {});
 
-/// The same for a mission that is already in memory; `name` stands for the file in messages.
+/// Reads and resolves a mission from a string, with or without a scene. `name` is the file name in
+/// messages.
 MissionSetup parse_mission(const std::string& text, const std::string& name,
                            const std::vector<KeyOverride>& overrides = {});
 

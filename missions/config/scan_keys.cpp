@@ -1,11 +1,11 @@
-// The keys of `scan`: what is recorded, and how the carrier flies.
+// Keys of the section `scan`: recorded data and flight of the sensor platform.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 
 namespace skycap::missions::config {
 namespace {
 
-/// The field of the scan's settings that `member` points to.
+/// Returns an accessor of a member of the scan settings.
 auto scan(auto member) {
   return [member](auto& m) -> auto& { return m.scan.*member; };
 }

@@ -1,4 +1,4 @@
-// The keys that belong to no section, and those of `scene`.
+// Top-level keys and keys of the section `scene`.
 #include "geometry/angle.h"
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"

@@ -1,4 +1,4 @@
-// The keys of `sensor`.
+// Keys of the section `sensor`.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 
@@ -12,7 +12,7 @@ auto noise(auto member) {
   return [member](auto& m) -> auto& { return m.sensor.options.camera.noise.*member; };
 }
 
-/// The key `sensor.frame_period`, which means nothing without frames on the way.
+/// Creates the key `sensor.frame_period`, which has an effect only for en-route frames.
 Key frame_period_key() {
   Key key = number_key(
       "sensor.frame_period", "s", between(0.05, 3600),
@@ -26,7 +26,7 @@ Key frame_period_key() {
   return key;
 }
 
-/// The key `sensor.lidar`, whose scanner takes the camera's place.
+/// Creates the key `sensor.lidar`, which replaces the camera by a scanner.
 Key lidar_key() {
   return otherwise(
       "-", text_key(

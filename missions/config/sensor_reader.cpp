@@ -14,9 +14,10 @@ namespace skycap::missions::config {
 namespace {
 
 constexpr double degree = geometry::radians_per_degree;
-constexpr double fwhm_to_full_width = 1.69864;  // sqrt(2 / ln 2): half maximum to 1/e^2
+// Factor sqrt(2 / ln 2): full width at half maximum to 1/e^2.
+constexpr double fwhm_to_full_width = 1.69864;
 
-/// The values of a list that is as long as the channels, or of none.
+/// Sets a field of each channel from an optional list with one value per channel.
 void set_each(support::YamlSection& section, const std::string& key,
               std::vector<sim::Channel>& channels, double sim::Channel::*field, double unit) {
   const std::vector<double> values = section.numbers(key);
@@ -30,7 +31,7 @@ void set_each(support::YamlSection& section, const std::string& key,
 
 std::vector<sim::Channel> read_channels(support::YamlSection section) {
   std::vector<sim::Channel> channels;
-  if (section.has("count")) {  // evenly spaced, from the top down as sensors number them
+  if (section.has("count")) {  // evenly spaced from top to bottom, as sensors number channels
     const int count = section.integer("count", 1);
     if (count < 2 || count > 1024) section.fail_at("count", "must be between 2 and 1024");
     const double lowest = section.number("lowest_deg"), highest = section.number("highest_deg");
@@ -188,7 +189,7 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
   root.finish();
   try {
     std::visit([](const auto& config) { config.validate(); }, description.sensor);
-  } catch (const Error& error) {  // it knows the field, not the file
+  } catch (const Error& error) {  // add the file name
     throw Error(error.kind(), file + ": " + error.what());
   }
   return description;

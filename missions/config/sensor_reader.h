@@ -1,5 +1,5 @@
-/// Sensor descriptions: YAML files that say what a sensor measures and with what errors, and the
-/// presets that come with the program (sim/sensors/presets/*.yaml, compiled into it).
+/// Reads sensor descriptions: YAML files that specify measurement characteristics and errors. The
+/// presets in sim/sensors/presets/*.yaml are compiled into the program.
 #pragma once
 
 #include <string>
@@ -13,20 +13,20 @@
 namespace skycap::missions::config {
 
 struct SensorDescription {
-  std::string name;  ///< as the file calls it
+  std::string name;  ///< sensor name in the description
   std::variant<sim::LidarConfig, sim::DepthCameraConfig> sensor;
-  std::string text;  ///< of the file
+  std::string text;  ///< contents of the description file
 };
 
-/// Reads the text of a description; `file` is what messages call it. Throws Error{bad_config} in
-/// the form "FILE:LINE: key KEY WHAT IS WRONG", for unknown, missing and mistyped keys too.
+/// Parses a sensor description. `file` is the file name in messages. Throws Error{bad_config} with
+/// "FILE:LINE: key KEY WHAT IS WRONG" for unknown, missing and invalid keys.
 SensorDescription read_sensor(const std::string& text, const std::string& file);
 
-/// The names of the presets, such as "ouster_os1_128", in alphabetical order.
+/// Returns the names of the presets in alphabetical order, such as "ouster_os1_128".
 std::vector<std::string_view> sensor_presets();
 
-/// The description of that name, or that the file of that path holds if it ends in .yaml. Throws
-/// Error{bad_config} with the known names, or Error{bad_file}.
+/// Returns the preset with the given name, or reads a description if the name ends in .yaml. Throws
+/// Error{bad_config} with a list of known names, or Error{bad_file} if the file cannot be read.
 SensorDescription find_sensor(const std::string& name_or_file);
 
 }  // namespace skycap::missions::config

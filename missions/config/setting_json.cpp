@@ -28,7 +28,7 @@ Json list_json(const std::vector<geometry::Prism>& volumes) {
   return list;
 }
 
-/// A map of the keys that are not as by default: what must be given, then what was.
+/// Returns a map of the required keys and of all keys that differ from their default.
 Json map_json(const site_data::Source& source) {
   MissionDocument mission, blank;
   mission.prior.push_back(source);

@@ -1,4 +1,4 @@
-/// Values of keys as JSON, which a mission file takes as they stand.
+/// Converts key values to JSON that a mission file accepts unchanged.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -34,7 +34,7 @@ std::string text(const std::optional<Value>& value) {
   return value ? text(*value) : "none";
 }
 
-/// Lines of YAML with a growing indentation.
+/// YAML writer that tracks the indentation.
 class Lines {
  public:
   void section(std::string_view name) {

@@ -1,4 +1,4 @@
-/// A resolved mission as text, for people and for tests.
+/// Text representation of a resolved mission, for users and tests.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace skycap::missions::config {
 
-/// YAML: the value of every key after it was completed (`keys`), and the values that follow from
-/// several keys (`derived`) in metres, seconds and degrees.
+/// Returns YAML with the completed value of every key (`keys`) and the values derived from several
+/// keys (`derived`). Units of `derived` are metres, seconds and degrees.
 std::string setup_text(const MissionSetup& setup);
 
 }  // namespace skycap::missions::config

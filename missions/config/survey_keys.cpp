@@ -1,4 +1,4 @@
-// The keys of `start`, `limits`, `evaluation` and `paper`.
+// Keys of the sections `start`, `limits`, `evaluation` and `paper`.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 

@@ -9,7 +9,7 @@
 namespace skycap::missions::config {
 namespace {
 
-/// Levenshtein's distance: how many letters to insert, drop or change.
+/// Returns the Levenshtein distance: the number of characters to insert, delete or replace.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0U);
@@ -32,10 +32,11 @@ std::string_view last_part(std::string_view path) { return path.substr(path.rfin
 std::string unknown_key_message(const std::string& path, std::span<const Key> keys) {
   const Key* nearest = nullptr;
   std::size_t nearest_distance = 0;
-  constexpr std::size_t longest = 100;  // what is longer is no slip, and would take long
+  // Longer keys are not misspellings, and their distances are slow to compute.
+  constexpr std::size_t longest = 100;
   for (const Key& key : keys) {
     if (path.size() > longest) break;
-    // A key may be misspelt, or right (but for a slip) in the wrong section.
+    // A key may be misspelt, or be in the wrong section with at most a slight misspelling.
     const std::size_t slip = edit_distance(last_part(path), last_part(key.path));
     std::size_t distance = edit_distance(path, key.path);
     if (4 * slip <= last_part(path).size()) distance = std::min(distance, slip + 1);

@@ -1,4 +1,4 @@
-/// Help for whoever misspelt a key of a mission.
+/// Suggestions for misspelt mission keys.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace skycap::missions::config {
 
-/// What is wrong with a key that is none of `keys`: the one that was probably meant, or those of
-/// its section.
+/// Returns the error message for an unknown key. It suggests the most similar key, or lists the
+/// keys of the same section.
 std::string unknown_key_message(const std::string& path, std::span<const Key> keys);
 
 }  // namespace skycap::missions::config

@@ -18,7 +18,7 @@ using flight::Vehicle;
 
 using geometry::radians_per_degree;
 
-/// A number of a description, what it may be in the file's unit, and that unit in ours.
+/// Numeric key of a description with its range in the file's unit and the factor to internal units.
 template <typename Owner>
 struct NumberKey {
   const char* key;
@@ -65,7 +65,8 @@ constexpr std::array mode_numbers{
     NumberKey<MissionMode>{"touchdown_time", &MissionMode::touchdown_time, 0, 60},
 };
 
-/// Reads the keys of one description; `keeps` what it does not name, or refuses that it is missing.
+/// Reads the keys of a description. If `keeps` is set, missing keys keep their values; otherwise
+/// they are errors.
 class VehicleReader {
  public:
   VehicleReader(support::YamlSection& root, Vehicle& vehicle, bool keeps)
@@ -81,7 +82,7 @@ class VehicleReader {
     }
     if (vehicle_.dialect == Dialect::dji || root_.has("wpml")) read_codes();
     read_numbers<Vehicle>(root_, vehicle_, vehicle_numbers);
-    if (root_.has(position_error.key)) {  // optional: descriptions of version 0.1 do not have it
+    if (root_.has(position_error.key)) {  // optional, because descriptions of version 0.1 lack it
       read_numbers<Vehicle>(root_, vehicle_, std::span(&position_error, 1));
     }
     if (wants(root_, "rotors")) vehicle_.rotors = whole_number("rotors", 1, 100);
@@ -175,7 +176,7 @@ flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
   }
   try {
     const flight::Motion motion(vehicle, {.cruise_speed = vehicle.max_speed});
-  } catch (const Error& error) {  // what does not go together
+  } catch (const Error& error) {  // conflicting values
     root.fail_at("endurance_min", error.what());
   }
   return vehicle;

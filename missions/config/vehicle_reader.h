@@ -1,5 +1,5 @@
-/// Vehicle descriptions: YAML files that say what a vehicle can do and how its autopilot flies it,
-/// and the presets that come with the program (flight/motion/presets/*.yaml, compiled into it).
+/// Reads vehicle descriptions: YAML files that specify flight performance and autopilot behaviour.
+/// The presets in flight/motion/presets/*.yaml are compiled into the program.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace skycap::missions::config {
 
-/// Reads the text of a description; `file` is what messages call it. A description with the key
-/// `like` starts from that preset and says what is different; any other says everything. Throws
-/// Error{bad_config} in the form "FILE:LINE: key KEY WHAT IS WRONG", for unknown, missing and
-/// mistyped keys and values out of range.
+/// Parses a vehicle description. `file` is the file name in messages. With the key `like`, the
+/// named preset provides the values of missing keys; otherwise every key is required. Throws
+/// Error{bad_config} with "FILE:LINE: key KEY WHAT IS WRONG" for unknown, missing, mistyped and
+/// out-of-range keys.
 flight::Vehicle read_vehicle(const std::string& text, const std::string& file);
 
-/// The names of the presets, such as "m350_rtk", in alphabetical order.
+/// Returns the names of the presets in alphabetical order, such as "m350_rtk".
 std::vector<std::string_view> vehicle_presets();
 
-/// The vehicle of that name, or that the file of that path holds if it ends in .yaml. Throws
-/// Error{bad_config} with the known names, or Error{bad_file}.
+/// Returns the preset with the given name, or reads a description if the name ends in .yaml. Throws
+/// Error{bad_config} with a list of known names, or Error{bad_file} if the file cannot be read.
 flight::Vehicle find_vehicle(const std::string& name_or_file);
 
 }  // namespace skycap::missions::config

@@ -1,4 +1,4 @@
-// The keys of `volumetric`.
+// Keys of the section `volumetric`.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 
@@ -20,7 +20,7 @@ auto rays(auto member) {
   return [member](auto& m) -> auto& { return m.planner.volumetric.rays.*member; };
 }
 
-/// Which views are candidates, and which of them is taken.
+/// Returns the keys of candidate views and their selection.
 std::vector<Key> candidate_keys() {
   return {
       otherwise("130; in a benchmark, the maximum number of views that see needed",
@@ -44,7 +44,7 @@ std::vector<Key> candidate_keys() {
   };
 }
 
-/// How the readings of a gain differ.
+/// Returns the keys of the gain variants.
 std::vector<Key> gain_keys() {
   return {
       choice_key(
@@ -60,7 +60,7 @@ std::vector<Key> gain_keys() {
   };
 }
 
-/// Rays of a candidate, and what the map takes in.
+/// Returns the keys of candidate rays and of map updates.
 std::vector<Key> map_keys() {
   return {
       number_key("volumetric.rays_per_pixel", "1/px", above(0, 1),

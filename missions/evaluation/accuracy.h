@@ -1,4 +1,4 @@
-/// How accurate a cloud is: the distances of its points from the true surface.
+/// Accuracy of a point cloud: distances of its points from the ground-truth surface.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace skycap::missions::evaluation {
 
-/// Distances of measured points from the true surface [m]. All zero of no points.
+/// Statistics of point distances from the ground-truth surface [m]. All are zero for an empty
+/// cloud.
 struct CloudAccuracy {
   double mean = 0.0;
   double root_mean_square = 0.0;
@@ -24,20 +25,21 @@ struct CloudAccuracy {
   double largest = 0.0;
 };
 
-/// What is kept of distances, from which all figures follow, whoever has measured which of them:
-/// four bytes of each, whose precision median, percentile and largest have.
+/// Partial result of distance statistics. Tallies of different parts of a cloud can be merged in
+/// any order without changing the result. Distances are stored in single precision, which limits
+/// the precision of median, percentile and maximum.
 struct DistanceTally {
   ExactSum sum, squares;
   std::vector<float> distances;
-  std::uint64_t beside = 0;  ///< points of what stands beside the surface
+  std::uint64_t beside = 0;  ///< points on adjacent objects, not on the surface
 
   void add(const DistanceTally& more);
-  /// Sorts the distances.
+  /// Computes the statistics. Sorts the stored distances.
   CloudAccuracy accuracy();
 };
 
-/// Measures them while points come in, in any pieces. Points that are nearer to what stands
-/// `beside` the surface, such as ground, are of that, and have no part in the figures.
+/// Computes distance statistics incrementally. Points closer to the mesh `beside` (such as ground)
+/// than to the surface are attributed to it and excluded from the statistics.
 class AccuracyMeter {
  public:
   explicit AccuracyMeter(const geometry::Mesh& truth, unsigned threads = 0,
@@ -45,22 +47,22 @@ class AccuracyMeter {
 
   void add(std::span<const Eigen::Vector3f> points);
 
-  std::size_t points() const { return tally_.distances.size(); }  ///< of the surface
+  std::size_t points() const { return tally_.distances.size(); }  ///< points on the surface
   std::uint64_t beside() const { return tally_.beside; }
-  /// Leaves nothing.
+  /// Returns the tally and resets it.
   DistanceTally take_tally() { return std::exchange(tally_, {}); }
 
-  /// The share of the points so far that are no farther than that from the surface.
+  /// Returns the fraction of points so far within `distance` of the surface [m].
   double share_within(double distance) const;
 
-  /// Of all points so far; sorts what is kept.
+  /// Returns the statistics of all points so far. Sorts the stored distances.
   CloudAccuracy accuracy() { return tally_.accuracy(); }
 
  private:
   geometry::MeshDistance distance_;
   std::optional<geometry::MeshDistance> beside_;
   unsigned threads_;
-  std::vector<double> piece_, piece_beside_;  ///< memory for the distances of what is added
+  std::vector<double> piece_, piece_beside_;  ///< reused buffers for the distances of added points
   DistanceTally tally_;
 };
 

@@ -1,4 +1,4 @@
-/// A cloud against the true surface: how much of it is covered, and how far off the points are.
+/// Evaluation of a cloud against the ground-truth surface: coverage and accuracy.
 #pragma once
 
 #include <cstddef>
@@ -15,45 +15,46 @@
 namespace skycap::missions::evaluation {
 
 struct CloudJudgement {
-  std::size_t points = 0;    ///< of the surface
-  std::uint64_t beside = 0;  ///< points of what stands beside it
-  double coverage = 0.0;     ///< share of the surface, in [0, 1]
+  std::size_t points = 0;    ///< points on the surface
+  std::uint64_t beside = 0;  ///< points on adjacent objects
+  double coverage = 0.0;     ///< covered fraction of the surface, in [0, 1]
   CloudAccuracy accuracy;
-  double area = 0.0;  ///< of the surface [m^2]
-  /// For each of the places asked, 1 if it is covered; empty where that was not kept.
+  double area = 0.0;  ///< surface area [m^2]
+  /// For each surface sample, 1 if it is covered and 0 otherwise. Empty if not recorded.
   std::vector<std::uint8_t> is_covered{};
 
-  /// Points for each square metre of the surface.
+  /// Returns the number of points per square metre of surface.
   double density() const { return static_cast<double>(points) / area; }
 };
 
-/// What judging is made of: parts of a cloud, judged by whoever, add up to all of it.
+/// Partial result of an evaluation. Tallies of parts of a cloud add up to that of the whole cloud.
 struct CloudTally {
   DistanceTally distances;
-  std::vector<std::uint8_t> is_covered;  ///< of each of the places asked; of equally many
+  /// For each surface sample, 1 if covered; sizes must match in add().
+  std::vector<std::uint8_t> is_covered;
 
   void add(const CloudTally& more);
 };
 
-/// Of a surface of that area. Sorts the distances.
+/// Computes the evaluation for a surface of `area` [m^2]. Sorts the distances in `tally`.
 CloudJudgement judgement_of(CloudTally& tally, double area);
 
-/// `count` places of a surface that stand for it, the same ones each time.
+/// Returns `count` deterministic, evenly distributed samples of a surface.
 std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size_t count);
 
-/// Takes in a cloud of any length, in any pieces.
+/// Evaluates a cloud that is added in pieces of any size.
 class CloudJudge {
  public:
-  /// `places` of the surface are covered by points within `registration_distance` of them. What is
-  /// `beside` it counts as AccuracyMeter says.
+  /// Prepares `places` surface samples. A sample is covered if a point is within
+  /// `registration_distance` of it [m]. Points on `beside` are handled as in AccuracyMeter.
   CloudJudge(const geometry::Mesh& truth, std::size_t places, double registration_distance,
              unsigned threads = 0, const geometry::Mesh& beside = {});
 
   void add(std::span<const Eigen::Vector3f> points);
 
-  /// Of all points so far, of which it keeps no distances.
+  /// Returns the tally of all points so far and clears the stored distances.
   CloudTally take_tally() { return {accuracy_.take_tally(), coverage_.is_covered()}; }
-  CloudJudgement judgement();  ///< of take_tally()
+  CloudJudgement judgement();  ///< evaluates take_tally()
 
  private:
   double area_;

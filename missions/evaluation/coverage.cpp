@@ -10,7 +10,7 @@
 namespace skycap::missions::evaluation {
 
 CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double registration_distance)
-    // A ball of radius r_d then touches at most two cells on each axis. The margin is for the
+    // A ball of radius r_d then intersects at most two cells per axis. The margin allows for the
     // rounding of coordinates to cells.
     : cell_size_(2.0 * registration_distance * (1.0 + 1e-6)),
       squared_distance_(static_cast<float>(registration_distance * registration_distance)),
@@ -31,7 +31,8 @@ CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double re
 }
 
 CoverageMeter::Cell CoverageMeter::cell_at(std::int64_t x, std::int64_t y, std::int64_t z) {
-  // 21 bits an axis. Cells that share a number are merely searched together.
+  // Uses 21 bits per axis. Cells with the same key are searched together, without affecting the
+  // result.
   constexpr std::int64_t mask = (1 << 21) - 1;
   return static_cast<Cell>((x & mask) << 42 | (y & mask) << 21 | (z & mask));
 }
@@ -45,7 +46,7 @@ CoverageMeter::Cell CoverageMeter::cell_of(const Eigen::Vector3f& sample) const 
 
 void CoverageMeter::add(std::span<const Eigen::Vector3f> points) {
   for (const Eigen::Vector3f& point : points) {
-    // The cell corner nearest to the point: the eight cells around it hold the whole ball.
+    // The eight cells around the cell corner nearest to the point contain the whole ball.
     const auto corner = [&](int axis) {
       return static_cast<std::int64_t>(std::floor(double{point[axis]} / cell_size_ + 0.5));
     };

@@ -1,5 +1,5 @@
-/// How much of the scene's surface a cloud covers. The evaluation alone knows the truth; planners
-/// never see any of this. Definitions: docs/explanation/coverage.md.
+/// Surface coverage of a point cloud with respect to the ground truth. Only the evaluation uses the
+/// ground truth; planners have no access to it. Definitions: docs/explanation/coverage.md.
 #pragma once
 
 #include <cstddef>
@@ -14,26 +14,25 @@
 
 namespace skycap::missions::evaluation {
 
-/// Keeps count of the surface samples that have a measurement within the registration distance
-/// r_d, while measurements come in. A measurement costs constant time: covered samples are taken
-/// out of the search.
+/// Counts surface samples that have a measurement within the coverage distance r_d. Each
+/// measurement takes constant time, because covered samples are removed from the search structure.
 class CoverageMeter {
  public:
   CoverageMeter(std::span<const Eigen::Vector3f> samples, double registration_distance);
 
-  /// Takes in further measurements.
+  /// Adds measurements.
   void add(std::span<const Eigen::Vector3f> points);
 
-  /// For each sample, 1 if it is covered, else 0.
+  /// Returns 1 for each covered sample and 0 for the others.
   const std::vector<std::uint8_t>& is_covered() const { return is_covered_; }
-  /// The covered share of all samples.
+  /// Returns the covered fraction of all samples.
   double share() const;
 
  private:
   using Cell = std::uint64_t;
-  /// What is left of a cell's samples.
+  /// Uncovered samples of a grid cell.
   struct Range {
-    std::uint32_t begin = 0, end = 0;  ///< of samples_
+    std::uint32_t begin = 0, end = 0;  ///< range in samples_
   };
   struct Sample {
     Eigen::Vector3f position;
@@ -49,17 +48,18 @@ class CoverageMeter {
   std::size_t covered_ = 0;
   std::vector<std::uint8_t> is_covered_;
   geometry::HashGrid<Range> ranges_;
-  std::vector<Sample> samples_;  ///< cell by cell
+  std::vector<Sample> samples_;  ///< grouped by cell
 };
 
-/// The covered share of those samples that `counts` marks; nothing if it marks none.
+/// Returns the covered fraction of the samples marked in `counts`, or nullopt if no sample is
+/// marked.
 std::optional<double> covered_share(std::span<const std::uint8_t> is_covered,
                                     std::span<const std::uint8_t> counts);
 
-/// The share of samples that are marked; zero of none.
+/// Returns the fraction of marked samples, or zero for an empty list.
 double marked_share(std::span<const std::uint8_t> marks);
 
-/// `count` unit vectors, spread evenly over the sphere: the points of a Fibonacci lattice.
+/// Returns `count` unit vectors evenly distributed on the sphere (Fibonacci lattice).
 std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count);
 
 }  // namespace skycap::missions::evaluation

@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Samples beside each other that are not known to be visible: their sight lines in one direction
-/// are looked along together.
+/// Neighbouring samples whose visibility is not yet known. Their sight lines in one direction are
+/// traced together.
 struct Neighbours {
   struct Sample {
     std::uint32_t index;
@@ -29,8 +29,8 @@ struct Neighbours {
   const sim::Scene* scene;
   const Admissible* admissible;
 
-  /// Takes out those that are visible from a direction. Where the sensor may not be takes less time
-  /// to tell than what hides a sample from there.
+  /// Removes samples visible from a direction. Admissibility is tested first, because it takes less
+  /// time than occlusion.
   void look(const Vector3d& direction, std::vector<std::uint8_t>& is_visible) {
     std::array<sim::Scene::Sight, sim::Scene::most_sights> sights;
     std::array<std::size_t, sim::Scene::most_sights> targets;
@@ -81,8 +81,8 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
          std::span(order).subspan(begin, std::min(group, order.size() - begin))) {
       hidden.samples.push_back({entry.index, samples[entry.index].cast<double>()});
     }
-    // Starting at another direction each time tells nothing about where "up" is, and finds a free
-    // one as soon as any fixed order would.
+    // Each sample group starts with another direction, which avoids a directional bias. A free
+    // direction is found as fast as with any fixed order.
     for (std::size_t k = 0; k < directions.size() && !hidden.samples.empty(); ++k) {
       hidden.look(directions[(i + k) % directions.size()], is_visible);
     }
@@ -114,7 +114,7 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
     const Vector3d target = samples[targets[next++]].cast<double>();
     const auto position =
         free_position(target, directions, random() % directions.size(), scene, admissible);
-    if (!position) continue;  // cannot be: the sample is visible
+    if (!position) continue;  // does not occur, because the sample is visible
     scan = take_scan(geometry::look_at(*position, target), view, std::move(scan));
     meter.add(cloud.store(scan.points, config.box));
   }

@@ -1,4 +1,4 @@
-/// What could have been covered at all: what a survey's coverage is read against.
+/// Visible and attainable surface: upper bounds for the coverage of a survey.
 #pragma once
 
 #include <cstddef>
@@ -18,47 +18,49 @@
 
 namespace skycap::missions::evaluation {
 
-/// Where a sensor may look at the scene from.
+/// Permitted sensor poses for observing the scene.
 struct Admissible {
-  double view_distance = 1.0;  ///< from the surface point looked at
-  /// Whether the sensor may be there, on top of that; must be safe to call from several threads.
-  /// Empty: anywhere.
+  double view_distance = 1.0;  ///< distance from the target point on the surface [m]
+  /// Additional condition for a view. It is called concurrently from several threads. Empty: every
+  /// view is permitted.
   std::function<bool(const geometry::View&)> allows;
-  std::size_t directions = 200;  ///< tried around a surface point, spread over the sphere
-  double clearance = 1e-4;       ///< a sight line may end this far before the surface point
+  /// Directions tested around a surface point, distributed over the sphere.
+  std::size_t directions = 200;
+  double clearance = 1e-4;  ///< distance from the surface point at which a sight line may end [m]
 };
 
-/// The first admissible position, trying `directions` from number `first` on and around, that has
-/// a free line of sight to `target`; nothing if none has.
+/// Returns the first admissible position with a free line of sight to `target`. `directions` are
+/// tested cyclically, starting at index `first`. Returns nullopt if no direction has a free line of
+/// sight.
 std::optional<Eigen::Vector3d> free_position(const Eigen::Vector3d& target,
                                              std::span<const Eigen::Vector3d> directions,
                                              std::size_t first, const sim::Scene& scene,
                                              const Admissible& admissible);
 
-/// For each sample, 1 if some admissible sensor position has a free line of sight to it, else 0.
-/// Ends early, of no use, when `stop` is requested.
+/// Returns 1 for each sample with a free line of sight from an admissible position, and 0 for the
+/// others. Computed in parallel; the result is invalid after a stop request.
 std::vector<std::uint8_t> visible_samples(std::span<const Eigen::Vector3f> samples,
                                           const sim::Scene& scene, const Admissible& admissible,
                                           unsigned threads = 0, std::stop_token stop = {});
 
-/// How the attainable coverage is measured.
+/// Settings for computing the attainable coverage.
 struct CeilingConfig {
   std::size_t views = 100;
-  double spacing = 0.003;                ///< epsilon, least distance of stored points
-  double registration_distance = 0.005;  ///< r_d
-  Eigen::AlignedBox3d box;               ///< measurements outside are dropped; empty: none is
+  double spacing = 0.003;                ///< epsilon, minimum distance between stored points [m]
+  double registration_distance = 0.005;  ///< r_d, coverage distance [m]
+  Eigen::AlignedBox3d box;               ///< measurements outside are discarded; empty: unlimited
   std::uint64_t seed = 1;
 };
 
-/// What the sensor measures from a view; `frame` numbers its scans, and the memory of `recycled`
-/// may be used again.
+/// Simulates a scan from a view. `frame` is the scan's number in the noise sequence; the memory of
+/// `recycled` may be reused.
 using TakeScan = std::function<geometry::Scan(const geometry::View& view, std::uint64_t frame,
                                               geometry::Scan recycled)>;
 
-/// For each sample, 1 if a survey could cover it at all, given sensor noise and the spacing of
-/// stored points, else 0: what up to `views` admissible views cover together, each aimed at a
-/// visible sample that the views before have left uncovered. Ends early when there is none left,
-/// or, of no use, when `stop` is requested.
+/// Returns 1 for each sample that a survey could cover despite sensor noise and point spacing, and
+/// 0 for the others. The samples are covered by up to `views` admissible views, each aimed at a
+/// visible sample not covered by previous views. Ends early if all visible samples are covered. The
+/// result is invalid after a stop request.
 std::vector<std::uint8_t> attainable_samples(std::span<const Eigen::Vector3f> samples,
                                              std::span<const std::uint8_t> is_visible,
                                              const sim::Scene& scene, const TakeScan& take_scan,

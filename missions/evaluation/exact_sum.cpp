@@ -21,9 +21,10 @@ void ExactSum::carry(Digits& sum) {
 void ExactSum::add(double number) {
   constexpr std::uint64_t fraction = (std::uint64_t{1} << 52) - 1;
   const auto bits = std::bit_cast<std::uint64_t>(number);
-  const std::uint64_t exponent = bits >> 52;  // the sign is zero
+  const std::uint64_t exponent = bits >> 52;  // the sign bit is zero
   const std::uint64_t mantissa = (bits & fraction) | (exponent == 0 ? 0 : fraction + 1);
-  const std::uint64_t place = exponent == 0 ? 0 : exponent - 1;  // above the lowest exponent
+  // Bit position above the minimum exponent.
+  const std::uint64_t place = exponent == 0 ? 0 : exponent - 1;
   std::uint64_t* const to = digits_.data() + place / 32;
   const std::uint64_t lower = (mantissa & low) << place % 32;
   const std::uint64_t upper = (mantissa >> 32) << place % 32;
@@ -44,7 +45,7 @@ void ExactSum::add(const ExactSum& more) {
 
 double ExactSum::value() const {
   const Digits sum = all_digits();
-  double value = 0.0;  // digits of growing weight, so that rounding them off loses least
+  double value = 0.0;  // adding digits by increasing weight minimises the rounding error
   for (std::size_t i = 0; i < digits; ++i) {
     const int exponent = lowest_exponent + 32 * static_cast<int>(i);
     value += std::ldexp(static_cast<double>(sum[i]), exponent);

@@ -1,4 +1,4 @@
-/// A sum that does not depend on the order of what is added, nor on who has added which part of it.
+/// Exact summation, independent of the order of the summands and of the division into partial sums.
 #pragma once
 
 #include <array>
@@ -7,32 +7,31 @@
 
 namespace skycap::missions::evaluation {
 
-/// Of finite numbers that are not negative; no rounding is done before value(). Holds up to 2^62
-/// of them.
+/// Sum of up to 2^62 finite, non-negative numbers. Only value() rounds.
 class ExactSum {
  public:
-  /// Digits of the sum to the base 2^32, the lowest counting 2^-1074s.
+  /// Number of base-2^32 digits of the sum. The lowest digit has the weight 2^-1074.
   static constexpr std::size_t digits = 69;
   using Digits = std::array<std::uint64_t, digits>;
 
   ExactSum() = default;
-  /// That of which these are the digits().
+  /// Restores a sum from all_digits().
   explicit ExactSum(const Digits& sum) : digits_(sum) {}
 
   void add(double number);
   void add(const ExactSum& more);
 
-  /// The sum, right to the last digit or the one before.
+  /// Returns the sum with an error of at most one unit in the last place.
   double value() const;
 
-  /// Each below 2^32: equal sums have equal ones.
+  /// Returns the normalised digits, each below 2^32. Equal sums have equal digits.
   Digits all_digits() const;
 
  private:
   static void carry(Digits& sum);
 
   Digits digits_{};                ///< each below 2^63
-  std::uint32_t not_carried_ = 0;  ///< additions since carry()
+  std::uint32_t not_carried_ = 0;  ///< additions since the last carry()
 };
 
 }  // namespace skycap::missions::evaluation

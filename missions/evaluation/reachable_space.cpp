@@ -13,17 +13,17 @@ using Eigen::Vector3d;
 
 constexpr double cells_a_radius = 8.0;
 constexpr double cells_a_side = 300.0;
-constexpr int nearby = 2;  // leads_to() looks so many finest cells around
+constexpr int nearby = 2;  // search radius of leads_to() in finest cells
 
-// States of leaves; smaller numbers are the first of eight children.
+// States of leaves. Smaller values are the index of the first of eight children.
 constexpr std::uint32_t closed = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t open = closed - 1;
 constexpr std::uint32_t reached = closed - 2;
 
-// Of a cell whose children are looked at next; the root is nobody's child.
+// State of a cell to be subdivided. It is unambiguous, because the root is never a child.
 constexpr std::uint32_t divided = 0;
 
-/// Where a cell is between the heights that ways may have.
+/// Position of a cell relative to the height range of paths.
 enum class Heights { outside, partly, inside };
 
 using Place = std::array<std::int32_t, 3>;
@@ -36,7 +36,7 @@ Place child_of(const Place& corner, std::int32_t half, std::uint32_t child) {
   return place;
 }
 
-/// Steps to the finest cells around one, nearest first.
+/// Returns offsets to the surrounding finest cells, nearest first.
 const std::vector<Place>& steps_around() {
   static const auto steps = [] {
     std::vector<Place> all;
@@ -81,7 +81,7 @@ ReachableSpace::ReachableSpace(const geometry::MeshDistance& surface,
 
 void ReachableSpace::lay_out(Eigen::AlignedBox3d box, const Config& config) {
   cell_ = std::max(config.radius / cells_a_radius, box.sizes().maxCoeff() / cells_a_side);
-  // Around it a layer of cells that are open for sure.
+  // A layer of open cells around the box.
   const Vector3d margin = Vector3d::Constant(config.radius + 2.0 * cell_);
   box = Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
   is_floored_ = config.least_height && *config.least_height > box.min().z();
@@ -95,7 +95,7 @@ void ReachableSpace::lay_out(Eigen::AlignedBox3d box, const Config& config) {
   origin_.head<2>() -= 0.5 * spare;
 }
 
-/// Level by level, so that distances are asked of many cells at once.
+/// Builds the octree by levels, so that distances are computed for many cells at once.
 void ReachableSpace::grow(const geometry::MeshDistance& surface, const Config& config) {
   nodes_ = {closed};
   std::vector<Cell> level{{0, {}, width_}};
@@ -121,7 +121,7 @@ void ReachableSpace::grow(const geometry::MeshDistance& surface, const Config& c
   nodes_ = std::move(nodes);
 }
 
-/// Whether cells of one size are closed, open, or to be divided.
+/// Determines whether cells of one size are closed, open, or to be subdivided.
 std::vector<std::uint32_t> ReachableSpace::states_of(std::span<const Cell> cells,
                                                      const geometry::MeshDistance& surface,
                                                      const Config& config) const {
@@ -159,7 +159,7 @@ std::vector<std::uint32_t> ReachableSpace::states_of(std::span<const Cell> cells
   return states;
 }
 
-/// Copies what is below a node; eight leaves of the same state are one.
+/// Copies a subtree. Eight leaves with the same state are merged into one.
 std::uint32_t ReachableSpace::merged(std::uint32_t node, std::vector<std::uint32_t>& nodes) const {
   const std::uint32_t from = nodes_[node];
   if (is_leaf(from)) return from;

@@ -1,14 +1,14 @@
-/// Where the carrier of a sensor can get to in the true scene: the places that are connected with
-/// the start of a survey through space that a ball of some radius fits through. Sealed rooms are
-/// not, nor are rooms whose doors are too narrow.
+/// Positions that a sensor platform can reach in the ground-truth scene. They are connected with
+/// the start of a survey through space that a sphere of a given radius fits through. Closed rooms,
+/// and rooms with narrower doors, are unreachable.
 ///
-/// Method: an octree over the scene. A cell is open if every place in it is at least the radius
-/// away from every triangle, by the exact distance of the cell's centre less its half diagonal;
-/// cells that are not are divided down to cell(). Open cells that share a face are connected; what
-/// is connected with the start is reached. So nothing is ever reached through a wall or a passage
-/// narrower than twice the radius; a passage counts for sure if a ball of the radius and 1.74 cells
-/// more fits through, and in between as the cells happen to lie. Everything outside of the scene's
-/// box is open.
+/// Method: an octree over the scene. A cell is open if all its positions have at least the radius
+/// as distance from every triangle. The test is conservative: the exact distance of the cell's
+/// centre minus half its diagonal. Other cells are subdivided down to cell(). Open cells that share
+/// a face are connected; cells connected with the start are reached. Walls and passages narrower
+/// than twice the radius are therefore never passed. A passage is guaranteed to be found if a
+/// sphere with the radius plus 1.74 cells fits through; in between, the result depends on the grid
+/// alignment. All space outside the scene's box is open.
 #pragma once
 
 #include <array>
@@ -27,54 +27,56 @@
 
 namespace skycap::missions::evaluation {
 
-/// Immutable; safe to query from any number of threads.
+/// Immutable after construction; may be queried concurrently.
 class ReachableSpace {
  public:
   struct Config {
-    double radius = 0.0;                   ///< that has to fit through; zero: any gap that is found
-    std::optional<double> least_height;    ///< of ways: no way leads below this z
-    std::optional<double> most_height;     ///< nor above this
-    std::optional<Eigen::Vector3d> start;  ///< nothing: outside of the scene
-    unsigned threads = 0;                  ///< zero: all processors; does not change the result
+    double radius = 0.0;  ///< radius of the sphere [m]; zero: every gap that is resolved is passed
+    std::optional<double> least_height;    ///< minimum z of paths [m]
+    std::optional<double> most_height;     ///< maximum z of paths [m]
+    std::optional<Eigen::Vector3d> start;  ///< empty: outside the scene
+    unsigned threads = 0;                  ///< zero: one per processor; does not affect the result
   };
 
-  /// Whether the carrier gets straight from a place that is reached to a place near by. Must be
-  /// safe to call from several threads.
+  /// Returns whether the platform can move straight from a reached position to a nearby position.
+  /// Called concurrently from several threads.
   using Joins = std::function<bool(const Eigen::Vector3d& place, const Eigen::Vector3d& reached)>;
 
-  /// Of a surface within a box; keeps no reference to it. `joins` is asked about the start only.
+  /// Computes the reachable space of a surface within a box. No reference to `surface` is stored.
+  /// `joins` is called only for the start.
   ReachableSpace(const geometry::MeshDistance& surface, const Eigen::AlignedBox3d& box,
                  const Config& config, const Joins& joins);
 
-  /// Whether a way leads to `place`: it is in a cell that is reached, or in one that is neither
-  /// open nor closed as a whole and `joins` the nearest place of a reached cell, two cells away at
-  /// most. Heights bound ways, not the place itself.
+  /// Returns whether a path leads to `place`. This is the case if its cell is reached, or if its
+  /// cell is closed and `joins` it with a reached cell at most two cells away. Height limits apply
+  /// to paths but not to `place`.
   bool leads_to(const Eigen::Vector3d& place, const Joins& joins) const;
 
-  /// Whether anything is reached at all: not if the start is enclosed more tightly than cells tell.
+  /// Returns whether no cell is reached, because the start is enclosed more tightly than cells
+  /// resolve.
   bool is_empty() const { return is_empty_; }
 
-  /// The side of the finest cells: an eighth of the radius, or a 300th of the scene's longest side
-  /// if that is more.
+  /// Returns the size of the finest cells [m]: an eighth of the radius, or 1/300 of the scene's
+  /// longest side if that is larger.
   double cell() const { return cell_; }
 
-  /// How many cells there are of any size, for tests and benchmarks.
+  /// Returns the number of nodes, for tests and benchmarks.
   std::size_t size() const { return nodes_.size(); }
 
-  /// All of it for a file, for read() on a machine of the same byte order.
+  /// Serialises the object. The format depends on the machine's byte order.
   std::string bytes() const;
-  /// What bytes() gave; nothing if it is anything else.
+  /// Restores an object from bytes(). Returns nullopt if the data is invalid.
   static std::optional<ReachableSpace> read(std::string_view bytes);
 
  private:
   ReachableSpace() = default;
   static bool is_leaf(std::uint32_t node);
   bool is_whole() const;
-  using Place = std::array<std::int32_t, 3>;  // in finest cells from the domain's corner
+  using Place = std::array<std::int32_t, 3>;  // in finest cells from the corner of the domain
   struct Cell {
     std::uint32_t node = 0;
     Place corner{};
-    std::int32_t size = 0;  // [finest cells]
+    std::int32_t size = 0;  // in finest cells
   };
 
   void lay_out(Eigen::AlignedBox3d box, const Config& config);
@@ -91,22 +93,24 @@ class ReachableSpace {
   bool is_inside(const Place& place) const;
   Eigen::AlignedBox3d box_of(const Cell& cell) const;
   Eigen::Vector3d nearest(const Cell& cell, const Eigen::Vector3d& place) const;
-  // The leaf that holds `place`, or the cell of that size which does if there are finer ones.
+  // Returns the leaf that contains `place`, or the inner cell of `least_size` if the leaf is
+  // smaller.
   Cell cell_at(const Place& place, std::int32_t least_size) const;
-  // The leaves of a cell that touch one of its faces.
+  // Visits the leaves of a cell that touch one of its faces.
   template <class Visit>
   void visit_face(const Cell& cell, std::size_t axis, bool is_upper, const Visit& visit) const;
-  // Leaves around a place, nearest first, until `visit` says that it is enough; whether it did.
+  // Visits leaves around a position, nearest first, until `visit` returns true. Returns whether it
+  // did.
   template <class Visit>
   bool visit_near(const Eigen::Vector3d& point, const Visit& visit) const;
 
   double cell_ = 0.0;
-  std::int32_t width_ = 1;                            // of the domain, a cube [finest cells]
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // its least corner
-  bool is_floored_ = false;                           // its base is the least height
+  std::int32_t width_ = 1;                            // side of the cubic domain, in finest cells
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // minimum corner of the domain [m]
+  bool is_floored_ = false;                           // whether its base is the minimum height
   bool is_outside_reached_ = false;
   bool is_empty_ = true;
-  std::vector<std::uint32_t> nodes_;  // state of a leaf, or the first of eight children
+  std::vector<std::uint32_t> nodes_;  // state of a leaf, or index of the first of eight children
 };
 
 }  // namespace skycap::missions::evaluation

@@ -13,7 +13,7 @@ namespace {
 constexpr char file_mark[16] = "skycap reach v1";
 constexpr std::uint64_t most_nodes = 1U << 28;
 
-/// What comes first; the states of cells follow, each of four bytes.
+/// File header, followed by the 4-byte states of the cells.
 struct Head {
   char mark[16];
   double cell;
@@ -25,7 +25,7 @@ struct Head {
   std::uint32_t unused_too;
 };
 
-/// Of the cells, and of all else in the head.
+/// Returns the checksum of the cells and the other header fields.
 std::uint32_t checksum_of(Head head, const std::vector<std::uint32_t>& nodes) {
   head.checksum = geometry::crc32_of(
       {reinterpret_cast<const char*>(nodes.data()), nodes.size() * sizeof(std::uint32_t)});
@@ -71,8 +71,8 @@ std::optional<ReachableSpace> ReachableSpace::read(std::string_view bytes) {
   return space;
 }
 
-/// Whether every question ends: sizes are powers of two, and children come after their parents, as
-/// far down as there are sizes.
+/// Returns whether the octree is valid, so that every query terminates. Sizes are powers of two,
+/// children follow their parents, and the depth does not exceed the number of sizes.
 bool ReachableSpace::is_whole() const {
   const bool is_power = width_ > 0 && (width_ & (width_ - 1)) == 0;
   if (!is_power || !(cell_ > 0.0) || !std::isfinite(cell_) || !origin_.allFinite()) return false;

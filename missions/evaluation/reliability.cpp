@@ -12,7 +12,7 @@ namespace {
 
 using survey::skycap::BelievedPatch;
 
-/// Patches to look up by place and side.
+/// Patches indexed by position and normal.
 class PatchesByPlace {
  public:
   PatchesByPlace(std::span<const BelievedPatch> patches, double reach)

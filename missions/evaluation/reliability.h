@@ -1,5 +1,5 @@
-/// Whether a planner's belief can be relied on: of the surface that it believes covered with
-/// probability p, p should be.
+/// Calibration of a planner's coverage estimate. It is reliable if a fraction p of the surface
+/// estimated as covered with probability p is covered.
 #pragma once
 
 #include <array>
@@ -12,25 +12,26 @@
 
 namespace skycap::missions::evaluation {
 
-/// The true surface by what was believed of it; shares are of the samples that count.
+/// Reliability diagram of the estimate. All fractions refer to the samples that count.
 struct Reliability {
   struct Band {
-    double believed = 0.0;  ///< mean probability
-    double covered = 0.0;   ///< share that is
-    double share = 0.0;     ///< of the surface
+    double believed = 0.0;  ///< mean estimated probability
+    double covered = 0.0;   ///< covered fraction of the band
+    double share = 0.0;     ///< fraction of the surface in this band
   };
   static constexpr std::size_t bands_count = 10;
 
-  std::array<Band, bands_count> bands{};  ///< of probabilities from 0 to 0.1, 0.1 to 0.2, ...
-  double unknown_share = 0.0;             ///< of the surface, which the planner knows nothing of
-  double unknown_covered = 0.0;           ///< share of that which is covered
-  /// Mean distance of believed from covered over the bands, weighted by their shares.
+  std::array<Band, bands_count> bands{};  ///< bands of the probability: 0 to 0.1, 0.1 to 0.2, ...
+  double unknown_share = 0.0;             ///< fraction of the surface without an estimate
+  double unknown_covered = 0.0;           ///< covered fraction of the surface without an estimate
+  /// Expected calibration error: mean absolute difference between `believed` and `covered`,
+  /// weighted by `share`.
   double error = 0.0;
 };
 
-/// Each sample that `counts` marks (all if that is empty) is believed what the nearest of the
-/// patches says that face its way, no farther than `reach` from it. `is_covered` is 1 for each
-/// sample that is.
+/// Compares the estimate with the samples marked in `counts`, or with all samples if it is empty.
+/// The estimate of a sample is that of the nearest patch facing its side within `reach` [m].
+/// `is_covered` is 1 for each covered sample.
 Reliability reliability(std::span<const survey::skycap::BelievedPatch> belief,
                         const geometry::SurfaceSamples& samples,
                         std::span<const std::uint8_t> is_covered,

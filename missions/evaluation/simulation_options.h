@@ -1,4 +1,4 @@
-/// How a survey is evaluated, and all that a simulated survey works with.
+/// Options for simulated surveys and their evaluation.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,21 @@
 namespace skycap::missions::evaluation {
 
 struct EvaluationOptions {
-  double registration_distance = 0.005;  ///< r_d: a sample this near to a measurement is covered
-  std::size_t samples = 100'000;         ///< points spread over the scene's surface
-  std::size_t visible_directions = 200;  ///< from which a sample may be seen; for visible coverage
-  std::size_t ceiling_views = 100;       ///< views of the attainable coverage; zero leaves it out
-  /// That fits through the ways to places that count; else what the limits keep from surfaces.
+  /// r_d: maximum distance of a measurement from a covered sample [m].
+  double registration_distance = 0.005;
+  std::size_t samples = 100'000;         ///< number of samples on the scene's surface
+  std::size_t visible_directions = 200;  ///< directions tested for the visibility of a sample
+  std::size_t ceiling_views = 100;       ///< views for the attainable coverage; zero: not computed
+  /// Radius of a sphere that must fit through paths to views [m]. Default: minimum distance of
+  /// views from surfaces according to the limits.
   std::optional<double> radius;
 };
 
-/// When a survey by the oracle ends, which knows the scene and which planners are compared with.
+/// Stop criterion of the oracle, a reference planner with access to the ground truth.
 struct OracleOptions {
   std::size_t max_views = 1000;
-  double least_gain = 0.003;  ///< share of the visible surface that every further view adds
+  /// Minimum coverage gain per view, as a fraction of the visible surface.
+  double least_gain = 0.003;
 };
 
 struct SimulationOptions {
@@ -32,11 +35,11 @@ struct SimulationOptions {
   session::SurveyOptions survey;
   EvaluationOptions evaluation;
   OracleOptions oracle;
-  /// The text of all keys that decide what of a scene is visible and attainable, which is kept in
-  /// the user's cache under a checksum of it.
+  /// Keys and values that determine the visible and attainable surface. Their checksum identifies
+  /// the results in the user's cache.
   std::string attainable_inputs;
 
-  /// The box around the scene; empty: everything.
+  /// Returns the box around the scene; empty: unlimited.
   Eigen::AlignedBox3d scene_box() const {
     return survey.planner.scene_box.value_or(Eigen::AlignedBox3d());
   }

@@ -24,10 +24,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t sample_seed = 1;  // coverage is measured by the same samples in all runs
+constexpr std::uint64_t sample_seed = 1;  // coverage is evaluated at the same samples in all runs
 constexpr std::uint64_t ceiling_seed = 1;
 
-/// Of the triangles of placed_model(); empty if all are matt.
+/// Returns the surfaces of the triangles of placed_model(); empty if all are matt.
 std::vector<sim::Surface> surfaces_of(const scene::SceneOptions& options,
                                       const std::filesystem::path& folder) {
   if (options.is_truth_prior()) return {};
@@ -41,7 +41,7 @@ std::vector<sim::Surface> surfaces_of(const scene::SceneOptions& options,
 
 sim::Scene scene_of(const geometry::Mesh& model, const SimulationOptions& options,
                     const std::filesystem::path& folder, unsigned threads) {
-  if (options.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
+  if (options.sensor.scanner) {  // laser measurements depend on the reflectance of surfaces
     return scene::reflecting_scene(options.scene, folder).scene(threads);
   }
   geometry::Mesh mesh = model;
@@ -56,8 +56,8 @@ std::string metres_text(double length) { return fmt::format("{:.12g}", length); 
 Vector3d uniform_direction(geometry::RandomNumbers& random) {
   std::normal_distribution<double> normal;
   for (;;) {
-    // From z to x, one a declarator: arguments of a call are drawn in an order that is each
-    // compiler's own.
+    // Drawn in separate declarators, because the evaluation order of function arguments depends on
+    // the compiler.
     const double z = normal(random), y = normal(random), x = normal(random);
     const Vector3d direction(x, y, z);
     if (direction.norm() > 1e-3) return direction.normalized();
@@ -74,7 +74,8 @@ survey::ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, doubl
   return {centroid, view_distance + mean_distance};
 }
 
-/// Marks of samples in a file: a digit for each. Nothing if it does not hold so many.
+/// Reads marks of samples, one digit per sample. Returns nullopt if the file does not contain
+/// `count` digits.
 std::optional<std::vector<std::uint8_t>> marks_in_file(const std::filesystem::path& file,
                                                        std::size_t count) {
   std::error_code ignored;
@@ -87,7 +88,7 @@ std::optional<std::vector<std::uint8_t>> marks_in_file(const std::filesystem::pa
   return marks;
 }
 
-/// Keeps what was worked out, if that can be: without the file it is worked out again next time.
+/// Stores a result. Errors are ignored, because it can be computed again.
 void keep(const std::filesystem::path& file, const std::string& bytes) {
   try {
     geometry::write_file(file, bytes);
@@ -204,14 +205,15 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
 
 Admissible SurveyScene::admissible() const {
   survey::ViewLimits limits = options_.survey.planner.limits;
-  // A surface need not be in the middle of the image.
+  // The target may be anywhere in the image, not only at its centre.
   const double half_fov = 0.5 * options_.survey.planner.camera.vertical_fov;
   limits.least_pitch -= half_fov;
   limits.most_pitch += half_fov;
   const auto joins = [this](const Vector3d& place, const Vector3d& reached) {
     return radius_ > 0.0 ? truth().keeps(place, reached, radius_) : is_in_sight(place, reached);
   };
-  // Whatever leads there keeps the radius already, from the model: neighbours are beyond its box.
+  // Paths already keep the radius from the model. Neighbours are outside its box and require a
+  // separate test.
   const bool asks_distance = limits.stand_off > radius_ || options_.scene.neighbours;
   const double least = std::max(limits.stand_off, radius_);
   const auto allows = [this, limits, joins, asks_distance, least](const geometry::View& view) {
@@ -230,7 +232,7 @@ std::vector<std::uint8_t> SurveyScene::visible(unsigned threads,
   if (auto known = marks_in_file(cached, samples_.points.size())) return std::move(*known);
   std::vector<std::uint8_t> marks =
       visible_samples(samples_.points, scene_, admissible(), threads, stop);
-  // Nothing comes back from glass and mirrors.
+  // Glass and mirrors return no measurements.
   for (std::size_t i = 0; i < marks.size(); ++i) {
     if (scene_.surface(samples_.triangles[i]) != sim::Surface::matt) marks[i] = 0;
   }
@@ -265,16 +267,16 @@ std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
 
 std::string SurveyScene::ceiling_key() const {
   std::ostringstream inputs;
-  inputs.exceptions(std::ios::badbit);  // else text is lost without a word where memory is missing
+  inputs.exceptions(std::ios::badbit);  // reports text lost because of low memory
   inputs.precision(17);
   inputs << "ceiling 4\n" << view_distance_ << " " << options_.survey.planner.spacing;
   inputs << options_.attainable_inputs;
-  // What a vehicle's file says, not its name alone.
+  // The contents of a vehicle file, not only its name.
   const survey::ViewLimits& limits = options_.survey.planner.limits;
   inputs << "\n" << limits.least_pitch << " " << limits.most_pitch << " " << limits.stand_off;
-  // The surface's samples stand for the mesh that was found under the model's name.
+  // The surface samples identify the mesh found under the model's name.
   inputs << "\n" << support::sha256(std::as_bytes(std::span(samples_.points)));
-  // So do their surfaces for what a file of materials says.
+  // Their materials identify the contents of a material file.
   for (std::size_t i = 0; i < samples_.triangles.size(); ++i) {
     const sim::Surface surface = scene_.surface(samples_.triangles[i]);
     if (surface != sim::Surface::matt) inputs << "\n" << i << " " << static_cast<int>(surface);

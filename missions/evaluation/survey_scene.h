@@ -1,5 +1,5 @@
-/// A mission's scene made ready: the truth that the simulated sensor measures, and what the
-/// evaluation needs to know of it. Shared, unchanged, by all trials of a mission.
+/// Prepared scene of a mission: the ground truth measured by the simulated sensor, and data for the
+/// evaluation. It is immutable and shared by all trials of a mission.
 #pragma once
 
 #include <cstdint>
@@ -25,47 +25,48 @@ namespace skycap::missions::evaluation {
 
 class SurveyScene {
  public:
-  /// Loads and places the mission's model; `folder` is where relative paths start. The file `kept`
-  /// keeps for other programs what of the scene can be reached, and whoever names it answers for it
-  /// being of the same mission and model; without it everybody finds that out anew, when it is
-  /// first asked for. Throws what scene::load_model() and scene::place_model() throw.
+  /// Loads and places the mission's model. `folder` is the base of relative paths. `kept` is a file
+  /// that shares the reachable space with other programs; the caller must use one file per mission
+  /// and model. Without it, the reachable space is computed on first use. Throws the errors of
+  /// scene::load_model() and scene::place_model().
   SurveyScene(const SimulationOptions& options, const std::filesystem::path& folder,
               unsigned threads, const std::filesystem::path& kept = {});
 
-  const geometry::Mesh& model() const { return model_; }  ///< as placed, by itself
-  const sim::Scene& scene() const { return scene_; }  ///< with what is beside it, such as ground
+  const geometry::Mesh& model() const { return model_; }  ///< placed model without its surroundings
+  const sim::Scene& scene() const { return scene_; }      ///< with surroundings, such as the ground
   const geometry::SurfaceSamples& samples() const { return samples_; }  ///< of the model
 
-  /// d: as the mission gives it, or from its camera and density.
+  /// Returns d [m]: the mission's value, or the value derived from camera and density.
   double view_distance() const { return view_distance_; }
 
   const survey::ViewSphere& view_sphere() const { return view_sphere_; }
 
-  /// The first view of the survey with that seed: of its opening, as the mission gives it, or at
-  /// random on the view sphere, within the mission's limits and reachable, looking at the sphere's
-  /// centre. Throws Error{bad_config} if there is no such view.
+  /// Returns the first view of a survey. It is taken from the initial pattern or the mission, or
+  /// drawn from the view sphere by `seed`. A drawn view is reachable, within the limits, and looks
+  /// at the sphere's centre. Throws Error{bad_config} if no such view exists.
   geometry::View first_view(std::uint64_t seed) const;
 
-  /// For each sample, 1 if an admissible sensor position sees it. Takes a second or more, but is
-  /// kept in the user's cache as attainable() is; of no use once `stop` is requested.
+  /// Returns 1 for each sample visible from an admissible position. The computation takes a second
+  /// or more; the result is cached as for attainable(). It is invalid once `stop` is requested.
   std::vector<std::uint8_t> visible(unsigned threads, const std::stop_token& stop = {}) const;
 
-  /// For each sample, 1 if it is attainable with the mission's sensor and spacing, see
-  /// attainable_samples(). Takes seconds to minutes; kept in the user's cache under a
-  /// checksum of everything it depends on. Nothing if the mission leaves it out, or if stopped.
+  /// Returns 1 for each sample attainable with the mission's sensor and spacing, see
+  /// attainable_samples(). The computation takes seconds to minutes. The result is stored in the
+  /// user's cache under a checksum of all its inputs. Returns nullopt if the mission disables it or
+  /// if stopped.
   std::optional<std::vector<std::uint8_t>> attainable(const std::vector<std::uint8_t>& is_visible,
                                                       unsigned threads,
                                                       const std::stop_token& stop = {}) const;
 
-  /// Where the mission lets the sensor look at the scene from; refers to this scene.
+  /// Returns the permitted sensor poses. The result refers to this object.
   Admissible admissible() const;
 
-  /// Whether the sensor can get to a place at all, whoever wants it there: not into sealed rooms.
-  /// How near it may be to surfaces is not asked.
+  /// Returns whether the sensor can reach a position, for example not inside closed rooms. The
+  /// distance from surfaces is not tested.
   bool is_reachable(const Eigen::Vector3d& place) const;
 
  private:
-  /// Made when they are first asked for, by any thread: a survey may need neither.
+  /// Data computed on first use by any thread, because a survey may require neither.
   struct Lazily {
     std::once_flag reached_once, distance_once;
     std::optional<ReachableSpace> reached;
@@ -85,12 +86,12 @@ class SurveyScene {
   geometry::SurfaceSamples samples_;
   double view_distance_;
   survey::ViewSphere view_sphere_;
-  double radius_;  ///< that has to fit through ways
+  double radius_;  ///< sphere radius for reachability [m]
   std::filesystem::path kept_;
   std::shared_ptr<Lazily> lazily_ = std::make_shared<Lazily>();
 };
 
-/// The mission's mesh as surveyed: loaded and placed, or as its prior data has it; without ground.
+/// Returns the mission's surveyed mesh without the ground: loaded and placed, or from prior data.
 geometry::Mesh placed_model(const scene::SceneOptions& options,
                             const std::filesystem::path& folder);
 

@@ -50,7 +50,7 @@ bool has_tally(const fs::path& folder, const std::string& identity) {
     return parsed(folder).at("of") == Json(identity);
   } catch (const Json::exception&) {
     return false;
-  } catch (const Error&) {  // it is made again
+  } catch (const Error&) {  // the tally is created again
     return false;
   }
 }

@@ -1,4 +1,4 @@
-/// Parts of a judged cloud on the disk, until all of them are there.
+/// Stores evaluated parts of a cloud until all parts are complete.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,15 @@
 
 namespace skycap::missions::evaluation {
 
-/// Stages a tally: piece.json, which says what it is of, and distances.bin, the distances as single
-/// precision, lowest byte first.
+/// Stages a tally as two files. piece.json contains `identity`; distances.bin contains the
+/// distances in single precision, little-endian.
 void stage_tally(const std::string& identity, const CloudTally& tally,
                  geometry::OutputFolder& folder);
 
-/// Whether a tally is there and of that.
+/// Returns whether the folder contains a tally with this identity.
 bool has_tally(const std::filesystem::path& folder, const std::string& identity);
 
-/// The tally of a folder that has one. Throws Error{bad_file} if its files are damaged.
+/// Reads the tally of a folder that has one. Throws Error{bad_file} if its files are damaged.
 CloudTally read_tally(const std::filesystem::path& folder);
 
 }  // namespace skycap::missions::evaluation

@@ -1,4 +1,4 @@
-/// Points at a least spacing, as every planner stores them.
+/// Point cloud with a minimum point spacing, as stored by every planner.
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ class ThinnedCloud {
  public:
   explicit ThinnedCloud(double spacing) : kept_(spacing) {}
 
-  /// Stores those of `points` that are in the box, if it is not empty, and farther than the spacing
-  /// from all stored ones; gives them back.
+  /// Stores the points inside `box` that are farther than the spacing from all stored points. An
+  /// empty box is unlimited. Returns the stored points.
   std::vector<Eigen::Vector3f> store(std::span<const Eigen::Vector3f> points,
                                      const Eigen::AlignedBox3d& box) {
     std::vector<Eigen::Vector3f> stored;

@@ -11,7 +11,7 @@
 namespace skycap::missions::report {
 namespace {
 
-/// Evenly along the list.
+/// Selects `most` entries evenly along the list.
 void thin(std::vector<geometry::CurveEntry>& entries, std::size_t most) {
   if (entries.size() <= most) return;
   for (std::size_t i = 0; i < most; ++i)
@@ -29,7 +29,7 @@ std::string planes_of(const Values& values, int planes) {
   return bytes;
 }
 
-/// Each key less the one before it.
+/// Returns the difference between each key and its predecessor.
 std::vector<std::uint64_t> differences(std::span<const std::uint64_t> keys) {
   std::vector<std::uint64_t> steps(keys.begin(), keys.end());
   for (std::size_t i = keys.size(); i-- > 1;) steps[i] -= keys[i - 1];
@@ -49,7 +49,7 @@ double spacing_in(const geometry::CurveGrid& grid, std::span<const geometry::Cur
              : 0.0;
 }
 
-/// What the places of a cell take: of all cells that have points.
+/// Returns the number of bits per cell index required by the keys.
 int bits_of(std::span<const std::uint64_t> keys) {
   const int width = keys.empty() ? 0 : static_cast<int>(std::bit_width(keys.back()));
   return std::max(1, (width + 2) / 3);
@@ -66,9 +66,10 @@ std::vector<std::uint16_t> values_of(const CloudAttribute& attribute,
 }  // namespace
 
 double spacing_of_keys(std::span<const std::uint64_t> keys, int bits) {
-  // A neighbour whose key differs in bit b (from 0) is in another cell of all sizes up to 2^(b /
-  // 3).
-  std::vector<std::size_t> cells(static_cast<std::size_t>(bits) + 1, 1);  // occupied, by size
+  // Neighbouring keys that differ in bit b (from 0) belong to different cells of all sizes up to
+  // 2^(b / 3).
+  // Number of occupied cells by size.
+  std::vector<std::size_t> cells(static_cast<std::size_t>(bits) + 1, 1);
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const std::uint64_t change = keys[i] ^ keys[i - 1];
     if (change == 0) continue;

@@ -1,10 +1,11 @@
-/// Clouds as whole numbers that deflate to two or three bytes per point.
+/// Compact encoding of clouds as integers that compress to two or three bytes per point.
 ///
-/// Positions fall into the cells of a cubic grid; a cell's three indices, bit by bit in turn, are
-/// its key (Morton, "A computer oriented geodetic data base", 1966). Points are sorted by key, so
-/// that neighbours in space follow each other and keys grow by little. Written are the differences
-/// of the keys, then the values of each attribute, as byte planes, lowest byte first; the whole is
-/// deflated (zlib) by runs and frequencies. missions/report/page/cloud.js reads it.
+/// Positions are quantised to a cubic grid. The interleaved bits of a cell's three indices form its
+/// Morton key (Morton, "A computer oriented geodetic data base", 1966). Points are sorted by key,
+/// so that spatial neighbours are adjacent and key differences are small. The key differences,
+/// followed by the values of each attribute, are written as byte planes, lowest byte first. The
+/// result is compressed with zlib, with runs and frequencies only. missions/report/page/cloud.js
+/// decodes it.
 #pragma once
 
 #include <cstddef>
@@ -17,40 +18,42 @@
 
 namespace skycap::missions::report {
 
-/// An attribute of each point; written in one byte plane, or in two if a value needs them.
+/// Point attribute, written in one byte plane, or two if a value exceeds 255.
 struct CloudAttribute {
   std::string name;
   std::span<const std::uint16_t> values;
 };
 
-/// A coded cloud and what it takes to read it.
+/// Encoded cloud with the parameters for decoding.
 struct CloudCode {
-  std::size_t points = 0;                            ///< in the code
-  std::size_t of = 0;                                ///< that there were
-  int bits = 1;                                      ///< of each of a cell's three indices
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the grid's lowest corner [m]
-  double step = 1.0;     ///< a cell's side: a point reads back as its cell's middle [m]
-  double spacing = 0.0;  ///< how far apart the points are, see spacing_of() [m]
+  std::size_t points = 0;                            ///< encoded points
+  std::size_t of = 0;                                ///< points before downsampling
+  int bits = 1;                                      ///< bits per index of a cell
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< minimum corner of the grid [m]
+  double step = 1.0;     ///< cell size; a decoded point is the centre of its cell [m]
+  double spacing = 0.0;  ///< distance between points, see spacing_of() [m]
   struct Attribute {
     std::string name;
-    std::size_t values = 1;  ///< they are 0, 1, ...; more than 256 take two byte planes
+    /// Number of distinct values 0, 1, ...; more than 256 require two byte planes.
+    std::size_t values = 1;
   };
   std::vector<Attribute> attributes;
-  std::string bytes;  ///< deflated
+  std::string bytes;  ///< compressed data
 };
 
-/// Of more than `most_points` an evenly spread choice: along the curve of the keys, each n-th. The
-/// step is an eighth of the spacing, but at least 2^-16 of the cloud's longest side. Positions must
-/// be finite.
+/// Encodes a cloud. If it exceeds `most_points`, every n-th point in key order is encoded, which is
+/// evenly distributed in space. The step is an eighth of the spacing, but at least 2^-16 of the
+/// cloud's longest side. Positions must be finite.
 CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
                        std::span<const CloudAttribute> attributes, std::size_t most_points);
 
-/// About how far apart the points of a surface are [m]; 0 of fewer than two.
+/// Estimates the distance between neighbouring points on a surface [m]. Returns 0 for fewer than
+/// two points.
 double spacing_of(std::span<const Eigen::Vector3f> positions);
 
-/// The side of the cubes that hold two points each on average, over the square root of two: about
-/// the distance of neighbours on a surface. `keys` ascending, of `bits` bits a coordinate; in
-/// cells.
+/// Estimates the distance between neighbouring points on a surface, in cells. It is the side of
+/// cubes that contain two points on average, divided by the square root of two. `keys` are
+/// ascending, with `bits` bits per coordinate.
 double spacing_of_keys(std::span<const std::uint64_t> keys, int bits);
 
 }  // namespace skycap::missions::report

@@ -20,13 +20,13 @@ using Json = nlohmann::ordered_json;
 
 using Colour = std::array<std::uint8_t, 3>;
 
-/// Few colours, and which of them each point has.
+/// Reduced set of colours, and the colour index of each point.
 struct Palette {
   std::vector<Colour> colours;
   std::vector<std::uint16_t> of_points;
 };
 
-/// With the lowest bits of each channel alike.
+/// Replaces the lowest `bits` of each channel by a constant.
 Colour rounded(Colour colour, int bits) {
   for (std::uint8_t& channel : colour) {
     channel = static_cast<std::uint8_t>(channel >> bits << bits | ((1 << bits) >> 1));
@@ -34,7 +34,8 @@ Colour rounded(Colour colour, int bits) {
   return colour;
 }
 
-/// At most 256, rounded no more than that takes: the page has a byte for each point.
+/// Returns a palette of up to 256 colours, because the report stores one byte per point. Colours
+/// are rounded only as far as necessary.
 Palette palette_of(const std::vector<Colour>& colours) {
   constexpr std::size_t most = 256;
   for (int bits = 0;; ++bits) {

@@ -1,4 +1,4 @@
-/// Pages of what is no survey: a cloud of whatever origin, and a mission before anything was seen.
+/// HTML reports of a single cloud and of a mission before its survey.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,11 @@
 
 namespace skycap::missions::report {
 
-/// The points of a file. Throws what geometry::read_cloud() throws.
+/// Returns the HTML report of a cloud file. Throws the errors of geometry::read_cloud().
 std::string cloud_page(const std::filesystem::path& cloud);
 
-/// A mission's scene with all that a flight must keep away from; `surface` are points of the model.
+/// Returns the HTML report of a mission's scene with its airspace limits. `surface` contains points
+/// of the model.
 std::string mission_page(const std::string& name, const session::SurveyOptions& survey,
                          const scene::SceneOptions& scene, std::span<const Eigen::Vector3f> surface,
                          const std::optional<Eigen::Vector3d>& pad);

@@ -1,4 +1,4 @@
-/// Pages of many surveys: planners compared, and the trials of one mission.
+/// HTML reports of several surveys: planner comparisons and the trials of a mission.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace skycap::missions::report {
 
-/// The page of results.json, which `skycap benchmark` leaves. Throws Error{bad_file} naming the
-/// file if it is not as that verb writes it; so the other one.
+/// Returns the report of results.json, written by `skycap benchmark`. Throws Error{bad_file} with
+/// the file name if the contents are invalid.
 std::string benchmark_page(const ResultFinder& results);
 
-/// The page of trials.json, which `skycap plan --trials` leaves.
+/// Returns the report of trials.json, written by `skycap plan --trials`. Throws as
+/// benchmark_page().
 std::string trials_page(const ResultFinder& results);
 
 }  // namespace skycap::missions::report

@@ -1,4 +1,4 @@
-/// The page of a district: a map of its targets, their table, and the flight of all.
+/// HTML report of a district: a map and table of its targets, and the joint flight.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace skycap::missions::report {
 
-/// From district.json; each target's row leads to the page of its own survey. Throws
-/// Error{bad_file} naming the file.
+/// Returns the report of district.json. Each target's row links to the report of its survey. Throws
+/// Error{bad_file} with the file name if the contents are invalid.
 std::string district_page(const ResultFinder& results);
 
 }  // namespace skycap::missions::report

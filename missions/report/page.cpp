@@ -25,14 +25,14 @@ Json json_of(const CloudCode& code) {
       {"attributes", attributes}};
 }
 
-/// A script that is not run, but read.
+/// Returns a script element that contains data.
 std::string data_block(std::string_view type, const std::string& id, std::string_view text) {
   std::string block = "<script type=\"";
   block.append(type).append("\" id=\"").append(id).append("\">").append(text);
   return block + "</script>\n";
 }
 
-/// A library, deflated: it is a third of the page otherwise.
+/// Returns a compressed library. Uncompressed, libraries are a third of the report.
 std::string library_block(const PageLibrary& library) {
   return data_block("application/octet-stream", "library-" + std::string(library.name),
                     base64(deflated(library.text, Repetition::any)));
@@ -46,7 +46,7 @@ std::string policy() {
   return text + "; style-src " + policy_hash(page_style());
 }
 
-/// Libraries and policy are the same in all pages, but one without a cloud has no 3-D view.
+/// Parts shared by all reports. Reports without a cloud omit the 3-D view.
 struct ConstantParts {
   std::string policy_text = policy();
   std::string libraries, chart_library;

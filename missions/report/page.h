@@ -1,8 +1,8 @@
-/// A page that a browser shows by itself: one file, no server, nothing fetched.
+/// Self-contained HTML reports: a single file without a server or external resources.
 ///
-/// All that is shown comes as data; what the page does with it is in page/*.js, what it looks like
-/// in page/style.css. Its content security policy lets nothing run but those scripts, by their
-/// hashes, and lets nothing be loaded.
+/// The content is embedded as data, which the scripts page/*.js display with page/style.css. The
+/// content security policy permits only these scripts, identified by their hashes, and no loading
+/// of resources.
 #pragma once
 
 #include <string>
@@ -14,13 +14,14 @@
 
 namespace skycap::missions::report {
 
-/// A cloud of the page's 3-D view.
+/// Cloud in the report's 3-D view.
 struct PageCloud {
-  std::string name;  ///< of ours: measured, missing or model
+  std::string name;  ///< one of the report's clouds: measured, missing or model
   CloudCode code;
 };
 
-/// `data` is what page/main.js reads: {"kind", "title", ...}. The same text for the same values.
+/// Returns the report. `data` is the input of page/main.js: {"kind", "title", ...}. The output is
+/// deterministic.
 std::string page_text(const std::string& title, nlohmann::ordered_json data,
                       const std::vector<PageCloud>& clouds);
 

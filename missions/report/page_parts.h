@@ -1,4 +1,4 @@
-/// The page's sources, which the build puts into the program.
+/// Sources of the HTML report, compiled into the program.
 #pragma once
 
 #include <string_view>
@@ -6,17 +6,17 @@
 
 namespace skycap::missions::report {
 
-std::string_view page_frame();   ///< page/page.html: where {{title}}, {{data}} ... belong
+std::string_view page_frame();   ///< page/page.html, with the placeholders {{title}}, {{data}}, ...
 std::string_view page_style();   ///< page/style.css
-std::string_view page_script();  ///< page/*.js, one after the other
+std::string_view page_script();  ///< page/*.js, concatenated
 
-/// A JavaScript library of Debian's.
+/// JavaScript library packaged by Debian.
 struct PageLibrary {
   std::string_view name;  ///< three, orbit or chart
   std::string_view text;
 };
 
-/// In the order in which they must be run.
+/// Returns the libraries in execution order.
 const std::vector<PageLibrary>& page_libraries();
 
 }  // namespace skycap::missions::report

@@ -39,7 +39,7 @@ std::vector<std::uint16_t> view_numbers(const geometry::AttributedCloud& cloud) 
 
 std::vector<std::uint16_t> incidence_steps(const geometry::AttributedCloud& cloud,
                                            std::span<const geometry::View> views) {
-  // By the cosines of the steps' ends: a comparison costs less than an arc cosine.
+  // Compares cosines with those of the step limits, which is faster than computing arc cosines.
   std::vector<float> least_cosines;
   for (double angle = incidence_step_deg; angle < 180.0; angle += incidence_step_deg) {
     least_cosines.push_back(static_cast<float>(std::cos(angle * geometry::radians_per_degree)));
@@ -159,7 +159,7 @@ nlohmann::ordered_json accuracy_json(std::span<const std::uint16_t> incidence,
     json[name] = {{"low", 0.0}, {"high", high}, {"counts", histogram(values, 0.0, high, bins)}};
   };
   const auto largest = [](std::span<const float> values) {
-    float most = 0.0F;  // not of std::max_element, since some may be NaN
+    float most = 0.0F;  // unlike std::max_element, handles NaN values
     for (const float value : values) most = value > most ? value : most;
     return static_cast<double>(most);
   };

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Those whose results are there.
+/// Returns the reports whose results are in the folder.
 std::vector<ResultPage> pages_in(const fs::path& folder) {
   std::vector<ResultPage> found;
   for (const ResultPage& page : result_pages()) {
@@ -36,7 +36,7 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
                                        names);
 }
 
-/// A message about staged files, by the names that they will have.
+/// Replaces names of staged files in a message by their final names.
 std::string by_final_names(std::string message, const std::vector<std::string>& names,
                            const geometry::OutputFolder& folder) {
   for (const std::string& name : names) {

@@ -1,4 +1,4 @@
-/// Which pages a folder of results has, by what lies in it.
+/// Selects the HTML reports for a results folder by its files.
 #pragma once
 
 #include <filesystem>
@@ -11,31 +11,32 @@
 
 namespace skycap::missions::report {
 
-/// A page and what it is of.
+/// HTML report and its input.
 struct ResultPage {
-  std::string results;  ///< the file that says what the others are, such as summary.json
-  std::string name;     ///< of the page, such as report.html
+  std::string results;  ///< main results file, such as summary.json
+  std::string name;     ///< file name of the report, such as report.html
   std::string (*make)(const ResultFinder& results, std::size_t most_points);
 };
 
-/// A survey, its trials, a comparison, a scan, a district.
+/// Returns the reports of surveys, trials, comparisons, scans and districts.
 const std::vector<ResultPage>& result_pages();
 
-/// A page and where it belongs.
+/// Generated report with its path.
 struct MadePage {
   std::filesystem::path file;
-  std::optional<std::string> text;  ///< nothing: it is there as it should be
+  std::optional<std::string> text;  ///< contents; nullopt if the existing file is current
 };
 
-/// The pages of what a folder holds, of at most so many points, in the folder or at `out`. A live
-/// survey that goes on has the page that its verbs keep. Throws Error{bad_file} if there is nothing
-/// to show, Error{bad_usage} if several pages should be at `out`.
+/// Generates the reports of a folder with up to `most_points` points, to be written in the folder
+/// or at `out`. A running live survey keeps the report written by its own commands. Throws
+/// Error{bad_file} if the folder has no results, and Error{bad_usage} if several reports share
+/// `out`.
 std::vector<MadePage> made_pages(const std::filesystem::path& folder, std::size_t most_points,
                                  const std::optional<std::filesystem::path>& out);
 
-/// Stages the page of staged results beside them, if it is wanted; an older one is void in any
-/// case. What cannot be shown, such as a cloud too far from the origin for its file, shall not cost
-/// the results: then there is no page, and what is returned says why.
+/// Stages the report of staged results if `is_wanted`; otherwise an existing report is removed.
+/// Errors, such as a cloud too far from the origin, do not affect the results. The report is then
+/// omitted, and the reason is returned.
 std::optional<std::string> stage_page(const std::string& results, bool is_wanted,
                                       geometry::OutputFolder& folder);
 

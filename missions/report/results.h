@@ -1,4 +1,4 @@
-/// Where a page's results are.
+/// Access to the result files of a report.
 #pragma once
 
 #include <cstddef>
@@ -12,29 +12,30 @@
 
 namespace skycap::missions::report {
 
-/// Where the results of a folder are: under their own names, or still staged. A path that does not
-/// exist stands for a file that is not there.
+/// Returns the path of a result file, either committed or staged. Missing files have a path that
+/// does not exist.
 using ResultFinder = std::function<std::filesystem::path(const std::string& name)>;
 
-/// The finder of a folder as it is on disk.
+/// Returns the finder for a folder of committed results.
 ResultFinder results_in(const std::filesystem::path& folder);
 
 inline constexpr std::size_t default_report_points = 1'000'000;
 
 bool is_there(const std::filesystem::path& file);
 
-/// The text of a JSON file of results, of at most geometry::largest_json.
+/// Returns the contents of a JSON results file of up to geometry::largest_json bytes.
 std::string results_text(const std::filesystem::path& file);
 
-/// The object in a JSON file of results. Throws Error{bad_file} naming the file if it holds none.
+/// Reads a JSON object from a results file. Throws Error{bad_file} with the file name if the
+/// contents are invalid.
 nlohmann::ordered_json read_results(const std::filesystem::path& file);
 
-/// Throws Error{bad_file}: values of the file are missing or of another kind.
+/// Throws Error{bad_file} for missing or invalid values in the file.
 [[noreturn]] void refuse_results(const std::filesystem::path& file, std::string_view why);
 
-/// {"name", "bytes", "sha256"} of those that are there, so that whoever has a file can see that it
-/// is the one of the page; digests of large files take seconds, which who has pressed Ctrl-C does
-/// not wait for. Names that lead to other folders are passed over.
+/// Returns {"name", "bytes", "sha256"} of existing files, so that users can verify that a file
+/// belongs to the report. Hashes of large files take seconds and are omitted after Ctrl-C
+/// (`has_digests`). Names in other folders are ignored.
 nlohmann::ordered_json files_json(const std::vector<std::string>& names,
                                   const ResultFinder& results, bool has_digests = true);
 

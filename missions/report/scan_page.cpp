@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-/// Where the sensor was over time, as the carrier believed or as it was.
+/// Reads sensor poses over time, estimated or ground truth.
 std::vector<flight::TimedPose> poses_in(const fs::path& file) {
   if (!is_there(file)) return {};
   const std::string text = geometry::read_file(file);
@@ -36,7 +36,7 @@ std::vector<flight::TimedPose> poses_in(const fs::path& file) {
   return flight::read_tum(text);
 }
 
-/// The trajectory with at most so many poses, the last one among them.
+/// Downsamples a trajectory to a maximum number of poses, including the last.
 std::vector<flight::TimedPose> thinned(const std::vector<flight::TimedPose>& poses) {
   constexpr std::size_t most = 3000;
   if (poses.size() <= most) return poses;
@@ -54,13 +54,14 @@ Json trajectory_json(const std::vector<flight::TimedPose>& poses) {
   return {{"times", times}, {"points", points}};
 }
 
-/// The pose that was current at a time: the last one before it.
+/// Returns the latest pose up to a time [s], or the first pose.
 const flight::TimedPose& pose_at(const std::vector<flight::TimedPose>& poses, double time) {
   const auto after = std::ranges::upper_bound(poses, time, {}, &flight::TimedPose::time);
   return after == poses.begin() ? *after : *(after - 1);
 }
 
-/// Where the sensor was for each piece of the flight: in its middle, or where the image was taken.
+/// Returns the sensor pose of each piece of the flight: at the middle of the piece, or of the
+/// image.
 std::vector<flight::TimedPose> piece_poses(const Json& preview,
                                            const std::vector<flight::TimedPose>& believed,
                                            std::size_t pieces) {
@@ -97,7 +98,7 @@ std::vector<std::size_t> counts_of(const std::vector<std::uint32_t>& views) {
   return counts;
 }
 
-/// The points that the page shows of the preview, and how they were seen.
+/// Displayed points of the preview, with the geometry of their observation.
 struct Shown {
   std::vector<std::uint16_t> views, incidence;
   std::vector<float> ranges;
@@ -113,7 +114,7 @@ Shown shown_of(geometry::AttributedCloud& cloud, const std::vector<flight::Timed
   const bool is_known =
       std::ranges::all_of(cloud.views, [&](std::uint32_t view) { return view < sensors.size(); });
   if (is_known && cloud.views.size() == cloud.positions.size()) {
-    // A plane through noise needs a few neighbours all around.
+    // Fitting a plane to noisy points requires several neighbours on all sides.
     constexpr double spacings = 5.0;
     const double radius = spacings * spacing_of(cloud.positions);
     if (radius > 0.0) {
@@ -149,7 +150,7 @@ Json verdict_of(const Json& summary) {
   return json_of(verdict);
 }
 
-/// The viewing angles of a depth camera that camera.json describes.
+/// Returns the field of view of the depth camera described in camera.json.
 Json camera_outline(const Json& camera) {
   const auto angle = [&](const char* size, std::size_t axis) {
     return 2.0 * std::atan(camera.at(size).get<double>() /
@@ -177,7 +178,7 @@ Json page_data(const Json& summary, const fs::path& file) {
 
 }  // namespace
 
-/// The poses by the navigation solution; version 0.1 had other names for the file.
+/// Returns the file of estimated poses. Version 0.1 used different file names.
 fs::path estimated_poses(const ResultFinder& results, bool is_laser) {
   const fs::path file = results(is_laser ? "trajectory_estimated.tum" : "estimated.txt");
   if (is_there(file)) return file;

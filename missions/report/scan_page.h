@@ -1,4 +1,4 @@
-/// scan.html of a scan, made of what its folder holds and of nothing else.
+/// HTML report (scan.html) of a scan, generated from its results folder only.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@
 
 namespace skycap::missions::report {
 
-/// The page of the scan that scan.json tells of, with at most so many points of preview.ply, where
-/// there is one. Normals, and with them angles of incidence, are of the planes through the points'
-/// neighbours. Throws Error{bad_file} naming the file if one is not as `skycap scan` writes it.
+/// Returns the report of the scan described in scan.json, with up to `most_points` points of
+/// preview.ply, if present. Normals are estimated from planes through neighbouring points and
+/// determine the incidence angles. Throws Error{bad_file} with the file name if a file is invalid.
 std::string scan_page(const ResultFinder& results, std::size_t most_points);
 
 }  // namespace skycap::missions::report

@@ -40,7 +40,8 @@ Json box(const char* role, const char* name, const Eigen::AlignedBox3d& box) {
   return volume(role, prism);
 }
 
-/// The corners of a prior's triangles, to a centimetre; none of too many to be shown.
+/// Returns the triangle corners of a prior, rounded to centimetres. Empty if there are too many
+/// triangles to display.
 Json surface(const site_data::Source& source, const site_data::Prior& prior) {
   constexpr std::size_t most_triangles = 20'000;
   geometry::Mesh mesh;
@@ -75,7 +76,7 @@ Json scene_outline(const session::SurveyOptions& survey, const scene::SceneOptio
   const flight::Obstacles rules = flight.rules();
   Json volumes = Json::array();
   for (const geometry::Prism& prism : rules.no_fly) volumes.push_back(volume("no_fly", prism));
-  // A fence of 100 km is the height limit alone.
+  // Without a geofence, the fence is a placeholder of 100 km that represents only the height limit.
   if (rules.fence && !flight.airspace.geofence.empty()) {
     volumes.push_back(volume("geofence", *rules.fence));
   }

@@ -1,4 +1,4 @@
-/// What stands in the way of a flight and of a survey, for the 3-D view.
+/// Obstacles, airspace and sensor data for the 3-D view.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace skycap::missions::report {
 
-/// {"ground": z, "pad": [x, y, z] or null, "volumes": [{"role", "name", "corners", "bottom",
-/// "top"}], "sensor": {"horizontal_fov", "vertical_fov", "view_distance", "lidar"}}, in metres and
-/// radians. Roles: no_fly, geofence, unknown (what must be measured before it counts as free) and
-/// scene (what is to be surveyed). A bottom or top of null has no end.
+/// Returns {"ground": z, "pad": [x, y, z] or null, "volumes": [{"role", "name", "corners",
+/// "bottom", "top"}], "sensor": {"horizontal_fov", "vertical_fov", "view_distance", "lidar"}}.
+/// Units are metres and radians. Roles: no_fly, geofence, unknown (unobserved space is occupied)
+/// and scene (surveyed volume). A null bottom or top is unlimited.
 nlohmann::ordered_json scene_outline(const session::SurveyOptions& survey,
                                      const scene::SceneOptions& scene,
                                      const std::optional<Eigen::Vector3d>& pad);

@@ -1,4 +1,4 @@
-/// Text and bytes as they may stand in an HTML page, whoever chose them.
+/// Encodes strings and binary data from any source safely for HTML reports.
 #pragma once
 
 #include <string>
@@ -8,24 +8,25 @@
 
 namespace skycap::missions::report {
 
-/// Text for between tags or in a quoted attribute.
+/// Escapes text for use between tags or in quoted attributes.
 std::string html_text(std::string_view text);
 
-/// JSON for a <script> that is not run. No name in it can end the script or open a comment: '<' is
-/// written as an escape, and so are the two characters that end lines in older JavaScript.
+/// Returns JSON for a data-only <script> element. '<' is escaped, so that no string can close the
+/// script or open a comment. The line separators of older JavaScript versions (U+2028, U+2029) are
+/// escaped as well.
 std::string script_json(const nlohmann::ordered_json& json);
 
-/// Which repetitions deflating looks for: all, or runs of a byte alone, which takes a fifth of the
-/// time where there are no others.
+/// Repetitions searched for during compression. `runs` considers only runs of one byte, which takes
+/// a fifth of the time for data without other repetitions.
 enum class Repetition { any, runs };
 
-/// zlib's format (RFC 1950), the same bytes for the same bytes.
+/// Compresses data in zlib format (RFC 1950). The output is deterministic.
 std::string deflated(std::string_view bytes, Repetition repetition);
 
-/// Of at most a gigabyte.
+/// Encodes up to 1 GB.
 std::string base64(std::string_view bytes);
 
-/// What a content security policy calls a script or style by: 'sha256-...'.
+/// Returns the hash source of a script or style in a content security policy: 'sha256-...'.
 std::string policy_hash(std::string_view text);
 
 }  // namespace skycap::missions::report

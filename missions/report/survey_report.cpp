@@ -35,7 +35,7 @@ geometry::AttributedCloud cloud_if_there(const fs::path& file) {
   return is_there(file) ? geometry::read_cloud(file) : geometry::AttributedCloud{};
 }
 
-/// What the folder holds besides the summary.
+/// Returns the files in the folder other than the summary.
 Json files_of(const Json& summary, const ResultFinder& results) {
   std::vector<std::string> names = {"cloud.ply", "coverage.ply",   "true_coverage.ply",
                                     "views.csv", "trajectory.tum", package::free_space_name};
@@ -56,7 +56,7 @@ Json files_of(const Json& summary, const ResultFinder& results) {
   return files_json(names, results);
 }
 
-/// Latitude, longitude and ellipsoid height of the holes' centres.
+/// Returns latitude, longitude and ellipsoidal height of the holes' centres.
 Json hole_places(const Json& summary, const flight::FlightOptions& options) {
   Json places = Json::array();
   const Json::json_pointer holes("/surface/holes");
@@ -71,7 +71,7 @@ Json hole_places(const Json& summary, const flight::FlightOptions& options) {
   return places;
 }
 
-/// As the planner has learnt it, else as the mission says.
+/// Returns the noise estimated by the planner, or else that of the mission.
 PointNoise noise_of(const Json& summary, const sim::NoiseConfig& stated) {
   const Json::json_pointer learnt("/estimate/noise_m");
   const bool is_learnt = summary.contains(learnt) && summary[learnt].is_number() &&
@@ -91,7 +91,7 @@ PageCloud measured_cloud(const geometry::AttributedCloud& cloud,
   return {"measured", encode_cloud(cloud.positions, attributes, most_points)};
 }
 
-/// The pieces of surface that are not covered.
+/// Returns the uncovered surface patches.
 PageCloud missing_cloud(const geometry::AttributedCloud& map, std::size_t most_points) {
   const std::vector<std::uint16_t> all = map_states(map);
   std::vector<Eigen::Vector3f> positions;
@@ -105,8 +105,8 @@ PageCloud missing_cloud(const geometry::AttributedCloud& map, std::size_t most_p
   return {"missing", encode_cloud(positions, {&attribute, 1}, most_points)};
 }
 
-/// Where the space ends that was measured to be free: so many faces at most, evenly along a curve
-/// through space.
+/// Returns the boundary of observed free space, with a limited number of faces selected evenly
+/// along a space-filling curve.
 PageCloud free_cloud(const fs::path& file) {
   constexpr std::size_t most_faces = 50'000;
   std::vector<Eigen::Vector3f> faces;
@@ -117,7 +117,7 @@ PageCloud free_cloud(const fs::path& file) {
   return {"free", encode_cloud(faces, {}, most_faces)};
 }
 
-/// Half the distance at which pieces of surface hang together reaches from each to the next.
+/// Returns half the maximum distance between connected surface patches [m].
 double reach_of(const Json& summary) {
   const Json::json_pointer link("/surface/link_m");
   return summary.contains(link) && summary[link].is_number() ? summary[link].get<double>() / 2.0

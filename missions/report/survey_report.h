@@ -1,4 +1,5 @@
-/// report.html of a survey: of what its folder holds and of nothing else, or of one that goes on.
+/// HTML reports (report.html) of completed surveys, from their results folder only, and of running
+/// surveys.
 #pragma once
 
 #include <cstddef>
@@ -16,20 +17,20 @@
 
 namespace skycap::missions::report {
 
-/// The page of the survey that summary.json tells of, with at most so many points of cloud.ply.
-/// Without cloud.ply or coverage.ply it goes without them. Throws Error{bad_file} naming the file
-/// if one is not as `skycap plan` writes it.
+/// Returns the report of the survey described in summary.json, with up to `most_points` points of
+/// cloud.ply. cloud.ply and coverage.ply are optional. Throws Error{bad_file} with the file name if
+/// a file is invalid.
 std::string survey_report(const ResultFinder& results, std::size_t most_points);
 
-/// Where a survey that goes on wants to look next, if it wants to, and the way there.
+/// Next view of a running survey, if any, and the path to it.
 struct NextView {
   std::optional<geometry::View> view;
   std::vector<Eigen::Vector3d> way;
 };
 
-/// The page of a survey that goes on: a browser that shows it reads it again now and then. Shows
-/// fewer points than the page of a finished one, and no incidence, so that it costs little.
-/// `summary_text` is package::summary_json() of the same record.
+/// Returns the report of a running survey, which browsers reload periodically. To reduce the cost,
+/// it contains fewer points than that of a completed survey and no incidence angles. `summary_text`
+/// is package::summary_json() of the same record.
 std::string live_page(const std::string& summary_text, const session::SurveyOptions& survey,
                       const scene::SceneOptions& scene, session::SurveyRecord so_far,
                       const NextView& next);

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Coverage from which on a survey counts as done, and from which on as usable.
+/// Thresholds of the coverage rating: complete and usable.
 constexpr double good_coverage = 0.95, fair_coverage = 0.85;
 
 Json json_of(const Light& light) {
@@ -62,7 +62,7 @@ void add_flight(const Json& summary, std::vector<Light>& lights) {
   const Json clearance = at(summary, "/flight/route/min_clearance_m");
   const Json asked = at(summary, "/flight/clearance_m/total");
   if (clearance.is_number() && asked.is_number()) {
-    // Floating-point sums of the terms may differ from the bound in the last bits.
+    // Tolerance for rounding errors, because the terms are summed in floating point.
     const bool is_kept = clearance.get<double>() >= asked.get<double>() * (1.0 - 1e-9);
     lights.push_back({"Minimum clearance (verified)", "flight.route.min_clearance_m", "metres",
                       clearance, is_kept ? "green" : "red",

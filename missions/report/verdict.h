@@ -1,4 +1,4 @@
-/// What a survey is worth at a glance: its figures, each with the bound it is held against.
+/// Assessment of a survey: key figures with a traffic-light rating each.
 #pragma once
 
 #include <string>
@@ -8,31 +8,31 @@
 
 namespace skycap::missions::report {
 
-/// A figure, and what is held of it.
+/// Key figure with its rating.
 struct Light {
   std::string name, figure;  ///< `figure` is the path of the value in the summary
-  std::string form;          ///< how it is shown: share, metres, minutes, count
+  std::string form;          ///< display format: share, metres, minutes or count
   nlohmann::ordered_json value;
-  std::string light = "none";  ///< green, amber, red, or none where nothing is asked of the figure
-  std::string rule;  ///< which value gives which light; docs/reference/report.md lists them
+  std::string light = "none";  ///< green, amber or red; none for unrated figures
+  std::string rule;            ///< rating rule; docs/reference/report.md lists the rules
 };
 
 struct Verdict {
   bool is_complete = false;
   std::string because;
   std::vector<Light> lights;
-  std::string else_light = "red";  ///< of what is not complete; complete is green
+  std::string else_light = "red";  ///< rating if incomplete; a complete survey is green
 };
 
-/// {"answer": "complete", "because": "...", "light": "green",
-///  "lights": [{"name", "figure", "value", "form", "light", "rule"}]}
+/// Returns {"answer": "complete", "because": "...", "light": "green", "lights": [{"name", "figure",
+/// "value", "form", "light", "rule"}]}.
 nlohmann::ordered_json json_of(const Verdict& verdict);
 
-/// {"complete": "nothing more is worth a view", ...}: why surveys end, in words, by the words that
-/// files have for it.
+/// Returns descriptions of the stop reasons by their names in files: {"complete": "nothing more is
+/// worth a view", ...}.
 nlohmann::ordered_json stop_words();
 
-/// The verdict from a package's summary.
+/// Returns the assessment for a package's summary.
 nlohmann::ordered_json verdict(const nlohmann::ordered_json& summary);
 
 }  // namespace skycap::missions::report

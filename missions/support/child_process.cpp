@@ -34,7 +34,8 @@ void bound(unsigned seconds) {
   lower_limit(RLIMIT_AS, pages * page + most_child_memory);
 }
 
-/// The handlers of the program are not the child's: Ctrl-C ends it, and so does the parent's end.
+/// Resets the signal handlers inherited from the program, so that Ctrl-C ends the child. The child
+/// also ends when its parent does.
 void follow(pid_t parent) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
@@ -46,7 +47,7 @@ void follow(pid_t parent) {
 [[noreturn]] void be_child(int file, pid_t parent, unsigned seconds,
                            const std::function<void(PipeWriter&)>& work) {
   follow(parent);
-  // Libraries write remarks of their own there.
+  // Discards output written by the library.
   if (const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nothing >= 0) {
     ::dup2(nothing, STDOUT_FILENO);
     ::dup2(nothing, STDERR_FILENO);
@@ -90,7 +91,7 @@ ChildProcess::ChildProcess(Reading reading, const std::function<void(PipeWriter&
 
 ChildProcess::~ChildProcess() {
   ::close(file_);
-  if (child_ > 0) ::kill(child_, SIGKILL);  // it has nothing to lose
+  if (child_ > 0) ::kill(child_, SIGKILL);  // the child has no results to save
   wait();
 }
 

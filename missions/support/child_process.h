@@ -1,5 +1,5 @@
-/// Libraries of others that a hostile file makes crash, loop or run out of memory, in a process of
-/// their own: there that ends the reader, in a message, and not the program.
+/// Runs third-party parsers in a child process. A malicious file may crash them, or make them loop
+/// or exhaust memory; such failures are reported as errors and do not affect the program.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@
 
 namespace skycap::missions::support {
 
-/// Of the child, on top of what this process has.
+/// Memory limit of the child, in addition to the memory of this process [byte].
 inline constexpr std::size_t most_child_memory = std::size_t{2} << 30;
 
-/// The child's end of the pipe. Numbers are as this machine has them. The child ends when nobody
-/// listens any more.
+/// Write end of the pipe in the child. Values are written in the machine's native representation.
+/// The child exits when the read end is closed.
 class PipeWriter {
  public:
   explicit PipeWriter(int file) : file_(file) {}
@@ -40,23 +40,24 @@ class PipeWriter {
   int file_;
 };
 
-/// A child, and this process's end of the pipe.
+/// Child process with the read end of its pipe.
 class ChildProcess {
  public:
   struct Reading {
-    std::string file;                                         ///< opens messages
-    std::string library;                                      ///< that reads it, for messages
-    unsigned seconds = std::numeric_limits<unsigned>::max();  ///< of processor time, at most
+    std::string file;     ///< file name at the start of messages
+    std::string library;  ///< name of the parsing library in messages
+    unsigned seconds = std::numeric_limits<unsigned>::max();  ///< limit of the processor time [s]
   };
 
-  /// Has a child do `work`, which must not throw and writes what it finds. What it prints is
-  /// dropped. Throws Error{bad_file} if there are no pipes or processes left.
+  /// Runs `work` in a child process. It must not throw, and writes its results to the pipe. Its
+  /// standard output is discarded. Throws Error{bad_file} if no pipe or process can be created.
   ChildProcess(Reading reading, const std::function<void(PipeWriter&)>& work);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();
 
-  // What the child has written, in its order. Throws Error{bad_file} if the child has ended before.
+  // Returns the next value written by the child. Throws Error{bad_file} if the child has ended
+  // before writing it.
   template <typename Value>
   Value take() {
     Value value;
@@ -74,7 +75,7 @@ class ChildProcess {
  private:
   void take_bytes(void* data, std::size_t size);
   std::size_t take_count(std::size_t item_size);
-  /// Waits for the child, and says how it ended.
+  /// Waits for the child and returns its status.
   int wait();
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail_by_end();

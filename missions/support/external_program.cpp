@@ -19,7 +19,7 @@ void check(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
-/// The words as posix_spawn wants them; they live as long as `command`.
+/// Returns the arguments for posix_spawn. They are valid as long as `command`.
 std::vector<char*> arguments_of(const std::vector<std::string>& command) {
   std::vector<char*> arguments;
   arguments.reserve(command.size() + 1);
@@ -28,9 +28,9 @@ std::vector<char*> arguments_of(const std::vector<std::string>& command) {
   return arguments;
 }
 
-/// What a program writes to a pipe until its end, or until nobody holds the pipe any more.
+/// Reads a program's output until it ends or the pipe is closed.
 std::string output_of(pid_t process, int pipe, const std::stop_token& stop) {
-  // The second signal is for those that take the first as a wish, as GNU parallel does.
+  // SIGTERM is repeated, because programs such as GNU parallel end only after the second signal.
   constexpr std::chrono::milliseconds interval(300);
   auto next_signal = std::chrono::steady_clock::now();
   std::string output;
@@ -54,7 +54,7 @@ std::string output_of(pid_t process, int pipe, const std::stop_token& stop) {
 ProgramResult run_external_program(const std::vector<std::string>& command,
                                    const std::filesystem::path& folder,
                                    const std::stop_token& stop) {
-  std::array<int, 2> ends{};  // of the pipe: to read, to write
+  std::array<int, 2> ends{};  // read end and write end of the pipe
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
 
   std::vector<char*> arguments = arguments_of(command);

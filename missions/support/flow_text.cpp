@@ -9,7 +9,7 @@
 namespace skycap::missions::support {
 namespace {
 
-/// As the file has it where that cannot be taken for anything else.
+/// Returns a scalar without quotes if it is unambiguous, otherwise with quotes.
 std::string scalar_text(const std::string& text, bool is_quoted) {
   const auto is_plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '+' ||

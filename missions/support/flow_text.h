@@ -1,4 +1,4 @@
-/// Values of YAML in one line.
+/// Writes YAML values in one line (flow style).
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace skycap::missions::support {
 
-/// A text in quotes, in which nothing means anything to YAML.
+/// Returns a quoted YAML string with all special characters escaped.
 std::string yaml_quoted(std::string_view text);
 
-/// A text that parse_yaml() reads as the same value, lines aside.
+/// Returns a string that parse_yaml() reads as the same value, except for line numbers.
 std::string flow_text(const YamlNode& node);
 
 }  // namespace skycap::missions::support

@@ -1,4 +1,4 @@
-/// What tells one survey or scan from another.
+/// Identification of surveys and scans.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,16 @@
 
 namespace skycap::missions::support {
 
-/// A key that decides how a survey or a scan goes, as text.
+/// A mission key that affects the survey or scan, with its value.
 struct Setting {
   std::string key;
-  std::string value;  ///< as a mission file would say it; "-" if it is left to be derived
+  std::string value;  ///< value in mission-file notation; "-" if it is derived
 };
 
-/// What tells a survey or a scan from others: what an unfinished one has to be continued with.
+/// Inputs that identify a survey or scan. They must be equal for an unfinished one to be resumed.
 struct Identity {
   std::uint64_t seed = 1;
-  std::vector<Setting> settings;  ///< all keys but name, seed and threads, in their order
+  std::vector<Setting> settings;  ///< all keys except name, seed and threads, in table order
 };
 
 }  // namespace skycap::missions::support

@@ -1,4 +1,4 @@
-/// The records of journals as JSON texts of one line. For the journals' sources.
+/// Encodes journal records as single-line JSON. Private to the journal implementations.
 #pragma once
 
 #include <string>
@@ -9,21 +9,20 @@
 
 namespace skycap::missions::support {
 
-/// Format of the records of a survey, simulated or live, as the "format" of their identity. Since
-/// format 2 a planner keeps the limits of views itself, so that views that they refuse are not
-/// counted as unreachable. Since format 3 keys and fields have the names of version 0.2. Earlier
-/// journals have no format.
+/// Format version of survey records, the "format" field of their identity. Since format 2, planners
+/// apply the view limits, so that views outside the limits are not counted as unreachable. Since
+/// format 3, keys and fields have the names of version 0.2. Earlier journals have no format field.
 inline constexpr int journal_format = 3;
 
-/// Names that are not UTF-8 are shown with a replacement character.
+/// Returns a record as one line. Invalid UTF-8 is replaced by the replacement character.
 std::string journal_line(const nlohmann::ordered_json& json);
 
-/// The first record: version, seed, all keys that decide the survey or scan, and what else does,
-/// such as a digest of what is surveyed.
+/// Returns the first record: version, seed and all keys that determine the survey or scan. `more`
+/// contains further inputs, such as a checksum of the scene.
 std::string identity_text(const Identity& run, const nlohmann::ordered_json& more);
 
-/// Throws Error{bad_file}, beginning with `file` and ending with `cure`, unless the two first
-/// records are of one survey or scan, and `found` has the format that is wanted.
+/// Throws Error{bad_file} unless the first records `found` and `wanted` identify the same survey or
+/// scan and have the same format. The message begins with `file` and ends with `cure`.
 void require_same_survey(const std::string& file, const std::string& found,
                          const std::string& wanted, const std::string& cure);
 

@@ -1,4 +1,4 @@
-/// JSON as files and messages hold it.
+/// JSON helpers for files and messages.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace skycap::missions::support {
 
-/// A JSON file's text. Names that are not valid UTF-8 are shown with a replacement character.
+/// Returns the contents of a JSON file. Invalid UTF-8 is replaced by the replacement character.
 inline std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -24,7 +24,7 @@ inline nlohmann::ordered_json json_of(const std::vector<Eigen::Vector3d>& vector
   return list;
 }
 
-/// Throws what nlohmann::json throws for anything but three numbers or more.
+/// Throws the errors of nlohmann::json unless the value is an array of at least three numbers.
 inline Eigen::Vector3d vector_of(const nlohmann::ordered_json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }

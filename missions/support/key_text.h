@@ -1,4 +1,4 @@
-/// Messages about a key of a file.
+/// Error messages about keys.
 #pragma once
 
 #include <string>
@@ -6,7 +6,8 @@
 
 namespace skycap::missions::support {
 
-/// "KEY is 3; it must be ..." if `what` begins with a verb, otherwise "KEY: what".
+/// Returns "KEY is 3; it must be ..." if `what` begins with a predicate such as "is", otherwise
+/// "KEY: what".
 std::string about_key(std::string_view key, std::string_view what);
 
 }  // namespace skycap::missions::support

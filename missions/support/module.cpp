@@ -16,22 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The program, or the library or module of Python that this code is in.
+/// Returns the executable, or the library or Python module that contains this code.
 fs::path file_of_this_code() {
   Dl_info info;
   const bool is_known = ::dladdr(reinterpret_cast<void*>(&module_symbol), &info) != 0;
   const fs::path file = is_known && info.dli_fname != nullptr ? info.dli_fname : "";
   if (file.filename().string().find(".so") != std::string::npos) return fs::canonical(file);
-  std::error_code failure;  // programs are known by how they were called
+  std::error_code failure;  // dladdr() returns the invocation path of executables
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
   if (!failure) return program;
   throw Error(ErrorKind::bad_file, "cannot read /proc/self/exe (" + failure.message() +
                                        "); set $SKYCAP_PLUGINS to the folder of libskycap_*.so");
 }
 
-/// Where the modules are, from there, wherever that was put: beside the program or where its
-/// installation puts them; beside shared libraries; from the module of Python, in its build folder
-/// and from lib/python3/dist-packages/skycap.
+/// Module folders relative to this file. They cover the build and installation folders of the
+/// program, of shared libraries, and of the Python module (lib/python3/dist-packages/skycap).
 constexpr std::array folders{SKYCAP_PLUGINS_OF_PROGRAM, ".", "skycap", "../..", "../../../skycap"};
 
 fs::path module_folder(const std::string& module) {

@@ -1,14 +1,15 @@
-/// Parts of the program that are loaded when they are needed, because the libraries behind them
-/// take longer to load than most verbs take to run. They are looked for beside the running program
-/// and in ../lib/skycap from there, where an installation has them, or in $SKYCAP_PLUGINS.
+/// Modules loaded on demand, because their libraries take longer to load than most commands take to
+/// run. Modules are searched for in $SKYCAP_PLUGINS, next to the executable, and in ../lib/skycap
+/// relative to it, where they are installed.
 #pragma once
 
 #include <string>
 
 namespace skycap::missions::support {
 
-/// The address of an extern "C" function of a module, which is never unloaded: what it has made may
-/// outlive any scope. Throws Error{bad_file} if the module or its libraries are not there.
+/// Returns the address of an extern "C" function in a module. Modules are never unloaded, because
+/// objects created by them may outlive any scope. Throws Error{bad_file} if the module or one of
+/// its libraries is missing.
 void* module_symbol(const std::string& module, const std::string& function);
 
 template <typename Function>

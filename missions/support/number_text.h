@@ -1,4 +1,4 @@
-/// Numbers as text.
+/// Formats numbers.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,13 @@
 
 namespace skycap::missions::support {
 
-/// The shortest decimal text that reads back as the same number.
+/// Returns the shortest decimal string that is parsed as the same number.
 std::string exact_text(double number);
 
-/// Four significant digits, for people.
+/// Returns a number with four significant digits, for messages.
 std::string short_text(double number);
 
-/// "1 point", "2 points".
+/// Returns a count with its noun: "1 point", "2 points".
 std::string counted(std::size_t count, std::string_view word);
 
 }  // namespace skycap::missions::support

@@ -1,5 +1,4 @@
-// The module that knows PCL, whose libraries take a tenth of a second to load; reconstruction.cpp
-// loads it.
+// Module that links PCL, whose libraries take 0.1 s to load. Loaded by reconstruction.cpp.
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -35,8 +34,8 @@ Cloud::Ptr pcl_cloud(std::span<const Eigen::Vector3f> points,
   return cloud;
 }
 
-/// Refuses points that all lie on a line, or at one place, up to the precision of their
-/// coordinates: they have no normals, and PCL would go on with noise.
+/// Throws if all points are collinear or equal within the precision of their coordinates. They have
+/// no normals, and PCL would process noise.
 void require_spread(const Cloud& cloud) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const pcl::PointNormal& point : cloud) mean += point.getVector3fMap().cast<double>();
@@ -46,7 +45,7 @@ void require_spread(const Cloud& cloud) {
     const Eigen::Vector3d offset = point.getVector3fMap().cast<double>() - mean;
     covariance += offset * offset.transpose();
   }
-  constexpr double rounding = 1e-6;  // of a length in single precision
+  constexpr double rounding = 1e-6;  // relative precision of single-precision lengths
   const Eigen::Vector3d spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance)
                                      .eigenvalues()
                                      .cwiseMax(0.0)
@@ -79,12 +78,12 @@ void estimate_normals(const Cloud::Ptr& cloud, const ReconstructionConfig& confi
   }
 }
 
-/// Turns normals to agree with their neighbours': along a tree over the graph of nearest points
-/// that prefers neighbours with nearly parallel normals (Hoppe et al. 1992, section 3.3). Every
-/// connected part begins with its highest point, whose normal is turned up.
+/// Orients normals consistently along a spanning tree of the nearest-neighbour graph. The tree
+/// prefers neighbours with nearly parallel normals (Hoppe et al. 1992, section 3.3). Each connected
+/// component starts at its highest point, whose normal points up.
 void orient_normals(Cloud& cloud, const KdTree& tree, std::size_t neighbours) {
   struct Step {
-    float bend;  // 1 - |cosine| between the normals
+    float bend;  // 1 - |cosine| of the angle between the normals
     int from, to;
   };
   const auto is_later = [](const Step& a, const Step& b) { return a.bend > b.bend; };
@@ -119,7 +118,8 @@ void orient_normals(Cloud& cloud, const KdTree& tree, std::size_t neighbours) {
   }
 }
 
-/// Median distance of a point to the next, of some thousand points spread over the cloud.
+/// Returns the median nearest-neighbour distance of a few thousand points distributed over the
+/// cloud.
 double median_spacing(const Cloud& cloud, const KdTree& tree) {
   const std::size_t stride = 1 + cloud.size() / 5000;
   std::vector<float> distances;
@@ -143,7 +143,7 @@ int octree_depth(const Cloud& cloud, double spacing, const ReconstructionConfig&
   return std::clamp(static_cast<int>(std::ceil(std::log2(std::max(1.0, cells)))), 5, 10);
 }
 
-/// How many points of the cloud are within `radius` of each of `places`.
+/// Returns the number of cloud points within `radius` of each of `places`.
 std::vector<std::uint32_t> points_around(const Cloud& places, const KdTree& tree, double radius,
                                          unsigned threads) {
   std::vector<std::uint32_t> counts(places.size());
@@ -159,7 +159,7 @@ std::vector<std::uint32_t> points_around(const Cloud& places, const KdTree& tree
   return counts;
 }
 
-/// The triangles all of whose corners have enough of the cloud around them.
+/// Returns the triangles whose corners all have at least `least` cloud points around them.
 geometry::Mesh dense_part(const Cloud& vertices, const std::vector<pcl::Vertices>& triangles,
                           const std::vector<std::uint32_t>& around, double least) {
   geometry::Mesh mesh;
@@ -207,13 +207,13 @@ Reconstruction reconstructed(std::span<const Eigen::Vector3f> points,
   result.depth = octree_depth(*cloud, result.spacing, config);
   pcl::Poisson<pcl::PointNormal> poisson;
   poisson.setDepth(result.depth);
-  poisson.setThreads(1);  // with more, PCL's result depends on which is first
+  poisson.setThreads(1);  // with several threads, PCL's result is not deterministic
   poisson.setInputCloud(cloud);
   Cloud vertices;
   std::vector<pcl::Vertices> triangles;
   poisson.reconstruct(vertices, triangles);
 
-  // A few dozen points where the cloud is as dense as usual.
+  // The radius contains a few dozen points at typical density.
   const double radius = 3.0 * std::max(result.spacing, 1e-9);
   std::vector<std::uint32_t> usual = points_around(*cloud, tree, radius, config.threads);
   const auto middle = usual.begin() + static_cast<std::ptrdiff_t>(usual.size() / 2);

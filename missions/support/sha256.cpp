@@ -21,8 +21,8 @@ void require_success(int result) {
   if (result != 1) throw std::runtime_error("the cryptography library does not support SHA-256");
 }
 
-/// The algorithm, from a library context of its own: where memory is short, OpenSSL 3.0 goes on
-/// with a default context that it could not make, and crashes.
+/// Returns the algorithm from a separate library context. When memory is low, OpenSSL 3.0 crashes
+/// because it uses a default context that was not created.
 const EVP_MD* algorithm() {
   static const std::unique_ptr<OSSL_LIB_CTX, decltype(&OSSL_LIB_CTX_free)> library(
       OSSL_LIB_CTX_new(), OSSL_LIB_CTX_free);
@@ -33,7 +33,7 @@ const EVP_MD* algorithm() {
   return sha256.get();
 }
 
-/// The digest of what it is given piece by piece.
+/// Computes the SHA-256 incrementally.
 class Sha256 {
  public:
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {

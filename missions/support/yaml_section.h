@@ -1,5 +1,6 @@
-/// A map of a description file, such as a sensor's or a vehicle's, read key by key. Every key that
-/// is asked for is known; the others are refused. Messages are "FILE:LINE: key KEY WHAT IS WRONG".
+/// Reads a map of a description file, such as a sensor or vehicle description, key by key. Keys
+/// that are never read are rejected by finish(). Messages have the form "FILE:LINE: key KEY WHAT IS
+/// WRONG".
 #pragma once
 
 #include <initializer_list>
@@ -13,18 +14,20 @@
 
 namespace skycap::missions::support {
 
-/// As parse_yaml(), of a document that must be a map; `what` it describes, such as "a mission".
+/// Parses a document that must be a map, as parse_yaml(). `what` is its kind in messages, such as
+/// "a mission".
 YamlNode parse_map(const std::string& text, const std::string& name, const std::string& what);
 
-/// Refers to the tree and to the file's name, which must outlive it. Everything throws
-/// Error{bad_config} if a key is missing that has no fallback, or of another type.
+/// Section of a YAML tree. The tree and the file name must outlive it. Member functions throw
+/// Error{bad_config} if a key without a fallback is missing, or if a value has another type.
 class YamlSection {
  public:
-  /// `path` goes before the names of keys, such as "beam.".
+  /// `path` is the prefix of key names in messages, such as "beam.".
   YamlSection(const YamlNode& node, std::string path, const std::string& file);
 
   std::optional<YamlSection> section(const std::string& key);
-  std::vector<YamlSection> sections(const std::string& key);  ///< of a list; empty without the key
+  /// List of maps; empty without the key.
+  std::vector<YamlSection> sections(const std::string& key);
 
   bool has(const std::string& key) { return find(key) != nullptr; }
   double number(const std::string& key);
@@ -34,8 +37,9 @@ class YamlSection {
   std::vector<double> numbers(const std::string& key);  ///< empty without the key
   std::string text(const std::string& key);
   std::string text(const std::string& key, const std::string& fallback);
-  std::vector<std::string> texts(const std::string& key);  ///< of a list; empty without the key
-  /// Of a map whose keys are not known beforehand; empty without the key.
+  /// List of strings; empty without the key.
+  std::vector<std::string> texts(const std::string& key);
+  /// Returns the entries of a map with arbitrary keys; empty without the key.
   std::vector<YamlEntry> entries(const std::string& key);
   bool boolean(const std::string& key, bool fallback);
 
@@ -51,14 +55,14 @@ class YamlSection {
     fail_at(key, "is " + given + "; it must be one of " + known);
   }
 
-  /// Refuses a value of a key, of `unit`, that is out of its range or not a number.
+  /// Throws Error{bad_config} if a value, in `unit`, is out of range or NaN.
   void require_between(const std::string& key, double value, double least, double most,
                        const std::string& unit = "");
 
-  /// Refuses keys that nobody asked for.
+  /// Throws Error{bad_config} if the section contains a key that was not read.
   void finish() const;
 
-  /// Complains of a key where it stands, or of the section if it is missing.
+  /// Throws Error{bad_config} with the line of the key, or of the section if the key is missing.
   [[noreturn]] void fail_at(const std::string& key, const std::string& what);
 
  private:

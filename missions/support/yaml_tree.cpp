@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t deepest_nesting = 16;
 
-/// Builds the tree from the parser's events. Unlike yaml-cpp's own nodes this keeps the line of
-/// every key, sees repeated keys, and never expands an alias.
+/// Builds the tree from parser events. Unlike yaml-cpp nodes, it stores the line of every key,
+/// detects duplicate keys, and never expands aliases.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   explicit TreeBuilder(const std::string& name) : name_(name) {}
@@ -40,7 +40,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     refuse_anchor(mark, anchor);
-    const bool is_quoted = tag == "!";  // how the parser marks quotes
+    const bool is_quoted = tag == "!";  // tag that the parser assigns to quoted scalars
     if (!is_quoted) refuse_tag(mark, tag);
     YamlNode node = node_at(mark, YamlNode::Kind::scalar);
     node.text = value;
@@ -61,11 +61,11 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  /// A list or map that is being read.
+  /// List or map being parsed.
   struct Open {
     YamlNode node;
-    bool awaits_value = false;         // of the map's last entry
-    std::map<std::string, int> lines;  // of the map's keys: a search for each takes too long
+    bool awaits_value = false;         // whether the last key of the map has no value yet
+    std::map<std::string, int> lines;  // lines of the map's keys, for fast detection of duplicates
   };
 
   [[noreturn]] void fail(int line, const std::string& what) const {
@@ -108,7 +108,7 @@ class TreeBuilder final : public YAML::EventHandler {
     add(std::move(node));
   }
 
-  /// Puts a finished node where it belongs.
+  /// Adds a complete node to the innermost open list or map.
   void add(YamlNode node) {
     if (open_.empty()) {
       root_ = std::move(node);

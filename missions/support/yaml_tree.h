@@ -1,4 +1,4 @@
-/// A YAML file as a tree that remembers its lines. The part of YAML that mission files need: one
+/// YAML tree with line numbers. It supports the subset of YAML required by mission files: one
 /// document of maps, lists and scalars, without anchors, aliases and tags.
 #pragma once
 
@@ -12,11 +12,11 @@ struct YamlEntry;
 struct YamlNode {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
-  int line = 1;                    ///< counted from one
-  std::string text;                ///< of a scalar
-  bool is_quoted = false;          ///< a scalar in quotes is text, whatever it looks like
-  std::vector<YamlNode> items;     ///< of a list
-  std::vector<YamlEntry> entries;  ///< of a map, in the order of the file; keys are unique
+  int line = 1;                    ///< line number, from 1
+  std::string text;                ///< value of a scalar
+  bool is_quoted = false;          ///< quoted scalars are always strings
+  std::vector<YamlNode> items;     ///< elements of a list
+  std::vector<YamlEntry> entries;  ///< entries of a map in file order; keys are unique
 };
 
 struct YamlEntry {
@@ -25,8 +25,8 @@ struct YamlEntry {
   YamlNode value;
 };
 
-/// Parses `text`. Throws Error{bad_config} with the message "NAME:LINE: what is wrong" if it is
-/// broken, is nested more than 16 deep, repeats a key, or uses what is left out.
+/// Parses YAML. Throws Error{bad_config} with the message "NAME:LINE: what is wrong". Errors are
+/// invalid syntax, nesting deeper than 16 levels, duplicate keys and unsupported features.
 YamlNode parse_yaml(const std::string& text, const std::string& name);
 
 }  // namespace skycap::missions::support

@@ -17,7 +17,7 @@ std::string vector_text(const Vector3d& place) {
   return fmt::format("[{:g}, {:g}, {:g}]", place.x(), place.y(), place.z());
 }
 
-/// In quotes, and as from the mission file's folder.
+/// Returns a quoted path relative to the mission's folder.
 std::string path_text(const std::filesystem::path& file, const std::filesystem::path& mission) {
   const auto absolute = std::filesystem::absolute(file).lexically_normal();
   const auto folder = std::filesystem::absolute(mission).lexically_normal().parent_path();
@@ -79,7 +79,7 @@ std::string site_section(const MissionValues& values) {
 }
 
 std::string flight_section(const MissionValues& values) {
-  // A preset has a name, a description has a path.
+  // The value is a preset name, or a path if it ends in .yaml.
   const bool is_file = std::filesystem::path(values.vehicle).extension() == ".yaml";
   std::string text = fmt::format(
       "flight:\n  vehicle: {}  # a preset, or the path of a vehicle file\n  clearance: {:g}  # "

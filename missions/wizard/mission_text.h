@@ -1,4 +1,4 @@
-/// Mission files with a word on each value.
+/// Writes mission files with a comment on each value.
 #pragma once
 
 #include <filesystem>
@@ -14,25 +14,26 @@
 
 namespace skycap::missions::wizard {
 
-/// What a first mission says; places in its frame, in metres.
+/// Values of a proposed mission. Coordinates are in the mission frame [m].
 struct MissionValues {
-  std::filesystem::path file;        ///< that the text is for: it names others as from its folder
-  std::string verb = "skycap site";  ///< that proposes it
+  /// Path of the mission file; other files are written relative to its folder.
+  std::filesystem::path file;
+  std::string verb = "skycap site";  ///< command that creates the proposal
   std::string vehicle;
   std::vector<site_data::Source> sources;
   flight::GeodeticPoint origin;
   std::string origin_is = "the centre of the target, at its lowest point";
-  double ground = 0.0;           ///< z of the ground where the sources have none
-  bool sees_neighbours = false;  ///< of the sources in the dry run
-  Eigen::AlignedBox3d unknown;   ///< where nothing is free before it is measured
-  std::vector<Eigen::AlignedBox3d> unknown_beside{};  ///< likewise, of neighbours
+  double ground = 0.0;           ///< z of the ground if the sources contain none [m]
+  bool sees_neighbours = false;  ///< whether the dry run simulates measurements of other sources
+  Eigen::AlignedBox3d unknown;   ///< box in which unobserved space is occupied
+  std::vector<Eigen::AlignedBox3d> unknown_beside{};  ///< further such boxes around neighbours
   Eigen::AlignedBox3d fence{};
-  std::optional<Eigen::AlignedBox3d> scene{};  ///< whose surface is wanted; none in a draft
-  std::optional<Eigen::Vector3d> pad{};        ///< likewise
+  std::optional<Eigen::AlignedBox3d> scene{};  ///< box of the surface to survey; empty in a draft
+  std::optional<Eigen::Vector3d> pad{};        ///< take-off point; empty in a draft
   double clearance = 0.0, registration_distance = 0.0, view_distance = 0.0;
 };
 
-/// How far the sensor measures that the mission proposes [m].
+/// Returns the maximum range of the proposed sensor [m].
 double sensor_range(const MissionValues& values);
 
 std::string mission_text(const MissionValues& values);

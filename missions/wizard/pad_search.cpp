@@ -45,7 +45,7 @@ std::optional<Vector3d> PadSearch::beside(const AlignedBox3d& unknown, double to
     double most_room = wanted;
     for (int i = 0; i < directions; ++i) {
       const double azimuth = 2.0 * std::numbers::pi * i / directions;
-      const Vector2d way(-std::sin(azimuth), -std::cos(azimuth));  // southward first
+      const Vector2d way(-std::sin(azimuth), -std::cos(azimuth));  // starts in the south
       const Vector2d place = middle + way.cwiseProduct(corner) + beside * way;
       const auto pad = at({std::round(place.x()), std::round(place.y())});
       if (!pad) continue;
@@ -81,7 +81,7 @@ double PadSearch::room_over(const Vector3d& pad, double top, double up_to) const
   return pad_space_.closest({pad, home}, up_to).distance;
 }
 
-/// Whether a climb comes near a box in which nothing is free.
+/// Returns whether a climb is close to a box in which unobserved space is occupied.
 bool PadSearch::comes_near_unknown(const flight::Segment& climb) const {
   const bool is_dji = flight_.flown().dialect == flight::Dialect::dji;
   const double spare = 2.0 * flight_.clearance + (is_dji ? flight::dji_lands_at_once : 0.0);

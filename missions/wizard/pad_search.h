@@ -1,4 +1,4 @@
-/// Where a vehicle may take off and land beside a target, by all that is known of the site.
+/// Searches for take-off points near a target, according to the known obstacles of the site.
 #pragma once
 
 #include <optional>
@@ -14,20 +14,24 @@ namespace skycap::missions::wizard {
 
 class PadSearch {
  public:
-  /// Of the flight's airspace, whose prior data is what the files hold; where there is no terrain
-  /// its base is the ground. `unknown` are boxes in which nothing is free before it
-  /// is measured, those of other targets: no climb comes near them.
+  /// Uses the obstacles of the flight's airspace. Without terrain, the ground is at the airspace's
+  /// base. `unknown` contains boxes around other targets in which unobserved space is occupied;
+  /// climbs keep clear of them.
   explicit PadSearch(flight::FlightOptions flight, std::vector<Eigen::AlignedBox3d> unknown = {});
 
-  /// On the ground beside an unknown box, with nothing known over it or near it up to `top` (z): as
-  /// near as there is room, and there where most of it is; nothing within 100 m has room.
+  /// Returns a pad on the ground outside an unknown box. The space above and near it is clear of
+  /// known obstacles up to the height `top` (z) [m]. The nearest distance with enough space is
+  /// selected, and there the position with the most space. Returns nullopt if no such position is
+  /// within 100 m.
   std::optional<Eigen::Vector3d> beside(const Eigen::AlignedBox3d& unknown, double top) const;
 
-  /// On the ground at a place of the map; nothing where the terrain's files have none.
+  /// Returns the position on the ground below a map position, or nullopt if the terrain has no data
+  /// there.
   std::optional<Eigen::Vector3d> at(const Eigen::Vector2d& place) const;
 
-  /// How near the climb from a pad to `top` comes to what stands beside it, up to `up_to`; 0 if the
-  /// pad is not one. The fence is put around the pad afterwards.
+  /// Returns the clearance of the climb from a pad to `top` (z), up to `up_to` [m]. Returns 0 if
+  /// the pad is invalid. The geofence is not considered, because it is extended around the pad
+  /// later.
   double room_over(const Eigen::Vector3d& pad, double top, double up_to) const;
 
  private:

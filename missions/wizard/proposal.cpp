@@ -16,18 +16,18 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// Trees, wires and people are beside buildings, and their files are off: so far around the target
-/// at least nothing is vouched for [m].
+/// Minimum margins of the unknown box around the target [m]. Maps have errors, and trees, wires and
+/// people near buildings are not in them.
 constexpr double unknown_beside = 5.0, unknown_above = 3.0;
 
 double rounded_up(double value, double unit) { return std::ceil(value / unit) * unit; }
 
-/// How closely a target is looked at: the larger it is, the less.
+/// Returns the coverage distance [m], which increases with the size of the target.
 double registration_distance_of(const AlignedBox3d& target) {
   return std::clamp(rounded_up(target.sizes().maxCoeff() / 60.0, 0.05), 0.1, 1.0);
 }
 
-/// The box with its corners on multiples of a length, no smaller than it was.
+/// Returns the box enlarged to corners at multiples of `unit`.
 AlignedBox3d rounded_out(const AlignedBox3d& box, double unit) {
   return {(box.min().array() / unit).floor() * unit, (box.max().array() / unit).ceil() * unit};
 }
@@ -43,7 +43,7 @@ AlignedBox3d unknown_box(const AlignedBox3d& target, double uncertainty, bool ha
   return rounded_out(box, 1.0);
 }
 
-/// A fence around a box and a pad.
+/// Returns a geofence around a box and a pad.
 AlignedBox3d fence_around(const AlignedBox3d& unknown, const std::optional<Vector3d>& pad,
                           double view_distance) {
   constexpr double spare = 10.0;

@@ -1,4 +1,4 @@
-/// A first mission file for a site: it runs as it is, and says of each value what it is for.
+/// Proposes a complete first mission for a site, with a comment on each value.
 #pragma once
 
 #include <filesystem>
@@ -12,26 +12,25 @@
 
 namespace skycap::missions::wizard {
 
-/// The text of a mission that is to be written to `file`: the target, the prior data, where the
-/// pad, the fence and the space that nobody knows are proposed to be, a sensor, and how closely it
-/// is looked at. Its scene is the target, for a dry run. Throws Error{bad_config} if the target is
-/// not found, if the files do not say where they are, or if there is no room for a pad within 100 m
-/// of the target; what config::parse_mission() throws.
+/// Returns the text of a mission to be written to `file`. It proposes the target, prior data, pad,
+/// geofence, unknown box, sensor and view distance. The scene is the target, for a dry run. Throws
+/// Error{bad_config} if the target is not found, if the files have no georeference, or if no pad is
+/// possible within 100 m of the target. Throws the errors of config::parse_mission().
 std::string propose_mission(const Wishes& wishes, const std::filesystem::path& file);
 
-/// What is in the way of flying a proposed mission keeps so far from it at least [m].
+/// Clearance of a proposed mission [m].
 inline constexpr double proposed_clearance = 2.0;
 
-/// The values with what follows from the place of a target that may be off by `uncertainty`: the
-/// space around it that nobody knows, how closely and from where it is looked at, a fence around
-/// all that. Without terrain the ground is at z = 0; on terrain it may fall away beside the target.
+/// Derives values from a target's box and the `uncertainty` of its position [m]: unknown box,
+/// coverage distance, view distance and geofence. Without terrain, the ground is at z = 0. With
+/// terrain, the unknown box extends below the target, because the ground may descend next to it.
 MissionValues values_for(MissionValues values, const Eigen::AlignedBox3d& target,
                          double uncertainty, bool has_terrain);
 
-/// The values with a pad, and the fence around that, too.
+/// Returns the values with a pad and with the geofence extended around it.
 MissionValues with_pad(MissionValues values, const Eigen::Vector3d& pad);
 
-/// Where climbs from pads end: under the fence's top.
+/// Returns the z at which climbs from pads end [m], the clearance below the fence's ceiling.
 double top_of_climbs(const MissionValues& values);
 
 }  // namespace skycap::missions::wizard

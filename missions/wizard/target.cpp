@@ -19,7 +19,7 @@ using site_data::Object;
 using site_data::Role;
 using site_data::Source;
 
-/// What is clicked on is no farther from the click than this [m].
+/// Maximum distance between a click and the selected object [m].
 constexpr double near_click = 10.0;
 
 bool is_over(const geometry::Mesh& mesh, const Vector2d& place) {
@@ -31,7 +31,8 @@ bool is_over(const geometry::Mesh& mesh, const Vector2d& place) {
   });
 }
 
-/// From a place on the map to an object: zero on it, else to the box around it.
+/// Returns the horizontal distance [m] from a position to an object: zero above its surface,
+/// otherwise to its bounding box.
 double distance(const Object& object, const Vector2d& place) {
   if (is_over(object.mesh, place)) return 0.0;
   const Eigen::AlignedBox3d box = geometry::bounding_box(object.mesh);
@@ -63,7 +64,7 @@ std::string clicked(const std::vector<Source>& files, const Click& click) {
   return nearest->id;
 }
 
-/// The ids of what the pick means.
+/// Returns the identifiers of the selected objects.
 std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pick) {
   if (pick.click) return {clicked(files, *pick.click)};
   Source source = files[0];
@@ -73,7 +74,7 @@ std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pi
   std::vector<std::string> ids;
   for (const Object& object :
        site_data::read_prior(source, {.origin = site_data::middle_of(source)}, [](const Vector2d&) {
-         return std::optional(0.0);  // the terrain is no matter here
+         return std::optional(0.0);  // the terrain is not required here
        }).objects) {
     ids.push_back(object.id);
   }
@@ -147,7 +148,7 @@ void require_single(const std::vector<Object>& objects, const std::string& id,
 Target find_target(const std::vector<Source>& files, const Pick& pick) {
   Target target{.ids = picked(files, pick), .origin = {}, .box = {}};
   target.origin = site_data::middle_of(sources_of(files, target.ids)[0]);
-  constexpr double centimetre = 1e-7;  // of latitude [degrees]
+  constexpr double centimetre = 1e-7;  // one centimetre of latitude [degrees]
   target.origin.latitude_deg = rounded(target.origin.latitude_deg, centimetre);
   target.origin.longitude_deg = rounded(target.origin.longitude_deg, centimetre);
   const site_data::Prior found = read_things(files, {.ids = target.ids}, target.origin);
@@ -155,7 +156,7 @@ Target find_target(const std::vector<Source>& files, const Pick& pick) {
     target.box.extend(geometry::bounding_box(object.mesh));
   }
   target.uncertainty = found.uncertainty;
-  // Along the same plumb line the frame's other origin moves heights alone.
+  // Moving the origin vertically changes only the heights in the frame.
   target.origin.height = rounded(target.box.min().z(), 0.01);
   target.box.translate(Eigen::Vector3d(0.0, 0.0, -target.origin.height));
   return target;

@@ -1,4 +1,4 @@
-/// The thing that is to be surveyed, found in a file.
+/// Finds the object to survey in a map.
 #pragma once
 
 #include <string>
@@ -14,33 +14,36 @@
 namespace skycap::missions::wizard {
 
 struct Target {
-  std::vector<std::string> ids;  ///< in the file; empty: all of it
-  flight::GeodeticPoint origin;  ///< of a frame about its middle, at its lowest place
-  Eigen::AlignedBox3d box;       ///< in that frame
-  double uncertainty = 0.0;      ///< how far off it may be [m]
+  std::vector<std::string> ids;  ///< identifiers in the file; empty: all objects
+  /// Origin of a frame at the target's centre, at its minimum height.
+  flight::GeodeticPoint origin;
+  Eigen::AlignedBox3d box;   ///< bounding box in this frame [m]
+  double uncertainty = 0.0;  ///< position uncertainty [m]
 };
 
-/// The files that the wishes name, each with what it does not say itself: the map, as an obstacle,
-/// then the other obstacles and the terrain. Files are as the wishes have them. Throws what
-/// site_data::completed() throws.
+/// Returns the input files, completed with the settings that they do not contain. The map is first,
+/// as an obstacle, followed by the other obstacles and the terrain. File paths are unchanged.
+/// Throws the errors of site_data::completed().
 std::vector<site_data::Source> files_of(const Wishes& wishes);
 
-/// The prior data of a mission: the target, of the first of the files, and all of them.
+/// Returns the prior data of a mission: the target from the first of `files`, followed by all
+/// files.
 std::vector<site_data::Source> sources_of(const std::vector<site_data::Source>& files,
                                           const std::vector<std::string>& target);
 
-/// What `select` means of the first of the files, on the terrain, about an origin. Throws what
-/// site_data::read_prior() throws.
+/// Reads the selected objects from the first of `files`, placed on the terrain, in a frame at
+/// `origin`. Throws the errors of site_data::read_prior().
 site_data::Prior read_things(const std::vector<site_data::Source>& files,
                              const site_data::Selection& select,
                              const flight::GeodeticPoint& origin);
 
-/// Throws Error{bad_config} if several of a file's things have that name.
+/// Throws Error{bad_config} if several objects of a file have the identifier `id`.
 void require_single(const std::vector<site_data::Object>& objects, const std::string& id,
                     const std::string& file);
 
-/// Throws Error{bad_config} if the pick is none of the file's things, or several that are not named
-/// one by one, in words that say which there are; what site_data::read_prior() throws.
+/// Finds the target. Throws Error{bad_config} with a list of candidates if the selection matches no
+/// object, or several that are not individually named. Throws the errors of
+/// site_data::read_prior().
 Target find_target(const std::vector<site_data::Source>& files, const Pick& pick);
 
 }  // namespace skycap::missions::wizard

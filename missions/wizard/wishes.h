@@ -1,4 +1,4 @@
-/// What a surveyor says of a site before there is a mission.
+/// User input from which a mission is proposed.
 #pragma once
 
 #include <filesystem>
@@ -11,37 +11,39 @@
 
 namespace skycap::missions::wizard {
 
-/// A place on the map.
+/// WGS84 position on a map.
 struct Click {
   double latitude_deg = 0.0, longitude_deg = 0.0;
 };
 
-/// "LATITUDE,LONGITUDE" in degrees, as maps on the web copy it; nothing if it is not that.
+/// Parses "LATITUDE,LONGITUDE" in degrees, the clipboard format of web maps. Returns nullopt for
+/// other strings.
 std::optional<Click> click_in(const std::string& text);
 
-/// What a click is to be written as, for messages.
+/// Description of the expected format, for messages.
 inline constexpr const char* click_form = "LATITUDE,LONGITUDE in degrees, such as 48.7631,11.3991";
 
-/// Which thing of a file is to be surveyed: by one of these, or the file has but one.
+/// Selection of the object to survey by one criterion; may be empty if the file contains a single
+/// object.
 struct Pick {
   std::vector<std::string> ids;
   std::map<std::string, std::string> attributes;  ///< such as parts of an address
   std::optional<Click> click;
 };
 
-/// How the files are to be understood, as the keys of `prior` of these names say.
+/// Interpretation of the files, as specified by the `prior` keys of the same names.
 struct Reading {
   std::string crs;
   std::optional<site_data::HeightDatum> vertical;
-  std::optional<double> base, height;  ///< of outlines
+  std::optional<double> base, height;  ///< base and height of extruded outlines [m]
 };
 
 struct Wishes {
-  std::filesystem::path map;  ///< where the target and its neighbours are
+  std::filesystem::path map;  ///< file with the target and its neighbours
   Pick target;
   Reading reading;
   std::optional<std::filesystem::path> terrain;
-  std::vector<std::filesystem::path> obstacles;  ///< further files of what is in the way
+  std::vector<std::filesystem::path> obstacles;  ///< further files with obstacles
   std::string vehicle = "generic";
 };
 

@@ -32,17 +32,19 @@ Json curve_json(const std::vector<Trial>& trials, CurveAxis axis) {
   return {{"x", x}, {"coverage", mean}, {"standard_deviation", deviation}};
 }
 
-/// {"mean", "standard_deviation", "half_width_95"}; of one number the half width is null.
+/// Returns {"mean", "standard_deviation", "half_width_95"}. The half width is null for a single
+/// value.
 Json statistic_json(const Statistic& statistic) {
-  // JSON has no infinity: one trial says nothing about the mean's certainty.
+  // JSON cannot represent the infinite half width of a single trial.
   return {{"mean", statistic.mean},
           {"standard_deviation", statistic.deviation},
           {"half_width_95",
            std::isfinite(statistic.half_width_95) ? Json(statistic.half_width_95) : Json()}};
 }
 
-/// {"views", "planning_time_s", "distance_m", "flown_s"}: the mean coverage over the trials along
-/// each, as {"x", "coverage", "standard_deviation"}; lists are empty for what no trial has.
+/// Returns {"views", "planning_time_s", "distance_m", "flown_s"}: mean coverage along each
+/// quantity, as a list of {"x", "coverage", "standard_deviation"}. Lists are empty for quantities
+/// without data.
 Json curves_json(const std::vector<Trial>& trials) {
   return {{"views", curve_json(trials, CurveAxis::views)},
           {"planning_time_s", curve_json(trials, CurveAxis::planning_time)},
@@ -50,7 +52,8 @@ Json curves_json(const std::vector<Trial>& trials) {
           {"flown_s", curve_json(trials, CurveAxis::flown_time)}};
 }
 
-/// Of each trial {"seed", "stop_reason", "views", "coverage", "distance_m", "planning_time_s"}.
+/// Returns a list of trials: {"seed", "stop_reason", "views", "coverage", "distance_m",
+/// "planning_time_s"}.
 Json each_trial_json(const std::vector<Trial>& trials) {
   Json list = Json::array();
   for (const Trial& trial : trials) {
@@ -65,12 +68,13 @@ Json each_trial_json(const std::vector<Trial>& trials) {
   return list;
 }
 
-/// One of the figures that trials are compared by.
+/// Figure by which trials are compared.
 struct Figure {
   const char* name;
   double (*of)(const Trial&);
-  std::optional<double> config::ReferenceResults::*reference;  ///< or null
-  double PaperResult::*in_table_1;                             ///< or null
+  /// Reference result in the mission, or null.
+  std::optional<double> config::ReferenceResults::*reference;
+  double PaperResult::*in_table_1;  ///< column of Table 1, or null
 };
 
 constexpr std::array trial_figures{
@@ -78,7 +82,7 @@ constexpr std::array trial_figures{
            &config::ReferenceResults::views, &PaperResult::views},
     Figure{"coverage", [](const Trial& t) { return t.coverage.all; },
            &config::ReferenceResults::coverage, &PaperResult::coverage},
-    // No reference: publications do not say which surface cannot be seen.
+    // No reference, because publications do not state the invisible fraction of the surface.
     Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
            nullptr, nullptr},
     Figure{"distance_m", [](const Trial& t) { return t.distance; },
@@ -86,7 +90,8 @@ constexpr std::array trial_figures{
     Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
            &config::ReferenceResults::planning_time, &PaperResult::planning_time}};
 
-/// What the mission says of a publication, or else what the SEE++ paper has of its model.
+/// Returns the reference result given in the mission, or else the SEE++ paper's result for the
+/// model.
 std::optional<double> reference_of(const config::MissionSetup& mission, const Figure& figure) {
   if (figure.reference == nullptr) return std::nullopt;
   if (const auto& given = mission.reference.*figure.reference) return given;
@@ -102,7 +107,8 @@ Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
   return statistic(numbers);
 }
 
-/// The mean over the trials of a curve at each view; a trial that has ended stays at its end.
+/// Returns the mean curve over the trials, indexed by view. A trial that has ended keeps its final
+/// value.
 std::vector<double> mean_curve(const std::vector<Trial>& trials,
                                std::vector<double> Trial::*curve) {
   std::size_t longest = 0;
@@ -129,11 +135,11 @@ std::size_t completed(const std::vector<Trial>& trials) {
       std::ranges::count(trials, survey::StopReason::complete, &Trial::stop_reason));
 }
 
-/// The four figures of Table 1.
+/// Column of Table 1.
 struct Column {
   const char* key;
   const char* title;
-  double unit;  ///< what a printed figure is a multiple of
+  double unit;  ///< unit of the printed values
   const char* format;
   Statistic CellFigures::*ours;
   double PaperResult::*papers;
@@ -180,15 +186,15 @@ const BenchmarkCell* cell_of(const std::vector<BenchmarkCell>& cells, const std:
   return found == cells.end() ? nullptr : &*found;
 }
 
-/// A coverage that planners are timed to.
+/// Coverage level at which planners are compared.
 struct Mark {
-  std::string key;    ///< in results.json
-  std::string title;  ///< in the report
+  std::string key;    ///< key in results.json
+  std::string title;  ///< title in the report
   double coverage;
-  std::optional<CellFigures> whole;  ///< surveys that end with it
+  std::optional<CellFigures> whole;  ///< results of surveys that end at this coverage
 };
 
-/// The paper's SEE++, and SEE++ and SEE as they are here.
+/// Returns the coverage of the paper's SEE++, and of SEE++ and SEE in this benchmark.
 std::vector<Mark> marks_of(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
   std::vector<Mark> marks;
   if (const auto paper = paper_result(mission, "see++")) {
@@ -247,7 +253,7 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
   return json;
 }
 
-/// A row of a Markdown table.
+/// Returns a row of a Markdown table.
 std::string row(const std::vector<std::string>& cells) {
   std::string text = "|";
   for (const std::string& cell : cells) text += " " + cell + " |";
@@ -260,7 +266,7 @@ std::string rule(std::size_t columns) {
   return text + "\n";
 }
 
-/// Table 1 as printed: a row for each planner, four columns for each model.
+/// Returns Table 1 in the layout of the paper: one row per planner, four columns per model.
 std::string table_1(const std::vector<BenchmarkCell>& cells, Times times) {
   const auto missions = distinct(cells, &BenchmarkCell::mission);
   std::vector<std::string> head{"planner"};
@@ -335,8 +341,8 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
   return text;
 }
 
-/// What it takes each planner to come to the coverage of others, and the ratio to what it took
-/// them.
+/// Returns a table of each planner's effort to reach the coverage levels, with the ratio to the
+/// effort of the reference planner.
 std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::string& mission,
                         Times times) {
   std::string text;
@@ -372,7 +378,7 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
   return row(head) + rule(head.size()) + text;
 }
 
-/// All trials of a planner on the standard models.
+/// Returns all trials of a planner on the standard models.
 std::vector<Trial> standard_trials(const std::vector<BenchmarkCell>& cells,
                                    const std::string& planner) {
   std::vector<Trial> trials;
@@ -401,7 +407,7 @@ std::string table_2(const std::vector<BenchmarkCell>& cells) {
 }
 
 std::string figure_6(const std::vector<BenchmarkCell>& cells) {
-  constexpr double quoted_distance = 3.0;  // what the paper's text gives
+  constexpr double quoted_distance = 3.0;  // distance stated in the paper's text [m]
   const auto bin = static_cast<std::size_t>(quoted_distance / target_distance_bin) - 1;
   std::string text =
       row({"planner", "targets observed", "with a single view [%]", "within 3 m [%]"}) + rule(4);

@@ -1,4 +1,4 @@
-/// Results of trials and benchmarks as files for programs, spreadsheets and readers.
+/// Writes results of trials and benchmarks as CSV, JSON and Markdown.
 #pragma once
 
 #include <string>
@@ -9,49 +9,52 @@
 
 namespace skycap::missions::batch {
 
-/// Whether a table holds planning times. They are of the machine and of what else it did; all else
-/// is the same wherever a trial ran.
+/// Whether a table includes planning times. They depend on the machine and its load; all other
+/// figures are reproducible.
 enum class Times { shown, left_out };
 
-/// trials.csv: a line for each trial.
+/// Returns trials.csv, with one line per trial.
 std::string trials_csv(const std::vector<Trial>& trials, Times times = Times::shown);
 
-/// trials.json: statistics, mean curves (a finished trial keeps its last coverage), each trial,
-/// and the mission's reference figures beside them.
+/// Returns trials.json: statistics, mean curves, each trial, and the mission's reference results. A
+/// finished trial keeps its final coverage in the curves.
 std::string trials_json(const config::MissionSetup& mission, const std::vector<Trial>& trials,
                         std::size_t requested, unsigned threads);
 
-/// The table for the terminal: means and half widths, and the mission's reference figures.
+/// Returns the table for the terminal: means, half widths of the confidence intervals, and the
+/// mission's reference results.
 std::string trials_table(const config::MissionSetup& mission, const std::vector<Trial>& trials);
 
-/// results.json: for each mission and planner all figures with deviations and 95 % intervals, the
-/// paper's values and our ratio to them, curves, each trial, and frontier statistics.
+/// Returns results.json. For each mission and planner it contains all figures with deviations and
+/// 95% confidence intervals, curves, trials and frontier statistics. The paper's values and ratios
+/// to them are included.
 std::string results_json(const std::vector<BenchmarkCell>& cells);
 
-/// table1.csv: a line for each mission and planner.
+/// Returns table1.csv, with one line per mission and planner.
 std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times = Times::shown);
 
-/// trials.csv: a line for each trial.
+/// Returns trials.csv, with one line per trial.
 std::string all_trials_csv(const std::vector<BenchmarkCell>& cells, Times times = Times::shown);
 
-/// report.md: Tables 1 and 2 in the paper's form with its values beside ours, each figure with its
-/// certainty and its ratio to the paper's, and Figure 6. `title` is its heading.
+/// Returns report.md: Tables 1 and 2 in the layout of the paper, and Figure 6. Each figure is
+/// listed with its confidence interval, the paper's value and the ratio of both. `title` is the
+/// heading.
 std::string report_markdown(const std::vector<BenchmarkCell>& cells,
                             const std::string& title = "Benchmark", Times times = Times::shown);
 
-/// Stages report.md, results.json, table1.csv and trials.csv; returns the first. Of planning times
-/// only results.json tells in any case.
+/// Stages report.md, results.json, table1.csv and trials.csv. Returns report.md. `times` does not
+/// apply to results.json, which always contains planning times.
 std::string stage_tables(const std::vector<BenchmarkCell>& cells, const std::string& title,
                          Times times, geometry::OutputFolder& folder);
 
-/// An item that is finished, as a line of times.csv.
+/// A completed item, one line of times.csv.
 struct ItemTimes {
   std::size_t number = 0;
-  double planning_time = 0.0;  ///< [s] of a processor
+  double planning_time = 0.0;  ///< processor time [s]
   TrialRun run;
 };
 
-/// times.csv: what each item took, and where it ran.
+/// Returns times.csv, with the duration and the host of each item.
 std::string times_csv(const std::vector<ItemTimes>& items);
 
 }  // namespace skycap::missions::batch

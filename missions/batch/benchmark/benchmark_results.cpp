@@ -16,7 +16,7 @@ Statistic over(const std::vector<Trial>& trials, Figure figure) {
 
 double ratio(double a, std::size_t b) { return b > 0 ? a / static_cast<double>(b) : 0.0; }
 
-/// Where a trial is on the axis after a view.
+/// Returns a trial's position on the axis after a view.
 double place(const Trial& trial, CurveAxis axis, std::size_t view) {
   switch (axis) {
     case CurveAxis::views:
@@ -31,7 +31,7 @@ double place(const Trial& trial, CurveAxis axis, std::size_t view) {
   return trial.distance_after[view];
 }
 
-/// Coverage of a trial at `x`: after the last view that was taken by then.
+/// Returns a trial's coverage at `x`, after the last view up to this position.
 double coverage_at(const Trial& trial, CurveAxis axis, double x) {
   double coverage = 0.0;
   for (std::size_t view = 0; view < trial.coverage_after.size(); ++view) {
@@ -41,7 +41,7 @@ double coverage_at(const Trial& trial, CurveAxis axis, double x) {
   return coverage;
 }
 
-/// Where the curve is sampled, up to where the last trial ends.
+/// Returns the sampling positions of the curve, up to the end of the longest trial.
 std::vector<double> places(const std::vector<Trial>& trials, CurveAxis axis, std::size_t count) {
   double first = INFINITY, last = 0.0;
   for (const Trial& trial : trials) {

@@ -1,4 +1,4 @@
-/// The trials of a benchmark put together: means, their certainty, and curves.
+/// Aggregated results of a benchmark: means, confidence intervals and curves.
 #pragma once
 
 #include <cstddef>
@@ -10,64 +10,68 @@
 
 namespace skycap::missions::batch {
 
-/// All trials of one planner on one mission, by seed.
+/// All trials of one planner on one mission, ordered by seed.
 struct BenchmarkCell {
   std::string mission;
-  std::string planner;  ///< a contestant's name
+  std::string planner;  ///< name of a contestant
   std::vector<Trial> trials;
 };
 
-/// What planners are compared by.
+/// Figures by which planners are compared.
 struct CellFigures {
   Statistic views;
-  Statistic coverage;                         ///< share of the surface
-  std::optional<Statistic> coverage_visible;  ///< share of what admissible views can see
-  std::optional<double> ceiling;              ///< attainable share of the surface
-  Statistic planning_time;                    ///< [s]
+  Statistic coverage;  ///< fraction of the surface
+  /// Fraction of the surface visible from admissible views.
+  std::optional<Statistic> coverage_visible;
+  std::optional<double> ceiling;  ///< attainable coverage, as a fraction of the surface
+  Statistic planning_time;        ///< [s]
   Statistic distance;
-  std::optional<Statistic> flown_time;  ///< of a vehicle [s]
+  std::optional<Statistic> flown_time;  ///< flight time of a vehicle [s]
 };
 
-/// `cell` must hold a trial.
+/// Computes the figures of a cell, which must contain at least one trial.
 CellFigures figures_of(const BenchmarkCell& cell);
 
-/// Table 2 of the paper.
+/// Figures of Table 2 of the paper.
 struct ViewFigures {
-  Statistic frontiers;  ///< resolved in a view, over the trials
-  Statistic coverage;   ///< of a trial by its number of views
+  Statistic frontiers;  ///< frontiers resolved per view, over all trials
+  Statistic coverage;   ///< coverage per view, over all trials
 };
 
 ViewFigures view_figures(const std::vector<Trial>& trials);
 
-/// What it took until trials had a coverage.
+/// Effort until trials reached a given coverage.
 struct ReachFigures {
-  std::size_t reached = 0;  ///< trials that came to it; the others are in none of the means
+  std::size_t reached = 0;  ///< trials that reached it; only these are included in the means
   Statistic views, distance, planning_time;
 };
 
-/// Nothing if no trial comes to `coverage`, a share of the surface.
+/// Returns nullopt if no trial reaches `coverage`, a fraction of the surface.
 std::optional<ReachFigures> reach_figures(const std::vector<Trial>& trials, double coverage);
 
-/// Along what coverage is drawn.
+/// Quantity on the x axis of coverage curves.
 enum class CurveAxis { views, planning_time, distance, flown_time };
 
 struct CurvePoint {
   double x = 0.0;
-  double mean = 0.0;       ///< coverage
+  double mean = 0.0;       ///< mean coverage
   double deviation = 0.0;  ///< standard deviation over the trials
 };
 
-/// Mean coverage over the trials at `count` places: evenly spread along views, distance and time in
-/// the air, by equal factors along the planning time. A trial that has ended keeps its coverage.
-/// Empty without trials, and along the time in the air of surveys that are not flown.
+/// Computes the mean coverage over the trials at `count` positions. They are spaced logarithmically
+/// along the planning time and linearly along the other axes. A trial that has ended keeps its
+/// final coverage. Empty without trials, and along the flight time for surveys without a vehicle.
 std::vector<CurvePoint> coverage_curve(const std::vector<Trial>& trials, CurveAxis axis,
                                        std::size_t count);
 
-/// Figure 6 of the paper: how many views, and what way, it took until a target was observed.
+/// Figures of Figure 6 of the paper: number of views and distance until a target frontier was
+/// observed.
 struct TargetFigures {
   std::size_t targets = 0;
-  std::vector<double> share_by_views;     ///< taking 1, 2, ... views, the last entry that or more
-  std::vector<double> share_by_distance;  ///< in less than 0.5, 1.0, ... m
+  /// After 1, 2, ... views; the last entry includes all higher numbers.
+  std::vector<double> share_by_views;
+  /// Fractions in bins with upper limits of 0.5, 1.0, ... m.
+  std::vector<double> share_by_distance;
 };
 
 inline constexpr std::size_t target_view_bins = 10;

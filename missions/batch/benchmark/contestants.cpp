@@ -12,12 +12,12 @@
 namespace skycap::missions::batch {
 namespace {
 
-/// A planner that planner.name knows.
+/// Creates a contestant for a planner supported by planner.name.
 Contestant contestant_of(const survey::PlannerTitle& planner) {
   return {
       .name = std::string(planner.word),
       .title = std::string(planner.title),
-      .is_in_all = planner.name != survey::PlannerName::skycap,  // not of the paper
+      .is_in_all = planner.name != survey::PlannerName::skycap,  // not in the paper
       .is_volumetric = planner.metric.has_value(),
       .survey = [](const evaluation::SimulationOptions& options,
                    const evaluation::SurveyScene& scene, std::uint64_t seed, std::stop_token stop) {
@@ -25,7 +25,7 @@ Contestant contestant_of(const survey::PlannerTitle& planner) {
       }};
 }
 
-/// The reference that knows the scene.
+/// Returns the oracle, a reference planner with access to the scene.
 Contestant oracle() {
   const auto survey = [](const evaluation::SimulationOptions& options,
                          const evaluation::SurveyScene& scene, std::uint64_t seed,
@@ -43,7 +43,7 @@ const std::vector<Contestant>& contestants() {
     for (const survey::PlannerTitle& planner : survey::planner_titles) {
       list.push_back(contestant_of(planner));
     }
-    // clang 14 does not compile the ranges' own.
+    // std::ranges::stable_partition does not compile with clang 14.
     std::stable_partition(list.begin(), list.end(), std::mem_fn(&Contestant::is_in_all));
     list.push_back(oracle());
     return list;

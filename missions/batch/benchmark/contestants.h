@@ -1,4 +1,4 @@
-/// What a benchmark can compare. To let something new take part, add it to contestants().
+/// Planners that a benchmark can compare. Add new planners to contestants().
 #pragma once
 
 #include <cstdint>
@@ -14,27 +14,29 @@
 namespace skycap::missions::batch {
 
 struct Contestant {
-  std::string name;            ///< as on the command line; planner.name if that has it
-  std::string title;           ///< as in tables
-  bool is_in_all = true;       ///< whether `--planners all` names it
-  bool is_volumetric = false;  ///< whether its view limit is the most views that SEE needed
+  std::string name;   ///< name on the command line; equal to planner.name if that key supports it
+  std::string title;  ///< title in tables
+  bool is_in_all = true;  ///< whether `--planners all` includes it
+  /// Whether its view limit is the maximum number of views used by SEE.
+  bool is_volumetric = false;
 
-  /// Surveys a mission in one thread. The start and the sensor's noise must follow from the seed
-  /// alone. Called from several threads.
+  /// Runs a survey of a mission in a single thread. The start and the sensor noise must depend on
+  /// the seed only. Called concurrently from several threads.
   std::function<session::SurveyRecord(const evaluation::SimulationOptions&,
                                       const evaluation::SurveyScene&, std::uint64_t seed,
                                       std::stop_token)>
       survey;
 };
 
-/// In the order of the paper's tables, then our own.
+/// Returns the contestants in the order of the paper's tables, followed by planners not in the
+/// paper.
 const std::vector<Contestant>& contestants();
 
-/// Those of some names, in the same order; "all" stands for those that are in all. Throws
-/// Error{bad_usage} with the known ones if there is none of a name.
+/// Returns the contestants with the given names, in the order of contestants(). "all" selects those
+/// with is_in_all. Throws Error{bad_usage} with a list of known names if a name is unknown.
 std::vector<const Contestant*> contestants_named(const std::vector<std::string>& names);
 
-/// The contestant of that name, or null.
+/// Returns the contestant with the given name, or null.
 const Contestant* find_contestant(std::string_view name);
 
 }  // namespace skycap::missions::batch

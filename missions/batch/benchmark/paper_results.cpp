@@ -16,7 +16,7 @@ struct Row {
   std::array<PaperResult, 4> of_model;
 };
 
-// Coverage in percent, as printed.
+// Coverage in percent, as in the paper.
 constexpr std::array<Row, 9> rows_of_table_1{{
     {survey::PlannerName::see_plus_plus,
      {{{22.3, 97.1, 20.1, 29.7},

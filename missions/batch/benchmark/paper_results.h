@@ -1,5 +1,5 @@
-/// What the SEE++ paper reports, to be printed beside our own figures. Source: Border and Gammell,
-/// SEE++ (2020), Tables 1 and 2: means of 100 experiments.
+/// Results published for SEE++, printed next to the benchmark's results. Source: Border and
+/// Gammell, SEE++ (2020), Tables 1 and 2: means of 100 experiments.
 #pragma once
 
 #include <optional>
@@ -7,27 +7,27 @@
 
 namespace skycap::missions::batch {
 
-/// A row of Table 1 for one model.
+/// Row of Table 1 for one model.
 struct PaperResult {
   double views = 0.0;
-  double coverage = 0.0;       ///< share, not percent
+  double coverage = 0.0;       ///< fraction, not percent
   double planning_time = 0.0;  ///< [s]
   double distance = 0.0;
 };
 
-/// Nothing if the paper has no such model, by the name of its mission, or planner.
+/// Returns nullopt if the paper does not contain the planner or the model with the mission's name.
 std::optional<PaperResult> paper_result(std::string_view mission, std::string_view planner);
 
-/// A row of Table 2: means over the three standard models.
+/// Row of Table 2: means over the three standard models.
 struct PaperViewResult {
-  double frontiers = 0.0;  ///< observed in a view
-  double coverage = 0.0;   ///< obtained by a view; share
+  double frontiers = 0.0;  ///< frontiers observed per view
+  double coverage = 0.0;   ///< coverage per view, as a fraction
 };
 
-/// Nothing but for see and see++.
+/// Returns nullopt for planners other than see and see++.
 std::optional<PaperViewResult> paper_view_result(std::string_view planner);
 
-/// Whether Table 2 takes the model in.
+/// Returns whether Table 2 includes the model.
 bool is_standard_model(std::string_view mission);
 
 }  // namespace skycap::missions::batch

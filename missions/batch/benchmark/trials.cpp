@@ -157,7 +157,7 @@ std::string trial_fingerprint(const config::MissionSetup& mission, const std::st
     inputs.append("\n").append(key).append(" ").append(value);
   }
   for (const fs::path& file : scene::files_of(mission.scene(), mission.lidar, folder)) {
-    std::error_code ignored;  // what is missing is refused when the scene is made ready
+    std::error_code ignored;  // missing files are reported when the scene is loaded
     const bool is_there = fs::is_regular_file(file, ignored);
     inputs.append("\n").append(is_there ? support::sha256_of_file(file) : "-");
   }
@@ -169,7 +169,7 @@ TrialRun run_here(double wall_time) {
   ::gethostname(host.data(), host.size() - 1);
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  constexpr std::size_t unit = 1024;  // of ru_maxrss on Linux [byte]
+  constexpr std::size_t unit = 1024;  // unit of ru_maxrss on Linux [byte]
   return {host.data(), wall_time, unit * static_cast<std::size_t>(usage.ru_maxrss)};
 }
 
@@ -183,7 +183,7 @@ std::optional<TrialRecord> finished_trial(const fs::path& file, const std::strin
                        {run.at("host").get<std::string>(), run.at("wall_time_s").get<double>(),
                         run.at("peak_memory_bytes").get<std::size_t>()}};
   } catch (const nlohmann::json::exception&) {
-    return std::nullopt;  // not ours: it is overwritten
+    return std::nullopt;  // the file has another format and is overwritten
   } catch (const Error&) {
     return std::nullopt;
   }

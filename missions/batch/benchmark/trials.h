@@ -1,5 +1,5 @@
-/// Many surveys of one mission with different seeds, what they have in common, and those that are
-/// finished on disk: what an interrupted run, or another machine, need not run again.
+/// Trials: surveys of one mission with different seeds. Completed trials are stored on disk, so
+/// that a resumed run or another machine does not repeat them.
 #pragma once
 
 #include <cstddef>
@@ -17,67 +17,73 @@
 
 namespace skycap::missions::batch {
 
-/// What the coverage of a scene's surveys is read against; shared by all of them.
+/// Ground truth for the coverage of a scene, shared by all its surveys.
 struct SceneTruth {
-  std::vector<std::uint8_t> is_visible;  ///< for each of the scene's samples
+  std::vector<std::uint8_t> is_visible;  ///< visibility of each surface sample of the scene
   std::optional<double> ceiling;         ///< attainable coverage
 };
 
-/// Takes seconds to minutes. Of no use once `stop` is requested.
+/// Computes the ground truth of a scene, which takes seconds to minutes. The result is invalid once
+/// `stop` is requested.
 SceneTruth scene_truth(const evaluation::SurveyScene& scene, unsigned threads,
                        const std::stop_token& stop = {});
 
-/// What it took until a frontier that views were aimed at was observed: paper Figure 6.
+/// Effort until a targeted frontier was observed (Figure 6 of the paper).
 struct ObservedTarget {
-  std::size_t views = 0;  ///< since the last target was observed, this one's included
-  double distance = 0.0;  ///< travelled for them
+  /// Views since the previous target was observed, including the observing view.
+  std::size_t views = 0;
+  double distance = 0.0;  ///< distance travelled for these views [m]
 };
 
-/// The figures of one survey.
+/// Results of one survey.
 struct Trial {
   std::uint64_t seed = 0;
   survey::StopReason stop_reason = survey::StopReason::complete;
   package::CoverageFigures coverage;
   std::size_t views = 0;
   std::size_t points = 0;
-  double planning_time = 0.0;  ///< [s] of a processor: other work beside it hardly counts
+  double planning_time = 0.0;  ///< processor time [s], almost independent of the machine's load
   double distance = 0.0;
-  std::vector<double> coverage_after;  ///< each view
+  std::vector<double> coverage_after;  ///< coverage after each view
   std::vector<double> distance_after;
   std::vector<double> planning_time_after;
-  std::vector<double> flown_time_after;  ///< of a vehicle; else empty [s]
-  std::optional<double> flown_length;    ///< of a vehicle, from the pad to the last view [m]
-  std::size_t frontiers_resolved = 0;    ///< points that ceased to be frontiers
-  std::vector<ObservedTarget> targets;   ///< that were observed, in this order
+  /// Flight time after each view [s]; empty without a vehicle.
+  std::vector<double> flown_time_after;
+  /// Flight length from the pad to the last view [m], with a vehicle.
+  std::optional<double> flown_length;
+  std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
+  std::vector<ObservedTarget> targets;  ///< observed targets in chronological order
 
   bool is_flown() const { return !flown_time_after.empty(); }
-  /// Of a vehicle, from the pad to the last view [s], see session::FlownSurvey.
+  /// Returns the vehicle's flight time from the pad to the last view [s], see session::FlownSurvey.
+  /// Returns nullopt without a vehicle.
   std::optional<double> flown_time() const {
     return is_flown() ? std::optional(flown_time_after.back()) : std::nullopt;
   }
 };
 
-/// The figures of a survey that is over.
+/// Computes the results of a completed survey.
 Trial trial_of(const session::SurveyRecord& record, const SceneTruth& truth);
 
-/// A trial as text and back, to the last bit. Throws Error{bad_file} if the text is not a trial.
+/// Convert a trial to JSON and back without loss. parse_trial() throws Error{bad_file} if the
+/// string is not a trial.
 std::string trial_json(const Trial& trial);
 Trial parse_trial(const std::string& json);
 
-/// Stands for everything that a trial depends on but its seed: version, planner (`contestant`),
-/// settings, and the contents of the files that they name. `folder` is where relative paths start.
-/// Throws Error{bad_file} if one of them cannot be read.
+/// Returns a fingerprint of all inputs of a trial except its seed: version, planner (`contestant`),
+/// settings, and contents of the files they name. `folder` is the base of relative paths. Throws
+/// Error{bad_file} if a file cannot be read.
 std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& contestant,
                               const std::filesystem::path& folder);
 
-/// Where a trial ran and what that took: of the machine, not of the trial.
+/// Host, duration and memory of a run. These depend on the machine and are not part of the trial.
 struct TrialRun {
   std::string host;
-  double wall_time = 0.0;       ///< [s]
-  std::size_t peak_memory = 0;  ///< of the program until then [byte]
+  double wall_time = 0.0;       ///< elapsed time [s]
+  std::size_t peak_memory = 0;  ///< peak memory of the process up to the end of the run [byte]
 };
 
-/// `wall_time` and what the machine says of this program.
+/// Returns `wall_time` with the current host name and the peak memory of this process.
 TrialRun run_here(double wall_time);
 
 struct TrialRecord {
@@ -85,21 +91,24 @@ struct TrialRecord {
   TrialRun run;
 };
 
-/// The trial in a file, if it is there, whole, and of that fingerprint.
+/// Reads a trial from a file. Returns nullopt if the file is missing or incomplete, or has another
+/// fingerprint.
 std::optional<TrialRecord> finished_trial(const std::filesystem::path& file,
                                           const std::string& fingerprint);
 
-/// The file's text.
+/// Returns the contents of a trial file.
 std::string trial_record_json(const std::string& fingerprint, const TrialRecord& record);
 
-/// Mean of a figure over the trials, and how sure it is.
+/// Mean of a figure over the trials with its uncertainty.
 struct Statistic {
   double mean = 0.0;
-  double deviation = 0.0;      ///< standard deviation, n - 1 in the denominator
-  double half_width_95 = 0.0;  ///< of the 95 % confidence interval of the mean, Student's t
+  double deviation = 0.0;  ///< sample standard deviation (denominator n - 1)
+  /// Half width of the 95% confidence interval of the mean (Student's t).
+  double half_width_95 = 0.0;
 };
 
-/// Zero deviation and an infinite half width for one number; `numbers` must not be empty.
+/// Computes the statistic of `numbers`, which must not be empty. For a single number, the deviation
+/// is zero and the half width infinite.
 Statistic statistic(const std::vector<double>& numbers);
 
 }  // namespace skycap::missions::batch

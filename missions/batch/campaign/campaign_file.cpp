@@ -22,13 +22,14 @@ using Json = nlohmann::ordered_json;
 using support::YamlNode;
 using support::YamlSection;
 
-constexpr std::size_t largest_file = std::size_t{16} << 20;  // [byte]; 100,000 missions
+// [byte]; sufficient for 100,000 missions.
+constexpr std::size_t largest_file = std::size_t{16} << 20;
 constexpr int most_of_a_list = 100'000;
 
-/// What to give instead, for messages.
+/// Description of valid names, for messages.
 const std::string plain_names = "use at most 100 bytes without / \\ , \" | and no leading dot";
 
-/// The name of a mission among the campaign's: its file's, without folder and ending.
+/// Returns the mission title: the stem of the mission file.
 std::string mission_title(const std::string& path) { return fs::path(path).stem().string(); }
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& key,
@@ -87,7 +88,7 @@ class CampaignReader {
         campaign_.planners.push_back(contestant->name);
       }
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::bad_usage) throw;  // which says where already
+      if (error.kind() != ErrorKind::bad_usage) throw;  // already includes the location
       root_.fail_at("planners", error.what());
     }
   }
@@ -137,11 +138,11 @@ class CampaignReader {
 };
 
 const std::string& named(const std::string& planner) {
-  static const std::string own = "own";  // no contestant has this name
+  static const std::string own = "own";  // reserved, so no contestant has this name
   return planner.empty() ? own : planner;
 }
 
-/// `section` goes before the names of the entries' keys.
+/// Appends the changes in `entries`. `section` is the prefix of their keys.
 void add_changes(const std::vector<support::YamlEntry>& entries, const std::string& section,
                  const std::string& path, const std::string& file, const FollowingKeys& following,
                  std::vector<config::KeyOverride>& changes) {

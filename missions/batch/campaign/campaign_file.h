@@ -1,5 +1,5 @@
-/// A campaign file: which missions are surveyed, by which planners, with which seeds and changes;
-/// and its items, numbered. docs/reference/batch-files.md is the manual of the format.
+/// Campaign files specify missions, planners, seeds and changes to keys. Each combination is a
+/// numbered item. docs/reference/batch-files.md documents the format.
 #pragma once
 
 #include <cstddef>
@@ -15,84 +15,89 @@
 
 namespace skycap::missions::batch {
 
-/// Changes to missions, under one name.
+/// Named set of changes to mission keys.
 struct Variant {
-  std::string name;  ///< empty: the missions as `set` leaves them
+  std::string name;  ///< empty: missions with the changes of `set` only
   std::vector<config::KeyOverride> changes;
 };
 
-/// What an item leaves in its folder.
+/// Files written for each item.
 enum class ItemResults {
-  figures,  ///< what tables and curves need
-  package,  ///< the mission package, too
+  figures,  ///< figures required for tables and curves
+  package,  ///< figures and the mission package
 };
 
 struct CampaignFile {
   std::string name;
-  std::filesystem::path folder;            ///< where the missions' paths start
-  std::vector<std::string> missions;       ///< as the file has them
-  std::vector<std::string> planners = {};  ///< of batch::contestants(); empty: each its own
+  std::filesystem::path folder;       ///< base folder of mission paths
+  std::vector<std::string> missions;  ///< mission paths as in the file
+  /// Names of batch::contestants(); empty: the planner of each mission.
+  std::vector<std::string> planners = {};
   std::size_t seeds = 10;
   std::uint64_t first_seed = 1;
-  std::vector<Variant> variants = {{}};  ///< at least one; each with what `set` gives to all
+  std::vector<Variant> variants = {{}};  ///< at least one; each includes the changes of `set`
   ItemResults results = ItemResults::figures;
 };
 
-/// No campaign has more items.
+/// Maximum number of items in a campaign.
 inline constexpr std::size_t most_items = 1'000'000;
 
-/// Reads the file but none of the missions. Throws Error{bad_file} if it cannot be read, and
-/// Error{bad_config}, "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
+/// Reads a campaign file without reading its missions. Throws Error{bad_file} if it cannot be read.
+/// Throws Error{bad_config} with "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
 CampaignFile read_campaign(const std::filesystem::path& file);
 
-/// The same of a text; `name` stands for the file in messages.
+/// Parses a campaign from a string. `name` is the file name in messages. Throws Error{bad_config}
+/// as read_campaign().
 CampaignFile parse_campaign(const std::string& text, const std::string& name);
 
-/// Whether a name can stand in folders and tables: no hidden file, no other column.
+/// Returns whether a name is valid in folder names and tables: not a hidden file, and without
+/// column separators.
 bool is_plain(std::string_view name);
 
-/// The key `name`, default the stem of `file`, which must be a name that is_plain().
+/// Returns the key `name`, or the stem of `file` if it is missing. The name must satisfy
+/// is_plain().
 std::string read_name(support::YamlSection& root, const std::string& file);
 
-/// Keys that follow from the file that makes changes to missions, and what to give in their place.
+/// Mission keys that are set by a batch file and cannot be changed, and the suggested alternative.
 struct FollowingKeys {
-  std::vector<std::string> keys;  ///< one that ends with a dot stands for its section
-  std::string instead;            ///< "the campaign; give ..."
+  std::vector<std::string> keys;  ///< key paths; a trailing dot denotes a whole section
+  std::string instead;            ///< suggestion in messages, "the campaign; give ..."
 
   bool holds(const std::string& key) const;
 };
 
-/// The changes in `entries` of the file `file`, each key written out or nested as in a mission
-/// file; `path`, such as "set.", goes before them in messages. Throws Error{bad_config},
-/// "FILE:LINE: key KEY ...", for one that is unknown or `following`.
+/// Reads changes to mission keys from `entries` of `file`. Keys may be full paths or nested as in a
+/// mission file. `path`, such as "set.", is the prefix in messages. Throws Error{bad_config} with
+/// "FILE:LINE: key KEY ..." for unknown keys and keys in `following`.
 std::vector<config::KeyOverride> key_changes(const std::vector<support::YamlEntry>& entries,
                                              const std::string& path, const std::string& file,
                                              const FollowingKeys& following);
 
-/// What the items of all seeds share.
+/// Properties shared by the items of all seeds.
 struct ManifestEntry {
-  std::string mission;  ///< path as the campaign has it
-  std::string title;    ///< in tables and folders: the mission's, and the variant's behind a slash
-  std::string planner;  ///< a contestant's name; empty: the mission's own
+  std::string mission;  ///< mission path as in the campaign file
+  /// Title in tables and folder names: mission title, then "/" and the variant's name.
+  std::string title;
+  std::string planner;  ///< name of a contestant; empty: the mission's planner
   const Variant* variant = nullptr;
 
-  /// What progress tells apart, see batch::Setup.
+  /// Returns the kind of survey for progress estimates, see batch::Setup.
   std::string kind() const { return title + " " + planner; }
 };
 
-/// A line of the manifest, which the item's result follows from.
+/// Line of the manifest, which fully determines an item's result.
 struct ManifestLine {
   std::size_t number = 0;
   ManifestEntry entry;
   std::uint64_t seed = 0;
 
-  /// Relative to the campaign's results.
+  /// Returns the item's folder, relative to the campaign's results.
   std::filesystem::path folder() const;
-  /// One JSON object without line breaks: all but the entry's own file.
+  /// Returns the line as a JSON object without line breaks.
   std::string json() const;
 };
 
-/// Items [first, end) of a manifest.
+/// Half-open range [first, end) of manifest items.
 struct ItemRange {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -100,13 +105,13 @@ struct ItemRange {
   std::size_t size() const { return end - first; }
 };
 
-/// Items from 0 on. Seeds are outermost: more seeds append items and renumber none, and whoever
-/// stops early has some of everything. Then come missions and variants as in the file, and planners
-/// as in tables.
+/// Numbered items of a campaign, from 0. Seeds form the outer loop, so that more seeds append items
+/// without renumbering. An interrupted campaign thus contains trials of every combination. The
+/// inner loops are missions and variants in file order, and planners in table order.
 class Manifest {
  public:
   explicit Manifest(CampaignFile file) : file_(std::move(file)) {}
-  Manifest(const Manifest&) = delete;  // entries refer to it
+  Manifest(const Manifest&) = delete;  // entries contain pointers into this object
   Manifest& operator=(const Manifest&) = delete;
 
   const CampaignFile& file() const { return file_; }
@@ -115,10 +120,10 @@ class Manifest {
 
   ManifestEntry entry(std::size_t index) const;
   ManifestLine line(std::size_t number) const;
-  /// The numbers of a range that belong to an entry, ascending.
+  /// Returns the numbers within a range that belong to an entry, in ascending order.
   std::vector<std::size_t> numbers_of_entry(std::size_t index, const ItemRange& range) const;
 
-  /// manifest.jsonl: all lines.
+  /// Returns manifest.jsonl, with one line per item.
   std::string text() const;
 
  private:

@@ -23,11 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_setups = 64;  // of a batch
+constexpr std::size_t most_setups = 64;  // per batch
 constexpr const char* record_name = "item.json";
 
-/// What an earlier task has kept: the attainable coverage or "-", a line end, and a digit for each
-/// sample. Nothing if it is not whole.
+/// Reads ground truth stored by an earlier task. The first line is the attainable coverage or "-";
+/// the second contains one digit per sample. Returns nullopt if the file is incomplete.
 std::optional<SceneTruth> kept_truth(const fs::path& file, std::size_t samples) {
   std::error_code ignored;
   if (file.empty() || !fs::is_regular_file(file, ignored)) return std::nullopt;
@@ -57,7 +57,8 @@ void keep_truth(const fs::path& file, const SceneTruth& truth) {
   geometry::write_file(file, text);
 }
 
-/// What else takes seconds has been done before, if a truth was kept.
+/// Returns the stored or computed ground truth. With stored ground truth, the feasibility check is
+/// skipped, because an earlier task has performed it.
 SceneTruth truth_of(const Setup& setup, const evaluation::SurveyScene& scene, unsigned threads,
                     const std::stop_token& stop) {
   if (auto kept = kept_truth(setup.truth_file, scene.samples().points.size())) return *kept;
@@ -72,7 +73,7 @@ struct PreparedScene {
   SceneTruth truth;
 };
 
-/// A scene, made ready when it is first asked for and dropped after its last use.
+/// Scene that is loaded on first use and released after its last use.
 struct SceneSlot {
   std::mutex mutex;
   std::size_t uses = 0;
@@ -122,7 +123,7 @@ class Runner {
     std::optional<geometry::OutputFolder> folder;
     if (item.form != ItemForm::file) {
       folder.emplace(item.record.parent_path());
-      // Another program may have run it since; from here on none can.
+      // Another program may have run the item before the lock was acquired.
       record = finished_trial(item.record, item.setup->fingerprint);
       if (record) return;
     }
@@ -140,8 +141,8 @@ class Runner {
     record = std::move(finished);
   }
 
-  /// The scene of the setup's mission, for one use; null if it was stopped. Throws what made it
-  /// fail, each time. All scenes together are made ready with `threads_` threads.
+  /// Returns the scene of a setup for one use, or null after a stop request. A loading error is
+  /// thrown again on every call. All scenes together are loaded with `threads_` threads.
   std::shared_ptr<const PreparedScene> take_scene(const Setup& setup) {
     SceneSlot& slot = slots_.at(setup.title);
     const std::lock_guard lock(slot.mutex);
@@ -156,7 +157,7 @@ class Runner {
         if (!reached.empty()) reached += "_reached";
         evaluation::SurveyScene scene(setup.mission.simulation, setup.folder(), threads, reached);
         SceneTruth truth = truth_of(setup, scene, threads, stop_);
-        if (stop_.stop_requested()) return nullptr;  // the truth is of no use
+        if (stop_.stop_requested()) return nullptr;  // the ground truth is incomplete
         slot.scene.reset(new PreparedScene{std::move(scene), std::move(truth)});
       } catch (const Error& error) {
         slot.failure.emplace(error.kind(), setup.file.string() + ": " + error.what());
@@ -166,7 +167,7 @@ class Runner {
     return --slot.uses > 0 ? slot.scene : std::exchange(slot.scene, nullptr);
   }
 
-  /// Runs an item and keeps its result; nothing if it was stopped.
+  /// Runs an item and writes its result. Returns nullopt after a stop request.
   std::optional<TrialRecord> survey(const Item& item, const PreparedScene& prepared,
                                     std::optional<geometry::OutputFolder>& folder) {
     const auto start = Clock::now();
@@ -176,14 +177,14 @@ class Runner {
     if (survey.stop_reason == survey::StopReason::interrupted) return std::nullopt;
     if (item.form == ItemForm::package) {
       stage_package(item, prepared, survey, *folder);
-      if (stop_.stop_requested()) return std::nullopt;  // a route may be missing for it
+      if (stop_.stop_requested()) return std::nullopt;  // the route may be incomplete after a stop
       tell(events_.packaged, *folder);
     }
     const std::chrono::duration<double> time = Clock::now() - start;
     TrialRecord record{trial_of(survey, prepared.truth), run_here(time.count())};
     const std::string text = trial_record_json(setup.fingerprint, record);
     if (folder) {
-      // Whatever else is there was made of an earlier record.
+      // Other files in the folder belong to an earlier record.
       folder->replace([](std::string_view name) { return !name.starts_with("."); });
       folder->write(item.record.filename().string(), text);
       folder->commit();
@@ -207,7 +208,7 @@ class Runner {
   const std::stop_token& stop_;
   const RunEvents& events_;
   Records records_;
-  std::map<std::string, SceneSlot> slots_;  ///< by title
+  std::map<std::string, SceneSlot> slots_;  ///< by setup title
   std::mutex telling_;
 };
 
@@ -215,7 +216,7 @@ std::shared_ptr<const Setup> setup_of(const Manifest& manifest, const ManifestEn
                                       const fs::path& out, const config::Report& report) {
   const Contestant* contestant = entry.planner.empty() ? nullptr : find_contestant(entry.planner);
   const fs::path file = manifest.file().folder / entry.mission;
-  geometry::require_regular_file(file);  // a pipe would keep all others waiting
+  geometry::require_regular_file(file);  // rejects pipes, which would block the other items
   Setup setup = read_setup(file, contestant, "planners", entry.variant->changes, report);
   setup.title = entry.title;
   setup.kind = entry.kind();
@@ -275,7 +276,7 @@ void for_each_batch(const Manifest& manifest, const fs::path& out, const ItemRan
     const std::vector<std::size_t> numbers = manifest.numbers_of_entry(index, range);
     if (numbers.empty()) continue;
     const ManifestEntry entry = manifest.entry(index);
-    // Planners of one scene stay together.
+    // Setups of one scene remain in the same batch.
     if (setups >= most_setups && entry.title != title) {
       events.work(std::exchange(batch, {}));
       setups = 0;

@@ -1,5 +1,5 @@
-/// Runs surveys on this machine: the one runner of trials, benchmarks, campaigns and districts.
-/// Each result is written whole or not at all; what is finished is not run again.
+/// Runs surveys on this machine, for trials, benchmarks, campaigns and districts. Each result is
+/// written atomically. Completed surveys are not run again.
 #pragma once
 
 #include <cstddef>
@@ -22,82 +22,86 @@
 
 namespace skycap::missions::batch {
 
-/// A mission as one of the contestants surveys it.
+/// Mission with the contestant that surveys it.
 struct Setup {
-  std::filesystem::path file;  ///< of the mission
-  std::string title;           ///< in tables; setups of the same title have the same scene
+  std::filesystem::path file;  ///< mission file
+  std::string title;           ///< title in tables; setups with the same title share a scene
   const Contestant* contestant = nullptr;
   config::MissionSetup mission;
-  std::string kind;         ///< of its surveys, which take about as long as each other
-  std::string fingerprint;  ///< trial_fingerprint() of all this
-  /// Keeps the scene's truth for other tasks; empty: nothing does.
+  std::string kind;         ///< kind of survey; surveys of one kind have similar durations
+  std::string fingerprint;  ///< trial_fingerprint() of this setup
+  /// Cache file of the scene's ground truth, shared with other tasks; empty: no cache.
   std::filesystem::path truth_file = {};
 
-  /// Where the mission's relative paths start.
+  /// Returns the base folder of the mission's relative paths.
   std::filesystem::path folder() const { return file.parent_path(); }
-  /// To be called when any of the others has changed.
+  /// Updates `kind` and `fingerprint`. Call it after changing any other member.
   void name_kind_and_fingerprint();
 };
 
-/// A mission that was read already, by its own planner.
+/// Creates a setup for a mission that is already read, with the mission's planner.
 Setup own_setup(const std::filesystem::path& file, const config::MissionSetup& mission);
 
-/// Reads a mission for a contestant; null: for its own planner. `origin` is what messages call the
-/// choice of planners. Throws what config::read_mission() throws.
+/// Reads a mission for a contestant, or for the mission's planner if `contestant` is null. `origin`
+/// is the option named in messages about the planner. Throws the errors of config::read_mission().
 Setup read_setup(const std::filesystem::path& file, const Contestant* contestant,
                  const std::string& origin, std::vector<config::KeyOverride> overrides,
                  const config::Report& report = {});
 
-/// How the result of an item is kept.
+/// Storage form of an item's result.
 enum class ItemForm {
-  file,     ///< the record alone, in a folder that nobody else writes to
-  folder,   ///< the record in a folder of its own, which one program at a time may fill
-  package,  ///< and the mission package beside it
+  file,     ///< a record file, in a folder that no other program writes to
+  folder,   ///< a record file in its own folder, locked by one program at a time
+  package,  ///< a record file and the mission package in the same folder
 };
 
-/// A survey that is to be run.
+/// Survey to be run.
 struct Item {
   std::shared_ptr<const Setup> setup;
   std::uint64_t seed = 0;
-  std::filesystem::path record;  ///< of its result, see finished_trial()
+  std::filesystem::path record;  ///< record file of the result, see finished_trial()
   ItemForm form = ItemForm::file;
-  std::size_t number = 0;  ///< in a manifest
+  std::size_t number = 0;  ///< index in a manifest
 };
 
-/// Of items, in their order; nothing for those without a result.
+/// Records in the order of the items; nullopt for missing results.
 using Records = std::vector<std::optional<TrialRecord>>;
 
-/// What a runner tells of, from any thread, one at a time.
+/// Callbacks of a runner. They are called from any thread, but never concurrently.
 struct RunEvents {
-  std::function<void(const Item&)> unfinished;  ///< of each that will be run, before any is
-  std::function<void(const Setup&)> preparing;  ///< the scene of its mission
-  std::function<void(const Item&, const TrialRecord&)> done;  ///< here, and written
-  /// Its mission package is staged there: what else belongs beside it may be, too.
+  /// Called for each pending item before any item is run.
+  std::function<void(const Item&)> unfinished;
+  std::function<void(const Setup&)> preparing;  ///< called before the scene is loaded
+  /// Called after an item was run and its record written.
+  std::function<void(const Item&, const TrialRecord&)> done;
+  /// Called when the mission package is staged, so that further files can be staged with it.
   std::function<void(geometry::OutputFolder&)> packaged;
-  /// Others go on; without this, they stop, and the first failure is thrown.
+  /// Called for each failure; other items continue. Without this callback, the run stops and the
+  /// first failure is thrown.
   std::function<void(const Error&)> failed;
 };
 
-/// The records of those that are finished.
+/// Returns the records of completed items.
 Records finished_items(const std::vector<Item>& items);
 
-/// Runs those that are not finished, up to `threads` at a time (zero: all processors), each survey
-/// in one thread, and returns the records of all; nothing for those that failed or that `stop` came
-/// before. A scene is kept until the last of its items is done. Throws Error, see RunEvents.
+/// Runs the pending items, each survey in one thread, and returns all records. Up to `threads`
+/// surveys run concurrently; zero selects the number of processors. Items that failed or were
+/// stopped have no record. A scene is released after its last item. Throws Error as described in
+/// RunEvents.
 Records run_items(const std::vector<Item>& items, unsigned threads, const std::stop_token& stop,
                   const RunEvents& events);
 
-/// What for_each_batch() tells of.
+/// Callbacks of for_each_batch().
 struct BatchEvents {
-  /// Items that are next to each other by mission, variant, planner and seed, in this order.
+  /// Receives items adjacent in mission, variant, planner and seed, in this order.
   std::function<void(const std::vector<Item>&)> work;
-  /// A mission cannot be read, and so many of the range's items not be run.
+  /// Called if a mission cannot be read; `items` is the number of affected items in the range.
   std::function<void(const Error&, std::size_t items)> failed;
-  config::Report reading{};  ///< what of a mission is read
+  config::Report reading{};  ///< progress of reading a mission
 };
 
-/// Hands on all items of a range of a manifest, whose results are in `out`; some at a time, since
-/// missions may hold prior data of a whole town each.
+/// Passes the items of a manifest range to `events.work` in batches. Batches limit memory, since
+/// each mission may have prior data of a whole town. `out` is the results folder.
 void for_each_batch(const Manifest& manifest, const std::filesystem::path& out,
                     const ItemRange& range, const BatchEvents& events);
 

@@ -18,7 +18,7 @@ namespace {
 struct Engine {
   const char* name;
   const char* variable;
-  std::size_t first;  ///< what it calls its first task
+  std::size_t first;  ///< number of the first task
 };
 
 constexpr std::array engines{
@@ -38,7 +38,7 @@ std::size_t number_in(const std::string& text, std::size_t first, const std::str
   return number - first;
 }
 
-/// What the engine's variable says; nothing if it is not set.
+/// Returns the task number from the scheduler's variable, or nullopt if it is not set.
 std::optional<std::size_t> task_of(const Engine& engine, const Environment& environment) {
   const auto value = environment(engine.variable);
   if (!value) return std::nullopt;
@@ -65,7 +65,7 @@ constexpr std::size_t most_array_tasks = 1000;
 
 std::size_t quotient_up(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
 
-/// As a POSIX shell reads it back.
+/// Quotes a word for a POSIX shell.
 std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -92,7 +92,7 @@ EngineJob slurm_job(const JobRequest& request, const TaskSplit& tasks) {
   const std::vector<std::string> directives{
       "#SBATCH --array=0-" + std::to_string(tasks.tasks - 1),
       "#SBATCH --cpus-per-task=1",
-      "#SBATCH --requeue",  // a task that runs again skips what is complete
+      "#SBATCH --requeue",  // a repeated task skips completed items
       "#SBATCH --open-mode=append",
   };
   return {{{"slurm.sh",
@@ -121,7 +121,7 @@ EngineJob parallel_job(const JobRequest& request, const TaskSplit& tasks) {
 }
 
 EngineJob mpi_job(const JobRequest& request, const TaskSplit& tasks) {
-  // A rank that fails must not end the others. Ranks may be more than the machine has cores.
+  // A failed rank must not abort the other ranks. There may be more ranks than cores.
   Words command{"mpirun",
                 "--mca",
                 "orte_abort_on_non_zero_status",
@@ -131,13 +131,14 @@ EngineJob mpi_job(const JobRequest& request, const TaskSplit& tasks) {
                 "-n",
                 std::to_string(tasks.tasks),
                 "--oversubscribe"};
-  // mpirun would wait forever for a rank that a signal has ended; a shell ends with a status.
+  // mpirun waits indefinitely for a rank terminated by a signal. A shell exits with a status
+  // instead.
   append(command, {"sh", "-c", "\"$@\"; exit $?", "rank"});
   append(command, task_words(request, "mpi", tasks.chunk));
   return {{{"mpi.sh", job_script(request.title, {}, command)}}, command};
 }
 
-/// What queues the collecting behind a job of Slurm.
+/// Returns the command that queues the collection of results after a Slurm job.
 Words slurm_collection(const JobRequest& request, const std::string& job) {
   return {"sbatch",
           "--parsable",
@@ -147,7 +148,7 @@ Words slurm_collection(const JobRequest& request, const std::string& job) {
           request.out / "slurm_collect.sh"};
 }
 
-/// Runs an engine's command; returns what it said, nothing if it has failed.
+/// Runs a scheduler command and returns its output, or an empty string after an error.
 std::string started(const Words& command, const std::stop_token& stop,
                     const std::function<void(const std::string&)>& warn) {
   const support::ProgramResult result = support::run_external_program(command, ".", stop);
@@ -204,7 +205,7 @@ std::string job_script(const std::string& title, const std::vector<std::string>&
                        const Words& command) {
   std::string script = "#!/bin/sh\n# " + title + ", written by skycap --submit.\n";
   for (const std::string& directive : directives) script += directive + "\n";
-  script += "exec";  // so that signals reach the program itself
+  script += "exec";  // passes signals to the program itself
   for (const std::string& word : command) script += " " + quoted(word);
   return script + "\n";
 }
@@ -225,7 +226,7 @@ EngineJob engine_job(EngineName engine, const JobRequest& request) {
 Submission submit(EngineName engine, const JobRequest& request, geometry::OutputFolder& folder,
                   const std::stop_token& stop,
                   const std::function<void(const std::string&)>& warn) {
-  std::error_code failure;  // which the engine will tell of
+  std::error_code failure;  // reported by the scheduler
   std::filesystem::create_directories(request.out / "logs", failure);
   const EngineJob job = engine_job(engine, request);
   for (const auto& [name, text] : job.files) folder.write(name, text);

@@ -1,5 +1,5 @@
-/// Numbered items of work, such as those of a campaign, as a job of an engine that others have
-/// written: Slurm, GNU parallel, OpenMPI; and which items a task of it runs.
+/// Distributes numbered items of work, such as those of a campaign, to schedulers: Slurm, GNU
+/// parallel and Open MPI.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,14 @@
 
 namespace skycap::missions::batch {
 
-/// The value of a variable of the environment; nothing if it is not set.
+/// Returns the value of an environment variable, or nullopt if it is not set.
 using Environment = std::function<std::optional<std::string>(const std::string& name)>;
 
-/// The program's own.
+/// Returns an accessor of the process environment.
 Environment program_environment();
 
-/// The number of a task, from 0 on. `index` says it, or names the engine whose variable does:
+/// Returns the task number, counted from 0. `index` is the number, or the name of a scheduler that
+/// sets it in an environment variable:
 ///
 /// | index        | variable             | counts from |
 /// | slurm        | SLURM_ARRAY_TASK_ID  | 0           |
@@ -30,70 +31,76 @@ Environment program_environment();
 /// | parallel     | PARALLEL_SEQ         | 1           |
 /// | auto         | the one that is set  |             |
 ///
-/// Throws Error{bad_usage} if it is no number, or if the variable is not set; auto, if several are.
+/// Throws Error{bad_usage} if the value is not a number or the variable is not set. With
+/// auto, also throws it if several variables are set.
 std::size_t task_index(const std::string& index, const Environment& environment);
 
-/// The items of a task when each has `chunk`: empty for tasks beyond the last item.
+/// Returns the items of a task with `chunk` items per task. The range is empty for tasks beyond the
+/// last item.
 ItemRange items_of_task(std::size_t task, std::size_t chunk, std::size_t items);
 
 enum class EngineName { slurm, parallel, mpi };
 
-/// A program and its arguments.
+/// Program name and arguments.
 using Words = std::vector<std::string>;
 
-/// The engine of that name, one of slurm, parallel and mpi.
+/// Returns the scheduler with the given name: slurm, parallel or mpi.
 EngineName engine_named(const std::string& name);
 
-/// What a job is made from.
+/// Inputs for the creation of a job.
 struct JobRequest {
-  /// The verb with all that decides the results, without --quiet: --index, --chunk and --threads
-  /// make a task of it, --collect the work behind all tasks. All paths are absolute.
+  /// Command with all options that affect the results, but without --quiet. --index, --chunk and
+  /// --threads are added for tasks, and --collect for collecting the results. All paths are
+  /// absolute.
   Words command;
-  std::filesystem::path out;  ///< where the results go
-  std::string title;          ///< of its scripts, such as "Campaign roofs"
-  std::string name;           ///< of the job
+  std::filesystem::path out;  ///< results folder
+  std::string title;          ///< title in the scripts, such as "Campaign roofs"
+  std::string name;           ///< job name
   std::size_t items = 0;
-  std::size_t chunk = 0;  ///< items of a task; zero: as the engine likes it
-  unsigned jobs = 1;      ///< tasks at a time, of engines that have no limit of their own
+  std::size_t chunk = 0;  ///< items per task; zero: the scheduler's default
+  unsigned jobs = 1;      ///< concurrent tasks, for schedulers without their own limit
 };
 
-/// How many tasks there are, and of how many items.
+/// Number of tasks and items per task.
 struct TaskSplit {
   std::size_t tasks = 0;
   std::size_t chunk = 1;
 };
 
-/// Without a chunk: for Slurm at most 1000 tasks, which its default MaxArraySize allows; for MPI
-/// one for each rank; for parallel one for each item.
+/// Returns the division into tasks. If `chunk` is zero, Slurm uses at most 1000 tasks (its default
+/// MaxArraySize), MPI one task per rank, and parallel one task per item.
 TaskSplit split(EngineName engine, const JobRequest& request);
 
-/// A shell script of one command, for engines that take scripts and for people who start it again.
+/// Returns a shell script that runs one command. Schedulers run it; users can run it to repeat the
+/// job.
 std::string job_script(const std::string& title, const std::vector<std::string>& directives,
                        const Words& command);
 
-/// The files of a job, and how it is started.
+/// Files of a job and the command that starts it.
 struct EngineJob {
   struct File {
     std::string name;
     std::string text;
   };
-  std::vector<File> files;  ///< for the folder of results; tasks write their messages to logs/
+  std::vector<File> files;  ///< files for the results folder; tasks write messages to logs/
   Words command;
 };
 
-/// Slurm's returns at once and prints the job's number; the others last until all tasks have ended.
+/// Creates the job for a scheduler. The Slurm command returns immediately and prints the job
+/// number. The other commands return when all tasks have ended.
 EngineJob engine_job(EngineName engine, const JobRequest& request);
 
 struct Submission {
-  bool is_queued = false;    ///< by Slurm: what is collected is queued behind it
-  bool is_accepted = false;  ///< by Slurm, both of them
-  std::string job;           ///< its number in Slurm
+  bool is_queued = false;    ///< whether Slurm queues the tasks and the collection after them
+  bool is_accepted = false;  ///< whether Slurm accepted both jobs
+  std::string job;           ///< Slurm job number
   TaskSplit tasks;
 };
 
-/// Writes the job's scripts into `folder`, where logs/ is made for messages of tasks, commits them
-/// and starts the job. Slurm queues it; of other engines all tasks have ended then, or `stop` was
-/// requested. `warn` is told how an engine failed. Throws Error{bad_usage} if it is not installed.
+/// Writes the job's scripts and the folder logs/ into `folder`, commits it and starts the job.
+/// Slurm queues the job. For other schedulers, the function returns when all tasks have ended or
+/// `stop` is requested. `warn` receives error messages of the scheduler. Throws Error{bad_usage} if
+/// the scheduler is not installed.
 Submission submit(EngineName engine, const JobRequest& request, geometry::OutputFolder& folder,
                   const std::stop_token& stop, const std::function<void(const std::string&)>& warn);
 

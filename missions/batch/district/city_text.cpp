@@ -12,11 +12,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using site_data::SurfaceKind;
 
-/// The surfaces that triangles may be of, by their kinds.
+/// CityJSON semantic surface types of triangles, by kind.
 const char* const surface_types[] = {"WallSurface", "RoofSurface", "GroundSurface", "Window",
                                      "OuterFloorSurface"};
 
-/// The number of a kind's surface; null: the file does not say what it is.
+/// Returns the index of a kind's surface type, or null if the kind is unknown.
 Json surface_of(SurfaceKind kind) {
   if (kind == SurfaceKind::unknown) return nullptr;
   return static_cast<int>(kind) - 1;
@@ -29,7 +29,7 @@ Json semantics_of(const site_data::Object& object) {
   return {{"surfaces", surfaces}, {"values", values}};
 }
 
-/// `first` is the number of its first vertex in the file.
+/// Returns the geometry of an object. `first` is the index of its first vertex in the file.
 Json geometry_of(const site_data::Object& object, std::size_t first) {
   Json boundaries = Json::array();
   for (const auto& [a, b, c] : object.mesh.triangles) {

@@ -1,5 +1,5 @@
-/// Things of maps as a small city model of their own, in the district's frame: so that a mission of
-/// one target reads what is near it, and not a whole town.
+/// Writes map objects as a small city model in the district frame. A mission of one target then
+/// reads only nearby objects instead of a whole town.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace skycap::missions::batch {
 
-/// Corners are rounded to this, which whoever reads the file adds to what it may be off [m].
+/// Resolution of the coordinates [m]. It must be added to the uncertainty of the written objects.
 inline constexpr double city_step = 1e-4;
 
-/// CityJSON 2.0 of these, in their order by name, without a reference system: it is in the frame of
-/// the mission that names it. Names must differ.
+/// Returns a CityJSON 2.0 model of the objects, ordered by name. Names must be unique. The model
+/// has no reference system, because its coordinates are in the frame of the mission.
 std::string city_text(std::span<const site_data::Object* const> objects);
 
 }  // namespace skycap::missions::batch

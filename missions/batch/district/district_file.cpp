@@ -17,8 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 using support::YamlSection;
 
-constexpr std::size_t largest_district_file = std::size_t{16} << 20;  // [byte]; 100,000 names
-constexpr double farthest = 50e3;  // of anything from the site [m]
+// [byte]; sufficient for 100,000 names.
+constexpr std::size_t largest_district_file = std::size_t{16} << 20;
+constexpr double farthest = 50e3;  // maximum distance of any object from the site [m]
 
 /// Reads the keys of a district in the order of the manual.
 class DistrictReader {
@@ -35,7 +36,7 @@ class DistrictReader {
     district_.pads = clicks(root_, "pads");
     std::string& vehicle = district_.wishes.vehicle;
     vehicle = root_.text("vehicle", "generic");
-    // A preset has a name, a description has a path.
+    // The value is a preset name, or a path if it ends in .yaml.
     if (fs::path(vehicle).extension() == ".yaml") vehicle = path_of(vehicle).string();
     read_planner();
     const int seed = root_.integer("seed", 1);

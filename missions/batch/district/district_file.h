@@ -1,5 +1,5 @@
-/// A district file: which buildings of a map are surveyed, and how. docs/reference/batch-files.md
-/// is the manual of the format.
+/// District files specify which buildings of a map are surveyed and how.
+/// docs/reference/batch-files.md documents the format.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,34 @@
 
 namespace skycap::missions::batch {
 
-/// Which of a map's things are targets: those that meet all that is given.
+/// Selection of map objects as targets. Targets must meet all given criteria.
 struct TargetChoice {
   std::vector<std::string> ids;
   std::map<std::string, std::string> attributes;
-  std::vector<wizard::Click> within;  ///< two opposite corners of a box, or none
+  std::vector<wizard::Click> within;  ///< two opposite corners of a box, or empty
   std::optional<wizard::Click> near;
-  double distance = 0.0;  ///< of their boxes from `near`, at most [m]
+  double distance = 0.0;  ///< maximum distance between `near` and a target's bounding box [m]
 };
 
 struct DistrictFile {
   std::string name;
-  std::filesystem::path file;  ///< itself
-  wizard::Wishes wishes;       ///< files, how they are read, vehicle; but no target
+  std::filesystem::path file;  ///< path of the district file
+  wizard::Wishes wishes;       ///< input files, their interpretation, and the vehicle; no target
   TargetChoice targets;
-  double merge_distance = 0.5;      ///< targets nearer to each other are surveyed as one [m]
-  std::vector<wizard::Click> pads;  ///< empty: they are proposed
-  std::string planner = "skycap";   ///< of batch::contestants()
+  /// Targets closer to each other than this are surveyed together [m].
+  double merge_distance = 0.5;
+  std::vector<wizard::Click> pads;  ///< take-off points; empty: proposed automatically
+  std::string planner = "skycap";   ///< name of one of batch::contestants()
   std::uint64_t seed = 1;
-  std::vector<config::KeyOverride> set;  ///< in the missions of all targets
+  std::vector<config::KeyOverride> set;  ///< overrides for the missions of all targets
 };
 
-/// Throws Error{bad_file} if it cannot be read, and Error{bad_config}, "FILE:LINE: key KEY: what is
-/// wrong; what would be right".
+/// Reads a district file. Throws Error{bad_file} if it cannot be read. Throws Error{bad_config}
+/// with "FILE:LINE: key KEY: what is wrong; what would be right".
 DistrictFile read_district(const std::filesystem::path& file);
 
-/// The same of a text; `name` stands for the file in messages, and paths count from its folder.
+/// Parses a district from a string. `name` is the file name in messages; paths are relative to its
+/// folder. Throws Error{bad_config} as read_district().
 DistrictFile parse_district(const std::string& text, const std::string& name);
 
 }  // namespace skycap::missions::batch

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using flight::Station;
 
-/// Of all things of the target together, by their area.
+/// Returns the area-weighted mean coverage of the target's objects.
 double coverage_in(const nlohmann::json& targets) {
   double area = 0.0, covered = 0.0;
   for (const nlohmann::json& target : targets) {
@@ -43,12 +43,12 @@ std::size_t bytes_in(const fs::path& folder) {
   return bytes;
 }
 
-/// How many pads a station is tried from.
+/// Maximum number of pads from which a waypoint is tried.
 constexpr std::size_t most_pads_tried = 3;
 
-/// From above a pad to a place: straight, or over all that stands in between, and then as short as
-/// that way is pulled tight; empty where neither is free. Found at once, where a search of the way
-/// through a town takes a second.
+/// Returns a path from above a pad to a position: straight, or over all obstacles in between and
+/// then shortened. Empty if neither is free. This takes little time, whereas a path search through
+/// a town takes a second.
 package::Way way_over(const flight::FreeSpace& space, const Vector3d& home, const Vector3d& place,
                       double level, const flight::RouteOptions& options) {
   const double clearance = options.clearance.total();
@@ -92,7 +92,7 @@ class FlightPlanner {
   }
 
  private:
-  /// Stations and spaces of all targets; where there is no survey nothing is free.
+  /// Reads the views and free spaces of all targets. Targets without a survey have no free space.
   void take_surveys() {
     std::vector<flight::MeasuredSpace> spaces;
     for (std::size_t t = 0; t < targets_.size() && !stop_.stop_requested(); ++t) {
@@ -118,7 +118,7 @@ class FlightPlanner {
     measured_ = std::make_unique<flight::MeasuredUnion>(std::move(spaces));
   }
 
-  /// An order and pads for all stations; whether there is anything to fly.
+  /// Assigns an order and pads to all waypoints. Returns whether there are any waypoints.
   bool choose_pads() {
     tell_(fmt::format("ordering {} views", stations_.size()));
     const flight::RouteOptions options = flights_.front().route(prepared_.pads[0]);
@@ -167,7 +167,7 @@ class FlightPlanner {
     }
   }
 
-  /// Proposes a way from above the pad to each station.
+  /// Proposes a path from above the pad to each waypoint.
   void take_ways(std::size_t pad, std::vector<Station>& stations) const {
     const flight::FlightOptions& flight = flights_[pad];
     const Vector3d& place = prepared_.pads[pad];
@@ -182,8 +182,8 @@ class FlightPlanner {
     }
   }
 
-  /// Gives stations that were refused to the nearest pad that they were not tried from; returns
-  /// which pads have others now.
+  /// Reassigns unreachable waypoints to the nearest pad that has not been tried. Returns which pads
+  /// have new waypoints.
   std::vector<bool> move_refused() {
     std::vector<bool> is_changed(flights_.size(), false);
     for (const std::uint32_t i : order_) {
@@ -227,14 +227,14 @@ class FlightPlanner {
   std::span<const SurveyedTarget> targets_;
   const Tell& tell_;
   const std::stop_token& stop_;
-  std::vector<std::string> names_;              ///< of the missions, by pad
-  std::vector<flight::FlightOptions> flights_;  ///< their flights, in the order given
+  std::vector<std::string> names_;              ///< mission names by pad
+  std::vector<flight::FlightOptions> flights_;  ///< flight options by pad
   std::unique_ptr<const flight::MeasuredUnion> measured_;
   std::vector<flight::PadGround> grounds_;
   std::vector<Station> stations_;
   std::vector<std::uint32_t> of_target_, order_;
-  std::vector<std::size_t> pad_of_;              ///< by station
-  std::vector<std::vector<std::size_t>> tried_;  ///< likewise
+  std::vector<std::size_t> pad_of_;              ///< assigned pad by waypoint
+  std::vector<std::vector<std::size_t>> tried_;  ///< pads tried by waypoint
   std::vector<std::optional<flight::Route>> routes_;
   DistrictFlight flight_;
 };

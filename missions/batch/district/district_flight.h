@@ -1,5 +1,5 @@
-/// One flight of all targets of a district: their stations in an order across targets, in sorties
-/// by energy from several pads.
+/// Joint flight to all targets of a district. The waypoints are ordered across targets and divided
+/// into sorties from several pads according to battery energy.
 #pragma once
 
 #include <cstddef>
@@ -21,60 +21,62 @@
 
 namespace skycap::missions::batch {
 
-/// A survey that is over.
+/// Results of a completed survey.
 struct SurveyFigures {
-  std::filesystem::path folder;  ///< its package's
+  std::filesystem::path folder;  ///< folder of its package
   std::size_t views = 0;
-  double coverage = 0.0;                   ///< of the surface of the target's things
-  std::optional<double> coverage_visible;  ///< of what can be seen of the scene
-  double planning_time = 0.0;              ///< of all views [s] of a processor
-  double time = 0.0;                       ///< of its own mission, flown by itself [s]
-  double length = 0.0;                     ///< likewise [m]
-  double wall_time = 0.0;                  ///< of the item [s]
-  std::size_t peak_memory = 0;             ///< of the program until then [byte]
-  std::size_t file_bytes = 0;              ///< of the package
+  double coverage = 0.0;  ///< coverage of the target's objects, as a fraction of their surface
+  /// Coverage as a fraction of the visible surface of the scene.
+  std::optional<double> coverage_visible;
+  double planning_time = 0.0;   ///< processor time for all views [s]
+  double time = 0.0;            ///< duration of a separate flight for this target [s]
+  double length = 0.0;          ///< length of a separate flight for this target [m]
+  double wall_time = 0.0;       ///< elapsed time of the item [s]
+  std::size_t peak_memory = 0;  ///< peak memory of the process up to the end of the item [byte]
+  std::size_t file_bytes = 0;   ///< size of the package [byte]
   std::string stop_reason;
 };
 
 struct SurveyedTarget {
   PreparedTarget target;
-  std::optional<SurveyFigures> figures;  ///< of a survey that is over
-  std::string why_none;                  ///< else
+  std::optional<SurveyFigures> figures;  ///< results, if the survey is completed
+  std::string why_none;                  ///< reason for missing results
 };
 
-/// The figures of a package in `folder`, whose survey ran as `record` says. Throws Error{bad_file}.
+/// Reads the results of the package in `folder`, run as described by `record`. Throws
+/// Error{bad_file}.
 SurveyFigures figures_of(const std::filesystem::path& folder, const TrialRecord& record);
 
-/// What is flown from one pad.
+/// Flight from one pad.
 struct PadFlight {
-  std::size_t pad = 0;  ///< of the district's
-  flight::Route route;  ///< its stations' view_index is a DistrictStation
+  std::size_t pad = 0;  ///< index of the district's pad
+  flight::Route route;  ///< `view_index` of its waypoints is an index of DistrictFlight::stations
   package::FlightFiles files{};
 };
 
-/// A view of a target.
+/// View of a target.
 struct DistrictStation {
   std::size_t target = 0;
   std::uint32_t view = 0;
-  std::string why_not;  ///< it is flown to; empty: it is
+  std::string why_not;  ///< reason why it is not visited; empty if it is visited
 };
 
 struct DistrictFlight {
-  std::vector<PadFlight> pads;            ///< those that something is flown from
-  std::vector<DistrictStation> stations;  ///< of all targets, in their order
-  double order_length = 0.0;              ///< straight lines in the order chosen [m]
+  std::vector<PadFlight> pads;            ///< only pads with a flight
+  std::vector<DistrictStation> stations;  ///< views of all targets, in the order of the targets
+  double order_length = 0.0;              ///< length of straight lines in the chosen order [m]
   std::vector<std::string> notes;
 
   std::size_t sorties() const;
-  double duration() const;  ///< of all sorties [s]
-  double length() const;    ///< [m]
+  double duration() const;  ///< total duration of all sorties [s]
+  double length() const;    ///< total length of all sorties [m]
 };
 
-/// Plans it through the views of all surveys. Free is what some survey has measured to be free, and
-/// what lies outside of the unknown boxes of all targets, whether they were surveyed or not; all
-/// that the files hold is in the way, as the missions of the pads have it. A station that cannot be
-/// flown to from the pad that is best for it is tried from the next two. Every leg is proven as
-/// plan_route() does it. Nothing is planned once `stop` is requested.
+/// Plans the joint flight through the views of all surveys. Free space is space observed free in
+/// any survey, and space outside the unknown boxes of all targets, including targets without a
+/// survey. All objects of the input files are obstacles, as in the missions of the pads. A waypoint
+/// that cannot be reached from its best pad is tried from the next two pads. Every leg is verified
+/// as in plan_route(). Planning ends without a flight once `stop` is requested.
 DistrictFlight plan_district(const DistrictFile& district, const Prepared& prepared,
                              std::span<const SurveyedTarget> targets,
                              const std::filesystem::path& out, const Tell& tell,

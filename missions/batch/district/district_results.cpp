@@ -20,13 +20,13 @@ namespace {
 using support::json_of;
 using Json = nlohmann::ordered_json;
 
-/// How a target's views fare in the flight of all.
+/// Visited and omitted views of a target in the joint flight.
 struct FlownViews {
   std::size_t flown = 0;
-  std::map<std::string, std::size_t> why_not;  ///< reasons, and of how many views
+  std::map<std::string, std::size_t> why_not;  ///< number of views by reason
 
-  /// How many are not flown to, and the reason of most of them, of as many the first; empty: all
-  /// are flown to.
+  /// Returns the number of omitted views and their most frequent reason; ties are resolved
+  /// alphabetically. Empty if all views are visited.
   std::string reason() const {
     std::size_t all = 0;
     for (const auto& [why, views] : why_not) all += views;
@@ -152,7 +152,7 @@ Json flight_json(const DistrictFlight& flight) {
           {"notes", flight.notes}};
 }
 
-/// As a field of a table: in quotes where it holds what separates fields.
+/// Quotes a CSV field if it contains a separator, quote or line feed.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";

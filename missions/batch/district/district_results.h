@@ -1,4 +1,4 @@
-/// The figures of a district: district.json and targets.csv.
+/// Results of a district: district.json and targets.csv.
 #pragma once
 
 #include <span>
@@ -8,19 +8,19 @@
 
 namespace skycap::missions::batch {
 
-/// What the page that shows it (missions/report/district_page.h) is made from.
+/// Input files of the HTML report (missions/report/district_page.h).
 inline constexpr const char* results_name = "district.json";
 inline constexpr const char* table_name = "targets.csv";
 
-/// Everything that was surveyed, and how it is flown. Paths of packages count from `out`.
+/// Returns all survey results and the joint flight as JSON. Package paths are relative to `out`.
 std::string results_json(const DistrictFile& district, const Prepared& prepared,
                          std::span<const SurveyedTarget> targets, const DistrictFlight& flight,
                          const std::filesystem::path& out);
 
-/// A line for each target: the same bytes wherever items ran.
+/// Returns one CSV line per target. The output does not depend on the machines that ran the items.
 std::string targets_csv(std::span<const SurveyedTarget> targets, const DistrictFlight& flight);
 
-/// The summary for the terminal.
+/// Returns the summary for the terminal.
 std::string results_text(std::span<const SurveyedTarget> targets, const DistrictFlight& flight);
 
 }  // namespace skycap::missions::batch

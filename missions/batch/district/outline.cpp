@@ -18,10 +18,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Faces no higher above the lowest place than this are what the building stands on [m].
+/// Maximum height of base faces above the lowest vertex [m].
 constexpr double foot_height = 0.5;
 
-/// A place to the centimetre: corners of two faces are seldom the same numbers.
+/// Position rounded to centimetres, because adjacent faces rarely have exactly equal corners.
 using Corner = std::pair<std::int64_t, std::int64_t>;
 using Edge = std::pair<Corner, Corner>;
 
@@ -33,7 +33,7 @@ Vector2d place_of(const Corner& corner) {
   return 0.01 * Vector2d(static_cast<double>(corner.first), static_cast<double>(corner.second));
 }
 
-/// The edges that belong to one face and not to two.
+/// Returns the edges that belong to exactly one base face.
 std::set<Edge> border_of(const geometry::Mesh& mesh) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const Vector3d& vertex : mesh.vertices) lowest = std::min(lowest, vertex.z());
@@ -56,7 +56,7 @@ std::set<Edge> border_of(const geometry::Mesh& mesh) {
   return border;
 }
 
-/// The rings that edges make; none if one does not close.
+/// Chains edges into rings. Returns an empty list if a ring is not closed.
 std::vector<Ring> chained(const std::set<Edge>& border) {
   std::map<Corner, std::set<Corner>> next;
   for (const auto& [a, b] : border) {
@@ -94,7 +94,7 @@ std::vector<Ring> outline_of(const geometry::Mesh& mesh) {
   return {convex_hull(std::move(places))};
 }
 
-// Andrew's monotone chain (1979).
+// Implements Andrew's monotone chain algorithm (1979).
 Ring convex_hull(std::vector<Vector2d> places) {
   const auto less = [](const Vector2d& a, const Vector2d& b) {
     return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y());

@@ -1,4 +1,4 @@
-/// The shape of a building on a map.
+/// Outlines of buildings on a map.
 #pragma once
 
 #include <vector>
@@ -11,11 +11,11 @@ namespace skycap::missions::batch {
 
 using Ring = std::vector<Eigen::Vector2d>;
 
-/// The rings around its lowest level faces, holes among them; where they do not close, the convex
-/// hull of all of it.
+/// Returns the boundary rings of the lowest horizontal faces, including holes. If they are not
+/// closed, returns the convex hull of the whole mesh.
 std::vector<Ring> outline_of(const geometry::Mesh& mesh);
 
-/// The corners of the smallest convex shape around places, counter-clockwise.
+/// Computes the corners of the convex hull of positions, counter-clockwise.
 Ring convex_hull(std::vector<Eigen::Vector2d> places);
 
 }  // namespace skycap::missions::batch

@@ -53,7 +53,7 @@ Eigen::AlignedBox3d box_of(const Json& json) {
   return {vector_of(json.at("min")), vector_of(json.at("max"))};
 }
 
-/// To the centimetre, which is all that a map shows.
+/// Rounds to centimetres, which is sufficient for a map.
 Json rings_json(const std::vector<Ring>& rings) {
   const auto shown = [](double value) { return std::round(100.0 * value) / 100.0; };
   Json list = Json::array();
@@ -97,8 +97,8 @@ PreparedTarget target_of(const Json& json) {
           .refusal = json.at("refusal")};
 }
 
-/// Stands for everything that the preparation depends on. Throws Error{bad_file} if a file that the
-/// district names cannot be read.
+/// Returns a checksum of all inputs of the preparation. Throws Error{bad_file} if a file named by
+/// the district cannot be read.
 std::string digest_of(const DistrictFile& district) {
   std::string inputs = std::string(version) + "\n" + geometry::read_file(district.file);
   std::vector<fs::path> files{district.wishes.map};
@@ -111,7 +111,7 @@ std::string digest_of(const DistrictFile& district) {
   return support::sha256(std::as_bytes(std::span(inputs)));
 }
 
-/// Of targets from pads [m].
+/// Maximum distance between a target and a pad of the joint flight [m].
 constexpr double most_to_pad = 300.0;
 
 std::vector<AlignedBox3d> unknown_boxes(std::span<const PreparedTarget> targets) {
@@ -120,25 +120,27 @@ std::vector<AlignedBox3d> unknown_boxes(std::span<const PreparedTarget> targets)
   return boxes;
 }
 
-/// On the map.
+/// Returns the horizontal distance [m].
 double distance(const Vector3d& pad, const AlignedBox3d& box) {
   const Eigen::AlignedBox2d base(box.min().head<2>().eval(), box.max().head<2>().eval());
   return base.exteriorDistance(Eigen::Vector2d(pad.head<2>()));
 }
 
-/// Where the surveys of a district take off from, and the flight of all its targets.
+/// Selects the pads of the target surveys and of the joint flight.
 class PadChoice {
  public:
-  /// Keeps references to all. Throws Error{bad_config} if a pad that the district gives is none.
+  /// Stores references to all arguments. Throws Error{bad_config} if a pad of the district is
+  /// invalid.
   PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
             const flight::GeodeticPoint& origin, std::span<const PreparedTarget> targets);
 
-  /// The pad of a target's survey: beside it, or else the nearest that the district gives.
+  /// Returns the pad of a target's survey: next to the target, or else the nearest pad of the
+  /// district.
   std::optional<Vector3d> pad_of(std::size_t target, double top);
 
-  /// Those that the district gives; else of the targets' own as few as leave none of these targets
-  /// farther than 300 m from one: first the one nearest to the middle, then those of the targets
-  /// that are farthest off.
+  /// Returns the pads given by the district. Otherwise selects pads of the target surveys until no
+  /// target is farther than 300 m from a pad. The first is the one nearest to the centre; then the
+  /// pads of the farthest targets are added.
   std::vector<Vector3d> pads_of_flight() const;
 
  private:
@@ -147,7 +149,7 @@ class PadChoice {
   std::span<const PreparedTarget> targets_;
   wizard::PadSearch search_;
   std::vector<Vector3d> given_;
-  std::vector<std::optional<Vector3d>> own_;  ///< by target
+  std::vector<std::optional<Vector3d>> own_;  ///< pads of the target surveys, by target
 };
 
 PadChoice::PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
@@ -218,7 +220,7 @@ AlignedBox3d box_around(const std::vector<Object>& objects, const Group& group) 
   return box;
 }
 
-/// A name of a file, and of a mission, for a thing whatever it is called; none is given twice.
+/// Generates unique titles that are valid file and mission names.
 class Titles {
  public:
   std::string title_of(const std::string& id, std::size_t members) {
@@ -239,7 +241,7 @@ class Titles {
   std::map<std::string, std::size_t> given_;
 };
 
-/// Prepares one district; the members are what its steps find.
+/// Prepares one district. Its members are the results of the preparation steps.
 class Preparer {
  public:
   Preparer(const DistrictFile& district, fs::path out, const Tell& tell)
@@ -247,7 +249,7 @@ class Preparer {
 
   Prepared run(std::string digest) {
     tell_("reading " + district_.wishes.map.filename().string());
-    // First, since missions name their files as seen from there.
+    // Opened first, because file paths in missions are relative to this folder.
     geometry::OutputFolder folder(out_);
     read_files();
     take_things();
@@ -281,7 +283,7 @@ class Preparer {
     draft_ = read_draft();
   }
 
-  /// All that the files hold, in the district's frame.
+  /// Reads all objects of the input files in the district frame.
   config::MissionSetup read_draft() const {
     MissionValues values = basics(out_ / "all.yaml");
     values.sources =
@@ -292,8 +294,8 @@ class Preparer {
     return config::parse_mission(text, values.file.string(), district_.set);
   }
 
-  /// Splits what is in the way into things, which are cut out for each target, and files that each
-  /// mission names.
+  /// Divides the obstacles into individual objects, written for each target, and files referenced
+  /// by every mission.
   void take_things() {
     const site_data::SitePriors& site = *draft_.scene().priors;
     targets_ = &site.priors[0].objects;
@@ -329,7 +331,8 @@ class Preparer {
       const fs::path file = out_ / missions_folder / (target.title + ".yaml");
       MissionValues values =
           wizard::values_for(basics(file), target.box, target_error_, has_terrain());
-      // Whatever else is beside it, a thing is looked at as closely as by itself.
+      // The coverage and view distances of a target are determined by its objects, not by its
+      // group.
       values.registration_distance = values.view_distance = 0.0;
       for (const std::size_t i : group) {
         const Object& object = (*targets_)[i];
@@ -366,12 +369,13 @@ class Preparer {
     prepared_.pads = choice.pads_of_flight();
   }
 
-  /// So far from a fence nothing that it encloses comes near to, nor is it reported to.
+  /// Returns the distance from a fence beyond which enclosed objects cannot affect clearances or
+  /// their reports [m].
   double beyond_fence() const {
     return draft_.flight().clearance + flight::reported_surplus + thing_error_;
   }
 
-  /// A model of the targets and of all that stands within the fence or near it.
+  /// Returns a city model of the targets and of all objects within or near the fence.
   std::string city_near(const AlignedBox3d& fence, const Group& targets) const {
     std::vector<const Object*> objects;
     std::set<std::string> ids;
@@ -400,7 +404,7 @@ class Preparer {
     Source source;
     source.file = city;
     source.role = Role::obstacle;
-    // In thousandths, and no less than it is, rounding of the file included.
+    // Rounded up to millimetres, including the rounding of coordinates in the file.
     const double error = std::max(thing_error_, target_error_) + 2.0 * city_step;
     source.uncertainty = std::ceil(1000.0 * error) / 1000.0;
     std::vector<Source> sources{source, source};
@@ -410,7 +414,7 @@ class Preparer {
     return sources;
   }
 
-  /// The boxes of other targets as far as the sensor of one reaches from its own.
+  /// Returns the boxes of other targets within sensor range of a target's own box.
   std::vector<AlignedBox3d> boxes_beside(std::size_t target) const {
     const AlignedBox3d& own = values_[target].unknown;
     const Vector3d reach = Vector3d::Constant(wizard::sensor_range(values_[target]));
@@ -489,7 +493,7 @@ class Preparer {
   config::MissionSetup draft_;
   const std::vector<Object>* targets_ = nullptr;
   double target_error_ = 0.0, thing_error_ = 0.0;
-  std::vector<Object> things_;  ///< in the way, with names of their own
+  std::vector<Object> things_;  ///< obstacles with unique names
   std::vector<AlignedBox3d> thing_boxes_;
   std::vector<Group> groups_;
   std::vector<MissionValues> values_;

@@ -1,5 +1,5 @@
-/// From a district file to a mission for each target, and what the flight of all of them needs to
-/// know. Written once, for all tasks that survey some of the targets each.
+/// Creates a mission for each target of a district, and the data required for the joint flight. The
+/// results are written once for all tasks.
 #pragma once
 
 #include <cstddef>
@@ -17,47 +17,49 @@
 
 namespace skycap::missions::batch {
 
-/// What is surveyed as one.
+/// Objects that are surveyed together.
 struct PreparedTarget {
-  std::string title;             ///< of its mission
-  std::vector<std::string> ids;  ///< in the map
+  std::string title;             ///< title of its mission
+  std::vector<std::string> ids;  ///< identifiers in the map
   std::vector<Ring> outlines;
-  Eigen::AlignedBox3d box;      ///< of all of them
-  Eigen::AlignedBox3d unknown;  ///< in which nothing is free before it is measured
-  Eigen::Vector3d pad = Eigen::Vector3d::Zero();  ///< of its survey
-  std::string refusal;  ///< why there is no mission for it; empty: there is
+  Eigen::AlignedBox3d box;                        ///< bounding box of all objects
+  Eigen::AlignedBox3d unknown;                    ///< box in which unobserved space is occupied
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();  ///< take-off point of its survey
+  std::string refusal;  ///< reason why it has no mission; empty if it has one
 };
 
 struct Prepared {
-  std::string digest;  ///< of the district's file, and of all that it names
+  std::string digest;  ///< checksum of the district file and all files it names
   std::vector<Eigen::Vector3d> pads;
   std::vector<PreparedTarget> targets;
-  std::vector<Ring> neighbours;  ///< what else stands within the fence
+  std::vector<Ring> neighbours;  ///< outlines of other objects within the geofence
 };
 
-/// In the folder of results.
+/// File name in the results folder.
 inline constexpr const char* prepared_name = "prepared.json";
-inline constexpr const char* missions_folder = "missions";  ///< a file for each target
-inline constexpr const char* flights_folder = "flights";    ///< a file for each pad, and routes
+inline constexpr const char* missions_folder = "missions";  ///< folder with one file per target
+/// Folder with one file per pad, and routes.
+inline constexpr const char* flights_folder = "flights";
 
-/// "pad_1": of the names of a pad's mission and route files.
+/// Returns the stem of a pad's mission and route files, such as "pad_1".
 std::string pad_name(std::size_t pad);
 
 std::string prepared_json(const Prepared& prepared);
 
-/// Throws Error{bad_file} naming the file unless it is as prepared_json() has it.
+/// Reads a file written by prepared_json(). Throws Error{bad_file} with the file name if it is
+/// invalid.
 Prepared read_prepared(const std::filesystem::path& file);
 
-/// The surveys of the targets that have missions, as a campaign whose missions are in `out`.
+/// Returns the campaign that surveys all targets with a mission. The missions are in `out`.
 CampaignFile campaign_of(const DistrictFile& district, const Prepared& prepared,
                          const std::filesystem::path& out);
 
-/// What is being done, for a progress line.
+/// Callback for progress messages.
 using Tell = std::function<void(const std::string&)>;
 
-/// Finds the targets and writes into `out` a mission for each, with what stands near it, the
-/// mission of the flight of all, and last prepared.json. What is there of the same digest
-/// stands as it is. Throws Error{bad_config} or Error{bad_file} in one line.
+/// Finds the targets and writes a mission with nearby objects for each into `out`. It also writes
+/// the mission of the joint flight and, last, prepared.json. Existing output with the same checksum
+/// is reused. Throws Error{bad_config} or Error{bad_file} with a one-line message.
 Prepared prepare(const DistrictFile& district, const std::filesystem::path& out, const Tell& tell);
 
 }  // namespace skycap::missions::batch

@@ -22,15 +22,15 @@ using Eigen::Vector3d;
 using flight::GeodeticPoint;
 using site_data::Object;
 
-/// Feet of targets on what is taken for one plane differ by no more than this [m].
+/// Maximum difference of target base heights on a ground plane without terrain [m].
 constexpr double most_uneven = 2.0;
 
-/// A group is no larger, for its survey is one survey [m].
+/// Maximum size of a group, as it is surveyed in one mission [m].
 constexpr double largest_group = 80.0;
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// Whether an object is where targets are wanted.
+/// Tests whether an object is in the area of the targets.
 class Whereabouts {
  public:
   Whereabouts(const TargetChoice& choice, const flight::LocalFrame& frame)
@@ -59,7 +59,7 @@ class Whereabouts {
   Vector2d near_ = Vector2d::Zero();
 };
 
-/// About the middle of these boxes, at the lowest or the highest of their feet.
+/// Returns the origin at the centre of the boxes, at the minimum or maximum of their base heights.
 GeodeticPoint origin_of(const std::vector<AlignedBox3d>& boxes, const flight::LocalFrame& frame,
                         bool has_terrain, const std::string& map) {
   AlignedBox3d all;
@@ -79,7 +79,7 @@ GeodeticPoint origin_of(const std::vector<AlignedBox3d>& boxes, const flight::Lo
                             map, highest - lowest, most_uneven));
   }
   GeodeticPoint origin = frame.to_geodetic(all.center());
-  constexpr double centimetre = 1e-7;  // of latitude [degrees]
+  constexpr double centimetre = 1e-7;  // one centimetre of latitude [degrees]
   origin.latitude_deg = rounded(origin.latitude_deg, centimetre);
   origin.longitude_deg = rounded(origin.longitude_deg, centimetre);
   origin.height =
@@ -87,7 +87,7 @@ GeodeticPoint origin_of(const std::vector<AlignedBox3d>& boxes, const flight::Lo
   return origin;
 }
 
-/// How far two meshes are apart, up to `up_to`, as their corners tell.
+/// Returns the distance between two meshes at their vertices, up to `up_to` [m].
 double gap(const geometry::Mesh& a, const geometry::MeshDistance& to_a, const geometry::Mesh& b,
            const geometry::MeshDistance& to_b, double up_to) {
   double least = up_to;
@@ -101,7 +101,8 @@ struct Pair {
   std::size_t a, b;
 };
 
-/// Pairs nearer than `together`, the nearest first. Boxes are looked at from west to east.
+/// Returns pairs of objects closer than `together` [m], closest pairs first. The boxes are swept
+/// from west to east.
 std::vector<Pair> near_pairs(std::span<const Object> objects, double together) {
   std::vector<AlignedBox3d> boxes;
   for (const Object& object : objects) boxes.push_back(geometry::bounding_box(object.mesh));

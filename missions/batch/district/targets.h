@@ -1,4 +1,4 @@
-/// The targets of a district: found in its map, and put into groups that are surveyed as one.
+/// Selects the targets of a district in its map and groups those surveyed together.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +14,26 @@
 namespace skycap::missions::batch {
 
 struct ChosenTargets {
-  std::vector<std::string> ids;  ///< in the order of the map
-  bool are_all = false;          ///< that the map holds
-  /// Of the district's frame: the middle of the targets, at the height of the lowest foot where
-  /// there is a terrain, else of the highest: there the ground is the plane z = 0.
+  std::vector<std::string> ids;  ///< identifiers in map order
+  bool are_all = false;          ///< whether these are all objects of the map
+  /// Origin of the district frame at the centre of the targets. With terrain, its height is the
+  /// minimum base height of the targets, otherwise the maximum. The ground there is the plane z =
+  /// 0.
   flight::GeodeticPoint origin;
 };
 
-/// Of the first of `files`. Throws Error{bad_config} if nothing is chosen, if the map calls two of
-/// those the same, or if without terrain their feet differ by more than 2 m in height; what
-/// site_data::read_prior() throws.
+/// Selects targets from the first of `files`. Throws Error{bad_config} if no target is selected or
+/// two selected objects have the same identifier. Also throws it if base heights differ by more
+/// than 2 m and the district has no terrain. Throws the errors of site_data::read_prior().
 ChosenTargets choose_targets(const DistrictFile& district,
                              const std::vector<site_data::Source>& files);
 
-/// Numbers of objects.
+/// Indices of objects.
 using Group = std::vector<std::size_t>;
 
-/// Puts objects that are nearer to each other than `together` into groups, nearest pairs first, as
-/// long as a group is no larger than 80 m. Every object is in one; groups and their members are
-/// ascending.
+/// Groups objects closer to each other than `together` [m], closest pairs first. A group is not
+/// extended beyond a size of 80 m. Every object is in exactly one group. Groups and their members
+/// are in ascending order.
 std::vector<Group> grouped(std::span<const site_data::Object> objects, double together);
 
 }  // namespace skycap::missions::batch

@@ -38,7 +38,8 @@ std::vector<double> image_times(const scan::ScanRoute& route, double period) {
   return times;
 }
 
-/// No ray of the camera is longer; the range counts along its axis.
+/// Returns an upper bound of the ray length [m]. The maximum range is measured along the optical
+/// axis.
 double longest_ray(const geometry::Camera& camera) {
   const Eigen::Vector2d& focal_length = camera.focal_length_px();
   return camera.config().max_range *

@@ -1,4 +1,4 @@
-/// A depth camera's flight. For the sources of this room.
+/// Simulated scan with a depth camera. Private to missions/cli/clouds.
 #pragma once
 
 #include "geometry/io/output_folder.h"
@@ -8,7 +8,7 @@
 
 namespace skycap::missions::cli {
 
-/// Takes its images and commits them; returns the exit code.
+/// Records and commits the depth images of a flight. Returns the exit code.
 int scan_with_camera(const ScanVerbOptions& options, const config::MissionSetup& setup,
                      const config::SensorDescription& sensor, geometry::OutputFolder& folder,
                      const Console& console);

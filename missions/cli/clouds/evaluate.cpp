@@ -34,20 +34,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a cloud is compared with.
+/// Ground truth for the evaluation of a cloud.
 struct Truth {
   geometry::Mesh model;
-  geometry::Mesh beside{};  ///< what a mission's sensor sees beside it: ground, neighbours
+  /// Adjacent objects that a mission's sensor observes: ground, neighbours.
+  geometry::Mesh beside{};
   double registration_distance;
   std::size_t samples;
-  std::vector<std::uint8_t> is_visible{};  ///< for each sample, if a mission says from where
+  /// Visibility of each sample, if a mission defines the views.
+  std::vector<std::uint8_t> is_visible{};
 };
 
 bool is_mission_file(const fs::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-/// Piece by piece: laser scans are longer than memory.
+/// Evaluates a cloud in pieces, because laser scans may exceed memory.
 evaluation::CloudJudgement judged_cloud(const EvaluateOptions& options, const Truth& truth,
                                         ProgressLine& progress, const Console& console) {
   const fs::path& file = options.cloud;
@@ -66,12 +68,12 @@ evaluation::CloudJudgement judged_cloud(const EvaluateOptions& options, const Tr
   return judge.judgement();
 }
 
-/// Of a mesh the whole surface counts, not its vertices.
+/// Evaluates a mesh by samples of its surface, because its vertices are unevenly distributed.
 evaluation::CloudJudgement judged_mesh(const EvaluateOptions& options, const Truth& truth) {
   const geometry::Mesh mesh = geometry::read_mesh(options.mesh);
   evaluation::AccuracyMeter accuracy(truth.model, options.threads, truth.beside);
   evaluation::AccuracyMeter completeness(mesh, options.threads);
-  constexpr std::uint64_t seed = 2;  // not the places that are asked about
+  constexpr std::uint64_t seed = 2;  // differs from the seed of the ground-truth samples
   accuracy.add(geometry::sample_surface(mesh, truth.samples, seed).points);
   completeness.add(evaluation::places_asked(truth.model, truth.samples));
   return {accuracy.points(), accuracy.beside(),
@@ -79,13 +81,14 @@ evaluation::CloudJudgement judged_mesh(const EvaluateOptions& options, const Tru
           geometry::surface_area(truth.model)};
 }
 
-/// Of what is visible; nothing where nobody says from where.
+/// Returns the covered fraction of the visible surface, or nullopt if the visibility is unknown.
 std::optional<double> visible_share(const evaluation::CloudJudgement& judged, const Truth& truth) {
   if (judged.is_covered.size() != truth.is_visible.size()) return std::nullopt;
   return evaluation::covered_share(judged.is_covered, truth.is_visible);
 }
 
-/// Of options.model. What is visible is only looked for if it is asked for. Throws Error.
+/// Reads the ground truth of options.model. The visibility is computed only if `wants_visible`.
+/// Throws Error.
 Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config::Report& report,
                const std::stop_token& stop) {
   if (is_mission_file(options.model)) {
@@ -115,7 +118,7 @@ Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config:
   }
 }
 
-/// The figures of a judgement.
+/// Returns the results as JSON.
 nlohmann::ordered_json evaluation_json(const EvaluateOptions& options, const Truth& truth,
                                        const evaluation::CloudJudgement& judged) {
   const evaluation::CloudAccuracy& accuracy = judged.accuracy;
@@ -140,7 +143,7 @@ nlohmann::ordered_json evaluation_json(const EvaluateOptions& options, const Tru
       {"points_per_m2", judged.density()}};
 }
 
-/// The same as options.is_json says.
+/// Prints the results in the format of options.is_json.
 void print_evaluation(const EvaluateOptions& options, const Truth& truth,
                       const evaluation::CloudJudgement& judged, std::ostream& out) {
   if (options.is_json) {
@@ -174,7 +177,7 @@ std::string checksum(const geometry::Mesh& mesh) {
   return fmt::format("{:08x} {:08x}", sum_of(mesh.vertices), sum_of(mesh.triangles));
 }
 
-/// A cloud whose points are shared out as they follow each other in its file.
+/// Evaluation of a cloud whose points are divided into pieces in file order.
 class PiecesOfCloud final : public PieceWork {
  public:
   PiecesOfCloud(const EvaluateOptions& options, const Console& console)
@@ -189,7 +192,7 @@ class PiecesOfCloud final : public PieceWork {
     if (evaluation::has_tally(folder.path(), identity(number))) return true;
     evaluation::CloudJudge judge(truth_.model, truth_.samples, truth_.registration_distance,
                                  options_.threads, truth_.beside);
-    double begin = 0.0;  // of what is read next, as a share of the file
+    double begin = 0.0;  // file position of the next points, as a fraction
     geometry::read_positions(
         options_.cloud, [&](std::span<const Eigen::Vector3f> points, double end) {
           const auto place = static_cast<std::size_t>(begin * static_cast<double>(options_.pieces));
@@ -227,7 +230,7 @@ class PiecesOfCloud final : public PieceWork {
  private:
   Truth read_truth() {
     progress_.show("loading " + options_.model);
-    const bool wants_visible = !options_.task.index;  // which only the whole cloud is asked for
+    const bool wants_visible = !options_.task.index;  // only required for the whole cloud
     return truth_of(options_, wants_visible, progress_.teller(), console_.stop);
   }
 
@@ -235,7 +238,7 @@ class PiecesOfCloud final : public PieceWork {
     return folder_of_piece(*options_.out, number, options_.pieces);
   }
 
-  /// What decides a piece.
+  /// Returns a string that identifies the inputs of a piece.
   std::string identity(std::size_t number) const {
     const auto changed = fs::last_write_time(options_.cloud).time_since_epoch().count();
     return fmt::format("{} {} {} {} model {} distance {} samples {} piece {} of {}", version,
@@ -272,7 +275,7 @@ batch::Words command_of(const EvaluateOptions& options) {
   return words;
 }
 
-/// Judges a cloud in pieces, as the options say; returns the exit code.
+/// Evaluates a cloud in pieces according to the options. Returns the exit code.
 int evaluate_pieces(const EvaluateOptions& options, const Console& console) {
   if (!options.mesh.empty() || !options.out) {
     throw Error(ErrorKind::bad_usage, "--pieces requires --cloud and --out");

@@ -40,7 +40,7 @@ std::shared_ptr<const flight::UtmProjection> projection_of(const scan::FlownScan
   return std::make_shared<const flight::UtmProjection>(*scan.site);
 }
 
-/// The sensor's poses, up to the first that is not before `end`, as a TUM file.
+/// Returns the sensor's poses as a TUM file, up to the first pose at or after `end` [s].
 std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_from_sensor,
                        double end) {
   std::vector<flight::TimedPose> poses;
@@ -55,7 +55,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Shows how far a scan is, ten times a second at most.
+/// Shows the progress of a scan, at most ten times a second.
 class ScanReport {
  public:
   ScanReport(ProgressLine& line, std::string name, double shots_in_firing,
@@ -74,7 +74,7 @@ class ScanReport {
       const double rate = (flown - *begun_) / seconds_since(start_);
       text += fmt::format(", {:.1f} M pulses/s, {:.0f} s left", 1e-6 * shots_in_firing_ * rate,
                           (all - flown) / rate);
-    } else {  // the pace is not known yet
+    } else {  // the pace is not yet known
       begun_ = flown;
       start_ = now;
     }
@@ -85,8 +85,8 @@ class ScanReport {
   ProgressLine& line_;
   std::string name_;
   double shots_in_firing_;
-  sim::FiringRange range_;       ///< that is measured
-  std::optional<double> begun_;  ///< firings of it when the first report came
+  sim::FiringRange range_;       ///< firings of the scan
+  std::optional<double> begun_;  ///< completed firings at the first report
   Clock::time_point start_, shown_;
 };
 
@@ -158,7 +158,7 @@ scene::SensedScene LaserScan::read_scene(const std::filesystem::path& index) {
 
 void LaserScan::prepare(const scan::FlightPiece& piece) {
   if (scene_ && !truth_.is_tiled()) return;
-  scene_.reset();  // before the next one takes memory
+  scene_.reset();  // frees memory before loading the next scene
   const sim::FiringRange range = firings_of(piece, lidar_, flown_.route.carrier);
   const double start = flown_.route.carrier.start();
   const scan::TimeSpan span{start + seconds_of(range.first),

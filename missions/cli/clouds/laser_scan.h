@@ -1,4 +1,5 @@
-/// A laser scanner's flight, measured as a whole or in pieces. For the sources of this room.
+/// Simulated scan with a laser scanner, recorded as a whole or in pieces. Private to
+/// missions/cli/clouds.
 #pragma once
 
 #include <filesystem>
@@ -22,32 +23,33 @@ namespace skycap::missions::cli {
 
 class LaserScan {
  public:
-  /// Reads the flight and the model, of tiles with that `index` (scene::TiledScene). What is given
-  /// must outlive it. Throws Error if a key, an option or a file is wrong.
+  /// Reads the flight and the model; `index` is the tile index of a tiled model
+  /// (scene::TiledScene). The arguments must outlive this object. Throws Error if a key, an option
+  /// or a file is invalid.
   LaserScan(const ScanVerbOptions& options, const config::MissionSetup& setup,
             const config::SensorDescription& sensor, const Console& console,
             const std::filesystem::path& index = {});
   LaserScan(const LaserScan&) = delete;
   LaserScan& operator=(const LaserScan&) = delete;
 
-  /// Measures the whole flight into `folder` and commits; returns the exit code.
+  /// Records the whole flight and commits it to `folder`. Returns the exit code.
   int run(geometry::OutputFolder& folder);
 
-  /// Measures a piece into its own folder among the results, unless it is complete there; what was
-  /// interrupted is gone on with. Whether it is complete now.
+  /// Records a piece into its own folder within the results, unless it is already complete there.
+  /// Resumes an interrupted piece. Returns whether the piece is now complete.
   bool run_piece(const scan::FlightPiece& piece, const std::filesystem::path& results);
 
-  /// A piece among the results, if it is complete and of this scan.
+  /// Returns a piece from the results, if it is complete and belongs to this scan.
   std::optional<scan::CompletePiece> complete(const scan::FlightPiece& piece,
                                               const std::filesystem::path& results) const;
 
-  /// Makes the whole scan of all of its pieces and commits; returns the exit code.
+  /// Joins all pieces into the complete scan and commits it. Returns the exit code.
   int join(std::span<const scan::CompletePiece> pieces, geometry::OutputFolder& folder);
 
  private:
   nlohmann::ordered_json identity(const scan::FlightPiece& piece) const;
   scene::SensedScene read_scene(const std::filesystem::path& index);
-  /// Makes the scene ready for a piece.
+  /// Loads the scene for a piece.
   void prepare(const scan::FlightPiece& piece);
   scan::LaserResult record(const scan::FlightPiece& piece, scan::ScanJournal& journal,
                            const nlohmann::ordered_json& begun, geometry::OutputFolder& folder);
@@ -68,8 +70,8 @@ class LaserScan {
   scan::PreviewPieces preview_;
   ProgressLine progress_;
   scene::SensedScene truth_;
-  nlohmann::ordered_json identity_;  ///< what decides the whole scan
-  std::optional<sim::Scene> scene_;  ///< of tiles, those of one piece
+  nlohmann::ordered_json identity_;  ///< all inputs that determine the scan
+  std::optional<sim::Scene> scene_;  ///< for a tiled model, only the tiles of one piece
   std::vector<scan::LaserOutput> outputs_;
 };
 

@@ -51,7 +51,7 @@ class PiecesOfFlight final : public PieceWork {
   std::vector<scan::CompletePiece> complete_;
 };
 
-/// What decides the results, for another program.
+/// Returns the command that repeats this scan as a task.
 batch::Words command_of(const ScanVerbOptions& options, const fs::path& out) {
   batch::Words words{"scan",     fs::absolute(options.mission), "--out", fs::absolute(out),
                      "--pieces", std::to_string(options.pieces)};
@@ -67,7 +67,8 @@ batch::Words command_of(const ScanVerbOptions& options, const fs::path& out) {
   if (options.with_truth) words.emplace_back("--with-truth");
   if (!options.has_report) words.emplace_back("--no-report");
   for (const config::KeyOverride& key : options.overrides) {
-    if (key.path != "threads") add("--set", key.path + "=" + key.value);  // a task has its own
+    // Tasks set their own number of threads.
+    if (key.path != "threads") add("--set", key.path + "=" + key.value);
   }
   return words;
 }

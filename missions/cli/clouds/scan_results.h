@@ -1,4 +1,4 @@
-/// What scans of lasers and of cameras share. For the sources of this room.
+/// Functions shared by laser and camera scans. Private to missions/cli/clouds.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,23 +12,26 @@
 
 namespace skycap::missions::cli {
 
-/// The figures of a scan.
+/// File name of the scan summary.
 inline constexpr const char* scan_name = "scan.json";
 
-/// The flight that the options or the mission's keys say; the seed is that of navigation errors.
+/// Returns the flight along the route from the options or the mission keys. `seed` is the seed of
+/// the navigation errors.
 scan::ScanFlight flown_by(const ScanVerbOptions& options, const scan::FlownScanOptions& scan,
                           std::uint64_t seed, scan::Carrier carrier);
 
-/// What a scan is made of: the sensor's description, the scene, the flight.
+/// Returns the inputs that identify a scan: sensor description, scene and flight.
 nlohmann::ordered_json identity_of(const config::SensorDescription& sensor,
                                    const scene::SensedScene& scene, const scan::ScanFlight& flight);
 
-/// Begins a scan, or goes on with an interrupted one (`resumes`) from what is returned.
+/// Starts a journal, or reopens that of an interrupted scan if `resumes` is set. Returns the
+/// recorded progress, which is null for a new scan.
 nlohmann::ordered_json open_journal(scan::ScanJournal& journal, bool resumes,
                                     const ScanVerbOptions& options, const support::Identity& run,
                                     const nlohmann::ordered_json& identity, const Console& console);
 
-/// Commits a scan; one that was interrupted goes beside a complete one instead of over it.
+/// Commits a scan. An incomplete scan does not overwrite a complete one but is committed to the
+/// subfolder `interrupted`.
 void commit_scan(geometry::OutputFolder& folder, bool is_complete);
 
 }  // namespace skycap::missions::cli
