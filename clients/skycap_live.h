@@ -39,10 +39,10 @@ using PoseCovariance = std::array<double, 36>;
 using PoseError = std::variant<std::monostate, PoseSigma, PoseCovariance>;
 
 /// Origin of a scan: the requested view, or en route to it, if the mission measures en route.
-enum class From { view, way };
+enum class From { view, en_route };
 
 /// Error answer of the server to an invalid message. The survey remains unchanged.
-struct Refused : std::runtime_error {
+struct Rejected : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -52,20 +52,21 @@ class Survey {
   /// throw std::runtime_error if the connection fails.
   explicit Survey(const std::string& address) {
     if (address.rfind("unix:", 0) == 0) {
-      sockaddr_un place{};
-      place.sun_family = AF_UNIX;
-      if (address.size() - 5 >= sizeof place.sun_path) {
+      sockaddr_un socket_address{};
+      socket_address.sun_family = AF_UNIX;
+      if (address.size() - 5 >= sizeof socket_address.sun_path) {
         throw std::runtime_error("the path of the socket is too long");
       }
-      std::strncpy(place.sun_path, address.c_str() + 5, sizeof place.sun_path - 1);
-      open(AF_UNIX, place);
+      std::strncpy(socket_address.sun_path, address.c_str() + 5,
+                   sizeof socket_address.sun_path - 1);
+      open(AF_UNIX, socket_address);
     } else {
-      sockaddr_in place{};
-      place.sin_family = AF_INET;
-      place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-      place.sin_port =
+      sockaddr_in socket_address{};
+      socket_address.sin_family = AF_INET;
+      socket_address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      socket_address.sin_port =
           htons(static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1))));
-      open(AF_INET, place);
+      open(AF_INET, socket_address);
     }
     try {
       count(ask("{\"type\":\"hello\"}"));
@@ -101,21 +102,21 @@ class Survey {
   }
 
   /// Adds a depth image, row by row, in steps of `unit` [m]. 0 and 65535 are no-return values.
-  /// `lens` is fx fy cx cy, optionally followed by k1 k2 p1 p2 k3. If empty, that of the mission
-  /// applies.
+  /// `intrinsics` is fx fy cx cy, optionally followed by k1 k2 p1 p2 k3. If empty, that of the
+  /// mission applies.
   std::string add_depth(const std::vector<std::uint16_t>& depth, int width, int height, double unit,
                         const Pose& pose, const PoseError& error = {},
-                        const std::vector<double>& lens = {}, From from = From::view) {
+                        const std::vector<double>& intrinsics = {}, From from = From::view) {
     return add("\"format\":\"depth\",\"width\":" + std::to_string(width) +
                    ",\"height\":" + std::to_string(height) + ",\"unit\":" + number(unit) +
-                   (lens.empty() ? "" : row("lens", lens)),
+                   (intrinsics.empty() ? "" : row("lens", intrinsics)),
                pose, error,
                {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]}, from);
   }
 
   /// Requests a replacement for the view of the answer `id`. `reason` is inserted into JSON without
   /// escaping.
-  std::string refuse(std::size_t id, const std::string& reason) {
+  std::string reject(std::size_t id, const std::string& reason) {
     return ask("{\"type\":\"refuse\",\"id\":" + std::to_string(id) + ",\"reason\":\"" + reason +
                "\"}");
   }
@@ -124,9 +125,11 @@ class Survey {
 
  private:
   template <typename Address>
-  void open(int family, const Address& place) {
+  void open(int family, const Address& socket_address) {
     socket_ = ::socket(family, SOCK_STREAM, 0);
-    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0) return;
+    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&socket_address),
+                  sizeof socket_address) == 0)
+      return;
     ::close(socket_);
     throw std::runtime_error("no server at this address");
   }
@@ -148,7 +151,7 @@ class Survey {
   std::string add(const std::string& fields, const Pose& pose, const PoseError& error,
                   const std::string& payload, From from) {
     std::string header = "{\"type\":\"scan\",\"number\":" + std::to_string(scans_) + "," + fields;
-    if (from == From::way) header += ",\"en_route\":" + std::to_string(on_way_);
+    if (from == From::en_route) header += ",\"en_route\":" + std::to_string(en_route_);
     header += row("pose", pose);
     if (const auto* sigma = std::get_if<PoseSigma>(&error)) header += row("pose_sigma", *sigma);
     if (const auto* covariance = std::get_if<PoseCovariance>(&error)) {
@@ -162,14 +165,14 @@ class Survey {
   /// Reads the number of scans, and of en-route scans if the mission has them, from an answer.
   void count(const std::string& answer) {
     const auto at = [&](const std::string& field) { return answer.find("\"" + field + "\":"); };
-    const auto number = [&](std::size_t place) {
-      return std::stoul(answer.substr(answer.find(':', place) + 1));
+    const auto number = [&](std::size_t socket_address) {
+      return std::stoul(answer.substr(answer.find(':', socket_address) + 1));
     };
-    const std::size_t scans = at("scans"), on_way = at("en_route");
+    const std::size_t scans = at("scans"), en_route = at("en_route");
     if (scans == std::string::npos)
       throw std::runtime_error("the answer contains no number of scans");
     scans_ = number(scans);
-    on_way_ = on_way == std::string::npos ? 0 : number(on_way);
+    en_route_ = en_route == std::string::npos ? 0 : number(en_route);
   }
 
   std::string ask(const std::string& header, const std::string& payload = {}) {
@@ -188,7 +191,7 @@ class Survey {
     std::string answer = receive(std::size_t{lengths[0]} + lengths[1]);
     if (crc(answer) != lengths[2]) throw std::runtime_error("the answer is damaged");
     answer.resize(lengths[0]);
-    if (answer.find("\"type\":\"error\"") != std::string::npos) throw Refused(answer);
+    if (answer.find("\"type\":\"error\"") != std::string::npos) throw Rejected(answer);
     return answer;
   }
 
@@ -208,7 +211,7 @@ class Survey {
   }
 
   int socket_ = -1;
-  std::size_t scans_ = 0, on_way_ = 0;
+  std::size_t scans_ = 0, en_route_ = 0;
 };
 
 }  // namespace skycap_live

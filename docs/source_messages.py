@@ -6,9 +6,10 @@ import re
 TOKEN = re.compile(
     r'//[^\n]*|/\*.*?\*/|R"(?P<mark>\w*)\((?:.*?)\)(?P=mark)"|"(?:[^"\\\n]|\\.)*"'
     r"|'(?:[^'\\\n]|\\.)*'|[A-Za-z_]\w*|\d[\w.']*|<<|>>|::|->|.", re.DOTALL)
-CALL = re.compile(r"Error|Trouble|error_message|problem_?|complain|warn|failed|"
+CALL = re.compile(r"Error|FlightFailure|error_message|(?:add_)?problem_?|warn|warn_throttled|failed|"
                   r"(?:fail|refuse|require|reject|throw|report_fail|fault)\w*")
-RETURNS = re.compile(r"fault_of\w*|why_\w+|what_is_\w+|\w+_complaint|\w+_key_message")
+RETURNS = re.compile(r"find_defect|find_load_error|closedness_error|range_error|what_is_\w+|\w+_reason|\w+_complaint|"
+                     r"\w+_key_message")
 RULE = re.compile(  # how a rule for a value begins
     r"(?:an?|above|at|between|from|finite|greater|large|less|more|not|one|positive|zero)\b")
 VERB = re.compile(  # a word that makes a sentence

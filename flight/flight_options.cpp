@@ -23,12 +23,13 @@ constexpr double voxels_per_clearance = 4.0;
 double distance_from_unknown(const FlightOptions& options) { return 2.0 * options.clearance; }
 
 /// Returns the distance of pads from the unknown box [m]. Near home, DJI vehicles may land on the
-/// spot instead of on the pad (ReturnLaw). Those columns must not enter the box, which is extended
+/// spot instead of on the pad (RtlProfile). Those columns must not enter the box, which is extended
 /// to whole voxels.
 double pad_distance_from_unknown(const FlightOptions& options) {
-  constexpr double voxel_spare = 1.0;
-  const bool is_dji = options.is_flown() && options.flown().dialect == Dialect::dji;
-  const double needed = options.clearance + dji_lands_at_once + voxel_spare;
+  constexpr double voxel_margin = 1.0;
+  const bool is_dji =
+      options.has_vehicle() && options.required_vehicle().autopilot == AutopilotType::dji;
+  const double needed = options.clearance + dji_lands_at_once + voxel_margin;
   return is_dji ? std::max(distance_from_unknown(options), needed) : distance_from_unknown(options);
 }
 
@@ -36,15 +37,15 @@ double pad_distance_from_unknown(const FlightOptions& options) {
 constexpr double no_flight_is_higher = 500.0;
 
 /// Maximum cut of corners at fly-through views, relative to the view distance.
-constexpr double most_cut_by_distance = 0.03;
+constexpr double max_cut_by_distance = 0.03;
 
 /// Number of expanded grid vertices after which a view counts as unreachable: tenths of a second.
-constexpr std::size_t most_expansions = 50'000;
+constexpr std::size_t max_expansions = 50'000;
 
 }  // namespace
 
 ClearanceBudget FlightOptions::budget() const {
-  ClearanceBudget budget{.vehicle_radius = flown().radius,
+  ClearanceBudget budget{.vehicle_radius = required_vehicle().radius,
                          .position_error = position_error,
                          .tracking_error = tracking_error,
                          .map_error = map_error,
@@ -53,13 +54,13 @@ ClearanceBudget FlightOptions::budget() const {
   return budget;
 }
 
-Vehicle FlightOptions::flown_by(Vehicle own, Dialect dialect) const {
-  if (own.dialect == dialect) return own;
-  const auto other = std::ranges::find(stand_ins, dialect, &Vehicle::dialect);
-  assert(other != stand_ins.end());
-  own.dialect = dialect;
+Vehicle FlightOptions::vehicle_for(Vehicle own, AutopilotType autopilot) const {
+  if (own.autopilot == autopilot) return own;
+  const auto other = std::ranges::find(substitutes, autopilot, &Vehicle::autopilot);
+  assert(other != substitutes.end());
+  own.autopilot = autopilot;
   own.mode = other->mode;
-  if (dialect == Dialect::dji) own.wpml = other->wpml;
+  if (autopilot == AutopilotType::dji) own.wpml = other->wpml;
   return own;
 }
 
@@ -79,7 +80,7 @@ std::vector<Vector3d> FlightOptions::fleet_pads(const Vector3d& first) const {
   return pads;
 }
 
-FlightOptions FlightOptions::of_vehicle(std::size_t number, const Vector3d& pad) const {
+FlightOptions FlightOptions::for_vehicle(std::size_t number, const Vector3d& pad) const {
   FlightOptions own = *this;
   own.vehicle_name = fleet.names.at(number);
   own.vehicle = fleet.vehicles.at(number);
@@ -105,15 +106,15 @@ FlightOptions FlightOptions::with_vehicles(const std::vector<std::size_t>& kept,
   return some;
 }
 
-bool FlightOptions::is_in_known_airspace(const Vector3d& place) const {
-  if (!is_flown()) return true;
-  const double spare = distance_from_unknown(*this);
-  return unknown_box.exteriorDistance(place) >= spare &&
+bool FlightOptions::is_in_known_airspace(const Vector3d& position) const {
+  if (!has_vehicle()) return true;
+  const double margin = distance_from_unknown(*this);
+  return unknown_box.exteriorDistance(position) >= margin &&
          std::ranges::all_of(
-             unknown_beside,
-             [&](const AlignedBox3d& box) { return box.exteriorDistance(place) >= spare; }) &&
+             extra_unknown_boxes,
+             [&](const AlignedBox3d& box) { return box.exteriorDistance(position) >= margin; }) &&
          std::ranges::all_of(airspace.priors, [&](const auto& obstacle) {
-           return obstacle->closest({place, place}, spare).distance >= spare;
+           return obstacle->closest({position, position}, margin).distance >= margin;
          });
 }
 
@@ -124,7 +125,7 @@ MeasuredSpaceConfig FlightOptions::measured_space() const {
           .free_without_return = free_without_return,
           .max_depth = std::min(capture.camera.max_range, 1e4 * voxel),
           .region = unknown_box,
-          .beside = unknown_beside,
+          .extra_boxes = extra_unknown_boxes,
           .floor = airspace.terrain ? std::nullopt : std::optional(airspace.base.z() + map_error)};
 }
 
@@ -136,10 +137,10 @@ Obstacles FlightOptions::rules() const {
     rules.no_fly.push_back(volume);
     rules.no_fly.back().name = std::to_string(rules.no_fly.size());
   }
-  if (!airspace.geofence.empty() || airspace.highest_height) {
+  if (!airspace.geofence.empty() || airspace.max_height) {
     geometry::Prism fence{.name = "site.geofence", .footprint = airspace.geofence};
     // The floor of the fence must not block the climb from and the descent to the pad.
-    if (airspace.highest_height) fence.ceiling = *airspace.highest_height;
+    if (airspace.max_height) fence.ceiling = *airspace.max_height;
     if (fence.footprint.empty()) {
       fence.name = "site.max_height";
       constexpr double far = 1e5;
@@ -150,15 +151,15 @@ Obstacles FlightOptions::rules() const {
   return rules;
 }
 
-double FlightOptions::ground_at(const Eigen::Vector2d& place) const {
-  return airspace.ground ? airspace.ground(place) : airspace.base.z();
+double FlightOptions::ground_at(const Eigen::Vector2d& position) const {
+  return airspace.ground ? airspace.ground(position) : airspace.base.z();
 }
 
 Vector3d FlightOptions::pad(const Vector3d& first_view) const {
   if (takeoff) return *takeoff;
   const AlignedBox3d box = unknown_box;
-  const Vector3d spare = Vector3d::Constant(pad_distance_from_unknown(*this));
-  const Vector3d low = box.min() - spare, high = box.max() + spare;
+  const Vector3d margin = Vector3d::Constant(pad_distance_from_unknown(*this));
+  const Vector3d low = box.min() - margin, high = box.max() + margin;
   Vector3d pad(first_view.x(), first_view.y(), 0.0);
   pad.z() = ground_at(pad.head<2>());
   if (pad.x() <= low.x() || pad.x() >= high.x() || pad.y() <= low.y() || pad.y() >= high.y()) {
@@ -166,13 +167,13 @@ Vector3d FlightOptions::pad(const Vector3d& first_view) const {
   }
   const double west = pad.x() - low.x(), east = high.x() - pad.x();
   const double south = pad.y() - low.y(), north = high.y() - pad.y();
-  const double least = std::min({west, east, south, north});
-  if (least == west) {
+  const double min = std::min({west, east, south, north});
+  if (min == west) {
     pad.x() = low.x();
-  } else if (least == east) {
+  } else if (min == east) {
     pad.x() = high.x();
   } else {
-    pad.y() = least == south ? low.y() : high.y();
+    pad.y() = min == south ? low.y() : high.y();
   }
   pad.z() = ground_at(pad.head<2>());
   return pad;
@@ -182,9 +183,9 @@ double FlightOptions::climb() const {
   return takeoff_climb.value_or(std::max(5.0, clearance + 1.0));
 }
 
-double FlightOptions::highest_return(double pad_z, double obstacles_top) const {
+double FlightOptions::max_return_altitude(double pad_z, double obstacles_top) const {
   /// Rounding loses up to 1 m, and autopilots may fly level up to 2 m lower.
-  constexpr double spare = 3.0;
+  constexpr double margin = 3.0;
   const AlignedBox3d box = unknown_box;
   double top = std::max(obstacles_top, airspace.base.z());
   if (!box.isEmpty()) top = std::max(top, box.max().z());
@@ -194,31 +195,31 @@ double FlightOptions::highest_return(double pad_z, double obstacles_top) const {
   for (const geometry::Prism& volume : airspace.no_fly) {
     if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
   }
-  const double highest = std::max(top + clearance + spare, pad_z + least_of_dji);
-  if (!airspace.highest_height) return highest;
+  const double max_altitude = std::max(top + clearance + margin, pad_z + dji_min_return_altitude);
+  if (!airspace.max_height) return max_altitude;
   /// A proof exactly at the fence's clearance would fail because of rounding.
   constexpr double rounding = 0.01;
-  return std::min(highest, *airspace.highest_height - clearance - rounding);
+  return std::min(max_altitude, *airspace.max_height - clearance - rounding);
 }
 
-std::vector<Dialect> dialects_of(const Vehicle& vehicle) {
-  if (vehicle.dialect != Dialect::dji) return {vehicle.dialect};
-  return {Dialect::dji, Dialect::px4, Dialect::ardupilot};
+std::vector<AutopilotType> find_autopilots(const Vehicle& vehicle) {
+  if (vehicle.autopilot != AutopilotType::dji) return {vehicle.autopilot};
+  return {AutopilotType::dji, AutopilotType::px4, AutopilotType::ardupilot};
 }
 
 namespace {
 
 /// Returns the rules for fly-through capture with this sensor.
-PassRules pass_rules_of(const FlightOptions& options) {
+PassRules make_fly_through_rules(const FlightOptions& options) {
   const double distance = options.capture.view_distance;
   PassRules rules{.speed = options.cruise_speed,
-                  .most_cut = most_cut_by_distance * distance,
+                  .max_cut = max_cut_by_distance * distance,
                   .exposure = 0.0,
                   .period = 0.0};
   if (options.capture.scans_in_flight()) return rules;
   const geometry::Shutter& shutter = options.capture.shutter;
-  rules.speed =
-      sharp_speed(options.flown(), geometry::Camera(options.capture.camera), shutter, distance);
+  rules.speed = sharp_speed(options.required_vehicle(), geometry::Camera(options.capture.camera),
+                            shutter, distance);
   rules.exposure = shutter.exposure + shutter.readout;
   rules.period = options.capture.frame_period;
   return rules;
@@ -229,20 +230,21 @@ PassRules pass_rules_of(const FlightOptions& options) {
 RouteOptions FlightOptions::route(const Vector3d& pad) const {
   RouteOptions options;
   options.clearance = budget();
-  options.path.max_expansions = most_expansions;
+  options.path.max_expansions = max_expansions;
   options.takeoff = pad;
   options.takeoff_climb = climb();
   options.ground_limits = ground_limits();
   options.order_is_free = order == VisitOrder::shortest;
   options.style = style;
-  if (style == FlightStyle::pass) options.passing = pass_rules_of(*this);
+  if (style == FlightStyle::pass) options.passing = make_fly_through_rules(*this);
   // The air moves in the direction opposite to the wind's origin.
   options.conditions.wind = -wind_speed * Eigen::Vector2d(std::sin(wind_from), std::cos(wind_from));
   options.conditions.temperature_c = temperature;
   options.conditions.cruise_speed = cruise_speed;
   options.conditions.reserve = reserve;
-  options.conditions.longest_flight = longest_flight(flown());
-  options.returns = ReturnOptions{dialects_of(flown()), highest_return(pad.z(), pad.z()), rally};
+  options.conditions.longest_flight = longest_flight(required_vehicle());
+  options.returns = ReturnOptions{find_autopilots(required_vehicle()),
+                                  max_return_altitude(pad.z(), pad.z()), rally};
   return options;
 }
 
@@ -257,10 +259,11 @@ double FlightOptions::rest_after() const {
   return std::max(hold_after, shutter.exposure + shutter.readout);
 }
 
-std::optional<PictureBounds> FlightOptions::picture_bounds() const {
+std::optional<ImageMotionBounds> FlightOptions::image_motion_bounds() const {
   if (capture.is_scanner) return std::nullopt;
   const geometry::Camera camera(capture.camera);
-  return flight::picture_bounds(flown(), camera, capture.shutter, capture.view_distance);
+  return flight::image_motion_bounds(required_vehicle(), camera, capture.shutter,
+                                     capture.view_distance);
 }
 
 FlightFacts FlightOptions::facts() const {
@@ -268,7 +271,7 @@ FlightFacts FlightOptions::facts() const {
   facts.site = site;
   facts.pad = takeoff.value_or(airspace.base);
   facts.is_pad_known = takeoff.has_value();
-  if (is_flown()) facts.vehicle = flown();
+  if (has_vehicle()) facts.vehicle = required_vehicle();
   facts.takeoff_climb = climb();
   facts.rally = rally;
   facts.cruise_speed = cruise_speed;
@@ -279,7 +282,7 @@ FlightFacts FlightOptions::facts() const {
   return facts;
 }
 
-double FlightOptions::pad_radius() const { return flown().radius + position_error; }
+double FlightOptions::pad_radius() const { return required_vehicle().radius + position_error; }
 
 std::vector<Vector3d> FlightOptions::landings(const Vector3d& pad) const {
   std::vector<Vector3d> landings{pad};
@@ -287,32 +290,32 @@ std::vector<Vector3d> FlightOptions::landings(const Vector3d& pad) const {
   return landings;
 }
 
-std::vector<PadGround> FlightOptions::grounds(const Vector3d& pad,
-                                              std::span<const PadGround> measured) const {
-  const auto by_terrain = [&](const Vector3d& place) -> std::optional<PadGround> {
+std::vector<LandingSurface> FlightOptions::landing_surfaces(
+    const Vector3d& pad, std::span<const LandingSurface> measured) const {
+  const auto by_terrain = [&](const Vector3d& position) -> std::optional<LandingSurface> {
     if (!airspace.terrain) return std::nullopt;
     std::vector<Vector3d> heights;
-    for (const Eigen::Vector2d& at : places_on(place, pad_radius())) {
+    for (const Eigen::Vector2d& at : landing_points(position, pad_radius())) {
       if (const auto height = airspace.terrain(at)) heights.emplace_back(at.x(), at.y(), *height);
     }
-    return pad_ground(place, heights, GroundSource::terrain);
+    return pad_ground(position, heights, GroundSource::terrain);
   };
-  std::vector<PadGround> grounds;
-  for (const Vector3d& place : landings(pad)) {
-    const auto known = std::ranges::find(measured, place, &PadGround::place);
+  std::vector<LandingSurface> landing_surfaces;
+  for (const Vector3d& position : landings(pad)) {
+    const auto known = std::ranges::find(measured, position, &LandingSurface::position);
     if (known != measured.end()) {
-      grounds.push_back(*known);
+      landing_surfaces.push_back(*known);
     } else if (pad_slope) {
-      grounds.push_back({place, *pad_slope, 0.0, 0.0, GroundSource::declared});
-    } else if (const auto ground = by_terrain(place)) {
-      grounds.push_back(*ground);
+      landing_surfaces.push_back({position, *pad_slope, 0.0, 0.0, GroundSource::declared});
+    } else if (const auto ground = by_terrain(position)) {
+      landing_surfaces.push_back(*ground);
     }
   }
-  return grounds;
+  return landing_surfaces;
 }
 
 PadLimits FlightOptions::ground_limits() const {
-  PadLimits limits{steepest_pad, 0.0};
+  PadLimits limits{max_pad_slope, 0.0};
   for (const auto& obstacle : airspace.priors) {
     if (!obstacle->is_ground()) continue;
     limits.height_error = std::max(limits.height_error, obstacle->uncertainty());

@@ -36,8 +36,8 @@ enum class VisitOrder { shortest, survey };
 
 /// Set of views that the exported mission captures.
 enum class MissionViews {
-  survey,  ///< The views of the survey.
-  anew,    ///< Views replanned from the surface that the survey measured.
+  survey,     ///< The views of the survey.
+  replanned,  ///< Views replanned from the surface that the survey measured.
 };
 
 /// Sensor properties that the flight depends on.
@@ -65,8 +65,8 @@ struct AirspaceOptions {
   double ground_height = 0.0;                      ///< Height z below which all space is solid [m].
   /// Polygon that the vehicle must not leave. Empty: no geofence.
   std::vector<Eigen::Vector2d> geofence;
-  std::vector<Prism> no_fly;             ///< Volumes that the vehicle must not enter.
-  std::optional<double> highest_height;  ///< Maximum flight height z [m].
+  std::vector<Prism> no_fly;         ///< Volumes that the vehicle must not enter.
+  std::optional<double> max_height;  ///< Maximum flight height z [m].
   std::vector<std::shared_ptr<const PriorObstacle>> priors;
   /// Returns the ground height z used for leg clearance, known or assumed [m]. If unset, `base.z()`
   /// applies.
@@ -96,7 +96,7 @@ struct FlightOptions {
   std::optional<Vehicle> vehicle;
   /// Presets that supply the mission mode when a file is written for a different autopilot than the
   /// vehicle's.
-  std::vector<Vehicle> stand_ins;
+  std::vector<Vehicle> substitutes;
 
   /// Clearance at which every leg is verified, including the three errors below [m].
   double clearance = 2.0;
@@ -109,7 +109,7 @@ struct FlightOptions {
   /// True if the mission sets `unknown_box`. Otherwise it is the box around the scene.
   bool has_own_box = false;
   /// Further volumes that count as occupied until measured as free.
-  std::vector<Eigen::AlignedBox3d> unknown_beside;
+  std::vector<Eigen::AlignedBox3d> extra_unknown_boxes;
   double free_without_return = 0.0;
   AirspaceOptions airspace;
 
@@ -121,7 +121,7 @@ struct FlightOptions {
   /// Slope of the pad and the rally points as measured by the pilot [rad].
   std::optional<double> pad_slope;
   /// Maximum slope of the ground under the vehicle [rad].
-  double steepest_pad = 10.0 * geometry::radians_per_degree;
+  double max_pad_slope = 10.0 * geometry::radians_per_degree;
 
   double cruise_speed = 4.0;
   double hold = 0.5;          ///< Hold time at a view before the capture [s].
@@ -136,16 +136,16 @@ struct FlightOptions {
   CaptureOptions capture;
   FleetOptions fleet;
 
-  Site site;               ///< Origin of the local frame. 0° N 0° E without a georeference.
-  bool has_place = false;  ///< True if the mission has a georeference.
+  Site site;  ///< Origin of the local frame. 0° N 0° E without a georeference.
+  bool is_georeferenced = false;  ///< True if the mission has a georeference.
 
-  bool is_flown() const { return vehicle.has_value(); }
-  /// Returns the vehicle. The mission must have one (see `is_flown`).
-  const Vehicle& flown() const { return vehicle.value(); }
+  bool has_vehicle() const { return vehicle.has_value(); }
+  /// Returns the vehicle. The mission must have one (see `has_vehicle`).
+  const Vehicle& required_vehicle() const { return vehicle.value(); }
 
-  /// Returns `own` with the autopilot `dialect`. If the dialects differ, the mission mode (and for
-  /// DJI the WPML codes) come from the stand-in. Size, energy and gimbal remain those of `own`.
-  Vehicle flown_by(Vehicle own, Dialect dialect) const;
+  /// Returns `own` with the autopilot `autopilot`. If the dialects differ, the mission mode (and
+  /// for DJI the WPML codes) come from the stand-in. Size, energy and gimbal remain those of `own`.
+  Vehicle vehicle_for(Vehicle own, AutopilotType autopilot) const;
 
   /// Returns true if several vehicles share the mission.
   bool is_fleet() const { return fleet.names.size() > 1; }
@@ -157,7 +157,7 @@ struct FlightOptions {
 
   /// Returns the options for a single vehicle of the fleet that starts at `pad` and keeps the given
   /// waypoint order. Speed, map error and sensor remain those of the first vehicle.
-  FlightOptions of_vehicle(std::size_t number, const Eigen::Vector3d& pad) const;
+  FlightOptions for_vehicle(std::size_t number, const Eigen::Vector3d& pad) const;
 
   /// Returns the options for a subset of the fleet with the corresponding `pads`. `kept` must not
   /// be empty.
@@ -168,9 +168,9 @@ struct FlightOptions {
   /// radius.
   ClearanceBudget budget() const;
 
-  /// Returns true if a survey may start at `place`: at least twice the clearance from all unknown
-  /// boxes and prior obstacles. Always true without a vehicle.
-  bool is_in_known_airspace(const Eigen::Vector3d& place) const;
+  /// Returns true if a survey may start at `position`: at least twice the clearance from all
+  /// unknown boxes and prior obstacles. Always true without a vehicle.
+  bool is_in_known_airspace(const Eigen::Vector3d& position) const;
 
   /// Returns the settings of the measured space at the start of a survey.
   MeasuredSpaceConfig measured_space() const;
@@ -181,7 +181,7 @@ struct FlightOptions {
 
   /// Returns the ground height z at a position: that of the terrain, known or assumed, otherwise
   /// the base of the scene [m].
-  double ground_at(const Eigen::Vector2d& place) const;
+  double ground_at(const Eigen::Vector2d& position) const;
 
   /// Returns the pad: the configured one, or the closest ground position to the first view outside
   /// the unknown box and its margin.
@@ -193,7 +193,7 @@ struct FlightOptions {
   /// Returns the maximum height z for the search of a return altitude [m]. It lies above the
   /// unknown box, prior obstacles, no-fly volumes and `obstacles_top`, and below the maximum height
   /// of the site. `pad_z` is the height z of the pad [m].
-  double highest_return(double pad_z, double obstacles_top) const;
+  double max_return_altitude(double pad_z, double obstacles_top) const;
 
   RouteOptions route(const Eigen::Vector3d& pad) const;
 
@@ -203,7 +203,7 @@ struct FlightOptions {
   double rest_after() const;
 
   /// Returns the image sharpness bounds at the view distance. Empty for a laser scanner.
-  std::optional<PictureBounds> picture_bounds() const;
+  std::optional<ImageMotionBounds> image_motion_bounds() const;
 
   /// Returns the facts that route files must agree with, except the views. Without a configured
   /// pad, the altitude reference is the base of the scene.
@@ -217,8 +217,8 @@ struct FlightOptions {
 
   /// Returns the ground of each landing point where it is known. In order of precedence it is
   /// measured, declared (`pad_slope`) or derived from the terrain.
-  std::vector<PadGround> grounds(const Eigen::Vector3d& pad,
-                                 std::span<const PadGround> measured) const;
+  std::vector<LandingSurface> landing_surfaces(const Eigen::Vector3d& pad,
+                                               std::span<const LandingSurface> measured) const;
 
   /// Returns the limits for the ground of landing points.
   PadLimits ground_limits() const;
@@ -226,6 +226,6 @@ struct FlightOptions {
 
 /// Returns the autopilots that files are written for. For a DJI vehicle, the .plan and .waypoints
 /// files are for other autopilots.
-std::vector<Dialect> dialects_of(const Vehicle& vehicle);
+std::vector<AutopilotType> find_autopilots(const Vehicle& vehicle);
 
 }  // namespace skycap::flight

@@ -9,24 +9,25 @@
 
 namespace skycap::geometry {
 
-/// Returns the value stored at byte offset `place`. The caller guarantees that all its bytes exist.
+/// Returns the value stored at byte offset `offset`. The caller guarantees that all its bytes
+/// exist.
 template <typename Value>
-Value value_at(const char* bytes, std::size_t place) {
+Value value_at(const char* bytes, std::size_t offset) {
   static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
   Value value;
-  std::memcpy(&value, bytes + place, sizeof value);
+  std::memcpy(&value, bytes + offset, sizeof value);
   return value;
 }
 
-/// Writes `value` at byte offset `place`. The caller guarantees that the buffer is large enough.
+/// Writes `value` at byte offset `offset`. The caller guarantees that the buffer is large enough.
 template <typename Value>
-void put_value(char* bytes, std::size_t place, Value value) {
+void put_value(char* bytes, std::size_t offset, Value value) {
   static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
-  std::memcpy(bytes + place, &value, sizeof value);
+  std::memcpy(bytes + offset, &value, sizeof value);
 }
 template <typename Value>
-void put_value(std::uint8_t* bytes, std::size_t place, Value value) {
-  put_value(reinterpret_cast<char*>(bytes), place, value);
+void put_value(std::uint8_t* bytes, std::size_t offset, Value value) {
+  put_value(reinterpret_cast<char*>(bytes), offset, value);
 }
 
 /// Appends the bytes of a number, or of an array of numbers without padding, to `bytes`.

@@ -10,7 +10,7 @@
 namespace skycap::geometry {
 namespace {
 
-InstructionSet widest_of_processor() {
+InstructionSet detect_instruction_set() {
 #if defined(__x86_64__)
   // These features imply all others that -march=x86-64-v3 and -v4 enable in the compiler.
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2") ||
@@ -30,7 +30,7 @@ std::atomic<InstructionSet> limit{InstructionSet::avx512};
 }  // namespace
 
 InstructionSet instruction_set() {
-  static const InstructionSet widest = widest_of_processor();
+  static const InstructionSet widest = detect_instruction_set();
   return std::min(widest, limit.load(std::memory_order_relaxed));
 }
 

@@ -24,7 +24,7 @@ void parallel_for(std::size_t count, unsigned threads,
   std::atomic<std::size_t> next{0};
   std::exception_ptr first_failure;
   std::mutex failure_mutex;
-  const auto take_turns = [&] {
+  const auto process_tasks = [&] {
     try {
       for (std::size_t i = next++; i < count; i = next++) work(i);
     } catch (...) {
@@ -35,8 +35,8 @@ void parallel_for(std::size_t count, unsigned threads,
   };
   {
     std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < workers; ++i) helpers.emplace_back(take_turns);
-    take_turns();
+    for (std::size_t i = 1; i < workers; ++i) helpers.emplace_back(process_tasks);
+    process_tasks();
   }
   if (first_failure) std::rethrow_exception(first_failure);
 }

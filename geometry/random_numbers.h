@@ -32,10 +32,13 @@ class RandomNumbers {
   /// Draws a number in [0, 1).
   double uniform() { return unit_number(engine_()); }
   /// Draws a number in [least, most).
-  double between(double least, double most) { return least + (most - least) * uniform(); }
-  /// Draws an integer from `least` to `most`, both inclusive.
-  int integer(int least, int most) {
-    return least + static_cast<int>(engine_() % static_cast<std::uint64_t>(most - least + 1));
+  double between(double min_value, double max_value) {
+    return min_value + (max_value - min_value) * uniform();
+  }
+  /// Draws an integer from `min_value` to `max_value`, both inclusive.
+  int integer(int min_value, int max_value) {
+    return min_value +
+           static_cast<int>(engine_() % static_cast<std::uint64_t>(max_value - min_value + 1));
   }
   /// Draws from the normal distribution with mean 0 and standard deviation 1.
   double normal();

@@ -14,6 +14,6 @@ std::string_view without_mark(std::string_view text);
 std::string_view trimmed(std::string_view text);
 
 /// Splits the text at sequences of spaces, tabs and line ends.
-std::vector<std::string> words_of(std::string_view text);
+std::vector<std::string> split_words(std::string_view text);
 
 }  // namespace skycap::geometry

@@ -13,18 +13,18 @@ inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 inline constexpr int mantissa_bits = 52;
 inline constexpr int exponent_bias = 1023;
 
-constexpr std::uint64_t bits_of(double x) { return std::bit_cast<std::uint64_t>(x); }
-constexpr bool is_negative(double x) { return bits_of(x) >> 63 != 0; }
-constexpr double magnitude(double x) { return std::bit_cast<double>(bits_of(x) & ~(1ULL << 63)); }
-constexpr double with_sign_of(double x, double sign) {
-  return std::bit_cast<double>(bits_of(magnitude(x)) | (bits_of(sign) & (1ULL << 63)));
+constexpr std::uint64_t to_bits(double x) { return std::bit_cast<std::uint64_t>(x); }
+constexpr bool is_negative(double x) { return to_bits(x) >> 63 != 0; }
+constexpr double magnitude(double x) { return std::bit_cast<double>(to_bits(x) & ~(1ULL << 63)); }
+constexpr double copy_sign(double x, double sign) {
+  return std::bit_cast<double>(to_bits(magnitude(x)) | (to_bits(sign) & (1ULL << 63)));
 }
 constexpr bool is_nan(double x) { return x != x; }
 constexpr bool is_finite(double x) { return magnitude(x) < infinity; }
 
 /// Returns e of a normal number x with 2^e <= |x| < 2^(e + 1).
-constexpr int exponent_of(double x) {
-  return static_cast<int>(bits_of(x) >> mantissa_bits & 0x7FF) - exponent_bias;
+constexpr int binary_exponent(double x) {
+  return static_cast<int>(to_bits(x) >> mantissa_bits & 0x7FF) - exponent_bias;
 }
 /// Returns 2^e for e in [-1022, 1023].
 constexpr double power_of_two(int e) {

@@ -19,7 +19,7 @@ constexpr DoubleDouble exact_sum(double a, double b) {
 }
 
 /// Returns a + b exactly. Requires |a| >= |b|, or that one of them is zero.
-constexpr DoubleDouble exact_sum_of_ordered(double a, double b) {
+constexpr DoubleDouble fast_two_sum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
 }
@@ -38,8 +38,8 @@ constexpr DoubleDouble exact_product(double a, double b) {
 /// Returns the sum with a relative error of about 2^-104, if the summands do not cancel.
 constexpr DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble high = exact_sum(a.high, b.high), low = exact_sum(a.low, b.low);
-  const DoubleDouble both = exact_sum_of_ordered(high.high, high.low + low.high);
-  return exact_sum_of_ordered(both.high, both.low + low.low);
+  const DoubleDouble both = fast_two_sum(high.high, high.low + low.high);
+  return fast_two_sum(both.high, both.low + low.low);
 }
 constexpr DoubleDouble operator-(const DoubleDouble& a) { return {-a.high, -a.low}; }
 constexpr DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
@@ -47,15 +47,15 @@ constexpr DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) {
 /// Returns the product with a relative error of about 2^-102.
 constexpr DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble product = exact_product(a.high, b.high);
-  return exact_sum_of_ordered(product.high, product.low + (a.high * b.low + a.low * b.high));
+  return fast_two_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 constexpr DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
   const double high = a.high / b.high;
   const DoubleDouble rest = a - DoubleDouble{high, 0.0} * b;
   const double low = rest.high / b.high;
-  const DoubleDouble rest_of_rest = rest - DoubleDouble{low, 0.0} * b;
-  const DoubleDouble quotient = exact_sum_of_ordered(high, low);
-  return exact_sum_of_ordered(quotient.high, quotient.low + rest_of_rest.high / b.high);
+  const DoubleDouble second_remainder = rest - DoubleDouble{low, 0.0} * b;
+  const DoubleDouble quotient = fast_two_sum(high, low);
+  return fast_two_sum(quotient.high, quotient.low + second_remainder.high / b.high);
 }
 
 inline constexpr DoubleDouble pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};

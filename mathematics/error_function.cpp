@@ -36,11 +36,11 @@ double rest(double x) {
 double erf(double x) {
   if (is_nan(x)) return x;
   const double a = magnitude(x);
-  if (a > 6.0) return with_sign_of(1.0, x);
-  if (a > 2.5) return with_sign_of(1.0 - rest(a), x);
+  if (a > 6.0) return copy_sign(1.0, x);
+  if (a > 2.5) return copy_sign(1.0 - rest(a), x);
   // The first term is sufficient for small x, and products of subnormal numbers would lose digits.
   if (a < 0x1p-300) return 2.0 * inverse_root_pi.high * x;
-  return with_sign_of(by_series(a), x);
+  return copy_sign(by_series(a), x);
 }
 
 }  // namespace skycap::mathematics

@@ -55,8 +55,8 @@ double value(const Exponential& of) {
   return scaled(power.high + (power.low + power.high * rest), exponent);
 }
 
-constexpr double greatest_exponent = 710.0;  // e^710 and e^-746 are out of range
-constexpr double least_exponent = -746.0;
+constexpr double max_exponent = 710.0;  // e^710 and e^-746 are out of range
+constexpr double min_exponent = -746.0;
 
 }  // namespace
 
@@ -64,8 +64,8 @@ double exp(const DoubleDouble& x) { return value(exponential(x)); }
 
 double exp(double x) {
   if (is_nan(x)) return x;
-  if (x > greatest_exponent) return infinity;
-  if (x < least_exponent) return 0.0;
+  if (x > max_exponent) return infinity;
+  if (x < min_exponent) return 0.0;
   return exp(DoubleDouble{x, 0.0});
 }
 
@@ -80,7 +80,7 @@ double exp2(double x) {
 
 double expm1(double x) {
   if (is_nan(x) || x == 0.0) return x;
-  if (x > greatest_exponent) return infinity;
+  if (x > max_exponent) return infinity;
   if (x < -40.0) return -1.0;
   const auto [exponent, power, rest] = exponential({x, 0.0});
   const double tail = power.low + power.high * rest;
@@ -94,10 +94,10 @@ double sinh(double x) {
   if (is_nan(x) || x == 0.0 || !is_finite(x)) return x;
   const double a = magnitude(x);
   if (a > 40.0) {  // e^-x is less than half an ulp of e^x
-    return with_sign_of(a > 711.0 ? infinity : 0.5 * exp(0.5 * a) * exp(0.5 * a), x);
+    return copy_sign(a > 711.0 ? infinity : 0.5 * exp(0.5 * a) * exp(0.5 * a), x);
   }
   const double less_one = expm1(a);
-  return with_sign_of(0.5 * (less_one + less_one / (less_one + 1.0)), x);
+  return copy_sign(0.5 * (less_one + less_one / (less_one + 1.0)), x);
 }
 
 double cosh(double x) {
@@ -110,9 +110,9 @@ double cosh(double x) {
 double tanh(double x) {
   if (is_nan(x) || x == 0.0) return x;
   const double a = magnitude(x);
-  if (a > 20.0) return with_sign_of(1.0, x);
+  if (a > 20.0) return copy_sign(1.0, x);
   const double less_one = expm1(2.0 * a);
-  return with_sign_of(less_one / (less_one + 2.0), x);
+  return copy_sign(less_one / (less_one + 2.0), x);
 }
 
 }  // namespace skycap::mathematics

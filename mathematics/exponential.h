@@ -11,6 +11,6 @@ double exp(const DoubleDouble& x);
 
 /// Returns the natural logarithm of a positive finite number with a relative error of at most
 /// 2^-66.
-DoubleDouble log_of_positive(double x);
+DoubleDouble log_positive(double x);
 
 }  // namespace skycap::mathematics

@@ -13,7 +13,7 @@ constexpr int steps = 16;
 
 // Euler's series, whose terms decrease by at least half. With q = c^2 / (1 + c^2), atan(c) is q / c
 // times 1 + 2/3 q (1 + 4/5 q (1 + ...)).
-constexpr auto angle_of_step = [] {
+constexpr auto step_angles = [] {
   std::array<DoubleDouble, steps + 1> angles = {};
   for (int step = 1; step <= steps; ++step) {
     const DoubleDouble c = {static_cast<double>(step) / steps, 0.0}, one = {1.0, 0.0};
@@ -34,7 +34,7 @@ double atan_tail(double t) {
   return -t * square * (1.0 / 3.0 - square * (1.0 / 5.0 - square * (1.0 / 7.0 - square * tail)));
 }
 
-DoubleDouble atan_of_ratio(const DoubleDouble& y, const DoubleDouble& x) {
+DoubleDouble atan_ratio(const DoubleDouble& y, const DoubleDouble& x) {
   const int step = static_cast<int>(y.high / x.high * steps + 0.5);
   const double c = static_cast<double>(step) / steps;
   DoubleDouble above = y, below = x;
@@ -43,19 +43,19 @@ DoubleDouble atan_of_ratio(const DoubleDouble& y, const DoubleDouble& x) {
     below = x + y * DoubleDouble{c, 0.0};
   }
   const DoubleDouble t = above / below;
-  const DoubleDouble angle = exact_sum(angle_of_step[step].high, t.high);
-  const double rest = angle_of_step[step].low + (t.low + atan_tail(t.high));
-  return exact_sum_of_ordered(angle.high, angle.low + rest);
+  const DoubleDouble angle = exact_sum(step_angles[step].high, t.high);
+  const double rest = step_angles[step].low + (t.low + atan_tail(t.high));
+  return fast_two_sum(angle.high, angle.low + rest);
 }
 
 // Returns the angle for y >= 0 and any x. Requires that not both are zero, both are finite, and
 // their squares neither overflow nor underflow.
 double angle_above_axis(const DoubleDouble& y, const DoubleDouble& x) {
-  const bool is_behind = x.high < 0.0;
-  const DoubleDouble across = is_behind ? -x : x;
+  const bool is_negative_half = x.high < 0.0;
+  const DoubleDouble across = is_negative_half ? -x : x;
   DoubleDouble angle =
-      y.high <= across.high ? atan_of_ratio(y, across) : half_pi - atan_of_ratio(across, y);
-  if (is_behind) angle = pi - angle;
+      y.high <= across.high ? atan_ratio(y, across) : half_pi - atan_ratio(across, y);
+  if (is_negative_half) angle = pi - angle;
   return angle.high + angle.low;
 }
 
@@ -66,18 +66,18 @@ DoubleDouble complement(double x) {
   if (rest.high <= 0.0) return {0.0, 0.0};
   const double root = __builtin_sqrt(rest.high);
   const DoubleDouble error = rest - exact_product(root, root);
-  return exact_sum_of_ordered(root, error.high / (2.0 * root));
+  return fast_two_sum(root, error.high / (2.0 * root));
 }
 
 // Returns the angle of a direction along an axis or with an infinite coordinate.
 double special_angle(double y, double x) {
   if (is_nan(x) || is_nan(y)) return x + y;
-  const bool is_behind = is_negative(x);
+  const bool is_negative_half = is_negative(x);
   if (!is_finite(x) && !is_finite(y)) {
-    return with_sign_of((is_behind ? 1.5 : 0.5) * half_pi.high, y);
+    return copy_sign((is_negative_half ? 1.5 : 0.5) * half_pi.high, y);
   }
-  if (y == 0.0 || !is_finite(x)) return with_sign_of(is_behind ? pi.high : 0.0, y);
-  return with_sign_of(half_pi.high, y);
+  if (y == 0.0 || !is_finite(x)) return copy_sign(is_negative_half ? pi.high : 0.0, y);
+  return copy_sign(half_pi.high, y);
 }
 
 }  // namespace
@@ -90,20 +90,20 @@ double atan2(double y, double x) {
   // underflow.
   const double greater = a > b ? a : b;
   const int up = greater < 0x1p-900 ? 200 : 0;
-  const int shift = up - exponent_of(scaled(greater, up));
-  return with_sign_of(angle_above_axis({scaled(a, shift), 0.0}, {scaled(x, shift), 0.0}), y);
+  const int shift = up - binary_exponent(scaled(greater, up));
+  return copy_sign(angle_above_axis({scaled(a, shift), 0.0}, {scaled(x, shift), 0.0}), y);
 }
 
 double atan(double x) {
   if (is_nan(x) || magnitude(x) < 0x1p-27) return x;
-  if (magnitude(x) > 0x1p60) return with_sign_of(half_pi.high, x);
-  return with_sign_of(angle_above_axis({magnitude(x), 0.0}, {1.0, 0.0}), x);
+  if (magnitude(x) > 0x1p60) return copy_sign(half_pi.high, x);
+  return copy_sign(angle_above_axis({magnitude(x), 0.0}, {1.0, 0.0}), x);
 }
 
 double asin(double x) {
   if (is_nan(x) || magnitude(x) < 0x1p-27) return x;
   if (magnitude(x) > 1.0) return not_a_number;
-  return with_sign_of(angle_above_axis({magnitude(x), 0.0}, complement(x)), x);
+  return copy_sign(angle_above_axis({magnitude(x), 0.0}, complement(x)), x);
 }
 
 double acos(double x) {

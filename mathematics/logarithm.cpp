@@ -19,7 +19,7 @@ struct Step {
 };
 
 // log((1 + z) / (1 - z)) = 2 (z + z^3 / 3 + ...), |z| < 0.2.
-constexpr DoubleDouble log_of_ratio(const DoubleDouble& z) {
+constexpr DoubleDouble log_ratio(const DoubleDouble& z) {
   const DoubleDouble square = z * z;
   DoubleDouble sum = {0.0, 0.0};
   for (int n = 45; n > 0; n -= 2) {
@@ -35,7 +35,7 @@ constexpr auto table = [] {
     const bool is_next_to_one = step == 0 || step == steps - 1;
     const double factor = is_next_to_one ? 1.0 : rounded(512.0 / middle) / 512.0;
     made[step] = {factor,
-                  log_of_ratio(DoubleDouble{1.0 - factor, 0.0} / DoubleDouble{1.0 + factor, 0.0})};
+                  log_ratio(DoubleDouble{1.0 - factor, 0.0} / DoubleDouble{1.0 + factor, 0.0})};
   }
   return made;
 }();
@@ -53,9 +53,9 @@ DoubleDouble log_near_one(const DoubleDouble& r) {
   double tail = 0.0;
 #pragma GCC unroll 16
   for (std::size_t i = log_tail.size(); i > 0; --i) tail = log_tail[i - 1] + r.high * tail;
-  const DoubleDouble sum = exact_sum_of_ordered(r.high, -0.5 * square.high);
+  const DoubleDouble sum = fast_two_sum(r.high, -0.5 * square.high);
   const double rest = (r.low - r.high * r.low) - 0.5 * square.low + r.high * square.high * tail;
-  return exact_sum_of_ordered(sum.high, sum.low + rest);
+  return fast_two_sum(sum.high, sum.low + rest);
 }
 
 struct NormalNumber {
@@ -66,9 +66,9 @@ NormalNumber normal_number(double x) {
   constexpr int up = 54;  // exponent shift of subnormal numbers
   const bool is_subnormal = x < 0x1p-1022;
   const double normal = is_subnormal ? x * 0x1p54 : x;
-  const std::uint64_t mantissa = bits_of(normal) & ((1ULL << mantissa_bits) - 1);
-  return {exponent_of(normal) - (is_subnormal ? up : 0),
-          std::bit_cast<double>(mantissa | bits_of(1.0))};
+  const std::uint64_t mantissa = to_bits(normal) & ((1ULL << mantissa_bits) - 1);
+  return {binary_exponent(normal) - (is_subnormal ? up : 0),
+          std::bit_cast<double>(mantissa | to_bits(1.0))};
 }
 
 // Returns whether special_log() applies: zero, negative and non-finite numbers.
@@ -80,38 +80,38 @@ double special_log(double x) {
 
 double log_times(double x, const DoubleDouble& factor) {
   if (is_special(x)) return special_log(x);
-  const DoubleDouble log = log_of_positive(x);
+  const DoubleDouble log = log_positive(x);
   const DoubleDouble product = exact_product(log.high, factor.high);
   return product.high + (product.low + (log.high * factor.low + log.low * factor.high));
 }
 
 }  // namespace
 
-DoubleDouble log_of_positive(double x) {
+DoubleDouble log_positive(double x) {
   auto [exponent, mantissa] = normal_number(x);
   const auto step = static_cast<int>((mantissa - 1.0) * steps);
   if (step >= first_halved) {
     ++exponent;
     mantissa *= 0.5;
   }
-  const auto& [factor, log_of_step] = table[step];
+  const auto& [factor, step_log] = table[step];
   const double mantissa_high =
       (mantissa + 0x1p12) - 0x1p12;  // 40 bits; its product with the factor is exact
   const DoubleDouble r =
-      exact_sum_of_ordered(mantissa_high * factor - 1.0, (mantissa - mantissa_high) * factor);
+      fast_two_sum(mantissa_high * factor - 1.0, (mantissa - mantissa_high) * factor);
   const DoubleDouble near_one = log_near_one(r);
   if (exponent == 0 && factor == 1.0) return near_one;
   constexpr DoubleDouble ln_2_in_parts = {0x1.62e42fefa38p-1, 0x1.ef35793c7673p-45};  // 42 bits
   const auto e = static_cast<double>(exponent);
-  const DoubleDouble whole = exact_sum(e * ln_2_in_parts.high, log_of_step.high);
+  const DoubleDouble whole = exact_sum(e * ln_2_in_parts.high, step_log.high);
   const DoubleDouble all = exact_sum(whole.high, near_one.high);
-  return exact_sum_of_ordered(
-      all.high, all.low + (whole.low + (e * ln_2_in_parts.low + (log_of_step.low + near_one.low))));
+  return fast_two_sum(
+      all.high, all.low + (whole.low + (e * ln_2_in_parts.low + (step_log.low + near_one.low))));
 }
 
 double log(double x) {
   if (is_special(x)) return special_log(x);
-  const DoubleDouble log = log_of_positive(x);
+  const DoubleDouble log = log_positive(x);
   return log.high + log.low;
 }
 double log2(double x) { return log_times(x, inverse_ln_2); }
@@ -125,7 +125,7 @@ double log1p(double x) {
     return log.high + log.low;
   }
   const DoubleDouble sum = exact_sum(1.0, x);
-  const DoubleDouble log = log_of_positive(sum.high);
+  const DoubleDouble log = log_positive(sum.high);
   return log.high + (log.low + sum.low / sum.high);
 }
 
@@ -133,9 +133,9 @@ double asinh(double x) {
   if (is_nan(x) || !is_finite(x)) return x;
   const double a = magnitude(x);
   if (a < 0x1p-28) return x;
-  if (a > 0x1p28) return with_sign_of(log(a) + ln_2.high, x);
+  if (a > 0x1p28) return copy_sign(log(a) + ln_2.high, x);
   const double square = a * a;
-  return with_sign_of(log1p(a + square / (1.0 + __builtin_sqrt(square + 1.0))), x);
+  return copy_sign(log1p(a + square / (1.0 + __builtin_sqrt(square + 1.0))), x);
 }
 
 double acosh(double x) {
@@ -149,8 +149,8 @@ double acosh(double x) {
 double atanh(double x) {
   const double a = magnitude(x);
   if (is_nan(x) || a < 0x1p-28) return x;
-  if (a >= 1.0) return a == 1.0 ? with_sign_of(infinity, x) : not_a_number;
-  return with_sign_of(0.5 * log1p(2.0 * a / (1.0 - a)), x);
+  if (a >= 1.0) return a == 1.0 ? copy_sign(infinity, x) : not_a_number;
+  return copy_sign(0.5 * log1p(2.0 * a / (1.0 - a)), x);
 }
 
 }  // namespace skycap::mathematics

@@ -23,14 +23,14 @@ double special_power(double x, double y) {
   }
   const bool grows = (magnitude(x) == infinity) == (y > 0.0);
   const double limit = grows ? infinity : 0.0;
-  return is_odd(y) ? with_sign_of(limit, x) : limit;
+  return is_odd(y) ? copy_sign(limit, x) : limit;
 }
 
 // Requires a positive x, and that both are finite.
-double power_of_positive(double x, double y) {
+double pow_positive(double x, double y) {
   // Beyond the bound, x^y is out of range unless x is 1, and the product would not be exact.
-  const double bounded = magnitude(y) < 0x1p65 ? y : with_sign_of(0x1p65, y);
-  const DoubleDouble log = log_of_positive(x);
+  const double bounded = magnitude(y) < 0x1p65 ? y : copy_sign(0x1p65, y);
+  const DoubleDouble log = log_positive(x);
   const DoubleDouble product = exact_product(bounded, log.high);
   if (product.high > 710.0) return infinity;
   if (product.high < -746.0) return 0.0;
@@ -42,9 +42,9 @@ double power_of_positive(double x, double y) {
 double pow(double x, double y) {
   if (y == 0.0 || x == 1.0) return 1.0;
   if (!is_finite(x) || !is_finite(y) || x == 0.0) return special_power(x, y);
-  if (x > 0.0) return power_of_positive(x, y);
+  if (x > 0.0) return pow_positive(x, y);
   if (!is_whole(y)) return not_a_number;
-  const double power = power_of_positive(-x, y);
+  const double power = pow_positive(-x, y);
   return is_odd(y) ? -power : power;
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint64_t inverse_half_pi[] = {
 
 // Returns 64 bits of 2 / pi, starting with the bit of weight 2^-first. Bits before the binary point
 // are zero.
-std::uint64_t bits_of_inverse_half_pi(int first) {
+std::uint64_t inverse_half_pi_bits(int first) {
   const auto word = [](int i) { return i < 0 ? std::uint64_t{0} : inverse_half_pi[i]; };
   const int position = first - 1 + 64;  // bit position, counted from a leading word of zeros
   const int i = position / 64 - 1, shift = position % 64;
@@ -36,10 +36,10 @@ struct WideNumber {
 WideNumber quarter_turns(std::uint64_t m, int e) {
   __extension__ using Product = unsigned __int128;
   const int first = e - 1;  // bit with weight 2 in the product with 2^e
-  const Product low = Product{m} * bits_of_inverse_half_pi(first + 128);
-  const Product middle = Product{m} * bits_of_inverse_half_pi(first + 64) + (low >> 64);
+  const Product low = Product{m} * inverse_half_pi_bits(first + 128);
+  const Product middle = Product{m} * inverse_half_pi_bits(first + 64) + (low >> 64);
   const std::uint64_t high =
-      m * bits_of_inverse_half_pi(first) + static_cast<std::uint64_t>(middle >> 64);
+      m * inverse_half_pi_bits(first) + static_cast<std::uint64_t>(middle >> 64);
   return {{high, static_cast<std::uint64_t>(middle), static_cast<std::uint64_t>(low)}};
 }
 
@@ -72,8 +72,7 @@ DoubleDouble fraction(const WideNumber& n) {
   constexpr int kept = 53;
   const auto high = static_cast<double>(leading.words[0] >> (64 - kept));
   const auto low = static_cast<double>(leading.words[0] << kept | leading.words[1] >> (64 - kept));
-  return exact_sum_of_ordered(high * 0x1p-53 * power_of_two(-zeros),
-                              low * 0x1p-117 * power_of_two(-zeros));
+  return fast_two_sum(high * 0x1p-53 * power_of_two(-zeros), low * 0x1p-117 * power_of_two(-zeros));
 }
 
 // Angle as quarter turns and a remainder of at most an eighth turn.
@@ -88,8 +87,8 @@ Angle angle(double x) {
   const double a = magnitude(x);
   if (a <= eighth_turn) return {0, {x, 0.0}};
   const std::uint64_t mantissa =
-      (bits_of(a) & ((1ULL << mantissa_bits) - 1)) | 1ULL << mantissa_bits;
-  const WideNumber turns = quarter_turns(mantissa, exponent_of(a) - mantissa_bits);
+      (to_bits(a) & ((1ULL << mantissa_bits) - 1)) | 1ULL << mantissa_bits;
+  const WideNumber turns = quarter_turns(mantissa, binary_exponent(a) - mantissa_bits);
   const WideNumber rest = shifted_left(turns, 2);
   const bool is_next_nearer = rest.words[0] >> 63 != 0;
   const auto quarters = static_cast<unsigned>(turns.words[0] >> 62) + (is_next_nearer ? 1U : 0U);
@@ -119,19 +118,17 @@ double sum(const std::array<double, count>& coefficients, double x) {
 }
 
 // The truncation errors of the series are below 2^-60 of the result.
-DoubleDouble sine_of_rest(const DoubleDouble& x) {
+DoubleDouble reduced_sine(const DoubleDouble& x) {
   static constexpr auto tail = series<8>(3);  // x^3 / 6 - x^5 / 120 + ...
   const double square = x.high * x.high;
-  return exact_sum_of_ordered(x.high,
-                              x.low * (1.0 - 0.5 * square) - x.high * square * sum(tail, square));
+  return fast_two_sum(x.high, x.low * (1.0 - 0.5 * square) - x.high * square * sum(tail, square));
 }
-DoubleDouble cosine_of_rest(const DoubleDouble& x) {
+DoubleDouble reduced_cosine(const DoubleDouble& x) {
   static constexpr auto tail = series<8>(4);  // x^4 / 24 - x^6 / 720 + ...
   const DoubleDouble square = exact_product(x.high, x.high);
-  const DoubleDouble start = exact_sum_of_ordered(1.0, -0.5 * square.high);
+  const DoubleDouble start = fast_two_sum(1.0, -0.5 * square.high);
   const double rest = start.low - 0.5 * square.low - x.high * x.low;
-  return exact_sum_of_ordered(start.high,
-                              rest + square.high * square.high * sum(tail, square.high));
+  return fast_two_sum(start.high, rest + square.high * square.high * sum(tail, square.high));
 }
 
 double nearest(const DoubleDouble& x) { return x.high + x.low; }
@@ -139,7 +136,7 @@ double nearest(const DoubleDouble& x) { return x.high + x.low; }
 // Returns the sine of the angle plus `further_quarters` quarter turns.
 double sine(const Angle& of, unsigned further_quarters) {
   const unsigned quarters = of.quarters + further_quarters;
-  const double value = nearest(quarters % 2 == 0 ? sine_of_rest(of.rest) : cosine_of_rest(of.rest));
+  const double value = nearest(quarters % 2 == 0 ? reduced_sine(of.rest) : reduced_cosine(of.rest));
   return quarters % 4 < 2 ? value : -value;
 }
 
@@ -159,7 +156,7 @@ double tan(double x) {
   if (!is_finite(x)) return not_a_number;
   if (magnitude(x) < 0x1p-27) return x;
   const auto [quarters, rest] = angle(x);
-  const DoubleDouble sine = sine_of_rest(rest), cosine = cosine_of_rest(rest);
+  const DoubleDouble sine = reduced_sine(rest), cosine = reduced_cosine(rest);
   return nearest(quarters % 2 == 0 ? sine / cosine : -cosine / sine);
 }
 

@@ -13,7 +13,7 @@ std::string shape_text(const py::array& array) {
   return text + ")";
 }
 
-void require_rows_of_three(const py::array& array, const std::string& name) {
+void require_three_columns(const py::array& array, const std::string& name) {
   if (array.ndim() == 2 && array.shape(1) == 3) return;
   throw py::value_error(name + " has shape " + shape_text(array) +
                         "; it must be rows of x y z, shape (N, 3)");
@@ -26,13 +26,13 @@ static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
 static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
 
 std::span<const Eigen::Vector3f> points_in(const Array<float>& array, const std::string& name) {
-  require_rows_of_three(array, name);
+  require_three_columns(array, name);
   return {reinterpret_cast<const Eigen::Vector3f*>(array.data()),
           static_cast<std::size_t>(array.shape(0))};
 }
 
-std::vector<Eigen::Vector3d> places_in(const Array<double>& array, const std::string& name) {
-  require_rows_of_three(array, name);
+std::vector<Eigen::Vector3d> positions_in(const Array<double>& array, const std::string& name) {
+  require_three_columns(array, name);
   const auto* first = reinterpret_cast<const Eigen::Vector3d*>(array.data());
   return {first, first + array.shape(0)};
 }
@@ -83,23 +83,25 @@ Eigen::Isometry3d pose_in(const Array<double>& matrix, const std::string& name) 
   return pose;
 }
 
-py::array_t<double> array_of(const Eigen::Vector3d& vector) {
+py::array_t<double> to_array(const Eigen::Vector3d& vector) {
   return py::array_t<double>(3, vector.data());
 }
 
-py::array_t<double> array_of(const Eigen::Isometry3d& pose) {
+py::array_t<double> to_array(const Eigen::Isometry3d& pose) {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = pose.matrix();
   return py::array_t<double>({4, 4}, rows.data());
 }
 
-py::array_t<float> view_of(const std::vector<Eigen::Vector3f>& points, const py::object& keeper) {
-  return view_of(reinterpret_cast<const float*>(points.data()),
-                 static_cast<py::ssize_t>(points.size()), 3, keeper);
+py::array_t<float> make_array_view(const std::vector<Eigen::Vector3f>& points,
+                                   const py::object& keeper) {
+  return make_array_view(reinterpret_cast<const float*>(points.data()),
+                         static_cast<py::ssize_t>(points.size()), 3, keeper);
 }
 
-py::array_t<double> view_of(const std::vector<Eigen::Vector3d>& points, const py::object& keeper) {
-  return view_of(reinterpret_cast<const double*>(points.data()),
-                 static_cast<py::ssize_t>(points.size()), 3, keeper);
+py::array_t<double> make_array_view(const std::vector<Eigen::Vector3d>& points,
+                                    const py::object& keeper) {
+  return make_array_view(reinterpret_cast<const double*>(points.data()),
+                         static_cast<py::ssize_t>(points.size()), 3, keeper);
 }
 
 }  // namespace skycap::python

@@ -7,7 +7,7 @@
 namespace skycap::python {
 
 void bind_errors(pybind11::module_& module);
-void bind_places(pybind11::module_& module);
+void bind_poses(pybind11::module_& module);
 void bind_surfaces(pybind11::module_& module);
 void bind_missions(pybind11::module_& module);
 void bind_planner(pybind11::module_& module);
@@ -17,6 +17,6 @@ void bind_certificates(pybind11::module_& module);
 
 /// Emits a DeprecationWarning for a name of version 0.1. Throws if warnings are configured as
 /// errors.
-void warn_of_former_name(const char* former, const char* current);
+void warn_deprecated_name(const char* former, const char* current);
 
 }  // namespace skycap::python

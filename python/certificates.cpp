@@ -46,52 +46,59 @@ flight::Obstacles obstacles_from(const geometry::Mesh* mesh,
   return obstacles;
 }
 
-std::vector<Certificate> certify(const Array<double>& route, double clearance,
-                                 const geometry::Mesh* mesh,
-                                 const std::optional<Array<float>>& cloud, double cloud_radius,
-                                 std::vector<Prism> no_fly, std::optional<Prism> fence,
-                                 std::optional<double> ground_height) {
+std::vector<Certificate> verify_polyline(const Array<double>& route, double clearance,
+                                         const geometry::Mesh* mesh,
+                                         const std::optional<Array<float>>& cloud,
+                                         double cloud_radius, std::vector<Prism> no_fly,
+                                         std::optional<Prism> fence,
+                                         std::optional<double> ground_height) {
   if (!(clearance >= 0.0)) throw py::value_error("clearance must be zero or more, in metres");
-  const std::vector<Eigen::Vector3d> points = places_in(route, "route");
+  const std::vector<Eigen::Vector3d> points = positions_in(route, "route");
   const flight::Obstacles obstacles =
       obstacles_from(mesh, cloud, cloud_radius, std::move(no_fly), std::move(fence), ground_height);
   std::vector<Certificate> certificates;
   run_interruptibly([&](const std::stop_token& stop) {
-    certificates = flight::certify_route(points, flight::KnownSpace(obstacles), clearance,
-                                         clearance + flight::reported_surplus, stop);
+    certificates = flight::verify_route(points, flight::KnownSpace(obstacles), clearance,
+                                        clearance + flight::reported_surplus, stop);
   });
   return certificates;
 }
 
 void bind_certificate(py::module_& module) {
-  const auto place = [](const Certificate& certificate, const Eigen::Vector3d& at) -> py::object {
-    if (certificate.proof.closest.kind == flight::ObstacleKind::none) return py::none();
-    return array_of(at);
+  const auto find_point = [](const Certificate& certificate,
+                             const Eigen::Vector3d& at) -> py::object {
+    if (certificate.verification.closest.kind == flight::ObstacleKind::none) return py::none();
+    return to_array(at);
   };
   py::class_<Certificate>(module, "LegCheck", "Result of the clearance check of a straight leg.")
       .def_property_readonly(
-          "is_clear", [](const Certificate& c) { return c.proof.is_proven; },
+          "is_clear", [](const Certificate& c) { return c.verification.is_verified; },
           "Whether no point of the leg violates the clearance.")
       .def_property_readonly(
           "is_proven",
           [](const Certificate& c) {
-            warn_of_former_name("is_proven", "is_clear");
-            return c.proof.is_proven;
+            warn_deprecated_name("is_proven", "is_clear");
+            return c.verification.is_verified;
           },
           "The former name of is_clear.")
       .def_property_readonly(
-          "clearance", [](const Certificate& c) { return c.proof.clearance; },
+          "clearance", [](const Certificate& c) { return c.verification.clearance; },
           "Verified lower bound of the distance over the leg, in metres; at most 10 m above "
           "the\nrequired clearance.")
       .def_readonly("obstacle", &Certificate::obstacle,
                     "Name of the nearest obstacle; '' if nothing is that near.")
       .def_property_readonly(
-          "on_leg", [place](const Certificate& c) { return place(c, c.proof.closest.on_leg); },
+          "on_leg",
+          [find_point](const Certificate& c) {
+            return find_point(c, c.verification.closest.on_leg);
+          },
           "Point of the leg nearest to the obstacle: float64, shape (3,); None if nothing is that "
           "near.")
       .def_property_readonly(
           "on_obstacle",
-          [place](const Certificate& c) { return place(c, c.proof.closest.on_obstacle); },
+          [find_point](const Certificate& c) {
+            return find_point(c, c.verification.closest.on_obstacle);
+          },
           "Nearest point of the obstacle: float64, shape (3,); None if nothing is that near.");
 }
 
@@ -110,7 +117,7 @@ void bind_certificates(py::module_& module) {
       .def_readonly("ceiling", &Prism::ceiling, "Upper limit, in metres.");
   bind_certificate(module);
   module.def(
-      "verify_route", &certify, py::arg("route"), py::arg("clearance"),
+      "verify_route", &verify_polyline, py::arg("route"), py::arg("clearance"),
       py::arg("mesh") = static_cast<const geometry::Mesh*>(nullptr), py::arg("cloud") = py::none(),
       py::arg("cloud_radius") = 0.0, py::arg("no_fly") = std::vector<Prism>{},
       py::arg("fence") = py::none(), py::arg("ground_height") = py::none(),

@@ -7,7 +7,7 @@ namespace {
 
 namespace py = pybind11;
 
-const char* name_of(ErrorKind kind) {
+const char* to_string(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::bad_usage:
       return "bad_usage";
@@ -25,7 +25,7 @@ PyObject* error_type = nullptr;  // lives as long as the module, which is never 
 
 void raise(const Error& error) {
   const py::object raised = py::reinterpret_borrow<py::object>(error_type)(error.what());
-  raised.attr("kind") = name_of(error.kind());
+  raised.attr("kind") = to_string(error.kind());
   PyErr_SetObject(error_type, raised.ptr());
 }
 
@@ -47,7 +47,7 @@ void bind_errors(py::module_& module) {
   });
 }
 
-void warn_of_former_name(const char* former, const char* current) {
+void warn_deprecated_name(const char* former, const char* current) {
   const std::string text = std::string(former) + " is now " + current;
   if (PyErr_WarnEx(PyExc_DeprecationWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }

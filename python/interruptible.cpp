@@ -13,7 +13,7 @@ namespace skycap::python {
 namespace py = pybind11;
 
 void run_interruptibly(const std::function<void(const std::stop_token&)>& work) {
-  constexpr std::chrono::milliseconds between_looks{20};
+  constexpr std::chrono::milliseconds poll_interval{20};
   std::stop_source stop;
   std::packaged_task<void()> task([&] { work(stop.get_token()); });
   std::future<void> done = task.get_future();
@@ -21,7 +21,7 @@ void run_interruptibly(const std::function<void(const std::stop_token&)>& work) 
   {
     py::gil_scoped_release others_go_on;
     std::jthread worker(std::move(task));
-    while (done.wait_for(between_looks) != std::future_status::ready) {
+    while (done.wait_for(poll_interval) != std::future_status::ready) {
       py::gil_scoped_acquire lock;
       if (!raised && PyErr_CheckSignals() != 0) {
         raised.emplace();

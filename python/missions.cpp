@@ -19,12 +19,12 @@ using missions::api::Mission;
 using missions::api::Setting;
 using missions::api::Simulation;
 
-std::string yaml_of(const py::handle& value);
+std::string to_yaml(const py::handle& value);
 
 /// Converts a value inside a list or table. Strings are quoted, because they may contain
 /// separators.
-std::string entry_of(const py::handle& value) {
-  if (!py::isinstance<py::str>(value)) return yaml_of(value);
+std::string make_entry(const py::handle& value) {
+  if (!py::isinstance<py::str>(value)) return to_yaml(value);
   std::string text = "'";
   for (const char c : value.cast<std::string>())
     text += c == '\'' ? std::string("''") : std::string(1, c);
@@ -34,7 +34,7 @@ std::string entry_of(const py::handle& value) {
 /// Converts a Python value to YAML for a mission file. Numbers, booleans, lists and tables of
 /// Python are valid YAML flow style, except for a few words. A string is used like the value of
 /// `--set KEY=`.
-std::string yaml_of(const py::handle& value) {
+std::string to_yaml(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (value.is_none()) return "null";
   if (value.ptr() == Py_True) return "true";
@@ -42,50 +42,52 @@ std::string yaml_of(const py::handle& value) {
   std::string text;
   if (py::isinstance<py::dict>(value)) {
     for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
-      text += (text.empty() ? "" : ", ") + entry_of(key) + ": " + entry_of(entry);
+      text += (text.empty() ? "" : ", ") + make_entry(key) + ": " + make_entry(entry);
     }
     return "{" + text + "}";
   }
   if (py::hasattr(value, "tolist"))
-    return yaml_of(value.attr("tolist")());  // numpy array or scalar
+    return to_yaml(value.attr("tolist")());  // numpy array or scalar
   if (py::isinstance<py::sequence>(value)) {
-    for (const py::handle entry : value) text += (text.empty() ? "" : ", ") + entry_of(entry);
+    for (const py::handle entry : value) text += (text.empty() ? "" : ", ") + make_entry(entry);
     return "[" + text + "]";
   }
   return py::str(value).cast<std::string>();
 }
 
-std::vector<Setting> settings_of(const std::optional<py::dict>& set) {
+std::vector<Setting> to_settings(const std::optional<py::dict>& set) {
   std::vector<Setting> settings;
   if (!set) return settings;
   for (const auto& [key, value] : *set) {
-    settings.push_back({key.cast<std::string>(), yaml_of(value)});
+    settings.push_back({key.cast<std::string>(), to_yaml(value)});
   }
   return settings;
 }
 
 Mission load(const std::filesystem::path& file, const std::optional<py::dict>& set) {
-  const std::vector<Setting> settings = settings_of(set);
+  const std::vector<Setting> settings = to_settings(set);
   py::gil_scoped_release others_go_on;
   return Mission::load(file, settings);
 }
 
 Mission parse(const std::string& text, const std::string& name,
               const std::optional<py::dict>& set) {
-  const std::vector<Setting> settings = settings_of(set);
+  const std::vector<Setting> settings = to_settings(set);
   py::gil_scoped_release others_go_on;
   return Mission::parse(text, name, settings);
 }
 
 /// Returns the points, pose and pixels of a scan in the order of the parameters of
 /// Planner.next_view.
-py::tuple arrays_of(geometry::Scan&& measured) {
+py::tuple to_arrays(geometry::Scan&& measured) {
   const auto [scan, keeper] = kept(std::move(measured));
   py::object pixels = py::none();
   if (!scan->pixels.empty()) {
-    pixels = view_of(scan->pixels.data(), static_cast<py::ssize_t>(scan->pixels.size()), 0, keeper);
+    pixels = make_array_view(scan->pixels.data(), static_cast<py::ssize_t>(scan->pixels.size()), 0,
+                             keeper);
   }
-  return py::make_tuple(view_of(scan->points, keeper), array_of(scan->world_from_sensor), pixels);
+  return py::make_tuple(make_array_view(scan->points, keeper), to_array(scan->world_from_sensor),
+                        pixels);
 }
 
 py::tuple simulated_scan(const Simulation& simulation, const geometry::View& view,
@@ -95,7 +97,7 @@ py::tuple simulated_scan(const Simulation& simulation, const geometry::View& vie
     py::gil_scoped_release others_go_on;
     scan = simulation.scan(view, frame);
   }
-  return arrays_of(std::move(scan));
+  return to_arrays(std::move(scan));
 }
 
 void bind_simulation(py::module_& module) {

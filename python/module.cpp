@@ -12,7 +12,7 @@ PYBIND11_MODULE(_skycap, module) {
   module.doc() = "Plans and simulates aerial surveys of buildings.";
   module.attr("__version__") = SKYCAP_VERSION;
   skycap::python::bind_errors(module);
-  skycap::python::bind_places(module);
+  skycap::python::bind_poses(module);
   skycap::python::bind_surfaces(module);
   skycap::python::bind_missions(module);
   skycap::python::bind_planner(module);

@@ -26,14 +26,14 @@ View look_at(const Array<double>& position, const Array<double>& target) {
   return geometry::look_at(from, to);
 }
 
-std::string text_of(const View& view) {
+std::string to_string(const View& view) {
   const auto list = [](const Eigen::Vector3d& vector) {
-    return py::str(array_of(vector).attr("tolist")()).cast<std::string>();
+    return py::str(to_array(vector).attr("tolist")()).cast<std::string>();
   };
   return "View(position=" + list(view.position) + ", direction=" + list(view.direction) + ")";
 }
 
-py::array_t<double> rays_of(const CameraConfig& config) {
+py::array_t<double> make_rays(const CameraConfig& config) {
   const geometry::Camera camera(config);
   py::array_t<double> rays({camera.height(), camera.width(), 3});
   auto* next = rays.mutable_data();
@@ -57,7 +57,7 @@ void bind_camera(py::module_& module) {
                     "Full vertical field of view, in radians.")
       .def_readonly("min_range", &CameraConfig::min_range, "Minimum depth along z, in metres.")
       .def_readonly("max_range", &CameraConfig::max_range, "Maximum depth along z, in metres.")
-      .def("rays", &rays_of,
+      .def("rays", &make_rays,
            "rays($self)\n--\n\n"
            "Directions of all pixels in the optical frame, with z = 1: float64, shape\n"
            "(height, width, 3). A point at depth t is t * ray.");
@@ -65,23 +65,23 @@ void bind_camera(py::module_& module) {
 
 }  // namespace
 
-void bind_places(py::module_& module) {
+void bind_poses(py::module_& module) {
   py::class_<View>(module, "View",
                    "A viewpoint: View(position, direction), arrays of shape (3,) in the world "
                    "frame (x east,\ny north, z up), in metres. The direction is normalised.")
       .def(py::init(&view_from), py::arg("position"), py::arg("direction"))
       .def_property_readonly(
-          "position", [](const View& view) { return array_of(view.position); },
+          "position", [](const View& view) { return to_array(view.position); },
           "World frame, in metres: float64, shape (3,).")
       .def_property_readonly(
-          "direction", [](const View& view) { return array_of(view.direction); },
+          "direction", [](const View& view) { return to_array(view.direction); },
           "Unit vector from the sensor to the scene, world frame: float64, shape (3,).")
       .def(
-          "pose", [](const View& view) { return array_of(geometry::camera_pose(view)); },
+          "pose", [](const View& view) { return to_array(geometry::camera_pose(view)); },
           "pose($self)\n--\n\n"
           "world_from_sensor of a camera that takes this view upright: float64, shape (4, 4),\n"
           "from its optical frame (x right, y down, z forward).")
-      .def("__repr__", &text_of);
+      .def("__repr__", &to_string);
   module.def("look_at", &look_at, py::arg("position"), py::arg("target"),
              "look_at(position, target)\n--\n\n"
              "The view from `position` to `target`, arrays of shape (3,) in the world frame.");

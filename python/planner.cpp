@@ -72,11 +72,11 @@ class Planner {
     return guarded_->planner->next_view(scan);
   }
 
-  std::optional<View> next_view_instead() {
+  std::optional<View> next_alternative_view() {
     py::gil_scoped_release others_go_on;
     const Lock lock(guarded_->in_use);
     require_none_shown();
-    return guarded_->planner->next_view_instead();
+    return guarded_->planner->next_alternative_view();
   }
 
   std::unique_ptr<ShownCloud> cloud() const {
@@ -104,11 +104,12 @@ class Planner {
   std::shared_ptr<GuardedPlanner> guarded_;
 };
 
-py::array_t<std::uint32_t> views_of(const py::object& self, const geometry::PointCloud& cloud) {
-  return view_of(cloud.views.data(), static_cast<py::ssize_t>(cloud.views.size()), 0, self);
+py::array_t<std::uint32_t> collect_views(const py::object& self,
+                                         const geometry::PointCloud& cloud) {
+  return make_array_view(cloud.views.data(), static_cast<py::ssize_t>(cloud.views.size()), 0, self);
 }
 
-py::dict times_of(const PlanningStep& step) {
+py::dict times_to_dict(const PlanningStep& step) {
   py::dict times;
   for (const survey::PartTime& time : step.times) times[py::str(time.part)] = time.seconds;
   return times;
@@ -122,7 +123,7 @@ void bind_step(py::module_& module) {
                     "Number of frontiers resolved by this scan.")
       .def_readonly("target_resolved", &PlanningStep::target_resolved,
                     "Whether the target of the view was resolved; None if the view had no target.")
-      .def_property_readonly("times", &times_of,
+      .def_property_readonly("times", &times_to_dict,
                              "Seconds of each part, in order; their sum is the planning time.");
 }
 
@@ -135,13 +136,13 @@ void bind_clouds(py::module_& module) {
       .def_property_readonly(
           "xyz",
           [](const py::object& self) {
-            return view_of(self.cast<const ShownCloud&>().cloud().positions, self);
+            return make_array_view(self.cast<const ShownCloud&>().cloud().positions, self);
           },
           xyz)
       .def_property_readonly(
           "views",
           [](const py::object& self) {
-            return views_of(self, self.cast<const ShownCloud&>().cloud());
+            return collect_views(self, self.cast<const ShownCloud&>().cloud());
           },
           views)
       .def("__len__", [](const ShownCloud& shown) { return shown.cloud().size(); });
@@ -149,13 +150,13 @@ void bind_clouds(py::module_& module) {
       .def_property_readonly(
           "xyz",
           [](const py::object& self) {
-            return view_of(self.cast<const geometry::PointCloud&>().positions, self);
+            return make_array_view(self.cast<const geometry::PointCloud&>().positions, self);
           },
           xyz)
       .def_property_readonly(
           "views",
           [](const py::object& self) {
-            return views_of(self, self.cast<const geometry::PointCloud&>());
+            return collect_views(self, self.cast<const geometry::PointCloud&>());
           },
           views)
       .def("__len__", &geometry::PointCloud::size);
@@ -184,14 +185,14 @@ void bind_planner(py::module_& module) {
           "shape\n(N,), strictly ascending; all others are no-return pixels. None: the sensor has "
           "no\nimage.\n\nRaises Error for an unusable scan, and BufferError while arrays of "
           "cloud() are alive.\nOther threads must not modify the arrays during the call.")
-      .def("replacement_view", &Planner::next_view_instead,
+      .def("replacement_view", &Planner::next_alternative_view,
            "replacement_view($self)\n--\n\nAnother view instead of the last one, which is "
            "unreachable; None when there is none left.")
       .def(
           "next_view_instead",
           [](Planner& planner) {
-            warn_of_former_name("next_view_instead", "replacement_view");
-            return planner.next_view_instead();
+            warn_deprecated_name("next_view_instead", "replacement_view");
+            return planner.next_alternative_view();
           },
           "next_view_instead($self)\n--\n\nFormer name of replacement_view.")
       .def("cloud", &Planner::cloud,

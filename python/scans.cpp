@@ -25,7 +25,7 @@ struct Return {
   float intensity, scan_angle;
   std::uint32_t triangle;
   std::uint16_t channel;
-  std::uint8_t return_number, returns_of_shot;
+  std::uint8_t return_number, number_of_returns;
 };
 static_assert(sizeof(Return) == 48);
 
@@ -50,14 +50,14 @@ void append(const sim::LidarReturns& part, Return*& next) {
     next->triangle = part.triangles[i];
     next->channel = part.channels[i];
     next->return_number = part.return_numbers[i];
-    next->returns_of_shot = part.returns_of_shots[i];
+    next->number_of_returns = part.number_of_returns[i];
   }
 }
 
 /// Scan generator for use by one thread at a time.
-class ScanPieces {
+class ScanChunks {
  public:
-  ScanPieces(const Mission& mission, const missions::api::ScanRequest& request)
+  ScanChunks(const Mission& mission, const missions::api::ScanRequest& request)
       : scan_(mission, request) {}
 
   py::array next() {
@@ -71,11 +71,11 @@ class ScanPieces {
       for (const sim::LidarReturns& part : parts) size += part.size();
     }
     if (parts.empty()) throw py::stop_iteration();
-    py::array piece(return_type(), static_cast<py::ssize_t>(size));
-    auto* place = static_cast<Return*>(piece.mutable_data());
+    py::array chunk(return_type(), static_cast<py::ssize_t>(size));
+    auto* output = static_cast<Return*>(chunk.mutable_data());
     py::gil_scoped_release others_go_on;
-    for (const sim::LidarReturns& part : parts) append(part, place);
-    return piece;
+    for (const sim::LidarReturns& part : parts) append(part, output);
+    return chunk;
   }
 
  private:
@@ -83,20 +83,20 @@ class ScanPieces {
   std::mutex in_use_;
 };
 
-std::unique_ptr<ScanPieces> scan(const Mission& mission, const std::optional<std::string>& sensor,
+std::unique_ptr<ScanChunks> scan(const Mission& mission, const std::optional<std::string>& sensor,
                                  const std::optional<std::filesystem::path>& route) {
   py::gil_scoped_release others_go_on;
-  return std::make_unique<ScanPieces>(mission,
+  return std::make_unique<ScanChunks>(mission,
                                       missions::api::ScanRequest{.sensor = sensor, .route = route});
 }
 
 }  // namespace
 
 void bind_scans(py::module_& module) {
-  py::class_<ScanPieces>(module, "LaserScan",
+  py::class_<ScanChunks>(module, "LaserScan",
                          "An iterator over the pieces of a laser scanner's flight; see scan().")
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", &ScanPieces::next);
+      .def("__next__", &ScanChunks::next);
   module.def("scan", &scan, py::arg("mission"), py::arg("sensor") = py::none(),
              py::arg("route") = py::none(),
              "scan(mission, sensor=None, route=None)\n--\n\nSimulates the flight of a laser "

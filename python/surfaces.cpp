@@ -26,7 +26,7 @@ Mesh mesh_from(const Array<double>& vertices, const py::object& corners) {
     throw py::value_error("triangles must have shape (M, 3)");
   }
   Mesh mesh;
-  mesh.vertices = places_in(vertices, "vertices");
+  mesh.vertices = positions_in(vertices, "vertices");
   for (py::ssize_t i = 0; i < triangles.shape(0); ++i) {
     mesh.triangles.push_back({triangles.at(i, 0), triangles.at(i, 1), triangles.at(i, 2)});
   }
@@ -34,10 +34,10 @@ Mesh mesh_from(const Array<double>& vertices, const py::object& corners) {
   return mesh;
 }
 
-py::array_t<std::uint32_t> triangles_of(const py::object& self) {
+py::array_t<std::uint32_t> to_triangles(const py::object& self) {
   const auto& mesh = self.cast<const Mesh&>();
-  return view_of(mesh.triangles.data()->data(), static_cast<py::ssize_t>(mesh.triangles.size()), 3,
-                 self);
+  return make_array_view(mesh.triangles.data()->data(),
+                         static_cast<py::ssize_t>(mesh.triangles.size()), 3, self);
 }
 
 std::vector<std::string> model_names() {
@@ -88,9 +88,11 @@ void bind_surfaces(py::module_& module) {
       .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly(
           "vertices",
-          [](const py::object& self) { return view_of(self.cast<const Mesh&>().vertices, self); },
+          [](const py::object& self) {
+            return make_array_view(self.cast<const Mesh&>().vertices, self);
+          },
           "float64, shape (N, 3), in metres; read-only, not copied.")
-      .def_property_readonly("triangles", &triangles_of,
+      .def_property_readonly("triangles", &to_triangles,
                              "uint32, shape (M, 3); read-only, not copied.")
       .def_property_readonly("area", &geometry::surface_area, "Surface area, in square metres.");
   module.def(

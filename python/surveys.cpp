@@ -56,7 +56,7 @@ void bind_surveys(py::module_& module) {
   bind_surveyed_view(module);
   py::class_<Survey>(module, "Survey", "A survey from its first view to its last.")
       .def_property_readonly(
-          "end", [](const Survey& whole) { return survey::name_of(whole.end); },
+          "end", [](const Survey& whole) { return survey::to_string(whole.end); },
           "Stop reason: 'complete', 'view_limit', 'distance_limit', 'time_limit' "
           "or\n'no_reachable_view'.")
       .def_readonly("views", &Survey::views, "The views in order.")
@@ -66,7 +66,8 @@ void bind_surveys(py::module_& module) {
           "coverages",
           [](const py::object& self) {
             const auto& coverages = self.cast<const Survey&>().coverages;
-            return view_of(coverages.data(), static_cast<py::ssize_t>(coverages.size()), 0, self);
+            return make_array_view(coverages.data(), static_cast<py::ssize_t>(coverages.size()), 0,
+                                   self);
           },
           "Covered fraction after each view: float64, shape (number of views,); read-only.")
       .def_readonly("cloud", &Survey::cloud, "The measured points.")

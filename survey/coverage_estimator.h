@@ -5,10 +5,10 @@
 #include <memory>
 #include <string_view>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 class GainField;
-struct SurveyBelief;
-}  // namespace skycap::survey::skycap
+struct SurveyEstimate;
+}  // namespace skycap::survey::surfel
 
 namespace skycap::survey {
 
@@ -20,16 +20,15 @@ class CoverageEstimator {
   virtual double predicted_coverage() const = 0;
 
   /// Returns the complete estimate of the surface.
-  virtual skycap::SurveyBelief belief() const = 0;
+  virtual surfel::SurveyEstimate estimate() const = 0;
 
   /// Returns the name of the stop rule that ended the survey, as used in files, such as
   /// "target_coverage" or "min_gain". Returns "running" if no stop rule has ended it.
   virtual std::string_view stop_rule() const = 0;
 
   /// Returns a gain field that predicts how views would cover the measured surface from an empty
-  /// cloud. It has at most `most_targets` targets. Returns null before the first scan.
-  virtual std::shared_ptr<const skycap::GainField> known_surface(
-      std::size_t most_targets) const = 0;
+  /// cloud. It has at most `max_targets` targets. Returns null before the first scan.
+  virtual std::shared_ptr<const surfel::GainField> known_surface(std::size_t max_targets) const = 0;
 
  protected:
   CoverageEstimator() = default;

@@ -20,12 +20,12 @@ class LimitedPlanner final : public Planner {
 
   std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
   void pass(const geometry::ScanSpan& scan) override { planner_->pass(scan); }
-  std::optional<geometry::View> next_view_instead() override;
-  void keep_to(PlaceCheck may_be_at) override { planner_->keep_to(std::move(may_be_at)); }
+  std::optional<geometry::View> next_alternative_view() override;
+  void keep_to(PositionCheck may_be_at) override { planner_->keep_to(std::move(may_be_at)); }
   bool allows(const geometry::View& view) override;
   void stop_on(const std::stop_token& stop) override;
   const geometry::PointCloud& cloud() const override { return planner_->cloud(); }
-  geometry::PointCloud release_cloud() override { return planner_->release_cloud(); }
+  geometry::PointCloud take_cloud() override { return planner_->take_cloud(); }
   const PlanningStep& last_step() const override { return step_; }
   StopReason stop_reason() const override;
   const CoverageEstimator* estimator() const override { return planner_->estimator(); }
@@ -39,7 +39,7 @@ class LimitedPlanner final : public Planner {
   std::size_t points_known_ = 0;
   PlanningStep step_;
   std::stop_token stop_;
-  bool has_refused_ = false;  ///< a proposal was rejected since the last next_view()
+  bool has_rejected_ = false;  ///< a proposal was rejected since the last next_view()
 };
 
 }  // namespace skycap::survey

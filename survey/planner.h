@@ -20,7 +20,7 @@ namespace skycap::survey {
 class CoverageEstimator;
 
 /// Returns whether views at a position are allowed. Must be thread-safe.
-using PlaceCheck = std::function<bool(const Eigen::Vector3d&)>;
+using PositionCheck = std::function<bool(const Eigen::Vector3d&)>;
 
 /// Computing time of one part of the planner for one view.
 struct PartTime {
@@ -58,11 +58,11 @@ class Planner {
 
   /// Returns another view instead of the last one, which is unreachable, or nullopt if there are no
   /// more. May be called repeatedly.
-  virtual std::optional<geometry::View> next_view_instead() = 0;
+  virtual std::optional<geometry::View> next_alternative_view() = 0;
 
   /// Restricts proposals to positions allowed by `may_be_at` at the time of the proposal. Planners
-  /// that ignore it receive next_view_instead() for each rejected view.
-  virtual void keep_to(PlaceCheck /*may_be_at*/) {}
+  /// that ignore it receive next_alternative_view() for each rejected view.
+  virtual void keep_to(PositionCheck /*may_be_at*/) {}
 
   /// Returns whether the planner's own limits allow a view chosen by the survey, such as one of the
   /// initial pattern. A planner without limits allows all views.
@@ -77,7 +77,7 @@ class Planner {
 
   /// Moves the cloud out of the planner at the end of the survey. No other member function may be
   /// called afterwards.
-  virtual geometry::PointCloud release_cloud() = 0;
+  virtual geometry::PointCloud take_cloud() = 0;
 
   /// Returns the effects of the last next_view().
   virtual const PlanningStep& last_step() const = 0;

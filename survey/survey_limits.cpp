@@ -22,7 +22,7 @@ constexpr auto reasons = std::to_array<NamedReason>({
 
 }  // namespace
 
-const char* name_of(StopReason reason) {
+const char* to_string(StopReason reason) {
   return std::ranges::find(reasons, reason, &NamedReason::reason)->name;
 }
 

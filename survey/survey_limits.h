@@ -19,7 +19,7 @@ enum class StopReason {
 };
 
 /// Returns the name of the enumerator, such as "complete" or "view_limit".
-const char* name_of(StopReason reason);
+const char* to_string(StopReason reason);
 
 /// Returns the reason with this name, or nullopt.
 std::optional<StopReason> stop_reason_named(std::string_view name);

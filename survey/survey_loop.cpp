@@ -30,98 +30,102 @@ double processor_time() {
 
 /// Runs a planner function and adds its duration to the planning times.
 template <typename Work>
-auto planned(SurveyedView& taken, Work work) {
+auto planned(SurveyedView& surveyed_view, Work work) {
   const double begun = processor_time();
-  auto result = timed(taken.planning_time, work);
-  taken.planning_processor_time += processor_time() - begun;
+  auto result = timed(surveyed_view.planning_time, work);
+  surveyed_view.planning_processor_time += processor_time() - begun;
   return result;
 }
 
 /// Adds the planning time that is not assigned to any part to `part`.
-void book_rest(SurveyedView& taken, const char* part) {
-  double rest = taken.planning_time;
-  for (const PartTime& time : taken.step.times) rest -= time.seconds;
-  add_time(taken.step.times, part, rest);
+void record_remainder(SurveyedView& surveyed_view, const char* part) {
+  double rest = surveyed_view.planning_time;
+  for (const PartTime& time : surveyed_view.step.times) rest -= time.seconds;
+  add_time(surveyed_view.step.times, part, rest);
 }
 
 }  // namespace
 
-SurveySteps::SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports)
-    : planner_(planner), limits_(limits), ports_(std::move(ports)) {}
+SurveyStepper::SurveyStepper(Planner& planner, const SurveyLimits& limits,
+                             SurveyCallbacks callbacks)
+    : planner_(planner), limits_(limits), callbacks_(std::move(callbacks)) {}
 
-void SurveySteps::pass(const geometry::Scan& scan, double sensing_time) {
-  if (ports_.sensed_on_way) ports_.sensed_on_way(scan);
+void SurveyStepper::pass(const geometry::Scan& scan, double sensing_time) {
+  if (callbacks_.sensed_en_route) callbacks_.sensed_en_route(scan);
   coming_.sensing_time += sensing_time;
-  coming_.on_way.views.push_back(geometry::view_of(scan.world_from_sensor));
-  coming_.on_way.returns += scan.points.size();
+  coming_.en_route.views.push_back(geometry::to_view(scan.world_from_sensor));
+  coming_.en_route.returns += scan.points.size();
   planned(coming_, [&] {
     planner_.pass(scan);
     return true;
   });
 }
 
-std::optional<View> SurveySteps::take_in(const geometry::Scan& scan, double sensing_time) {
-  if (ports_.sensed) ports_.sensed(scan);
-  SurveyedView taken = std::exchange(coming_, {});
-  taken.sensing_time += sensing_time;
-  taken.view = geometry::view_of(scan.world_from_sensor);
+std::optional<View> SurveyStepper::add_scan(const geometry::Scan& scan, double sensing_time) {
+  if (callbacks_.sensed) callbacks_.sensed(scan);
+  SurveyedView surveyed_view = std::exchange(coming_, {});
+  surveyed_view.sensing_time += sensing_time;
+  surveyed_view.view = geometry::to_view(scan.world_from_sensor);
   if (!views_.empty()) {
-    taken.distance =
-        views_.back().distance + (taken.view.position - views_.back().view.position).norm();
+    surveyed_view.distance =
+        views_.back().distance + (surveyed_view.view.position - views_.back().view.position).norm();
   }
-  std::optional<View> next = planned(taken, [&] { return planner_.next_view(scan); });
-  taken.step = planner_.last_step();
-  book_rest(taken, "rest");
-  if (std::optional<View> given = opening_view(taken)) {
+  std::optional<View> next = planned(surveyed_view, [&] { return planner_.next_view(scan); });
+  surveyed_view.step = planner_.last_step();
+  record_remainder(surveyed_view, "rest");
+  if (std::optional<View> given = next_initial_view(surveyed_view)) {
     next = std::move(given);
   } else {
-    next = reachable(std::move(next), taken, false);
+    next = reachable(std::move(next), surveyed_view, false);
   }
-  taken.points = planner_.cloud().size();
-  taken.returns = scan.points.size();
-  views_.push_back(std::move(taken));
-  if (ports_.report) ports_.report(views_.back(), scan);
+  surveyed_view.points = planner_.cloud().size();
+  surveyed_view.returns = scan.points.size();
+  views_.push_back(std::move(surveyed_view));
+  if (callbacks_.report) callbacks_.report(views_.back(), scan);
   return within_limits(std::move(next));
 }
 
-std::optional<View> SurveySteps::opening_view(const SurveyedView& taken) {
-  while (opened_ < ports_.opening.size()) {
-    const View& view = ports_.opening[opened_++];
+std::optional<View> SurveyStepper::next_initial_view(const SurveyedView& surveyed_view) {
+  while (initial_views_done_ < callbacks_.initial_pattern.size()) {
+    const View& view = callbacks_.initial_pattern[initial_views_done_++];
     if (!planner_.allows(view)) continue;
-    if (!ports_.can_reach || ports_.can_reach(taken.view.position, view)) return view;
+    if (!callbacks_.can_reach || callbacks_.can_reach(surveyed_view.view.position, view))
+      return view;
   }
   return std::nullopt;
 }
 
-std::optional<View> SurveySteps::refuse() {
-  SurveyedView& taken = views_.back();
-  std::optional<View> next = planned(taken, [&] { return planner_.next_view_instead(); });
-  return within_limits(reachable(std::move(next), taken, true));
+std::optional<View> SurveyStepper::reject() {
+  SurveyedView& surveyed_view = views_.back();
+  std::optional<View> next =
+      planned(surveyed_view, [&] { return planner_.next_alternative_view(); });
+  return within_limits(reachable(std::move(next), surveyed_view, true));
 }
 
-void SurveySteps::stop_on(const std::stop_token& stop) {
+void SurveyStepper::stop_on(const std::stop_token& stop) {
   stop_ = stop;
   planner_.stop_on(stop);
-  if (ports_.stop_on) ports_.stop_on(stop);
+  if (callbacks_.stop_on) callbacks_.stop_on(stop);
 }
 
-std::optional<View> SurveySteps::reachable(std::optional<View> next, SurveyedView& taken,
-                                           bool is_refused) {
-  while (next && ports_.can_reach && !ports_.can_reach(taken.view.position, *next)) {
+std::optional<View> SurveyStepper::reachable(std::optional<View> next, SurveyedView& surveyed_view,
+                                             bool is_rejected) {
+  while (next && callbacks_.can_reach &&
+         !callbacks_.can_reach(surveyed_view.view.position, *next)) {
     if (stop_.stop_requested()) throw Interrupted();
-    is_refused = true;
-    next = planned(taken, [&] { return planner_.next_view_instead(); });
+    is_rejected = true;
+    next = planned(surveyed_view, [&] { return planner_.next_alternative_view(); });
   }
-  if (is_refused) book_rest(taken, "instead");
-  if (!next) stop_reason_ = is_refused ? StopReason::nowhere_to_go : planner_.stop_reason();
+  if (is_rejected) record_remainder(surveyed_view, "instead");
+  if (!next) stop_reason_ = is_rejected ? StopReason::nowhere_to_go : planner_.stop_reason();
   return next;
 }
 
-std::optional<View> SurveySteps::within_limits(std::optional<View> next) {
+std::optional<View> SurveyStepper::within_limits(std::optional<View> next) {
   if (!next) return std::nullopt;
   const SurveyedView& last = views_.back();
-  const double way = (next->position - last.view.position).norm();
-  const auto reason = broken_limit(limits_, {views_.size(), last.distance + way});
+  const double travelled = (next->position - last.view.position).norm();
+  const auto reason = broken_limit(limits_, {views_.size(), last.distance + travelled});
   if (!reason) return next;
   stop_reason_ = *reason;
   return std::nullopt;
@@ -129,16 +133,16 @@ std::optional<View> SurveySteps::within_limits(std::optional<View> next) {
 
 namespace {
 
-/// Takes the en-route scans between the last view and `next`, and reuses the memory of `recycled`.
+/// Takes the en-route scans between the last view and `next`, and reuses the memory of `buffer`.
 /// Returns false if a stop was requested.
-bool scanned_on_way(SurveySteps& steps, const View& next, const SurveyPorts& ports,
-                    geometry::Scan& recycled, const std::stop_token& stop) {
-  if (!ports.views_on_way || steps.views().empty()) return true;
-  for (const View& view : ports.views_on_way(steps.views().back().view, next)) {
+bool scanned_en_route(SurveyStepper& steps, const View& next, const SurveyCallbacks& callbacks,
+                      geometry::Scan& buffer, const std::stop_token& stop) {
+  if (!callbacks.en_route_views || steps.views().empty()) return true;
+  for (const View& view : callbacks.en_route_views(steps.views().back().view, next)) {
     if (stop.stop_requested()) return false;
     double sensing_time = 0.0;
-    recycled = timed(sensing_time, [&] { return ports.sense_on_way(view, std::move(recycled)); });
-    steps.pass(recycled, sensing_time);
+    buffer = timed(sensing_time, [&] { return callbacks.sense_en_route(view, std::move(buffer)); });
+    steps.pass(buffer, sensing_time);
   }
   return true;
 }
@@ -146,18 +150,18 @@ bool scanned_on_way(SurveySteps& steps, const View& next, const SurveyPorts& por
 }  // namespace
 
 SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLimits& limits,
-                        const SurveyPorts& ports, std::stop_token stop) {
-  SurveySteps steps(planner, limits, ports);
+                        const SurveyCallbacks& callbacks, std::stop_token stop) {
+  SurveyStepper steps(planner, limits, callbacks);
   std::optional<View> next = first_view;
   geometry::Scan scan;
   while (next) {
-    if (!scanned_on_way(steps, *next, ports, scan, stop)) {
+    if (!scanned_en_route(steps, *next, callbacks, scan, stop)) {
       return {StopReason::interrupted, std::move(steps).views()};
     }
     double sensing_time = 0.0;
-    scan = timed(sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
+    scan = timed(sensing_time, [&] { return callbacks.sense(*next, std::move(scan)); });
     try {
-      next = steps.take_in(scan, sensing_time);
+      next = steps.add_scan(scan, sensing_time);
     } catch (const Interrupted&) {  // the last scan is not counted
       return {StopReason::interrupted, std::move(steps).views()};
     }

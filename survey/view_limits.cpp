@@ -23,12 +23,13 @@ void require_limit(bool holds, const std::string& what) {
 }  // namespace
 
 void ViewLimits::validate() const {
-  require_limit(stand_off >= 0.0 && std::isfinite(stand_off),
-                "stand_off is " + std::to_string(stand_off) + "; it must be zero or more metres");
-  require_limit(!least_height || !most_height || *least_height < *most_height,
+  require_limit(
+      min_standoff >= 0.0 && std::isfinite(min_standoff),
+      "stand_off is " + std::to_string(min_standoff) + "; it must be zero or more metres");
+  require_limit(!min_height || !max_height || *min_height < *max_height,
                 "least_height must be less than most_height; no airspace is left");
   require_limit(
-      least_pitch < most_pitch && std::abs(least_pitch) < 1.5708 && std::abs(most_pitch) < 1.5708,
+      min_pitch < max_pitch && std::abs(min_pitch) < 1.5708 && std::abs(max_pitch) < 1.5708,
       "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
   require_limit(
       geofence.empty() || geofence.size() >= 3,
@@ -44,12 +45,12 @@ void ViewLimits::validate() const {
 
 bool ViewLimits::allow(const geometry::View& view) const {
   const double height = view.position.z();
-  if ((least_height && height < *least_height) || (most_height && height > *most_height)) {
+  if ((min_height && height < *min_height) || (max_height && height > *max_height)) {
     return false;
   }
   const double pitch = std::asin(std::clamp(view.direction.z(), -1.0, 1.0));
-  if (pitch < least_pitch - angle_tolerance || pitch > most_pitch + angle_tolerance) return false;
-  if (least_height_over && height < least_height_over(view.position.head<2>())) return false;
+  if (pitch < min_pitch - angle_tolerance || pitch > max_pitch + angle_tolerance) return false;
+  if (min_height_at && height < min_height_at(view.position.head<2>())) return false;
   if (!geofence.empty() && !geometry::contains(geofence, view.position.head<2>())) return false;
   return std::ranges::none_of(no_fly, [&](const geometry::Prism& prism) {
     return geometry::contains(prism, view.position);
@@ -58,27 +59,27 @@ bool ViewLimits::allow(const geometry::View& view) const {
 
 std::optional<geometry::View> ViewLimits::turned_view(const Vector3d& target,
                                                       const Vector3d& towards_view, double distance,
-                                                      const std::optional<double>& least) const {
+                                                      const std::optional<double>& min) const {
   // Elevation of the view as seen from the target; equal to the downward pitch of the view.
-  double lowest = -most_pitch, highest = -least_pitch;
+  double min_elevation = -max_pitch, max_elevation = -min_pitch;
   // Margin inside the limits, so that rounding errors do not violate them.
   const double margin = 1e-6 * distance;
-  if (least) {
-    const double sine = (*least + margin - target.z()) / distance;
+  if (min) {
+    const double sine = (*min + margin - target.z()) / distance;
     if (sine > 1.0) return std::nullopt;
-    lowest = std::max(lowest, std::asin(std::max(sine, -1.0)));
+    min_elevation = std::max(min_elevation, std::asin(std::max(sine, -1.0)));
   }
-  if (most_height) {
-    const double sine = (*most_height - margin - target.z()) / distance;
+  if (max_height) {
+    const double sine = (*max_height - margin - target.z()) / distance;
     if (sine < -1.0) return std::nullopt;
-    highest = std::min(highest, std::asin(std::min(sine, 1.0)));
+    max_elevation = std::min(max_elevation, std::asin(std::min(sine, 1.0)));
   }
-  if (lowest > highest) return std::nullopt;
+  if (min_elevation > max_elevation) return std::nullopt;
 
-  const double wanted = std::asin(std::clamp(towards_view.z(), -1.0, 1.0));
-  const double elevation = std::clamp(wanted, lowest, highest);
+  const double target_elevation = std::asin(std::clamp(towards_view.z(), -1.0, 1.0));
+  const double elevation = std::clamp(target_elevation, min_elevation, max_elevation);
   Vector3d towards = towards_view;
-  if (elevation != wanted) {
+  if (elevation != target_elevation) {
     const Vector2d level = towards_view.head<2>();
     const Vector2d azimuth =
         level.norm() > 1e-9 ? Vector2d(level.normalized()) : Vector2d(1.0, 0.0);
@@ -87,16 +88,16 @@ std::optional<geometry::View> ViewLimits::turned_view(const Vector3d& target,
   return geometry::View{target + distance * towards, -towards};
 }
 
-std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,
-                                                         const Vector3d& towards_view,
-                                                         double distance) const {
-  std::optional<geometry::View> view = turned_view(target, towards_view, distance, least_height);
+std::optional<geometry::View> ViewLimits::make_target_view(const Vector3d& target,
+                                                           const Vector3d& towards_view,
+                                                           double distance) const {
+  std::optional<geometry::View> view = turned_view(target, towards_view, distance, min_height);
   // Raising a view over a slope changes the ground below it. A few iterations are sufficient.
-  constexpr int most_raises = 4;
-  for (int i = 0; least_height_over && view && i < most_raises; ++i) {
-    const double least = least_height_over(view->position.head<2>());
-    if (view->position.z() >= least) break;
-    view = turned_view(target, towards_view, distance, least);
+  constexpr int max_raises = 4;
+  for (int i = 0; min_height_at && view && i < max_raises; ++i) {
+    const double min = min_height_at(view->position.head<2>());
+    if (view->position.z() >= min) break;
+    view = turned_view(target, towards_view, distance, min);
   }
   return view && allow(*view) ? view : std::nullopt;
 }

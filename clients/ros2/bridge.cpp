@@ -12,25 +12,25 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Json = nlohmann::json;
 
-Vector3d vector_of(const Json& json) {
+Vector3d to_vector(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
-Isometry3d view_of(const Json& view) {
+Isometry3d parse_view(const Json& view) {
   const auto q = view.at("quaternion_xyzw").get<std::vector<double>>();
   Isometry3d pose = Isometry3d::Identity();
   pose.linear() = Eigen::Quaterniond(q.at(3), q.at(0), q.at(1), q.at(2)).toRotationMatrix();
-  pose.translation() = vector_of(view.at("position"));
+  pose.translation() = to_vector(view.at("position"));
   return pose;
 }
 
-skycap_live::Pose rows_of(const Isometry3d& pose) {
+skycap_live::Pose to_rows(const Isometry3d& pose) {
   skycap_live::Pose rows{};
   for (int i = 0; i < 12; ++i) rows[static_cast<std::size_t>(i)] = pose(i / 4, i % 4);
   return rows;
 }
 
-skycap_live::PoseError error_of(const std::optional<Covariance>& covariance) {
+skycap_live::PoseError to_pose_error(const std::optional<Covariance>& covariance) {
   if (!covariance) return {};
   skycap_live::PoseCovariance rows{};
   for (int i = 0; i < 36; ++i) rows[static_cast<std::size_t>(i)] = (*covariance)(i / 6, i % 6);
@@ -53,11 +53,11 @@ void require_same(std::string& kept, const std::string& name, const std::string&
 
 }  // namespace
 
-Bridge::Bridge(BridgeConfig config, SurveyPort survey, Outlets outlets)
+Bridge::Bridge(BridgeConfig config, SurveyPort survey, BridgeCallbacks callbacks)
     : config_(std::move(config)),
       survey_(std::move(survey)),
-      outlets_(std::move(outlets)),
-      complaints_(outlets_.warning),
+      callbacks_(std::move(callbacks)),
+      warnings_(callbacks_.warning),
       history_(config_.history),
       transforms_(config_.history),
       world_frame_(config_.world),
@@ -70,16 +70,17 @@ void Bridge::guarded(const std::string& kind, double now, const std::function<vo
   try {
     receive();
   } catch (const Error& failure) {
-    complain(kind, kind + ": " + failure.what(), now);
-  } catch (const skycap_live::Refused& refusal) {
+    warn_throttled(kind, kind + ": " + failure.what(), now);
+  } catch (const skycap_live::Rejected& rejection) {
     constexpr double pause = 1.0;
-    complain(kind, kind + " rejected by the survey: " + text_of(refusal.what()), now);
+    warn_throttled(kind, kind + " rejected by the survey: " + printable_text(rejection.what()),
+                   now);
     not_before_ = now + pause;
   }
 }
 
-void Bridge::complain(const std::string& kind, const std::string& line, double now) {
-  if (complaints_.add(kind, line, now)) publish_status();
+void Bridge::warn_throttled(const std::string& kind, const std::string& line, double now) {
+  if (warnings_.add(kind, line, now)) publish_status();
 }
 
 void Bridge::receive(const Odometry& odometry, double now) {
@@ -87,10 +88,10 @@ void Bridge::receive(const Odometry& odometry, double now) {
 }
 
 void Bridge::add_odometry(const Odometry& odometry) {
-  const Stamp stamp = stamp_of(odometry.header);
+  const Stamp stamp = to_stamp(odometry.header);
   const BodyPose pose = body_pose(odometry);
-  require_same(world_frame_, text_of(odometry.header.frame_id), "its frame");
-  require_same(body_frame_, text_of(odometry.child_frame_id), "its child frame");
+  require_same(world_frame_, printable_text(odometry.header.frame_id), "its frame");
+  require_same(body_frame_, printable_text(odometry.child_frame_id), "its child frame");
   if (history_.add(stamp, pose) == PoseHistory::Added::contradicts) {
     throw Error(ErrorKind::bad_geometry, "another pose has the same stamp");
   }
@@ -103,7 +104,7 @@ void Bridge::locate() {
   if (is_located_) return;
   is_located_ = true;
   publish_goal();  // Publishes the goal again, now with its frame.
-  say("waiting for a scan");
+  set_status("waiting for a scan");
 }
 
 void Bridge::receive(const TFMessage& message, bool is_static, double now) {
@@ -119,38 +120,39 @@ void Bridge::receive(const TFMessage& message, bool is_static, double now) {
 
 void Bridge::receive(const PointCloud2& cloud, double now) {
   guarded("cloud", now, [&] {
-    add_scan(cloud.header, now, [&] { return scan_of(cloud, config_.mount.axes()); });
+    add_scan(cloud.header, now, [&] { return make_scan(cloud, config_.mount.axes()); });
   });
 }
 
 void Bridge::receive(const CameraInfo& info, double now) {
   guarded("CameraInfo", now, [&] {
-    lens_.reset();
-    lens_ = lens_of(info, config_.is_rectified);
+    intrinsics_.reset();
+    intrinsics_ = to_intrinsics(info, config_.is_rectified);
   });
 }
 
 void Bridge::receive(const Image& image, double now) {
   guarded("image", now, [&] {
     add_scan(image.header, now, [&] {
-      if (!lens_) throw Error(ErrorKind::bad_geometry, "no CameraInfo received yet");
-      return scan_of(image, *lens_);
+      if (!intrinsics_) throw Error(ErrorKind::bad_geometry, "no CameraInfo received yet");
+      return make_scan(image, *intrinsics_);
     });
   });
 }
 
 bool Bridge::wants_scan(double now) const {
   if (waiting_ || is_finished_ || now < not_before_) return false;
-  if (is_told_to_take_) return true;
+  if (is_add_requested_) return true;
   const auto state = answer_.at("state").get<std::string>();
-  return config_.taking != Taking::command && !holds_ && (state == "view" || state == "first_scan");
+  return config_.taking != Taking::command && !is_suspended_ &&
+         (state == "view" || state == "first_scan");
 }
 
 void Bridge::add_scan(const Header& header, double now, const std::function<SensorScan()>& scan) {
-  const Stamp stamp = stamp_of(header);
-  require_same(sensor_frame_, text_of(header.frame_id), "its frame");
+  const Stamp stamp = to_stamp(header);
+  require_same(sensor_frame_, printable_text(header.frame_id), "its frame");
   if (!wants_scan(now)) return;
-  if (stamp <= last_taken_) {
+  if (stamp <= last_added_) {
     throw Error(ErrorKind::bad_geometry,
                 "its stamp is not after that of the last accepted scan: duplicate, late, or the "
                 "robot's clock was set back");
@@ -158,16 +160,16 @@ void Bridge::add_scan(const Header& header, double now, const std::function<Sens
   waiting_ = Waiting{stamp, now, scan()};
 }
 
-Bridge::Whereabouts Bridge::with_mount(const PoseMatch& body, Stamp stamp) const {
-  Whereabouts found{body, config_.mount};
+Bridge::PoseState Bridge::with_mount(const PoseMatch& body, Stamp stamp) const {
+  PoseState found{body, config_.mount};
   if (!config_.uses_transforms || body.state != PoseMatch::State::known) return found;
   const PoseMatch sensor = transforms_.at(body_frame_, sensor_frame_, stamp);
   if (sensor.state != PoseMatch::State::known) return {sensor, config_.mount};
-  found.mount = Mount(isometry_of(sensor.pose), config_.mount.axes());
+  found.mount = Mount(to_isometry(sensor.pose), config_.mount.axes());
   return found;
 }
 
-Bridge::Whereabouts Bridge::at(Stamp stamp) const {
+Bridge::PoseState Bridge::at(Stamp stamp) const {
   const bool asks_odometry = config_.world.empty();
   return with_mount(
       asks_odometry ? history_.at(stamp) : transforms_.at(world_frame_, body_frame_, stamp), stamp);
@@ -181,12 +183,12 @@ std::optional<Mount> Bridge::newest_mount() const {
   return Mount(body_from_sensor->target_from_source, config_.mount.axes());
 }
 
-bool Bridge::has_arrived(const Whereabouts& whereabouts) const {
-  if (whereabouts.body.state != PoseMatch::State::known) return false;
-  const Isometry3d optical = whereabouts.mount.world_from_optical(whereabouts.body.pose);
-  const Vector3d axis = optical.linear().col(2), wanted = view_->linear().col(2);
+bool Bridge::has_arrived(const PoseState& pose_state) const {
+  if (pose_state.body.state != PoseMatch::State::known) return false;
+  const Isometry3d optical = pose_state.mount.world_from_optical(pose_state.body.pose);
+  const Vector3d axis = optical.linear().col(2), target = view_->linear().col(2);
   return (optical.translation() - view_->translation()).norm() <= config_.position_tolerance &&
-         std::atan2(axis.cross(wanted).norm(), axis.dot(wanted)) <= config_.direction_tolerance;
+         std::atan2(axis.cross(target).norm(), axis.dot(target)) <= config_.direction_tolerance;
 }
 
 /// Returns true if the sensor was within the tolerances during the whole settling time before the
@@ -195,9 +197,9 @@ bool Bridge::has_arrived(const Whereabouts& whereabouts) const {
 bool Bridge::has_settled(Stamp stamp) const {
   const auto settling = static_cast<Stamp>(config_.settling * 1e9);
   std::string gap;
-  const auto is_elsewhere = [&](const Whereabouts& found) {
+  const auto is_elsewhere = [&](const PoseState& found) {
     const bool is_known = found.body.state == PoseMatch::State::known;
-    if (!is_known && gap.empty()) gap = found.body.why;
+    if (!is_known && gap.empty()) gap = found.body.reason;
     return is_known && !has_arrived(found);
   };
   constexpr Stamp steps = 10;
@@ -219,14 +221,14 @@ void Bridge::proceed(double now) {
   if (lacks_mount_ && newest_mount()) publish_goal();
   if (waiting_) {
     guarded("scan", now, [&] {
-      const Whereabouts found = at(waiting_->stamp);
+      const PoseState found = at(waiting_->stamp);
       const bool waits_more = now - waiting_->since <= config_.patience;
       if (found.body.state == PoseMatch::State::open && waits_more) return;
       const Waiting waiting = *std::exchange(waiting_, std::nullopt);
       if (found.body.state != PoseMatch::State::known) {
-        throw Error(ErrorKind::bad_geometry, "its pose is unknown: " + found.body.why);
+        throw Error(ErrorKind::bad_geometry, "its pose is unknown: " + found.body.reason);
       }
-      take(waiting, found, now);
+      submit_scan(waiting, found, now);
     });
   }
   constexpr double longest_silence = 2.0;
@@ -236,56 +238,57 @@ void Bridge::proceed(double now) {
 }
 
 /// Returns true if the survey accepts scans en route.
-bool Bridge::measures_on_way() const {
+bool Bridge::measures_en_route() const {
   return answer_.contains("en_route") && view_ && answer_.at("scans").get<std::size_t>() > 0;
 }
 
-void Bridge::take(const Waiting& waiting, const Whereabouts& whereabouts, double now) {
+void Bridge::submit_scan(const Waiting& waiting, const PoseState& pose_state, double now) {
   auto from = skycap_live::From::view;
   if (config_.taking == Taking::arrived && view_) {
-    const bool is_there = has_arrived(whereabouts);
-    if (!is_there && measures_on_way()) {
-      from = skycap_live::From::way;
+    const bool is_there = has_arrived(pose_state);
+    if (!is_there && measures_en_route()) {
+      from = skycap_live::From::en_route;
       const auto period = static_cast<Stamp>(1e9 * answer_.at("frame_period_s").get<double>());
-      if (!is_told_to_take_ && waiting.stamp - last_taken_ < period) return;
-    } else if (!is_told_to_take_ && !(is_there && has_settled(waiting.stamp))) {
+      if (!is_add_requested_ && waiting.stamp - last_added_ < period) return;
+    } else if (!is_add_requested_ && !(is_there && has_settled(waiting.stamp))) {
       return;
     }
   }
-  say("planning");
+  set_status("planning");
   doing_ = "waiting for a scan";
-  is_told_to_take_ = false;
-  const auto& [body, mount] = whereabouts;
+  is_add_requested_ = false;
+  const auto& [body, mount] = pose_state;
   const auto covariance =
       config_.uses_covariance ? mount.covariance_at_sensor(body.pose) : std::optional<Covariance>();
-  const std::string answer = survey_.add(waiting.scan, rows_of(mount.world_from_optical(body.pose)),
-                                         error_of(covariance), from);
-  last_taken_ = waiting.stamp;
-  ++taken_;
+  const std::string answer = survey_.add(waiting.scan, to_rows(mount.world_from_optical(body.pose)),
+                                         to_pose_error(covariance), from);
+  last_added_ = waiting.stamp;
+  ++added_scans_;
   asked_at_ = now;
   learn(answer, from);
-  if (!holds_) return;
-  complain("pose",
-           "scan rejected: pose inconsistent with the map. Hold position, correct the pose, and "
-           "send the command take",
-           now);
+  if (!is_suspended_) return;
+  warn_throttled(
+      "pose",
+      "scan rejected: pose inconsistent with the map. Hold position, correct the pose, and "
+      "send the command take",
+      now);
 }
 
 void Bridge::receive(const String& command, double now) {
-  guarded("command", now, [&] { obey(text_of(command.data)); });
+  guarded("command", now, [&] { obey(printable_text(command.data)); });
 }
 
 void Bridge::obey(const std::string& command) {
-  const std::string refuse = "refuse ";
+  const std::string reject = "refuse ";
   if (command == "take") {
-    is_told_to_take_ = true;
+    is_add_requested_ = true;
   } else if (command == "finish") {
     survey_.finish();
     is_finished_ = true;
-    say("finished");
-  } else if (command.starts_with(refuse)) {
-    learn(survey_.refuse(answer_.at("id").get<std::size_t>(),
-                         escaped(command.substr(refuse.size()))));
+    set_status("finished");
+  } else if (command.starts_with(reject)) {
+    learn(survey_.reject(answer_.at("id").get<std::size_t>(),
+                         escaped(command.substr(reject.size()))));
   } else {
     throw Error(ErrorKind::bad_usage,
                 "'" + command + "': unknown command; expected take, refuse REASON or finish");
@@ -293,13 +296,13 @@ void Bridge::obey(const std::string& command) {
 }
 
 void Bridge::learn(const std::string& answer, skycap_live::From from) {
-  const bool held = holds_;
+  const bool held = is_suspended_;
   answer_ = Json::parse(answer);
   view_.reset();
-  if (const Json& view = answer_.at("view"); !view.is_null()) view_ = view_of(view);
-  holds_ = answer_.contains("warning");
+  if (const Json& view = answer_.at("view"); !view.is_null()) view_ = parse_view(view);
+  is_suspended_ = answer_.contains("warning");
   // An en-route scan does not change the goal.
-  const bool is_new = from == skycap_live::From::view || holds_ != held;
+  const bool is_new = from == skycap_live::From::view || is_suspended_ != held;
   if (is_located_ && is_new) publish_goal();
   publish_status();
 }
@@ -317,32 +320,32 @@ void Bridge::publish_goal() {
             .path = {},
             .mount = newest_mount()};
   lacks_mount_ = !goal.mount;
-  if (!holds_) {
+  if (!is_suspended_) {
     goal.view = view_;
-    for (const Json& place : answer_.value("path", Json::array())) {
-      goal.path.push_back(vector_of(place));
+    for (const Json& position : answer_.value("path", Json::array())) {
+      goal.path.push_back(to_vector(position));
     }
   }
-  outlets_.goal(goal);
+  callbacks_.goal(goal);
 }
 
-void Bridge::say(const std::string& doing) {
+void Bridge::set_status(const std::string& doing) {
   doing_ = doing;
   publish_status();
 }
 
 void Bridge::publish_status() {
-  Json status{{"doing", holds_ ? "holding: pose inconsistent with the map" : doing_},
-              {"hold", holds_},
-              {"taken", taken_},
-              {"warnings", complaints_.count()},
-              {"last_warning", complaints_.last()}};
+  Json status{{"doing", is_suspended_ ? "holding: pose inconsistent with the map" : doing_},
+              {"hold", is_suspended_},
+              {"taken", added_scans_},
+              {"warnings", warnings_.count()},
+              {"last_warning", warnings_.last()}};
   for (const char* key : {"id", "state", "scans", "points", "rejected", "view", "clearance_m",
                           "en_route", "estimated_coverage", "pose"}) {
     if (answer_.contains(key)) status[key] = answer_[key];
   }
   const std::string text = status.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (std::exchange(status_, text) != text) outlets_.status(text);
+  if (std::exchange(status_, text) != text) callbacks_.status(text);
 }
 
 }  // namespace skycap::ros2

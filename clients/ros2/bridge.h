@@ -50,7 +50,7 @@ struct SurveyPort {
   std::function<std::string(const SensorScan&, const skycap_live::Pose&,
                             const skycap_live::PoseError&, skycap_live::From)>
       add;
-  std::function<std::string(std::size_t id, const std::string& reason)> refuse;
+  std::function<std::string(std::size_t id, const std::string& reason)> reject;
 };
 
 /// Requested pose in the frame of the odometry, or in the configured world frame.
@@ -62,7 +62,7 @@ struct Goal {
   std::optional<Mount> mount;         ///< Current mount, if known.
 };
 
-struct Outlets {
+struct BridgeCallbacks {
   std::function<void(const Goal&)> goal;
   std::function<void(const std::string&)> status;  ///< Publishes a JSON object.
   std::function<void(const std::string&)> warning;
@@ -70,7 +70,7 @@ struct Outlets {
 
 class Bridge {
  public:
-  Bridge(BridgeConfig config, SurveyPort survey, Outlets outlets);
+  Bridge(BridgeConfig config, SurveyPort survey, BridgeCallbacks callbacks);
 
   /// Requests the first view.
   void begin();
@@ -91,7 +91,7 @@ class Bridge {
 
   /// Publishes the current activity, one of the terms in docs/reference/ros2-topics.md, in the
   /// status.
-  void say(const std::string& doing);
+  void set_status(const std::string& doing);
 
   bool is_finished() const { return is_finished_; }
 
@@ -103,26 +103,26 @@ class Bridge {
   };
 
   /// Body and sensor poses at one time. The mount is valid only if the body pose is known.
-  struct Whereabouts {
+  struct PoseState {
     PoseMatch body;
     Mount mount;
   };
 
   /// Calls `receive` and reports its errors as warnings.
   void guarded(const std::string& kind, double now, const std::function<void()>& receive);
-  void complain(const std::string& kind, const std::string& line, double now);
+  void warn_throttled(const std::string& kind, const std::string& line, double now);
   void add_odometry(const Odometry& odometry);
   void obey(const std::string& command);
   void add_scan(const Header& header, double now, const std::function<SensorScan()>& scan);
   bool wants_scan(double now) const;
-  Whereabouts at(Stamp stamp) const;
-  Whereabouts with_mount(const PoseMatch& body, Stamp stamp) const;
+  PoseState at(Stamp stamp) const;
+  PoseState with_mount(const PoseMatch& body, Stamp stamp) const;
   std::optional<Mount> newest_mount() const;
-  bool has_arrived(const Whereabouts& whereabouts) const;
+  bool has_arrived(const PoseState& pose_state) const;
   bool has_settled(Stamp stamp) const;
-  bool measures_on_way() const;
+  bool measures_en_route() const;
   Stamp newest_stamp() const;
-  void take(const Waiting& waiting, const Whereabouts& whereabouts, double now);
+  void submit_scan(const Waiting& waiting, const PoseState& pose_state, double now);
   void locate();
   void learn(const std::string& answer, skycap_live::From from = skycap_live::From::view);
   void publish_goal();
@@ -130,22 +130,23 @@ class Bridge {
 
   BridgeConfig config_;
   SurveyPort survey_;
-  Outlets outlets_;
-  Complaints complaints_;
+  BridgeCallbacks callbacks_;
+  ThrottledWarnings warnings_;
   PoseHistory history_;
   Transforms transforms_;
   std::string world_frame_, body_frame_, sensor_frame_;
   bool is_located_ = false;   ///< True once the body pose is known.
   bool lacks_mount_ = false;  ///< True if the published goal lacks the mount.
   Stamp newest_pose_ = 0;     ///< Stamp of the latest odometry.
-  std::optional<CameraLens> lens_;
+  std::optional<CameraIntrinsics> intrinsics_;
   std::optional<Waiting> waiting_;
   nlohmann::json answer_;                  ///< Last answer of the survey.
   std::optional<Eigen::Isometry3d> view_;  ///< Requested view.
-  Stamp last_taken_ = 0;
-  std::size_t taken_ = 0;
-  bool is_told_to_take_ = false;
-  bool holds_ = false;  ///< True after an inconsistent pose: no scans are added until a command.
+  Stamp last_added_ = 0;
+  std::size_t added_scans_ = 0;
+  bool is_add_requested_ = false;
+  bool is_suspended_ =
+      false;  ///< True after an inconsistent pose: no scans are added until a command.
   bool is_finished_ = false;
   double not_before_ = 0.0;  ///< Earliest time of the next scan after a rejected one [s].
   double asked_at_ = 0.0;    ///< Time of the last contact with the survey [s].

@@ -4,7 +4,7 @@
 
 namespace skycap::ros2 {
 
-std::string text_of(const char* text) {
+std::string printable_text(const char* text) {
   constexpr std::size_t longest = 200;
   std::string printable(std::string_view(text == nullptr ? "" : text).substr(0, longest));
   for (char& letter : printable) {
@@ -13,18 +13,19 @@ std::string text_of(const char* text) {
   return printable;
 }
 
-bool Complaints::add(const std::string& kind, const std::string& line, double now) {
+bool ThrottledWarnings::add(const std::string& kind, const std::string& line, double now) {
   constexpr double interval = 5.0;
   ++count_;
   last_ = line;
-  const auto [place, is_first] = kinds_.try_emplace(kind);
-  Kind& state = place->second;
-  if (!is_first && now - state.said_at < interval) {
-    ++state.unsaid;
+  const auto [entry, is_first] = kinds_.try_emplace(kind);
+  Kind& state = entry->second;
+  if (!is_first && now - state.reported_at < interval) {
+    ++state.suppressed;
     return false;
   }
-  say_(state.unsaid == 0 ? line : line + " (and " + std::to_string(state.unsaid) + " more)");
-  state = {.said_at = now};
+  report_(state.suppressed == 0 ? line
+                                : line + " (and " + std::to_string(state.suppressed) + " more)");
+  state = {.reported_at = now};
   return true;
 }
 

@@ -11,12 +11,13 @@ namespace skycap::ros2 {
 
 /// Returns the text of a message field. Null gives an empty string; non-printable characters become
 /// question marks.
-std::string text_of(const char* text);
+std::string printable_text(const char* text);
 
-class Complaints {
+class ThrottledWarnings {
  public:
-  /// `say` receives complete lines.
-  explicit Complaints(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
+  /// `report` receives complete lines.
+  explicit ThrottledWarnings(std::function<void(const std::string&)> report)
+      : report_(std::move(report)) {}
 
   /// Reports `line`, unless a warning of the same kind was reported within the five seconds before
   /// `now` [s]. Suppressed warnings are counted, and the next report contains their number. Returns
@@ -28,10 +29,10 @@ class Complaints {
 
  private:
   struct Kind {
-    double said_at = 0.0;
-    std::size_t unsaid = 0;
+    double reported_at = 0.0;
+    std::size_t suppressed = 0;
   };
-  std::function<void(const std::string&)> say_;
+  std::function<void(const std::string&)> report_;
   std::map<std::string, Kind> kinds_;
   std::size_t count_ = 0;
   std::string last_;

@@ -51,23 +51,23 @@ Participant::Participant(std::uint32_t domain)
                 "DDS domain " + std::to_string(domain)) {}
 
 AnyReader::AnyReader(const Participant& participant, const dds_topic_descriptor_t& type,
-                     const std::string& name, Reading reading, int depth)
-    : DdsEntity(
-          dds_create_reader(
-              participant.handle(), topic(participant, type, name),
-              qos(reading != Reading::sensor, reading == Reading::latched, depth).get(), nullptr),
-          "topic " + name) {}
+                     const std::string& name, ReaderQos qos_kind, int depth)
+    : DdsEntity(dds_create_reader(
+                    participant.handle(), topic(participant, type, name),
+                    qos(qos_kind != ReaderQos::sensor, qos_kind == ReaderQos::latched, depth).get(),
+                    nullptr),
+                "topic " + name) {}
 
 bool AnyReader::take_one(const std::function<void(const void*)>& receive) const {
   void* sample = nullptr;
   dds_sample_info_t info;
   const dds_return_t count = dds_take(handle(), &sample, &info, 1, 1);
   if (count <= 0) return false;
-  struct Loan {
+  struct LoanGuard {
     dds_entity_t reader;
     void** sample;
-    ~Loan() { dds_return_loan(reader, sample, 1); }
-  } const loan{handle(), &sample};
+    ~LoanGuard() { dds_return_loan(reader, sample, 1); }
+  } const guard{handle(), &sample};
   if (info.valid_data) receive(sample);
   return true;
 }

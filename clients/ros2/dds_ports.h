@@ -34,7 +34,7 @@ class Participant : public DdsEntity {
   explicit Participant(std::uint32_t domain);
 };
 
-enum class Reading {
+enum class ReaderQos {
   sensor,   ///< Best effort, volatile.
   command,  ///< Reliable, volatile.
   latched,  ///< Reliable, transient local.
@@ -50,7 +50,7 @@ enum class Writing {
 class AnyReader : public DdsEntity {
  public:
   AnyReader(const Participant& participant, const dds_topic_descriptor_t& type,
-            const std::string& topic, Reading reading, int depth);
+            const std::string& topic, ReaderQos qos_kind, int depth);
 
  protected:
   /// Passes the oldest queued message to `receive`. Returns false if the queue is empty.
@@ -60,8 +60,8 @@ class AnyReader : public DdsEntity {
 template <typename Message>
 class Reader : public AnyReader {
  public:
-  Reader(const Participant& participant, const std::string& topic, Reading reading, int depth)
-      : AnyReader(participant, descriptor<Message>(), topic, reading, depth) {}
+  Reader(const Participant& participant, const std::string& topic, ReaderQos qos_kind, int depth)
+      : AnyReader(participant, descriptor<Message>(), topic, qos_kind, depth) {}
 
   /// Passes all queued messages to `receive`, in order of arrival.
   template <typename Receive>

@@ -14,9 +14,9 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
+[[noreturn]] void reject(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
 
-bool is_of_length_one(const Quaterniond& turn) { return std::abs(turn.norm() - 1.0) < 1e-2; }
+bool is_unit_length(const Quaterniond& turn) { return std::abs(turn.norm() - 1.0) < 1e-2; }
 
 Isometry3d isometry(const Matrix3d& turn, const Vector3d& position) {
   Isometry3d pose = Isometry3d::Identity();
@@ -31,24 +31,24 @@ Matrix3d cross_matrix(const Vector3d& v) {
 }
 
 /// Returns std::nullopt if all elements are zero, which means unknown in ROS.
-std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
+std::optional<Covariance> read_covariance(const double (&numbers)[36]) {
   const Covariance given =
       Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(&numbers[0]);
-  if (!given.allFinite()) refuse("its covariance is not finite");
+  if (!given.allFinite()) reject("its covariance is not finite");
   if ((given.array() == 0.0).all()) return std::nullopt;
-  if ((given.diagonal().array() < 0.0).any()) refuse("its covariance has a negative variance");
+  if ((given.diagonal().array() < 0.0).any()) reject("its covariance has a negative variance");
   const double difference = (given - given.transpose()).cwiseAbs().maxCoeff();
-  if (difference > 1e-6 * given.cwiseAbs().maxCoeff()) refuse("its covariance is not symmetric");
+  if (difference > 1e-6 * given.cwiseAbs().maxCoeff()) reject("its covariance is not symmetric");
   return 0.5 * (given + given.transpose());
 }
 
 BodyPose checked_pose(const Vector3d& position, const QuaternionMessage& given) {
-  if (!position.allFinite()) refuse("its position is not finite");
+  if (!position.allFinite()) reject("its position is not finite");
   constexpr double farthest = 1e7;  // Limit of all external positions [m].
   if (position.cwiseAbs().maxCoeff() > farthest)
-    refuse("its position is more than 1e7 m from the origin");
+    reject("its position is more than 1e7 m from the origin");
   const Quaterniond turn(given.w, given.x, given.y, given.z);
-  if (!is_of_length_one(turn)) refuse("its quaternion must have length one");
+  if (!is_unit_length(turn)) reject("its quaternion must have length one");
   return {.position = position, .turn = turn.normalized(), .covariance = {}};
 }
 
@@ -58,7 +58,7 @@ BodyPose body_pose(const Odometry& odometry) {
   const PoseMessage& given = odometry.pose.pose;
   BodyPose pose =
       checked_pose({given.position.x, given.position.y, given.position.z}, given.orientation);
-  pose.covariance = covariance_of(odometry.pose.covariance);
+  pose.covariance = read_covariance(odometry.pose.covariance);
   return pose;
 }
 
@@ -67,7 +67,7 @@ BodyPose body_pose(const TransformMessage& transform) {
   return checked_pose({x, y, z}, transform.rotation);
 }
 
-Isometry3d isometry_of(const BodyPose& pose) {
+Isometry3d to_isometry(const BodyPose& pose) {
   return isometry(pose.turn.toRotationMatrix(), pose.position);
 }
 
@@ -83,7 +83,7 @@ Mount::Mount(const Isometry3d& body_from_sensor, Axes axes)
                          isometry(optical_from(axes).transpose(), Vector3d::Zero())) {}
 
 Isometry3d Mount::world_from_optical(const BodyPose& body) const {
-  return isometry_of(body) * body_from_optical_;
+  return to_isometry(body) * body_from_optical_;
 }
 
 Isometry3d Mount::world_from_body(const Isometry3d& world_from_optical) const {
@@ -105,7 +105,7 @@ Isometry3d parse_extrinsic(const std::string& text, const std::string& what) {
   stream.imbue(std::locale::classic());
   std::vector<double> n;
   for (double number = 0.0; stream >> number;) n.push_back(number);
-  if (!stream.eof() || n.size() != 7 || !is_of_length_one({n[6], n[3], n[4], n[5]})) {
+  if (!stream.eof() || n.size() != 7 || !is_unit_length({n[6], n[3], n[4], n[5]})) {
     throw Error(
         ErrorKind::bad_usage,
         what + " is '" + text + "'; it must be x y z qx qy qz qw, with a quaternion of length one");

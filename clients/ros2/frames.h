@@ -35,7 +35,7 @@ BodyPose body_pose(const Odometry& odometry);
 /// overload.
 BodyPose body_pose(const TransformMessage& transform);
 
-Eigen::Isometry3d isometry_of(const BodyPose& pose);
+Eigen::Isometry3d to_isometry(const BodyPose& pose);
 
 enum class Axes { optical, flu };
 

@@ -125,7 +125,7 @@ void require_effect(const CLI::App& app, const Options& options) {
 }
 
 /// Converts options that are words or in degrees.
-NodeConfig node_of(const Options& options) {
+NodeConfig make_node_config(const Options& options) {
   NodeConfig node = options.node;
   node.bridge.uses_transforms = options.sensor.empty();
   node.bridge.mount = {options.sensor.empty()
@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
   try {
     require_effect(app, options);
     end_on_signals();
-    run_node(node_of(options), is_stopped);
+    run_node(make_node_config(options), is_stopped);
     return 0;
   } catch (const skycap::Error& failure) {
     std::cerr << "skycap_ros2: error: " << failure.what() << "\n";

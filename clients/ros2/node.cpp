@@ -19,7 +19,7 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-SurveyPort port_of(skycap_live::Survey& survey) {
+SurveyPort make_survey_port(skycap_live::Survey& survey) {
   return {.next = [&] { return survey.next(); },
           .finish = [&] { return survey.finish(); },
           .add =
@@ -30,9 +30,10 @@ SurveyPort port_of(skycap_live::Survey& survey) {
                 }
                 const auto& image = std::get<DepthScan>(scan);
                 return survey.add_depth(image.depth, image.width, image.height, image.unit, pose,
-                                        error, image.lens, from);
+                                        error, image.intrinsics, from);
               },
-          .refuse = [&](std::size_t id, const std::string& why) { return survey.refuse(id, why); }};
+          .reject = [&](std::size_t id,
+                        const std::string& reason) { return survey.reject(id, reason); }};
 }
 
 /// Message header with storage for its frame name.
@@ -49,7 +50,7 @@ struct Heading {
   Header header{};
 };
 
-PoseMessage message_of(const Isometry3d& pose) {
+PoseMessage make_message(const Isometry3d& pose) {
   const Eigen::Quaterniond turn(pose.linear());
   return {.position = {pose.translation().x(), pose.translation().y(), pose.translation().z()},
           .orientation = {turn.x(), turn.y(), turn.z(), turn.w()}};
@@ -57,13 +58,13 @@ PoseMessage message_of(const Isometry3d& pose) {
 
 /// Returns the body poses along the path, with the orientation at its end.
 std::vector<PoseStamped> body_path(const Goal& goal, const Header& header) {
-  std::vector<PoseStamped> places;
-  for (const Eigen::Vector3d& place : goal.path) {
+  std::vector<PoseStamped> poses;
+  for (const Eigen::Vector3d& position : goal.path) {
     Isometry3d pose = goal.view.value_or(Isometry3d::Identity());
-    pose.translation() = place;
-    places.push_back({header, message_of(goal.mount->world_from_body(pose))});
+    pose.translation() = position;
+    poses.push_back({header, make_message(goal.mount->world_from_body(pose))});
   }
-  return places;
+  return poses;
 }
 
 /// Published topics.
@@ -82,14 +83,14 @@ class Outputs {
   void goal(const Goal& goal) const {
     const Heading heading(goal);
     if (goal.mount) {
-      std::vector<PoseStamped> places = body_path(goal, heading.header);
-      const auto count = static_cast<std::uint32_t>(places.size());
-      path_.write({heading.header, {count, count, places.data(), false}});
+      std::vector<PoseStamped> poses = body_path(goal, heading.header);
+      const auto count = static_cast<std::uint32_t>(poses.size());
+      path_.write({heading.header, {count, count, poses.data(), false}});
     }
     if (!goal.view) return;
-    next_sensor_pose_.write({heading.header, message_of(*goal.view)});
+    next_sensor_pose_.write({heading.header, make_message(*goal.view)});
     if (!goal.mount) return;
-    next_view_.write({heading.header, message_of(goal.mount->world_from_body(*goal.view))});
+    next_view_.write({heading.header, make_message(goal.mount->world_from_body(*goal.view))});
   }
 
   void status(std::string text) const { status_.write({text.data()}); }
@@ -105,18 +106,18 @@ class Inputs {
  public:
   Inputs(const Participant& participant, const NodeConfig& config)
       : waits_(participant),
-        commands_(participant, config.prefix + "/command", Reading::command, 10) {
+        commands_(participant, config.prefix + "/command", ReaderQos::command, 10) {
     constexpr int few = 2;  // During planning, old scans become useless.
     if (config.image.empty()) {
       clouds_ =
-          std::make_unique<Reader<PointCloud2>>(participant, config.cloud, Reading::sensor, few);
+          std::make_unique<Reader<PointCloud2>>(participant, config.cloud, ReaderQos::sensor, few);
       waits_.add(*clouds_);
     } else {
-      images_ = std::make_unique<Reader<Image>>(participant, config.image, Reading::sensor, few);
+      images_ = std::make_unique<Reader<Image>>(participant, config.image, ReaderQos::sensor, few);
       infos_ = std::make_unique<Reader<CameraInfo>>(
           participant,
           config.camera_info.empty() ? camera_info_topic(config.image) : config.camera_info,
-          Reading::sensor, few);
+          ReaderQos::sensor, few);
       waits_.add(*images_);
       waits_.add(*infos_);
     }
@@ -145,14 +146,14 @@ class Inputs {
     const bool asks_odometry = config.bridge.world.empty();
     if (asks_odometry) {
       odometry_ =
-          std::make_unique<Reader<Odometry>>(participant, config.odometry, Reading::sensor, many);
+          std::make_unique<Reader<Odometry>>(participant, config.odometry, ReaderQos::sensor, many);
       waits_.add(*odometry_);
     }
     if (asks_odometry && !config.bridge.uses_transforms) return;
-    moving_ =
-        std::make_unique<Reader<TFMessage>>(participant, config.transforms, Reading::sensor, many);
+    moving_ = std::make_unique<Reader<TFMessage>>(participant, config.transforms, ReaderQos::sensor,
+                                                  many);
     fixed_ = std::make_unique<Reader<TFMessage>>(participant, config.static_transforms,
-                                                 Reading::latched, many);
+                                                 ReaderQos::latched, many);
     waits_.add(*moving_);
     waits_.add(*fixed_);
   }
@@ -177,7 +178,7 @@ void run_node(const NodeConfig& config, const std::atomic<bool>& stop) {
   const Outputs outputs(participant, config.prefix);
   const Inputs inputs(participant, config);
   skycap_live::Survey survey(config.address);
-  Bridge bridge(config.bridge, port_of(survey),
+  Bridge bridge(config.bridge, make_survey_port(survey),
                 {.goal = [&](const Goal& goal) { outputs.goal(goal); },
                  .status = [&](const std::string& text) { outputs.status(text); },
                  .warning =
@@ -190,9 +191,9 @@ void run_node(const NodeConfig& config, const std::atomic<bool>& stop) {
       inputs.forward_to(bridge);
       bridge.proceed(now());
     }
-    if (stop) bridge.say("stopped");
+    if (stop) bridge.set_status("stopped");
   } catch (const std::exception&) {
-    bridge.say("connection to the survey's server lost");
+    bridge.set_status("connection to the survey's server lost");
     throw;
   }
 }

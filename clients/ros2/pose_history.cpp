@@ -29,7 +29,7 @@ BodyPose between(const BodyPose& a, const BodyPose& b, double share) {
 
 }  // namespace
 
-Stamp stamp_of(const Header& header) {
+Stamp to_stamp(const Header& header) {
   if (header.stamp.nanosec >= 1'000'000'000U) {
     throw Error(ErrorKind::bad_geometry, "its stamp has more than 1e9 nanoseconds");
   }
@@ -39,18 +39,18 @@ Stamp stamp_of(const Header& header) {
 }
 
 PoseHistory::Added PoseHistory::add(Stamp stamp, const BodyPose& pose) {
-  const auto [place, is_new] = poses_.try_emplace(stamp, pose);
+  const auto [entry, is_new] = poses_.try_emplace(stamp, pose);
   if (!is_new) {
-    const BodyPose& kept = place->second;
+    const BodyPose& kept = entry->second;
     const bool is_same = kept.position == pose.position && kept.turn.coeffs() == pose.turn.coeffs();
     return is_same ? Added::known : Added::contradicts;
   }
   arrivals_.push_back(stamp);
-  if (arrivals_.size() > config_.most) {
+  if (arrivals_.size() > config_.max) {
     poses_.erase(arrivals_.front());
     arrivals_.pop_front();
   }
-  return Added::taken;
+  return Added::accepted;
 }
 
 PoseMatch PoseHistory::at(Stamp stamp) const {
@@ -74,8 +74,8 @@ PoseMatch PoseHistory::at(Stamp stamp) const {
   const double time = from_before + to_after;
   const double speed = (b.position - a.position).norm() / time;
   const double turn = a.turn.angularDistance(b.turn) / time;
-  if (speed > config_.highest_speed || turn > config_.highest_turn) {
-    return {refused,
+  if (speed > config_.max_speed || turn > config_.max_turn_rate) {
+    return {rejected,
             {},
             "it jumps there, as if at " + rounded(speed, "m/s") + " and " + rounded(turn, "rad/s")};
   }

@@ -11,16 +11,16 @@
 namespace skycap::ros2 {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
+[[noreturn]] void reject(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
 
-std::string name_of(const char* text, const std::string& what) {
-  if (text == nullptr || *text == '\0') refuse("a transform whose " + what + " has no name");
-  // text_of() truncates longer names, which could then collide.
+std::string checked_frame_name(const char* text, const std::string& what) {
+  if (text == nullptr || *text == '\0') reject("a transform whose " + what + " has no name");
+  // printable_text() truncates longer names, which could then collide.
   constexpr std::size_t longest = 100;
   if (::strnlen(text, longest + 1) > longest) {
-    refuse("a transform whose " + what + " has a name longer than 100 bytes");
+    reject("a transform whose " + what + " has a name longer than 100 bytes");
   }
-  return text_of(text);
+  return printable_text(text);
 }
 
 /// Returns the pose of c in a, from b in a and c in b.
@@ -37,19 +37,18 @@ BodyPose inverse(const BodyPose& pose) {
 
 }  // namespace
 
-Transforms::Transforms(HistoryConfig config) : config_(config) { config_.most = most_poses; }
+Transforms::Transforms(HistoryConfig config) : config_(config) { config_.max = max_poses; }
 
 void Transforms::add(const TransformStamped& transform, bool is_static) {
-  const std::string parent = name_of(transform.header.frame_id, "parent");
-  const std::string name = name_of(transform.child_frame_id, "child");
+  const std::string parent = checked_frame_name(transform.header.frame_id, "parent");
+  const std::string name = checked_frame_name(transform.child_frame_id, "child");
   const std::string what = "the frame '" + name + "'";
-  if (parent == name) refuse(what + " is its own parent");
+  if (parent == name) reject(what + " is its own parent");
   const BodyPose pose = body_pose(transform.transform);
-  const Stamp stamp = is_static ? 0 : stamp_of(transform.header);
+  const Stamp stamp = is_static ? 0 : to_stamp(transform.header);
   auto known = frames_.find(name);
   if (known == frames_.end()) {
-    if (frames_.size() >= most_frames)
-      refuse("more than " + std::to_string(most_frames) + " frames");
+    if (frames_.size() >= max_frames) reject("more than " + std::to_string(max_frames) + " frames");
     Frame frame{.parent = parent,
                 .fixed = {},
                 .history = PoseHistory(config_),
@@ -60,14 +59,14 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
   }
   Frame& frame = known->second;
   if (frame.parent != parent) {
-    refuse(what + " is now in '" + parent + "'; it was in '" + frame.parent +
+    reject(what + " is now in '" + parent + "'; it was in '" + frame.parent +
            "' until now, and must stay");
   }
-  if (frame.fixed.has_value() != is_static) refuse(what + " must not be static and moving");
+  if (frame.fixed.has_value() != is_static) reject(what + " must not be static and moving");
   if (is_static) {
     frame.fixed = pose;
   } else if (frame.history.add(stamp, pose) == PoseHistory::Added::contradicts) {
-    refuse(what + " has another pose with the same stamp");
+    reject(what + " has another pose with the same stamp");
   }
   frame.last = pose;
   frame.last_stamp = stamp;
@@ -94,7 +93,7 @@ Transforms::Found Transforms::find(const std::string& target, const std::string&
   using enum PoseMatch::State;
   const std::vector<std::string> up = up_from(source), down = up_from(target);
   if (up.empty() || down.empty()) {
-    return {{refused,
+    return {{rejected,
              {},
              "the frames above '" + source + "' and '" + target +
                  "' have no end, or are more than 64"}};
@@ -111,15 +110,16 @@ Transforms::Found Transforms::find(const std::string& target, const std::string&
       const Frame& frame = frames_.at(name);
       found.newest = std::max(found.newest, frame.last_stamp);
       const PoseMatch step = in_parent(frame, stamp);
-      if (step.state != known) return PoseMatch{step.state, {}, "of '" + name + "': " + step.why};
+      if (step.state != known)
+        return PoseMatch{step.state, {}, "of '" + name + "': " + step.reason};
       match.pose = chained(step.pose, match.pose);
     }
     return match;
   };
-  const PoseMatch of_source = climb(up), of_target = climb(down);
-  if (of_source.state != known) return {of_source};
-  if (of_target.state != known) return {of_target};
-  found.match = {known, chained(inverse(of_target.pose), of_source.pose), {}};
+  const PoseMatch source_match = climb(up), target_match = climb(down);
+  if (source_match.state != known) return {source_match};
+  if (target_match.state != known) return {target_match};
+  found.match = {known, chained(inverse(target_match.pose), source_match.pose), {}};
   return found;
 }
 
@@ -131,7 +131,7 @@ std::optional<NewestTransform> Transforms::newest(const std::string& target,
                                                   const std::string& source) const {
   const Found found = find(target, source, std::nullopt);
   if (found.match.state != PoseMatch::State::known) return std::nullopt;
-  return NewestTransform{isometry_of(found.match.pose), found.newest};
+  return NewestTransform{to_isometry(found.match.pose), found.newest};
 }
 
 }  // namespace skycap::ros2

@@ -25,9 +25,9 @@ struct NewestTransform {
 
 class Transforms {
  public:
-  static constexpr std::size_t most_frames = 256;
+  static constexpr std::size_t max_frames = 256;
   /// Per frame. The first to arrive is removed first.
-  static constexpr std::size_t most_poses = 1000;
+  static constexpr std::size_t max_poses = 1000;
   static constexpr int longest_chain = 64;  ///< Maximum number of frames up to the root.
 
   explicit Transforms(HistoryConfig config);

@@ -1,5 +1,5 @@
 // Certifies a route against a mesh of one's own: which legs come nearer than 2 m to anything?
-// `certify_route [MESH]` reads PLY, OBJ, STL or OFF; without a mesh a tower of 10 m x 10 m x 30 m.
+// `verify_route [MESH]` reads PLY, OBJ, STL or OFF; without a mesh a tower of 10 m x 10 m x 30 m.
 #include <cstdio>
 
 #include <skycap/flight/clearance.h>

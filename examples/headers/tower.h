@@ -14,10 +14,10 @@ inline skycap::flight::KnownSpace tower_space() {
 }
 
 inline skycap::flight::Route tower_route(const skycap::flight::FreeSpace& space) {
-  const std::vector<skycap::flight::Station> stations{
+  const std::vector<skycap::flight::CapturePoint> capture_points{
       {.view = skycap::geometry::look_at({-15, 0, 15}, {0, 0, 15})},
       {.view = skycap::geometry::look_at({15, 0, 15}, {0, 0, 15})}};
-  return plan_route(stations, {}, space, nullptr, {.takeoff = {-30, -30, 0}});
+  return plan_route(capture_points, {}, space, nullptr, {.takeoff = {-30, -30, 0}});
 }
 
 inline skycap::flight::FlightPlan tower_plan(const skycap::flight::FreeSpace& space) {

@@ -31,17 +31,17 @@ geometry::Scan measure(const geometry::Camera& camera, const geometry::View& vie
 
 int main() {
   const geometry::Camera camera({.width = 160, .height = 120});
-  survey::skycap::SkycapPlanner planner({.coverage_radius = 0.05}, camera);
-  const survey::SurveyPorts ports{
+  survey::surfel::SurfelPlanner planner({.coverage_radius = 0.05}, camera);
+  const survey::SurveyCallbacks callbacks{
       .sense = [&](const geometry::View& view, geometry::Scan) { return measure(camera, view); },
       .report =
           [](const survey::SurveyedView& surveyed, const geometry::Scan&) {
-            const Vector3d& place = surveyed.view.position;
-            std::printf("view from %6.2f %6.2f %6.2f, %zu points so far\n", place.x(), place.y(),
-                        place.z(), surveyed.points);
+            const Vector3d& position = surveyed.view.position;
+            std::printf("view from %6.2f %6.2f %6.2f, %zu points so far\n", position.x(),
+                        position.y(), position.z(), surveyed.points);
           }};
   const survey::SurveyResult result = survey::run_survey(
-      planner, geometry::look_at({3.0, 0.0, 1.0}, Vector3d::Zero()), {.max_views = 40}, ports);
+      planner, geometry::look_at({3.0, 0.0, 1.0}, Vector3d::Zero()), {.max_views = 40}, callbacks);
   std::printf("%zu views, %zu points, %.1f %% believed covered\n", result.views.size(),
               planner.cloud().size(), 100.0 * planner.predicted_coverage());
   return result.stop_reason == survey::StopReason::complete ? 0 : 1;

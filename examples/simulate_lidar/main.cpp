@@ -32,15 +32,15 @@ int main() {
   // Half a second along x, eight metres before the scene.
   const sim::Trajectory path(
       {{.time = 0.0, .position = {-1.0, -8.0, 1.5}}, {.time = 0.5, .position = {1.0, -8.0, 1.5}}});
-  const sim::LidarFlight flight{.flown = path, .believed = path};
+  const sim::LidarFlight flight{.ground_truth = path, .estimated = path};
 
   std::vector<MyPoint> buffer;
   const std::uint64_t firings = lidar.firings(path);
-  constexpr std::uint64_t piece = 1024;  // of firings: memory stays small, however long the flight
+  constexpr std::uint64_t chunk = 1024;  // of firings: memory stays small, however long the flight
   sim::LidarReturns returns;
-  for (std::uint64_t first = 0; first < firings; first += piece) {
+  for (std::uint64_t first = 0; first < firings; first += chunk) {
     returns =
-        lidar.measure(scene, flight, {first, std::min(piece, firings - first)}, std::move(returns));
+        lidar.measure(scene, flight, {first, std::min(chunk, firings - first)}, std::move(returns));
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const Eigen::Vector3d point = returns.origin + returns.points[i].cast<double>();
       buffer.push_back({point.x(), point.y(), point.z(), returns.intensities[i]});

@@ -13,9 +13,9 @@ namespace {
 /// Returns the largest value in [0, most] for which the increasing function `of` is at most
 /// `bound`.
 template <typename Function>
-double largest_below(double most, double bound, Function of) {
-  if (of(most) <= bound) return most;
-  double low = 0.0, high = most;
+double largest_below(double max, double bound, Function of) {
+  if (of(max) <= bound) return max;
+  double low = 0.0, high = max;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     (of(middle) <= bound ? low : high) = middle;
@@ -83,10 +83,10 @@ double braking_distance_time(double distance, const LegLimits& limits, double je
   const auto braking_distance = [&](double v) {
     return std::max(0.0, v * (v + b) / (2.0 * a) - left);
   };
-  const double way = distance - left;
+  const double travelled = distance - left;
   const double speed = largest_below(
-      limits.speed, way, [&](double v) { return ramp_distance(v) + braking_distance(v); });
-  const double cruise = std::max(0.0, way - ramp_distance(speed) - braking_distance(speed));
+      limits.speed, travelled, [&](double v) { return ramp_distance(v) + braking_distance(v); });
+  const double cruise = std::max(0.0, travelled - ramp_distance(speed) - braking_distance(speed));
   double time = ramp_time(speed, a, jerk) + cruise / speed;
   if (speed > last_speed) {  // dt = -dd / v along the speed law.
     time += (speed - last_speed) / a + b / (2.0 * a) * std::log(speed / last_speed);

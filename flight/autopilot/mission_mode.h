@@ -8,7 +8,7 @@
 namespace skycap::flight {
 
 /// Motion law of a leg between two stops.
-enum class LegLaw {
+enum class LegProfile {
   s_curve,  ///< ArduCopter: limited jerk, whose rise takes `jerk_rise`.
   /// PX4: speed limited by the remaining distance until the waypoint is accepted.
   braking_distance,
@@ -16,7 +16,7 @@ enum class LegLaw {
 
 /// Mission mode of an autopilot. The defaults are those of PX4.
 struct MissionMode {
-  LegLaw law = LegLaw::braking_distance;
+  LegProfile leg_profile = LegProfile::braking_distance;
   double max_ascent = 3.0;             ///< Maximum climb speed [m/s].
   double max_descent = 1.5;            ///< Maximum descent speed [m/s].
   double acceleration = 3.0;           ///< Horizontal acceleration [m/s^2].

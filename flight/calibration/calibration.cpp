@@ -43,9 +43,9 @@ constexpr std::array needed{
 
 /// Maximum scatter and maximum error on unseen parts, relative to the hover power. Fits above these
 /// limits are rejected.
-constexpr double most_scatter = 0.2, most_unseen_error = 0.3;
+constexpr double max_scatter = 0.2, max_unseen_error = 0.3;
 
-double time_of(const std::vector<LogWindow>& windows, const Needed& kind) {
+double total_time(const std::vector<LogWindow>& windows, const Needed& kind) {
   double time = 0.0;
   for (const LogWindow& window : windows) {
     if (std::ranges::all_of(window.velocities, kind.is_it)) time += window.duration;
@@ -55,7 +55,7 @@ double time_of(const std::vector<LogWindow>& windows, const Needed& kind) {
 
 void require_enough(const std::vector<LogWindow>& windows) {
   for (const Needed& kind : needed) {
-    const double time = time_of(windows, kind);
+    const double time = total_time(windows, kind);
     if (time >= kind.time) continue;
     throw Error(ErrorKind::bad_file, "contains " + fixed(time, 0) + " s of " + kind.what +
                                          "; required: at least " + fixed(kind.time, 0) +
@@ -65,8 +65,8 @@ void require_enough(const std::vector<LogWindow>& windows) {
 
 /// Throws if the current sensor is missing or broken: it then reads zero or a constant offset.
 void require_power(const std::vector<LogSample>& samples) {
-  constexpr double least_power = 1.0;  // Minimum plausible power [W].
-  const auto is_some = [](const LogSample& sample) { return sample.power > least_power; };
+  constexpr double min_power = 1.0;  // Minimum plausible power [W].
+  const auto is_some = [](const LogSample& sample) { return sample.power > min_power; };
   const auto count = static_cast<std::size_t>(std::ranges::count_if(samples, is_some));
   if (2 * count > samples.size()) return;
   throw Error(ErrorKind::bad_file,
@@ -85,7 +85,7 @@ double measured_hover(const std::vector<LogWindow>& windows, double air_density)
   return median(powers) * std::sqrt(air_density / sea_level);
 }
 
-std::string text_of(const Vehicle& vehicle) {
+std::string to_string(const Vehicle& vehicle) {
   return fixed(vehicle.mass, 2) + " kg on " + std::to_string(vehicle.rotors) + " rotors of " +
          fixed(vehicle.rotor_diameter, 3) + " m";
 }
@@ -96,30 +96,30 @@ Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_powe
                   std::vector<std::string>& warnings) {
   const double preset = vehicle.mass;
   vehicle.mass = mass.value_or(preset);
-  const auto is_carried = [&] { return hover_power > 1.01 * min_rotor_power(vehicle); };
-  if (is_carried()) return vehicle;
-  const Vehicle given = vehicle;
+  const auto is_physical = [&] { return hover_power > 1.01 * min_rotor_power(vehicle); };
+  if (is_physical()) return vehicle;
+  const Vehicle initial = vehicle;
   if (mass && *mass > preset) {
     vehicle.rotor_diameter *= std::sqrt(*mass / preset);  // Equal disc loading.
-    if (is_carried()) {
+    if (is_physical()) {
       warnings.push_back("rotor_diameter is set to " + fixed(vehicle.rotor_diameter, 3) +
-                         " m: " + text_of(given) + " need at least " +
-                         fixed(min_rotor_power(given), 0) + " W to hover, but the log has " +
+                         " m: " + to_string(initial) + " need at least " +
+                         fixed(min_rotor_power(initial), 0) + " W to hover, but the log has " +
                          fixed(hover_power, 0) + " W; set the diameter of the vehicle that flew");
       return vehicle;
     }
   }
   throw Error(
       ErrorKind::bad_file,
-      "hover power of " + fixed(hover_power, 1) + " W is too low: " + text_of(given) +
-          " need at least " + fixed(min_rotor_power(given), 1) +
+      "hover power of " + fixed(hover_power, 1) + " W is too low: " + to_string(initial) +
+          " need at least " + fixed(min_rotor_power(initial), 1) +
           " W; set the mass that flew (--mass), or calibrate the current sensor (BATT_AMP_PERVLT)");
 }
 
 /// Returns the relative energy error of each fifth of the windows, predicted by a fit of the others
 /// (RMS).
-double unseen_error(const std::vector<LogWindow>& windows, const Vehicle& vehicle,
-                    double air_density, double hover_power) {
+double cross_validation_error(const std::vector<LogWindow>& windows, const Vehicle& vehicle,
+                              double air_density, double hover_power) {
   constexpr std::size_t parts = 5;
   double squares = 0.0;
   for (std::size_t part = 0; part < parts; ++part) {
@@ -129,24 +129,24 @@ double unseen_error(const std::vector<LogWindow>& windows, const Vehicle& vehicl
                                   windows.begin() + static_cast<std::ptrdiff_t>(begin));
     others.insert(others.end(), windows.begin() + static_cast<std::ptrdiff_t>(end), windows.end());
     const PowerFit fit = fit_power(others, vehicle, air_density, hover_power);
-    double taken = 0.0, modelled = 0.0;
+    double measured = 0.0, modelled = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
-      taken += windows[i].duration * windows[i].power;
+      measured += windows[i].duration * windows[i].power;
       modelled += windows[i].duration * modelled_power(fit, windows[i], air_density);
     }
-    squares += std::pow(modelled / taken - 1.0, 2);
+    squares += std::pow(modelled / measured - 1.0, 2);
   }
   return std::sqrt(squares / static_cast<double>(parts));
 }
 
 void require_fit(const Calibration& fit) {
-  if (fit.scatter > most_scatter * fit.hover_power) {
+  if (fit.scatter > max_scatter * fit.hover_power) {
     throw Error(ErrorKind::bad_file,
                 "fits no power model: the power scatters by " + fixed(fit.scatter, 0) +
                     " W around a hover of " + fixed(fit.hover_power, 0) +
                     " W; check the current sensor, or calibrate with another log");
   }
-  if (fit.energy_error > most_unseen_error) {
+  if (fit.energy_error > max_unseen_error) {
     throw Error(
         ErrorKind::bad_file,
         "fits no power model: the energy of its parts differs by " +
@@ -155,12 +155,12 @@ void require_fit(const Calibration& fit) {
   }
 }
 
-std::vector<std::string> warnings_of(const PowerFit& fit, const Vehicle& vehicle) {
+std::vector<std::string> make_warnings(const PowerFit& fit, const Vehicle& vehicle) {
   std::vector<std::string> warnings;
   for (const std::string& name : fit.at_bound) {
     if (name == "rotors") {
       warnings.push_back(
-          "the rotors' efficiency is at its limit of 1: " + text_of(vehicle) +
+          "the rotors' efficiency is at its limit of 1: " + to_string(vehicle) +
           " may differ from the vehicle that flew; set --mass, and check the current sensor");
     } else {
       warnings.push_back(name +
@@ -202,20 +202,20 @@ constexpr std::array mode_parameters{
     ModeParameter{"LAND_ALT_LOW", &MissionMode::landing_height, 0.01},
     ModeParameter{"LAND_ALT_LOW_M", &MissionMode::landing_height, 1}};
 
-constexpr double least_limit = 1e-3;
+constexpr double min_limit = 1e-3;
 
-std::size_t take_over(const std::vector<LogParameter>& parameters, MissionMode& mode) {
-  std::size_t taken = 0;
+std::size_t apply_parameters(const std::vector<LogParameter>& parameters, MissionMode& mode) {
+  std::size_t measured = 0;
   for (const LogParameter& parameter : parameters) {
     const auto known = std::ranges::find_if(
         mode_parameters, [&](const auto& m) { return parameter.name == m.name; });
     if (known == mode_parameters.end()) continue;
     const double value = known->unit * parameter.value;
-    if (!(value > least_limit && value < known->largest)) continue;
+    if (!(value > min_limit && value < known->largest)) continue;
     mode.*(known->field) = value;
-    ++taken;
+    ++measured;
   }
-  return taken;
+  return measured;
 }
 
 /// Excess of the legs that ended in a stop over their law [s]. Legs faster than half the law are
@@ -228,8 +228,8 @@ struct LegTimes {
 LegTimes settlings(const std::vector<LogCommand>& commands, const Vehicle& vehicle) {
   constexpr int last_navigation = 95;
   LegTimes times;
-  std::vector<Vector3d> way;  // End points of the legs since take-off.
-  const LogCommand* under_way = nullptr;
+  std::vector<Vector3d> path;  // End points of the legs since take-off.
+  const LogCommand* active_command = nullptr;
   Conditions conditions;
   conditions.cruise_speed = std::min(conditions.cruise_speed, vehicle.max_speed);
   std::optional<LocalFrame> frame;
@@ -242,24 +242,25 @@ LegTimes settlings(const std::vector<LogCommand>& commands, const Vehicle& vehic
     if (!frame && item.latitude_deg != 0.0) {
       frame.emplace(GeodeticPoint{item.latitude_deg, item.longitude_deg, 0.0});
     }
-    if (under_way != nullptr && frame) {
-      const Vector3d end =
-          frame->to_local({under_way->latitude_deg, under_way->longitude_deg, under_way->height});
-      const bool stops = under_way->first_parameter > 0.0 || item.command == command::delay;
-      if (!way.empty() && stops && (end - way.back()).norm() > 1.0) {
+    if (active_command != nullptr && frame) {
+      const Vector3d end = frame->to_local(
+          {active_command->latitude_deg, active_command->longitude_deg, active_command->height});
+      const bool stops = active_command->first_parameter > 0.0 || item.command == command::delay;
+      if (!path.empty() && stops && (end - path.back()).norm() > 1.0) {
         const Motion motion(vehicle, conditions);
-        const double law = motion.leg_time(end - way.back()) - vehicle.mode.settle_time;
-        const double flown = item.time - under_way->time - under_way->first_parameter;
-        if (flown < 0.5 * law) {
+        const double predicted = motion.leg_time(end - path.back()) - vehicle.mode.settle_time;
+        const double flight_time =
+            item.time - active_command->time - active_command->first_parameter;
+        if (flight_time < 0.5 * predicted) {
           ++times.without_time;
         } else {
-          times.excesses.push_back(flown - law);
+          times.excesses.push_back(flight_time - predicted);
         }
       }
-      way.push_back(end);
+      path.push_back(end);
     }
-    under_way = item.command == command::waypoint ? &item : nullptr;
-    if (item.command == command::takeoff || item.command == command::land) way.clear();
+    active_command = item.command == command::waypoint ? &item : nullptr;
+    if (item.command == command::takeoff || item.command == command::land) path.clear();
   }
   return times;
 }
@@ -270,7 +271,7 @@ Calibration calibrate(const FlightLog& log, const Vehicle& preset, double air_de
                       std::optional<double> mass) {
   require_power(log.samples);
   const std::vector<LogSample> samples = without_outliers(log.samples);
-  const std::vector<LogWindow> windows = windows_of(samples);
+  const std::vector<LogWindow> windows = find_windows(samples);
   require_enough(windows);
   const double hover_power = measured_hover(windows, air_density);
   std::vector<std::string> warnings;
@@ -278,27 +279,27 @@ Calibration calibrate(const FlightLog& log, const Vehicle& preset, double air_de
   const PowerFit fit = fit_power(windows, vehicle, air_density, hover_power);
   Calibration result{.vehicle = fit.vehicle, .wind = fit.wind, .windows = windows.size()};
   result.outliers = log.samples.size() - samples.size() + log.damaged;
-  for (const std::string& warning : warnings_of(fit, vehicle)) warnings.push_back(warning);
+  for (const std::string& warning : make_warnings(fit, vehicle)) warnings.push_back(warning);
   result.warnings = std::move(warnings);
   double squares = 0.0;
   for (const LogWindow& window : windows) {
-    result.flown += window.duration;
+    result.flight_time += window.duration;
     squares += std::pow(modelled_power(fit, window, air_density) - window.power, 2);
   }
   result.scatter = std::sqrt(squares / static_cast<double>(windows.size()));
   // The fits of the parts start from the complete fit, which is close.
   result.energy_error =
-      unseen_error(windows, fit.vehicle, air_density, data_sheet_power(fit.vehicle));
-  result.vehicle.energy_error = std::clamp(2.0 * result.energy_error, least_energy_error, 0.9);
+      cross_validation_error(windows, fit.vehicle, air_density, data_sheet_power(fit.vehicle));
+  result.vehicle.energy_error = std::clamp(2.0 * result.energy_error, min_energy_error, 0.9);
   result.hover_power = Motion(result.vehicle, {.cruise_speed = vehicle.max_speed}).hover_power();
   require_fit(result);
 
-  constexpr std::size_t least_legs = 5;
-  result.parameters = take_over(log.parameters, result.vehicle.mode);
+  constexpr std::size_t min_legs = 5;
+  result.parameters = apply_parameters(log.parameters, result.vehicle.mode);
   const LegTimes times = settlings(log.commands, result.vehicle);
   result.legs = times.excesses.size();
   result.legs_without_time = times.without_time;
-  if (result.legs >= least_legs) {
+  if (result.legs >= min_legs) {
     result.settling = std::clamp(median(times.excesses), 0.0, 60.0);
     result.vehicle.mode.settle_time = *result.settling;
   }

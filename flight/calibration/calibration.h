@@ -26,7 +26,7 @@ struct Calibration {
   Vehicle vehicle;  ///< Vehicle with the identified parameters.
   /// Wind velocity during the flight, east and north [m/s].
   Eigen::Vector2d wind = Eigen::Vector2d::Zero();
-  double flown = 0.0;         ///< Time in the air [s].
+  double flight_time = 0.0;   ///< Time in the air [s].
   double hover_power = 0.0;   ///< Hover power in still air at sea level [W].
   double scatter = 0.0;       ///< RMS deviation of windows from the model [W].
   double energy_error = 0.0;  ///< RMS relative energy error on parts outside the fit.
@@ -51,6 +51,6 @@ Calibration calibrate(const FlightLog& log, const Vehicle& vehicle, double air_d
                       std::optional<double> mass = {});
 
 /// Minimum for energy_error, because batteries and air density vary from day to day.
-inline constexpr double least_energy_error = 0.05;
+inline constexpr double min_energy_error = 0.05;
 
 }  // namespace skycap::flight

@@ -103,7 +103,7 @@ struct MessageFormat {
   }
 };
 
-MessageFormat format_of(std::string_view body) {
+MessageFormat parse_format(std::string_view body) {
   MessageFormat format{text_at(body.substr(2, 4)), static_cast<unsigned char>(body[1]), {}};
   const std::string letters = text_at(body.substr(6, 16));
   const std::vector<std::string> labels = split(text_at(body.substr(22, 64)), ',');
@@ -193,20 +193,21 @@ class Clock {
 /// Builds the log from its messages.
 class LogBuilder {
  public:
-  explicit LogBuilder(std::size_t most_entries) : most_entries_(most_entries) {}
+  explicit LogBuilder(std::size_t max_entries) : max_entries_(max_entries) {}
 
   void add(const Message& message) {
     const std::string& name = message.name();
     if (name == "XKF1" || name == "NKF1" || name == "EKF1") set_velocity(message);
-    if (const std::optional<double> battery = battery_of(message)) add_sample(message, *battery);
+    if (const std::optional<double> battery = read_battery_number(message))
+      add_sample(message, *battery);
     if (name == "PARM") {
       log_.parameters.push_back({message.text("Name"), message.number_or("Value", 0.0)});
     }
     if (name == "CMD") add_command(message, listed_);
     if (name == "MISE") add_command(message, log_.commands);
-    if (readings_.size() + log_.parameters.size() + log_.commands.size() + listed_.size() >
-        most_entries_) {
-      throw Error(ErrorKind::bad_file, "contains more than " + std::to_string(most_entries_) +
+    if (samples_.size() + log_.parameters.size() + log_.commands.size() + listed_.size() >
+        max_entries_) {
+      throw Error(ErrorKind::bad_file, "contains more than " + std::to_string(max_entries_) +
                                            " samples, parameters and commands");
     }
   }
@@ -238,7 +239,7 @@ class LogBuilder {
  private:
   /// Returns the battery number of a message, or std::nullopt for other messages. Before Copter
   /// 4.0, the second battery has its own message.
-  static std::optional<double> battery_of(const Message& message) {
+  static std::optional<double> read_battery_number(const Message& message) {
     const std::string& name = message.name();
     if (name == "BAT" || name == "CURR") {
       for (const char* label : {"Inst", "Instance"}) {
@@ -268,7 +269,7 @@ class LogBuilder {
   }
 
   void add_sample(const Message& message, double battery) {
-    constexpr double most_volts = 1000.0, most_amperes = 5000.0, oldest = 2.0;
+    constexpr double max_volts = 1000.0, max_amperes = 5000.0, oldest = 2.0;
     const auto volts = message.reading("Volt"), amperes = message.reading("Curr");
     if (!volts) return;
     has_voltage_ = true;
@@ -277,25 +278,25 @@ class LogBuilder {
     if (!has_velocity_) return;
     const std::optional<double> time = clock_.read(message.time());
     const bool is_possible = battery >= 0.0 && battery <= 255.0 && *volts >= 0.0 &&
-                             *volts < most_volts && std::abs(*amperes) < most_amperes;
+                             *volts < max_volts && std::abs(*amperes) < max_amperes;
     if (!time || !is_possible) {
       ++log_.damaged;
       return;
     }
     if (*time - velocity_time_ > oldest) return;
-    readings_.push_back({*time, velocity_, static_cast<std::uint8_t>(battery), *volts * *amperes});
+    samples_.push_back({*time, velocity_, static_cast<std::uint8_t>(battery), *volts * *amperes});
   }
 
   /// Adds up the power of all batteries. A battery number with very few readings is damaged and
   /// ignored.
   void add_samples() {
-    constexpr std::size_t least_share = 20;
+    constexpr std::size_t min_fraction = 20;
     std::array<std::size_t, 256> counts{};
-    for (const Reading& reading : readings_) ++counts[reading.battery];
-    const std::size_t least = *std::ranges::max_element(counts) / least_share;
+    for (const PowerSample& reading : samples_) ++counts[reading.battery];
+    const std::size_t min_count = *std::ranges::max_element(counts) / min_fraction;
     std::map<std::uint8_t, double> powers;
-    for (const Reading& reading : readings_) {
-      if (counts[reading.battery] < least) {
+    for (const PowerSample& reading : samples_) {
+      if (counts[reading.battery] < min_count) {
         ++log_.damaged;
         continue;
       }
@@ -320,28 +321,28 @@ class LogBuilder {
   }
 
   /// Power of one battery at one time.
-  struct Reading {
+  struct PowerSample {
     double time = 0.0;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
     std::uint8_t battery = 0;
     double power = 0.0;
   };
 
-  std::size_t most_entries_;
+  std::size_t max_entries_;
   FlightLog log_;
   std::vector<LogCommand> listed_;  ///< Items from CMD.
   Clock clock_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   double velocity_time_ = 0.0;
   bool has_velocity_ = false, has_voltage_ = false, has_current_ = false;
-  std::vector<Reading> readings_;
+  std::vector<PowerSample> samples_;
 };
 
 }  // namespace
 
-FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
+FlightLog read_dataflash(std::string_view bytes, std::size_t max_entries) {
   std::array<std::optional<MessageFormat>, 256> formats;
-  LogBuilder builder(most_entries);
+  LogBuilder builder(max_entries);
   bool has_format = false;
   std::size_t skipped = 0;
   const auto has_marks = [&](std::size_t k) {
@@ -362,7 +363,7 @@ FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
     }
     const std::string_view body = bytes.substr(i + header_size, size - header_size);
     if (is_format) {
-      MessageFormat format = format_of(body);
+      MessageFormat format = parse_format(body);
       std::optional<MessageFormat>& known = formats[static_cast<unsigned char>(body[0])];
       if (!known || known->fields.empty() || !format.fields.empty()) known = std::move(format);
       has_format = true;

@@ -21,7 +21,7 @@ constexpr std::array column_names{"time_s", "east_m_s", "north_m_s", "up_m_s", "
 
 using Columns = std::array<std::size_t, column_names.size()>;
 
-Columns columns_of(const std::vector<std::string>& header) {
+Columns find_columns(const std::vector<std::string>& header) {
   Columns columns{};
   for (std::size_t i = 0; i < column_names.size(); ++i) {
     const auto found = std::ranges::find(header, column_names[i]);
@@ -31,8 +31,8 @@ Columns columns_of(const std::vector<std::string>& header) {
   return columns;
 }
 
-LogSample sample_of(const std::vector<std::string>& fields, const Columns& columns,
-                    std::size_t line) {
+LogSample parse_sample(const std::vector<std::string>& fields, const Columns& columns,
+                       std::size_t line) {
   std::array<double, column_names.size()> values{};
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i] >= fields.size()) fail(line, "has too few fields");
@@ -48,7 +48,7 @@ LogSample sample_of(const std::vector<std::string>& fields, const Columns& colum
 
 }  // namespace
 
-FlightLog read_csv_log(std::string_view text, std::size_t most_samples) {
+FlightLog read_csv_log(std::string_view text, std::size_t max_samples) {
   FlightLog log;
   Columns columns{};
   std::size_t number = 0;
@@ -61,13 +61,13 @@ FlightLog read_csv_log(std::string_view text, std::size_t most_samples) {
     for (std::string& field : fields) field = geometry::trimmed(field);
     if (!has_header) {
       has_header = true;
-      columns = columns_of(fields);
+      columns = find_columns(fields);
       continue;
     }
-    if (log.samples.size() == most_samples) {
-      fail(number, "exceeds the limit of " + std::to_string(most_samples) + " samples");
+    if (log.samples.size() == max_samples) {
+      fail(number, "exceeds the limit of " + std::to_string(max_samples) + " samples");
     }
-    log.samples.push_back(sample_of(fields, columns, number));
+    log.samples.push_back(parse_sample(fields, columns, number));
     const std::size_t count = log.samples.size();
     if (count > 1 && log.samples[count - 1].time <= log.samples[count - 2].time) {
       fail(number, "is not later than the line before it");

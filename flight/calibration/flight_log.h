@@ -38,7 +38,7 @@ struct FlightLog {
   std::size_t damaged = 0;               ///< Number of messages with impossible values.
 };
 
-inline constexpr std::size_t largest_log = std::size_t{512} << 20, most_log_samples = 10'000'000;
+inline constexpr std::size_t largest_log = std::size_t{512} << 20, max_log_samples = 10'000'000;
 
 /// Reads an ArduPilot dataflash log (.bin). Power comes from BAT (before Copter 3.5: CURR) and
 /// velocity from XKF1, NKF1 or EKF1. Parameters come from PARM; executed items from MISE (before
@@ -47,11 +47,11 @@ inline constexpr std::size_t largest_log = std::size_t{512} << 20, most_log_samp
 /// Skips damaged data: messages without a valid successor, and physically impossible readings.
 /// Times continue after a restart of the clock. Throws Error{bad_file} if the file is a different
 /// kind of log, or lacks power or velocity.
-FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries = most_log_samples);
+FlightLog read_dataflash(std::string_view bytes, std::size_t max_entries = max_log_samples);
 
 /// Reads text with a header line that names the columns time_s, east_m_s, north_m_s, up_m_s and
 /// power_w in any order. Other columns are ignored. Throws Error{bad_file} with the line number.
-FlightLog read_csv_log(std::string_view text, std::size_t most_samples = most_log_samples);
+FlightLog read_csv_log(std::string_view text, std::size_t max_samples = max_log_samples);
 
 /// Reads either format: CSV if the name ends in .csv, otherwise dataflash. Errors include the file
 /// name.

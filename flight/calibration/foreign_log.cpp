@@ -13,7 +13,7 @@ std::string foreign_kind(std::string_view bytes) {
     std::string_view beginning;
     const char* what;
   };
-  constexpr const char* give_bin = "; use the vehicle's own .bin log";
+  constexpr const char* use_bin = "; use the vehicle's own .bin log";
   static const std::array kinds{
       Kind{"ULog\x01\x12\x35",
            "a PX4 ULog; use a CSV table with time_s, east_m_s, north_m_s, up_m_s and power_w"},
@@ -33,9 +33,9 @@ std::string foreign_kind(std::string_view bytes) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   const auto is_frame = [&](std::size_t i) { return byte(i) == 0xFE || byte(i) == 0xFD; };
   if (bytes.size() > frame && is_frame(frame) && byte(0) == 0) {
-    return std::string("a ground station's telemetry log (.tlog)") + give_bin;
+    return std::string("a ground station's telemetry log (.tlog)") + use_bin;
   }
-  if (bytes.size() > 1 && is_frame(0)) return std::string("a raw MAVLink stream") + give_bin;
+  if (bytes.size() > 1 && is_frame(0)) return std::string("a raw MAVLink stream") + use_bin;
   const std::string_view start = bytes.substr(0, 1000);
   const bool is_text = !start.empty() && std::ranges::all_of(start, [](char c) {
     return c == '\t' || c == '\n' || c == '\r' || (c >= ' ' && c <= '~');

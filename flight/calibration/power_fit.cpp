@@ -27,7 +27,7 @@ constexpr double hover_speed = 0.5;       ///< Maximum speed of hovering [m/s].
 
 /// Outlier limits relative to neighbouring readings. An outlier exceeds this number of median
 /// absolute deviations and the tolerance.
-constexpr double most_deviations = 6.0, power_tolerance = 0.3 /* of the median */,
+constexpr double max_deviations = 6.0, power_tolerance = 0.3 /* of the median */,
                  velocity_tolerance = 1.0 /* [m/s] */;
 constexpr std::size_t neighbours = 5;   ///< Number of neighbours on each side.
 constexpr double neighbour_time = 1.0;  ///< Maximum time to a neighbour [s].
@@ -41,8 +41,8 @@ constexpr std::size_t rotors = 0, avionics = 1, drag = 2, wind_east = 3, wind_no
 constexpr double rotor_margin = 1e-4;
 /// Lower bound of the fit, relative to the minimum rotor power. The fit may use values below the
 /// minimum. Hover power and wind are then right even if mass or rotors differ from the actual ones.
-constexpr double least_rotor_share = 0.05;
-constexpr double least_avionics = 1e-3, least_drag = 1e-6;
+constexpr double min_rotor_fraction = 0.05;
+constexpr double min_avionics = 1e-3, min_drag = 1e-6;
 
 /// Weight of wind [W per m/s]. It is far smaller than the evidence of a log flown in several
 /// directions. Its effect is zero wind where the log contains no evidence.
@@ -51,7 +51,7 @@ constexpr double wind_weight = 1.0;
 /// Huber threshold in robust standard deviations.
 constexpr double huber_deviations = 2.0;
 /// Lower bound of that deviation, relative to the hover power.
-constexpr double least_deviation = 0.005;
+constexpr double min_deviation = 0.005;
 constexpr int reweightings = 3;
 
 /// Weight of hover windows. If the model cannot fit everywhere, such as with a parameter at its
@@ -59,7 +59,7 @@ constexpr int reweightings = 3;
 constexpr double hover_weight = 10.0;
 
 /// Returns the means of groups of consecutive velocities, which hardly change within a window.
-std::vector<Vector3d> means_of(const std::vector<Vector3d>& velocities) {
+std::vector<Vector3d> compute_means(const std::vector<Vector3d>& velocities) {
   constexpr std::size_t together = 5;
   std::vector<Vector3d> means;
   for (std::size_t i = 0; i < velocities.size(); i += together) {
@@ -79,21 +79,21 @@ bool is_outlier(double value, const std::vector<double>& around, const Tolerance
   std::vector<double> deviations;
   for (const double other : around) deviations.push_back(std::abs(other - middle));
   return std::abs(value - middle) >
-         std::max(tolerance(middle), most_deviations * median(deviations));
+         std::max(tolerance(middle), max_deviations * median(deviations));
 }
 
-double least_rotors(const Vehicle& vehicle) {
+double lower_rotor_bound(const Vehicle& vehicle) {
   return (1.0 + rotor_margin) * min_rotor_power(vehicle);
 }
 
-PowerFit fit_of(const Unknowns& x, Vehicle vehicle) {
+PowerFit make_fit(const Unknowns& x, Vehicle vehicle) {
   vehicle.endurance_min = endurance_at(vehicle, x[rotors] + x[avionics]);
   vehicle.avionics_power = x[avionics];
   vehicle.drag_area = x[drag] / x[rotors];
   return {vehicle, {x[wind_east], x[wind_north]}, {}};
 }
 
-Motion motion_of(const Vehicle& vehicle, const Eigen::Vector2d& wind, double air_density) {
+Motion make_motion(const Vehicle& vehicle, const Eigen::Vector2d& wind, double air_density) {
   Conditions conditions;
   conditions.wind = wind;
   conditions.air_density = air_density;
@@ -115,9 +115,9 @@ class Basis {
     vehicle.avionics_power = 0.0;
     vehicle.endurance_min = endurance_at(vehicle, rotor_power_);
     vehicle.drag_area = 0.0;
-    without_drag_.emplace(motion_of(vehicle, wind, air_density));
+    without_drag_.emplace(make_motion(vehicle, wind, air_density));
     vehicle.drag_area = 1.0;
-    with_drag_.emplace(motion_of(vehicle, wind, air_density));
+    with_drag_.emplace(make_motion(vehicle, wind, air_density));
   }
 
   /// Returns the rotor power in a window relative to hover, and the effect of one unit of `drag`
@@ -132,7 +132,7 @@ class Basis {
   std::optional<Motion> without_drag_, with_drag_;
 };
 
-double power_of(const Unknowns& x, const std::array<double, 2>& basis) {
+double compute_power(const Unknowns& x, const std::array<double, 2>& basis) {
   return x[avionics] + x[rotors] * basis[0] + x[drag] * basis[1];
 }
 
@@ -171,7 +171,7 @@ class Errors final : public ceres::CostFunction {
       for (std::size_t i = 0; i < windows.size(); ++i) {
         const double weight = problem_.weights[i];
         const std::array<double, 2> parts = basis.of(windows[i]);
-        errors[i] = weight * (power_of(x, parts) - windows[i].power);
+        errors[i] = weight * (compute_power(x, parts) - windows[i].power);
         if (rows == nullptr) continue;
         double* const row = rows + i * x.size();
         row[rotors] = weight * parts[0];
@@ -201,7 +201,8 @@ class Errors final : public ceres::CostFunction {
     const std::size_t count = problem_.windows.size();
     for (std::size_t i = 0; i < count; ++i) {
       const LogWindow& window = problem_.windows[i];
-      const double change = power_of(x, after.of(window)) - power_of(x, before.of(window));
+      const double change =
+          compute_power(x, after.of(window)) - compute_power(x, before.of(window));
       rows[i * x.size() + axis] = problem_.weights[i] * change / (2.0 * step);
     }
     for (const std::size_t of : {wind_east, wind_north}) {
@@ -219,9 +220,9 @@ Unknowns solved(Unknowns x, const Problem& problem) {
   ceres::Problem fit;
   fit.AddResidualBlock(std::make_unique<Errors>(problem).release(), nullptr, x.data());
   fit.SetParameterLowerBound(x.data(), rotors,
-                             least_rotor_share * min_rotor_power(problem.vehicle));
-  fit.SetParameterLowerBound(x.data(), avionics, least_avionics);
-  fit.SetParameterLowerBound(x.data(), drag, least_drag);
+                             min_rotor_fraction * min_rotor_power(problem.vehicle));
+  fit.SetParameterLowerBound(x.data(), avionics, min_avionics);
+  fit.SetParameterLowerBound(x.data(), drag, min_drag);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.dense_linear_algebra_library_type = ceres::EIGEN;
@@ -244,11 +245,11 @@ void reweight(std::vector<double>& weights, const Problem& problem, const Unknow
   const Basis basis = problem.basis(x[wind_east], x[wind_north]);
   std::vector<double> errors;
   for (const LogWindow& window : problem.windows) {
-    errors.push_back(std::abs(power_of(x, basis.of(window)) - window.power));
+    errors.push_back(std::abs(compute_power(x, basis.of(window)) - window.power));
   }
   constexpr double normal = 1.4826;  // Standard deviations per median absolute deviation.
   const double deviation =
-      std::max(normal * median(errors), least_deviation * (x[rotors] + x[avionics]));
+      std::max(normal * median(errors), min_deviation * (x[rotors] + x[avionics]));
   for (std::size_t i = 0; i < errors.size(); ++i) {
     weights[i] = std::sqrt(std::min(1.0, huber_deviations * deviation / errors[i]));
   }
@@ -257,10 +258,10 @@ void reweight(std::vector<double>& weights, const Problem& problem, const Unknow
 /// Returns the nearest feasible solution with the same wind and hover power: minimum rotor power,
 /// and the best drag for it.
 Unknowns with_possible_rotors(Unknowns x, const Problem& problem) {
-  const double least = least_rotors(problem.vehicle);
-  if (x[rotors] >= least) return x;
-  x[avionics] = std::max(least_avionics, x[rotors] + x[avionics] - least);
-  x[rotors] = least;
+  const double min = lower_rotor_bound(problem.vehicle);
+  if (x[rotors] >= min) return x;
+  x[avionics] = std::max(min_avionics, x[rotors] + x[avionics] - min);
+  x[rotors] = min;
   x[drag] = 0.0;
   const Basis basis = problem.basis(x[wind_east], x[wind_north]);
   double products = 0.0, squares = 0.0;
@@ -268,18 +269,18 @@ Unknowns with_possible_rotors(Unknowns x, const Problem& problem) {
     const LogWindow& window = problem.windows[i];
     const std::array<double, 2> parts = basis.of(window);
     const double weight = problem.weights[i] * problem.weights[i];
-    products += weight * parts[1] * (window.power - power_of(x, parts));
+    products += weight * parts[1] * (window.power - compute_power(x, parts));
     squares += weight * parts[1] * parts[1];
   }
-  x[drag] = std::max(least_drag * x[rotors], squares > 0.0 ? products / squares : 0.0);
+  x[drag] = std::max(min_drag * x[rotors], squares > 0.0 ? products / squares : 0.0);
   return x;
 }
 
 std::vector<std::string> bounds_met(const Unknowns& x, const Vehicle& vehicle) {
   std::vector<std::string> met;
-  if (x[rotors] <= least_rotors(vehicle)) met.emplace_back("rotors");
-  if (x[avionics] < 2.0 * least_avionics) met.emplace_back("avionics_power");
-  if (x[drag] < 2.0 * least_drag * x[rotors]) met.emplace_back("drag_area");
+  if (x[rotors] <= lower_rotor_bound(vehicle)) met.emplace_back("rotors");
+  if (x[avionics] < 2.0 * min_avionics) met.emplace_back("avionics_power");
+  if (x[drag] < 2.0 * min_drag * x[rotors]) met.emplace_back("drag_area");
   return met;
 }
 
@@ -294,16 +295,16 @@ double median(std::vector<double> values) {
 std::vector<LogSample> without_outliers(const std::vector<LogSample>& samples) {
   std::vector<LogSample> kept;
   std::vector<double> around;
-  const auto is_alone = [&](std::size_t i, const auto& value_of, const auto& tolerance) {
+  const auto is_alone = [&](std::size_t i, const auto& get_value, const auto& tolerance) {
     around.clear();
     const std::size_t begin = i - std::min(i, neighbours);
     const std::size_t end = std::min(samples.size(), i + neighbours + 1);
     for (std::size_t k = begin; k < end; ++k) {
       if (k == i || std::abs(samples[k].time - samples[i].time) > neighbour_time) continue;
-      around.push_back(value_of(samples[k]));
+      around.push_back(get_value(samples[k]));
     }
     constexpr std::size_t enough = 4;
-    return around.size() >= enough && is_outlier(value_of(samples[i]), around, tolerance);
+    return around.size() >= enough && is_outlier(get_value(samples[i]), around, tolerance);
   };
   for (std::size_t i = 0; i < samples.size(); ++i) {
     bool is_kept = !is_alone(
@@ -319,7 +320,7 @@ std::vector<LogSample> without_outliers(const std::vector<LogSample>& samples) {
   return kept;
 }
 
-std::vector<LogWindow> windows_of(const std::vector<LogSample>& samples) {
+std::vector<LogWindow> find_windows(const std::vector<LogSample>& samples) {
   if (samples.empty()) return {};
   std::vector<double> powers;
   for (const LogSample& sample : samples) powers.push_back(sample.power);
@@ -342,7 +343,7 @@ std::vector<LogWindow> windows_of(const std::vector<LogSample>& samples) {
     const double change = (samples[end].velocity - samples[begin].velocity).norm();
     if (window.duration >= window_time && change < steady) {
       window.power = energy / window.duration;
-      window.velocities = means_of(window.velocities);
+      window.velocities = compute_means(window.velocities);
       windows.push_back(std::move(window));
     }
     begin = std::max(end, begin + 1);
@@ -351,16 +352,16 @@ std::vector<LogWindow> windows_of(const std::vector<LogSample>& samples) {
 }
 
 double modelled_power(const PowerFit& fit, const LogWindow& window, double air_density) {
-  return mean_power(motion_of(fit.vehicle, fit.wind, air_density), window);
+  return mean_power(make_motion(fit.vehicle, fit.wind, air_density), window);
 }
 
 PowerFit fit_power(std::span<const LogWindow> windows, const Vehicle& vehicle, double air_density,
                    double hover_power) {
   constexpr double inside = 1.02;
   Unknowns x{};
-  x[rotors] = std::max(inside * least_rotors(vehicle), hover_power - vehicle.avionics_power);
-  x[avionics] = std::max(2.0 * least_avionics, hover_power - x[rotors]);
-  x[drag] = x[rotors] * std::max(2.0 * least_drag, vehicle.drag_area);
+  x[rotors] = std::max(inside * lower_rotor_bound(vehicle), hover_power - vehicle.avionics_power);
+  x[avionics] = std::max(2.0 * min_avionics, hover_power - x[rotors]);
+  x[drag] = x[rotors] * std::max(2.0 * min_drag, vehicle.drag_area);
   std::vector<double> weights(windows.size(), 1.0);
   const Problem problem{windows, vehicle, air_density, weights};
   for (int i = 0; i < reweightings; ++i) {
@@ -371,7 +372,7 @@ PowerFit fit_power(std::span<const LogWindow> windows, const Vehicle& vehicle, d
     if (is_hover(windows[i])) weights[i] *= hover_weight;
   }
   x = with_possible_rotors(solved(x, problem), problem);
-  PowerFit fit = fit_of(x, vehicle);
+  PowerFit fit = make_fit(x, vehicle);
   fit.at_bound = bounds_met(x, vehicle);
   return fit;
 }

@@ -32,7 +32,7 @@ struct LogWindow {
 std::vector<LogSample> without_outliers(const std::vector<LogSample>& samples);
 
 /// Returns the windows of steady flight in the air.
-std::vector<LogWindow> windows_of(const std::vector<LogSample>& samples);
+std::vector<LogWindow> find_windows(const std::vector<LogSample>& samples);
 
 struct PowerFit {
   Vehicle vehicle;

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::AlignedBox3d;
 
-std::vector<AlignedBox3d> extents_of(const std::vector<MeasuredSpace>& spaces) {
+std::vector<AlignedBox3d> collect_extents(const std::vector<MeasuredSpace>& spaces) {
   std::vector<AlignedBox3d> extents;
   extents.reserve(spaces.size());
   for (const MeasuredSpace& space : spaces) extents.push_back(space.extent());
@@ -35,7 +35,7 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
     const AlignedBox3d& box = spaces[i].config().region;
     double reach = 0.5 * box.diagonal().norm();
     tree.visit_near({box.center(), box.center()}, reach, [&](std::uint32_t j) {
-      if (j != i && box.intersects(known[j])) spaces[i].take_free(spaces[j]);
+      if (j != i && box.intersects(known[j])) spaces[i].merge_free(spaces[j]);
     });
   }
   return spaces;
@@ -48,10 +48,10 @@ std::optional<Segment> part_near(const Segment& leg, const AlignedBox3d& box, do
   // Rounding tolerance of fractions, by which parts may be longer.
   constexpr double rounding = 1e-9;
   for (int axis = 0; axis < 3; ++axis) {
-    const double way = leg.to[axis] - leg.from[axis];
-    if (way == 0.0) continue;
-    const double one = (box.min()[axis] - reach - leg.from[axis]) / way;
-    const double other = (box.max()[axis] + reach - leg.from[axis]) / way;
+    const double delta = leg.to[axis] - leg.from[axis];
+    if (delta == 0.0) continue;
+    const double one = (box.min()[axis] - reach - leg.from[axis]) / delta;
+    const double other = (box.max()[axis] + reach - leg.from[axis]) / delta;
     begin = std::max(begin, std::min(one, other) - rounding);
     end = std::min(end, std::max(one, other) + rounding);
   }
@@ -62,7 +62,7 @@ std::optional<Segment> part_near(const Segment& leg, const AlignedBox3d& box, do
 }  // namespace
 
 MeasuredUnion::MeasuredUnion(std::vector<MeasuredSpace> spaces)
-    : spaces_(shared(std::move(spaces))), extents_(extents_of(spaces_)), tree_(extents_) {}
+    : spaces_(shared(std::move(spaces))), extents_(collect_extents(spaces_)), tree_(extents_) {}
 
 Closest MeasuredUnion::closest(const Segment& leg, double up_to) const {
   Closest best{up_to};

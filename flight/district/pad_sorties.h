@@ -17,7 +17,7 @@ struct PadSorties {
   std::vector<std::uint32_t> order;  ///< Indices of the reachable waypoints in flight order.
   std::vector<std::uint32_t> pads;   ///< Pad of each entry of `order`.
   /// Waypoints beyond the range of a full battery from every pad.
-  std::vector<std::uint32_t> out_of_reach;
+  std::vector<std::uint32_t> unreachable;
   double length = 0.0;  ///< Length of the straight lines in this order [m].
 };
 
@@ -27,7 +27,7 @@ struct PadSorties {
 ///
 /// `targets` has one ascending number per waypoint. `pads` are ground positions, and `climb` is the
 /// vertical climb above them before the first leg [m].
-PadSorties sorties_from_pads(std::span<const Station> stations,
+PadSorties sorties_from_pads(std::span<const CapturePoint> capture_points,
                              std::span<const std::uint32_t> targets,
                              std::span<const Eigen::Vector3d> pads, double climb,
                              const Motion& motion);

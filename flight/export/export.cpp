@@ -23,12 +23,12 @@ using Eigen::Vector3d;
 /// Format with its functions.
 struct FormatRecord {
   FormatInfo info;
-  bool holds_curves = false;
+  bool supports_curves = false;
   std::string (*write)(const FlightPlan& plan);
   Problems (*validate)(const std::string& content);
   /// Returns positions in the local frame [m], in file order.
-  std::vector<Vector3d> (*places)(const std::string& content, const Site& site,
-                                  const Vector3d& pad);
+  std::vector<Vector3d> (*read_positions)(const std::string& content, const Site& site,
+                                          const Vector3d& pad);
   /// Returns notes on omitted data.
   std::vector<std::string> (*notes)(const FlightPlan& plan) = nullptr;
 };
@@ -36,24 +36,24 @@ struct FormatRecord {
 /// Interval between rows of trajectory files [s].
 constexpr double trajectory_interval = 0.1;
 
-std::vector<TimedState> states_of(const FlightPlan& plan) {
+std::vector<TimedState> compute_states(const FlightPlan& plan) {
   return trajectory(plan, trajectory_interval);
 }
 
 /// Returns the local positions of a file with geodetic coordinates.
 template <class Read>
-std::vector<Vector3d> earth_places(const std::string& content, const Site& site,
-                                   const Vector3d& pad, const Read& read) {
+std::vector<Vector3d> geodetic_positions(const std::string& content, const Site& site,
+                                         const Vector3d& pad, const Read& read) {
   return local_points(read(content), site, pad);
 }
 
-std::vector<Vector3d> csv_places(const std::string& content, const Site&, const Vector3d&) {
+std::vector<Vector3d> csv_positions(const std::string& content, const Site&, const Vector3d&) {
   std::vector<Vector3d> points;
   for (const TimedState& state : read_trajectory_csv(content)) points.push_back(state.position);
   return points;
 }
 
-std::vector<Vector3d> tum_places(const std::string& content, const Site&, const Vector3d&) {
+std::vector<Vector3d> tum_positions(const std::string& content, const Site&, const Vector3d&) {
   std::vector<Vector3d> points;
   for (const TimedPose& pose : read_tum(content)) {
     points.emplace_back(pose.world_from_camera.translation());
@@ -61,7 +61,7 @@ std::vector<Vector3d> tum_places(const std::string& content, const Site&, const 
   return points;
 }
 
-std::vector<std::string> notes_of_plan(const FlightPlan& plan) {
+std::vector<std::string> make_plan_notes(const FlightPlan& plan) {
   std::vector<std::string> notes;
   for (const std::string& name : flat_no_fly(plan).left_out) {
     notes.push_back(
@@ -71,7 +71,7 @@ std::vector<std::string> notes_of_plan(const FlightPlan& plan) {
   return notes;
 }
 
-std::vector<std::string> notes_of_litchi(const FlightPlan&) {
+std::vector<std::string> make_litchi_notes(const FlightPlan&) {
   return {
       "Litchi's mission settings are not in the file: set heading mode \"Custom\" and path mode "
       "\"Straight Lines\"; the gimbal pitch has whole degrees"};
@@ -83,65 +83,77 @@ const std::array<FormatRecord, 9> records{{
     {.info = {Format::plan, "plan", ".plan", "above take-off; home above mean sea level"},
      .write = write_plan,
      .validate = [](const std::string& content) { return validate_plan(content); },
-     .places =
+     .read_positions =
          [](const auto& content, const auto& site, const auto& pad) {
-           return earth_places(content, site, pad,
-                               [](const auto& text) { return route_of(read_plan(text).items); });
+           return geodetic_positions(content, site, pad, [](const auto& text) {
+             return make_route(read_plan(text).items);
+           });
          },
-     .notes = notes_of_plan},
+     .notes = make_plan_notes},
     {.info = {Format::waypoints, "waypoints", ".waypoints", "above take-off"},
      .write = write_waypoints,
      .validate = [](const std::string& content) { return validate_waypoints(content); },
-     .places =
+     .read_positions =
          [](const auto& content, const auto& site, const auto& pad) {
-           return earth_places(content, site, pad, [](const auto& text) {
-             return route_of(read_waypoints(text).items);
+           return geodetic_positions(content, site, pad, [](const auto& text) {
+             return make_route(read_waypoints(text).items);
            });
          }},
     {.info = {Format::kmz, "kmz", ".kmz", "above take-off"},
      .write = write_kmz,
      .validate = validate_kmz,
-     .places =
+     .read_positions =
          [](const auto& content, const auto& site, const auto& pad) {
-           return earth_places(content, site, pad, [](const auto& text) { return read_kmz(text); });
+           return geodetic_positions(content, site, pad,
+                                     [](const auto& text) { return read_kmz(text); });
          }},
     {.info = {Format::kml, "kml", ".kml", "above mean sea level"},
-     .holds_curves = true,
+     .supports_curves = true,
      .write = write_kml,
      .validate = validate_kml,
-     .places = [](const auto& content, const auto& site,
-                  const auto& pad) { return earth_places(content, site, pad, read_kml); }},
+     .read_positions =
+         [](const auto& content, const auto& site, const auto& pad) {
+           return geodetic_positions(content, site, pad, read_kml);
+         }},
     {.info = {Format::geojson, "geojson", ".geojson", "above the WGS84 ellipsoid"},
      .write = write_geojson,
      .validate = validate_geojson,
-     .places = [](const auto& content, const auto& site,
-                  const auto& pad) { return earth_places(content, site, pad, read_geojson); }},
+     .read_positions =
+         [](const auto& content, const auto& site, const auto& pad) {
+           return geodetic_positions(content, site, pad, read_geojson);
+         }},
     {.info = {Format::litchi, "litchi", ".litchi.csv", "above take-off"},
      .write = write_litchi,
      .validate = validate_litchi,
-     .places = [](const auto& content, const auto& site,
-                  const auto& pad) { return earth_places(content, site, pad, read_litchi); },
-     .notes = notes_of_litchi},
+     .read_positions =
+         [](const auto& content, const auto& site, const auto& pad) {
+           return geodetic_positions(content, site, pad, read_litchi);
+         },
+     .notes = make_litchi_notes},
     {.info = {Format::csv, "csv", ".csv", "local frame"},
-     .holds_curves = true,
+     .supports_curves = true,
      .write =
-         [](const FlightPlan& plan) { return write_trajectory_csv(states_of(plan), Frame::enu); },
+         [](const FlightPlan& plan) {
+           return write_trajectory_csv(compute_states(plan), Frame::enu);
+         },
      .validate = validate_trajectory_csv,
-     .places = csv_places},
+     .read_positions = csv_positions},
     {.info = {Format::ned_csv, "ned-csv", ".ned.csv", "local frame, down"},
-     .holds_curves = true,
+     .supports_curves = true,
      .write =
-         [](const FlightPlan& plan) { return write_trajectory_csv(states_of(plan), Frame::ned); },
+         [](const FlightPlan& plan) {
+           return write_trajectory_csv(compute_states(plan), Frame::ned);
+         },
      .validate = validate_trajectory_csv,
-     .places = csv_places},
+     .read_positions = csv_positions},
     {.info = {Format::tum, "tum", ".tum", "local frame"},
-     .holds_curves = true,
-     .write = [](const FlightPlan& plan) { return write_tum(camera_poses(states_of(plan))); },
+     .supports_curves = true,
+     .write = [](const FlightPlan& plan) { return write_tum(camera_poses(compute_states(plan))); },
      .validate = validate_tum,
-     .places = tum_places},
+     .read_positions = tum_positions},
 }};
 
-const FormatRecord& record_of(Format format) {
+const FormatRecord& find_record(Format format) {
   const FormatRecord& record = records.at(static_cast<std::size_t>(format));
   assert(record.info.format == format);
   return record;
@@ -158,7 +170,7 @@ std::span<const FormatInfo> formats() {
   return infos;
 }
 
-const FormatInfo& format_info(Format format) { return record_of(format).info; }
+const FormatInfo& format_info(Format format) { return find_record(format).info; }
 
 Format format_named(const std::string& name) {
   std::string names;
@@ -169,36 +181,36 @@ Format format_named(const std::string& name) {
   throw Error(ErrorKind::bad_usage, "unknown format \"" + name + "\"; expected one of: " + names);
 }
 
-bool holds_curves(Format format) { return record_of(format).holds_curves; }
+bool supports_curves(Format format) { return find_record(format).supports_curves; }
 
-std::string write(const FlightPlan& plan, Format format) { return record_of(format).write(plan); }
+std::string write(const FlightPlan& plan, Format format) { return find_record(format).write(plan); }
 
-std::vector<std::string> notes_of(const FlightPlan& plan, Format format) {
-  const FormatRecord& record = record_of(format);
+std::vector<std::string> make_notes(const FlightPlan& plan, Format format) {
+  const FormatRecord& record = find_record(format);
   return record.notes != nullptr ? record.notes(plan) : std::vector<std::string>();
 }
 
 Problems validate(const std::string& content, Format format) {
-  return record_of(format).validate(content);
+  return find_record(format).validate(content);
 }
 
-std::vector<Vector3d> places_of(const std::string& content, Format format, const Site& site,
-                                const Vector3d& pad) {
-  std::vector<Vector3d> points = record_of(format).places(content, site, pad);
+std::vector<Vector3d> read_positions(const std::string& content, Format format, const Site& site,
+                                     const Vector3d& pad) {
+  std::vector<Vector3d> points = find_record(format).read_positions(content, site, pad);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    geometry::require_place(points[i], "place " + std::to_string(i + 1));
+    geometry::require_valid_position(points[i], "place " + std::to_string(i + 1));
   }
   return points;
 }
 
-Format format_of_file(const std::filesystem::path& path, const std::string& content) {
+Format detect_format(const std::filesystem::path& path, const std::string& content) {
   const std::string name = path.filename().string();
   if (path.extension() == ".csv") {
     return geometry::without_mark(content).starts_with("latitude,") ? Format::litchi : Format::csv;
   }
   if (path.extension() == ".txt") return Format::waypoints;
   for (const FormatInfo& info : formats()) {
-    if (name.ends_with(info.ending)) return info.format;
+    if (name.ends_with(info.extension)) return info.format;
   }
   throw Error(ErrorKind::bad_file, path.string() +
                                        " is not a route file: its name must end in .plan, "
@@ -208,9 +220,9 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
 std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                  const Vector3d& pad) {
   const std::string content = geometry::read_file(path, largest_route_file);
-  const Format format = format_of_file(path, content);
+  const Format format = detect_format(path, content);
   try {
-    return places_of(content, format, site, pad);
+    return read_positions(content, format, site, pad);
   } catch (const Error& error) {
     throw Error(error.kind(), path.string() + ": " + error.what());
   }
@@ -218,7 +230,7 @@ std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& 
 
 std::optional<double> read_return_height(const std::filesystem::path& path) {
   const std::string content = geometry::read_file(path);
-  if (format_of_file(path, content) != Format::kmz) return std::nullopt;
+  if (detect_format(path, content) != Format::kmz) return std::nullopt;
   return read_kmz(content).return_height;
 }
 

@@ -18,7 +18,7 @@ enum class Format { plan, waypoints, kmz, kml, geojson, litchi, csv, ned_csv, tu
 struct FormatInfo {
   Format format;
   const char* name;
-  const char* ending;
+  const char* extension;
   const char* heights;
 };
 std::span<const FormatInfo> formats();
@@ -30,26 +30,27 @@ Format format_named(const std::string& name);
 /// Returns true if files of this format can hold curved legs, as lists of closely spaced positions.
 /// DJI's turn modes round corners, too, but the exact curves are unpublished and cannot be
 /// verified.
-bool holds_curves(Format format);
+bool supports_curves(Format format);
 
 /// Returns the file content, the notes on omitted data, or the problems of the content.
 std::string write(const FlightPlan& plan, Format format);
-std::vector<std::string> notes_of(const FlightPlan& plan, Format format);
+std::vector<std::string> make_notes(const FlightPlan& plan, Format format);
 Problems validate(const std::string& content, Format format);
 
 /// Returns the positions of a file in the local frame [m], in file order. `pad` is the altitude
 /// reference for heights above take-off. Throws Error{bad_file} with the first problem. For the
 /// vehicle's behaviour see interpreter/interpret.h.
-std::vector<Eigen::Vector3d> places_of(const std::string& content, Format format, const Site& site,
-                                       const Eigen::Vector3d& pad);
+std::vector<Eigen::Vector3d> read_positions(const std::string& content, Format format,
+                                            const Site& site, const Eigen::Vector3d& pad);
 
 inline constexpr std::size_t largest_route_file = std::size_t{64} << 20;
 
 /// Returns the format for a file extension; for .csv the first line decides. Throws
 /// Error{bad_file}.
-Format format_of_file(const std::filesystem::path& path, const std::string& content);
+Format detect_format(const std::filesystem::path& path, const std::string& content);
 
-/// Returns places_of() for a file of any supported format and origin. Errors include the file name.
+/// Returns read_positions() for a file of any supported format and origin. Errors include the file
+/// name.
 std::vector<Eigen::Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                         const Eigen::Vector3d& pad);
 

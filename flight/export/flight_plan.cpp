@@ -19,15 +19,15 @@ Waypoint corner(const Vector3d& position, double clearance) {
   return waypoint;
 }
 
-Waypoint stop(const Station& station, double clearance) {
-  Waypoint waypoint = corner(station.view.position, clearance);
-  waypoint.is_station = true;
-  waypoint.yaw = yaw_of(station.view);
-  waypoint.pitch = pitch_of(station.view);
-  waypoint.hold = std::max(corner_hold, station.hold);
-  waypoint.hold_after = station.hold_after;
-  waypoint.shots = station.shots;
-  waypoint.view_index = station.view_index;
+Waypoint stop(const CapturePoint& capture_point, double clearance) {
+  Waypoint waypoint = corner(capture_point.view.position, clearance);
+  waypoint.is_capture_point = true;
+  waypoint.yaw = compute_yaw(capture_point.view);
+  waypoint.pitch = compute_pitch(capture_point.view);
+  waypoint.hold = std::max(corner_hold, capture_point.hold);
+  waypoint.hold_after = capture_point.hold_after;
+  waypoint.captures = capture_point.captures;
+  waypoint.view_index = capture_point.view_index;
   return waypoint;
 }
 
@@ -42,18 +42,18 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
       {},   rules.no_fly, rules.fence,   route.clearance,          route.returns};
   plan.priors = rules.priors;
   plan.waypoints.push_back(corner(sortie.out.points.front(), sortie.out.clearance));
-  if (corners == Corners::flown_round && sortie.passage) {
+  if (corners == Corners::rounded && sortie.fly_through) {
     for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
-      plan.passed.push_back(stop(route.stations[i], sortie.passage->clearance));
-      plan.passed.back().position = sortie.passage->views[i - sortie.first].position;
+      plan.passed.push_back(stop(route.capture_points[i], sortie.fly_through->clearance));
+      plan.passed.back().position = sortie.fly_through->views[i - sortie.first].position;
       plan.passed.back().hold = plan.passed.back().hold_after = 0.0;
     }
-    plan.waypoints.push_back(corner(sortie.back.points.back(), sortie.passage->clearance));
-    plan.waypoints.back().passage = sortie.passage;
+    plan.waypoints.push_back(corner(sortie.back.points.back(), sortie.fly_through->clearance));
+    plan.waypoints.back().fly_through = sortie.fly_through;
     return plan;
   }
   const auto add = [&](const Leg& leg, Waypoint end) {
-    if (corners == Corners::flown_round && leg.smooth) {
+    if (corners == Corners::rounded && leg.smooth) {
       end.curve = leg.smooth->curve;
       end.clearance = leg.smooth->clearance;
     } else {
@@ -65,14 +65,14 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
   };
   const Leg* leg = &sortie.out;
   for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
-    add(*leg, stop(route.stations[i], leg->clearance));
+    add(*leg, stop(route.capture_points[i], leg->clearance));
     leg = i < sortie.last ? &route.legs[i] : &sortie.back;
   }
   add(sortie.back, corner(sortie.back.points.back(), sortie.back.clearance));
   return plan;
 }
 
-const Returns& FlightPlan::certified_returns() const {
+const Returns& FlightPlan::verified_returns() const {
   if (returns) return *returns;
   throw Error(ErrorKind::bad_config,
               "\"" + name + "\" has no verified return, but the file requires a return altitude");
@@ -80,7 +80,7 @@ const Returns& FlightPlan::certified_returns() const {
 
 std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan) {
   if (!plan.returns) return {};
-  const std::vector<Eigen::Vector3d>& landings = plan.returns->law.landings;
+  const std::vector<Eigen::Vector3d>& landings = plan.returns->rtl_profile.landings;
   return {landings.begin() + 1, landings.end()};  // The first landing point is the pad.
 }
 
@@ -95,7 +95,8 @@ FlatNoFly flat_no_fly(const FlightPlan& plan) {
     bool is_kept_out = check_route(points, space, 0.0).empty();
     for (std::size_t i = 1; plan.returns && is_kept_out && i < points.size(); ++i) {
       is_kept_out =
-          prove_returns(space, {points[i - 1], points[i]}, plan.returns->law, 0.0).is_proven;
+          verify_returns(space, {points[i - 1], points[i]}, plan.returns->rtl_profile, 0.0)
+              .is_verified;
     }
     if (is_kept_out) {
       flat.written.push_back(prism);
@@ -111,22 +112,23 @@ std::vector<StopTime> stop_times(const FlightPlan& plan) {
   const Waypoint& above_pad = plan.waypoints.front();
   double now = motion.takeoff_time((above_pad.position - plan.pad).norm());
   std::vector<StopTime> times{{now, now, now + above_pad.hold, now + above_pad.hold}};
-  const Waypoint* last_station = nullptr;
+  const Waypoint* last_capture_point = nullptr;
   for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
     const Waypoint& waypoint = plan.waypoints[i];
     now = times.back().departure;
-    const Curve* way = waypoint.way();
-    const double leg = way == nullptr
+    const Curve* path_curve = waypoint.path_curve();
+    const double leg = path_curve == nullptr
                            ? motion.leg_time(waypoint.position - plan.waypoints[i - 1].position)
-                           : duration(*way) + plan.vehicle.mode.settle_time;
+                           : duration(*path_curve) + plan.vehicle.mode.settle_time;
     double aimed = now + leg;
-    if (waypoint.is_station && last_station != nullptr) {
-      const double turn = std::remainder(waypoint.yaw - last_station->yaw, 2.0 * std::numbers::pi);
-      aimed = now + motion.aimed_time(leg, turn, waypoint.pitch - last_station->pitch);
+    if (waypoint.is_capture_point && last_capture_point != nullptr) {
+      const double turn =
+          std::remainder(waypoint.yaw - last_capture_point->yaw, 2.0 * std::numbers::pi);
+      aimed = now + motion.aimed_time(leg, turn, waypoint.pitch - last_capture_point->pitch);
     }
-    if (waypoint.is_station) last_station = &waypoint;
-    const double shot = aimed + waypoint.hold;
-    times.push_back({now + leg, aimed, shot, shot + waypoint.hold_after});
+    if (waypoint.is_capture_point) last_capture_point = &waypoint;
+    const double capture = aimed + waypoint.hold;
+    times.push_back({now + leg, aimed, capture, capture + waypoint.hold_after});
   }
   return times;
 }

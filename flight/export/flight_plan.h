@@ -17,21 +17,21 @@ namespace skycap::flight {
 /// Point at which the vehicle stops.
 struct Waypoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Position in the local frame [m].
-  bool is_station = false;                             ///< False: corner of a leg.
+  bool is_capture_point = false;                       ///< False: corner of a leg.
   double yaw = 0.0;    ///< Heading with captures, clockwise from north [rad].
   double pitch = 0.0;  ///< Gimbal pitch with captures [rad].
   double hold = 0.0;   ///< Rest time with the camera aimed before the captures, or at a corner [s].
   double hold_after = 0.0;  ///< Rest time after the captures [s].
-  int shots = 0;
+  int captures = 0;
   std::uint32_t view_index = 0;
   double clearance = 0.0;  ///< Verified clearance of the leg that ends here [m].
   Curve curve;             ///< Curve from the previous stop. Empty: straight leg.
   /// Fly-through alternative to `curve`, past the waypoints of a sortie.
-  std::optional<Passage> passage{};
+  std::optional<FlyThrough> fly_through{};
 
   /// Returns the curve of the leg that ends here, or null for a straight leg.
-  const Curve* way() const {
-    if (passage) return &passage->curve;
+  const Curve* path_curve() const {
+    if (fly_through) return &fly_through->curve;
     return curve.empty() ? nullptr : &curve;
   }
 };
@@ -52,7 +52,7 @@ struct FlightPlan {
   std::vector<Waypoint> passed{};  ///< Waypoints without a stop, one per fly-through view.
 
   /// Returns the verified returns. Throws Error{bad_config} without returns.
-  const Returns& certified_returns() const;
+  const Returns& verified_returns() const;
 };
 
 /// Returns the rally points that the plan's vehicle may use for a return.
@@ -60,7 +60,7 @@ std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan);
 
 /// Treatment of corners and waypoints: with stops, or along the verified curves where the route has
 /// them.
-enum class Corners { stopped_in, flown_round };
+enum class Corners { stopped_in, rounded };
 
 /// Returns the plan of sortie `index` of a route. Throws the same errors as Site::validate().
 FlightPlan flight_plan(const Route& route, std::size_t index, const std::string& name,
@@ -79,7 +79,7 @@ FlatNoFly flat_no_fly(const FlightPlan& plan);
 struct StopTime {
   double arrival;    ///< Position reached and settled.
   double aimed;      ///< Heading and gimbal aimed, too.
-  double shot;       ///< End of the hold before the captures.
+  double capture;    ///< End of the hold before the captures.
   double departure;  ///< End of the hold after the captures.
 };
 std::vector<StopTime> stop_times(const FlightPlan& plan);
@@ -91,18 +91,18 @@ double flight_time(const FlightPlan& plan);
 
 enum class HeightDatum { ellipsoid, mean_sea_level, takeoff };
 
-inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double unspecified = std::numeric_limits<double>::quiet_NaN();
 
 struct FilePoint {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
   double height = 0.0;  ///< Height above the point's datum [m].
-  double yaw_deg = not_given;
-  double pitch_deg = not_given;
+  double yaw_deg = unspecified;
+  double pitch_deg = unspecified;
   double hold = 0.0;         ///< Total hold time [s].
   double hold_before = 0.0;  ///< Hold time before the first capture, if the format has it [s].
-  int shots = 0;
-  double speed = not_given;  ///< Speed towards the point, if the format has it [m/s].
+  int captures = 0;
+  double speed = unspecified;  ///< Speed towards the point, if the format has it [m/s].
   double curve = 0.0;  ///< Distance from the point at which the vehicle may start to turn [m].
   HeightDatum datum = HeightDatum::ellipsoid;
 };

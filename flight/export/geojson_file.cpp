@@ -31,7 +31,8 @@ class GeoJsonWriter {
                                 {"clearance_m", rounded(plan_.clearance, 1e3)}}));
     const std::vector<StopTime> times = stop_times(plan_);
     for (std::size_t i = 0; i < plan_.waypoints.size(); ++i) {
-      if (plan_.waypoints[i].is_station) features.push_back(station(i, times[i].arrival));
+      if (plan_.waypoints[i].is_capture_point)
+        features.push_back(capture_point(i, times[i].arrival));
     }
     for (const Prism& prism : plan_.no_fly) features.push_back(area(prism, false));
     if (plan_.fence) features.push_back(area(*plan_.fence, true));
@@ -48,12 +49,12 @@ class GeoJsonWriter {
   }
 
   Json coordinates(const Eigen::Vector3d& position) const {
-    const GeodeticPoint place = frame_.to_geodetic(position);
-    return {rounded_degrees(place.longitude_deg), rounded_degrees(place.latitude_deg),
-            rounded(place.height, 1e3)};
+    const GeodeticPoint geodetic = frame_.to_geodetic(position);
+    return {rounded_degrees(geodetic.longitude_deg), rounded_degrees(geodetic.latitude_deg),
+            rounded(geodetic.height, 1e3)};
   }
 
-  Json station(std::size_t index, double arrival) const {
+  Json capture_point(std::size_t index, double arrival) const {
     const Waypoint& stop = plan_.waypoints[index];
     const double height = frame_.to_geodetic(stop.position).height;
     const auto& undulation = plan_.site.geoid_undulation;
@@ -64,7 +65,7 @@ class GeoJsonWriter {
          {"yaw_deg", rounded(stop.yaw * degrees_per_radian, 1e4)},
          {"gimbal_pitch_deg", rounded(stop.pitch * degrees_per_radian, 1e4)},
          {"hold_s", rounded(stop.hold, 1e3)},
-         {"shots", stop.shots},
+         {"shots", stop.captures},
          {"speed_mps", plan_.conditions.cruise_speed},
          {"height_amsl_m", undulation ? Json(rounded(height - *undulation, 1e3)) : Json()},
          {"height_takeoff_m", rounded(height - pad_.height, 1e3)},
@@ -84,9 +85,9 @@ class GeoJsonWriter {
     corners.push_back(corners.front());
     Json ring = Json::array();
     for (const Eigen::Vector2d& corner : corners) {
-      Json place = coordinates({corner.x(), corner.y(), 0.0});
-      place.erase(2);  // An area has no single height.
-      ring.push_back(place);
+      Json geodetic = coordinates({corner.x(), corner.y(), 0.0});
+      geodetic.erase(2);  // An area has no single height.
+      ring.push_back(geodetic);
     }
     const auto height = [&](double z) {
       return std::isfinite(z) ? Json(rounded(frame_.to_geodetic({0, 0, z}).height, 1e3)) : Json();
@@ -137,7 +138,7 @@ class GeoJsonChecker {
     const Json& coordinates = feature["geometry"]["coordinates"];
     const Json type = feature["geometry"].value("type", Json());
     if (type == "Point") {
-      check_place(coordinates, who);
+      check_position(coordinates, who);
     } else if (type == "LineString") {
       check_line(coordinates, who);
     } else if (type == "Polygon") {
@@ -147,16 +148,18 @@ class GeoJsonChecker {
     }
   }
 
-  std::optional<FilePoint> check_place(const Json& place, const std::string& who) {
-    const bool is_good =
-        place.is_array() && (place.size() == 2 || place.size() == 3) &&
-        std::all_of(place.begin(), place.end(), [](const Json& n) { return n.is_number(); }) &&
-        std::abs(place[0].get<double>()) <= 180.0 && std::abs(place[1].get<double>()) <= 90.0;
+  std::optional<FilePoint> check_position(const Json& geodetic, const std::string& who) {
+    const bool is_good = geodetic.is_array() && (geodetic.size() == 2 || geodetic.size() == 3) &&
+                         std::all_of(geodetic.begin(), geodetic.end(),
+                                     [](const Json& n) { return n.is_number(); }) &&
+                         std::abs(geodetic[0].get<double>()) <= 180.0 &&
+                         std::abs(geodetic[1].get<double>()) <= 90.0;
     if (!is_good) {
       problems.push_back(who + " has a position that is not [longitude, latitude, height]");
       return std::nullopt;
     }
-    return FilePoint{place[1], place[0], place.size() == 3 ? place[2].get<double>() : not_given};
+    return FilePoint{geodetic[1], geodetic[0],
+                     geodetic.size() == 3 ? geodetic[2].get<double>() : unspecified};
   }
 
   void check_line(const Json& line, const std::string& who) {
@@ -165,8 +168,8 @@ class GeoJsonChecker {
       return;
     }
     std::vector<FilePoint> points;
-    for (const Json& place : line) {
-      const std::optional<FilePoint> point = check_place(place, who);
+    for (const Json& geodetic : line) {
+      const std::optional<FilePoint> point = check_position(geodetic, who);
       if (!point) return;
       if (std::isnan(point->height)) {
         problems.push_back(who + " has a position without a height");
@@ -190,7 +193,7 @@ class GeoJsonChecker {
       }
       double twice_area = 0.0;
       for (std::size_t i = 0; i < ring.size(); ++i) {
-        if (!check_place(ring[i], who)) return;
+        if (!check_position(ring[i], who)) return;
         if (i == 0) continue;
         const auto x = [&](std::size_t k) {
           return ring[k][0].get<double>() - ring[0][0].get<double>();

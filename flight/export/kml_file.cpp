@@ -56,7 +56,7 @@ class KmlWriter {
     add_path(root);
     for (const auto* waypoints : {&plan_.waypoints, &plan_.passed}) {
       for (const Waypoint& waypoint : *waypoints) {
-        if (waypoint.is_station) add_station(root, waypoint);
+        if (waypoint.is_capture_point) add_capture_point(root, waypoint);
       }
     }
     for (const Prism& prism : plan_.no_fly) add_volume(root, prism);
@@ -74,9 +74,9 @@ class KmlWriter {
   }
 
   std::string tuple(const Eigen::Vector3d& position, const char* separator) const {
-    const GeodeticPoint place = frame_.to_geodetic(position);
-    return degrees(place.longitude_deg) + separator + degrees(place.latitude_deg) + separator +
-           fixed(place.height - undulation_, 3);
+    const GeodeticPoint geodetic = frame_.to_geodetic(position);
+    return degrees(geodetic.longitude_deg) + separator + degrees(geodetic.latitude_deg) +
+           separator + fixed(geodetic.height - undulation_, 3);
   }
 
   void add_path(pugi::xml_node root) {
@@ -89,7 +89,7 @@ class KmlWriter {
     std::string coordinates;
     for (const Waypoint& waypoint : plan_.waypoints) {
       for (const double time : moments_on(waypoint)) {
-        coordinates += " " + tuple(state_at(*waypoint.way(), time).position, ",");
+        coordinates += " " + tuple(state_at(*waypoint.path_curve(), time).position, ",");
       }
       coordinates += (coordinates.empty() ? "" : " ") + tuple(waypoint.position, ",");
     }
@@ -99,22 +99,22 @@ class KmlWriter {
   /// Returns times between the ends of the curve to the waypoint. Empty for a straight leg.
   static std::vector<double> moments_on(const Waypoint& waypoint) {
     std::vector<double> times;
-    const double end = waypoint.way() == nullptr ? 0.0 : duration(*waypoint.way());
+    const double end = waypoint.path_curve() == nullptr ? 0.0 : duration(*waypoint.path_curve());
     for (int i = 1; i * curve_interval < end; ++i) times.push_back(i * curve_interval);
     return times;
   }
 
-  void add_station(pugi::xml_node root, const Waypoint& station) {
+  void add_capture_point(pugi::xml_node root, const Waypoint& capture_point) {
     pugi::xml_node mark = root.append_child("Placemark");
-    add_element(mark, "name", "view " + std::to_string(station.view_index));
+    add_element(mark, "name", "view " + std::to_string(capture_point.view_index));
     // A double click moves the viewer to this pose.
     pugi::xml_node camera = mark.append_child("Camera");
-    const GeodeticPoint place = frame_.to_geodetic(station.position);
-    add_element(camera, "longitude", degrees(place.longitude_deg));
-    add_element(camera, "latitude", degrees(place.latitude_deg));
-    add_element(camera, "altitude", fixed(place.height - undulation_, 3));
-    add_element(camera, "heading", fixed(station.yaw * degrees_per_radian, 4));
-    add_element(camera, "tilt", fixed(90.0 + station.pitch * degrees_per_radian, 4));
+    const GeodeticPoint geodetic = frame_.to_geodetic(capture_point.position);
+    add_element(camera, "longitude", degrees(geodetic.longitude_deg));
+    add_element(camera, "latitude", degrees(geodetic.latitude_deg));
+    add_element(camera, "altitude", fixed(geodetic.height - undulation_, 3));
+    add_element(camera, "heading", fixed(capture_point.yaw * degrees_per_radian, 4));
+    add_element(camera, "tilt", fixed(90.0 + capture_point.pitch * degrees_per_radian, 4));
     add_element(camera, "roll", "0"), add_element(camera, "altitudeMode", "absolute");
     pugi::xml_node data = mark.append_child("ExtendedData");
     const auto add_data = [&](const char* name, const std::string& value) {
@@ -122,12 +122,12 @@ class KmlWriter {
       entry.append_attribute("name") = name;
       add_element(entry, "value", value);
     };
-    add_data("hold_s", fixed(station.hold, 2));
-    add_data("shots", std::to_string(station.shots));
-    add_data("clearance_m", fixed(station.clearance, 3));
+    add_data("hold_s", fixed(capture_point.hold, 2));
+    add_data("shots", std::to_string(capture_point.captures));
+    add_data("clearance_m", fixed(capture_point.clearance, 3));
     pugi::xml_node point = mark.append_child("Point");
     add_element(point, "altitudeMode", "absolute");
-    add_element(point, "coordinates", tuple(station.position, ","));
+    add_element(point, "coordinates", tuple(capture_point.position, ","));
   }
 
   /// Draws the outline at the ceiling, extruded to the ground as viewers do.
@@ -155,29 +155,29 @@ class KmlWriter {
     add_element(track, "altitudeMode", "absolute");
     const std::vector<StopTime> times = stop_times(plan_);
     double left = 0.0;
-    std::vector<std::string> moments, places, angles;
-    const auto add_place = [&](double time, const Eigen::Vector3d& place, const Aim& aim) {
+    std::vector<std::string> moments, positions, angles;
+    const auto add_position = [&](double time, const Eigen::Vector3d& geodetic, const Aim& aim) {
       moments.push_back(moment(time));
-      places.push_back(tuple(place, " "));
+      positions.push_back(tuple(geodetic, " "));
       angles.push_back(fixed(aim.yaw * degrees_per_radian, 4) + " " +
                        fixed(90.0 + aim.pitch * degrees_per_radian, 4) + " 0");
     };
     for (std::size_t i = 0; i < times.size(); ++i) {
       const Waypoint& waypoint = plan_.waypoints[i];
       const auto aim_at = [&](double time) {
-        return waypoint.passage ? waypoint.passage->aim_at(time)
-                                : Aim{waypoint.yaw, waypoint.pitch};
+        return waypoint.fly_through ? waypoint.fly_through->aim_at(time)
+                                    : Aim{waypoint.yaw, waypoint.pitch};
       };
       for (const double time : moments_on(waypoint)) {
-        add_place(left + time, state_at(*waypoint.way(), time).position, aim_at(time));
+        add_position(left + time, state_at(*waypoint.path_curve(), time).position, aim_at(time));
       }
       const Aim last = aim_at(times[i].arrival - left);
-      add_place(times[i].arrival, waypoint.position, last);
-      add_place(times[i].departure, waypoint.position, last);
+      add_position(times[i].arrival, waypoint.position, last);
+      add_position(times[i].departure, waypoint.position, last);
       left = times[i].departure;
     }
     for (const std::string& text : moments) add_element(track, "when", text);
-    for (const std::string& text : places) add_element(track, "gx:coord", text);
+    for (const std::string& text : positions) add_element(track, "gx:coord", text);
     for (const std::string& text : angles) add_element(track, "gx:angles", text);
   }
 
@@ -209,8 +209,8 @@ class KmlChecker {
   RouteFile route;
 
  private:
-  void complain(const std::string& who, const char* has, const std::string& value,
-                const char* right) {
+  void add_problem(const std::string& who, const char* has, const std::string& value,
+                   const char* right) {
     problems.push_back("\"" + who + "\" " + has + " \"" + value + "\"" + right);
   }
 
@@ -222,12 +222,12 @@ class KmlChecker {
         const std::string mode = shape.child("altitudeMode").text().get();
         // Without "absolute", heights are ignored and the path would be drawn on the ground.
         if (mode != "absolute") {
-          complain(name, "has altitudeMode", mode, "; it must be absolute");
+          add_problem(name, "has altitudeMode", mode, "; it must be absolute");
         }
         const pugi::xpath_node found = shape.select_node(".//coordinates");
-        const std::vector<FilePoint> places = check_places(found.node().text().get(), name);
-        if (kind == "LineString" && name == "path") route.points = places;
-        if (kind == "Polygon") check_ring(places, name);
+        const std::vector<FilePoint> positions = check_positions(found.node().text().get(), name);
+        if (kind == "LineString" && name == "path") route.points = positions;
+        if (kind == "Polygon") check_ring(positions, name);
       } else if (kind == "gx:Track") {
         check_track(shape, name);
       } else if (kind == "Camera") {
@@ -238,8 +238,8 @@ class KmlChecker {
     }
   }
 
-  std::vector<FilePoint> check_places(const std::string& text, const std::string& name) {
-    std::vector<FilePoint> places;
+  std::vector<FilePoint> check_positions(const std::string& text, const std::string& name) {
+    std::vector<FilePoint> positions;
     std::istringstream stream(text);
     for (std::string tuple; stream >> tuple;) {
       const std::vector<std::string> parts = split(tuple, ',');
@@ -249,15 +249,15 @@ class KmlChecker {
       const auto longitude = number(0), latitude = number(1), height = number(2);
       if (parts.size() != 3 || !longitude || !latitude || !height || std::abs(*longitude) > 180.0 ||
           std::abs(*latitude) > 90.0) {
-        complain(name, "has the coordinates", tuple, "; they must be longitude,latitude,height");
-        return places;
+        add_problem(name, "has the coordinates", tuple, "; they must be longitude,latitude,height");
+        return positions;
       }
       FilePoint point{*latitude, *longitude, *height};
       point.datum = HeightDatum::mean_sea_level;
-      places.push_back(point);
+      positions.push_back(point);
     }
-    if (places.empty()) problems.push_back("\"" + name + "\" has no coordinates");
-    return places;
+    if (positions.empty()) problems.push_back("\"" + name + "\" has no coordinates");
+    return positions;
   }
 
   void check_ring(const std::vector<FilePoint>& ring, const std::string& name) {

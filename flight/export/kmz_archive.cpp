@@ -35,17 +35,17 @@ std::string_view last_name(std::string_view name) {
   return name.substr(name.find_last_of("/\\") + 1);
 }
 
-std::string name_of(zip_t* archive, zip_uint64_t index) {
+std::string entry_name(zip_t* archive, zip_uint64_t index) {
   const char* name = zip_get_name(archive, index, 0);
   return name == nullptr ? "" : name;
 }
 
 /// Returns up to three member names for messages.
-std::string names_of(zip_t* archive) {
+std::string join_names(zip_t* archive) {
   const auto count = static_cast<zip_uint64_t>(zip_get_num_entries(archive, 0));
   std::string names;
   for (zip_uint64_t i = 0; i < std::min<zip_uint64_t>(count, 3); ++i) {
-    names += (i == 0 ? "" : ", ") + name_of(archive, i);
+    names += (i == 0 ? "" : ", ") + entry_name(archive, i);
   }
   return count == 0 ? "no files" : names + (count > 3 ? ", ..." : "");
 }
@@ -58,9 +58,9 @@ std::optional<zip_uint64_t> find(zip_t* archive, const char* name) {
   std::optional<zip_uint64_t> found;
   const auto count = static_cast<zip_uint64_t>(zip_get_num_entries(archive, 0));
   for (zip_uint64_t i = 0; i < count; ++i) {
-    if (last_name(name_of(archive, i)) != last_name(name)) continue;
+    if (last_name(entry_name(archive, i)) != last_name(name)) continue;
     if (found) {
-      fail("it contains both " + name_of(archive, *found) + " and " + name_of(archive, i) +
+      fail("it contains both " + entry_name(archive, *found) + " and " + entry_name(archive, i) +
            "; remove one");
     }
     found = i;
@@ -69,7 +69,7 @@ std::optional<zip_uint64_t> find(zip_t* archive, const char* name) {
 }
 
 std::string extract(zip_t* archive, zip_uint64_t index) {
-  const std::string name = name_of(archive, index);
+  const std::string name = entry_name(archive, index);
   zip_stat_t stat;
   zip_stat_init(&stat);
   if (zip_stat_index(archive, index, 0, &stat) != 0) fail(name + " cannot be unpacked");
@@ -101,12 +101,12 @@ KmzContent unpack_kmz(const std::string& bytes) {
   if (!archive) fail("it is not a zip archive");
   static_cast<void>(source.release());  // The archive owns it now.
   const auto edited = find(archive.get(), template_name);
-  const auto flown = find(archive.get(), waylines_name);
-  if (!flown) {
+  const auto waylines = find(archive.get(), waylines_name);
+  if (!waylines) {
     fail(std::string(edited ? "" : template_name) + (edited ? "" : " is missing, and ") +
-         waylines_name + " is missing; it contains " + names_of(archive.get()));
+         waylines_name + " is missing; it contains " + join_names(archive.get()));
   }
-  return {edited ? extract(archive.get(), *edited) : "", extract(archive.get(), *flown)};
+  return {edited ? extract(archive.get(), *edited) : "", extract(archive.get(), *waylines)};
 }
 
 std::string pack_kmz(const KmzContent& content) {

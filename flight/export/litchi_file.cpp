@@ -10,8 +10,8 @@ namespace {
 
 using geometry::degrees_per_radian;
 constexpr std::size_t actions_per_line = 15;
-constexpr std::size_t most_waypoints = 99;  // Limit per mission on the oldest supported firmware.
-constexpr double stop_like_curve = 0.2;     // Minimum corner curve that Litchi accepts [m].
+constexpr std::size_t max_waypoints = 99;  // Limit per mission on the oldest supported firmware.
+constexpr double min_curve_size = 0.2;     // Minimum corner curve that Litchi accepts [m].
 
 constexpr int stay = 0, photo = 1, rotate = 4, tilt = 5;  // Action types.
 
@@ -31,21 +31,21 @@ std::string header() {
          "photo_timeinterval,photo_distinterval";
 }
 
-std::string actions_of(const Waypoint& waypoint) {
+std::string format_actions(const Waypoint& waypoint) {
   std::string text;
   std::size_t used = 0;
   const auto act = [&](int action, const std::string& parameter) {
     text += "," + std::to_string(action) + "," + parameter;
     ++used;
   };
-  if (waypoint.is_station)
+  if (waypoint.is_capture_point)
     act(tilt, fixed(waypoint.pitch * degrees_per_radian, 0));  // Whole degrees only.
   act(stay, fixed(waypoint.hold * 1000.0, 0));
-  for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
+  for (int capture = 0; capture < waypoint.captures; ++capture) act(photo, "0");
   if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));
   if (used > actions_per_line) {
     throw Error(ErrorKind::bad_config,
-                "a waypoint with " + std::to_string(waypoint.shots) +
+                "a waypoint with " + std::to_string(waypoint.captures) +
                     " shots cannot be written for Litchi, whose maximum is " +
                     std::to_string(actions_per_line - 3));
   }
@@ -53,12 +53,12 @@ std::string actions_of(const Waypoint& waypoint) {
   return text;
 }
 
-struct LitchiReading {
+struct LitchiParser {
   Problems problems;
   RouteFile route;
 
-  explicit LitchiReading(const std::string& text) {
-    const std::vector<std::string> lines = lines_of(text);
+  explicit LitchiParser(const std::string& text) {
+    const std::vector<std::string> lines = split_lines(text);
     if (lines.empty() || geometry::trimmed(lines[0]) != header()) {
       problems.emplace_back("line 1 is not Litchi's header");
       return;
@@ -69,7 +69,7 @@ struct LitchiReading {
     if (problems.empty() && route.points.size() < 2) {
       problems.emplace_back("fewer than two waypoints");
     }
-    if (route.points.size() > most_waypoints) {
+    if (route.points.size() > max_waypoints) {
       problems.push_back("too many waypoints: " + std::to_string(route.points.size()) +
                          "; the limit of old firmware is 99");
     }
@@ -108,10 +108,10 @@ struct LitchiReading {
       const double parameter = values[field + 1];
       require(field, -1, 5, "an action type");
       if (values[field] == stay) point.hold += parameter / 1000.0;
-      if (values[field] == stay && point.shots == 0) point.hold_before += parameter / 1000.0;
+      if (values[field] == stay && point.captures == 0) point.hold_before += parameter / 1000.0;
       if (values[field] == tilt) point.pitch_deg = parameter;
       if (values[field] == rotate) point.yaw_deg = parameter;
-      if (values[field] == photo) ++point.shots;
+      if (values[field] == photo) ++point.captures;
     }
     route.points.push_back(point);
   }
@@ -120,7 +120,7 @@ struct LitchiReading {
 }  // namespace
 
 std::string write_litchi(const FlightPlan& plan) {
-  if (plan.waypoints.size() > most_waypoints) {
+  if (plan.waypoints.size() > max_waypoints) {
     throw Error(
         ErrorKind::bad_config,
         "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
@@ -131,23 +131,23 @@ std::string write_litchi(const FlightPlan& plan) {
   std::string text = header() + "\n";
   double heading = 0.0;
   for (const Waypoint& waypoint : plan.waypoints) {
-    const GeodeticPoint place = frame.to_geodetic(waypoint.position);
-    if (waypoint.is_station)
+    const GeodeticPoint geodetic = frame.to_geodetic(waypoint.position);
+    if (waypoint.is_capture_point)
       heading = std::fmod(std::round(waypoint.yaw * degrees_per_radian * 1e4) / 1e4, 360.0);
-    text += degrees(place.latitude_deg) + "," + degrees(place.longitude_deg) + "," +
-            fixed(place.height - pad_height, 3) + "," + fixed(heading, 4) + "," +
-            fixed(stop_like_curve, 1) + ",0,0,0" + actions_of(waypoint) + ",0," +
+    text += degrees(geodetic.latitude_deg) + "," + degrees(geodetic.longitude_deg) + "," +
+            fixed(geodetic.height - pad_height, 3) + "," + fixed(heading, 4) + "," +
+            fixed(min_curve_size, 1) + ",0,0,0" + format_actions(waypoint) + ",0," +
             fixed(plan.conditions.cruise_speed, 2) + ",0,0,0,0,-1,-1\n";
   }
   return text;
 }
 
-Problems validate_litchi(const std::string& text) { return LitchiReading(text).problems; }
+Problems validate_litchi(const std::string& text) { return LitchiParser(text).problems; }
 
 RouteFile read_litchi(const std::string& text) {
-  const LitchiReading reading(text);
-  throw_first(reading.problems, "invalid Litchi file");
-  return reading.route;
+  const LitchiParser parser(text);
+  throw_first(parser.problems, "invalid Litchi file");
+  return parser.route;
 }
 
 }  // namespace skycap::flight

@@ -24,12 +24,13 @@ struct FenceArea {
 };
 
 /// Format-independent content of a mission file.
-struct MissionFile {
+struct MavlinkMission {
   std::vector<MissionItem> items;  ///< Items without home.
-  std::optional<Dialect> dialect;  ///< Dialect of the target autopilot, if the file specifies it.
+  std::optional<AutopilotType>
+      autopilot;  ///< Dialect of the target autopilot, if the file specifies it.
   std::optional<GeodeticPoint> home;  ///< Planned home position with height AMSL.
   std::string home_name;              ///< Location within the file.
-  bool holds_fence = false;           ///< True if the format supports a geofence.
+  bool supports_fence = false;        ///< True if the format supports a geofence.
   std::vector<FenceArea> fence;
   std::vector<GeodeticPoint> rally;  ///< Rally points with heights above home.
 };
@@ -42,17 +43,17 @@ std::string write_plan(const FlightPlan& plan);
 Problems validate_plan(const std::string& text);
 
 /// Reads a .plan file. Throws Error{bad_file} with the first problem.
-MissionFile read_plan(const std::string& text);
+MavlinkMission read_plan(const std::string& text);
 
 /// Returns a .waypoints file. In the ArduPilot dialect, line 0 is home and requires the geoid
 /// undulation.
 std::string write_waypoints(const FlightPlan& plan);
 
 /// Returns the problems of a .waypoints file for that autopilot, empty if it is valid.
-Problems validate_waypoints(const std::string& text, std::optional<Dialect> dialect = {});
+Problems validate_waypoints(const std::string& text, std::optional<AutopilotType> autopilot = {});
 
 /// Reads a .waypoints file. A file that starts with a home item counts as ArduPilot's. Throws
 /// Error{bad_file} with the first problem.
-MissionFile read_waypoints(const std::string& text);
+MavlinkMission read_waypoints(const std::string& text);
 
 }  // namespace skycap::flight

@@ -15,12 +15,14 @@ bool is_navigation(int c) {
   return c == command::waypoint || c == command::takeoff || c == command::land ||
          c == command::return_to_launch || c == command::delay || c == command::loiter_time;
 }
-bool has_place(int c) {
+bool has_position(int c) {
   return c == command::waypoint || c == command::loiter_time || c == command::takeoff ||
          c == command::land;
 }
 bool is_gimbal(int c) { return c == command::mount_control || c == command::gimbal_pitch_yaw; }
-bool is_shot(int c) { return c == command::start_capture || c == command::digicam_control; }
+bool is_capture_command(int c) {
+  return c == command::start_capture || c == command::digicam_control;
+}
 
 class ItemWriter {
  public:
@@ -32,30 +34,32 @@ class ItemWriter {
 
   std::vector<MissionItem> write() {
     const Waypoint& above_pad = plan_.waypoints.front();
-    add_place(command::takeoff, {0, 0, 0, not_given}, above_pad.position);
+    add_position(command::takeoff, {0, 0, 0, unspecified}, above_pad.position);
     add_speeds();
     for (std::size_t i = 1; i < plan_.waypoints.size(); ++i) {
-      plan_.waypoints[i].is_station ? add_station(i) : add_stop(i, not_given);
+      plan_.waypoints[i].is_capture_point ? add_capture_point(i) : add_stop(i, unspecified);
     }
-    add_place(command::land, {0, 0, 0, not_given}, plan_.pad);
+    add_position(command::land, {0, 0, 0, unspecified}, plan_.pad);
     for (std::size_t i = 0; i < items_.size(); ++i) items_[i].number = i + 1;
     return std::move(items_);
   }
 
  private:
-  bool is_ardupilot() const { return plan_.vehicle.dialect == Dialect::ardupilot; }
+  bool is_ardupilot() const { return plan_.vehicle.autopilot == AutopilotType::ardupilot; }
 
   void add(int number, const std::array<double, 7>& params) {
     items_.push_back({number, frame::mission, params});
   }
 
-  void add_place(int number, const std::array<double, 4>& params, const Eigen::Vector3d& position) {
-    const GeodeticPoint place = local_.to_geodetic(position);
-    items_.push_back({number,
-                      frame::relative,
-                      {params[0], params[1], params[2], params[3],
-                       rounded_degrees(place.latitude_deg), rounded_degrees(place.longitude_deg),
-                       std::round((place.height - pad_.height) * 1e3) / 1e3}});
+  void add_position(int number, const std::array<double, 4>& params,
+                    const Eigen::Vector3d& position) {
+    const GeodeticPoint geodetic = local_.to_geodetic(position);
+    items_.push_back(
+        {number,
+         frame::relative,
+         {params[0], params[1], params[2], params[3], rounded_degrees(geodetic.latitude_deg),
+          rounded_degrees(geodetic.longitude_deg),
+          std::round((geodetic.height - pad_.height) * 1e3) / 1e3}});
   }
 
   /// Adds all speeds that times and tracking depend on, independent of the vehicle's settings. PX4
@@ -74,9 +78,9 @@ class ItemWriter {
   /// Adds the position and the wait before the captures, if any. ArduPilot rounds a waypoint's hold
   /// to whole seconds but not a delay, which also turns the previous waypoint into a stop.
   void add_stop(std::size_t i, double yaw_deg) {
-    const double wait = std::round((times_[i].shot - times_[i].arrival) * 1e3) / 1e3;
-    add_place(command::waypoint, {is_ardupilot() ? 0.0 : wait, acceptance_radius, 0, yaw_deg},
-              plan_.waypoints[i].position);
+    const double wait = std::round((times_[i].capture - times_[i].arrival) * 1e3) / 1e3;
+    add_position(command::waypoint, {is_ardupilot() ? 0.0 : wait, acceptance_radius, 0, yaw_deg},
+                 plan_.waypoints[i].position);
     if (is_ardupilot()) add_delay(wait);
   }
 
@@ -87,43 +91,43 @@ class ItemWriter {
   // wait until the vehicle has rotated. ArduPilot obeys CONDITION_YAW and ignores the waypoint's
   // yaw. PX4 obeys the latter and rejects missions with a CONDITION_YAW. The delay after the
   // captures keeps the vehicle in position until the shutter has closed.
-  void add_station(std::size_t i) {
-    const Waypoint& station = plan_.waypoints[i];
+  void add_capture_point(std::size_t i) {
+    const Waypoint& capture_point = plan_.waypoints[i];
     const double yaw_deg =
-        std::fmod(std::round(station.yaw * degrees_per_radian * 1e4) / 1e4, 360.0);
-    const double pitch_deg = std::round(station.pitch * degrees_per_radian * 1e4) / 1e4;
+        std::fmod(std::round(capture_point.yaw * degrees_per_radian * 1e4) / 1e4, 360.0);
+    const double pitch_deg = std::round(capture_point.pitch * degrees_per_radian * 1e4) / 1e4;
     add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: aim by these angles.
     if (is_ardupilot()) add(command::condition_yaw, {yaw_deg, 0, 0, 0, 0, 0, 0});
-    add_stop(i, is_ardupilot() ? not_given : yaw_deg);
-    for (int shot = 0; shot < station.shots; ++shot) {
-      add(command::start_capture, {0, 0, 1, static_cast<double>(++shots_), 0, 0, 0});
+    add_stop(i, is_ardupilot() ? unspecified : yaw_deg);
+    for (int capture = 0; capture < capture_point.captures; ++capture) {
+      add(command::start_capture, {0, 0, 1, static_cast<double>(++captures_), 0, 0, 0});
     }
-    add_delay(station.hold_after);
+    add_delay(capture_point.hold_after);
   }
 
   const FlightPlan& plan_;
   std::vector<StopTime> times_;
   LocalFrame local_;
   GeodeticPoint pad_;
-  int shots_ = 0;
+  int captures_ = 0;
   std::vector<MissionItem> items_;
 };
 
 class ItemChecker {
  public:
-  ItemChecker(const std::vector<MissionItem>& items, std::optional<Dialect> dialect)
-      : items_(items), dialect_(dialect) {}
+  ItemChecker(const std::vector<MissionItem>& items, std::optional<AutopilotType> autopilot)
+      : items_(items), autopilot_(autopilot) {}
 
   Problems check() {
     for (std::size_t i = 0; i < items_.size(); ++i) check_item(i);
     check_ends();
-    check_shots();
+    check_captures();
     return std::move(problems_);
   }
 
  private:
-  void complain(std::size_t i, const std::string& what) {
-    problems_.push_back(name_of(items_[i]) + " (command " + std::to_string(items_[i].command) +
+  void add_problem(std::size_t i, const std::string& what) {
+    problems_.push_back(item_label(items_[i]) + " (command " + std::to_string(items_[i].command) +
                         ") " + what);
   }
 
@@ -132,52 +136,53 @@ class ItemChecker {
     const bool is_known_frame = is_above_sea(item) || item.frame == frame::mission ||
                                 is_above_home(item) || item.frame == frame::terrain;
     if (!is_known_frame)
-      complain(i, "has frame " + std::to_string(item.frame) + "; use 0, 2, 3, 5, 6 or 10");
-    if (has_place(item.command)) check_place(i);
+      add_problem(i, "has frame " + std::to_string(item.frame) + "; use 0, 2, 3, 5, 6 or 10");
+    if (has_position(item.command)) check_position(i);
     if (item.command == command::jump) {
       const double target = item.params[0];
       if (!(target >= static_cast<double>(items_.front().number) &&
             target <= static_cast<double>(items_.back().number))) {
-        complain(i, "jumps to item " + fixed(target, 0) + ", which does not exist");
+        add_problem(i, "jumps to item " + fixed(target, 0) + ", which does not exist");
       }
     }
-    if (dialect_ == Dialect::px4) check_for_px4(i);
-    if (dialect_ == Dialect::ardupilot) check_for_ardupilot(i);
+    if (autopilot_ == AutopilotType::px4) check_for_px4(i);
+    if (autopilot_ == AutopilotType::ardupilot) check_for_ardupilot(i);
   }
 
-  void check_place(std::size_t i) {
+  void check_position(std::size_t i) {
     const MissionItem& item = items_[i];
-    if (item.frame == frame::mission) complain(i, "has a position but frame 2, which has none");
-    if (!(std::abs(item.params[4]) <= 90.0)) complain(i, "has a latitude outside [-90, 90]");
-    if (!(std::abs(item.params[5]) <= 180.0)) complain(i, "has a longitude outside [-180, 180]");
+    if (item.frame == frame::mission) add_problem(i, "has a position but frame 2, which has none");
+    if (!(std::abs(item.params[4]) <= 90.0)) add_problem(i, "has a latitude outside [-90, 90]");
+    if (!(std::abs(item.params[5]) <= 180.0)) add_problem(i, "has a longitude outside [-180, 180]");
     if (!(item.params[6] >= -500.0 && item.params[6] <= 10000.0)) {
-      complain(i, "has a height outside [-500, 10000] m");
+      add_problem(i, "has a height outside [-500, 10000] m");
     }
     if (item.command == command::waypoint && !(item.params[0] >= 0.0)) {
-      complain(i, "has a hold time below zero");
+      add_problem(i, "has a hold time below zero");
     }
   }
 
   void check_for_px4(std::size_t i) {
     if (items_[i].command == command::condition_yaw) {
-      complain(i, "is a CONDITION_YAW, for which PX4 rejects the whole mission");
+      add_problem(i, "is a CONDITION_YAW, for which PX4 rejects the whole mission");
     }
-    if (items_[i].frame == frame::terrain) complain(i, "has frame 10, which PX4 does not support");
+    if (items_[i].frame == frame::terrain)
+      add_problem(i, "has frame 10, which PX4 does not support");
   }
 
   void check_for_ardupilot(std::size_t i) {
     const MissionItem& item = items_[i];
     if (item.command == command::waypoint && item.params[0] != std::floor(item.params[0])) {
-      complain(i,
-               "holds for " + fixed(item.params[0], 2) + " s; ArduPilot stores whole seconds only");
+      add_problem(
+          i, "holds for " + fixed(item.params[0], 2) + " s; ArduPilot stores whole seconds only");
     }
     for (std::size_t p = 0; p < item.params.size(); ++p) {
-      if (std::isnan(item.params[p]) && !(p == 3 && has_place(item.command))) {
-        complain(i, "has no parameter " + std::to_string(p + 1) + ", which ArduPilot rejects");
+      if (std::isnan(item.params[p]) && !(p == 3 && has_position(item.command))) {
+        add_problem(i, "has no parameter " + std::to_string(p + 1) + ", which ArduPilot rejects");
       }
     }
     if (item.command == command::gimbal_pitch_yaw && item.params[0] != std::round(item.params[0])) {
-      complain(i, "has a fraction of a degree, which ArduPilot discards; use DO_MOUNT_CONTROL");
+      add_problem(i, "has a fraction of a degree, which ArduPilot discards; use DO_MOUNT_CONTROL");
     }
   }
 
@@ -191,29 +196,29 @@ class ItemChecker {
       return;
     }
     if (items_[navigation.front()].command != command::takeoff) {
-      complain(navigation.front(), "comes first; a mission must begin with a take-off (22)");
+      add_problem(navigation.front(), "comes first; a mission must begin with a take-off (22)");
     }
     const int last = items_[navigation.back()].command;
     if (last != command::land && last != command::return_to_launch) {
-      complain(navigation.back(),
-               "comes last; a mission must end with a landing (21) or return (20)");
+      add_problem(navigation.back(),
+                  "comes last; a mission must end with a landing (21) or return (20)");
     }
   }
 
   /// Reports captures without a gimbal command since the last position: the camera would keep its
   /// previous aim.
-  void check_shots() {
+  void check_captures() {
     bool has_aimed = false;
-    std::optional<std::size_t> place;
+    std::optional<std::size_t> geodetic;
     for (std::size_t i = 0; i < items_.size(); ++i) {
       const int c = items_[i].command;
-      if (has_place(c)) {
-        if (place) has_aimed = has_aimed && aimed_after(*place, i);
-        place = i;
+      if (has_position(c)) {
+        if (geodetic) has_aimed = has_aimed && aimed_after(*geodetic, i);
+        geodetic = i;
       }
       if (is_gimbal(c)) has_aimed = true;
-      if (is_shot(c) && !has_aimed)
-        complain(i, "captures without a gimbal command for its position");
+      if (is_capture_command(c) && !has_aimed)
+        add_problem(i, "captures without a gimbal command for its position");
     }
   }
   bool aimed_after(std::size_t from, std::size_t to) const {
@@ -223,13 +228,13 @@ class ItemChecker {
   }
 
   const std::vector<MissionItem>& items_;
-  std::optional<Dialect> dialect_;
+  std::optional<AutopilotType> autopilot_;
   Problems problems_;
 };
 
 }  // namespace
 
-std::string name_of(const MissionItem& item) { return "item " + std::to_string(item.number); }
+std::string item_label(const MissionItem& item) { return "item " + std::to_string(item.number); }
 
 bool is_above_sea(const MissionItem& item) {
   return item.frame == frame::global || item.frame == frame::global_int;
@@ -244,7 +249,7 @@ bool has_coordinates(const MissionItem& item) {
 }
 
 std::vector<MissionItem> mission_items(const FlightPlan& plan) {
-  if (plan.vehicle.dialect == Dialect::dji) {
+  if (plan.vehicle.autopilot == AutopilotType::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
                                            "\" does not fly MAVLink missions; use --format kmz");
   }
@@ -258,15 +263,16 @@ std::vector<MissionItem> mission_items(const FlightPlan& plan) {
   return items;
 }
 
-Problems check_items(const std::vector<MissionItem>& items, std::optional<Dialect> dialect) {
-  return ItemChecker(items, dialect).check();
+Problems check_items(const std::vector<MissionItem>& items,
+                     std::optional<AutopilotType> autopilot) {
+  return ItemChecker(items, autopilot).check();
 }
 
-std::vector<MissionItem> as_stored(std::vector<MissionItem> items, Dialect dialect) {
+std::vector<MissionItem> as_stored(std::vector<MissionItem> items, AutopilotType autopilot) {
   for (MissionItem& item : items) {
-    if (!has_place(item.command)) continue;
+    if (!has_position(item.command)) continue;
     for (const std::size_t p : {4U, 5U}) item.params[p] = std::round(item.params[p] * 1e7) / 1e7;
-    if (dialect == Dialect::ardupilot) {
+    if (autopilot == AutopilotType::ardupilot) {
       item.params[0] = std::floor(item.params[0]);
       item.params[6] = std::trunc(item.params[6] * 100.0) / 100.0;
     } else {
@@ -276,19 +282,19 @@ std::vector<MissionItem> as_stored(std::vector<MissionItem> items, Dialect diale
   return items;
 }
 
-RouteFile route_of(const std::vector<MissionItem>& items) {
+RouteFile make_route(const std::vector<MissionItem>& items) {
   RouteFile route;
-  double yaw_deg = not_given, pitch_deg = not_given;
+  double yaw_deg = unspecified, pitch_deg = unspecified;
   for (const MissionItem& item : items) {
     if (item.command == command::condition_yaw) yaw_deg = item.params[0];
     if (is_gimbal(item.command)) pitch_deg = item.params[0];
-    if (is_shot(item.command) && !route.points.empty()) ++route.points.back().shots;
+    if (is_capture_command(item.command) && !route.points.empty()) ++route.points.back().captures;
     if (item.command == command::delay && !route.points.empty()) {
       route.points.back().hold += std::max(0.0, item.params[0]);
     }
     // The landing is vertical from the last waypoint, so the pad itself needs no clearance. Items
     // without a position are executed at the current position.
-    if (!has_place(item.command) || item.command == command::land || !has_coordinates(item))
+    if (!has_position(item.command) || item.command == command::land || !has_coordinates(item))
       continue;
     FilePoint point{item.params[4], item.params[5], item.params[6]};
     point.datum = is_above_sea(item) ? HeightDatum::mean_sea_level : HeightDatum::takeoff;

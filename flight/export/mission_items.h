@@ -37,7 +37,7 @@ struct MissionItem {
 };
 
 /// Returns the name of an item for messages, such as "item 12".
-std::string name_of(const MissionItem& item);
+std::string item_label(const MissionItem& item);
 
 /// Returns true if the height is AMSL or above home. If both are false, it is above ground or has
 /// no reference.
@@ -55,14 +55,14 @@ std::vector<MissionItem> mission_items(const FlightPlan& plan);
 
 /// Returns the reasons why the autopilot would reject or change the items. Without a dialect, the
 /// rules of all autopilots apply. For the flight behaviour see interpreter/mission_interpreter.h.
-Problems check_items(const std::vector<MissionItem>& items, std::optional<Dialect> dialect);
+Problems check_items(const std::vector<MissionItem>& items, std::optional<AutopilotType> autopilot);
 
 /// Returns the items as the autopilot stores them: 1e-7 degrees; for ArduPilot integer seconds and
 /// centimetres; for PX4 single-precision heights.
-std::vector<MissionItem> as_stored(std::vector<MissionItem> items, Dialect dialect);
+std::vector<MissionItem> as_stored(std::vector<MissionItem> items, AutopilotType autopilot);
 
 /// Returns the positions of the items, each with its own datum. The items must have passed
 /// check_items().
-RouteFile route_of(const std::vector<MissionItem>& items);
+RouteFile make_route(const std::vector<MissionItem>& items);
 
 }  // namespace skycap::flight

@@ -18,7 +18,7 @@ enum class Type { whole = 6, real = 9 };  ///< MAVLink type of a value.
 /// Setting that an autopilot must have for its returns to equal the verified ones.
 struct Requirement {
   const char* name;
-  double least, most;
+  double min, max;
   double by_default;
 };
 
@@ -40,9 +40,9 @@ constexpr std::array px4_requirements{
     Requirement{"NAV_MC_ALT_RAD", 0.05, px4_altitude_radius, 0.8},
 };
 
-std::span<const Requirement> requirements(Dialect dialect) {
-  if (dialect == Dialect::ardupilot) return ardupilot_requirements;
-  if (dialect == Dialect::px4) return px4_requirements;
+std::span<const Requirement> requirements(AutopilotType autopilot) {
+  if (autopilot == AutopilotType::ardupilot) return ardupilot_requirements;
+  if (autopilot == AutopilotType::px4) return px4_requirements;
   return {};
 }
 
@@ -58,7 +58,7 @@ std::string plain(double value) {
 class ParameterWriter {
  public:
   ParameterWriter(const FlightPlan& plan, const Returns& returns)
-      : plan_(plan), returns_(returns), is_px4_(plan.vehicle.dialect == Dialect::px4) {}
+      : plan_(plan), returns_(returns), is_px4_(plan.vehicle.autopilot == AutopilotType::px4) {}
 
   std::string write() {
     comment("Onboard parameters for Vehicle 1");
@@ -147,7 +147,7 @@ class ParameterWriter {
     set("BATT_FS_LOW_ACT", 2);
     set("BATT_FS_CRT_ACT", 1);
     set("RALLY_INCL_HOME", 1);
-    if (returns_.law.landings.size() > 1) set("RALLY_LIMIT_KM", 0);  // Any distance.
+    if (returns_.rtl_profile.landings.size() > 1) set("RALLY_LIMIT_KM", 0);  // Any distance.
     write_ardupilot_fence();
   }
 
@@ -218,7 +218,7 @@ std::optional<Parameter> parameter_in(const std::string& line) {
   const std::vector<std::string> tabbed = split(line, '\t');
   const bool is_qgc = tabbed.size() == 5;
   std::vector<std::string> pair = split(line, ',');
-  if (pair.size() != 2) pair = geometry::words_of(line);
+  if (pair.size() != 2) pair = geometry::split_words(line);
   if (!is_qgc && pair.size() != 2) return std::nullopt;
   const std::optional<double> value = to_number(geometry::trimmed(is_qgc ? tabbed[3] : pair[1]));
   if (!value) return std::nullopt;
@@ -232,23 +232,23 @@ const Parameter* find(const std::vector<Parameter>& parameters, const std::strin
 
 }  // namespace
 
-std::string parameters_name(Dialect dialect, const std::string& stem) {
-  if (dialect == Dialect::dji) return "";
-  return stem + (dialect == Dialect::px4 ? ".params" : ".param");
+std::string parameters_name(AutopilotType autopilot, const std::string& stem) {
+  if (autopilot == AutopilotType::dji) return "";
+  return stem + (autopilot == AutopilotType::px4 ? ".params" : ".param");
 }
 
 std::string write_parameters(const FlightPlan& plan) {
-  if (plan.vehicle.dialect == Dialect::dji) {
+  if (plan.vehicle.autopilot == AutopilotType::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
                                            "\" does not use parameter files; use --format kmz");
   }
-  return ParameterWriter(plan, plan.certified_returns()).write();
+  return ParameterWriter(plan, plan.verified_returns()).write();
 }
 
 std::vector<Parameter> read_parameters(const std::string& text) {
   std::vector<Parameter> parameters;
   std::size_t number = 0;
-  for (const std::string& line : lines_of(text)) {
+  for (const std::string& line : split_lines(text)) {
     ++number;
     if (geometry::trimmed(line).empty() || geometry::trimmed(line).starts_with('#')) continue;
     const std::optional<Parameter> parameter = parameter_in(line);
@@ -262,8 +262,9 @@ std::vector<Parameter> read_parameters(const std::string& text) {
   return parameters;
 }
 
-std::optional<double> return_height(const std::vector<Parameter>& parameters, Dialect dialect) {
-  if (dialect == Dialect::px4) {
+std::optional<double> return_height(const std::vector<Parameter>& parameters,
+                                    AutopilotType autopilot) {
+  if (autopilot == AutopilotType::px4) {
     const Parameter* height = find(parameters, "RTL_RETURN_ALT");
     return height == nullptr ? std::nullopt : std::optional(height->value);
   }
@@ -273,16 +274,16 @@ std::optional<double> return_height(const std::vector<Parameter>& parameters, Di
   return centimetres == nullptr ? std::nullopt : std::optional(centimetres->value / 100.0);
 }
 
-Problems return_problems(const std::vector<Parameter>& parameters, Dialect dialect) {
+Problems return_problems(const std::vector<Parameter>& parameters, AutopilotType autopilot) {
   Problems problems;
-  for (const Requirement& required : requirements(dialect)) {
-    const Parameter* given = find(parameters, required.name);
-    const double value = given == nullptr ? required.by_default : given->value;
-    if (value >= required.least && value <= required.most) continue;
+  for (const Requirement& required : requirements(autopilot)) {
+    const Parameter* found = find(parameters, required.name);
+    const double value = found == nullptr ? required.by_default : found->value;
+    if (value >= required.min && value <= required.max) continue;
     problems.push_back(std::string(required.name) + " is " + plain(value) + "; it must be " +
-                       (required.least == required.most
-                            ? plain(required.most)
-                            : "in [" + plain(required.least) + ", " + plain(required.most) + "]"));
+                       (required.min == required.max
+                            ? plain(required.max)
+                            : "in [" + plain(required.min) + ", " + plain(required.max) + "]"));
   }
   const Parameter* metres = find(parameters, "RTL_ALT_M");
   const Parameter* centimetres = find(parameters, "RTL_ALT");

@@ -29,7 +29,7 @@ struct Parameter {
 /// Returns the file name that ground stations expect: "mission.param" for ArduPilot,
 /// "mission.params" for PX4, or with a different stem. Empty for DJI, whose missions contain their
 /// settings.
-std::string parameters_name(Dialect dialect, const std::string& stem = "mission");
+std::string parameters_name(AutopilotType autopilot, const std::string& stem = "mission");
 
 /// Returns the settings for the plan's vehicle: return, speeds, fence and failsafes. Comments list
 /// the upload order. Throws Error{bad_config} for DJI vehicles, and if the plan has no verified
@@ -41,11 +41,12 @@ std::string write_parameters(const FlightPlan& plan);
 std::vector<Parameter> read_parameters(const std::string& text);
 
 /// Returns the return altitude above home that the parameters specify [m], or std::nullopt.
-std::optional<double> return_height(const std::vector<Parameter>& parameters, Dialect dialect);
+std::optional<double> return_height(const std::vector<Parameter>& parameters,
+                                    AutopilotType autopilot);
 
-/// Returns the parameters that make the autopilot's return differ from ReturnLaw, such as
+/// Returns the parameters that make the autopilot's return differ from RtlProfile, such as
 /// "RTL_CONE_SLOPE is 3; it must be 0". A missing parameter has its default value.
-Problems return_problems(const std::vector<Parameter>& parameters, Dialect dialect);
+Problems return_problems(const std::vector<Parameter>& parameters, AutopilotType autopilot);
 
 /// Returns a return altitude [m] for files and summaries without rounding, such as "62" or "42.7".
 /// Rounded to whole metres, it could exceed a ceiling or undercut the verified altitude.

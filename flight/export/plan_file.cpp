@@ -22,8 +22,9 @@ constexpr int circle_corners = 64;
 Json polygon(const Prism& prism, const LocalFrame& frame, bool is_inclusion) {
   Json corners = Json::array();
   for (const Eigen::Vector2d& corner : prism.footprint) {
-    const GeodeticPoint place = frame.to_geodetic({corner.x(), corner.y(), 0.0});
-    corners.push_back({rounded_degrees(place.latitude_deg), rounded_degrees(place.longitude_deg)});
+    const GeodeticPoint geodetic = frame.to_geodetic({corner.x(), corner.y(), 0.0});
+    corners.push_back(
+        {rounded_degrees(geodetic.latitude_deg), rounded_degrees(geodetic.longitude_deg)});
   }
   return {{"inclusion", is_inclusion}, {"polygon", corners}, {"version", 1}};
 }
@@ -59,10 +60,10 @@ class PlanChecker {
       problems_.emplace_back("the file is not a JSON object");
       return std::move(problems_);
     }
-    if (plan_.value("fileType", Json()) != Json("Plan")) complain("fileType must be \"Plan\"");
+    if (plan_.value("fileType", Json()) != Json("Plan")) add_problem("fileType must be \"Plan\"");
     require_version(plan_, "version", 1);
     if (is_strict_ && (!plan_.contains("groundStation") || !plan_["groundStation"].is_string())) {
-      complain("groundStation must be a string");
+      add_problem("groundStation must be a string");
     }
     if (const Json* mission = section("mission", 2)) check_mission(*mission);
     if (is_needed("geoFence")) {
@@ -74,10 +75,10 @@ class PlanChecker {
     return std::move(problems_);
   }
 
-  const MissionFile& file() const { return file_; }
+  const MavlinkMission& file() const { return file_; }
 
  private:
-  void complain(const std::string& what) { problems_.push_back(what); }
+  void add_problem(const std::string& what) { problems_.push_back(what); }
 
   /// Returns true if a section must be read. Files of QGroundControl 3.2 and of mission-only
   /// programs lack it, or have an empty section of version 1.
@@ -92,13 +93,13 @@ class PlanChecker {
 
   void require_version(const Json& object, const std::string& where, int version) {
     if (!object.contains("version") || object["version"] != Json(version)) {
-      complain(where + " must be " + std::to_string(version));
+      add_problem(where + " must be " + std::to_string(version));
     }
   }
 
   const Json* section(const char* name, int version) {
     if (!plan_.contains(name) || !plan_[name].is_object()) {
-      complain(std::string(name) + " is missing");
+      add_problem(std::string(name) + " is missing");
       return nullptr;
     }
     require_version(plan_[name], std::string(name) + ".version", version);
@@ -114,21 +115,22 @@ class PlanChecker {
     check_home(mission.value("plannedHomePosition", Json()));
     if (!mission.contains("firmwareType") || !mission["firmwareType"].is_number_integer()) {
       if (is_strict_ || mission.contains("firmwareType")) {
-        complain("mission.firmwareType must be an integer");
+        add_problem("mission.firmwareType must be an integer");
       }
     } else if (mission["firmwareType"] == px4_firmware) {
-      file_.dialect = Dialect::px4;
+      file_.autopilot = AutopilotType::px4;
     } else if (mission["firmwareType"] == ardupilot_firmware) {
-      file_.dialect = Dialect::ardupilot;
+      file_.autopilot = AutopilotType::ardupilot;
     }
     if (!mission.contains("items") || !mission["items"].is_array() || mission["items"].empty()) {
-      complain("mission.items must be a list of at least one item");
+      add_problem("mission.items must be a list of at least one item");
       return;
     }
     const std::size_t before = problems_.size();
     for (std::size_t i = 0; i < mission["items"].size(); ++i) check_item(mission["items"][i], i);
     if (problems_.size() > before) return;
-    for (const std::string& problem : check_items(file_.items, file_.dialect)) complain(problem);
+    for (const std::string& problem : check_items(file_.items, file_.autopilot))
+      add_problem(problem);
   }
 
   /// A home of zeros or nulls is unknown.
@@ -137,14 +139,14 @@ class PlanChecker {
                             (are_numbers(home, 3) && home[0] == 0.0 && home[1] == 0.0);
     if (!is_strict_ && is_unknown) return;
     if (!are_numbers(home, 3)) {
-      return complain("mission.plannedHomePosition must be three numbers");
+      return add_problem("mission.plannedHomePosition must be three numbers");
     }
     file_.home = GeodeticPoint{home[0], home[1], home[2]};
   }
 
   /// Returns the seven parameters. Before QGroundControl 3.3 there were four, with a separate
   /// position. Null if neither form is present.
-  Json params_of(const Json& json) const {
+  Json parse_params(const Json& json) const {
     const auto is_list = [&](const char* key, std::size_t count) {
       return json.contains(key) && json[key].is_array() && json[key].size() == count;
     };
@@ -172,14 +174,14 @@ class PlanChecker {
     if (!is_strict_ && is_missing) return true;
     const bool is_integer = !is_missing && json["doJumpId"].is_number_integer();
     if (is_strict_ && (!is_integer || json["doJumpId"] != Json(i + 1))) {
-      complain(who + ".doJumpId must be " + std::to_string(i + 1));
+      add_problem(who + ".doJumpId must be " + std::to_string(i + 1));
       return false;
     }
     const long before = i == 0 ? 0 : static_cast<long>(file_.items.back().number);
     if (is_integer && json["doJumpId"] > Json(before) && json["doJumpId"] < Json(1'000'000)) {
       return true;
     }
-    complain(who + ".doJumpId must be an integer greater than that of the item before");
+    add_problem(who + ".doJumpId must be an integer greater than that of the item before");
     return false;
   }
 
@@ -191,30 +193,30 @@ class PlanChecker {
     const auto integer = [](const Json& value) { return value.is_number_integer(); };
     if (json.is_object() && json.value("type", Json()) == Json("ComplexItem")) {
       const Json kind = json.value("complexItemType", Json());
-      return complain(who + ".type must be \"SimpleItem\", but is " +
-                      (kind.is_string() ? kind.get<std::string>() : "pattern") +
-                      " (ComplexItem); save it as waypoints first");
+      return add_problem(who + ".type must be \"SimpleItem\", but is " +
+                         (kind.is_string() ? kind.get<std::string>() : "pattern") +
+                         " (ComplexItem); save it as waypoints first");
     }
     if (!json.is_object() || !is("type", [](const Json& v) { return v == "SimpleItem"; })) {
-      return complain(who + ".type must be \"SimpleItem\"");
+      return add_problem(who + ".type must be \"SimpleItem\"");
     }
-    if (!is("command", integer)) return complain(who + ".command must be an integer");
-    if (!is("frame", integer)) return complain(who + ".frame must be an integer");
+    if (!is("command", integer)) return add_problem(who + ".command must be an integer");
+    if (!is("frame", integer)) return add_problem(who + ".frame must be an integer");
     if (!is("autoContinue", [](const Json& v) { return v.is_boolean(); })) {
-      return complain(who + ".autoContinue must be true or false");
+      return add_problem(who + ".autoContinue must be true or false");
     }
     if (file_.items.size() != i || !check_jump_id(json, i, who)) return;
-    const Json params = params_of(json);
-    if (params.is_null()) return complain(who + ".params must be 7 numbers or nulls");
+    const Json params = parse_params(json);
+    if (params.is_null()) return add_problem(who + ".params must be 7 numbers or nulls");
     const std::size_t number =
         json.contains("doJumpId") ? json["doJumpId"].get<std::size_t>() : i + 1;
     MissionItem item{json["command"], json["frame"], {}, json["autoContinue"], number};
     for (std::size_t p = 0; p < 7; ++p) {
       const Json& value = params[p];
       if (!value.is_number() && !value.is_null()) {
-        return complain(who + ".params must be 7 numbers or nulls");
+        return add_problem(who + ".params must be 7 numbers or nulls");
       }
-      item.params[p] = value.is_null() ? not_given : value.get<double>();
+      item.params[p] = value.is_null() ? unspecified : value.get<double>();
     }
     check_altitude(json, item, who);
     file_.items.push_back(item);
@@ -226,29 +228,29 @@ class PlanChecker {
     if (!has_mode && !has_height && !has_terrain) return;
     if (!is_strict_ && !has_mode) return;  // Frame and params suffice.
     if (is_strict_ && !(has_mode && has_height && has_terrain)) {
-      return complain(who +
-                      " must have all of AltitudeMode, Altitude, AMSLAltAboveTerrain or none");
+      return add_problem(who +
+                         " must have all of AltitudeMode, Altitude, AMSLAltAboveTerrain or none");
     }
     const Json mode = json["AltitudeMode"], above = json.value("AMSLAltAboveTerrain", Json());
     const Json height = json.value("Altitude", Json(item.params[6]));
     if (!mode.is_number_integer() || !height.is_number() ||
         !(above.is_null() || above.is_number())) {
-      return complain(who +
-                      " has an AltitudeMode, Altitude or AMSLAltAboveTerrain of a wrong type");
+      return add_problem(who +
+                         " has an AltitudeMode, Altitude or AMSLAltAboveTerrain of a wrong type");
     }
     const bool agrees = (mode == 1 && item.frame == frame::relative) ||
                         ((mode == 2 || mode == 3) && item.frame == frame::global) ||
                         (mode == 4 && item.frame == frame::terrain);
-    if (!agrees) complain(who + " has an AltitudeMode that conflicts with its frame");
+    if (!agrees) add_problem(who + " has an AltitudeMode that conflicts with its frame");
     if (mode == 1 && height != Json(item.params[6])) {
-      complain(who + ".Altitude must be the height in its params");
+      add_problem(who + ".Altitude must be the height in its params");
     }
   }
 
   void check_fence(const Json& fence) {
     for (const char* kind : {"polygons", "circles"}) {
       if (!fence.contains(kind) || !fence[kind].is_array()) {
-        complain("geoFence." + std::string(kind) + " must be a list");
+        add_problem("geoFence." + std::string(kind) + " must be a list");
         continue;
       }
       for (std::size_t i = 0; i < fence[kind].size(); ++i) {
@@ -261,27 +263,27 @@ class PlanChecker {
   void check_area(const Json& area, bool is_polygon, const std::string& who) {
     require_version(area, who + ".version", 1);
     if (!area.contains("inclusion") || !area["inclusion"].is_boolean()) {
-      return complain(who + ".inclusion must be true or false; programs differ in the default");
+      return add_problem(who + ".inclusion must be true or false; programs differ in the default");
     }
     FenceArea found{who, area["inclusion"], {}};
     if (is_polygon) {
       if (!area.contains("polygon") || !area["polygon"].is_array() || area["polygon"].size() < 3) {
-        return complain(who + ".polygon must have at least 3 corners");
+        return add_problem(who + ".polygon must have at least 3 corners");
       }
       for (const Json& corner : area["polygon"]) {
         if (!are_numbers(corner, 2))
-          return complain(who + ".polygon must contain pairs of numbers");
+          return add_problem(who + ".polygon must contain pairs of numbers");
         found.corners.push_back({corner[0], corner[1], 0.0});
       }
       if (area["polygon"].front() == area["polygon"].back()) {
-        return complain(who + ".polygon must not repeat its first corner at the end");
+        return add_problem(who + ".polygon must not repeat its first corner at the end");
       }
     } else {
       const Json circle = area.value("circle", Json());
       const bool is_good = circle.is_object() && circle.contains("center") &&
                            are_numbers(circle["center"], 2) && circle.contains("radius") &&
                            circle["radius"].is_number() && circle["radius"] > 0.0;
-      if (!is_good) return complain(who + ".circle must have a center and a positive radius");
+      if (!is_good) return add_problem(who + ".circle must have a center and a positive radius");
       // Inscribed for a fence, circumscribed for a no-fly circle: the polygon is stricter than the
       // circle.
       const double widened =
@@ -299,12 +301,12 @@ class PlanChecker {
 
   void check_rally(const Json& rally) {
     if (!rally.contains("points") || !rally["points"].is_array()) {
-      return complain("rallyPoints.points must be a list");
+      return add_problem("rallyPoints.points must be a list");
     }
     for (std::size_t i = 0; i < rally["points"].size(); ++i) {
       const Json& point = rally["points"][i];
       if (!are_numbers(point, 3)) {
-        complain("rallyPoints.points[" + std::to_string(i) + "] must be three numbers");
+        add_problem("rallyPoints.points[" + std::to_string(i) + "] must be three numbers");
         continue;
       }
       file_.rally.push_back(
@@ -314,7 +316,7 @@ class PlanChecker {
 
   bool is_strict_;
   Json plan_;
-  MissionFile file_{.home_name = "mission.plannedHomePosition", .holds_fence = true};
+  MavlinkMission file_{.home_name = "mission.plannedHomePosition", .supports_fence = true};
   Problems problems_;
 };
 
@@ -337,9 +339,9 @@ std::string write_plan(const FlightPlan& plan) {
   // zero height above home, both return at the verified altitude and land on the ground.
   Json rally = Json::array();
   for (const Eigen::Vector3d& point : rally_points(plan)) {
-    const GeodeticPoint place = frame.to_geodetic(point);
+    const GeodeticPoint geodetic = frame.to_geodetic(point);
     rally.push_back(
-        {rounded_degrees(place.latitude_deg), rounded_degrees(place.longitude_deg), 0.0});
+        {rounded_degrees(geodetic.latitude_deg), rounded_degrees(geodetic.longitude_deg), 0.0});
   }
   const Json file{
       {"fileType", "Plan"},
@@ -348,7 +350,8 @@ std::string write_plan(const FlightPlan& plan) {
       {"geoFence", {{"circles", Json::array()}, {"polygons", polygons}, {"version", 2}}},
       {"mission",
        {{"cruiseSpeed", plan.conditions.cruise_speed},
-        {"firmwareType", plan.vehicle.dialect == Dialect::px4 ? px4_firmware : ardupilot_firmware},
+        {"firmwareType",
+         plan.vehicle.autopilot == AutopilotType::px4 ? px4_firmware : ardupilot_firmware},
         {"globalPlanAltitudeMode", 1},
         {"hoverSpeed", plan.conditions.cruise_speed},
         {"items", items},
@@ -363,7 +366,7 @@ std::string write_plan(const FlightPlan& plan) {
 
 Problems validate_plan(const std::string& text) { return PlanChecker(text, true).check(); }
 
-MissionFile read_plan(const std::string& text) {
+MavlinkMission read_plan(const std::string& text) {
   PlanChecker checker(text, false);
   throw_first(checker.check(), "invalid .plan file");
   return checker.file();

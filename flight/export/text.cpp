@@ -41,7 +41,7 @@ std::vector<std::string> split(std::string_view text, char separator) {
   }
 }
 
-std::vector<std::string> lines_of(std::string_view text) {
+std::vector<std::string> split_lines(std::string_view text) {
   std::vector<std::string> lines;
   for (text = geometry::without_mark(text); !text.empty();) lines.emplace_back(next_line(text));
   return lines;
@@ -56,12 +56,12 @@ std::string_view next_line(std::string_view& rest) {
 }
 
 std::optional<std::vector<double>> to_numbers(const std::vector<std::string>& fields,
-                                              const std::string& place, Problems& problems) {
+                                              const std::string& location, Problems& problems) {
   std::vector<double> values;
   for (const std::string& field : fields) {
     const std::optional<double> value = to_number(field);
     if (!value) {
-      problems.push_back(place + "has \"" + field + "\", which is not a number");
+      problems.push_back(location + "has \"" + field + "\", which is not a number");
       return std::nullopt;
     }
     values.push_back(*value);

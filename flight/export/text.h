@@ -24,7 +24,7 @@ std::vector<std::string> split(std::string_view text, char separator);
 
 /// Returns the lines without their terminators "\n" or "\r\n". A final line without terminator
 /// counts.
-std::vector<std::string> lines_of(std::string_view text);
+std::vector<std::string> split_lines(std::string_view text);
 
 /// Removes the first line from `rest` and returns it without its terminator. For texts with
 /// millions of lines.
@@ -33,10 +33,10 @@ std::string_view next_line(std::string_view& rest);
 /// Findings of a validator. Each entry states location and problem.
 using Problems = std::vector<std::string>;
 
-/// Parses the fields as numbers. If a field is not a number, adds a problem with `place` and
+/// Parses the fields as numbers. If a field is not a number, adds a problem with `location` and
 /// returns std::nullopt.
 std::optional<std::vector<double>> to_numbers(const std::vector<std::string>& fields,
-                                              const std::string& place, Problems& problems);
+                                              const std::string& location, Problems& problems);
 
 /// Throws Error{bad_file} with the first problem, if any. `what` is the name of the format.
 void throw_first(const Problems& problems, const std::string& what);

@@ -35,7 +35,7 @@ class TrajectorySampler {
 
   std::vector<TimedState> sample() {
     const std::vector<StopTime> times = stop_times(plan_);
-    aim_at_first_station();
+    aim_at_first_capture_point();
     // The autopilot flies the climb from the pad, whose clearance is verified separately.
     Vector3d from = plan_.waypoints.front().position;
     double left = times.front().arrival;
@@ -49,10 +49,10 @@ class TrajectorySampler {
   }
 
  private:
-  void aim_at_first_station() {
+  void aim_at_first_capture_point() {
     for (const auto* waypoints : {&plan_.passed, &plan_.waypoints}) {
       for (const Waypoint& waypoint : *waypoints) {
-        if (!waypoint.is_station) continue;
+        if (!waypoint.is_capture_point) continue;
         yaw_ = waypoint.yaw, pitch_ = waypoint.pitch;
         return;
       }
@@ -60,35 +60,35 @@ class TrajectorySampler {
   }
 
   /// Adds states at the regular interval and at the images.
-  void add_passage(const Passage& passage, double start, double end) {
+  void add_fly_through(const FlyThrough& fly_through, double start, double end) {
     std::vector<double> moments;
     const auto first = static_cast<std::size_t>(std::ceil(start / interval_));
     for (std::size_t k = first; static_cast<double>(k) * interval_ < end; ++k) {
       moments.push_back(static_cast<double>(k) * interval_);
     }
-    auto view = passage.views.begin();
+    auto view = fly_through.views.begin();
     const auto add_views = [&](double until) {
-      for (; view != passage.views.end() && start + view->moment <= until; ++view) {
-        add_passing(passage, start, start + view->moment);
-        states_.back().is_shot =
-            plan_.passed[static_cast<std::size_t>(view - passage.views.begin())].shots > 0;
+      for (; view != fly_through.views.end() && start + view->moment <= until; ++view) {
+        add_passing(fly_through, start, start + view->moment);
+        states_.back().is_capture =
+            plan_.passed[static_cast<std::size_t>(view - fly_through.views.begin())].captures > 0;
       }
     };
     for (const double moment : moments) {
       add_views(moment);
-      if (states_.empty() || !states_.back().is_shot || moment - states_.back().time >= 1e-6) {
-        add_passing(passage, start, moment);
+      if (states_.empty() || !states_.back().is_capture || moment - states_.back().time >= 1e-6) {
+        add_passing(fly_through, start, moment);
       }
     }
     add_views(end);
-    yaw_ = passage.views.back().aim.yaw, pitch_ = passage.views.back().aim.pitch;
+    yaw_ = fly_through.views.back().aim.yaw, pitch_ = fly_through.views.back().aim.pitch;
   }
 
-  void add_passing(const Passage& passage, double start, double time) {
+  void add_passing(const FlyThrough& fly_through, double start, double time) {
     constexpr double step = 1e-4;  // Time step of the difference for the yaw rate [s].
-    const CurveState moved = state_at(passage.curve, time - start);
-    const Aim aim = passage.aim_at(time - start);
-    const double next_yaw = passage.aim_at(time - start + step).yaw;
+    const CurveState moved = state_at(fly_through.curve, time - start);
+    const Aim aim = fly_through.aim_at(time - start);
+    const double next_yaw = fly_through.aim_at(time - start + step).yaw;
     add({time, moved.position, moved.velocity, moved.acceleration, aim.yaw,
          turn(aim.yaw, next_yaw) / step, aim.pitch, false});
   }
@@ -105,12 +105,12 @@ class TrajectorySampler {
   }
 
   void add_leg(const Vector3d& from, const Waypoint& to, double start, double end) {
-    if (to.passage) {
-      add_passage(*to.passage, start, end);
+    if (to.fly_through) {
+      add_fly_through(*to.fly_through, start, end);
       return;
     }
-    const double target_yaw = to.is_station ? to.yaw : yaw_;
-    const double target_pitch = to.is_station ? to.pitch : pitch_;
+    const double target_yaw = to.is_capture_point ? to.yaw : yaw_;
+    const double target_pitch = to.is_capture_point ? to.pitch : pitch_;
     const double duration = end - start;
     const auto first = static_cast<std::size_t>(std::ceil(start / interval_));
     for (std::size_t k = first; static_cast<double>(k) * interval_ < end; ++k) {
@@ -135,12 +135,12 @@ class TrajectorySampler {
         times.aimed, waypoint.position, Vector3d::Zero(), Vector3d::Zero(), yaw_, 0.0, pitch_,
         false};
     add(state);
-    state.time = times.shot;
-    state.is_shot = waypoint.shots > 0;
+    state.time = times.capture;
+    state.is_capture = waypoint.captures > 0;
     add(state);
-    if (!(times.departure > times.shot)) return;
+    if (!(times.departure > times.capture)) return;
     state.time = times.departure;
-    state.is_shot = false;
+    state.is_capture = false;
     add(state);
   }
 
@@ -165,15 +165,16 @@ bool is_comment(const std::string& line) {
 }
 
 /// Parses rows of numbers. Problems include the line number.
-std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, std::size_t first,
-                                         char separator, std::size_t count, Problems& problems) {
+std::vector<std::vector<double>> parse_rows(const std::vector<std::string>& lines,
+                                            std::size_t first, char separator, std::size_t count,
+                                            Problems& problems) {
   std::vector<std::vector<double>> rows;
   double last_time = -std::numeric_limits<double>::infinity();
   for (std::size_t i = first; i < lines.size(); ++i) {
     if (is_comment(lines[i])) continue;
     const std::string who = "line " + std::to_string(i + 1) + " ";
     const std::optional<std::vector<double>> row =
-        to_numbers(separator == ' ' ? geometry::words_of(lines[i]) : split(lines[i], separator),
+        to_numbers(separator == ' ' ? geometry::split_words(lines[i]) : split(lines[i], separator),
                    who, problems);
     if (!row) return rows;
     if (row->size() != count) {
@@ -191,7 +192,7 @@ std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, 
 
 std::vector<std::vector<double>> csv_rows(const std::string& text, Frame& frame,
                                           Problems& problems) {
-  const std::vector<std::string> lines = lines_of(text);
+  const std::vector<std::string> lines = split_lines(text);
   if (lines.size() < 2 || (lines[0] != enu_comment && lines[0] != ned_comment)) {
     problems.emplace_back("line 1 must name the frame, ENU or NED");
     return {};
@@ -201,11 +202,11 @@ std::vector<std::vector<double>> csv_rows(const std::string& text, Frame& frame,
     problems.push_back("line 2 must be \"" + std::string(csv_header) + "\"");
     return {};
   }
-  return rows_of(lines, 2, ',', 14, problems);
+  return parse_rows(lines, 2, ',', 14, problems);
 }
 
 std::vector<std::vector<double>> tum_rows(const std::string& text, Problems& problems) {
-  auto rows = rows_of(lines_of(text), 0, ' ', 8, problems);
+  auto rows = parse_rows(split_lines(text), 0, ' ', 8, problems);
   for (const auto& row : rows) {
     const double norm = Eigen::Vector4d(row[4], row[5], row[6], row[7]).norm();
     if (std::abs(norm - 1.0) > 1e-6) {
@@ -238,7 +239,7 @@ std::string write_trajectory_csv(const std::vector<TimedState>& states, Frame fr
     }
     const double yaw = is_ned ? state.yaw : std::remainder(half_pi - state.yaw, 4.0 * half_pi);
     text += "," + fixed(yaw, 6) + "," + fixed(is_ned ? state.yaw_rate : -state.yaw_rate, 6) + "," +
-            fixed(state.pitch, 6) + (state.is_shot ? ",1\n" : ",0\n");
+            fixed(state.pitch, 6) + (state.is_capture ? ",1\n" : ",0\n");
   }
   return text;
 }

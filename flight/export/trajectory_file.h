@@ -15,10 +15,10 @@ namespace skycap::flight {
 struct TimedState {
   double time = 0.0;  ///< Time since leaving the pad [s].
   Eigen::Vector3d position, velocity, acceleration;
-  double yaw = 0.0;       ///< Clockwise from north [rad].
-  double yaw_rate = 0.0;  ///< Clockwise [rad/s].
-  double pitch = 0.0;     ///< Gimbal pitch [rad].
-  bool is_shot = false;   ///< True at a capture.
+  double yaw = 0.0;         ///< Clockwise from north [rad].
+  double yaw_rate = 0.0;    ///< Clockwise [rad/s].
+  double pitch = 0.0;       ///< Gimbal pitch [rad].
+  bool is_capture = false;  ///< True at a capture.
 };
 
 /// Returns the states of the plan from above the pad until back there. States are `interval` [s]
@@ -29,8 +29,9 @@ std::vector<TimedState> trajectory(const FlightPlan& plan, double interval);
 
 enum class Frame { enu, ned };
 
-/// Returns CSV with `t,x,y,z,vx,vy,vz,ax,ay,az,yaw,yaw_rate,gimbal_pitch,shot` and a comment line
-/// with the frame. Yaw is counter-clockwise from east in ENU and clockwise from north in NED [rad].
+/// Returns CSV with `t,x,y,z,vx,vy,vz,ax,ay,az,yaw,yaw_rate,gimbal_pitch,capture` and a comment
+/// line with the frame. Yaw is counter-clockwise from east in ENU and clockwise from north in NED
+/// [rad].
 std::string write_trajectory_csv(const std::vector<TimedState>& states, Frame frame);
 Problems validate_trajectory_csv(const std::string& text);
 std::vector<TimedState> read_trajectory_csv(const std::string& text);

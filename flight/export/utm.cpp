@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double series_reach = 1000.0;  // Range of the series around the origin [m].
 
-int zone_of(const Site& site) {
+int compute_utm_zone(const Site& site) {
   site.validate();
   const int zone =
       GeographicLib::UTMUPS::StandardZone(site.origin.latitude_deg, site.origin.longitude_deg);
@@ -30,11 +30,11 @@ std::string authority(int code) { return "AUTHORITY[\"EPSG\",\"" + std::to_strin
 UtmProjection::UtmProjection(const Site& site)
     : is_above_geoid_(site.geoid_undulation.has_value()),
       undulation_(site.geoid_undulation.value_or(0.0)),
-      zone_(zone_of(site)),
+      zone_(compute_utm_zone(site)),
       is_north_(site.origin.latitude_deg >= 0.0),
       frame_(site.origin) {
   constexpr double step = 500.0;
-  const auto at = [&](const Vector3d& place) { return to_map_exactly(step * place); };
+  const auto at = [&](const Vector3d& geodetic) { return to_map_exactly(step * geodetic); };
   at_origin_ = at(Vector3d::Zero());
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d unit = Vector3d::Unit(axis);

@@ -23,14 +23,14 @@ std::string line(std::size_t index, bool is_current, const MissionItem& item) {
 /// Combines checking and reading: the items are complete if there are no problems. Strict: the
 /// rules of the strictest ground station. Otherwise: those of Mission Planner, MAVProxy and APM
 /// Planner, with blank lines, comments, columns separated by blanks and a home without position.
-struct WaypointsReading {
+struct WaypointsParser {
   Problems problems;
   std::vector<MissionItem> items;
   std::optional<MissionItem> home;
   bool is_strict;
 
-  explicit WaypointsReading(const std::string& text, bool strict) : is_strict(strict) {
-    const std::vector<std::string> lines = lines_of(text);
+  explicit WaypointsParser(const std::string& text, bool strict) : is_strict(strict) {
+    const std::vector<std::string> lines = split_lines(text);
     const std::size_t first = is_strict ? 0 : first_line(lines);
     if (!check_header(first < lines.size() ? lines[first] : "", first + 1)) return;
     for (std::size_t i = first + 1; i < lines.size(); ++i) read_line(lines[i], i + 1);
@@ -40,14 +40,16 @@ struct WaypointsReading {
   }
 
   static std::size_t first_line(const std::vector<std::string>& lines) {
-    const auto is_full = [](const std::string& line) { return !geometry::words_of(line).empty(); };
+    const auto is_full = [](const std::string& line) {
+      return !geometry::split_words(line).empty();
+    };
     return static_cast<std::size_t>(std::ranges::find_if(lines, is_full) - lines.begin());
   }
 
   bool check_header(const std::string& line, std::size_t number) {
     const std::string who = "line " + std::to_string(number) + " ";
     if (line == waypoints_header) return true;
-    const std::vector<std::string> words = geometry::words_of(line);
+    const std::vector<std::string> words = geometry::split_words(line);
     const bool is_wpl = words.size() == 3 && words[0] == "QGC" && words[1] == "WPL";
     // Files of APM Planner 2 have version 120 and the same columns.
     if (!is_strict && is_wpl && (words[2] == "110" || words[2] == "120")) return true;
@@ -73,7 +75,7 @@ struct WaypointsReading {
   void read_line(const std::string& text, std::size_t line_number) {
     const std::string who = "line " + std::to_string(line_number) + " ";
     const std::vector<std::string> fields =
-        is_strict ? split(text, '\t') : geometry::words_of(text);
+        is_strict ? split(text, '\t') : geometry::split_words(text);
     if (!is_strict && (fields.empty() || fields.front().starts_with('#'))) return;
     if (fields.size() != item_fields) {
       problems.push_back(who + "has " + std::to_string(fields.size()) + " fields separated by " +
@@ -103,25 +105,25 @@ struct WaypointsReading {
   }
 };
 
-Problems problems_of(WaypointsReading& reading, std::optional<Dialect> dialect) {
-  if (!reading.problems.empty()) return reading.problems;
-  if (dialect == Dialect::ardupilot && !reading.home) {
-    reading.problems.emplace_back("line 2 must be home: frame 0, command 16");
+Problems find_problems(WaypointsParser& parser, std::optional<AutopilotType> autopilot) {
+  if (!parser.problems.empty()) return parser.problems;
+  if (autopilot == AutopilotType::ardupilot && !parser.home) {
+    parser.problems.emplace_back("line 2 must be home: frame 0, command 16");
   }
-  if (dialect == Dialect::px4 && reading.home) {
-    reading.problems.emplace_back("line 2 is a home position, which PX4's files do not have");
+  if (autopilot == AutopilotType::px4 && parser.home) {
+    parser.problems.emplace_back("line 2 is a home position, which PX4's files do not have");
   }
-  for (const std::string& problem : check_items(reading.items, dialect)) {
-    reading.problems.push_back(problem);
+  for (const std::string& problem : check_items(parser.items, autopilot)) {
+    parser.problems.push_back(problem);
   }
-  return reading.problems;
+  return parser.problems;
 }
 
 }  // namespace
 
 std::string write_waypoints(const FlightPlan& plan) {
   std::vector<MissionItem> items = mission_items(plan);
-  if (plan.vehicle.dialect == Dialect::ardupilot) {
+  if (plan.vehicle.autopilot == AutopilotType::ardupilot) {
     const GeodeticPoint home = LocalFrame(plan.site.origin).to_geodetic(plan.pad);
     const double amsl = home.height - plan.site.undulation_for("an ArduPilot .waypoints file");
     items.insert(items.begin(),
@@ -144,19 +146,19 @@ std::string write_waypoints(const FlightPlan& plan) {
   return text;
 }
 
-Problems validate_waypoints(const std::string& text, std::optional<Dialect> dialect) {
-  WaypointsReading reading(text, true);
-  return problems_of(reading, dialect);
+Problems validate_waypoints(const std::string& text, std::optional<AutopilotType> autopilot) {
+  WaypointsParser parser(text, true);
+  return find_problems(parser, autopilot);
 }
 
-MissionFile read_waypoints(const std::string& text) {
-  WaypointsReading reading(text, false);
-  throw_first(problems_of(reading, {}), "invalid .waypoints file");
-  MissionFile file{.items = reading.items,
-                   .dialect = reading.home ? Dialect::ardupilot : Dialect::px4};
-  if (reading.home && has_coordinates(*reading.home)) {
-    const std::array<double, 7>& place = reading.home->params;
-    file.home = GeodeticPoint{place[4], place[5], place[6]};
+MavlinkMission read_waypoints(const std::string& text) {
+  WaypointsParser parser(text, false);
+  throw_first(find_problems(parser, {}), "invalid .waypoints file");
+  MavlinkMission file{.items = parser.items,
+                      .autopilot = parser.home ? AutopilotType::ardupilot : AutopilotType::px4};
+  if (parser.home && has_coordinates(*parser.home)) {
+    const std::array<double, 7>& home_values = parser.home->params;
+    file.home = GeodeticPoint{home_values[4], home_values[5], home_values[6]};
     file.home_name = "item 0";
   }
   return file;

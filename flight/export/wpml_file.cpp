@@ -21,7 +21,7 @@ class WpmlChecker {
       : file_(file), is_template_(file == "template.kml"), is_strict_(is_strict) {
     const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
     if (!parsed) {
-      complain(std::string("is not well-formed XML: ") + parsed.description());
+      add_problem(std::string("is not well-formed XML: ") + parsed.description());
       return;
     }
     check();
@@ -33,29 +33,29 @@ class WpmlChecker {
   std::string version;                    ///< Version of the namespace.
 
  private:
-  void complain(const std::string& what) { problems.push_back(file_ + " " + what); }
+  void add_problem(const std::string& what) { problems.push_back(file_ + " " + what); }
 
-  static std::string text_of(pugi::xml_node node, const char* name) {
+  static std::string child_text(pugi::xml_node node, const char* name) {
     return std::string(
         geometry::trimmed(node.child((std::string("wpml:") + name).c_str()).text().get()));
   }
 
   void require_one_of(pugi::xml_node node, const char* name, const std::set<std::string>& values) {
-    const std::string value = text_of(node, name);
-    if (value.empty()) return complain("has no wpml:" + std::string(name));
+    const std::string value = child_text(node, name);
+    if (value.empty()) return add_problem("has no wpml:" + std::string(name));
     if (!values.contains(value)) {
-      complain("has wpml:" + std::string(name) + " \"" + value +
-               "\", which is not one of its values");
+      add_problem("has wpml:" + std::string(name) + " \"" + value +
+                  "\", which is not one of its values");
     }
   }
 
   double require_number(pugi::xml_node node, const char* name, double low, double high) {
-    const std::string text = text_of(node, name);
+    const std::string text = child_text(node, name);
     const std::optional<double> value = to_number(text);
     if (!value || *value < low || *value > high) {
-      complain((text.empty() ? "has no wpml:" + std::string(name)
-                             : "has wpml:" + std::string(name) + " " + text) +
-               "; it must be a number in [" + fixed(low, 1) + ", " + fixed(high, 1) + "]");
+      add_problem((text.empty() ? "has no wpml:" + std::string(name)
+                                : "has wpml:" + std::string(name) + " " + text) +
+                  "; it must be a number in [" + fixed(low, 1) + ", " + fixed(high, 1) + "]");
       return 0.0;
     }
     return *value;
@@ -65,16 +65,16 @@ class WpmlChecker {
     const pugi::xml_node kml = document_.child("kml");
     const std::string space = kml.attribute("xmlns:wpml").value();
     if (std::string(kml.attribute("xmlns").value()) != kml_namespace) {
-      complain("must be in the namespace " + std::string(kml_namespace));
+      add_problem("must be in the namespace " + std::string(kml_namespace));
     }
     if (!space.starts_with(wpml::wpml_namespace)) {
-      complain("must declare xmlns:wpml as " + std::string(wpml::wpml_namespace) + "VERSION");
+      add_problem("must declare xmlns:wpml as " + std::string(wpml::wpml_namespace) + "VERSION");
     }
     version = space;
     const pugi::xml_node root = kml.child("Document"), folder = root.child("Folder");
-    if (!root.child("wpml:missionConfig")) return complain("has no wpml:missionConfig");
+    if (!root.child("wpml:missionConfig")) return add_problem("has no wpml:missionConfig");
     check_config(root.child("wpml:missionConfig"));
-    if (!folder) return complain("has no Folder");
+    if (!folder) return add_problem("has no Folder");
     require_number(folder, "templateId", 0, 65535);
     require_number(folder, "autoFlightSpeed", 0.01, 15);
     if (is_template_) {
@@ -84,7 +84,7 @@ class WpmlChecker {
       require_one_of(
           system, "heightMode",
           {"EGM96", "relativeToStartPoint", "aboveGroundLevel", "realTimeFollowSurface"});
-      set_datum(text_of(system, "heightMode"));
+      set_datum(child_text(system, "heightMode"));
       require_one_of(folder, "gimbalPitchMode", {"manual", "usePointSetting"});
       require_one_of(folder, "globalWaypointTurnMode",
                      {wpml::stop_turn, "coordinateTurn", "toPointAndStopWithContinuityCurvature",
@@ -93,10 +93,10 @@ class WpmlChecker {
       require_number(folder, "waylineId", 0, 65535);
       require_one_of(folder, "executeHeightMode",
                      {"WGS84", "relativeToStartPoint", "realTimeFollowSurface"});
-      set_datum(text_of(folder, "executeHeightMode"));
+      set_datum(child_text(folder, "executeHeightMode"));
     }
     for (const pugi::xml_node mark : folder.children("Placemark")) check_waypoint(mark);
-    if (route.points.size() < 2) complain("has fewer than two waypoints");
+    if (route.points.size() < 2) add_problem("has fewer than two waypoints");
   }
 
   void set_datum(const std::string& mode) {
@@ -109,12 +109,12 @@ class WpmlChecker {
     require_one_of(config, "flyToWaylineMode", {"safely", "pointToPoint"});
     require_one_of(config, "finishAction", {"goHome", "noAction", "autoLand", "gotoFirstWaypoint"});
     require_one_of(config, "exitOnRCLost", {"goContinue", "executeLostAction"});
-    if (text_of(config, "exitOnRCLost") == "executeLostAction") {
+    if (child_text(config, "exitOnRCLost") == "executeLostAction") {
       require_one_of(config, "executeRCLostAction", {"goBack", "landing", "hover"});
     }
     require_number(config, "takeOffSecurityHeight", 1.2, 1500);
     require_number(config, "globalTransitionalSpeed", 0.01, 15);
-    if (!is_template_ && (is_strict_ || !text_of(config, "globalRTHHeight").empty())) {
+    if (!is_template_ && (is_strict_ || !child_text(config, "globalRTHHeight").empty())) {
       route.return_height = require_number(config, "globalRTHHeight", 2, 1500);
     }
     require_one_of(config.child("wpml:droneInfo"), "droneEnumValue",
@@ -125,22 +125,23 @@ class WpmlChecker {
   }
 
   void check_waypoint(pugi::xml_node mark) {
-    const std::string place(
+    const std::string location(
         geometry::trimmed(mark.child("Point").child("coordinates").text().get()));
-    const std::vector<std::string> parts = split(place, ',');
+    const std::vector<std::string> parts = split(location, ',');
     const std::optional<double> longitude = to_number(geometry::trimmed(parts[0]));
     const std::optional<double> latitude =
         to_number(parts.size() == 2 ? geometry::trimmed(parts[1]) : "");
     FilePoint point;
     point.datum = datum_;
     if (!longitude || !latitude || std::abs(*longitude) > 180.0 || std::abs(*latitude) > 90.0) {
-      complain("has coordinates \"" + place + "\"; they must be longitude,latitude in degrees");
+      add_problem("has coordinates \"" + location +
+                  "\"; they must be longitude,latitude in degrees");
     } else {
       point.longitude_deg = *longitude, point.latitude_deg = *latitude;
     }
-    if (text_of(mark, "index") != std::to_string(route.points.size())) {
-      complain("has wpml:index " + text_of(mark, "index") + "; it must be " +
-               std::to_string(route.points.size()));
+    if (child_text(mark, "index") != std::to_string(route.points.size())) {
+      add_problem("has wpml:index " + child_text(mark, "index") + "; it must be " +
+                  std::to_string(route.points.size()));
     }
     if (is_template_) {
       point.height = require_number(mark, "height", -500, 10000);
@@ -153,7 +154,7 @@ class WpmlChecker {
     const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
     require_one_of(heading, "waypointHeadingMode",
                    {"followWayline", "manually", "fixed", "smoothTransition", "towardPOI"});
-    if (text_of(heading, "waypointHeadingMode") == "smoothTransition") {
+    if (child_text(heading, "waypointHeadingMode") == "smoothTransition") {
       const double angle = require_number(heading, "waypointHeadingAngle", -180, 180);
       point.yaw_deg = angle < 0.0 ? angle + 360.0 : angle;
     }
@@ -167,8 +168,8 @@ class WpmlChecker {
                    {wpml::stop_turn, "coordinateTurn", "toPointAndStopWithContinuityCurvature",
                     "toPointAndPassWithContinuityCurvature"});
     require_number(turn, "waypointTurnDampingDist", 0, 10000);
-    if (text_of(turn, "waypointTurnMode") != wpml::stop_turn) {
-      complain(
+    if (child_text(turn, "waypointTurnMode") != wpml::stop_turn) {
+      add_problem(
           "has a turn mode that leaves the straight legs, so that no clearance can be verified");
     }
   }
@@ -176,14 +177,14 @@ class WpmlChecker {
   void check_group(pugi::xml_node group, FilePoint& point) {
     const double id = require_number(group, "actionGroupId", 0, 65535);
     if (!group_ids_.insert(id).second)
-      complain("uses wpml:actionGroupId " + fixed(id, 0) + " twice");
+      add_problem("uses wpml:actionGroupId " + fixed(id, 0) + " twice");
     const double start = require_number(group, "actionGroupStartIndex", 0, 65535);
     require_number(group, "actionGroupEndIndex", start, 65535);
     require_one_of(group, "actionGroupMode", {"sequence"});
     require_one_of(group.child("wpml:actionTrigger"), "actionTriggerType",
                    {"reachPoint", "betweenAdjacentPoints", "multipleTiming", "multipleDistance"});
     for (const pugi::xml_node action : group.children("wpml:action")) {
-      const std::string function = text_of(action, "actionActuatorFunc");
+      const std::string function = child_text(action, "actionActuatorFunc");
       const pugi::xml_node param = action.child("wpml:actionActuatorFuncParam");
       if (function == "hover") {
         point.hold += require_number(param, "hoverTime", 0, 3600);
@@ -193,10 +194,10 @@ class WpmlChecker {
       } else if (function == "takePhoto") {
         require_number(param, "payloadPositionIndex", 0, 2);
         if (std::isnan(point.pitch_deg))
-          complain("has a takePhoto without a gimbalRotate before it");
-        ++point.shots;
+          add_problem("has a takePhoto without a gimbalRotate before it");
+        ++point.captures;
       } else if (function != "rotateYaw") {
-        complain("has wpml:actionActuatorFunc \"" + function + "\", which is not supported");
+        add_problem("has wpml:actionActuatorFunc \"" + function + "\", which is not supported");
       }
     }
   }
@@ -211,7 +212,7 @@ class WpmlChecker {
 }  // namespace
 
 std::string write_kmz(const FlightPlan& plan) {
-  if (plan.vehicle.dialect != Dialect::dji) {
+  if (plan.vehicle.autopilot != AutopilotType::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
                                            "\" does not fly DJI missions; use --format plan");
   }
@@ -228,19 +229,19 @@ namespace {
 
 /// Returns true if both files have the same positions and photos. Pilot 2 writes a template above
 /// the geoid with waylines above the ellipsoid; the template then contains both heights.
-bool agree(const WpmlChecker& edited, const WpmlChecker& flown) {
+bool agree(const WpmlChecker& edited, const WpmlChecker& executed) {
   constexpr double same_degrees = 1e-8, same_height = 1e-3;
-  if (edited.version != flown.version) return false;
-  if (edited.route.points.size() != flown.route.points.size()) return false;
-  for (std::size_t i = 0; i < flown.route.points.size(); ++i) {
-    const FilePoint &a = edited.route.points[i], &b = flown.route.points[i];
+  if (edited.version != executed.version) return false;
+  if (edited.route.points.size() != executed.route.points.size()) return false;
+  for (std::size_t i = 0; i < executed.route.points.size(); ++i) {
+    const FilePoint &a = edited.route.points[i], &b = executed.route.points[i];
     const bool are_both =
         a.datum == HeightDatum::mean_sea_level && b.datum == HeightDatum::ellipsoid;
     const double height = are_both ? edited.ellipsoid_heights[i] : a.height;
     if (std::abs(a.latitude_deg - b.latitude_deg) > same_degrees ||
         std::abs(a.longitude_deg - b.longitude_deg) > same_degrees ||
         std::abs(height - b.height) > same_height || (a.datum != b.datum && !are_both) ||
-        a.shots != b.shots) {
+        a.captures != b.captures) {
       return false;
     }
   }
@@ -248,17 +249,17 @@ bool agree(const WpmlChecker& edited, const WpmlChecker& flown) {
 }
 
 /// Without a template, only the waylines are checked, because the aircraft flies only them.
-Problems problems_of(const KmzContent& content, bool is_strict) {
-  const WpmlChecker flown(content.waylines_wpml, "waylines.wpml", is_strict);
+Problems find_problems(const KmzContent& content, bool is_strict) {
+  const WpmlChecker executed(content.waylines_wpml, "waylines.wpml", is_strict);
   if (content.template_kml.empty()) {
     if (is_strict) return {"wpmz/template.kml is missing"};
-    return flown.problems;
+    return executed.problems;
   }
   const WpmlChecker edited(content.template_kml, "template.kml", is_strict);
   Problems problems = edited.problems;
-  problems.insert(problems.end(), flown.problems.begin(), flown.problems.end());
+  problems.insert(problems.end(), executed.problems.begin(), executed.problems.end());
   // Pilot 2 may regenerate the waylines from the template, so both must be equivalent.
-  if (problems.empty() && !agree(edited, flown)) {
+  if (problems.empty() && !agree(edited, executed)) {
     problems.emplace_back("template.kml and waylines.wpml differ");
   }
   return problems;
@@ -268,7 +269,7 @@ Problems problems_of(const KmzContent& content, bool is_strict) {
 
 Problems validate_kmz(const std::string& bytes) {
   try {
-    return problems_of(unpack_kmz(bytes), true);
+    return find_problems(unpack_kmz(bytes), true);
   } catch (const Error& error) {
     return {error.what()};
   }
@@ -277,7 +278,7 @@ Problems validate_kmz(const std::string& bytes) {
 RouteFile read_kmz(const std::string& bytes) { return read_kmz(unpack_kmz(bytes)); }
 
 RouteFile read_kmz(const KmzContent& content) {
-  throw_first(problems_of(content, false), "invalid .kmz file");
+  throw_first(find_problems(content, false), "invalid .kmz file");
   return WpmlChecker(content.waylines_wpml, "waylines.wpml", false).route;
 }
 

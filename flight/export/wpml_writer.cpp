@@ -31,7 +31,8 @@ class WpmlWriter {
         is_template_(is_template),
         frame_(plan.site.origin),
         pad_(frame_.to_geodetic(plan.pad)) {
-    for (const Waypoint& waypoint : plan.waypoints) highest_ = std::max(highest_, height(waypoint));
+    for (const Waypoint& waypoint : plan.waypoints)
+      max_height_ = std::max(max_height_, height(waypoint));
   }
 
   std::string write() {
@@ -69,7 +70,7 @@ class WpmlWriter {
     const double first = height(plan_.waypoints.front());
     add(config, "takeOffSecurityHeight", fixed(std::clamp(first, 1.2, 1500.0), 2));
     add(config, "globalTransitionalSpeed", speed());
-    add(config, "globalRTHHeight", return_altitude_text(plan_.certified_returns().height));
+    add(config, "globalRTHHeight", return_altitude_text(plan_.verified_returns().height));
     if (is_template_) {
       add(config, "takeOffRefPoint",
           degrees(pad_.latitude_deg) + "," + degrees(pad_.longitude_deg) + "," +
@@ -93,7 +94,7 @@ class WpmlWriter {
     add(system, "heightMode", "relativeToStartPoint");
     add(system, "positioningType", "GPS");
     add(folder, "autoFlightSpeed", speed());
-    add(folder, "globalHeight", fixed(highest_, 2));
+    add(folder, "globalHeight", fixed(max_height_, 2));
     add(folder, "caliFlightEnable", "0");
     add(folder, "gimbalPitchMode", "manual");
     pugi::xml_node heading = add(folder, "globalWaypointHeadingParam");
@@ -119,12 +120,12 @@ class WpmlWriter {
 
   void add_waypoint(pugi::xml_node folder, std::size_t index) {
     const Waypoint& waypoint = plan_.waypoints[index];
-    const GeodeticPoint place = frame_.to_geodetic(waypoint.position);
+    const GeodeticPoint geodetic = frame_.to_geodetic(waypoint.position);
     pugi::xml_node mark = folder.append_child("Placemark");
     mark.append_child("Point")
         .append_child("coordinates")
         .text()
-        .set((degrees(place.longitude_deg) + "," + degrees(place.latitude_deg)).c_str());
+        .set((degrees(geodetic.longitude_deg) + "," + degrees(geodetic.latitude_deg)).c_str());
     add(mark, "index", std::to_string(index));
     if (is_template_) {
       add(mark, "useGlobalHeight", "0");
@@ -149,10 +150,10 @@ class WpmlWriter {
 
   /// At a corner, uses the heading of the next waypoint with captures.
   void add_heading(pugi::xml_node mark, std::size_t index) {
-    auto station = std::find_if(plan_.waypoints.begin() + static_cast<std::ptrdiff_t>(index),
-                                plan_.waypoints.end(),
-                                [](const Waypoint& waypoint) { return waypoint.is_station; });
-    const double yaw = station == plan_.waypoints.end() ? 0.0 : station->yaw;
+    auto capture_point = std::find_if(
+        plan_.waypoints.begin() + static_cast<std::ptrdiff_t>(index), plan_.waypoints.end(),
+        [](const Waypoint& waypoint) { return waypoint.is_capture_point; });
+    const double yaw = capture_point == plan_.waypoints.end() ? 0.0 : capture_point->yaw;
     pugi::xml_node heading = add(mark, "waypointHeadingParam");
     add(heading, "waypointHeadingMode", "smoothTransition");
     add(heading, "waypointHeadingAngle",
@@ -176,9 +177,9 @@ class WpmlWriter {
       add(node, "actionActuatorFunc", function);
       return add(node, "actionActuatorFuncParam");
     };
-    if (waypoint.is_station) add_gimbal(action("gimbalRotate"), waypoint);
+    if (waypoint.is_capture_point) add_gimbal(action("gimbalRotate"), waypoint);
     add(action("hover"), "hoverTime", fixed(waypoint.hold, 2));
-    for (int shot = 0; shot < waypoint.shots; ++shot) {
+    for (int capture = 0; capture < waypoint.captures; ++capture) {
       pugi::xml_node photo = action("takePhoto");
       add(photo, "payloadPositionIndex", "0");
       add(photo, "fileSuffix", "view_" + std::to_string(waypoint.view_index));
@@ -205,7 +206,7 @@ class WpmlWriter {
   bool is_template_;
   LocalFrame frame_;
   GeodeticPoint pad_;
-  double highest_ = 0.0;
+  double max_height_ = 0.0;
 };
 
 }  // namespace

@@ -13,12 +13,13 @@
 
 namespace skycap::flight {
 
-/// Returns a lower bound on the makespan [s], if no part of a flight is faster than in `least`.
-/// Energy is ignored. The bound is at most `makespan`, which a known solution attains. Times are
-/// rounded down to multiples of 1/4000 of it, or of a larger fraction with many waypoints.
+/// Returns a lower bound on the makespan [s], if no part of a flight is faster than in
+/// `lower_bound`. Energy is ignored. The bound is at most `makespan`, which a known solution
+/// attains. Times are rounded down to multiples of 1/4000 of it, or of a larger fraction with many
+/// waypoints.
 ///
 /// Deterministic. The ascent takes at most about 4e9 steps, in fewer iterations with many
 /// waypoints. Returns 0 if there are too many waypoints for one iteration.
-double collection_bound(const FleetProblem& least, double makespan);
+double collection_bound(const FleetProblem& lower_bound, double makespan);
 
 }  // namespace skycap::flight

@@ -10,14 +10,14 @@ namespace {
 
 using Order = std::vector<std::uint32_t>;
 
-constexpr std::uint64_t seed = 1, stream_of_annealing = 6ULL << 32;
-constexpr std::size_t moves_per_station = 30'000, least_moves = 20'000;
-constexpr double most_tried = 3e8;  ///< Total number of waypoints in all trial orders.
+constexpr std::uint64_t seed = 1, annealing_stream = 6ULL << 32;
+constexpr std::size_t moves_per_capture_point = 30'000, min_moves = 20'000;
+constexpr double max_tried = 3e8;  ///< Total number of waypoints in all trial orders.
 constexpr std::size_t longest_moved_chain = 4;
 constexpr double first_temperature = 0.1, last_temperature = 0.0003;  ///< Relative to the goal.
 constexpr double hopeless = -40.0;  ///< Exponent below which acceptance is practically impossible.
 /// Weight of the other objective: a shorter flight of one vehicle gives freedom to the others.
-constexpr double share_of_other = 0.02;
+constexpr double secondary_weight = 0.02;
 
 std::ptrdiff_t signed_index(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
 
@@ -28,7 +28,7 @@ class Times {
       : pad_(static_cast<std::uint32_t>(vehicle.count())),
         times_((vehicle.count() + 1) * (vehicle.count() + 1), 0.0) {
     for (std::uint32_t j = 0; j < pad_; ++j) {
-      const double rest = vehicle.station[j].time;
+      const double rest = vehicle.capture_point[j].time;
       at(pad_, j) = vehicle.out[j].time + rest;
       at(j, pad_) = vehicle.back[j].time;
       for (std::uint32_t i = 0; i < pad_; ++i) at(i, j) = vehicle.leg(i, j).time + rest;
@@ -61,17 +61,18 @@ class Annealing {
         goal_(goal),
         parts_(std::move(split.parts)),
         best_(parts_),
-        random_(seed, stream_of_annealing + chain) {
+        random_(seed, annealing_stream + chain) {
     for (const FleetVehicle& vehicle : problem.vehicles) in_one_.emplace_back(vehicle);
     for (const FleetPart& part : parts_) times_.push_back(part.time);
-    cost_ = best_cost_ = cost_of(times_);
+    cost_ = best_cost_ = compute_cost(times_);
   }
 
   FleetSplit run() {
-    const double stations = static_cast<double>(std::max<std::size_t>(1, problem_.count()));
-    const double wanted = std::max<double>(least_moves, moves_per_station * stations);
-    const double most = most_tried * static_cast<double>(parts_.size()) / stations;
-    const auto moves = static_cast<std::size_t>(std::min(wanted, most));
+    const double capture_points = static_cast<double>(std::max<std::size_t>(1, problem_.count()));
+    const double required_moves =
+        std::max<double>(min_moves, moves_per_capture_point * capture_points);
+    const double max = max_tried * static_cast<double>(parts_.size()) / capture_points;
+    const auto moves = static_cast<std::size_t>(std::min(required_moves, max));
     temperature_ = cost_ * first_temperature;
     const double cooling =
         std::pow(last_temperature / first_temperature, 1.0 / static_cast<double>(moves));
@@ -79,18 +80,18 @@ class Annealing {
     FleetSplit split{.parts = std::move(best_)};
     for (const FleetPart& part : split.parts) {
       split.makespan = std::max(split.makespan, part.time);
-      split.flown += part.time;
+      split.total_flight_time += part.time;
     }
     return split;
   }
 
  private:
-  double cost_of(const std::vector<double>& times) const {
-    double makespan = 0.0, flown = 0.0;
-    for (const double time : times) makespan = std::max(makespan, time), flown += time;
-    const double mean = flown / static_cast<double>(times.size());
-    return goal_ == FleetGoal::makespan ? makespan + share_of_other * mean
-                                        : flown + share_of_other * makespan;
+  double compute_cost(const std::vector<double>& times) const {
+    double makespan = 0.0, total_flight_time = 0.0;
+    for (const double time : times) makespan = std::max(makespan, time), total_flight_time += time;
+    const double mean = total_flight_time / static_cast<double>(times.size());
+    return goal_ == FleetGoal::makespan ? makespan + secondary_weight * mean
+                                        : total_flight_time + secondary_weight * makespan;
   }
 
   std::size_t draw(std::size_t count) {
@@ -105,14 +106,14 @@ class Annealing {
     } else if (kind < 0.7 || v == w) {
       move_chain(v, w);
     } else if (kind < 0.85) {
-      swap_stations(v, w);
+      swap_capture_points(v, w);
     } else {
       swap_tails(v, w);
     }
   }
 
   void reverse_in(std::size_t v) {
-    one_ = parts_[v].stations;
+    one_ = parts_[v].capture_points;
     if (one_.size() < 2) return;
     std::size_t first = draw(one_.size()), last = draw(one_.size());
     if (first > last) std::swap(first, last);
@@ -121,7 +122,7 @@ class Annealing {
   }
 
   void move_chain(std::size_t v, std::size_t w) {
-    one_ = parts_[v].stations;
+    one_ = parts_[v].capture_points;
     if (one_.empty()) return;
     const std::size_t first = draw(one_.size());
     const std::size_t size = 1 + draw(std::min(longest_moved_chain, one_.size() - first));
@@ -129,15 +130,15 @@ class Annealing {
     chain_.assign(begin, begin + signed_index(size));
     one_.erase(begin, begin + signed_index(size));
     if (random_.uniform() < 0.5) std::ranges::reverse(chain_);
-    if (v != w) other_ = parts_[w].stations;
+    if (v != w) other_ = parts_[w].capture_points;
     Order& target = v == w ? one_ : other_;
-    const std::size_t place = draw(target.size() + 1);
-    target.insert(target.begin() + signed_index(place), chain_.begin(), chain_.end());
+    const std::size_t index = draw(target.size() + 1);
+    target.insert(target.begin() + signed_index(index), chain_.begin(), chain_.end());
     decide(v, w);
   }
 
-  void swap_stations(std::size_t v, std::size_t w) {
-    one_ = parts_[v].stations, other_ = parts_[w].stations;
+  void swap_capture_points(std::size_t v, std::size_t w) {
+    one_ = parts_[v].capture_points, other_ = parts_[w].capture_points;
     if (one_.empty() || other_.empty()) return;
     const std::size_t i = draw(one_.size()), j = draw(other_.size());
     std::swap(one_[i], other_[j]);
@@ -145,7 +146,7 @@ class Annealing {
   }
 
   void swap_tails(std::size_t v, std::size_t w) {
-    const Order &first = parts_[v].stations, &second = parts_[w].stations;
+    const Order &first = parts_[v].capture_points, &second = parts_[w].capture_points;
     const auto i = signed_index(draw(first.size() + 1)), j = signed_index(draw(second.size() + 1));
     one_.assign(first.begin(), first.begin() + i);
     one_.insert(one_.end(), second.begin() + j, second.end());
@@ -158,7 +159,7 @@ class Annealing {
   void decide(std::size_t v, std::size_t w) {
     const double chance = random_.uniform();
     const auto is_good = [&] {
-      const double cost = cost_of(tried_);
+      const double cost = compute_cost(tried_);
       if (cost <= cost_) return true;
       const double exponent = (cost_ - cost) / temperature_;
       return exponent > hopeless && chance < std::exp(exponent);
@@ -171,10 +172,10 @@ class Annealing {
     tried_[v] = part_time(problem_.vehicles[v], one_);
     if (v != w) tried_[w] = part_time(problem_.vehicles[w], other_);
     if (tried_[v] == never || tried_[w] == never || !is_good()) return;
-    parts_[v].stations.swap(one_), parts_[v].time = tried_[v];
-    if (v != w) parts_[w].stations.swap(other_), parts_[w].time = tried_[w];
+    parts_[v].capture_points.swap(one_), parts_[v].time = tried_[v];
+    if (v != w) parts_[w].capture_points.swap(other_), parts_[w].time = tried_[w];
     times_.swap(tried_);
-    cost_ = cost_of(times_);
+    cost_ = compute_cost(times_);
     if (cost_ < best_cost_) best_cost_ = cost_, best_ = parts_;
   }
 

@@ -14,7 +14,7 @@
 namespace skycap::flight {
 
 /// Clearance deficits of straight lines: 0 for verified lines. Empty lists: no deficits.
-struct Shortfalls {
+struct ClearanceDeficits {
   std::vector<double> home;  ///< From above the pad to each waypoint [m].
   std::vector<double> legs;  ///< From waypoint i to waypoint j at [i * count + j] [m].
 };
@@ -30,17 +30,19 @@ struct FleetMember {
 };
 
 /// Returns the deficits of the lines between waypoints [m].
-std::vector<double> leg_shortfalls(std::span<const Station> stations, const FreeSpace& space,
-                                   double clearance);
+std::vector<double> leg_clearance_deficits(std::span<const CapturePoint> capture_points,
+                                           const FreeSpace& space, double clearance);
 /// Returns the deficits of the lines from above a pad [m].
-std::vector<double> home_shortfalls(std::span<const Station> stations, const Eigen::Vector3d& home,
-                                    const FreeSpace& space, double clearance);
+std::vector<double> return_clearance_deficits(std::span<const CapturePoint> capture_points,
+                                              const Eigen::Vector3d& home, const FreeSpace& space,
+                                              double clearance);
 
 /// Returns lower bounds on the times of verified legs, for any corners and detours. Energies are
 /// not bounded. Projected onto any direction, a rest-to-rest motion is a rest-to-rest motion with
 /// the vehicle's maximum speed and acceleration in that direction. Where the straight line is not
 /// free, the leg has one stop outside a ball around its worst position, or two stops.
-FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& member,
-                         const Shortfalls& shortfalls = {});
+FleetVehicle lower_bound_costs(std::span<const CapturePoint> capture_points,
+                               const FleetMember& member,
+                               const ClearanceDeficits& clearance_deficits = {});
 
 }  // namespace skycap::flight

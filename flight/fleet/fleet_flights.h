@@ -12,17 +12,18 @@ namespace skycap::flight {
 
 /// Sortie from its file, with its timetable entry.
 struct FleetFlight {
-  FlownMission mission;
+  SimulatedMission mission;
   std::size_t vehicle = 0;
   double start = 0.0;  ///< Start time [s].
 };
 
 struct FleetFlightTest {
-  std::size_t flown = 0;   ///< Number of simulations. Fewer than requested after a stop.
-  std::size_t nearer = 0;  ///< Number of simulations with a distance below `limit`.
-  double limit = 0.0;      ///< Minimum permitted distance [m].
-  double least = 0.0;  ///< Minimum distance of two vehicles in the air, over all simulations [m].
-  double least_median = 0.0;  ///< Median of the minimum distances of the simulations [m].
+  std::size_t simulated = 0;  ///< Number of simulations. Fewer than requested after a stop.
+  std::size_t nearer = 0;     ///< Number of simulations with a distance below `limit`.
+  double limit = 0.0;         ///< Minimum permitted distance [m].
+  double min_separation =
+      0.0;  ///< Minimum distance of two vehicles in the air, over all simulations [m].
+  double median_min_separation = 0.0;  ///< Median of the minimum distances of the simulations [m].
 };
 
 /// Simulates all sorties options.flights times. The minimum distance is that of the rule, which

@@ -4,8 +4,8 @@
 namespace skycap::flight {
 
 enum class FleetGoal {
-  makespan,  ///< Time until the last landing.
-  flown,     ///< Total time of all vehicles in the air.
+  makespan,           ///< Time until the last landing.
+  total_flight_time,  ///< Total time of all vehicles in the air.
 };
 
 }  // namespace skycap::flight

@@ -13,12 +13,12 @@ using PartCost = SplitProblem::Cost;
 
 /// Costs of the flights of one vehicle from its own pad, per waypoint.
 struct FleetVehicle {
-  std::vector<PartCost> out;      ///< Pad to waypoint, including take-off.
-  std::vector<PartCost> station;  ///< Stop at the waypoint.
-  std::vector<PartCost> back;     ///< Waypoint to pad, including landing.
-  std::vector<PartCost> legs;     ///< Leg from waypoint i to waypoint j at [i * count + j].
+  std::vector<PartCost> out;            ///< Pad to waypoint, including take-off.
+  std::vector<PartCost> capture_point;  ///< Stop at the waypoint.
+  std::vector<PartCost> back;           ///< Waypoint to pad, including landing.
+  std::vector<PartCost> legs;           ///< Leg from waypoint i to waypoint j at [i * count + j].
   double energy_per_sortie = 0.0;
-  std::size_t stations_per_sortie = 0;
+  std::size_t capture_points_per_sortie = 0;
 
   std::size_t count() const { return out.size(); }
   const PartCost& leg(std::uint32_t i, std::uint32_t j) const { return legs[i * count() + j]; }

@@ -18,20 +18,20 @@ namespace skycap::flight {
 
 /// Part of one vehicle, in one or more sorties.
 struct FleetPart {
-  std::vector<std::uint32_t> stations;  ///< In flight order.
-  double time = 0.0;                    ///< Total time of its sorties [s].
+  std::vector<std::uint32_t> capture_points;  ///< In flight order.
+  double time = 0.0;                          ///< Total time of its sorties [s].
 };
 
 struct FleetSplit {
   /// One part per vehicle. Empty if no vehicle can serve one of the waypoints.
   std::vector<FleetPart> parts;
-  double makespan = 0.0;  ///< Maximum time of all vehicles [s].
-  double flown = 0.0;     ///< Total time of all vehicles [s].
+  double makespan = 0.0;           ///< Maximum time of all vehicles [s].
+  double total_flight_time = 0.0;  ///< Total time of all vehicles [s].
 };
 
 /// Returns the time of a vehicle for waypoints in the given order [s]: one sortie if the battery
 /// suffices, otherwise the fastest split. Infinite if the vehicle cannot serve them.
-double part_time(const FleetVehicle& vehicle, std::span<const std::uint32_t> stations);
+double part_time(const FleetVehicle& vehicle, std::span<const std::uint32_t> capture_points);
 
 /// Returns the best split of the order into one run of waypoints per vehicle, in the order of
 /// vehicles. It minimises the goal and, among equal splits, the other objective. Needs O(count^2)

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr double rounding = 1e-6;
 /// Minimum span to subdivide [s]. A vehicle at 20 m/s moves 0.2 mm in it.
 constexpr double shortest_span = 1e-5;
-constexpr double precision = 1e-3;  ///< Precision of proven_distance() [m].
+constexpr double precision = 1e-3;  ///< Precision of verified_distance() [m].
 
 struct Span {
   double begin = 0.0, end = 0.0;
@@ -27,7 +27,7 @@ struct Span {
 };
 
 /// Motion along a leg, or the wait at its end.
-struct Piece {
+struct TimedSegment {
   const ScriptedLeg* leg;
   Span span;         ///< In timetable time.
   double leg_begin;  ///< Start of the leg [s].
@@ -39,33 +39,34 @@ struct Piece {
   Segment between(const Span& part) const { return {at(part.begin), at(part.end)}; }
 };
 
-std::vector<Piece> pieces_of(const TimedFlight& flight) {
-  std::vector<Piece> pieces;
+std::vector<TimedSegment> timed_segments(const TimedFlight& flight) {
+  std::vector<TimedSegment> segments;
   double now = flight.start;
   for (const ScriptedLeg& leg : flight.script) {
     const double rest = now + leg.moving, end = now + leg.duration();
-    if (leg.moving > 0.0) pieces.push_back({&leg, {now, rest}, now, flight.jerk});
-    pieces.push_back({&leg, {rest, end}, now, flight.jerk});
+    if (leg.moving > 0.0) segments.push_back({&leg, {now, rest}, now, flight.jerk});
+    segments.push_back({&leg, {rest, end}, now, flight.jerk});
     now = end;
   }
-  return pieces;
+  return segments;
 }
 
 /// Search for the closest encounter of two flights.
 class Search {
  public:
   /// The flights' own times differ by at most `lag` [s]. Encounters at `up_to` [m] or more are
-  /// ignored. With `takes_any`, the first closer encounter ends the search.
-  Search(double lag, double up_to, bool takes_any) : lag_(lag), takes_any_(takes_any) {
+  /// ignored. With `stops_at_first`, the first closer encounter ends the search.
+  Search(double lag, double up_to, bool stops_at_first)
+      : lag_(lag), stops_at_first_(stops_at_first) {
     nearest_.distance = up_to;
     bound_ = up_to;
   }
 
   void run(const TimedFlight& first, const TimedFlight& second) {
-    const std::vector<Piece> others = pieces_of(second);
-    for (const Piece& piece : pieces_of(first)) {
-      for (const Piece& other : others) {
-        look(piece, piece.span, other, other.span);
+    const std::vector<TimedSegment> others = timed_segments(second);
+    for (const TimedSegment& segment : timed_segments(first)) {
+      for (const TimedSegment& other : others) {
+        search(segment, segment.span, other, other.span);
         if (is_done()) return;
       }
     }
@@ -76,9 +77,9 @@ class Search {
   double bound() const { return bound_; }
 
  private:
-  bool is_done() const { return takes_any_ && has_found_; }
+  bool is_done() const { return stops_at_first_ && has_found_; }
 
-  void look(const Piece& one, Span span, const Piece& other, Span window) {
+  void search(const TimedSegment& one, Span span, const TimedSegment& other, Span window) {
     if (is_done()) return;
     // Restricts both spans to times that can coincide.
     window = {std::max(window.begin, span.begin - lag_), std::min(window.end, span.end + lag_)};
@@ -86,8 +87,8 @@ class Search {
     span = {std::max(span.begin, window.begin - lag_), std::min(span.end, window.end + lag_)};
     const double bound =
         std::sqrt(flight::nearest(one.between(span), other.between(window)).squared_distance);
-    const double wanted = takes_any_ ? nearest_.distance : nearest_.distance - precision;
-    if (bound - rounding >= wanted) {
+    const double required = stops_at_first_ ? nearest_.distance : nearest_.distance - precision;
+    if (bound - rounding >= required) {
       bound_ = std::min(bound_, bound - rounding);
       return;
     }
@@ -96,33 +97,33 @@ class Search {
     if (std::max(span.length(), window.length()) <= shortest_span) {
       settle(one, span, other, window, bound);
     } else if (span.length() >= window.length()) {
-      look(one, {span.begin, span.middle()}, other, window);
-      look(one, {span.middle(), span.end}, other, window);
+      search(one, {span.begin, span.middle()}, other, window);
+      search(one, {span.middle(), span.end}, other, window);
     } else {
-      look(one, span, other, {window.begin, window.middle()});
-      look(one, span, other, {window.middle(), window.end});
+      search(one, span, other, {window.begin, window.middle()});
+      search(one, span, other, {window.middle(), window.end});
     }
   }
 
   /// Evaluates a possible encounter: one vehicle at a fixed time, the other within the lag of it.
-  void meet(const Piece& one, double time, const Piece& other, const Span& window) {
+  void meet(const TimedSegment& one, double time, const TimedSegment& other, const Span& window) {
     const Span together{std::max(window.begin, time - lag_), std::min(window.end, time + lag_)};
     if (together.end < together.begin) return;
-    const Vector3d place = one.at(time);
-    take(time, flight::nearest(other.between(together), place));
+    const Vector3d position = one.at(time);
+    record_encounter(time, flight::nearest(other.between(together), position));
   }
 
   /// Counts a span that is too short for a decision as an encounter.
-  void settle(const Piece& one, const Span& span, const Piece& other, const Span& window,
-              double bound) {
+  void settle(const TimedSegment& one, const Span& span, const TimedSegment& other,
+              const Span& window, double bound) {
     bound_ = std::min(bound_, bound - rounding);
-    if (!takes_any_) return;
+    if (!stops_at_first_) return;
     const NearestPoints points = flight::nearest(other.between(window), one.between(span));
     nearest_ = {bound, span.middle(), points.on_other, points.on_segment};
     has_found_ = true;
   }
 
-  void take(double time, const NearestPoints& points) {
+  void record_encounter(double time, const NearestPoints& points) {
     const double distance = std::sqrt(points.squared_distance);
     if (distance >= nearest_.distance) return;
     nearest_ = {distance, time, points.on_other, points.on_segment};
@@ -130,7 +131,7 @@ class Search {
   }
 
   double lag_;
-  bool takes_any_, has_found_ = false;
+  bool stops_at_first_, has_found_ = false;
   Encounter nearest_;
   double bound_ = 0.0;
 };
@@ -144,19 +145,19 @@ std::optional<Encounter> too_near(const TimedFlight& first, const TimedFlight& s
   return search.has_found() ? std::optional(search.nearest()) : std::nullopt;
 }
 
-double proven_distance(const TimedFlight& first, const TimedFlight& second, double tolerance,
-                       double up_to) {
+double verified_distance(const TimedFlight& first, const TimedFlight& second, double tolerance,
+                         double up_to) {
   Search search(2.0 * tolerance, up_to, false);
   search.run(first, second);
   return std::max(0.0, search.bound());
 }
 
-double distance_from(const FlightScript& script, const Vector3d& place) {
-  double least = std::numeric_limits<double>::infinity();
+double distance_from(const FlightScript& script, const Vector3d& position) {
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const ScriptedLeg& leg : script) {
-    least = std::min(least, nearest({leg.from, leg.to}, place).squared_distance);
+    min_distance = std::min(min_distance, nearest({leg.from, leg.to}, position).squared_distance);
   }
-  return std::sqrt(least);
+  return std::sqrt(min_distance);
 }
 
 }  // namespace skycap::flight

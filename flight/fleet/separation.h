@@ -46,10 +46,10 @@ std::optional<Encounter> too_near(const TimedFlight& first, const TimedFlight& s
 
 /// Returns a verified lower bound for all encounters within the tolerance [m]. It is at most
 /// `up_to` and less than 1 mm below the minimum.
-double proven_distance(const TimedFlight& first, const TimedFlight& second, double tolerance,
-                       double up_to);
+double verified_distance(const TimedFlight& first, const TimedFlight& second, double tolerance,
+                         double up_to);
 
 /// Returns the minimum distance between a flight and a position on the ground [m].
-double distance_from(const FlightScript& script, const Eigen::Vector3d& place);
+double distance_from(const FlightScript& script, const Eigen::Vector3d& position);
 
 }  // namespace skycap::flight

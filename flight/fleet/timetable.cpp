@@ -12,22 +12,22 @@ namespace {
 
 constexpr double later_by = 1.0;  ///< Increment of a start time [s].
 /// Number of vehicles up to which all sequences are tried: 120 for five.
-constexpr std::size_t most_in_every_order = 5;
+constexpr std::size_t max_permuted = 5;
 
 /// Assigns start times for one sequence of vehicles after another.
 class Scheduler {
  public:
   Scheduler(const std::vector<FleetSortie>& sorties, std::size_t vehicles,
             const SeparationRule& rule)
-      : sorties_(sorties), rule_(rule), of_(vehicles) {
+      : sorties_(sorties), rule_(rule), variants_(vehicles) {
     for (std::size_t i = 0; i < sorties.size(); ++i) {
-      std::vector<Variant>& variants = of_[sorties[i].vehicle];
+      std::vector<Variant>& variants = variants_[sorties[i].vehicle];
       variants.resize(std::max(variants.size(), sorties[i].variant + 1));
       variants[sorties[i].variant].sorties.push_back(i);
       variants[sorties[i].variant].work += duration(sorties[i].script);
       durations_.push_back(std::ceil(duration(sorties[i].script)));
     }
-    for (std::vector<Variant>& variants : of_) {
+    for (std::vector<Variant>& variants : variants_) {
       for (Variant& variant : variants) {
         std::ranges::stable_sort(variant.sorties, {},
                                  [&](std::size_t i) { return sorties_[i].number; });
@@ -36,15 +36,15 @@ class Scheduler {
   }
 
   Timetable best() {
-    std::vector<std::size_t> turns(of_.size());
+    std::vector<std::size_t> turns(variants_.size());
     std::iota(turns.begin(), turns.end(), std::size_t{0});
-    std::ranges::stable_sort(turns, std::greater(), [&](std::size_t v) { return least_work(v); });
+    std::ranges::stable_sort(turns, std::greater(), [&](std::size_t v) { return min_work(v); });
     Timetable best = by_turns(turns, std::numeric_limits<double>::infinity()).value();
-    if (turns.size() > most_in_every_order) return with_delay(best);
-    std::vector<std::size_t> rank = turns, places(turns.size());
-    std::iota(places.begin(), places.end(), std::size_t{0});
-    while (std::next_permutation(places.begin(), places.end())) {
-      for (std::size_t i = 0; i < places.size(); ++i) rank[i] = turns[places[i]];
+    if (turns.size() > max_permuted) return with_delay(best);
+    std::vector<std::size_t> rank = turns, ranks(turns.size());
+    std::iota(ranks.begin(), ranks.end(), std::size_t{0});
+    while (std::next_permutation(ranks.begin(), ranks.end())) {
+      for (std::size_t i = 0; i < ranks.size(); ++i) rank[i] = turns[ranks[i]];
       if (auto other = by_turns(rank, best.makespan)) best = *std::move(other);
     }
     return with_delay(best);
@@ -57,26 +57,26 @@ class Scheduler {
     double work = 0.0;  ///< Total duration [s].
   };
 
-  double least_work(std::size_t vehicle) const {
-    double least = of_[vehicle].empty() ? 0.0 : std::numeric_limits<double>::infinity();
-    for (const Variant& variant : of_[vehicle]) least = std::min(least, variant.work);
-    return least;
+  double min_work(std::size_t vehicle) const {
+    double min = variants_[vehicle].empty() ? 0.0 : std::numeric_limits<double>::infinity();
+    for (const Variant& variant : variants_[vehicle]) min = std::min(min, variant.work);
+    return min;
   }
 
   /// Schedules one sortie per vehicle in turn until all are scheduled. Returns std::nullopt unless
   /// the makespan is below `below`.
   std::optional<Timetable> by_turns(const std::vector<std::size_t>& turns, double below) {
     Timetable table{.starts = std::vector<double>(sorties_.size(), 0.0),
-                    .variants = std::vector<std::size_t>(of_.size(), 0)};
+                    .variants = std::vector<std::size_t>(variants_.size(), 0)};
     std::vector<std::size_t> placed;
-    std::vector<double> ready(of_.size(), 0.0);
+    std::vector<double> ready(variants_.size(), 0.0);
     bool is_done = false;
     for (std::size_t number = 0; !is_done; ++number) {
       is_done = true;
       for (const std::size_t v : turns) {
-        if (of_[v].empty()) continue;
+        if (variants_[v].empty()) continue;
         if (number == 0) table.variants[v] = soonest(v, placed, table.starts);
-        const std::vector<std::size_t>& own = of_[v][table.variants[v]].sorties;
+        const std::vector<std::size_t>& own = variants_[v][table.variants[v]].sorties;
         if (number >= own.size()) continue;
         is_done = false;
         const std::size_t i = own[number];
@@ -95,11 +95,11 @@ class Scheduler {
   std::size_t soonest(std::size_t vehicle, const std::vector<std::size_t>& placed,
                       const std::vector<double>& starts) {
     std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < of_[vehicle].size(); ++k) {
-      const Variant& variant = of_[vehicle][k];
+    double min = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < variants_[vehicle].size(); ++k) {
+      const Variant& variant = variants_[vehicle][k];
       const double start = first_start(variant.sorties.front(), 0.0, placed, starts);
-      if (start + variant.work < least) least = start + variant.work, best = k;
+      if (start + variant.work < min) min = start + variant.work, best = k;
     }
     return best;
   }
@@ -129,21 +129,21 @@ class Scheduler {
     const auto flight = [&](std::size_t k, double at) {
       return TimedFlight{sorties_[k].script, sorties_[k].jerk, at};
     };
-    const bool is_proven = !too_near(flight(i, start - other), flight(j, 0.0), rule_);
-    return known_[key] = is_proven;
+    const bool is_verified = !too_near(flight(i, start - other), flight(j, 0.0), rule_);
+    return known_[key] = is_verified;
   }
 
   Timetable with_delay(Timetable table) const {
     double longest = 0.0;
-    for (std::size_t v = 0; v < of_.size(); ++v) longest = std::max(longest, least_work(v));
+    for (std::size_t v = 0; v < variants_.size(); ++v) longest = std::max(longest, min_work(v));
     table.delay = table.makespan - longest;
     return table;
   }
 
   const std::vector<FleetSortie>& sorties_;
   SeparationRule rule_;
-  std::vector<std::vector<Variant>> of_;  ///< By vehicle.
-  std::vector<double> durations_;         ///< In whole seconds, rounded up.
+  std::vector<std::vector<Variant>> variants_;  ///< By vehicle.
+  std::vector<double> durations_;               ///< In whole seconds, rounded up.
   std::map<std::tuple<std::size_t, std::size_t, double>, bool> known_;
 };
 

@@ -21,29 +21,32 @@ double turn_between(double from_deg, double to_deg) {
 /// Converts a route's pieces and stops to a script.
 class ScriptWriter {
  public:
-  ScriptWriter(const FlownRoute& route, const Motion& motion) : route_(route), motion_(motion) {}
+  ScriptWriter(const InterpretedRoute& route, const Motion& motion)
+      : route_(route), motion_(motion) {}
 
   FlightScript write() {
-    for (std::size_t i = 0; i < route_.pieces.size(); ++i) {
-      const FlownPiece& piece = route_.pieces[i];
-      ScriptedLeg leg = leg_of(i, script_.empty() ? piece.start.to : script_.back().to);
-      leg.is_over_pad = piece.is_over_pad;
-      leg.items = {piece.from_item, piece.to_item};
-      leg.wait += piece.hold + turning(piece, leg.moving);
+    for (std::size_t i = 0; i < route_.segments.size(); ++i) {
+      const InterpretedSegment& segment = route_.segments[i];
+      ScriptedLeg leg = make_leg(i, script_.empty() ? segment.start.to : script_.back().to);
+      leg.is_over_pad = segment.is_over_pad;
+      leg.items = {segment.from_item, segment.to_item};
+      leg.wait += segment.hold + turning(segment, leg.moving);
       script_.push_back(std::move(leg));
     }
     return std::move(script_);
   }
 
  private:
-  ScriptedLeg leg_of(std::size_t i, const Vector3d& from) {
-    const FlownPiece& piece = route_.pieces[i];
+  ScriptedLeg make_leg(std::size_t i, const Vector3d& from) {
+    const InterpretedSegment& segment = route_.segments[i];
     const double settling = motion_.vehicle().mode.settle_time;
-    if (is_landing(i)) return landing_leg(motion_, from, piece.to.z(), route_.pieces.back().to.z());
-    ScriptedLeg leg = scripted_leg(motion_at(piece.speed), from, piece.to);
+    if (is_landing(i))
+      return landing_leg(motion_, from, segment.to.z(), route_.segments.back().to.z());
+    ScriptedLeg leg = scripted_leg(motion_at(segment.speed), from, segment.to);
     if (leg.moving > 0.0) leg.wait = settling;
-    if (piece.is_over_pad) {
-      leg.moving = std::max(leg.moving, motion_.takeoff_time((piece.to - from).norm()) - settling);
+    if (segment.is_over_pad) {
+      leg.moving =
+          std::max(leg.moving, motion_.takeoff_time((segment.to - from).norm()) - settling);
     }
     return leg;
   }
@@ -51,26 +54,26 @@ class ScriptWriter {
   /// Returns true if a piece is vertically downwards and is the last one, or continues into the
   /// last one.
   bool is_landing(std::size_t i) const {
-    const auto is_down = [&](const FlownPiece& piece) {
-      const Vector3d way = piece.to - piece.start.to;
-      return way.z() < 0.0 && way.head<2>().norm() == 0.0;
+    const auto is_down = [&](const InterpretedSegment& segment) {
+      const Vector3d displacement = segment.to - segment.start.to;
+      return displacement.z() < 0.0 && displacement.head<2>().norm() == 0.0;
     };
-    const std::size_t last = route_.pieces.size() - 1;
-    if (!route_.pieces[last].is_over_pad || !is_down(route_.pieces[last])) return false;
-    return i == last || (i + 1 == last && is_down(route_.pieces[i]));
+    const std::size_t last = route_.segments.size() - 1;
+    if (!route_.segments[last].is_over_pad || !is_down(route_.segments[last])) return false;
+    return i == last || (i + 1 == last && is_down(route_.segments[i]));
   }
 
   /// Returns the additional time of vehicle and gimbal rotation beyond the leg [s], for which
   /// MAVLink missions wait.
-  double turning(const FlownPiece& piece, double moving) {
+  double turning(const InterpretedSegment& segment, double moving) {
     if (next_stop_ == route_.stops.size()) return 0.0;
-    const FlownStop& stop = route_.stops[next_stop_];
-    if (stop.item != piece.to_item || !stop.position.isApprox(piece.to)) return 0.0;
+    const InterpretedStop& stop = route_.stops[next_stop_];
+    if (stop.item != segment.to_item || !stop.position.isApprox(segment.to)) return 0.0;
     ++next_stop_;
     const double yaw = turn_between(yaw_deg_, stop.yaw_deg);
     const double pitch = turn_between(pitch_deg_, stop.pitch_deg);
     yaw_deg_ = stop.yaw_deg, pitch_deg_ = stop.pitch_deg;
-    if (motion_.vehicle().dialect != Dialect::dji) return 0.0;
+    if (motion_.vehicle().autopilot != AutopilotType::dji) return 0.0;
     return motion_.aimed_time(moving, yaw, pitch) - moving;
   }
 
@@ -83,12 +86,12 @@ class ScriptWriter {
     return motions_.try_emplace(speed, motion_.vehicle(), conditions).first->second;
   }
 
-  const FlownRoute& route_;
+  const InterpretedRoute& route_;
   const Motion& motion_;
   std::map<double, Motion> motions_;
   FlightScript script_;
   std::size_t next_stop_ = 0;
-  double yaw_deg_ = not_given, pitch_deg_ = not_given;
+  double yaw_deg_ = unspecified, pitch_deg_ = unspecified;
 };
 
 /// Returns the state `time` after the start of the leg. The duration is that of the leg law, the
@@ -105,10 +108,10 @@ MotionState state_on(const ScriptedLeg& leg, double jerk, double time) {
 }
 
 SetPoint at(const ScriptedLeg& leg, const MotionState& state) {
-  const Vector3d way = leg.to - leg.from;
-  const double length = way.norm();
+  const Vector3d displacement = leg.to - leg.from;
+  const double length = displacement.norm();
   if (length == 0.0) return {leg.to};
-  const Vector3d direction = way / length;
+  const Vector3d direction = displacement / length;
   return {leg.from + state.distance * direction, state.speed * direction,
           state.acceleration * direction};
 }
@@ -142,13 +145,13 @@ SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double 
 
 ScriptedLeg scripted_leg(const Motion& motion, const Vector3d& from, const Vector3d& to) {
   ScriptedLeg leg{.from = from, .to = to};
-  const Vector3d way = to - from;
-  const double length = way.norm();
+  const Vector3d displacement = to - from;
+  const double length = displacement.norm();
   if (length == 0.0) return leg;
   const MissionMode& mode = motion.vehicle().mode;
-  leg.speed = motion.leg_speed(way / length);
-  leg.acceleration = motion.leg_acceleration(way / length);
-  leg.moving = motion.leg_time(way) - mode.settle_time;
+  leg.speed = motion.leg_speed(displacement / length);
+  leg.acceleration = motion.leg_acceleration(displacement / length);
+  leg.moving = motion.leg_time(displacement) - mode.settle_time;
   return leg;
 }
 
@@ -160,7 +163,7 @@ ScriptedLeg landing_leg(const Motion& motion, const Vector3d& from, double end, 
   return leg;
 }
 
-FlightScript script_of(const FlownRoute& route, const Motion& motion) {
+FlightScript make_flight_script(const InterpretedRoute& route, const Motion& motion) {
   return ScriptWriter(route, motion).write();
 }
 

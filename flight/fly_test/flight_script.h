@@ -53,6 +53,6 @@ ScriptedLeg landing_leg(const Motion& motion, const Eigen::Vector3d& from, doubl
 
 /// Returns the flight of a route file with the vehicle of `motion`. Legs with several possible
 /// start positions use the last one.
-FlightScript script_of(const FlownRoute& route, const Motion& motion);
+FlightScript make_flight_script(const InterpretedRoute& route, const Motion& motion);
 
 }  // namespace skycap::flight

@@ -29,12 +29,12 @@ struct FlyTestOptions {
 /// One flight with its random values and results.
 struct TestFlight {
   FlightDraw draw;
-  SimulatedFlight flown;
+  SimulatedFlight simulated;
 };
 
 /// Results of the returns for one judge.
 struct ReturnTest {
-  std::size_t flown = 0;
+  std::size_t simulated = 0;
   std::size_t nearer = 0;  ///< Number of returns that violate the judge's limit.
   Closest nearest{};       ///< Minimum distance of all returns.
   Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< Start of that return.
@@ -49,10 +49,11 @@ struct FlyTest {
 };
 
 /// Runs the test. The result does not depend on the number of threads.
-FlyTest fly_test(const FlownMission& mission, std::span<const Judge> judges,
+FlyTest fly_test(const SimulatedMission& mission, std::span<const ClearanceCriterion> criteria,
                  const FlyTestOptions& options);
 
 /// Returns the number of flights that violate the limit of a judge.
-std::size_t flights_nearer(const FlyTest& test, std::span<const Judge> judges, std::size_t judge);
+std::size_t flights_nearer(const FlyTest& test, std::span<const ClearanceCriterion> criteria,
+                           std::size_t criterion);
 
 }  // namespace skycap::flight

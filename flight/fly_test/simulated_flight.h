@@ -16,7 +16,7 @@ namespace skycap::flight {
 
 /// Obstacles that flights are judged against, with the distance limits. Keeps references to the
 /// spaces, above the pad and elsewhere.
-struct Judge {
+struct ClearanceCriterion {
   std::string name;
   const FreeSpace& space;
   const FreeSpace& pad_space;
@@ -25,10 +25,10 @@ struct Judge {
 };
 
 /// Mission file prepared for simulation.
-struct FlownMission {
+struct SimulatedMission {
   FlightScript script;
   Motion motion;
-  std::optional<ReturnLaw> law;  ///< Law of exactly one autopilot. Empty: no recalls.
+  std::optional<RtlProfile> rtl_profile;  ///< Law of exactly one autopilot. Empty: no recalls.
 };
 
 /// Random values of one flight.
@@ -36,31 +36,31 @@ struct FlightDraw {
   std::uint64_t seed = 0, number = 0;
   Eigen::Vector2d wind = Eigen::Vector2d::Zero();  ///< Air velocity [m/s].
   double position_error = 0.0;                     ///< Maximum navigation error [m].
-  std::optional<double> called_home;               ///< Time of the recall [s].
+  std::optional<double> return_time;               ///< Time of the recall [s].
 };
 
 /// Closest approach of a flight to an obstacle.
-struct NearestPlace {
+struct NearestApproach {
   Closest closest{};
   double time = 0.0;  ///< Time since take-off [s].
-  bool is_on_way_home = false;
+  bool is_returning = false;
 };
 
 struct SimulatedFlight {
-  double time = 0.0;                  ///< Time until the motors stopped [s].
-  double energy = 0.0;                ///< Electrical energy [J].
-  double off_line = 0.0;              ///< Maximum deviation from the line of the leg [m].
-  std::vector<NearestPlace> nearest;  ///< One entry per judge.
+  double time = 0.0;                     ///< Time until the motors stopped [s].
+  double energy = 0.0;                   ///< Electrical energy [J].
+  double off_line = 0.0;                 ///< Maximum deviation from the line of the leg [m].
+  std::vector<NearestApproach> nearest;  ///< One entry per judge.
 };
 
 /// Simulation time step [s].
 inline constexpr double simulation_step = 0.04;
 
 /// Returns the positions of a flight step by step, from the pad until the motors stop.
-std::vector<Eigen::Vector3d> track_of(const FlownMission& mission, const FlightDraw& draw);
+std::vector<Eigen::Vector3d> compute_track(const SimulatedMission& mission, const FlightDraw& draw);
 
 /// Simulates a flight. Distances are searched up to `up_to` [m].
-SimulatedFlight fly(const FlownMission& mission, const FlightDraw& draw,
-                    std::span<const Judge> judges, double up_to);
+SimulatedFlight fly(const SimulatedMission& mission, const FlightDraw& draw,
+                    std::span<const ClearanceCriterion> criteria, double up_to);
 
 }  // namespace skycap::flight

@@ -13,16 +13,16 @@ constexpr double velocity_gain = 2.0;  ///< Proportional gain of the velocity er
 constexpr double sum_gain = 0.8;       ///< Integral gain of the velocity error [1/s^2].
 constexpr double lag = 0.15;           ///< Lag of thrust and tilt [s].
 /// Maximum horizontal acceleration, at a tilt of 35 degrees [m/s^2].
-constexpr double most_level = 6.9;
-constexpr double most_upright = 5.0;  ///< Maximum vertical acceleration [m/s^2].
+constexpr double max_horizontal_acceleration = 6.9;
+constexpr double max_vertical_acceleration = 5.0;  ///< Maximum vertical acceleration [m/s^2].
 /// Maximum velocity correction for a position error [m/s].
-constexpr double most_correction = 2.0;
+constexpr double max_correction = 2.0;
 
 Vector3d limited(const Vector3d& acceleration) {
   Vector3d result = acceleration;
   const double level = acceleration.head<2>().norm();
-  if (level > most_level) result.head<2>() *= most_level / level;
-  result.z() = std::clamp(result.z(), -most_upright, most_upright);
+  if (level > max_horizontal_acceleration) result.head<2>() *= max_horizontal_acceleration / level;
+  result.z() = std::clamp(result.z(), -max_vertical_acceleration, max_vertical_acceleration);
   return result;
 }
 
@@ -36,13 +36,13 @@ Vector3d VehicleModel::drag(const Vector3d& air) const {
   return -factor * through;
 }
 
-void VehicleModel::fly(const SetPoint& wanted, const Vector3d& error, const Vector3d& air,
+void VehicleModel::fly(const SetPoint& target, const Vector3d& error, const Vector3d& air,
                        double step) {
-  Vector3d correction = position_gain * (wanted.position - (position_ + error));
+  Vector3d correction = position_gain * (target.position - (position_ + error));
   const double size = correction.norm();
-  if (size > most_correction) correction *= most_correction / size;
-  const Vector3d velocity_error = wanted.velocity + correction - velocity_;
-  const Vector3d asked = wanted.acceleration + velocity_gain * velocity_error + sum_;
+  if (size > max_correction) correction *= max_correction / size;
+  const Vector3d velocity_error = target.velocity + correction - velocity_;
+  const Vector3d asked = target.acceleration + velocity_gain * velocity_error + sum_;
   const Vector3d allowed = limited(asked);
   // Errors beyond the limits are not integrated, because they would cause an overshoot.
   if (allowed == asked) sum_ += sum_gain * step * velocity_error;

@@ -28,7 +28,7 @@ class VehicleModel {
 
   /// Advances the simulation by `step` [s]. `error` is the navigation error, estimated minus true
   /// position [m]. `air` is the air velocity [m/s].
-  void fly(const SetPoint& wanted, const Eigen::Vector3d& error, const Eigen::Vector3d& air,
+  void fly(const SetPoint& target, const Eigen::Vector3d& error, const Eigen::Vector3d& air,
            double step);
 
   const Eigen::Vector3d& position() const { return position_; }

@@ -18,7 +18,7 @@ struct Decay {
   double kept, added;
 };
 
-Decay decay_of(double step, double time) {
+Decay compute_decay(double step, double time) {
   const double kept = std::exp(-step / time);
   return {kept, std::sqrt(1.0 - kept * kept)};
 }
@@ -36,7 +36,7 @@ Vector3d Weather::next(double step, double height, double airspeed) {
   const double length_level = h / std::pow(shape, 1.2) / feet_per_metre;
   const Vector3d length(length_level, length_level, h / feet_per_metre);
   for (int axis = 0; axis < 3; ++axis) {
-    const auto [kept, added] = decay_of(step, length[axis] / std::max(airspeed, 1.0));
+    const auto [kept, added] = compute_decay(step, length[axis] / std::max(airspeed, 1.0));
     const double strength = has_begun_ ? added : 1.0;
     gust_[axis] =
         (has_begun_ ? kept * gust_[axis] : 0.0) + strength * sigma[axis] * random_.normal();
@@ -49,7 +49,7 @@ Vector3d Weather::next(double step, double height, double airspeed) {
 
 Vector3d ReceiverError::next(double step) {
   const double sigma = bound_ / 3.0;
-  const auto [kept, added] = decay_of(step, receiver_time);
+  const auto [kept, added] = compute_decay(step, receiver_time);
   for (int axis = 0; axis < 3; ++axis) {
     const double strength = has_begun_ ? added : 1.0;
     error_[axis] = (has_begun_ ? kept * error_[axis] : 0.0) + strength * sigma * random_.normal();

@@ -27,7 +27,7 @@ KnownSpace space_over_pad(const FlightPlan& plan) {
 ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpace& space,
                            const std::filesystem::path& path) {
   const std::filesystem::path temporary = path.string() + ".part";
-  const auto refuse = [&](const Problems& problems) {
+  const auto reject = [&](const Problems& problems) {
     if (problems.empty()) return;
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
@@ -36,19 +36,19 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
   };
   geometry::write_file(temporary, write(plan, format));
   const std::string content = geometry::read_file(temporary);
-  refuse(validate(content, format));
-  const FlownRoute route = interpret(content, format, facts_of(plan));
-  refuse(route.problems);
+  reject(validate(content, format));
+  const InterpretedRoute route = interpret(content, format, make_flight_facts(plan));
+  reject(route.problems);
   const double clearance = std::max(0.0, plan.clearance - rounding_bound);
-  const FlownProof proof =
-      prove(route, space, space_over_pad(plan), clearance, plan.clearance + reported_surplus);
-  refuse(proof.problems);
+  const RouteVerification verification =
+      verify(route, space, space_over_pad(plan), clearance, plan.clearance + reported_surplus);
+  reject(verification.problems);
   std::error_code failure;
   std::filesystem::rename(temporary, path, failure);
   if (failure) {
     throw Error(ErrorKind::bad_file, path.string() + " cannot be written: " + failure.message());
   }
-  return {proof.clearance, notes_of(plan, format)};
+  return {verification.clearance, make_notes(plan, format)};
 }
 
 }  // namespace skycap::flight

@@ -12,7 +12,7 @@ namespace skycap::flight {
 
 /// Result of an export with notes for the user.
 struct ExportResult {
-  /// Verified clearance of the rounded file content [m], see LegProof.
+  /// Verified clearance of the rounded file content [m], see LegVerification.
   double min_clearance = 0.0;
   std::vector<std::string> notes;
 };

@@ -22,24 +22,24 @@ enum class Meaning {
   jump,           ///< Unrolled by the interpreter.
   hold_fence,     ///< Enables the fence.
   no_motion,      ///< Affects neither motion nor camera aim.
-  refused         ///< Unsafe or not verifiable, with the reason in `why`.
+  rejected        ///< Unsafe or not verifiable, with the reason in `reason`.
 };
 
 /// Autopilots that execute a command.
-enum class FlownBy { both, ardupilot, px4 };
+enum class SupportedBy { both, ardupilot, px4 };
 
 struct CommandRow {
   int id;            ///< MAV_CMD.
   const char* name;  ///< Name without MAV_CMD_.
   Meaning meaning;
-  FlownBy flown_by;
-  const char* why;  ///< Effect of a rejected command on the autopilots.
+  SupportedBy supported_by;
+  const char* reason;  ///< Effect of a rejected command on the autopilots.
 };
 
 /// Returns the row of a command, or nullptr if it is unknown. Unknown commands are rejected.
 const CommandRow* find_command(int id);
 
 /// Returns true if the command has its own position.
-bool has_place(Meaning meaning);
+bool has_position(Meaning meaning);
 
 }  // namespace skycap::flight

@@ -17,25 +17,25 @@ constexpr double same_corner = 1e-6;
 constexpr double grazing = 0.05;
 
 /// Returns the piece projected to the ground.
-Segment flat(const FlownPiece& piece) {
-  Segment leg{piece.start.to, piece.to};
+Segment flat(const InterpretedSegment& segment) {
+  Segment leg{segment.start.to, segment.to};
   leg.from.z() = leg.to.z() = 0.0;
   return leg;
 }
 
 /// Minimum distance of all pieces from a footprint, and the pieces that touch it.
-struct Touch {
+struct FootprintContact {
   double distance = std::numeric_limits<double>::infinity();
-  std::vector<const FlownPiece*> pieces;
+  std::vector<const InterpretedSegment*> segments;
 };
 
-Touch touch(const FlownRoute& route, const Obstacles& footprint) {
+FootprintContact find_contact(const InterpretedRoute& route, const Obstacles& footprint) {
   const KnownSpace space(footprint);
-  Touch result;
-  for (const FlownPiece& piece : route.pieces) {
-    const double distance = space.closest(flat(piece), grazing).distance;
+  FootprintContact result;
+  for (const InterpretedSegment& segment : route.segments) {
+    const double distance = space.closest(flat(segment), grazing).distance;
     result.distance = std::min(result.distance, distance);
-    if (distance <= clearance_guard) result.pieces.push_back(&piece);
+    if (distance <= clearance_guard) result.segments.push_back(&segment);
   }
   return result;
 }
@@ -60,8 +60,8 @@ bool is_same(const std::vector<GeodeticPoint>& a, const std::vector<GeodeticPoin
   return false;
 }
 
-bool holds(const MissionFile& file, const Prism& prism, bool is_inclusion,
-           const LocalFrame& frame) {
+bool contains(const MavlinkMission& file, const Prism& prism, bool is_inclusion,
+              const LocalFrame& frame) {
   std::vector<GeodeticPoint> corners;
   for (const Eigen::Vector2d& corner : prism.footprint) {
     corners.push_back(frame.to_geodetic({corner.x(), corner.y(), 0.0}));
@@ -71,7 +71,7 @@ bool holds(const MissionFile& file, const Prism& prism, bool is_inclusion,
   });
 }
 
-void check_area(const FenceArea& area, const FlownRoute& route, const LocalFrame& frame,
+void check_area(const FenceArea& area, const InterpretedRoute& route, const LocalFrame& frame,
                 Problems& problems) {
   Prism prism{area.name, {}};
   for (const GeodeticPoint& corner : area.corners) {
@@ -84,8 +84,8 @@ void check_area(const FenceArea& area, const FlownRoute& route, const LocalFrame
     footprint.no_fly = {prism};
   }
   try {
-    for (const FlownPiece* piece : touch(route, footprint).pieces) {
-      problems.push_back("leg from " + piece->from_item + " to " + piece->to_item +
+    for (const InterpretedSegment* segment : find_contact(route, footprint).segments) {
+      problems.push_back("leg from " + segment->from_item + " to " + segment->to_item +
                          (area.is_inclusion ? " leaves " : " enters ") + area.name);
     }
   } catch (const Error& error) {
@@ -95,12 +95,13 @@ void check_area(const FenceArea& area, const FlownRoute& route, const LocalFrame
 
 }  // namespace
 
-Problems check_fence(const MissionFile& file, const FlownRoute& route, const FlightFacts& facts) {
+Problems check_fence(const MavlinkMission& file, const InterpretedRoute& route,
+                     const FlightFacts& facts) {
   Problems problems;
-  if (!file.holds_fence) return problems;
+  if (!file.supports_fence) return problems;
   const LocalFrame frame(facts.site.origin);
   for (const FenceArea& area : file.fence) check_area(area, route, frame, problems);
-  if (facts.fence && !holds(file, *facts.fence, true, frame)) {
+  if (facts.fence && !contains(file, *facts.fence, true, frame)) {
     problems.push_back("geoFence does not contain the mission's fence \"" + facts.fence->name +
                        "\"");
   }
@@ -108,7 +109,8 @@ Problems check_fence(const MissionFile& file, const FlownRoute& route, const Fli
     if (std::isfinite(prism.ceiling)) continue;  // A return may pass above it.
     Obstacles footprint;
     footprint.no_fly = {{prism.name, prism.footprint}};  // Unbounded in height.
-    if (holds(file, prism, false, frame) || touch(route, footprint).distance < grazing) continue;
+    if (contains(file, prism, false, frame) || find_contact(route, footprint).distance < grazing)
+      continue;
     problems.push_back("geoFence does not contain the mission's no-fly volume \"" + prism.name +
                        "\"");
   }

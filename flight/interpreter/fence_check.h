@@ -11,6 +11,7 @@ namespace skycap::flight {
 /// returns mission volumes that a file with a geofence lacks. Fences have no heights: the file
 /// cannot contain a no-fly volume that a piece passes above or below, and may omit one with a
 /// ceiling. For formats without a geofence, only the route is checked.
-Problems check_fence(const MissionFile& file, const FlownRoute& route, const FlightFacts& facts);
+Problems check_fence(const MavlinkMission& file, const InterpretedRoute& route,
+                     const FlightFacts& facts);
 
 }  // namespace skycap::flight

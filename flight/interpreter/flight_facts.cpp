@@ -5,7 +5,7 @@
 
 namespace skycap::flight {
 
-FlightFacts facts_of(const FlightPlan& plan) {
+FlightFacts make_flight_facts(const FlightPlan& plan) {
   FlightFacts facts;
   facts.site = plan.site;
   facts.pad = plan.pad;
@@ -17,10 +17,10 @@ FlightFacts facts_of(const FlightPlan& plan) {
   facts.fence = plan.fence;
   bool is_first = true;
   for (const Waypoint& waypoint : plan.waypoints) {
-    if (!waypoint.is_station || waypoint.shots == 0) continue;
+    if (!waypoint.is_capture_point || waypoint.captures == 0) continue;
     facts.hold = is_first ? waypoint.hold : std::min(facts.hold, waypoint.hold);
     is_first = false;
-    facts.views.push_back({waypoint.position, direction_of({waypoint.yaw, waypoint.pitch})});
+    facts.views.push_back({waypoint.position, compute_direction({waypoint.yaw, waypoint.pitch})});
   }
   return facts;
 }

@@ -30,7 +30,7 @@ struct FlightFacts {
 };
 
 /// Returns the facts of the flight that a file is written for.
-FlightFacts facts_of(const FlightPlan& plan);
+FlightFacts make_flight_facts(const FlightPlan& plan);
 
 /// Maximum distance between the file's pad and the mission's, horizontal and vertical [m].
 /// Receivers without corrections differ by as much.

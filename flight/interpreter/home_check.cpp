@@ -8,7 +8,7 @@ namespace skycap::flight {
 
 using Eigen::Vector3d;
 
-Problems check_home(const MissionFile& file, const std::optional<Vector3d>& pad,
+Problems check_home(const MavlinkMission& file, const std::optional<Vector3d>& pad,
                     const FlightFacts& facts) {
   if (!file.home) return {};
   if (!facts.site.geoid_undulation) {
@@ -31,15 +31,15 @@ Problems check_home(const MissionFile& file, const std::optional<Vector3d>& pad,
   return problems;
 }
 
-Problems check_rally(const MissionFile& file, const FlightFacts& facts) {
+Problems check_rally(const MavlinkMission& file, const FlightFacts& facts) {
   Problems problems;
   const LocalFrame frame(facts.site.origin);
   std::vector<Vector3d> missing = facts.rally;
   for (std::size_t i = 0; i < file.rally.size(); ++i) {
     const std::string name = "rallyPoints.points[" + std::to_string(i) + "]";
-    const Vector3d place = frame.to_local(file.rally[i]);
+    const Vector3d position = frame.to_local(file.rally[i]);
     const auto known = std::ranges::find_if(missing, [&](const Vector3d& rally) {
-      return (rally - place).head<2>().norm() <= pad_tolerance;
+      return (rally - position).head<2>().norm() <= pad_tolerance;
     });
     if (known == missing.end()) {
       problems.push_back(name +

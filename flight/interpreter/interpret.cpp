@@ -23,38 +23,40 @@ struct Naming {
 };
 
 /// Returns a route through the positions in order.
-FlownRoute in_a_row(const std::vector<Eigen::Vector3d>& places, const Naming& name) {
-  FlownRoute route;
-  for (std::size_t i = 0; i < places.size(); ++i) {
+InterpretedRoute in_a_row(const std::vector<Eigen::Vector3d>& positions, const Naming& name) {
+  InterpretedRoute route;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     if (i == 0) continue;
-    route.pieces.push_back({{places[i - 1], places[i - 1]}, places[i], name(i - 1), name(i)});
+    route.segments.push_back(
+        {{positions[i - 1], positions[i - 1]}, positions[i], name(i - 1), name(i)});
   }
-  if (route.pieces.empty()) route.problems.emplace_back("the file contains no legs");
+  if (route.segments.empty()) route.problems.emplace_back("the file contains no legs");
   return route;
 }
 
 /// Interprets a Litchi mission: straight lines with a small curve at each corner, and actions at
 /// stops.
-FlownRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
-  const std::vector<Eigen::Vector3d> places = local_points(file, facts.site, facts.pad);
+InterpretedRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
+  const std::vector<Eigen::Vector3d> positions = local_points(file, facts.site, facts.pad);
   const Naming name{"line ", 2};
-  FlownRoute route = in_a_row(places, name);
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  InterpretedRoute route = in_a_row(positions, name);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     const FilePoint& point = file.points[i];
-    const auto complain = [&](const std::string& what) {
+    const auto add_problem = [&](const std::string& what) {
       route.problems.push_back(name(i) + " " + what);
     };
     if (point.curve > covered_curve) {
-      complain("has a curve of " + fixed(point.curve, 1) +
-               " m, which cannot be verified; it must be " + "at most 0.3 m");
+      add_problem("has a curve of " + fixed(point.curve, 1) +
+                  " m, which cannot be verified; it must be " + "at most 0.3 m");
     }
     if (!(point.speed > 0.0 && point.speed <= facts.cruise_speed + 1e-3)) {
-      complain("has speed " + fixed(point.speed, 2) + " m/s; it must be above 0 and at most the " +
-               "mission's cruise speed, " + fixed(facts.cruise_speed, 2) + " m/s");
+      add_problem("has speed " + fixed(point.speed, 2) +
+                  " m/s; it must be above 0 and at most the " + "mission's cruise speed, " +
+                  fixed(facts.cruise_speed, 2) + " m/s");
     }
-    if (point.shots == 0) continue;
+    if (point.captures == 0) continue;
     route.stops.push_back(
-        {places[i], name(i), point.hold_before, point.yaw_deg, point.pitch_deg, point.shots});
+        {positions[i], name(i), point.hold_before, point.yaw_deg, point.pitch_deg, point.captures});
   }
   for (const std::string& problem : check_photographs(route.stops, facts)) {
     route.problems.push_back(problem);
@@ -62,29 +64,29 @@ FlownRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
   return route;
 }
 
-FlownRoute interpreted(const std::string& content, Format format, const FlightFacts& facts) {
+InterpretedRoute interpreted(const std::string& content, Format format, const FlightFacts& facts) {
   if (format == Format::plan) return interpret(read_plan(content), facts);
   if (format == Format::waypoints) return interpret(read_waypoints(content), facts);
   if (format == Format::kmz) return interpret(unpack_kmz(content), facts);
   if (format == Format::litchi) return interpret_litchi(read_litchi(content), facts);
-  return in_a_row(places_of(content, format, facts.site, facts.pad), {"point "});
+  return in_a_row(read_positions(content, format, facts.site, facts.pad), {"point "});
 }
 
 }  // namespace
 
-FlownRoute interpret(const std::string& content, Format format, const FlightFacts& facts) {
-  FlownRoute route = interpreted(content, format, facts);
-  for (const FlownPiece& piece : route.pieces) {
-    geometry::require_place(piece.start.from, piece.from_item);
-    geometry::require_place(piece.start.to, piece.from_item);
-    geometry::require_place(piece.to, piece.to_item);
+InterpretedRoute interpret(const std::string& content, Format format, const FlightFacts& facts) {
+  InterpretedRoute route = interpreted(content, format, facts);
+  for (const InterpretedSegment& segment : route.segments) {
+    geometry::require_valid_position(segment.start.from, segment.from_item);
+    geometry::require_valid_position(segment.start.to, segment.from_item);
+    geometry::require_valid_position(segment.to, segment.to_item);
   }
   return route;
 }
 
-FlownRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts) {
+InterpretedRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts) {
   const std::string content = geometry::read_file(path, largest_route_file);
-  const Format format = format_of_file(path, content);
+  const Format format = detect_format(path, content);
   try {
     return interpret(content, format, facts);
   } catch (const Error& error) {

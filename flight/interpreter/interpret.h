@@ -13,9 +13,9 @@ namespace skycap::flight {
 /// Interprets route content. Missions are executed item by item. Formats for maps and setpoint
 /// followers are lists of positions, flown in order. Throws Error{bad_file} with the first problem
 /// of the format.
-FlownRoute interpret(const std::string& content, Format format, const FlightFacts& facts);
+InterpretedRoute interpret(const std::string& content, Format format, const FlightFacts& facts);
 
 /// Interprets a file. Errors include its name.
-FlownRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts);
+InterpretedRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts);
 
 }  // namespace skycap::flight

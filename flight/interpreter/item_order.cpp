@@ -6,11 +6,11 @@
 namespace skycap::flight {
 namespace {
 
-constexpr double most_repeats = 20.0;    // Higher values are assumed to be mistakes.
-constexpr std::size_t most_growth = 10;  // Maximum growth of a mission by its jumps.
+constexpr double max_repeats = 20.0;    // Higher values are assumed to be mistakes.
+constexpr std::size_t max_growth = 10;  // Maximum growth of a mission by its jumps.
 
 /// Returns the target index of a jump, or the size of `items` if there is none.
-std::size_t target_of(const MissionItem& jump, const std::vector<MissionItem>& items) {
+std::size_t find_jump_target(const MissionItem& jump, const std::vector<MissionItem>& items) {
   const auto target = std::ranges::find_if(items, [&](const MissionItem& item) {
     return static_cast<double>(item.number) == jump.params[0];
   });
@@ -19,8 +19,8 @@ std::size_t target_of(const MissionItem& jump, const std::vector<MissionItem>& i
 
 std::string what_is_wrong(const MissionItem& jump, const std::vector<MissionItem>& items) {
   const double repeats = jump.params[1];
-  if (target_of(jump, items) == items.size()) return "jumps to an item that does not exist";
-  if (!(repeats >= 0.0 && repeats <= most_repeats) || repeats != std::floor(repeats)) {
+  if (find_jump_target(jump, items) == items.size()) return "jumps to an item that does not exist";
+  if (!(repeats >= 0.0 && repeats <= max_repeats) || repeats != std::floor(repeats)) {
     return "jumps " + fixed(repeats, 1) + " times; it must be a whole number from 0 to 20";
   }
   return "";
@@ -28,7 +28,7 @@ std::string what_is_wrong(const MissionItem& jump, const std::vector<MissionItem
 
 }  // namespace
 
-ItemOrder order_of(const std::vector<MissionItem>& items) {
+ItemOrder compute_order(const std::vector<MissionItem>& items) {
   ItemOrder order;
   std::vector<double> jumped(items.size(), 0.0);
   for (std::size_t i = 0; i < items.size();) {
@@ -38,14 +38,14 @@ ItemOrder order_of(const std::vector<MissionItem>& items) {
       continue;
     }
     if (const std::string what = what_is_wrong(item, items); !what.empty()) {
-      order.problems.push_back(name_of(item) + " " + what);
+      order.problems.push_back(item_label(item) + " " + what);
       return order;
     }
-    if (order.indices.size() > most_growth * items.size()) {
-      order.problems.push_back(name_of(item) + " makes the mission more than ten times as long");
+    if (order.indices.size() > max_growth * items.size()) {
+      order.problems.push_back(item_label(item) + " makes the mission more than ten times as long");
       return order;
     }
-    i = jumped[i]++ < item.params[1] ? target_of(item, items) : i + 1;
+    i = jumped[i]++ < item.params[1] ? find_jump_target(item, items) : i + 1;
   }
   return order;
 }

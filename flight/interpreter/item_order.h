@@ -15,6 +15,6 @@ struct ItemOrder {
 };
 
 /// Executes every DO_JUMP (177) to its target item as often as specified, then continues.
-ItemOrder order_of(const std::vector<MissionItem>& items);
+ItemOrder compute_order(const std::vector<MissionItem>& items);
 
 }  // namespace skycap::flight

@@ -32,16 +32,16 @@ constexpr double longest_wait = 600.0;  // Longer waits are assumed to be mistak
 /// Execution of the items of a file.
 class MissionFlight {
  public:
-  MissionFlight(const MissionFile& file, Dialect dialect, const FlightFacts& facts)
+  MissionFlight(const MavlinkMission& file, AutopilotType autopilot, const FlightFacts& facts)
       : file_(file),
-        dialect_(dialect),
+        autopilot_(autopilot),
         facts_(facts),
         frame_(facts.site.origin),
-        items_(as_stored(file.items, dialect)) {}
+        items_(as_stored(file.items, autopilot)) {}
 
-  FlownRoute fly() {
-    for (const std::string& problem : check_items(file_.items, dialect_)) add(problem);
-    const ItemOrder order = order_of(items_);
+  InterpretedRoute fly() {
+    for (const std::string& problem : check_items(file_.items, autopilot_)) add(problem);
+    const ItemOrder order = compute_order(items_);
     for (const std::string& problem : order.problems) add(problem);
     for (const std::size_t i : order.indices) upcoming_.push_back(&items_[i]);
     while (!upcoming_.empty()) {
@@ -62,66 +62,71 @@ class MissionFlight {
  private:
   void add(const std::string& problem) { route_.problems.push_back(problem); }
 
-  void complain(const MissionItem& item, const std::string& what) {
-    add(name_of(item) + " (command " + std::to_string(item.command) + ") " + what);
+  void add_problem(const MissionItem& item, const std::string& what) {
+    add(item_label(item) + " (command " + std::to_string(item.command) + ") " + what);
   }
 
   void step(const MissionItem& item) {
     const CommandRow* row = find_command(item.command);
     if (row == nullptr) {
-      return complain(item, "is an unsupported command; remove it");
+      return add_problem(item, "is an unsupported command; remove it");
     }
-    if (has_landed_) return complain(item, "comes after the landing");
+    if (has_landed_) return add_problem(item, "comes after the landing");
     if (!item.auto_continue)
-      complain(item, "does not continue to the next item (autocontinue is 0)");
-    if (!is_flown_by(*row)) {
-      return complain(
-          item, std::string("is a ") + row->name + ", which " + autopilot() + " does not support");
+      add_problem(item, "does not continue to the next item (autocontinue is 0)");
+    if (!is_supported(*row)) {
+      return add_problem(item, std::string("is a ") + row->name + ", which " + autopilot_name() +
+                                   " does not support");
     }
-    if (row->meaning == Meaning::refused) {
-      return complain(item, std::string("is a ") + row->name + ": " + row->why);
+    if (row->meaning == Meaning::rejected) {
+      return add_problem(item, std::string("is a ") + row->name + ": " + row->reason);
     }
     if (check_frame(item, *row)) execute(item, *row);
   }
 
-  bool is_flown_by(const CommandRow& row) const {
-    return row.flown_by == FlownBy::both ||
-           (row.flown_by == FlownBy::ardupilot) == (dialect_ == Dialect::ardupilot);
+  bool is_supported(const CommandRow& row) const {
+    return row.supported_by == SupportedBy::both ||
+           (row.supported_by == SupportedBy::ardupilot) == (autopilot_ == AutopilotType::ardupilot);
   }
-  std::string autopilot() const { return dialect_ == Dialect::px4 ? "PX4" : "ArduPilot"; }
+  std::string autopilot_name() const {
+    return autopilot_ == AutopilotType::px4 ? "PX4" : "ArduPilot";
+  }
 
   bool check_frame(const MissionItem& item, const CommandRow& row) {
-    if (has_place(row.meaning)) {
-      if (is_above_sea(item) || is_above_home(item)) return check_place(item, row);
-      complain(item, "has frame " + std::to_string(item.frame) +
-                         ", which is not supported; use 3 (above home) or 0 (sea level)");
+    if (has_position(row.meaning)) {
+      if (is_above_sea(item) || is_above_home(item)) return check_position(item, row);
+      add_problem(item, "has frame " + std::to_string(item.frame) +
+                            ", which is not supported; use 3 (above home) or 0 (sea level)");
       return false;
     }
-    if (dialect_ != Dialect::px4 || item.frame == frame::mission) return true;
-    complain(item, "has frame " + std::to_string(item.frame) + "; PX4 accepts it in frame 2 only");
+    if (autopilot_ != AutopilotType::px4 || item.frame == frame::mission) return true;
+    add_problem(item,
+                "has frame " + std::to_string(item.frame) + "; PX4 accepts it in frame 2 only");
     return false;
   }
 
-  bool check_place(const MissionItem& item, const CommandRow& row) {
-    const bool is_nowhere = !has_coordinates(item) && !takes_present_place(row);
-    if (is_nowhere) complain(item, "has no position: latitude and longitude 0 mean \"as before\"");
+  bool check_position(const MissionItem& item, const CommandRow& row) {
+    const bool is_nowhere = !has_coordinates(item) && !uses_current_position(row);
+    if (is_nowhere)
+      add_problem(item, "has no position: latitude and longitude 0 mean \"as before\"");
     const bool is_without_height = row.meaning == Meaning::fly_to && item.params[6] == 0.0;
-    if (is_without_height) complain(item, "has height 0, which ArduPilot reads as \"as before\"");
+    if (is_without_height)
+      add_problem(item, "has height 0, which ArduPilot reads as \"as before\"");
     return !is_nowhere && !is_without_height;
   }
 
   /// Returns true if the item without position is executed at the current position, as ArduCopter
   /// does for take-off and landing (AP_Mission's default location). The take-off position must be
   /// known from the mission or from the file's home.
-  bool takes_present_place(const CommandRow& row) const {
-    if (dialect_ != Dialect::ardupilot) return false;
+  bool uses_current_position(const CommandRow& row) const {
+    if (autopilot_ != AutopilotType::ardupilot) return false;
     if (row.meaning == Meaning::take_off) return facts_.is_pad_known || file_.home;
     return row.meaning == Meaning::land;
   }
 
   void execute(const MissionItem& item, const CommandRow& row) {
     if (!has_taken_off_ && row.meaning != Meaning::take_off && is_motion(row.meaning)) {
-      return complain(item, "flies before the take-off (22)");
+      return add_problem(item, "flies before the take-off (22)");
     }
     switch (row.meaning) {
       case Meaning::take_off:
@@ -143,7 +148,7 @@ class MissionFlight {
       case Meaning::trigger_photo:
         return photograph(item, row.meaning);
       case Meaning::hold_fence:
-        if (item.params[0] != 1.0) complain(item, "disables the fence");
+        if (item.params[0] != 1.0) add_problem(item, "disables the fence");
         return;
       default:
         return;
@@ -151,66 +156,67 @@ class MissionFlight {
   }
 
   static bool is_motion(Meaning meaning) {
-    return has_place(meaning) || meaning == Meaning::wait || meaning == Meaning::take_photo ||
+    return has_position(meaning) || meaning == Meaning::wait || meaning == Meaning::take_photo ||
            meaning == Meaning::trigger_photo;
   }
 
-  Vector3d place_of(const MissionItem& item) const {
+  Vector3d position_from_item(const MissionItem& item) const {
     double height = item.params[6];
-    height += is_above_sea(item) ? facts_.site.undulation_for(name_of(item) + ", above sea level,")
-                                 : frame_.to_geodetic(facts_.pad).height;
-    GeodeticPoint place{item.params[4], item.params[5], height};
+    height += is_above_sea(item)
+                  ? facts_.site.undulation_for(item_label(item) + ", above sea level,")
+                  : frame_.to_geodetic(facts_.pad).height;
+    GeodeticPoint position{item.params[4], item.params[5], height};
     if (!has_coordinates(item)) {
-      const GeodeticPoint here = present_place();
-      place.latitude_deg = here.latitude_deg, place.longitude_deg = here.longitude_deg;
+      const GeodeticPoint here = current_position();
+      position.latitude_deg = here.latitude_deg, position.longitude_deg = here.longitude_deg;
     }
-    return frame_.to_local(place);
+    return frame_.to_local(position);
   }
 
   /// Returns the current horizontal position: the pad before take-off, otherwise the end of the
   /// last leg.
-  GeodeticPoint present_place() const {
+  GeodeticPoint current_position() const {
     if (has_taken_off_) return frame_.to_geodetic(position_);
     return facts_.is_pad_known || !file_.home ? frame_.to_geodetic(facts_.pad) : *file_.home;
   }
 
   // Autopilots climb at their current position, so only the height of a take-off item counts.
   void take_off(const MissionItem& item) {
-    if (has_taken_off_) return complain(item, "takes off again in mid-flight");
-    const Vector3d place = place_of(item);
+    if (has_taken_off_) return add_problem(item, "takes off again in mid-flight");
+    const Vector3d position = position_from_item(item);
     has_taken_off_ = true;
     pad_ = facts_.pad;
-    if (!facts_.is_pad_known) pad_.head<2>() = place.head<2>();
-    if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
-      complain(item, "takes off " + fixed(away, 1) + " m from the mission's take-off point");
+    if (!facts_.is_pad_known) pad_.head<2>() = position.head<2>();
+    if (const double away = (position - pad_).head<2>().norm(); away > pad_tolerance) {
+      add_problem(item, "takes off " + fixed(away, 1) + " m from the mission's take-off point");
     }
-    position_ = Vector3d(pad_.x(), pad_.y(), place.z());
+    position_ = Vector3d(pad_.x(), pad_.y(), position.z());
     if (position_.z() <= pad_.z())
-      complain(item, "climbs to a height that is not above the take-off point");
-    append_column(route_, {pad_, position_}, {"the take-off point", name_of(item)},
+      add_problem(item, "climbs to a height that is not above the take-off point");
+    append_column(route_, {pad_, position_}, {"the take-off point", item_label(item)},
                   facts_.takeoff_climb);
     arrive(item, {position_, position_}, true);
   }
 
   void fly_to(const MissionItem& item) {
     check_default_speed(item);
-    const Vector3d target = place_of(item);
+    const Vector3d target = position_from_item(item);
     const bool is_early = departure_.length() > 0.0;
     fly_straight(target, item);
     const Vector3d from = position_;
     position_ = target;
-    hold_ = route_.pieces.back().hold = item.params[0];
+    hold_ = route_.segments.back().hold = item.params[0];
     const bool stops = hold_ > 0.0 || stops_for_the_next();
-    const double radius = radius_of(item);
-    const double way = (target - from).norm();
+    const double radius = compute_radius(item);
+    const double distance = (target - from).norm();
     Segment departure{target, target};
     if (!stops) {
       departure.from = from;  // Corners are cut anywhere within the triangle of both legs.
-    } else if (radius > acceptance_radius && way > 0.0) {
-      departure.from = target + std::min(1.0, radius / way) * (from - target);
+    } else if (radius > acceptance_radius && distance > 0.0) {
+      departure.from = target + std::min(1.0, radius / distance) * (from - target);
     }
     if (is_early && departure.length() > 0.0) {
-      complain(
+      add_problem(
           item,
           "is passed without a stop right after another; the resulting curve cannot be verified");
     }
@@ -218,23 +224,23 @@ class MissionFlight {
   }
 
   void fly_straight(const Vector3d& to, const MissionItem& item) {
-    route_.pieces.push_back({departure_, to, name_of(*last_), name_of(item)});
-    route_.pieces.back().speed = speed_;
+    route_.segments.push_back({departure_, to, item_label(*last_), item_label(item)});
+    route_.segments.back().speed = speed_;
   }
 
   /// Returns the acceptance radius. ArduCopter has one radius for all waypoints, which it observes
   /// at stops. A larger radius in the file is rejected as well, because a different vehicle may use
   /// the file.
-  double radius_of(const MissionItem& item) const {
+  double compute_radius(const MissionItem& item) const {
     const bool counts = item.command == command::waypoint;
     const double radius = counts && std::isfinite(item.params[1]) ? item.params[1] : 0.0;
-    return radius > 0.0 || dialect_ != Dialect::px4 ? radius : default_radius_px4;
+    return radius > 0.0 || autopilot_ != AutopilotType::px4 ? radius : default_radius_px4;
   }
 
   /// Returns true if ArduPilot stops at a waypoint without a hold, which it does unless the next
   /// flown item is a waypoint, too.
   bool stops_for_the_next() const {
-    if (dialect_ != Dialect::ardupilot) return false;
+    if (autopilot_ != AutopilotType::ardupilot) return false;
     for (const MissionItem* item : upcoming_) {
       const CommandRow* row = find_command(item->command);
       if (row == nullptr || row->meaning == Meaning::fly_to) return false;
@@ -250,40 +256,41 @@ class MissionFlight {
     shoots_ = false;
     // ArduPilot turns the nose to the next waypoint unless a CONDITION_YAW was executed since the
     // last one.
-    yaw_deg_ = dialect_ == Dialect::ardupilot ? next_yaw_deg_ : item.params[3];
-    next_yaw_deg_ = not_given;
+    yaw_deg_ = autopilot_ == AutopilotType::ardupilot ? next_yaw_deg_ : item.params[3];
+    next_yaw_deg_ = unspecified;
   }
 
   // Flies level to the position at the current height, then down. The item's own height is ignored.
   void land(const MissionItem& item) {
     check_default_speed(item);
     has_landed_ = true;
-    const Vector3d place = place_of(item);
-    const Vector3d above(place.x(), place.y(), position_.z());
+    const Vector3d position = position_from_item(item);
+    const Vector3d above(position.x(), position.y(), position_.z());
     fly_straight(above, item);
-    const Vector3d ground(place.x(), place.y(), pad_.z());
-    append_column(route_, {above, ground}, {name_of(item), "the ground"}, facts_.takeoff_climb);
-    if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
-      complain(item, "lands " + fixed(away, 1) +
-                         " m from the take-off point, without verification of the " + "ground");
+    const Vector3d ground(position.x(), position.y(), pad_.z());
+    append_column(route_, {above, ground}, {item_label(item), "the ground"}, facts_.takeoff_climb);
+    if (const double away = (position - pad_).head<2>().norm(); away > pad_tolerance) {
+      add_problem(item, "lands " + fixed(away, 1) +
+                            " m from the take-off point, without verification of the " + "ground");
     }
   }
 
   void wait(const MissionItem& item) {
     const double seconds = item.params[0];
     if (!(seconds > 0.0 && seconds <= longest_wait)) {
-      return complain(item,
-                      "waits for " + fixed(seconds, 1) +
-                          " s; it must be above 0 and at most 600, otherwise it is a time of day");
+      return add_problem(
+          item, "waits for " + fixed(seconds, 1) +
+                    " s; it must be above 0 and at most 600, otherwise it is a time of day");
     }
     if (departure_.length() == 0.0) hold_ += seconds;
-    route_.pieces.back().hold += seconds;
+    route_.segments.back().hold += seconds;
   }
 
   void turn(const MissionItem& item) {
-    if (item.params[3] != 0.0) return complain(item, "turns by an angle instead of to a heading");
+    if (item.params[3] != 0.0)
+      return add_problem(item, "turns by an angle instead of to a heading");
     if (!(item.params[0] >= 0.0 && item.params[0] <= 360.0)) {
-      return complain(item, "turns to a heading outside [0, 360] degrees");
+      return add_problem(item, "turns to a heading outside [0, 360] degrees");
     }
     next_yaw_deg_ = item.params[0];
   }
@@ -300,55 +307,56 @@ class MissionFlight {
       is_speed_set_ = true;
       speed_ = speed;
     } else {
-      return complain(item, "sets an unsupported speed type; use 0, 1, 2 or 3");
+      return add_problem(item, "sets an unsupported speed type; use 0, 1, 2 or 3");
     }
     if (speed > 0.0 && speed <= limit + 1e-3) return;
-    complain(item, "sets " + fixed(speed, 2) + " m/s; it must be above 0 and at most " + whose +
-                       ", " + fixed(limit, 2) + " m/s");
+    add_problem(item, "sets " + fixed(speed, 2) + " m/s; it must be above 0 and at most " + whose +
+                          ", " + fixed(limit, 2) + " m/s");
   }
 
   void check_default_speed(const MissionItem& item) {
-    const double speed = dialect_ == Dialect::px4 ? default_speed_px4 : default_speed_ardupilot;
+    const double speed =
+        autopilot_ == AutopilotType::px4 ? default_speed_px4 : default_speed_ardupilot;
     if (is_speed_set_ || speed <= facts_.cruise_speed) return;
     is_speed_set_ = true;  // Reported once.
-    complain(item, "is flown to at " + autopilot() + "'s default of " + fixed(speed, 0) +
-                       " m/s: no item before it sets the speed (178)");
+    add_problem(item, "is flown to at " + autopilot_name() + "'s default of " + fixed(speed, 0) +
+                          " m/s: no item before it sets the speed (178)");
   }
 
   void aim(const MissionItem& item, Meaning meaning) {
     const auto& p = item.params;
     if (meaning == Meaning::aim_by_mount) {
-      if (p[6] != aims_by_angles) return complain(item, "must aim by angles (mode 2)");
+      if (p[6] != aims_by_angles) return add_problem(item, "must aim by angles (mode 2)");
       if (p[1] != 0.0 || p[2] != 0.0) {
-        return complain(item, "rolls or turns the gimbal; only pitch is supported");
+        return add_problem(item, "rolls or turns the gimbal; only pitch is supported");
       }
     } else if (p[1] != 0.0 && !std::isnan(p[1])) {
-      return complain(item, "turns the gimbal; only pitch is supported");
+      return add_problem(item, "turns the gimbal; only pitch is supported");
     }
     pitch_deg_ = p[0];
   }
 
   void photograph(const MissionItem& item, Meaning meaning) {
     if (meaning == Meaning::take_photo && item.params[2] != 1.0) {
-      return complain(item, "takes " + fixed(item.params[2], 0) +
-                                " images; more than one cannot be taken in motion");
+      return add_problem(item, "takes " + fixed(item.params[2], 0) +
+                                   " images; more than one cannot be taken in motion");
     }
     if (meaning == Meaning::trigger_photo && item.params[4] != 1.0) return;  // Focus or zoom.
-    if (!is_exact_) return complain(item, "captures an image where the vehicle does not stop");
+    if (!is_exact_) return add_problem(item, "captures an image where the vehicle does not stop");
     if (std::exchange(shoots_, true)) {
-      ++route_.stops.back().shots;
+      ++route_.stops.back().captures;
       return;
     }
-    route_.stops.push_back({position_, name_of(*last_), hold_, yaw_deg_, pitch_deg_, 1});
+    route_.stops.push_back({position_, item_label(*last_), hold_, yaw_deg_, pitch_deg_, 1});
   }
 
-  const MissionFile& file_;
-  const Dialect dialect_;
+  const MavlinkMission& file_;
+  const AutopilotType autopilot_;
   const FlightFacts& facts_;
   LocalFrame frame_;
   std::vector<MissionItem> items_;
   std::deque<const MissionItem*> upcoming_;  ///< In flight order.
-  FlownRoute route_;
+  InterpretedRoute route_;
 
   bool has_taken_off_ = false, has_landed_ = false;
   bool is_speed_set_ = false;
@@ -360,26 +368,28 @@ class MissionFlight {
   /// Possible start positions of the next leg.
   Segment departure_{Vector3d::Zero(), Vector3d::Zero()};
   double hold_ = 0.0;
-  double speed_ = not_given;
-  double yaw_deg_ = not_given, next_yaw_deg_ = not_given, pitch_deg_ = not_given;
+  double speed_ = unspecified;
+  double yaw_deg_ = unspecified, next_yaw_deg_ = unspecified, pitch_deg_ = unspecified;
 };
 
 }  // namespace
 
-FlownRoute interpret(const MissionFile& file, const FlightFacts& facts) {
+InterpretedRoute interpret(const MavlinkMission& file, const FlightFacts& facts) {
   // The vehicle's own autopilot. DJI vehicles do not fly such files.
-  std::optional<Dialect> flown_by;
-  if (facts.vehicle && facts.vehicle->dialect != Dialect::dji) flown_by = facts.vehicle->dialect;
-  const Dialect dialect = file.dialect.value_or(flown_by.value_or(Dialect::px4));
-  FlownRoute route = MissionFlight(file, dialect, facts).fly();
-  if (!file.dialect && !flown_by) {
+  std::optional<AutopilotType> supported_by;
+  if (facts.vehicle && facts.vehicle->autopilot != AutopilotType::dji)
+    supported_by = facts.vehicle->autopilot;
+  const AutopilotType autopilot =
+      file.autopilot.value_or(supported_by.value_or(AutopilotType::px4));
+  InterpretedRoute route = MissionFlight(file, autopilot, facts).fly();
+  if (!file.autopilot && !supported_by) {
     route.problems.insert(route.problems.begin(), "the file does not state its autopilot");
   }
-  if (flown_by && *flown_by != dialect) {
+  if (supported_by && *supported_by != autopilot) {
     route.problems.insert(route.problems.begin(),
                           std::string("the file is written for ") +
-                              (dialect == Dialect::px4 ? "PX4" : "ArduPilot") + "; vehicle \"" +
-                              facts.vehicle->name + "\" has another autopilot");
+                              (autopilot == AutopilotType::px4 ? "PX4" : "ArduPilot") +
+                              "; vehicle \"" + facts.vehicle->name + "\" has another autopilot");
   }
   return route;
 }

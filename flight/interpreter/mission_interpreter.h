@@ -17,6 +17,6 @@ namespace skycap::flight {
 /// Interprets the file in its own dialect, or in the vehicle's if it specifies none. Positions are
 /// rounded like those in the autopilot's memory. Throws Error{bad_config} if heights are AMSL and
 /// the site's geoid undulation is unknown.
-FlownRoute interpret(const MissionFile& file, const FlightFacts& facts);
+InterpretedRoute interpret(const MavlinkMission& file, const FlightFacts& facts);
 
 }  // namespace skycap::flight

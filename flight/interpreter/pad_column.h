@@ -11,7 +11,7 @@ namespace skycap::flight {
 /// Adds a vertical piece in flight direction. Up to `vouched` [m] above its foot it counts as above
 /// the pad, where the pilot must check it. The rest is an ordinary leg. `items` are the names of
 /// both ends.
-void append_column(FlownRoute& route, const Segment& column,
+void append_column(InterpretedRoute& route, const Segment& column,
                    const std::array<std::string, 2>& items, double vouched);
 
 }  // namespace skycap::flight

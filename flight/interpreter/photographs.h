@@ -8,6 +8,6 @@ namespace skycap::flight {
 
 /// Returns the problems per item: holds that are too short, directions outside the gimbal range,
 /// and photos that match no view of the mission, if its views are known.
-Problems check_photographs(const std::vector<FlownStop>& stops, const FlightFacts& facts);
+Problems check_photographs(const std::vector<InterpretedStop>& stops, const FlightFacts& facts);
 
 }  // namespace skycap::flight

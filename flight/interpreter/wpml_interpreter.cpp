@@ -57,57 +57,57 @@ constexpr std::array gimbal_rules{
     OnlyValue{"gimbalYawRotateEnable", "0", "turns the gimbal away from the heading"}};
 
 /// Elements that are supported below each of these. All others are rejected.
-constexpr std::array<std::string_view, 16> of_config{"flyToWaylineMode",
-                                                     "finishAction",
-                                                     "exitOnRCLost",
-                                                     "executeRCLostAction",
-                                                     "takeOffSecurityHeight",
-                                                     "globalTransitionalSpeed",
-                                                     "globalRTHHeight",
-                                                     "takeOffRefPoint",
-                                                     "takeOffRefPointAGLHeight",
-                                                     "droneInfo",
-                                                     "payloadInfo",
-                                                     "author",
-                                                     "createTime",
-                                                     "updateTime",
-                                                     "waylineAvoidLimitAreaMode",
-                                                     "isFixedFinishAction"};
-constexpr std::array<std::string_view, 17> of_folder{"templateType",
-                                                     "templateId",
-                                                     "waylineCoordinateSysParam",
-                                                     "autoFlightSpeed",
-                                                     "globalHeight",
-                                                     "caliFlightEnable",
-                                                     "gimbalPitchMode",
-                                                     "globalWaypointHeadingParam",
-                                                     "globalWaypointTurnMode",
-                                                     "globalUseStraightLine",
-                                                     "payloadParam",
-                                                     "Placemark",
-                                                     "executeHeightMode",
-                                                     "waylineId",
-                                                     "distance",
-                                                     "duration",
-                                                     "name"};
-constexpr std::array<std::string_view, 18> of_waypoint{"Point",
-                                                       "index",
-                                                       "useGlobalHeight",
-                                                       "ellipsoidHeight",
-                                                       "height",
-                                                       "useGlobalSpeed",
-                                                       "useGlobalHeadingParam",
-                                                       "useGlobalTurnParam",
-                                                       "executeHeight",
-                                                       "waypointSpeed",
-                                                       "waypointHeadingParam",
-                                                       "waypointTurnParam",
-                                                       "useStraightLine",
-                                                       "actionGroup",
-                                                       "isRisky",
-                                                       "waypointWorkType",
-                                                       "name",
-                                                       "visibility"};
+constexpr std::array<std::string_view, 16> config_elements{"flyToWaylineMode",
+                                                           "finishAction",
+                                                           "exitOnRCLost",
+                                                           "executeRCLostAction",
+                                                           "takeOffSecurityHeight",
+                                                           "globalTransitionalSpeed",
+                                                           "globalRTHHeight",
+                                                           "takeOffRefPoint",
+                                                           "takeOffRefPointAGLHeight",
+                                                           "droneInfo",
+                                                           "payloadInfo",
+                                                           "author",
+                                                           "createTime",
+                                                           "updateTime",
+                                                           "waylineAvoidLimitAreaMode",
+                                                           "isFixedFinishAction"};
+constexpr std::array<std::string_view, 17> folder_elements{"templateType",
+                                                           "templateId",
+                                                           "waylineCoordinateSysParam",
+                                                           "autoFlightSpeed",
+                                                           "globalHeight",
+                                                           "caliFlightEnable",
+                                                           "gimbalPitchMode",
+                                                           "globalWaypointHeadingParam",
+                                                           "globalWaypointTurnMode",
+                                                           "globalUseStraightLine",
+                                                           "payloadParam",
+                                                           "Placemark",
+                                                           "executeHeightMode",
+                                                           "waylineId",
+                                                           "distance",
+                                                           "duration",
+                                                           "name"};
+constexpr std::array<std::string_view, 18> waypoint_elements{"Point",
+                                                             "index",
+                                                             "useGlobalHeight",
+                                                             "ellipsoidHeight",
+                                                             "height",
+                                                             "useGlobalSpeed",
+                                                             "useGlobalHeadingParam",
+                                                             "useGlobalTurnParam",
+                                                             "executeHeight",
+                                                             "waypointSpeed",
+                                                             "waypointHeadingParam",
+                                                             "waypointTurnParam",
+                                                             "useStraightLine",
+                                                             "actionGroup",
+                                                             "isRisky",
+                                                             "waypointWorkType",
+                                                             "name",
+                                                             "visibility"};
 
 /// One of the two files.
 class WpmlFlight {
@@ -118,12 +118,12 @@ class WpmlFlight {
     const pugi::xml_node root = document_.child("kml").child("Document");
     config_ = root.child("wpml:missionConfig");
     folder_ = root.child("Folder");
-    if (folder_.next_sibling("Folder")) complain("has more than one wayline");
+    if (folder_.next_sibling("Folder")) add_problem("has more than one wayline");
   }
 
   /// Returns the altitude reference of the template.
   std::optional<Vector3d> reference_pad() {
-    const std::vector<std::string> parts = split(text_of(config_, "takeOffRefPoint"), ',');
+    const std::vector<std::string> parts = split(child_text(config_, "takeOffRefPoint"), ',');
     if (parts.size() != 3) return std::nullopt;
     const auto latitude = to_number(geometry::trimmed(parts[0])),
                longitude = to_number(geometry::trimmed(parts[1])),
@@ -132,28 +132,28 @@ class WpmlFlight {
     return frame_.to_local({*latitude, *longitude, *height});
   }
 
-  /// Interprets the file. `places` are the waypoints in the local frame [m].
-  FlownRoute fly(const std::vector<Vector3d>& places, const Vector3d& pad) {
-    check_known(config_, of_config, "");
-    check_known(folder_, of_folder, "");
-    check_mission(places, pad);
-    climb(places.front(), pad);
+  /// Interprets the file. `positions` are the waypoints in the local frame [m].
+  InterpretedRoute fly(const std::vector<Vector3d>& positions, const Vector3d& pad) {
+    check_known(config_, config_elements, "");
+    check_known(folder_, folder_elements, "");
+    check_mission(positions, pad);
+    climb(positions.front(), pad);
     std::size_t index = 0;
-    double speed = not_given;
+    double speed = unspecified;
     for (const pugi::xml_node mark : folder_.children("Placemark")) {
       if (index > 0) {
-        route_.pieces.push_back({{places[index - 1], places[index - 1]},
-                                 places[index],
-                                 waypoint(index - 1),
-                                 waypoint(index)});
-        route_.pieces.back().speed = speed;
+        route_.segments.push_back({{positions[index - 1], positions[index - 1]},
+                                   positions[index],
+                                   waypoint(index - 1),
+                                   waypoint(index)});
+        route_.segments.back().speed = speed;
       }
-      speed = number_of(mark, "waypointSpeed");
+      speed = child_number(mark, "waypointSpeed");
       check_waypoint(mark, index);
-      act(mark, places[index], index);
+      act(mark, positions[index], index);
       ++index;
     }
-    descend(places.back(), pad, waypoint(index - 1));
+    descend(positions.back(), pad, waypoint(index - 1));
     for (const std::string& problem : check_photographs(route_.stops, facts_)) {
       route_.problems.push_back(problem);
     }
@@ -165,13 +165,13 @@ class WpmlFlight {
 
   static std::string waypoint(std::size_t index) { return "waypoint " + std::to_string(index); }
 
-  static std::string text_of(pugi::xml_node node, const char* name) {
+  static std::string child_text(pugi::xml_node node, const char* name) {
     return std::string(
         geometry::trimmed(node.child((std::string("wpml:") + name).c_str()).text().get()));
   }
 
   /// Adds a problem. `who` is the waypoint; empty for the file.
-  void complain(const std::string& what, const std::string& who = "") {
+  void add_problem(const std::string& what, const std::string& who = "") {
     route_.problems.push_back(who.empty() ? file_ + " " + what
                                           : who + " " + what + " (" + file_ + ")");
   }
@@ -183,7 +183,7 @@ class WpmlFlight {
       std::string_view name = child.name();
       if (name.starts_with("wpml:")) name.remove_prefix(5);
       if (std::ranges::find(known, name) != known.end()) continue;
-      complain("has " + std::string(child.name()) + ", which is not supported; remove it", who);
+      add_problem("has " + std::string(child.name()) + ", which is not supported; remove it", who);
     }
   }
 
@@ -191,75 +191,77 @@ class WpmlFlight {
   void check_values(pugi::xml_node node, std::span<const OnlyValue> rules,
                     const std::string& who = "") {
     for (const OnlyValue& rule : rules) {
-      const std::string value = text_of(node, rule.element);
+      const std::string value = child_text(node, rule.element);
       if (value.empty() || value == rule.right) continue;
-      complain("has wpml:" + std::string(rule.element) + " " + value + ", which " + rule.otherwise +
-                   "; it must be " + std::string(rule.right),
-               who);
+      add_problem("has wpml:" + std::string(rule.element) + " " + value + ", which " +
+                      rule.otherwise + "; it must be " + std::string(rule.right),
+                  who);
     }
   }
 
-  double number_of(pugi::xml_node node, const char* name) const {
-    return to_number(text_of(node, name)).value_or(not_given);
+  double child_number(pugi::xml_node node, const char* name) const {
+    return to_number(child_text(node, name)).value_or(unspecified);
   }
 
   void check_speed(pugi::xml_node node, const char* name, const std::string& who = "") {
-    const double speed = number_of(node, name);
+    const double speed = child_number(node, name);
     if (std::isnan(speed) || speed <= facts_.cruise_speed + rounding) return;
-    complain("has wpml:" + std::string(name) + " " + fixed(speed, 2) +
-                 " m/s; the mission's cruise speed is " + fixed(facts_.cruise_speed, 2) + " m/s",
-             who);
+    add_problem("has wpml:" + std::string(name) + " " + fixed(speed, 2) +
+                    " m/s; the mission's cruise speed is " + fixed(facts_.cruise_speed, 2) + " m/s",
+                who);
   }
 
-  void check_height(const char* name, double least, const std::string& why) {
-    const double height = number_of(config_, name);
-    if (std::isnan(height) || height >= least - rounding) return;
-    complain("has wpml:" + std::string(name) + " " + fixed(height, 2) + " m; it must be at least " +
-             fixed(least, 2) + " m, " + why);
+  void check_height(const char* name, double min, const std::string& reason) {
+    const double height = child_number(config_, name);
+    if (std::isnan(height) || height >= min - rounding) return;
+    add_problem("has wpml:" + std::string(name) + " " + fixed(height, 2) +
+                " m; it must be at least " + fixed(min, 2) + " m, " + reason);
   }
 
-  void check_mission(const std::vector<Vector3d>& places, const Vector3d& pad) {
+  void check_mission(const std::vector<Vector3d>& positions, const Vector3d& pad) {
     check_values(config_, mission_rules);
-    const std::string finish = text_of(config_, "finishAction");
+    const std::string finish = child_text(config_, "finishAction");
     if (finish != "goHome" && finish != "autoLand") {
-      complain("has wpml:finishAction " + finish +
-               ", which ends the mission in the air; it must be goHome or autoLand");
+      add_problem("has wpml:finishAction " + finish +
+                  ", which ends the mission in the air; it must be goHome or autoLand");
     }
-    double highest = 0.0;
+    double max_height = 0.0;
     const double foot = frame_.to_geodetic(pad).height;
-    for (const Vector3d& place : places) {
-      highest = std::max(highest, frame_.to_geodetic(place).height - foot);
+    for (const Vector3d& position : positions) {
+      max_height = std::max(max_height, frame_.to_geodetic(position).height - foot);
     }
     check_height("takeOffSecurityHeight", facts_.takeoff_climb,
                  "the climb from the take-off point");
-    check_height("globalRTHHeight", highest, "the height of the highest waypoint");
+    check_height("globalRTHHeight", max_height, "the height of the highest waypoint");
     check_speed(config_, "globalTransitionalSpeed");
     check_speed(folder_, "autoFlightSpeed");
     if (is_template()) check_values(folder_, template_rules);
     for (const char* mode : {"aboveGroundLevel", "realTimeFollowSurface"}) {
       const pugi::xml_node system = folder_.child("wpml:waylineCoordinateSysParam");
-      if (text_of(folder_, "executeHeightMode") == mode || text_of(system, "heightMode") == mode) {
-        complain(std::string("has heights with reference ") + mode + ", whose ground is unknown");
+      if (child_text(folder_, "executeHeightMode") == mode ||
+          child_text(system, "heightMode") == mode) {
+        add_problem(std::string("has heights with reference ") + mode +
+                    ", whose ground is unknown");
       }
     }
-    if (!facts_.vehicle || facts_.vehicle->dialect != Dialect::dji) return;
-    const std::string drone = text_of(config_.child("wpml:droneInfo"), "droneEnumValue");
+    if (!facts_.vehicle || facts_.vehicle->autopilot != AutopilotType::dji) return;
+    const std::string drone = child_text(config_.child("wpml:droneInfo"), "droneEnumValue");
     if (drone == std::to_string(facts_.vehicle->wpml.drone)) return;
-    complain("is for the aircraft with droneEnumValue " + drone + "; \"" + facts_.vehicle->name +
-             "\" is " + std::to_string(facts_.vehicle->wpml.drone));
+    add_problem("is for the aircraft with droneEnumValue " + drone + "; \"" + facts_.vehicle->name +
+                "\" is " + std::to_string(facts_.vehicle->wpml.drone));
   }
 
   // Adds the climb of flyToWaylineMode "safely": up, level, then down to the first waypoint if it
   // is lower.
   void climb(const Vector3d& first, const Vector3d& pad) {
-    const double security = number_of(config_, "takeOffSecurityHeight");
+    const double security = child_number(config_, "takeOffSecurityHeight");
     const double top = std::max(first.z(), pad.z() + (std::isnan(security) ? 0.0 : security));
     const Vector3d over_pad(pad.x(), pad.y(), top), over_first(first.x(), first.y(), top);
     append_column(route_, {pad, over_pad}, {"the take-off point", waypoint(0)},
                   facts_.takeoff_climb);
     for (const Segment& leg : {Segment{over_pad, over_first}, Segment{over_first, first}}) {
       if (leg.length() < rounding) continue;
-      route_.pieces.push_back({{leg.from, leg.from}, leg.to, "the take-off point", waypoint(0)});
+      route_.segments.push_back({{leg.from, leg.from}, leg.to, "the take-off point", waypoint(0)});
     }
   }
 
@@ -269,14 +271,15 @@ class WpmlFlight {
                   facts_.takeoff_climb);
     const double away = (last - pad).head<2>().norm();
     if (away <= pad_tolerance) return;
-    complain("is the last, " + fixed(away, 1) +
-                 " m from the take-off point: neither the return nor the ground below is verified",
-             who);
+    add_problem(
+        "is the last, " + fixed(away, 1) +
+            " m from the take-off point: neither the return nor the ground below is verified",
+        who);
   }
 
   void check_waypoint(pugi::xml_node mark, std::size_t index) {
     const std::string who = waypoint(index);
-    check_known(mark, of_waypoint, who);
+    check_known(mark, waypoint_elements, who);
     check_speed(mark, "waypointSpeed", who);
     if (is_template()) {
       check_values(mark, template_waypoint_rules, who);
@@ -286,50 +289,50 @@ class WpmlFlight {
   }
 
   /// Adds the actions at a waypoint in their order.
-  void act(pugi::xml_node mark, const Vector3d& place, std::size_t index) {
+  void act(pugi::xml_node mark, const Vector3d& position, std::size_t index) {
     const std::string who = waypoint(index);
     const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
-    const bool is_set = text_of(heading, "waypointHeadingMode") == "smoothTransition" &&
-                        text_of(mark, "useGlobalHeadingParam") != "1";
-    double yaw_deg = is_set ? number_of(heading, "waypointHeadingAngle") : not_given;
+    const bool is_set = child_text(heading, "waypointHeadingMode") == "smoothTransition" &&
+                        child_text(mark, "useGlobalHeadingParam") != "1";
+    double yaw_deg = is_set ? child_number(heading, "waypointHeadingAngle") : unspecified;
     double hold = 0.0;
-    int shots = 0;
+    int captures = 0;
     for (const pugi::xml_node group : mark.children("wpml:actionGroup")) {
       check_group(group, index);
       for (const pugi::xml_node action : group.children("wpml:action")) {
-        const std::string function = text_of(action, "actionActuatorFunc");
+        const std::string function = child_text(action, "actionActuatorFunc");
         const pugi::xml_node param = action.child("wpml:actionActuatorFuncParam");
         if (function == "hover") {
-          hold += number_of(param, "hoverTime");
-          route_.pieces.back().hold += number_of(param, "hoverTime");
+          hold += child_number(param, "hoverTime");
+          route_.segments.back().hold += child_number(param, "hoverTime");
         }
-        if (function == "rotateYaw") yaw_deg = number_of(param, "aircraftHeading");
+        if (function == "rotateYaw") yaw_deg = child_number(param, "aircraftHeading");
         if (function == "gimbalRotate") aim(param, who);
         if (function != "takePhoto") continue;
-        if (shots++ == 0) route_.stops.push_back({place, who, hold, yaw_deg, pitch_deg_, 0});
-        ++route_.stops.back().shots;
+        if (captures++ == 0) route_.stops.push_back({position, who, hold, yaw_deg, pitch_deg_, 0});
+        ++route_.stops.back().captures;
       }
     }
   }
 
   void aim(pugi::xml_node param, const std::string& who) {
     check_values(param, gimbal_rules, who);
-    if (text_of(param, "gimbalPitchRotateEnable") == "0") return;
-    pitch_deg_ = number_of(param, "gimbalPitchRotateAngle");
+    if (child_text(param, "gimbalPitchRotateEnable") == "0") return;
+    pitch_deg_ = child_number(param, "gimbalPitchRotateAngle");
   }
 
   void check_group(pugi::xml_node group, std::size_t index) {
     check_values(group, group_rules, waypoint(index));
     for (const char* end : {"actionGroupStartIndex", "actionGroupEndIndex"}) {
-      if (text_of(group, end) == std::to_string(index)) continue;
-      complain("has wpml:" + std::string(end) + " " + text_of(group, end) +
-                   ": its actions run at other waypoints",
-               waypoint(index));
+      if (child_text(group, end) == std::to_string(index)) continue;
+      add_problem("has wpml:" + std::string(end) + " " + child_text(group, end) +
+                      ": its actions run at other waypoints",
+                  waypoint(index));
     }
-    const std::string trigger = text_of(group.child("wpml:actionTrigger"), "actionTriggerType");
+    const std::string trigger = child_text(group.child("wpml:actionTrigger"), "actionTriggerType");
     if (trigger != "reachPoint") {
-      complain("has wpml:actionTriggerType " + trigger + "; it must be reachPoint",
-               waypoint(index));
+      add_problem("has wpml:actionTriggerType " + trigger + "; it must be reachPoint",
+                  waypoint(index));
     }
   }
 
@@ -338,13 +341,13 @@ class WpmlFlight {
   LocalFrame frame_;
   pugi::xml_document document_;
   pugi::xml_node config_, folder_;
-  FlownRoute route_;
-  double pitch_deg_ = not_given;
+  InterpretedRoute route_;
+  double pitch_deg_ = unspecified;
 };
 
 /// Checks that the pad in the file, if any, is that of the mission.
-void check_pad(const Vector3d& said, const Vector3d& pad, Problems& problems) {
-  const double level = (said - pad).head<2>().norm(), up = said.z() - pad.z();
+void check_pad(const Vector3d& stated, const Vector3d& pad, Problems& problems) {
+  const double level = (stated - pad).head<2>().norm(), up = stated.z() - pad.z();
   if (level <= pad_tolerance && std::abs(up) <= pad_height_tolerance) return;
   problems.push_back("template.kml has wpml:takeOffRefPoint " + fixed(level, 1) + " m from and " +
                      fixed(up, 1) + " m above the take-off point");
@@ -352,20 +355,20 @@ void check_pad(const Vector3d& said, const Vector3d& pad, Problems& problems) {
 
 }  // namespace
 
-FlownRoute interpret(const KmzContent& kmz, const FlightFacts& facts) {
+InterpretedRoute interpret(const KmzContent& kmz, const FlightFacts& facts) {
   const RouteFile file = read_kmz(kmz);
   const bool is_editable = !kmz.template_kml.empty();
   WpmlFlight edited(is_editable ? kmz.template_kml : kmz.waylines_wpml,
                     is_editable ? "template.kml" : "waylines.wpml", facts);
-  WpmlFlight flown(kmz.waylines_wpml, "waylines.wpml", facts);
-  const std::optional<Vector3d> said = edited.reference_pad();
-  const std::vector<Vector3d> places = local_points(file, facts.site, facts.pad);
+  WpmlFlight executed(kmz.waylines_wpml, "waylines.wpml", facts);
+  const std::optional<Vector3d> stated = edited.reference_pad();
+  const std::vector<Vector3d> positions = local_points(file, facts.site, facts.pad);
   Vector3d pad = facts.pad;
-  if (!facts.is_pad_known) pad.head<2>() = said.value_or(places.front()).head<2>();
-  FlownRoute route = flown.fly(places, pad);
-  if (said) check_pad(*said, pad, route.problems);
+  if (!facts.is_pad_known) pad.head<2>() = stated.value_or(positions.front()).head<2>();
+  InterpretedRoute route = executed.fly(positions, pad);
+  if (stated) check_pad(*stated, pad, route.problems);
   if (!is_editable) return route;
-  for (const std::string& problem : edited.fly(places, pad).problems) {
+  for (const std::string& problem : edited.fly(positions, pad).problems) {
     if (std::ranges::find(route.problems, problem) == route.problems.end()) {
       route.problems.push_back(problem);
     }

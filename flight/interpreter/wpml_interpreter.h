@@ -17,6 +17,6 @@ namespace skycap::flight {
 /// height or that of the first waypoint and flies level to it. It then flies through all waypoints
 /// with a stop at each, and descends to the pad. Throws Error{bad_config} if heights are AMSL and
 /// the site's geoid undulation is unknown.
-FlownRoute interpret(const KmzContent& kmz, const FlightFacts& facts);
+InterpretedRoute interpret(const KmzContent& kmz, const FlightFacts& facts);
 
 }  // namespace skycap::flight

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double beat_period = 1.0;  ///< Period of heartbeats [s].
 constexpr std::uint8_t in_progress = 5;
-constexpr int most_tries = 5;
+constexpr int max_tries = 5;
 /// Timeout per try and receive period [s].
 constexpr double answer_patience = 1.0, listening_period = 0.05;
 
@@ -17,9 +17,9 @@ constexpr double answer_patience = 1.0, listening_period = 0.05;
 void AutopilotLink::beat() {
   if (last_beat_ && now() - *last_beat_ < beat_period) return;
   last_beat_ = now();
-  constexpr std::uint8_t ground_station = 6, no_autopilot = 8, is_active = 4;
+  constexpr std::uint8_t mav_type_gcs = 6, no_autopilot = 8, is_active = 4;
   Heartbeat heartbeat;
-  heartbeat.type = ground_station;
+  heartbeat.type = mav_type_gcs;
   heartbeat.autopilot = no_autopilot;
   heartbeat.system_status = is_active;
   send_message(heartbeat);
@@ -41,7 +41,7 @@ std::optional<std::uint8_t> AutopilotLink::command(std::uint16_t number,
   message.command = number;
   message.params = params;
   message.target = state_.autopilot().value();
-  for (int i = 0; i < most_tries; ++i) {
+  for (int i = 0; i < max_tries; ++i) {
     message.confirmation = static_cast<std::uint8_t>(i);
     send_message(message);
     const double end = now() + answer_patience;

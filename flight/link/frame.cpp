@@ -5,7 +5,7 @@
 namespace skycap::flight::mavlink {
 namespace {
 
-constexpr std::uint8_t start_of_frame = 0xFD;
+constexpr std::uint8_t mavlink_stx = 0xFD;
 constexpr std::size_t header_size = 10, checksum_size = 2;
 
 std::uint16_t frame_checksum(std::span<const std::uint8_t> frame, std::uint8_t extra_byte) {
@@ -29,7 +29,7 @@ std::uint16_t checksum(std::span<const std::uint8_t> data, std::uint16_t crc) {
 Bytes wire_form(const Frame& frame, std::uint8_t extra_byte) {
   std::size_t size = frame.payload.size();
   while (size > 1 && frame.payload[size - 1] == 0) --size;
-  Bytes bytes{start_of_frame,      static_cast<std::uint8_t>(size), 0, 0, frame.sequence,
+  Bytes bytes{mavlink_stx,         static_cast<std::uint8_t>(size), 0, 0, frame.sequence,
               frame.sender.system, frame.sender.component};
   bytes.reserve(header_size + size + checksum_size);
   for (const int shift : {0, 8, 16}) bytes.push_back(static_cast<std::uint8_t>(frame.id >> shift));
@@ -52,8 +52,8 @@ void FrameReader::skip(std::size_t count) { begin_ += count; }
 
 std::optional<Frame> FrameReader::next() {
   while (true) {
-    const auto start = std::find(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_), bytes_.end(),
-                                 start_of_frame);
+    const auto start =
+        std::find(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_), bytes_.end(), mavlink_stx);
     begin_ = static_cast<std::size_t>(start - bytes_.begin());
     const std::span<const std::uint8_t> rest = std::span(bytes_).subspan(begin_);
     if (rest.size() < header_size) return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<Frame> FrameReader::next() {
     const std::size_t size = header_size + rest[1] + checksum_size;
     if (rest.size() < size) return std::nullopt;
     const std::uint32_t id = rest[7] + 256U * rest[8] + 65536U * rest[9];
-    const std::optional<std::uint8_t> extra_byte = extra_byte_of_(id);
+    const std::optional<std::uint8_t> extra_byte = find_crc_extra_(id);
     if (!extra_byte) {  // The frame cannot be validated.
       skip(size);
       continue;

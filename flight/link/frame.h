@@ -42,9 +42,10 @@ class FrameReader {
  public:
   /// Returns the CRC extra byte of a message, or std::nullopt for unknown messages, which are
   /// skipped.
-  using ExtraByteOf = std::function<std::optional<std::uint8_t>(std::uint32_t id)>;
+  using CrcExtraLookup = std::function<std::optional<std::uint8_t>(std::uint32_t id)>;
 
-  explicit FrameReader(ExtraByteOf extra_byte_of) : extra_byte_of_(std::move(extra_byte_of)) {}
+  explicit FrameReader(CrcExtraLookup find_crc_extra)
+      : find_crc_extra_(std::move(find_crc_extra)) {}
 
   void feed(std::span<const std::uint8_t> bytes);
 
@@ -55,7 +56,7 @@ class FrameReader {
  private:
   void skip(std::size_t count);
 
-  ExtraByteOf extra_byte_of_;
+  CrcExtraLookup find_crc_extra_;
   Bytes bytes_;
   std::size_t begin_ = 0;  ///< Start of the unprocessed bytes.
 };

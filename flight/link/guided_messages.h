@@ -208,8 +208,8 @@ struct GimbalAttitude {
 
 /// Returns the CRC extra byte of a message above, or std::nullopt for other messages.
 inline std::optional<std::uint8_t> guided_extra_byte(std::uint32_t id) {
-  return extra_byte_of<Heartbeat, SystemStatus, Attitude, GlobalPosition, CommandLong,
-                       CommandAnswer, PositionTarget, EstimatorStatus, StatusText, GimbalAttitude>(
+  return find_crc_extra<Heartbeat, SystemStatus, Attitude, GlobalPosition, CommandLong,
+                        CommandAnswer, PositionTarget, EstimatorStatus, StatusText, GimbalAttitude>(
       id);
 }
 

@@ -146,7 +146,7 @@ std::optional<M> decode(const Frame& frame) {
 
 /// Returns the CRC extra byte of one of the messages `M`, for FrameReader.
 template <class... M>
-std::optional<std::uint8_t> extra_byte_of(std::uint32_t id) {
+std::optional<std::uint8_t> find_crc_extra(std::uint32_t id) {
   std::optional<std::uint8_t> byte;
   ((id == M::id ? void(byte = extra_byte<M>()) : void()), ...);
   return byte;

@@ -11,10 +11,10 @@ namespace {
 /// of the sender.
 constexpr int late_frames = 64;
 
-constexpr std::uint8_t no_autopilot = 8, armed_flag = 128, least_warning = 4;
+constexpr std::uint8_t no_autopilot = 8, armed_flag = 128, warning_severity = 4;
 
 /// Returns the pitch of a gimbal's optical axis, or std::nullopt for an invalid rotation.
-std::optional<double> pitch_of(const std::array<float, 4>& turn) {
+std::optional<double> compute_pitch(const std::array<float, 4>& turn) {
   double norm = 0.0;
   for (const float part : turn) norm += static_cast<double>(part) * part;
   if (!(norm > 0.9 && norm < 1.1)) return std::nullopt;  // Also rejects NaN.
@@ -22,7 +22,7 @@ std::optional<double> pitch_of(const std::array<float, 4>& turn) {
   return std::asin(std::clamp(2.0 * (w * y - z * x) / norm, -1.0, 1.0));
 }
 
-std::string text_of(const StatusText& message) {
+std::string to_string(const StatusText& message) {
   std::string text;
   for (const char letter : message.text) {
     if (letter == '\0') break;
@@ -36,8 +36,8 @@ std::string text_of(const StatusText& message) {
 bool VehicleState::is_new(const Frame& frame) {
   const auto [known, is_first] = sequences_.try_emplace(frame.sender.component, frame.sequence);
   if (is_first) return true;
-  const auto behind = static_cast<std::uint8_t>(known->second - frame.sequence);
-  if (behind < late_frames) return false;
+  const auto gap = static_cast<std::uint8_t>(known->second - frame.sequence);
+  if (gap < late_frames) return false;
   known->second = frame.sequence;
   return true;
 }
@@ -57,7 +57,7 @@ void VehicleState::hear(const Frame& frame, double now) {
   last_heard_ = now;
   // Gimbals may be separate components.
   if (const auto gimbal = decode<GimbalAttitude>(frame)) {
-    if (const auto pitch = pitch_of(gimbal->turn)) pitch_ = pitch;
+    if (const auto pitch = compute_pitch(gimbal->turn)) pitch_ = pitch;
   } else if (frame.sender.component == autopilot_->component) {
     hear_autopilot(frame, now);
   }
@@ -80,14 +80,14 @@ void VehicleState::hear_autopilot(const Frame& frame, double now) {
   } else if (const auto answer = decode<CommandAnswer>(frame)) {
     answers_[answer->command] = answer->result;
   } else if (const auto text = decode<StatusText>(frame)) {
-    if (text->severity <= least_warning) warning_ = text_of(*text);
+    if (text->severity <= warning_severity) warning_ = to_string(*text);
   }
 }
 
 void VehicleState::hear_position(const GlobalPosition& message, double now) {
-  constexpr std::int32_t most_latitude = 900'000'000, most_longitude = 1'800'000'000;
-  if (std::abs(static_cast<double>(message.latitude)) > most_latitude ||
-      std::abs(static_cast<double>(message.longitude)) > most_longitude) {
+  constexpr std::int32_t max_latitude = 900'000'000, max_longitude = 1'800'000'000;
+  if (std::abs(static_cast<double>(message.latitude)) > max_latitude ||
+      std::abs(static_cast<double>(message.longitude)) > max_longitude) {
     return;
   }
   // A position with an unchanged time stamp is ignored.

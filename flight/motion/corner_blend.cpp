@@ -10,17 +10,17 @@ namespace {
 using Eigen::Vector3d;
 
 /// Maximum fraction of a straight piece that the blend at each end may use.
-constexpr double most_of_a_piece = 0.45;
+constexpr double max_piece_fraction = 0.45;
 /// Factor by which a blend that violates the clearance is reduced, and the number of tries.
 constexpr double shrinking = 0.8;
-constexpr int most_tries = 14;
+constexpr int max_tries = 14;
 /// Minimum reach of a worthwhile blend [m].
-constexpr double least_reach = 0.02;
+constexpr double min_reach = 0.02;
 /// Minimum distance between the first control points of a blend, relative to its reach.
-constexpr double least_handle = 0.30;
+constexpr double min_handle = 0.30;
 /// Minimum duration of half a speed change and of constant speed [s]. Shorter pieces would have
 /// inaccurate jerk.
-constexpr double least_phase = 0.05;
+constexpr double min_phase = 0.05;
 /// Number of halvings in the search for a speed.
 constexpr int bisections = 50;
 
@@ -50,11 +50,11 @@ Ramp ramp(double from, double to, const MissionMode& limits) {
   const double full_rise = limits.acceleration / limits.jerk;
   if (change >= limits.acceleration * full_rise) {
     const double hold = change / limits.acceleration - full_rise;
-    if (hold >= least_phase && full_rise >= least_phase) return {full_rise, hold};
+    if (hold >= min_phase && full_rise >= min_phase) return {full_rise, hold};
     // A short hold is merged into the rise, which reduces the jerk at the same peak.
-    return {std::max(change / limits.acceleration, least_phase), 0.0};
+    return {std::max(change / limits.acceleration, min_phase), 0.0};
   }
-  return {std::max(std::sqrt(change / limits.jerk), least_phase), 0.0};
+  return {std::max(std::sqrt(change / limits.jerk), min_phase), 0.0};
 }
 
 /// The ramp is symmetric, so its mean speed is that of its ends.
@@ -77,9 +77,9 @@ class StraightMotion {
   void hold_speed(double time) { advance(time, 0.0, 0.0); }
 
   /// Adds the rounding residual of the distance to the last piece.
-  void end_in(const Vector3d& place) {
-    CurvePiece& last = curve_.back();
-    const Vector3d missing = place - last.control[5];
+  void end_in(const Vector3d& position) {
+    CurveSegment& last = curve_.back();
+    const Vector3d missing = position - last.control[5];
     for (std::size_t i = 3; i < 6; ++i) last.control[i] += missing;
   }
 
@@ -92,7 +92,7 @@ class StraightMotion {
     next.velocity = now_.velocity + 0.5 * time * (now_.acceleration + next.acceleration);
     next.position = now_.position + time * now_.velocity +
                     time * time / 6.0 * (2.0 * now_.acceleration + next.acceleration);
-    curve_.push_back(piece_between(now_, next, time));
+    curve_.push_back(segment_between(now_, next, time));
     now_ = next;
   }
 
@@ -118,29 +118,29 @@ class Blender {
     rules_.resize(points.size());
   }
 
-  BlendedWay blend() {
+  BlendedPath blend() {
     blends_.resize(points_.size());
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) blends_[i] = largest_blend(i);
     match_speeds();
-    BlendedWay way{{}, {0.0}, {blends_.begin(), blends_.end()}};
+    BlendedPath path{{}, {0.0}, {blends_.begin(), blends_.end()}};
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
-      if (i > 0) pass(i, way);
-      add_straight(i, way.curve);
+      if (i > 0) pass(i, path);
+      add_straight(i, path.curve);
     }
-    way.moments.push_back(duration(way.curve));
-    return way;
+    path.moments.push_back(duration(path.curve));
+    return path;
   }
 
  private:
   Vector3d direction(std::size_t i) const { return (points_[i + 1] - points_[i]).normalized(); }
-  double piece_length(std::size_t i) const { return (points_[i + 1] - points_[i]).norm(); }
+  double segment_length(std::size_t i) const { return (points_[i + 1] - points_[i]).norm(); }
   double straight_length(std::size_t i) const {
-    return piece_length(i) - blends_[i].reach - blends_[i + 1].reach;
+    return segment_length(i) - blends_[i].reach - blends_[i + 1].reach;
   }
 
   /// Returns control points on both arms of the corner. They are evenly spaced, which gives
   /// constant speed and zero acceleration at the ends.
-  CurvePiece blend_piece(std::size_t corner, const Blend& blend) const {
+  CurveSegment blend_segment(std::size_t corner, const Blend& blend) const {
     const Vector3d before = direction(corner - 1), after = direction(corner);
     const double step = blend.handle * blend.reach;
     const Vector3d start = points_[corner] - blend.reach * before;
@@ -153,37 +153,38 @@ class Blender {
   /// Returns the blend of that reach with the fastest handle.
   Blend fastest_blend(std::size_t corner, double reach) const {
     constexpr int tries = 11;
-    double handle = least_handle;
+    double handle = min_handle;
     Blend best;
     for (int i = 0; i < tries; ++i, handle += 0.02) {
-      const Blend blend = blend_of(corner, {reach, std::min(handle, 0.5)});
+      const Blend blend = make_blend(corner, {reach, std::min(handle, 0.5)});
       if (blend.speed > best.speed) best = blend;
     }
     return best;
   }
 
-  Blend blend_of(std::size_t corner, const CornerShape& shape) const {
+  Blend make_blend(std::size_t corner, const CornerShape& shape) const {
     Blend blend{shape, 1.0};
     // At 1 m/s it may be sped up by the inverse of its required slowdown.
-    blend.speed = 1.0 / needed_slowdown({blend_piece(corner, blend)}, motion_);
+    blend.speed = 1.0 / needed_slowdown({blend_segment(corner, blend)}, motion_);
     return blend;
   }
 
-  bool is_proven(std::size_t corner, const Blend& blend) const {
-    return prove(space_, {blend_piece(corner, blend)}, clearance_, clearance_).is_proven;
+  bool is_verified(std::size_t corner, const Blend& blend) const {
+    return verify(space_, {blend_segment(corner, blend)}, clearance_, clearance_).is_verified;
   }
 
   /// Appends the corner: the blend, or a stop in it.
-  void pass(std::size_t corner, BlendedWay& way) const {
-    const double now = duration(way.curve);
+  void pass(std::size_t corner, BlendedPath& path) const {
+    const double now = duration(path.curve);
     const double wait = rules_[corner].wait;
     if (blends_[corner].reach > 0.0) {
-      way.curve.push_back(blend_piece(corner, blends_[corner]));
-      way.moments.push_back(now + 0.5 * way.curve.back().duration);
+      path.curve.push_back(blend_segment(corner, blends_[corner]));
+      path.moments.push_back(now + 0.5 * path.curve.back().duration);
       return;
     }
-    way.moments.push_back(now);
-    if (wait > 0.0) way.curve.push_back(piece_between({points_[corner]}, {points_[corner]}, wait));
+    path.moments.push_back(now);
+    if (wait > 0.0)
+      path.curve.push_back(segment_between({points_[corner]}, {points_[corner]}, wait));
   }
 
   /// Returns the maximum reach of a blend that observes the rule's maximum distance, for the
@@ -191,29 +192,29 @@ class Blender {
   /// away, along both arms.
   double allowed_reach(std::size_t corner) const {
     const double bend = (direction(corner) - direction(corner - 1)).norm();
-    const double off = (16.0 - 25.0 * least_handle) / 32.0 * bend;
+    const double off = (16.0 - 25.0 * min_handle) / 32.0 * bend;
     const double reach = longest_reach(corner);
-    return off * reach > rules_[corner].most_off ? rules_[corner].most_off / off : reach;
+    return off * reach > rules_[corner].max_offset ? rules_[corner].max_offset / off : reach;
   }
 
   double longest_reach(std::size_t corner) const {
-    return most_of_a_piece * std::min(piece_length(corner - 1), piece_length(corner));
+    return max_piece_fraction * std::min(segment_length(corner - 1), segment_length(corner));
   }
 
   Blend largest_blend(std::size_t corner) const {
     // Near a reversal, the triangle degenerates to a line and a stop at its end is required.
     if (direction(corner - 1).dot(direction(corner)) < -0.95) return {};
-    if (rules_[corner].most_off == 0.0) return {};
+    if (rules_[corner].max_offset == 0.0) return {};
     if (std::optional<CornerShape> shape = rules_[corner].shape) {
       shape->reach = std::min(shape->reach, longest_reach(corner));
-      if (shape->reach < least_reach) return {};
-      const Blend blend = blend_of(corner, *shape);
-      return is_proven(corner, blend) ? blend : Blend{};
+      if (shape->reach < min_reach) return {};
+      const Blend blend = make_blend(corner, *shape);
+      return is_verified(corner, blend) ? blend : Blend{};
     }
     double reach = allowed_reach(corner);
-    for (int i = 0; i < most_tries && reach > least_reach; ++i, reach *= shrinking) {
+    for (int i = 0; i < max_tries && reach > min_reach; ++i, reach *= shrinking) {
       const Blend blend = fastest_blend(corner, reach);
-      if (is_proven(corner, blend)) return blend;
+      if (is_verified(corner, blend)) return blend;
     }
     return {};
   }
@@ -222,12 +223,13 @@ class Blender {
   /// previous one within the straight piece between them.
   void match_speeds() {
     const MissionMode& limits = motion_.vehicle().mode;
-    const auto limit = [&](std::size_t from, std::size_t to, std::size_t piece) {
-      const double start = blends_[from].speed, room = straight_length(piece);
+    const auto limit = [&](std::size_t from, std::size_t to, std::size_t segment) {
+      const double start = blends_[from].speed, available_length = straight_length(segment);
       double& speed = blends_[to].speed;
       if (speed <= start) return;
-      speed =
-          largest(start, speed, [&](double v) { return ramp_distance(start, v, limits) <= room; });
+      speed = largest(start, speed, [&](double v) {
+        return ramp_distance(start, v, limits) <= available_length;
+      });
     };
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) limit(i, i + 1, i);
     for (std::size_t i = points_.size() - 1; i > 0; --i) limit(i, i - 1, i - 1);
@@ -235,26 +237,28 @@ class Blender {
 
   void add_straight(std::size_t i, Curve& curve) const {
     const MissionMode& limits = motion_.vehicle().mode;
-    const Vector3d way = direction(i);
-    const double start = blends_[i].speed, end = blends_[i + 1].speed, room = straight_length(i);
-    StraightMotion motion(curve, points_[i] + blends_[i].reach * way, way, start);
+    const Vector3d path = direction(i);
+    const double start = blends_[i].speed, end = blends_[i + 1].speed,
+                 available_length = straight_length(i);
+    StraightMotion motion(curve, points_[i] + blends_[i].reach * path, path, start);
     const auto needed = [&](double peak) {
       return ramp_distance(start, peak, limits) + ramp_distance(peak, end, limits) +
-             least_phase * peak;
+             min_phase * peak;
     };
-    const double least = std::max(start, end), most = std::max(least, motion_.leg_speed(way));
-    if (needed(least) <= room) {
-      const double peak = largest(least, most, [&](double v) { return needed(v) <= room; });
+    const double min = std::max(start, end), max = std::max(min, motion_.leg_speed(path));
+    if (needed(min) <= available_length) {
+      const double peak =
+          largest(min, max, [&](double v) { return needed(v) <= available_length; });
       motion.change_speed(peak, ramp(start, peak, limits));
-      motion.hold_speed(least_phase + (room - needed(peak)) / peak);
+      motion.hold_speed(min_phase + (available_length - needed(peak)) / peak);
       motion.change_speed(end, ramp(peak, end, limits));
     } else if (start == end) {
-      motion.hold_speed(room / start);
+      motion.hold_speed(available_length / start);
     } else {  // One ramp, stretched to the available length.
-      const double factor = room / ramp_distance(start, end, limits);
+      const double factor = available_length / ramp_distance(start, end, limits);
       motion.change_speed(end, ramp(start, end, limits).stretched(factor));
     }
-    motion.end_in(points_[i + 1] - blends_[i + 1].reach * way);
+    motion.end_in(points_[i + 1] - blends_[i + 1].reach * path);
   }
 
   const std::vector<Vector3d>& points_;
@@ -267,9 +271,9 @@ class Blender {
 
 }  // namespace
 
-BlendedWay blend_corners(const std::vector<Vector3d>& points, const FreeSpace& space,
-                         double clearance, const Motion& motion,
-                         std::span<const CornerRule> rules) {
+BlendedPath blend_corners(const std::vector<Vector3d>& points, const FreeSpace& space,
+                          double clearance, const Motion& motion,
+                          std::span<const CornerRule> rules) {
   return Blender(points, space, clearance, motion, rules).blend();
 }
 

@@ -27,14 +27,14 @@ struct CornerShape {
 /// Rule for passing one point of a polyline.
 struct CornerRule {
   /// Maximum distance between the point and the curve [m]. 0: stop at the point.
-  double most_off = std::numeric_limits<double>::infinity();
+  double max_offset = std::numeric_limits<double>::infinity();
   double wait = 0.0;  ///< Rest time if the curve stops at the point [s].
   /// The only shape to try, if both adjacent lines are long enough. Otherwise the fastest shape is
   /// used.
   std::optional<CornerShape> shape{};
 };
 
-struct BlendedWay {
+struct BlendedPath {
   Curve curve;
   std::vector<double> moments;      ///< Time at which the curve is closest to each point [s].
   std::vector<CornerShape> shapes;  ///< Shape at each point.
@@ -48,8 +48,8 @@ struct BlendedWay {
 /// Assumes that the caller has verified the lines of the polyline. Requires at least two points, of
 /// which consecutive ones differ. `rules` is empty or has one rule per point; the rules of both
 /// ends are ignored. Deterministic.
-BlendedWay blend_corners(const std::vector<Eigen::Vector3d>& points, const FreeSpace& space,
-                         double clearance, const Motion& motion,
-                         std::span<const CornerRule> rules = {});
+BlendedPath blend_corners(const std::vector<Eigen::Vector3d>& points, const FreeSpace& space,
+                          double clearance, const Motion& motion,
+                          std::span<const CornerRule> rules = {});
 
 }  // namespace skycap::flight

@@ -33,9 +33,9 @@ std::array<Control, 2> halves(Control points) {
   return parts;
 }
 
-CurveState state_of(const CurvePiece& piece, double share) {
+CurveState compute_state(const CurveSegment& segment, double share) {
   // The levels of de Casteljau's algorithm contain the points of the derivatives, too.
-  Control points = piece.control;
+  Control points = segment.control;
   const auto lower = [&](std::size_t count) {
     for (std::size_t i = 0; i + 1 < count; ++i) {
       points[i] = (1.0 - share) * points[i] + share * points[i + 1];
@@ -43,7 +43,7 @@ CurveState state_of(const CurvePiece& piece, double share) {
   };
   lower(6), lower(5), lower(4);
   CurveState state;
-  const double rate = 1.0 / piece.duration;
+  const double rate = 1.0 / segment.duration;
   state.acceleration = 20.0 * rate * rate * (points[2] - 2.0 * points[1] + points[0]);
   lower(3);
   state.velocity = 5.0 * rate * (points[1] - points[0]);
@@ -54,10 +54,10 @@ CurveState state_of(const CurvePiece& piece, double share) {
 
 /// Returns a weighted mean of the lengths of chord and control polygon. Source: Gravesen, Adaptive
 /// Subdivision and the Length and Energy of Bezier Curves, 1997, with the weights for degree 5.
-double length_of(const Control& control, int halvings) {
+double compute_length(const Control& control, int halvings) {
   if (halvings > 0) {
     double sum = 0.0;
-    for (const Control& half : halves(control)) sum += length_of(half, halvings - 1);
+    for (const Control& half : halves(control)) sum += compute_length(half, halvings - 1);
     return sum;
   }
   double polygon = 0.0;
@@ -76,33 +76,35 @@ double hull_radius(const Control& control) {
   return radius < thin ? 0.0 : radius;
 }
 
-LegProof prove_part(const FreeSpace& space, const Control& control, double clearance, double up_to,
-                    int halvings_left) {
+LegVerification verify_part(const FreeSpace& space, const Control& control, double clearance,
+                            double up_to, int halvings_left) {
   // The points within a radius of a chord form a convex set. If it contains the control points, it
   // also contains the curve. The curve's clearance is therefore at least that of the chord minus
   // the radius.
   const double radius = hull_radius(control);
-  const LegProof chord =
-      prove(space, {control.front(), control.back()}, clearance + radius, up_to + radius);
-  if (chord.is_proven) return {true, chord.clearance - radius, chord.closest};
+  const LegVerification chord =
+      verify(space, {control.front(), control.back()}, clearance + radius, up_to + radius);
+  if (chord.is_verified) return {true, chord.clearance - radius, chord.closest};
   // The curve passes within the radius of every point of the chord. If the chord violates the
   // clearance by more than that, so does the curve, and subdivision cannot help.
   const bool is_hopeless = chord.clearance + radius < clearance || radius == 0.0;
   if (is_hopeless || halvings_left == 0) return {false, 0.0, chord.closest};
-  LegProof proof{true, up_to, {up_to}};
+  LegVerification verification{true, up_to, {up_to}};
   for (const Control& half : halves(control)) {
-    LegProof part = prove_part(space, half, clearance, up_to, halvings_left - 1);
-    if (!part.is_proven) return part;
-    if (part.clearance < proof.clearance) proof = part;
+    LegVerification part = verify_part(space, half, clearance, up_to, halvings_left - 1);
+    if (!part.is_verified) return part;
+    if (part.clearance < verification.clearance) verification = part;
   }
-  return proof;
+  return verification;
 }
 
-double slowdown_of_part(const Control& c, double duration, const Motion& motion, int halvings) {
+double compute_segment_slowdown(const Control& c, double duration, const Motion& motion,
+                                int halvings) {
   if (halvings > 0) {
     double factor = 0.0;
     for (const Control& half : halves(c)) {
-      factor = std::max(factor, slowdown_of_part(half, 0.5 * duration, motion, halvings - 1));
+      factor =
+          std::max(factor, compute_segment_slowdown(half, 0.5 * duration, motion, halvings - 1));
     }
     return factor;
   }
@@ -131,76 +133,78 @@ double slowdown_of_part(const Control& c, double duration, const Motion& motion,
 }  // namespace
 
 // Matches position, velocity and acceleration at both ends.
-CurvePiece piece_between(const CurveState& from, const CurveState& to, double duration) {
+CurveSegment segment_between(const CurveState& from, const CurveState& to, double duration) {
   const double first = duration / 5.0, second = duration * duration / 20.0;
-  CurvePiece piece;
-  piece.duration = duration;
-  piece.control[0] = from.position;
-  piece.control[1] = from.position + first * from.velocity;
-  piece.control[2] = from.position + 2.0 * first * from.velocity + second * from.acceleration;
-  piece.control[3] = to.position - 2.0 * first * to.velocity + second * to.acceleration;
-  piece.control[4] = to.position - first * to.velocity;
-  piece.control[5] = to.position;
-  return piece;
+  CurveSegment segment;
+  segment.duration = duration;
+  segment.control[0] = from.position;
+  segment.control[1] = from.position + first * from.velocity;
+  segment.control[2] = from.position + 2.0 * first * from.velocity + second * from.acceleration;
+  segment.control[3] = to.position - 2.0 * first * to.velocity + second * to.acceleration;
+  segment.control[4] = to.position - first * to.velocity;
+  segment.control[5] = to.position;
+  return segment;
 }
 
-std::array<CurvePiece, 2> halves(const CurvePiece& piece) {
-  const std::array<Control, 2> parts = halves(piece.control);
-  return {CurvePiece{parts[0], 0.5 * piece.duration}, CurvePiece{parts[1], 0.5 * piece.duration}};
+std::array<CurveSegment, 2> halves(const CurveSegment& segment) {
+  const std::array<Control, 2> parts = halves(segment.control);
+  return {CurveSegment{parts[0], 0.5 * segment.duration},
+          CurveSegment{parts[1], 0.5 * segment.duration}};
 }
 
-double hull_radius(const CurvePiece& piece) { return hull_radius(piece.control); }
+double hull_radius(const CurveSegment& segment) { return hull_radius(segment.control); }
 
 double duration(const Curve& curve) {
   double sum = 0.0;
-  for (const CurvePiece& piece : curve) sum += piece.duration;
+  for (const CurveSegment& segment : curve) sum += segment.duration;
   return sum;
 }
 
 double length(const Curve& curve) {
   double sum = 0.0;
-  for (const CurvePiece& piece : curve) sum += length_of(piece.control, length_halvings);
+  for (const CurveSegment& segment : curve) sum += compute_length(segment.control, length_halvings);
   return sum;
 }
 
 CurveState state_at(const Curve& curve, double time) {
-  for (const CurvePiece& piece : curve) {
-    if (time < piece.duration) return state_of(piece, std::max(0.0, time / piece.duration));
-    time -= piece.duration;
+  for (const CurveSegment& segment : curve) {
+    if (time < segment.duration)
+      return compute_state(segment, std::max(0.0, time / segment.duration));
+    time -= segment.duration;
   }
   return {curve.back().control.back()};
 }
 
 Curve slowed(Curve curve, double factor) {
-  for (CurvePiece& piece : curve) piece.duration *= factor;
+  for (CurveSegment& segment : curve) segment.duration *= factor;
   return curve;
 }
 
 double needed_slowdown(const Curve& curve, const Motion& motion) {
   double factor = 0.0;
-  for (const CurvePiece& piece : curve) {
-    factor = std::max(factor,
-                      slowdown_of_part(piece.control, piece.duration, motion, derivative_halvings));
+  for (const CurveSegment& segment : curve) {
+    factor = std::max(factor, compute_segment_slowdown(segment.control, segment.duration, motion,
+                                                       derivative_halvings));
   }
   return factor;
 }
 
-LegProof prove(const FreeSpace& space, const Curve& curve, double clearance, double up_to) {
-  LegProof proof{true, up_to, {up_to}};
-  for (const CurvePiece& piece : curve) {
-    LegProof part = prove_part(space, piece.control, clearance, up_to, max_halvings);
-    if (!part.is_proven) return part;
-    if (part.clearance < proof.clearance) proof = part;
+LegVerification verify(const FreeSpace& space, const Curve& curve, double clearance, double up_to) {
+  LegVerification verification{true, up_to, {up_to}};
+  for (const CurveSegment& segment : curve) {
+    LegVerification part = verify_part(space, segment.control, clearance, up_to, max_halvings);
+    if (!part.is_verified) return part;
+    if (part.clearance < verification.clearance) verification = part;
   }
-  return proof;
+  return verification;
 }
 
 double energy(const Curve& curve, const Motion& motion) {
   double sum = 0.0, peak_speed = 0.0;
-  for (const CurvePiece& piece : curve) {
-    const double step = piece.duration / integral_steps;
+  for (const CurveSegment& segment : curve) {
+    const double step = segment.duration / integral_steps;
     for (int i = 0; i < integral_steps; ++i) {  // Midpoint rule.
-      const Vector3d velocity = state_of(piece, (i + 0.5) / integral_steps).velocity;
+      const Vector3d velocity = compute_state(segment, (i + 0.5) / integral_steps).velocity;
       sum += step * motion.flight_power(velocity);
       peak_speed = std::max(peak_speed, velocity.norm());
     }

@@ -26,23 +26,23 @@ struct CurveState {
 };
 
 /// Bezier curve of degree 5 with a parameter proportional to time.
-struct CurvePiece {
+struct CurveSegment {
   std::array<Eigen::Vector3d, 6> control;
   double duration = 0.0;  ///< Duration [s], positive.
 };
 
 /// Consecutive pieces. Each piece starts in the end state of the previous one.
-using Curve = std::vector<CurvePiece>;
+using Curve = std::vector<CurveSegment>;
 
 /// Returns the piece between two states. The polynomial of degree 5 is unique, so it reproduces any
 /// motion of lower degree between them.
-CurvePiece piece_between(const CurveState& from, const CurveState& to, double duration);
+CurveSegment segment_between(const CurveState& from, const CurveState& to, double duration);
 
 /// Splits a piece into two pieces of half its duration.
-std::array<CurvePiece, 2> halves(const CurvePiece& piece);
+std::array<CurveSegment, 2> halves(const CurveSegment& segment);
 
 /// Returns the maximum distance of the control points from the line segment between the ends [m].
-double hull_radius(const CurvePiece& piece);
+double hull_radius(const CurveSegment& segment);
 
 double duration(const Curve& curve);
 /// Returns the length of a curve [m], with a relative error of about 1e-6.
@@ -60,9 +60,9 @@ Curve slowed(Curve curve, double factor);
 double needed_slowdown(const Curve& curve, const Motion& motion);
 
 /// Proves that the convex hulls of the curve keep the clearance [m], subdividing as needed.
-/// LegProof::clearance is at most `up_to` [m] and is a lower bound for the whole curve.
-LegProof prove(const FreeSpace& space, const Curve& curve, double clearance,
-               double up_to = std::numeric_limits<double>::infinity());
+/// LegVerification::clearance is at most `up_to` [m] and is a lower bound for the whole curve.
+LegVerification verify(const FreeSpace& space, const Curve& curve, double clearance,
+                       double up_to = std::numeric_limits<double>::infinity());
 
 /// Returns the electrical energy of flying the curve [J].
 double energy(const Curve& curve, const Motion& motion);

@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 
 /// Target duration of a piece and limits on the number of pieces. A joint has nine variables, and
 /// the cost of a solver step is cubic in their number.
-constexpr double piece_duration = 0.8;
-constexpr std::size_t least_pieces = 6, most_pieces = 32;
-constexpr int most_iterations = 20;
+constexpr double segment_duration = 0.8;
+constexpr std::size_t min_pieces = 6, max_pieces = 32;
+constexpr int max_iterations = 20;
 /// Number of solutions, and the factor of each duration relative to the last required one.
 constexpr int rounds = 8;
 constexpr double haste = 0.92;
@@ -31,7 +31,7 @@ constexpr double speed_weight = 10.0;
 /// Weight of the squared penetration of 1 m into the wall at each sample, in equivalent seconds.
 constexpr double wall_weight = 400.0;
 /// Number of distance samples on a piece in addition to its start.
-constexpr int places = 5;
+constexpr int residual_count = 5;
 
 /// Position of a joint, and its velocity and acceleration scaled by the common duration of the
 /// pieces. The path is then independent of the duration, and both can be improved together.
@@ -60,7 +60,7 @@ T hinge(const T& value) {
 
 /// Jerk and speeds of one piece. Accelerations need no penalty: minimum jerk distributes them
 /// evenly, and the final slowdown covers the rest.
-struct PieceCost {
+struct SegmentCost {
   static constexpr int residuals = 9 + 5 * 3;
 
   double duration, speed, ascent, descent, jerk;
@@ -109,17 +109,17 @@ struct PieceCost {
 /// Penetration of a piece's samples into the wall.
 struct WallCost {
   const FreeSpace* space;
-  double wanted;
+  double target_clearance;
 
   template <class T>
   bool operator()(const T* from, const T* to, T* residual) const {
     const auto c = control_points(from, to);
-    for (int i = 0; i < places; ++i) {
-      const double u = (i + 0.5) / places, w = 1.0 - u;
-      const Vector<T> place = w * w * w * w * w * c[0] + 5 * w * w * w * w * u * c[1] +
-                              10 * w * w * w * u * u * c[2] + 10 * w * w * u * u * u * c[3] +
-                              5 * w * u * u * u * u * c[4] + u * u * u * u * u * c[5];
-      residual[i] = std::sqrt(wall_weight) * hinge(T(wanted - distance(place)));
+    for (int i = 0; i < residual_count; ++i) {
+      const double u = (i + 0.5) / residual_count, w = 1.0 - u;
+      const Vector<T> position = w * w * w * w * w * c[0] + 5 * w * w * w * w * u * c[1] +
+                                 10 * w * w * w * u * u * c[2] + 10 * w * w * u * u * u * c[3] +
+                                 5 * w * u * u * u * u * c[4] + u * u * u * u * u * c[5];
+      residual[i] = std::sqrt(wall_weight) * hinge(T(target_clearance - distance(position)));
     }
     return true;
   }
@@ -127,16 +127,16 @@ struct WallCost {
   /// Returns the distance with its gradient, which points away from the closest obstacle. There is
   /// no gradient at a position that is not free. The neighbouring joints must pull it out.
   template <class T>
-  T distance(const Vector<T>& place) const {
-    const Vector3d p(value(place.x()), value(place.y()), value(place.z()));
-    const Closest closest = space->closest({p, p}, wanted);
+  T distance(const Vector<T>& position) const {
+    const Vector3d p(value(position.x()), value(position.y()), value(position.z()));
+    const Closest closest = space->closest({p, p}, target_clearance);
     const Vector3d away = p - closest.on_obstacle;
     if (closest.kind == ObstacleKind::none || closest.distance <= 0.0 || away.norm() == 0.0) {
       return T(closest.distance);
     }
     const Vector3d slope = away.normalized();
-    return closest.distance + slope.x() * (place.x() - p.x()) + slope.y() * (place.y() - p.y()) +
-           slope.z() * (place.z() - p.z());
+    return closest.distance + slope.x() * (position.x() - p.x()) +
+           slope.y() * (position.y() - p.y()) + slope.z() * (position.z() - p.z());
   }
 
   static double value(double number) { return number; }
@@ -146,12 +146,12 @@ struct WallCost {
   }
 };
 
-CurveState state_of(const Joint& joint, double duration) {
+CurveState compute_state(const Joint& joint, double duration) {
   return {Vector3d(joint[0], joint[1], joint[2]), Vector3d(joint[3], joint[4], joint[5]) / duration,
           Vector3d(joint[6], joint[7], joint[8]) / (duration * duration)};
 }
 
-Joint joint_of(const CurveState& state, double duration) {
+Joint make_joint(const CurveState& state, double duration) {
   Joint joint;
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
@@ -163,16 +163,17 @@ Joint joint_of(const CurveState& state, double duration) {
 }
 
 /// Solves the problem for a given duration, starting from the current joints.
-void solve(std::vector<Joint>& joints, const PieceCost& piece_cost, const WallCost& wall_cost) {
+void solve(std::vector<Joint>& joints, const SegmentCost& segment_cost, const WallCost& wall_cost) {
   ceres::Problem problem;
   for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
     double *from = joints[i].data(), *to = joints[i + 1].data();
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PieceCost, PieceCost::residuals, 9, 9>(
-                                 new PieceCost(piece_cost)),
-                             nullptr, from, to);
     problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<WallCost, places, 9, 9>(new WallCost(wall_cost)), nullptr,
-        from, to);
+        new ceres::AutoDiffCostFunction<SegmentCost, SegmentCost::residuals, 9, 9>(
+            new SegmentCost(segment_cost)),
+        nullptr, from, to);
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<WallCost, residual_count, 9, 9>(new WallCost(wall_cost)),
+        nullptr, from, to);
   }
   problem.SetParameterBlockConstant(joints.front().data());
   problem.SetParameterBlockConstant(joints.back().data());
@@ -180,7 +181,7 @@ void solve(std::vector<Joint>& joints, const PieceCost& piece_cost, const WallCo
   options.num_threads = 1;  // Fixed order of summation, for identical results.
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   options.dense_linear_algebra_library_type = ceres::EIGEN;
-  options.max_num_iterations = most_iterations;
+  options.max_num_iterations = max_iterations;
   options.max_solver_time_in_seconds = 1e9;  // The limit is the number of iterations, not the time.
   options.function_tolerance = 1e-4;
   options.logging_type = ceres::SILENT;
@@ -191,25 +192,25 @@ void solve(std::vector<Joint>& joints, const PieceCost& piece_cost, const WallCo
 Curve curve_through(const std::vector<Joint>& joints, double duration) {
   Curve curve;
   for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
-    curve.push_back(
-        piece_between(state_of(joints[i], duration), state_of(joints[i + 1], duration), duration));
+    curve.push_back(segment_between(compute_state(joints[i], duration),
+                                    compute_state(joints[i + 1], duration), duration));
   }
   return curve;
 }
 
 }  // namespace
 
-Curve refine(const Curve& start, const FreeSpace& space, double wanted_clearance,
+Curve refine(const Curve& start, const FreeSpace& space, double target_clearance,
              const Motion& motion) {
   const double total = duration(start);
   const std::size_t count =
-      std::clamp(static_cast<std::size_t>(total / piece_duration), least_pieces, most_pieces);
+      std::clamp(static_cast<std::size_t>(total / segment_duration), min_pieces, max_pieces);
   double step = total / static_cast<double>(count);
   std::vector<Joint> joints;
   for (std::size_t i = 0; i < count; ++i) {
-    joints.push_back(joint_of(state_at(start, static_cast<double>(i) * step), step));
+    joints.push_back(make_joint(state_at(start, static_cast<double>(i) * step), step));
   }
-  joints.push_back(joint_of({start.back().control.back()}, step));
+  joints.push_back(make_joint({start.back().control.back()}, step));
 
   const Vehicle& vehicle = motion.vehicle();
   const Conditions& conditions = motion.conditions();
@@ -218,7 +219,7 @@ Curve refine(const Curve& start, const FreeSpace& space, double wanted_clearance
   const double speed =
       std::min(conditions.cruise_speed,
                std::max(vehicle.max_speed - conditions.wind.norm(), 0.1 * vehicle.max_speed));
-  const WallCost wall_cost{&space, wanted_clearance};
+  const WallCost wall_cost{&space, target_clearance};
   Curve best;
   for (int round = 0; round < rounds; ++round) {
     solve(joints,

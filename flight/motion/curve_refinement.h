@@ -16,8 +16,8 @@ namespace skycap::flight {
 
 /// Returns a twice continuously differentiable curve between the same end positions, at rest at
 /// both. The curve observes the vehicle's limits, but its clearance is not verified. The obstacle
-/// penalty starts at `wanted_clearance` [m]. `start` must not be empty. Deterministic.
-Curve refine(const Curve& start, const FreeSpace& space, double wanted_clearance,
+/// penalty starts at `target_clearance` [m]. `start` must not be empty. Deterministic.
+Curve refine(const Curve& start, const FreeSpace& space, double target_clearance,
              const Motion& motion);
 
 }  // namespace skycap::flight

@@ -13,7 +13,7 @@ namespace skycap::flight {
 /// the prediction or no flight data exist.
 inline double longest_flight(const Vehicle& vehicle) {
   constexpr double longest_on_px4 = 1.8;
-  return vehicle.dialect == Dialect::px4 ? longest_on_px4 : 1.0;
+  return vehicle.autopilot == AutopilotType::px4 ? longest_on_px4 : 1.0;
 }
 
 /// Returns the predicted energy that a sortie may use [J]. The usable battery energy is divided by

@@ -197,7 +197,7 @@ double Motion::moving_time(const Vector3d& displacement) const {
   const Vector3d direction = displacement / distance;
   const LegLimits limits{leg_speed(direction), leg_acceleration(direction)};
   const MissionMode& mode = vehicle_.mode;
-  if (mode.law == LegLaw::s_curve) {
+  if (mode.leg_profile == LegProfile::s_curve) {
     return s_curve_time(distance, limits, mode.jerk, mode.jerk_rise);
   }
   // On distances within the acceptance radius, the vehicle still flies to the position.
@@ -213,7 +213,7 @@ double Motion::leg_time(const Vector3d& displacement) const {
 double Motion::aimed_time(double leg, double yaw, double pitch) const {
   const double turning = turn_time(yaw, vehicle_.mode.yaw_rate, vehicle_.mode.yaw_acceleration);
   const double tilting = std::abs(pitch) / vehicle_.gimbal_rate;
-  if (vehicle_.dialect == Dialect::dji) return std::max(leg, turning) + tilting;
+  if (vehicle_.autopilot == AutopilotType::dji) return std::max(leg, turning) + tilting;
   return std::max({leg, turning, tilting});
 }
 

@@ -15,16 +15,16 @@ using Eigen::Vector3d;
 constexpr double settling = 0.2;
 /// Maximum cut of a corner without a view [m]. A larger cut saves little, and a curve close to the
 /// planned path is more likely to have returns.
-constexpr double most_cut_elsewhere = 3.0;
+constexpr double max_cut_elsewhere = 3.0;
 /// Minimum cut; corners that require a smaller one are stops [m].
-constexpr double least_cut = 0.1;
+constexpr double min_cut = 0.1;
 /// Corners keep their shapes. They are moved outwards by the distance between curve and view until
 /// it is below this limit [m], in a limited number of iterations. Each iteration reduces the
 /// distance by a constant factor.
 constexpr double near_enough = 1e-6;
-constexpr int most_bendings = 40;
+constexpr int max_bends = 40;
 /// Minimum flight speed (see Motion::leg_speed()) [m/s].
-constexpr double least_speed = 0.1;
+constexpr double min_speed = 0.1;
 
 double turn(double from, double to) { return std::remainder(to - from, 2.0 * std::numbers::pi); }
 
@@ -36,117 +36,119 @@ Motion slowed_for(const Motion& motion, const PassRules& rules) {
 }
 
 /// Path without repeated points, and the rules of the remaining points.
-class Way {
+class FlyThroughPath {
  public:
-  Way(const std::vector<Vector3d>& points, std::span<const ViewOnWay> views, const PassRules& rules)
+  FlyThroughPath(const std::vector<Vector3d>& points, std::span<const FlyThroughView> views,
+                 const PassRules& rules)
       : views_(views) {
     std::vector<std::size_t> index(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (places_.empty() || points[i] != places_.back()) places_.push_back(points[i]);
-      index[i] = places_.size() - 1;
+      if (positions_.empty() || points[i] != positions_.back()) positions_.push_back(points[i]);
+      index[i] = positions_.size() - 1;
     }
-    points_ = places_;
-    rules_.assign(points_.size(), {most_cut_elsewhere});
-    for (const ViewOnWay& view : views) {
-      point_of_.push_back(index[view.point]);
-      if (places_of_views_.empty() || places_of_views_.back() != point_of_.back()) {
-        places_of_views_.push_back(point_of_.back());
+    points_ = positions_;
+    rules_.assign(points_.size(), {max_cut_elsewhere});
+    for (const FlyThroughView& view : views) {
+      point_indices_.push_back(index[view.point]);
+      if (view_points_.empty() || view_points_.back() != point_indices_.back()) {
+        view_points_.push_back(point_indices_.back());
       }
-      double& most_off = rules_[point_of_.back()].most_off;
-      most_off = std::min(most_off, rules.most_cut);
+      double& max_offset = rules_[point_indices_.back()].max_offset;
+      max_offset = std::min(max_offset, rules.max_cut);
     }
   }
 
   std::size_t size() const { return points_.size(); }
   /// Returns true if there is a view at either end of the path, where the vehicle cannot wait.
   bool has_view_at_end() const {
-    return point_of_.front() == 0 || point_of_.back() + 1 == points_.size();
+    return point_indices_.front() == 0 || point_indices_.back() + 1 == points_.size();
   }
 
   /// Rounds all corners with a curve through the view positions. Adds stops where the interval
   /// between two images is too short.
-  BlendedWay blend(const FreeSpace& space, double clearance, const Motion& motion,
-                   const PassRules& rules) {
-    const auto lack = [&](const BlendedWay& way, std::size_t view) {
-      const double time = way.moments[point_of_[view + 1]] - way.moments[point_of_[view]];
-      return least_interval(views_[view].aim, views_[view + 1].aim, motion, rules) - time;
+  BlendedPath blend(const FreeSpace& space, double clearance, const Motion& motion,
+                    const PassRules& rules) {
+    const auto lack = [&](const BlendedPath& path, std::size_t view) {
+      const double time =
+          path.moments[point_indices_[view + 1]] - path.moments[point_indices_[view]];
+      return min_interval(views_[view].aim, views_[view + 1].aim, motion, rules) - time;
     };
     const auto bent = [&] { return bend(space, clearance, motion); };
-    BlendedWay way = bent();
+    BlendedPath path = bent();
     for (std::size_t i = 0; i + 1 < views_.size(); ++i) {
-      rules_[point_of_[i]].wait = 0.0;
-      if (lack(way, i) > 0.0) rules_[point_of_[i]].most_off = 0.0;
+      rules_[point_indices_[i]].wait = 0.0;
+      if (lack(path, i) > 0.0) rules_[point_indices_[i]].max_offset = 0.0;
     }
     // Stops only lengthen the other intervals.
-    way = bent();
+    path = bent();
     waits_.assign(views_.size(), 0.0);
     for (std::size_t i = 0; i + 1 < views_.size(); ++i) {
-      waits_[i] = std::max(0.0, lack(way, i));
-      rules_[point_of_[i]].wait += waits_[i];
+      waits_[i] = std::max(0.0, lack(path, i));
+      rules_[point_indices_[i]].wait += waits_[i];
     }
     return blend_corners(points_, space, clearance, motion, rules_);
   }
 
   /// Reduces the cut at both ends of each piece that is not free. Returns true if all pieces are
   /// free, or if no cut can be reduced.
-  bool relax(const BlendedWay& way, const std::function<bool(const Curve&)>& is_free) {
+  bool relax(const BlendedPath& path, const std::function<bool(const Curve&)>& is_free) {
     std::vector<bool> is_tight(points_.size(), false);
     double begin = 0.0;
-    for (const CurvePiece& piece : way.curve) {
-      const double middle = begin + 0.5 * piece.duration;
-      begin += piece.duration;
-      if (is_free({piece})) continue;
-      const auto next = std::ranges::upper_bound(way.moments, middle) - way.moments.begin();
+    for (const CurveSegment& segment : path.curve) {
+      const double middle = begin + 0.5 * segment.duration;
+      begin += segment.duration;
+      if (is_free({segment})) continue;
+      const auto next = std::ranges::upper_bound(path.moments, middle) - path.moments.begin();
       const auto end = std::min(static_cast<std::size_t>(next), points_.size() - 1);
       is_tight[end - 1] = is_tight[end] = true;
     }
     bool is_done = true;
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
-      double& most_off = rules_[i].most_off;
-      if (!is_tight[i] || most_off == 0.0) continue;
-      most_off = most_off > 2.0 * least_cut ? 0.5 * most_off : 0.0;
+      double& max_offset = rules_[i].max_offset;
+      if (!is_tight[i] || max_offset == 0.0) continue;
+      max_offset = max_offset > 2.0 * min_cut ? 0.5 * max_offset : 0.0;
       is_done = false;
     }
     return is_done;
   }
 
   /// Returns the capture times on the blended path. Images at the same position are consecutive.
-  std::vector<double> moments(const BlendedWay& way) const {
+  std::vector<double> moments(const BlendedPath& path) const {
     std::vector<double> moments;
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      const bool is_here = i > 0 && point_of_[i] == point_of_[i - 1];
-      moments.push_back(is_here ? moments.back() + waits_[i - 1] : way.moments[point_of_[i]]);
+      const bool is_here = i > 0 && point_indices_[i] == point_indices_[i - 1];
+      moments.push_back(is_here ? moments.back() + waits_[i - 1] : path.moments[point_indices_[i]]);
     }
     return moments;
   }
 
  private:
   /// Moves corners until the curve passes through the view positions.
-  BlendedWay bend(const FreeSpace& space, double clearance, const Motion& motion) {
-    points_ = places_;
+  BlendedPath bend(const FreeSpace& space, double clearance, const Motion& motion) {
+    points_ = positions_;
     for (CornerRule& rule : rules_) rule.shape.reset();
-    BlendedWay way = blend_corners(points_, space, clearance, motion, rules_);
-    for (int round = 0; round < most_bendings; ++round) {
-      double most_off = 0.0;
-      for (const std::size_t i : places_of_views_) {
-        rules_[i].shape = way.shapes[i];  // A stop remains a stop.
-        const Vector3d off = places_[i] - state_at(way.curve, way.moments[i]).position;
+    BlendedPath path = blend_corners(points_, space, clearance, motion, rules_);
+    for (int round = 0; round < max_bends; ++round) {
+      double max_offset = 0.0;
+      for (const std::size_t i : view_points_) {
+        rules_[i].shape = path.shapes[i];  // A stop remains a stop.
+        const Vector3d off = positions_[i] - state_at(path.curve, path.moments[i]).position;
         points_[i] += off;
-        most_off = std::max(most_off, off.norm());
+        max_offset = std::max(max_offset, off.norm());
       }
-      if (most_off < near_enough) break;
-      way = blend_corners(points_, space, clearance, motion, rules_);
+      if (max_offset < near_enough) break;
+      path = blend_corners(points_, space, clearance, motion, rules_);
     }
-    return way;
+    return path;
   }
 
-  std::span<const ViewOnWay> views_;
-  std::vector<Vector3d> places_;              ///< Points without repetition.
-  std::vector<Vector3d> points_;              ///< Displaced corners.
-  std::vector<std::size_t> point_of_;         ///< Point index of each view.
-  std::vector<std::size_t> places_of_views_;  ///< Distinct entries of `point_of_`.
-  std::vector<CornerRule> rules_;             ///< One rule per point.
-  std::vector<double> waits_;                 ///< Wait after each view [s].
+  std::span<const FlyThroughView> views_;
+  std::vector<Vector3d> positions_;         ///< Points without repetition.
+  std::vector<Vector3d> points_;            ///< Displaced corners.
+  std::vector<std::size_t> point_indices_;  ///< Point index of each view.
+  std::vector<std::size_t> view_points_;    ///< Distinct entries of `point_indices_`.
+  std::vector<CornerRule> rules_;           ///< One rule per point.
+  std::vector<double> waits_;               ///< Wait after each view [s].
 };
 
 /// Returns the number of positions between the ends of a curve at which it is at rest.
@@ -163,8 +165,7 @@ std::size_t stops_on(const Curve& curve) {
 
 }  // namespace
 
-double least_interval(const Aim& from, const Aim& to, const Motion& motion,
-                      const PassRules& rules) {
+double min_interval(const Aim& from, const Aim& to, const Motion& motion, const PassRules& rules) {
   const MissionMode& mode = motion.vehicle().mode;
   const double turning = turn_time(turn(from.yaw, to.yaw), mode.yaw_rate, mode.yaw_acceleration);
   const double tilting = std::abs(to.pitch - from.pitch) / motion.vehicle().gimbal_rate;
@@ -172,7 +173,7 @@ double least_interval(const Aim& from, const Aim& to, const Motion& motion,
                   std::max(turning, tilting) + 2.0 * std::max(settling, rules.exposure));
 }
 
-Aim Passage::aim_at(double time) const {
+Aim FlyThrough::aim_at(double time) const {
   const auto next = std::ranges::upper_bound(views, time, {}, &PassedView::moment);
   if (next == views.begin()) return views.front().aim;
   const PassedView& last = *(next - 1);
@@ -183,40 +184,41 @@ Aim Passage::aim_at(double time) const {
           last.aim.pitch + share * (next->aim.pitch - last.aim.pitch)};
 }
 
-std::optional<Passage> pass_through(const std::vector<Vector3d>& points,
-                                    std::span<const ViewOnWay> views, const FreeSpace& space,
-                                    double clearance, double up_to, const Motion& motion,
-                                    const PassRules& rules,
-                                    const std::function<bool(const Curve&)>& is_allowed) {
-  if (views.empty() || !(rules.speed >= least_speed)) return std::nullopt;
+std::optional<FlyThrough> pass_through(const std::vector<Vector3d>& points,
+                                       std::span<const FlyThroughView> views,
+                                       const FreeSpace& space, double clearance, double up_to,
+                                       const Motion& motion, const PassRules& rules,
+                                       const std::function<bool(const Curve&)>& is_allowed) {
+  if (views.empty() || !(rules.speed >= min_speed)) return std::nullopt;
   const Motion sharp = slowed_for(motion, rules);
-  Way way(points, views, rules);
-  if (way.size() < 3 || way.has_view_at_end()) return std::nullopt;
-  const auto is_free = [&](const Curve& piece) {
-    return prove(space, piece, clearance, clearance).is_proven &&
-           (!is_allowed || is_allowed(piece));
+  FlyThroughPath path(points, views, rules);
+  if (path.size() < 3 || path.has_view_at_end()) return std::nullopt;
+  const auto is_free = [&](const Curve& segment) {
+    return verify(space, segment, clearance, clearance).is_verified &&
+           (!is_allowed || is_allowed(segment));
   };
-  BlendedWay blended = way.blend(space, clearance, sharp, rules);
-  while (!way.relax(blended, is_free)) blended = way.blend(space, clearance, sharp, rules);
+  BlendedPath blended = path.blend(space, clearance, sharp, rules);
+  while (!path.relax(blended, is_free)) blended = path.blend(space, clearance, sharp, rules);
   const double slowdown = std::max(1.0, needed_slowdown(blended.curve, sharp));
   const double factor = slowdown > 1.0 + limit_tolerance ? slowdown : 1.0;
 
-  Passage passage;
-  passage.curve = slowed(blended.curve, factor);
-  const LegProof proof = prove(space, passage.curve, clearance, up_to);
-  if (!proof.is_proven) return std::nullopt;
-  passage.clearance = proof.clearance;
-  passage.steady = std::max(settling, rules.exposure);
-  const std::vector<double> moments = way.moments(blended);
+  FlyThrough fly_through;
+  fly_through.curve = slowed(blended.curve, factor);
+  const LegVerification verification = verify(space, fly_through.curve, clearance, up_to);
+  if (!verification.is_verified) return std::nullopt;
+  fly_through.clearance = verification.clearance;
+  fly_through.steady = std::max(settling, rules.exposure);
+  const std::vector<double> moments = path.moments(blended);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const double moment = factor * moments[i];
-    passage.views.push_back({moment, state_at(passage.curve, moment).position, views[i].aim});
+    fly_through.views.push_back(
+        {moment, state_at(fly_through.curve, moment).position, views[i].aim});
   }
-  passage.stops = stops_on(passage.curve);
-  passage.length = flight::length(passage.curve);
-  passage.duration = flight::duration(passage.curve);
-  passage.energy = energy(passage.curve, sharp);
-  return passage;
+  fly_through.stops = stops_on(fly_through.curve);
+  fly_through.length = flight::length(fly_through.curve);
+  fly_through.duration = flight::duration(fly_through.curve);
+  fly_through.energy = energy(fly_through.curve, sharp);
+  return fly_through;
 }
 
 }  // namespace skycap::flight

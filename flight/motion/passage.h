@@ -25,7 +25,7 @@ namespace skycap::flight {
 struct PassRules {
   double speed = 0.0;  ///< Maximum speed for sharp images, possibly infinite [m/s].
   /// Maximum cut of a corner at a view, which is also its outward displacement [m].
-  double most_cut = 0.0;
+  double max_cut = 0.0;
   double exposure = 0.0;  ///< Exposure including readout, without camera rotation [s].
   double period = 0.0;    ///< Minimum interval between images [s].
 };
@@ -36,7 +36,7 @@ struct Aim {
 };
 
 /// View on a path.
-struct ViewOnWay {
+struct FlyThroughView {
   std::size_t point = 0;  ///< Index of the path point. Views must be sorted by it.
   Aim aim;
 };
@@ -49,14 +49,14 @@ struct PassedView {
 };
 
 /// Rest-to-rest flight along a path.
-struct Passage {
+struct FlyThrough {
   Curve curve;
   std::vector<PassedView> views;  ///< Views in the given order, with ascending times.
   std::size_t stops = 0;  ///< Number of intermediate stops, at sharp corners and for waiting.
   double length = 0.0;
   double duration = 0.0;   ///< Duration [s].
   double energy = 0.0;     ///< Electrical energy [J].
-  double clearance = 0.0;  ///< Verified lower bound over the whole curve [m], see LegProof.
+  double clearance = 0.0;  ///< Verified lower bound over the whole curve [m], see LegVerification.
   double steady = 0.0;     ///< Time before and after each image without camera rotation [s].
 
   /// Returns the camera aim at `time` [s]. The camera rotates at a constant rate between images. It
@@ -72,13 +72,13 @@ struct Passage {
 ///
 /// Returns std::nullopt without views, with a view at either end, or if images are not sharp at any
 /// flyable speed.
-std::optional<Passage> pass_through(const std::vector<Eigen::Vector3d>& points,
-                                    std::span<const ViewOnWay> views, const FreeSpace& space,
-                                    double clearance, double up_to, const Motion& motion,
-                                    const PassRules& rules,
-                                    const std::function<bool(const Curve&)>& is_allowed = {});
+std::optional<FlyThrough> pass_through(const std::vector<Eigen::Vector3d>& points,
+                                       std::span<const FlyThroughView> views,
+                                       const FreeSpace& space, double clearance, double up_to,
+                                       const Motion& motion, const PassRules& rules,
+                                       const std::function<bool(const Curve&)>& is_allowed = {});
 
 /// Returns the minimum time from one image to the next for the camera rotation [s].
-double least_interval(const Aim& from, const Aim& to, const Motion& motion, const PassRules& rules);
+double min_interval(const Aim& from, const Aim& to, const Motion& motion, const PassRules& rules);
 
 }  // namespace skycap::flight

@@ -22,12 +22,13 @@ double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera,
                    const geometry::Shutter& shutter, double distance) {
   const double time = std::max(shutter.exposure, shutter.readout);
   if (time == 0.0) return std::numeric_limits<double>::infinity();
-  const double turning = PictureBounds::sharp_px / (pixels_per_radian(camera) * time);  // [rad/s].
+  const double turning =
+      ImageMotionBounds::sharp_px / (pixels_per_radian(camera) * time);  // [rad/s].
   return std::max(0.0, (turning - vehicle.sway_rate) * distance - vehicle.sway_speed);
 }
 
-PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
-                             const geometry::Shutter& shutter, double distance) {
+ImageMotionBounds image_motion_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
+                                      const geometry::Shutter& shutter, double distance) {
   const double speed =
       pixels_per_radian(camera) * (vehicle.sway_rate + vehicle.sway_speed / distance);  // [px/s].
   return {speed * shutter.exposure, speed * shutter.readout, distance};

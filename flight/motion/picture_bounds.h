@@ -9,7 +9,7 @@ namespace skycap::flight {
 
 /// Maximum image motion of surfaces at `distance`, anywhere in the image, caused by hover drift and
 /// camera rotation as specified in the vehicle profile.
-struct PictureBounds {
+struct ImageMotionBounds {
   double blur_px = 0.0;  ///< Motion blur during the exposure of one pixel.
   /// Rolling-shutter skew between the exposures of the first and last rows.
   double shear_px = 0.0;
@@ -20,8 +20,8 @@ struct PictureBounds {
   bool is_sharp() const { return blur_px <= sharp_px && shear_px <= sharp_px; }
 };
 
-PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
-                             const geometry::Shutter& shutter, double distance);
+ImageMotionBounds image_motion_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
+                                      const geometry::Shutter& shutter, double distance);
 
 /// Returns the maximum ground speed for sharp images [m/s]. It is infinite for a shutter without
 /// exposure time, and 0 if images are not sharp even in hover.

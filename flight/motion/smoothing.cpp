@@ -28,10 +28,10 @@ double stopping_time(const std::vector<Vector3d>& points, const Motion& motion) 
 
 }  // namespace
 
-std::optional<SmoothLeg> smooth(const std::vector<Vector3d>& given, const FreeSpace& space,
+std::optional<SmoothLeg> smooth(const std::vector<Vector3d>& requested, const FreeSpace& space,
                                 double clearance, double up_to, const Motion& motion,
                                 FlightStyle style) {
-  const std::vector<Vector3d> points = without_repeats(given);
+  const std::vector<Vector3d> points = without_repeats(requested);
   const bool is_curved = style == FlightStyle::blend || style == FlightStyle::smooth;
   if (!is_curved || points.size() < 3) return std::nullopt;
 
@@ -40,7 +40,7 @@ std::optional<SmoothLeg> smooth(const std::vector<Vector3d>& given, const FreeSp
   const auto propose = [&](Curve curve) {
     const double slowdown = needed_slowdown(curve, motion);
     if (slowdown > 1.0 + limit_tolerance) curve = slowed(std::move(curve), slowdown);
-    if (!prove(space, curve, clearance, clearance).is_proven) return false;
+    if (!verify(space, curve, clearance, clearance).is_verified) return false;
     if (duration(curve) < best_time) {
       best_time = duration(curve);
       best = std::move(curve);
@@ -56,7 +56,7 @@ std::optional<SmoothLeg> smooth(const std::vector<Vector3d>& given, const FreeSp
   }
   if (best.empty()) return std::nullopt;
   SmoothLeg leg{best, flight::length(best), best_time, energy(best, motion), 0.0};
-  leg.clearance = prove(space, best, clearance, up_to).clearance;
+  leg.clearance = verify(space, best, clearance, up_to).clearance;
   return leg;
 }
 

@@ -19,7 +19,7 @@ struct SmoothLeg {
   double length = 0.0;
   double duration = 0.0;   ///< Duration without the settle time [s].
   double energy = 0.0;     ///< Electrical energy [J].
-  double clearance = 0.0;  ///< Verified lower bound over the whole curve [m], see LegProof.
+  double clearance = 0.0;  ///< Verified lower bound over the whole curve [m], see LegVerification.
 };
 
 /// Returns the curved leg along `points`, whose lines are verified at `clearance` [m]. The control

@@ -9,7 +9,7 @@
 namespace skycap::flight {
 
 /// Dialect of mission items that an autopilot supports.
-enum class Dialect { px4, ardupilot, dji };
+enum class AutopilotType { px4, ardupilot, dji };
 
 /// Codes of vehicle and payload in DJI WPML files.
 struct WpmlCodes {
@@ -23,7 +23,7 @@ struct WpmlCodes {
 /// them.
 struct Vehicle {
   std::string name;
-  Dialect dialect = Dialect::px4;
+  AutopilotType autopilot = AutopilotType::px4;
   WpmlCodes wpml;
   MissionMode mode;  ///< How the autopilot flies missions.
 

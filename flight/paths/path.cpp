@@ -45,7 +45,7 @@ class GridDistances {
   }
 
   /// Updates a vertex with the `distance` at a position `step` away (1-Lipschitz).
-  void tell(const Cell& cell, double distance, double step) {
+  void update(const Cell& cell, double distance, double step) {
     Known& known = known_.insert(cell_key(cell)).value;
     if (!known.is_exact) known.bound = std::max(known.bound, distance - step);
   }
@@ -156,7 +156,7 @@ class Search {
   }
 
   void expand(std::uint32_t v) {
-    if (v > 1) tell_neighbours(v);
+    if (v > 1) update_neighbours(v);
     for_each_neighbour(v, [&](std::uint32_t n) {
       if (vertices_[n].is_closed) return;
       const std::uint32_t parent = vertices_[v].parent;
@@ -169,11 +169,11 @@ class Search {
     });
   }
 
-  void tell_neighbours(std::uint32_t v) {
+  void update_neighbours(std::uint32_t v) {
     const Cell cell = vertices_[v].cell;
     const double distance = grid_.distance(cell);
     for_each_offset([&](const Cell& offset) {
-      grid_.tell(cell + offset, distance, offset.cast<double>().norm() * grid_.cell());
+      grid_.update(cell + offset, distance, offset.cast<double>().norm() * grid_.cell());
     });
   }
 
@@ -205,12 +205,12 @@ class Search {
     }
     const Cell cell = vertices_[v].cell;
     for_each_offset([&](const Cell& offset) { visit_cell(cell + offset); });
-    const auto is_corner_of = [&](const Cell& low) {
+    const auto is_cell_corner = [&](const Cell& low) {
       const Eigen::Array3i offset = (cell - low).array();
       return (offset >= 0).all() && (offset <= 1).all();
     };
-    if (is_corner_of(goal_cell_)) visit(1);
-    if (is_corner_of(start_cell_)) visit(0);
+    if (is_cell_corner(goal_cell_)) visit(1);
+    if (is_cell_corner(start_cell_)) visit(0);
   }
 
   std::uint32_t vertex_at(const Cell& cell) {

@@ -65,15 +65,17 @@ class StringPuller {
   /// sizes.
   void slide(std::size_t i) {
     const Vector3d &before = points_[i - 1], &after = points_[i + 1];
-    const auto pieces = [&](const Vector3d& p) { return (p - before).norm() + (p - after).norm(); };
-    const double least_step = slide_tolerance * length(points_);
+    const auto length_via = [&](const Vector3d& p) {
+      return (p - before).norm() + (p - after).norm();
+    };
+    const double min_step = slide_tolerance * length(points_);
     const NearestPoints foot = nearest(Segment{before, after}, points_[i]);
     double step = std::sqrt(foot.squared_distance);
-    while (step > least_step) {
+    while (step > min_step) {
       bool has_moved = false;
       for (const Vector3d& direction : slide_directions(before, points_[i], after)) {
         const Vector3d moved = points_[i] + step * direction;
-        if (pieces(moved) >= pieces(points_[i]) - 0.1 * least_step) continue;
+        if (length_via(moved) >= length_via(points_[i]) - 0.1 * min_step) continue;
         if (!is_free(before, moved) || !is_free(moved, after)) continue;
         points_[i] = moved;
         has_moved = true;
@@ -125,7 +127,7 @@ class StringPuller {
     const double worthwhile = worthwhile_saving_ * length(points_);
     for (std::size_t i = 1; i + 2 < points_.size();) {
       const Vector3d into = points_[i] - points_[i - 1], out = points_[i + 1] - points_[i + 2];
-      const Vector3d meeting = nearest_of_lines(points_[i], into, points_[i + 1], out);
+      const Vector3d meeting = find_closest_point_on_lines(points_[i], into, points_[i + 1], out);
       const double now = into.norm() + (points_[i + 1] - points_[i]).norm() + out.norm();
       const double then = (meeting - points_[i - 1]).norm() + (meeting - points_[i + 2]).norm();
       if (then - now < worthwhile && is_free(points_[i - 1], meeting) &&
@@ -140,8 +142,8 @@ class StringPuller {
 
   /// Returns the midpoint between the closest points of two lines, or between their origins if
   /// parallel.
-  static Vector3d nearest_of_lines(const Vector3d& p, const Vector3d& u, const Vector3d& q,
-                                   const Vector3d& v) {
+  static Vector3d find_closest_point_on_lines(const Vector3d& p, const Vector3d& u,
+                                              const Vector3d& q, const Vector3d& v) {
     const double a = u.squaredNorm(), b = u.dot(v), e = v.squaredNorm();
     const double determinant = a * e - b * b;
     if (determinant <= 1e-9 * a * e) return 0.5 * (p + q);

@@ -24,22 +24,22 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 using Eigen::Vector3d;
 
-Vector3d place_of(const ob::State* state) {
+Vector3d to_position(const ob::State* state) {
   const double* values = state->as<ob::RealVectorStateSpace::StateType>()->values;
   return {values[0], values[1], values[2]};
 }
 
 /// Verifies legs exactly instead of sampling them, as OMPL does by default.
-class ProvenMotion : public ob::MotionValidator {
+class VerifiedMotion : public ob::MotionValidator {
  public:
-  ProvenMotion(const ob::SpaceInformationPtr& information, const FreeSpace& space, double clearance,
-               std::size_t& checks)
+  VerifiedMotion(const ob::SpaceInformationPtr& information, const FreeSpace& space,
+                 double clearance, std::size_t& checks)
       : ob::MotionValidator(information), space_(space), clearance_(clearance), checks_(checks) {}
 
   // OMPL requests motions only between valid states, so the start is known to be free.
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
     ++checks_;
-    return space_.continues_free({place_of(from), place_of(to)}, clearance_);
+    return space_.continues_free({to_position(from), to_position(to)}, clearance_);
   }
   bool checkMotion(const ob::State* from, const ob::State* to,
                    std::pair<ob::State*, double>& last_valid) const override {
@@ -78,9 +78,9 @@ ob::RealVectorBounds bounds_around(const FreeSpace& space, const Vector3d& from,
   return bounds;
 }
 
-ob::ScopedState<> state_at(const ob::StateSpacePtr& states, const Vector3d& place) {
+ob::ScopedState<> state_at(const ob::StateSpacePtr& states, const Vector3d& position) {
   ob::ScopedState<> state(states);
-  for (unsigned axis = 0; axis < 3; ++axis) state[axis] = place[axis];
+  for (unsigned axis = 0; axis < 3; ++axis) state[axis] = position[axis];
   return state;
 }
 
@@ -94,11 +94,11 @@ class OmplSearch {
     information_ = std::make_shared<ob::SpaceInformation>(states_);
     information_->setStateValidityChecker([this, &space, clearance](const ob::State* state) {
       ++checks_;
-      const Vector3d place = place_of(state);
-      return space.is_free({place, place}, clearance);
+      const Vector3d position = to_position(state);
+      return space.is_free({position, position}, clearance);
     });
     information_->setMotionValidator(
-        std::make_shared<ProvenMotion>(information_, space, clearance, checks_));
+        std::make_shared<VerifiedMotion>(information_, space, clearance, checks_));
     information_->setup();
     problem_ = std::make_shared<ob::ProblemDefinition>(information_);
     problem_->setStartAndGoalStates(state_at(states_, from), state_at(states_, to));
@@ -126,7 +126,7 @@ class OmplSearch {
     if (!problem_->hasExactSolution()) return points;
     for (const ob::State* state :
          problem_->getSolutionPath()->as<og::PathGeometric>()->getStates()) {
-      points.push_back(place_of(state));
+      points.push_back(to_position(state));
     }
     return points;
   }

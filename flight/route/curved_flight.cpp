@@ -22,7 +22,7 @@ class Curves {
     for (Sortie& sortie : route_.sorties) {
       smooth_leg(sortie.out, nullptr, nullptr);
       for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
-        smooth_leg(route_.legs[i], &route_.stations[i], &route_.stations[i + 1]);
+        smooth_leg(route_.legs[i], &route_.capture_points[i], &route_.capture_points[i + 1]);
       }
       smooth_leg(sortie.back, nullptr, nullptr);
     }
@@ -31,10 +31,10 @@ class Curves {
   void pass_views() {
     for (Sortie& sortie : route_.sorties) {
       std::vector<Vector3d> points = sortie.out.points;
-      std::vector<ViewOnWay> views;
+      std::vector<FlyThroughView> views;
       for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
-        const geometry::View& view = route_.stations[i].view;
-        views.push_back({points.size() - 1, {yaw_of(view), pitch_of(view)}});
+        const geometry::View& view = route_.capture_points[i].view;
+        views.push_back({points.size() - 1, {compute_yaw(view), compute_pitch(view)}});
         const Leg& leg = i < sortie.last ? route_.legs[i] : sortie.back;
         points.insert(points.end(), leg.points.begin() + 1, leg.points.end());
       }
@@ -45,36 +45,36 @@ class Curves {
  private:
   double top_clearance() const { return route_.clearance + reported_surplus; }
 
-  bool has_way_home(const Curve& curve) const {
-    return !route_.returns ||
-           has_returns(space_, curve, route_.returns->law, return_clearance(route_.clearance));
+  bool has_return_path(const Curve& curve) const {
+    return !route_.returns || has_returns(space_, curve, route_.returns->rtl_profile,
+                                          return_clearance(route_.clearance));
   }
 
-  void smooth_leg(Leg& leg, const Station* from, const Station* to) {
+  void smooth_leg(Leg& leg, const CapturePoint* from, const CapturePoint* to) {
     std::optional<SmoothLeg> curve = smooth(leg.points, space_, route_.clearance, top_clearance(),
                                             motion_, route_.options.style);
-    if (!curve || !has_way_home(curve->curve)) return;
-    const double in_place = curve->duration + motion_.vehicle().mode.settle_time;
-    const double aimed = costs_.aimed_time(in_place, from, to);
+    if (!curve || !has_return_path(curve->curve)) return;
+    const double arrival_time = curve->duration + motion_.vehicle().mode.settle_time;
+    const double aimed = costs_.aimed_time(arrival_time, from, to);
     if (aimed > leg.duration) return;
     if (curve->energy + motion_.hover_energy(aimed - curve->duration) > leg.energy) return;
     leg.smooth = std::move(curve);
   }
 
   void pass_views(Sortie& sortie, const std::vector<Vector3d>& points,
-                  const std::vector<ViewOnWay>& views) {
-    auto passage = pass_through(points, views, space_, route_.clearance, top_clearance(), motion_,
-                                route_.options.passing,
-                                [&](const Curve& piece) { return has_way_home(piece); });
-    if (!passage || !has_way_home(passage->curve)) return;
+                  const std::vector<FlyThroughView>& views) {
+    auto fly_through = pass_through(points, views, space_, route_.clearance, top_clearance(),
+                                    motion_, route_.options.passing,
+                                    [&](const Curve& segment) { return has_return_path(segment); });
+    if (!fly_through || !has_return_path(fly_through->curve)) return;
     const LegCost ends = in_turn(costs_.takeoff_cost(route_.options.takeoff_climb),
                                  costs_.landing_cost(route_.options.takeoff_climb));
     const double settle_time = motion_.vehicle().mode.settle_time;
-    const double time = ends.time + passage->duration + settle_time;
-    const double energy = ends.energy + passage->energy + motion_.hover_energy(settle_time);
+    const double time = ends.time + fly_through->duration + settle_time;
+    const double energy = ends.energy + fly_through->energy + motion_.hover_energy(settle_time);
     if (time >= sortie.duration || energy > sortie.energy) return;
     sortie.passing_time = time;
-    sortie.passage = std::move(passage);
+    sortie.fly_through = std::move(fly_through);
   }
 
   Route& route_;
@@ -94,21 +94,21 @@ void add_curves(Route& route, const FreeSpace& space, const Motion& motion, cons
   }
 }
 
-double least_duration(const Route& route) {
+double min_duration(const Route& route) {
   double duration = route.duration;
   for (const Sortie& sortie : route.sorties) {
-    if (sortie.passage) duration -= sortie.duration - sortie.passing_time;
+    if (sortie.fly_through) duration -= sortie.duration - sortie.passing_time;
   }
   return duration;
 }
 
-std::vector<geometry::View> picture_views(const Route& route) {
+std::vector<geometry::View> photo_views(const Route& route) {
   std::vector<geometry::View> views;
   for (const Sortie& sortie : route.sorties) {
     for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
-      views.push_back(route.stations[i].view);
-      if (!sortie.passage) continue;
-      views.back().position = sortie.passage->views[i - sortie.first].position;
+      views.push_back(route.capture_points[i].view);
+      if (!sortie.fly_through) continue;
+      views.back().position = sortie.fly_through->views[i - sortie.first].position;
     }
   }
   return views;

@@ -15,37 +15,37 @@ namespace skycap::flight {
 
 using LegCost = SplitProblem::Cost;
 
-LegCost cost_of(const Leg& leg);
+LegCost compute_cost(const Leg& leg);
 /// Returns the cost of `first` followed by `second`.
 LegCost in_turn(const LegCost& first, const LegCost& second);
 
 /// Returns the maximum number of waypoints per sortie, from the vehicle's limit on mission items.
-std::size_t most_stations(const Vehicle& vehicle);
+std::size_t max_capture_points(const Vehicle& vehicle);
 
 /// Cost model of legs and stops. Keeps references to the constructor arguments.
 class LegCosts {
  public:
   /// If `returns` is given, the emergency energy of a cost includes the most expensive return.
   /// `*returns` may be set later.
-  explicit LegCosts(const Motion& motion, const std::optional<WaysHome>* returns = nullptr)
+  explicit LegCosts(const Motion& motion, const std::optional<ReturnPaths>* returns = nullptr)
       : motion_(motion), returns_(returns) {}
 
   /// Returns the leg along `path` with a stop at each point. A null waypoint stands for the pad,
   /// where the camera needs no aim.
-  Leg leg(VerifiedPath path, const Station* from, const Station* to) const;
+  Leg leg(VerifiedPath path, const CapturePoint* from, const CapturePoint* to) const;
 
   /// Returns the leg duration including the final yaw and gimbal rotation [s].
-  double aimed_time(double leg, const Station* from, const Station* to) const;
+  double aimed_time(double leg, const CapturePoint* from, const CapturePoint* to) const;
 
   LegCost takeoff_cost(double climb) const;
   LegCost landing_cost(double climb) const;
-  LegCost station_cost(const Station& station) const;
+  LegCost capture_cost(const CapturePoint& capture_point) const;
 
  private:
-  double return_cost(const Eigen::Vector3d& place) const;
+  double return_cost(const Eigen::Vector3d& position) const;
 
   const Motion& motion_;
-  const std::optional<WaysHome>* returns_;
+  const std::optional<ReturnPaths>* returns_;
 };
 
 }  // namespace skycap::flight

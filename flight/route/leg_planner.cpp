@@ -15,8 +15,8 @@ LegPlanner::LegPlanner(const FreeSpace& space, double clearance, const PathOptio
       worthwhile_saving_(options.worthwhile_saving),
       finder_(space, clearance, options) {}
 
-void LegPlanner::require_returns(const ReturnLaw& law, const Vector3d& home) {
-  returns_.emplace(space_, law, home, clearance());
+void LegPlanner::require_returns(const RtlProfile& rtl_profile, const Vector3d& home) {
+  returns_.emplace(space_, rtl_profile, home, clearance());
 }
 
 const Path& LegPlanner::path(const Vector3d& from, const Vector3d& to) {
@@ -41,15 +41,16 @@ std::optional<VerifiedPath> LegPlanner::verified(std::vector<Vector3d> path) con
   const double cap = clearance() + reported_surplus;
   VerifiedPath leg{std::move(path), cap};
   for (std::size_t i = 1; i < leg.points.size(); ++i) {
-    const LegProof proof = prove(space_, {leg.points[i - 1], leg.points[i]}, clearance(), cap);
-    if (!proof.is_proven) return std::nullopt;
-    leg.clearance = std::min(leg.clearance, proof.clearance);
+    const LegVerification verification =
+        verify(space_, {leg.points[i - 1], leg.points[i]}, clearance(), cap);
+    if (!verification.is_verified) return std::nullopt;
+    leg.clearance = std::min(leg.clearance, verification.clearance);
   }
   return leg;
 }
 
 std::optional<VerifiedPath> LegPlanner::leg(const Vector3d& from, const Vector3d& to) {
-  if (returns_ && !returns_->why_none(to).empty()) return std::nullopt;
+  if (returns_ && !returns_->no_return_reason(to).empty()) return std::nullopt;
   const Path& found = path(from, to);
   if (found.status != PathStatus::found) return std::nullopt;
   return verified(with_returns(found.points));

@@ -18,7 +18,7 @@ namespace skycap::flight {
 /// Polyline whose lines are verified collision-free.
 struct VerifiedPath {
   std::vector<Eigen::Vector3d> points;
-  double clearance = 0.0;  ///< Verified lower bound over the whole path [m], see LegProof.
+  double clearance = 0.0;  ///< Verified lower bound over the whole path [m], see LegVerification.
 };
 
 /// Plans verified legs. Not thread-safe, except for const functions. Deterministic: the result
@@ -35,9 +35,9 @@ class LegPlanner {
 
   /// Requires a verified return from every point of every leg to `home`, the position above the
   /// pad.
-  void require_returns(const ReturnLaw& law, const Eigen::Vector3d& home);
+  void require_returns(const RtlProfile& rtl_profile, const Eigen::Vector3d& home);
   /// Returns the returns planner, or std::nullopt if returns are not required.
-  const std::optional<WaysHome>& returns() const { return returns_; }
+  const std::optional<ReturnPaths>& returns() const { return returns_; }
 
   /// Returns the shortest path found by PathFinder. Paths are cached until forget().
   const Path& path(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
@@ -65,7 +65,7 @@ class LegPlanner {
   const FreeSpace& space_;
   double worthwhile_saving_;
   PathFinder finder_;
-  std::optional<WaysHome> returns_;
+  std::optional<ReturnPaths> returns_;
   /// Cached paths, keyed by start and goal coordinates.
   std::map<std::array<double, 6>, Path> paths_;
 };

@@ -29,57 +29,57 @@ class RoutePlanner {
     route_.min_clearance = route_.clearance + reported_surplus;
   }
 
-  Route plan(std::vector<Station> stations, const FreeSpace* pad_space) {
+  Route plan(std::vector<CapturePoint> capture_points, const FreeSpace* pad_space) {
     check_pad(space_, pad_space, route_.options);
-    legs_.take_flown(stations);
-    stations = legs_.allowed(std::move(stations));
-    if (route_.options.order_is_free) choose_order(stations);
-    legs_.admit(stations);
+    legs_.set_executed_stations(capture_points);
+    capture_points = legs_.allowed(std::move(capture_points));
+    if (route_.options.order_is_free) choose_order(capture_points);
+    legs_.admit(capture_points);
     connect();
     split();
     add_up();
-    if (legs_.returns() && !route_.sorties.empty()) certify_returns();
+    if (legs_.returns() && !route_.sorties.empty()) verify_route_returns();
     add_curves(route_, space_, legs_.motion(), legs_.costs());
     return std::move(route_);
   }
 
  private:
-  void choose_order(std::vector<Station>& stations) {
-    const auto place = [&](std::uint32_t i) {
-      return i == 0 ? legs_.home() : stations[i - 1].view.position;
+  void choose_order(std::vector<CapturePoint>& capture_points) {
+    const auto position = [&](std::uint32_t i) {
+      return i == 0 ? legs_.home() : capture_points[i - 1].view.position;
     };
-    const Tour tour =
-        plan_tour(static_cast<std::uint32_t>(stations.size() + 1),
-                  [&](std::uint32_t a, std::uint32_t b) { return (place(a) - place(b)).norm(); });
-    std::vector<Station> ordered;
-    for (const std::uint32_t i : tour.order) ordered.push_back(stations[i - 1]);
-    stations = std::move(ordered);
+    const Tour tour = plan_tour(
+        static_cast<std::uint32_t>(capture_points.size() + 1),
+        [&](std::uint32_t a, std::uint32_t b) { return (position(a) - position(b)).norm(); });
+    std::vector<CapturePoint> ordered;
+    for (const std::uint32_t i : tour.order) ordered.push_back(capture_points[i - 1]);
+    capture_points = std::move(ordered);
     route_.order_bound = tour.lower_bound;
     route_.order_length = tour.cost;
   }
 
   void connect() {
-    route_.stations = legs_.stations();
+    route_.capture_points = legs_.capture_points();
     route_.unreached = legs_.unreached();
     route_.legs.clear();
-    route_.station_length = route_.straight_length = 0.0;
-    for (std::size_t i = 1; i < route_.stations.size(); ++i) {
-      const Station &from = route_.stations[i - 1], &to = route_.stations[i];
+    route_.capture_leg_length = route_.straight_length = 0.0;
+    for (std::size_t i = 1; i < route_.capture_points.size(); ++i) {
+      const CapturePoint &from = route_.capture_points[i - 1], &to = route_.capture_points[i];
       route_.legs.push_back(legs_.between(i - 1, i));
-      route_.station_length += route_.legs.back().length;
+      route_.capture_leg_length += route_.legs.back().length;
       route_.straight_length += (to.view.position - from.view.position).norm();
     }
   }
 
   void split() {
-    if (route_.stations.empty()) return;
+    if (route_.capture_points.empty()) return;
     // Paths without a sortie need no returns. A single waypoint that has become too distant for the
     // battery would prevent every split.
     do {
       if (legs_.drop_out_of_range()) connect();
       split_once();
-    } while (give_returns());
-    if (route_.sorties.empty() && !route_.stations.empty()) {
+    } while (reroute_for_returns());
+    if (route_.sorties.empty() && !route_.capture_points.empty()) {
       throw Error(ErrorKind::bad_config,
                   "no division of the route into sorties fits the battery; lower flight.reserve");
     }
@@ -88,14 +88,14 @@ class RoutePlanner {
   void split_once() {
     SplitProblem problem;
     SplitProblem::Pad& pad = problem.pads.emplace_back();
-    for (std::size_t i = 0; i < route_.stations.size(); ++i) {
+    for (std::size_t i = 0; i < route_.capture_points.size(); ++i) {
       pad.out.push_back(legs_.out_cost(i));
       pad.back.push_back(legs_.back_cost(i));
-      problem.station.push_back(legs_.station_cost(i));
-      if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
+      problem.capture_point.push_back(legs_.capture_cost(i));
+      if (i > 0) problem.leg.push_back(compute_cost(route_.legs[i - 1]));
     }
     problem.energy_per_sortie = plannable_energy(legs_.motion());
-    problem.stations_per_sortie = most_stations(legs_.motion().vehicle());
+    problem.capture_points_per_sortie = max_capture_points(legs_.motion().vehicle());
 
     const SortieSplit split = split_into_sorties(problem);
     route_.duration = split.time;
@@ -107,11 +107,11 @@ class RoutePlanner {
   }
 
   /// Returns true if the path of a sortie was changed.
-  bool give_returns() {
+  bool reroute_for_returns() {
     bool has_changed = false;
     for (const Sortie& sortie : route_.sorties) {
       for (const std::uint32_t i : {sortie.first, sortie.last}) {
-        has_changed = legs_.give_returns(i) || has_changed;
+        has_changed = legs_.reroute_for_returns(i) || has_changed;
       }
     }
     return has_changed;
@@ -124,7 +124,7 @@ class RoutePlanner {
     double length = out.length + back.length + 2.0 * route_.options.takeoff_climb;
     double clearance = std::min(out.clearance, back.clearance);
     for (std::uint32_t i = range.first; i <= range.last; ++i) {
-      total = in_turn(total, problem.station[i]);
+      total = in_turn(total, problem.capture_point[i]);
       if (i == range.last) break;
       total = in_turn(total, problem.leg[i]);
       length += route_.legs[i].length;
@@ -146,27 +146,28 @@ class RoutePlanner {
     }
   }
 
-  void certify_returns() {
+  void verify_route_returns() {
     std::vector<Segment> legs;
     for (const Sortie& sortie : route_.sorties) {
       const std::vector<Vector3d> points = sortie_points(route_, sortie);
       for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
     }
-    ReturnLaw law = legs_.returns()->law();
-    law.reserve = 0.0;
-    ReturnSearch search =
-        least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
+    RtlProfile rtl_profile = legs_.returns()->rtl_profile();
+    rtl_profile.reserve = 0.0;
+    ReturnSearch search = min_return_altitude(space_, legs, rtl_profile, rtl_profile.level,
+                                              return_clearance(route_.clearance));
     if (!search.found) {
       const bool has_rally =  // DJI vehicles return only to their take-off point.
-          std::ranges::find(law.dialects, Dialect::dji) == law.dialects.end();
+          std::ranges::find(rtl_profile.autopilots, AutopilotType::dji) ==
+          rtl_profile.autopilots.end();
       throw Error(ErrorKind::bad_config,
-                  "no verified return altitude: " + search.why + "; move flight.takeoff" +
+                  "no verified return altitude: " + search.reason + "; move flight.takeoff" +
                       (has_rally ? ", add a rally point (flight.rally)" : "") +
                       " or raise site.max_height");
     }
     route_.returns = std::move(search.found);
     for (const Segment& leg : legs) {
-      const double energy = return_energy(legs_.motion(), route_.returns->law, leg.to);
+      const double energy = return_energy(legs_.motion(), route_.returns->rtl_profile, leg.to);
       route_.returns->energy = std::max(route_.returns->energy, energy);
     }
   }
@@ -178,18 +179,19 @@ class RoutePlanner {
 
 }  // namespace
 
-Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
-                 const FreeSpace* pad_space, const RouteOptions& options) {
+Route plan_route(std::vector<CapturePoint> capture_points, const Vehicle& vehicle,
+                 const FreeSpace& space, const FreeSpace* pad_space, const RouteOptions& options) {
   options.validate();
-  for (const Station& station : stations) {
-    if (!station.view.position.allFinite() || !station.view.direction.allFinite() ||
-        !(station.hold >= 0.0) || !(station.hold_after >= 0.0) || station.shots < 0) {
+  for (const CapturePoint& capture_point : capture_points) {
+    if (!capture_point.view.position.allFinite() || !capture_point.view.direction.allFinite() ||
+        !(capture_point.hold >= 0.0) || !(capture_point.hold_after >= 0.0) ||
+        capture_point.captures < 0) {
       throw Error(ErrorKind::bad_geometry,
-                  "view " + std::to_string(station.view_index) +
+                  "view " + std::to_string(capture_point.view_index) +
                       " has a pose that is not finite, or a negative hold or number of shots");
     }
   }
-  return RoutePlanner(vehicle, space, options).plan(std::move(stations), pad_space);
+  return RoutePlanner(vehicle, space, options).plan(std::move(capture_points), pad_space);
 }
 
 std::vector<Vector3d> sortie_points(const Route& route, const Sortie& sortie) {

@@ -24,27 +24,27 @@ namespace skycap::flight {
 
 /// Waypoint with its view and actions. The vehicle position is assumed to equal the camera
 /// position.
-struct Station {
+struct CapturePoint {
   geometry::View view;
   double hold = 0.5;             ///< Rest time with the camera aimed, before the capture [s].
-  int shots = 1;                 ///< Number of images or scans. 0 for a waypoint without capture.
+  int captures = 1;              ///< Number of images or scans. 0 for a waypoint without capture.
   std::uint32_t view_index = 0;  ///< Index of the view in the survey.
   double hold_after = 0.5;       ///< Rest time after the capture, for shutter and readout [s].
   /// Path that the survey flew to this waypoint from the previous one, or from above the pad. Empty
   /// if it was not flown.
-  std::vector<Eigen::Vector3d> way{};
+  std::vector<Eigen::Vector3d> approach_path{};
 };
 
 /// Returns the viewing direction of an aim (unit vector).
-Eigen::Vector3d direction_of(const Aim& aim);
+Eigen::Vector3d compute_direction(const Aim& aim);
 /// Returns the heading of a view, clockwise from true north, in [0, 2 pi) [rad]. 0 for vertical
 /// views.
-double yaw_of(const geometry::View& view);
+double compute_yaw(const geometry::View& view);
 /// Returns the pitch of a view [rad]: 0 at the horizon, -pi/2 straight down.
-double pitch_of(const geometry::View& view);
+double compute_pitch(const geometry::View& view);
 /// Returns true if the gimbal can look in the direction of the view. A tolerance covers the
 /// rounding of directions at the gimbal limits.
-bool can_look(const Vehicle& vehicle, const geometry::View& view);
+bool can_aim(const Vehicle& vehicle, const geometry::View& view);
 
 /// Terms of the clearance [m].
 struct ClearanceBudget {
@@ -63,8 +63,8 @@ struct ClearanceBudget {
 
 /// Requirements on the returns that an autopilot flies automatically.
 struct ReturnOptions {
-  std::vector<Dialect> dialects;  ///< Autopilots whose returns must be verified.
-  double highest = 0.0;           ///< Maximum height z for the search of a return altitude [m].
+  std::vector<AutopilotType> autopilots;  ///< Autopilots whose returns must be verified.
+  double max_height = 0.0;  ///< Maximum height z for the search of a return altitude [m].
   std::vector<Eigen::Vector3d> rally{};  ///< Alternative landing points on the ground.
 };
 
@@ -73,12 +73,12 @@ struct RouteOptions {
   Conditions conditions;
   PathOptions path;
   Eigen::Vector3d takeoff = Eigen::Vector3d::Zero();  ///< Take-off point (pad).
-  double takeoff_climb = 5.0;             ///< Vertical climb from the pad before the first leg [m].
-  std::vector<PadGround> grounds;         ///< Ground of pad and rally points, where known.
-  PadLimits ground_limits;                ///< Limits for that ground.
-  bool order_is_free = false;             ///< The planner may reorder the waypoints.
-  FlightStyle style = FlightStyle::stop;  ///< Leg style in file formats that support curves.
-  PassRules passing;                      ///< Rules of the style FlightStyle::pass.
+  double takeoff_climb = 5.0;  ///< Vertical climb from the pad before the first leg [m].
+  std::vector<LandingSurface> landing_surfaces;  ///< Ground of pad and rally points, where known.
+  PadLimits ground_limits;                       ///< Limits for that ground.
+  bool order_is_free = false;                    ///< The planner may reorder the waypoints.
+  FlightStyle style = FlightStyle::stop;         ///< Leg style in file formats that support curves.
+  PassRules passing;                             ///< Rules of the style FlightStyle::pass.
   /// Requires a verified return from every point of the route. If empty, the pilot must check the
   /// returns.
   std::optional<ReturnOptions> returns;
@@ -91,7 +91,7 @@ struct RouteOptions {
 ///
 /// The level flight is at the maximum return altitude, but not below `top`. An obstacle that blocks
 /// it also blocks lower altitudes, except for overhangs.
-ReturnLaw planning_law(const RouteOptions& options, double top);
+RtlProfile planning_rtl_profile(const RouteOptions& options, double top);
 
 /// Minimum stop at a corner [s]. Without a stop, autopilots cut corners, whereas verification
 /// covers straight legs.
@@ -104,7 +104,7 @@ struct Leg {
   /// Duration with stops in corners and simultaneous yaw and gimbal rotation [s].
   double duration = 0.0;
   double energy = 0.0;     ///< Electrical energy [J].
-  double clearance = 0.0;  ///< Verified lower bound over the whole leg [m], see LegProof.
+  double clearance = 0.0;  ///< Verified lower bound over the whole leg [m], see LegVerification.
   double emergency = 0.0;  ///< Emergency energy [J], see SplitProblem::Cost.
   /// Curved alternative, at least as fast and with no more energy. The values above and the sorties
   /// refer to stops, which every autopilot supports.
@@ -122,29 +122,29 @@ struct Sortie {
   double length = 0.0;       ///< Length including climb and descent at the pad [m].
   double clearance = 0.0;    ///< Verified lower bound over all legs [m].
   /// Fly-through alternative without stops at views, faster and with no more energy.
-  std::optional<Passage> passage;
-  double passing_time = 0.0;  ///< Duration of `passage` from take-off to landing [s].
+  std::optional<FlyThrough> fly_through;
+  double passing_time = 0.0;  ///< Duration of `fly_through` from take-off to landing [s].
 };
 
 /// Waypoint that is excluded from the route, with the reason.
 struct Unreached {
-  Station station;
+  CapturePoint capture_point;
   std::string reason;
 };
 
 struct Route {
   Vehicle vehicle;
   RouteOptions options;
-  std::vector<Station> stations;  ///< Waypoints in flight order.
-  std::vector<Leg> legs;          ///< legs[i] leads from waypoint i to waypoint i + 1.
+  std::vector<CapturePoint> capture_points;  ///< Waypoints in flight order.
+  std::vector<Leg> legs;                     ///< legs[i] leads from waypoint i to waypoint i + 1.
   std::vector<Sortie> sorties;
   /// Waypoints without a verified path, or beyond the battery range.
   std::vector<Unreached> unreached;
   double clearance = 0.0;  ///< Clearance at which every leg is verified [m].
   /// Minimum verified bound of all legs [m], limited to the search cap.
   double min_clearance = 0.0;
-  double length = 0.0;          ///< Length of all sorties [m].
-  double station_length = 0.0;  ///< Length of the legs between waypoints [m].
+  double length = 0.0;              ///< Length of all sorties [m].
+  double capture_leg_length = 0.0;  ///< Length of the legs between waypoints [m].
   /// Sum of the straight distances between consecutive waypoints [m].
   double straight_length = 0.0;
   double duration = 0.0;        ///< Duration of all sorties without battery changes [s].
@@ -162,11 +162,11 @@ struct Route {
 /// computing time.
 inline constexpr double reported_surplus = 10.0;
 
-/// Plans the flight through `stations`. Waypoints that keep the given order reuse the paths of the
-/// survey. Other waypoints use the shortest path found. A waypoint without a verified path is
-/// listed in Route::unreached, and the route continues from the previous one. The sources of paths
-/// are PathFinder, find_path_by_sampling() and the paths of the survey. Every leg is verified again
-/// in `space`.
+/// Plans the flight through `capture_points`. Waypoints that keep the given order reuse the paths
+/// of the survey. Other waypoints use the shortest path found. A waypoint without a verified path
+/// is listed in Route::unreached, and the route continues from the previous one. The sources of
+/// paths are PathFinder, find_path_by_sampling() and the paths of the survey. Every leg is verified
+/// again in `space`.
 ///
 /// `space` determines the free space. The climb from the pad is verified in `pad_space`, which
 /// should equal `space` without the ground. If it is nullptr, the pilot must check the climb. With
@@ -175,8 +175,8 @@ inline constexpr double reported_surplus = 10.0;
 ///
 /// Throws if a validation fails. Throws Error{bad_config} if the position above the pad is not
 /// free, or if no return altitude is verified for the whole route.
-Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
-                 const FreeSpace* pad_space, const RouteOptions& options);
+Route plan_route(std::vector<CapturePoint> capture_points, const Vehicle& vehicle,
+                 const FreeSpace& space, const FreeSpace* pad_space, const RouteOptions& options);
 
 /// Leg that violates the clearance.
 struct Violation {
@@ -187,19 +187,19 @@ struct Violation {
 
 /// Proof for a leg, and the name of its closest obstacle.
 struct LegCertificate {
-  LegProof proof;
+  LegVerification verification;
   std::string obstacle;
 };
 
 /// Returns the proof of each leg of a polyline at `clearance` [m]. The bound on the clearance is
-/// searched up to `cap` [m], see prove(). The result is shorter if a stop is requested. A single
+/// searched up to `cap` [m], see verify(). The result is shorter if a stop is requested. A single
 /// point counts as a leg of zero length. Throws Error{bad_geometry} if a point is not finite.
-std::vector<LegCertificate> certify_route(const std::vector<Eigen::Vector3d>& points,
-                                          const FreeSpace& space, double clearance, double cap,
-                                          const std::stop_token& stop = {});
+std::vector<LegCertificate> verify_route(const std::vector<Eigen::Vector3d>& points,
+                                         const FreeSpace& space, double clearance, double cap,
+                                         const std::stop_token& stop = {});
 
 /// Returns all legs of a polyline that cannot be verified at `clearance` [m]. Arguments and errors
-/// are those of certify_route().
+/// are those of verify_route().
 std::vector<Violation> check_route(const std::vector<Eigen::Vector3d>& points,
                                    const FreeSpace& space, double clearance);
 
@@ -207,11 +207,11 @@ std::vector<Violation> check_route(const std::vector<Eigen::Vector3d>& points,
 std::string describe(const Violation& violation);
 
 /// Returns the total duration of all sorties, with fly-through capture where the route has it [s].
-double least_duration(const Route& route);
+double min_duration(const Route& route);
 
 /// Returns the capture poses in flight order: at the waypoints, or on the curve for fly-through
 /// capture.
-std::vector<geometry::View> picture_views(const Route& route);
+std::vector<geometry::View> photo_views(const Route& route);
 
 /// Returns all points of a sortie, including its waypoints, from above the pad and back.
 std::vector<Eigen::Vector3d> sortie_points(const Route& route, const Sortie& sortie);

@@ -10,24 +10,24 @@
 
 namespace skycap::flight {
 
-Eigen::Vector3d direction_of(const Aim& aim) {
+Eigen::Vector3d compute_direction(const Aim& aim) {
   return {std::cos(aim.pitch) * std::sin(aim.yaw), std::cos(aim.pitch) * std::cos(aim.yaw),
           std::sin(aim.pitch)};
 }
 
-double yaw_of(const geometry::View& view) {
+double compute_yaw(const geometry::View& view) {
   if (view.direction.head<2>().norm() < 1e-9) return 0.0;
   const double yaw = std::atan2(view.direction.x(), view.direction.y());
   return yaw < 0.0 ? yaw + 2.0 * std::numbers::pi : yaw;
 }
 
-double pitch_of(const geometry::View& view) {
+double compute_pitch(const geometry::View& view) {
   return std::asin(std::clamp(view.direction.z() / view.direction.norm(), -1.0, 1.0));
 }
 
-bool can_look(const Vehicle& vehicle, const geometry::View& view) {
+bool can_aim(const Vehicle& vehicle, const geometry::View& view) {
   constexpr double rounding = 1e-6;  // [rad].
-  const double pitch = pitch_of(view);
+  const double pitch = compute_pitch(view);
   return pitch >= vehicle.gimbal_min - rounding && pitch <= vehicle.gimbal_max + rounding;
 }
 
@@ -42,18 +42,18 @@ void ClearanceBudget::validate() const {
   }
 }
 
-ReturnLaw planning_law(const RouteOptions& options, double top) {
+RtlProfile planning_rtl_profile(const RouteOptions& options, double top) {
   /// Exceeds the subdivision of proofs and the rounding of positions in files.
   constexpr double reserve = 0.25;
   const ReturnOptions& asked = options.returns.value();
   const double ground = options.takeoff.z();
-  ReturnLaw law{.dialects = asked.dialects,
-                .level = std::max(ground + std::floor(asked.highest - ground), top),
-                .landings = {options.takeoff},
-                .landing_climb = options.takeoff_climb,
-                .reserve = reserve};
-  law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
-  return law;
+  RtlProfile rtl_profile{.autopilots = asked.autopilots,
+                         .level = std::max(ground + std::floor(asked.max_height - ground), top),
+                         .landings = {options.takeoff},
+                         .landing_climb = options.takeoff_climb,
+                         .reserve = reserve};
+  rtl_profile.landings.insert(rtl_profile.landings.end(), asked.rally.begin(), asked.rally.end());
+  return rtl_profile;
 }
 
 void RouteOptions::validate() const {

@@ -9,30 +9,30 @@ namespace {
 using Cost = SplitProblem::Cost;
 
 /// Returns the minimum over all pads of one figure of a waypoint.
-double least(const SplitProblem& problem, std::vector<Cost> SplitProblem::Pad::*way, std::size_t i,
-             double Cost::*figure) {
+double min(const SplitProblem& problem, std::vector<Cost> SplitProblem::Pad::*cost, std::size_t i,
+           double Cost::*figure) {
   double best = never;
-  for (const SplitProblem::Pad& pad : problem.pads) best = std::min(best, (pad.*way)[i].*figure);
+  for (const SplitProblem::Pad& pad : problem.pads) best = std::min(best, (pad.*cost)[i].*figure);
   return best;
 }
 
 /// Returns a lower bound for every split [s]. Each pair of waypoints is connected directly or via a
 /// pad, whichever is faster. The number of pad visits is the minimum that the total energy
 /// requires.
-double least_time(const SplitProblem& problem) {
-  const std::size_t count = problem.station.size();
+double min_time(const SplitProblem& problem) {
+  const std::size_t count = problem.capture_point.size();
   const auto out = [&](std::size_t i, double Cost::*figure) {
-    return least(problem, &SplitProblem::Pad::out, i, figure);
+    return min(problem, &SplitProblem::Pad::out, i, figure);
   };
   const auto back = [&](std::size_t i, double Cost::*figure) {
-    return least(problem, &SplitProblem::Pad::back, i, figure);
+    return min(problem, &SplitProblem::Pad::back, i, figure);
   };
   double time = out(0, &Cost::time) + back(count - 1, &Cost::time);
   double energy = out(0, &Cost::energy) + back(count - 1, &Cost::energy);
   double cheapest_visit = never;
   for (std::size_t i = 0; i < count; ++i) {
-    time += problem.station[i].time;
-    energy += problem.station[i].energy;
+    time += problem.capture_point[i].time;
+    energy += problem.capture_point[i].energy;
     if (i + 1 == count) break;
     const double by_pad = back(i, &Cost::time) + out(i + 1, &Cost::time);
     const double by_pad_energy = back(i, &Cost::energy) + out(i + 1, &Cost::energy);
@@ -41,8 +41,8 @@ double least_time(const SplitProblem& problem) {
     cheapest_visit = std::min(cheapest_visit, std::max(0.0, by_pad - problem.leg[i].time));
   }
   const double by_energy = std::ceil(energy / problem.energy_per_sortie);
-  const double by_count =
-      std::ceil(static_cast<double>(count) / static_cast<double>(problem.stations_per_sortie));
+  const double by_count = std::ceil(static_cast<double>(count) /
+                                    static_cast<double>(problem.capture_points_per_sortie));
   const double visits = std::max(by_energy, by_count) - 1.0;
   return time + (visits > 0.0 ? visits * cheapest_visit : 0.0);
 }
@@ -60,7 +60,8 @@ struct BestSplits {
 void extend(const SplitProblem& problem, std::uint32_t pad_number, std::size_t first,
             BestSplits& best) {
   const SplitProblem::Pad& pad = problem.pads[pad_number];
-  const std::size_t end = std::min(problem.station.size(), first + problem.stations_per_sortie);
+  const std::size_t end =
+      std::min(problem.capture_point.size(), first + problem.capture_points_per_sortie);
   double time = pad.out[first].time, energy = pad.out[first].energy;
   double worst = pad.out[first].emergency;
   const auto add = [&](const Cost& part) {
@@ -70,7 +71,7 @@ void extend(const SplitProblem& problem, std::uint32_t pad_number, std::size_t f
   };
   for (std::size_t last = first; last < end; ++last) {
     if (last > first) add(problem.leg[last - 1]);
-    add(problem.station[last]);
+    add(problem.capture_point[last]);
     if (std::max(energy, worst) > problem.energy_per_sortie) break;
     // The return from here must be affordable, otherwise the vehicle must not fly this far.
     const Cost& back = pad.back[last];
@@ -86,7 +87,7 @@ void extend(const SplitProblem& problem, std::uint32_t pad_number, std::size_t f
 }  // namespace
 
 SortieSplit split_into_sorties(const SplitProblem& problem) {
-  const std::size_t count = problem.station.size();
+  const std::size_t count = problem.capture_point.size();
   if (count == 0 || problem.pads.empty()) return {};
   BestSplits best(count);
   for (std::size_t first = 0; first < count; ++first) {
@@ -102,7 +103,7 @@ SortieSplit split_into_sorties(const SplitProblem& problem) {
   }
   std::reverse(split.sorties.begin(), split.sorties.end());
   split.time = best.time[count];
-  split.time_bound = least_time(problem);
+  split.time_bound = min_time(problem);
   return split;
 }
 

@@ -24,11 +24,11 @@ struct SplitProblem {
     std::vector<Cost> out;   ///< Pad to waypoint, including take-off.
     std::vector<Cost> back;  ///< Waypoint to pad, including landing.
   };
-  std::vector<Pad> pads;      ///< Pads at which a sortie can start and end.
-  std::vector<Cost> station;  ///< Stops at waypoints.
-  std::vector<Cost> leg;      ///< Legs from waypoint i to waypoint i + 1.
+  std::vector<Pad> pads;            ///< Pads at which a sortie can start and end.
+  std::vector<Cost> capture_point;  ///< Stops at waypoints.
+  std::vector<Cost> leg;            ///< Legs from waypoint i to waypoint i + 1.
   double energy_per_sortie = 0.0;
-  std::size_t stations_per_sortie = 0;
+  std::size_t capture_points_per_sortie = 0;
 };
 
 struct SortieRange {

@@ -7,7 +7,7 @@ namespace skycap::flight {
 namespace {
 
 /// Minimum improvement, above rounding. Otherwise moves could cycle.
-constexpr double least_gain = 1e-9;
+constexpr double min_gain = 1e-9;
 constexpr std::size_t longest_chain = 3;  ///< Maximum number of nodes that Or-opt moves together.
 constexpr int ascent_steps = 300;         ///< Steps of the subgradient ascent for the lower bound.
 
@@ -51,10 +51,10 @@ class TourPlanner {
     is_visited[0] = true;
     while (tour_.size() < count_) {
       std::uint32_t nearest = 0;
-      double least = std::numeric_limits<double>::infinity();
+      double min = std::numeric_limits<double>::infinity();
       for (std::uint32_t next = 1; next < count_; ++next) {
-        if (is_visited[next] || cost(tour_.back(), next) >= least) continue;
-        least = cost(tour_.back(), next);
+        if (is_visited[next] || cost(tour_.back(), next) >= min) continue;
+        min = cost(tour_.back(), next);
         nearest = next;
       }
       is_visited[nearest] = true;
@@ -69,7 +69,7 @@ class TourPlanner {
       for (std::size_t j = i + 2; j < tour_.size(); ++j) {
         const double gain = cost(at(i), at(i + 1)) + cost(at(j), at(j + 1)) - cost(at(i), at(j)) -
                             cost(at(i + 1), at(j + 1));
-        if (gain <= least_gain) continue;
+        if (gain <= min_gain) continue;
         std::reverse(tour_.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                      tour_.begin() + static_cast<std::ptrdiff_t>(j) + 1);
         has_improved = true;
@@ -98,7 +98,7 @@ class TourPlanner {
       const double base = cost(at(j), at(j + 1));
       const double ahead = cost(at(j), head) + cost(tail, at(j + 1)) - base;
       const double turned = cost(at(j), tail) + cost(head, at(j + 1)) - base;
-      if (removed - std::min(ahead, turned) <= least_gain) continue;
+      if (removed - std::min(ahead, turned) <= min_gain) continue;
       std::vector<std::uint32_t> chain(tour_.begin() + static_cast<std::ptrdiff_t>(first),
                                        tour_.begin() + static_cast<std::ptrdiff_t>(first + size));
       if (turned < ahead) std::reverse(chain.begin(), chain.end());
@@ -141,22 +141,22 @@ class TourPlanner {
     const auto priced = [&](std::uint32_t a, std::uint32_t b) {
       return cost(a, b) + price[a] + price[b];
     };
-    std::vector<double> least(count_, std::numeric_limits<double>::infinity());
+    std::vector<double> min(count_, std::numeric_limits<double>::infinity());
     std::vector<std::uint32_t> parent(count_, 1);
     std::vector<bool> is_in_tree(count_, false);
     double sum = 0.0;
-    least[1] = 0.0;
+    min[1] = 0.0;
     for (std::uint32_t added = 1; added < count_; ++added) {
       std::uint32_t next = 0;
       for (std::uint32_t v = 1; v < count_; ++v) {
-        if (!is_in_tree[v] && (next == 0 || least[v] < least[next])) next = v;
+        if (!is_in_tree[v] && (next == 0 || min[v] < min[next])) next = v;
       }
       is_in_tree[next] = true;
-      sum += least[next];
+      sum += min[next];
       if (next != 1) ++degree[next], ++degree[parent[next]];
       for (std::uint32_t v = 1; v < count_; ++v) {
-        if (is_in_tree[v] || priced(next, v) >= least[v]) continue;
-        least[v] = priced(next, v);
+        if (is_in_tree[v] || priced(next, v) >= min[v]) continue;
+        min[v] = priced(next, v);
         parent[v] = next;
       }
     }

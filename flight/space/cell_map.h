@@ -16,7 +16,7 @@ inline std::uint64_t cell_key(const Cell& cell) {
 }
 
 /// Returns the cell of a key.
-inline Cell cell_of(std::uint64_t key) {
+inline Cell unpack_cell(std::uint64_t key) {
   const auto part = [](std::uint64_t bits) {
     return static_cast<int>(bits & 0x1fffff) - (1 << 20);
   };

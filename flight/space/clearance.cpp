@@ -25,10 +25,10 @@ double FreeSpace::distance(const Vector3d& point, double up_to) const {
   return closest({point, point}, up_to).distance;
 }
 
-LegProof prove(const FreeSpace& space, const Segment& leg, double clearance, double up_to) {
+LegVerification verify(const FreeSpace& space, const Segment& leg, double clearance, double up_to) {
   const Closest closest = space.closest(leg, std::max(up_to, clearance + 2.0 * clearance_guard));
-  const double proven = std::max(0.0, closest.distance - clearance_guard);
-  return {closest.distance - clearance_guard >= clearance, proven, closest};
+  const double verified_distance = std::max(0.0, closest.distance - clearance_guard);
+  return {closest.distance - clearance_guard >= clearance, verified_distance, closest};
 }
 
 struct KnownSpace::Impl {
@@ -63,7 +63,7 @@ KnownSpace::Impl::Impl(const Obstacles& obstacles)
       fence(obstacles.fence),
       ground_height(obstacles.ground_height),
       priors(obstacles.priors) {
-  mesh.triangles = triangles_of(obstacles.mesh);
+  mesh.triangles = to_triangles(obstacles.mesh);
   mesh.index();
   if (mesh_is_solid) winding = WindingNumber(mesh.tree, mesh.triangles);
 
@@ -86,7 +86,7 @@ KnownSpace::Impl::Impl(const Obstacles& obstacles)
 }
 
 void KnownSpace::Impl::add_rule(const Prism& prism, std::uint32_t owner) {
-  const std::vector<Triangle> triangles = triangles_of(surface(prism));
+  const std::vector<Triangle> triangles = to_triangles(surface(prism));
   rules.triangles.insert(rules.triangles.end(), triangles.begin(), triangles.end());
   rule_owner.resize(rules.triangles.size(), owner);
   for (const Triangle& triangle : triangles) {
@@ -128,10 +128,11 @@ void KnownSpace::Impl::find_points(const Segment& leg, Closest& best) const {
 
 void KnownSpace::Impl::find_ground(const Segment& leg, Closest& best) const {
   if (!ground_height) return;
-  const Vector3d& lowest = leg.from.z() < leg.to.z() ? leg.from : leg.to;
-  const double height = std::max(0.0, lowest.z() - *ground_height);
+  const Vector3d& lower_end = leg.from.z() < leg.to.z() ? leg.from : leg.to;
+  const double height = std::max(0.0, lower_end.z() - *ground_height);
   if (!(height < best.distance)) return;
-  best = {height, ObstacleKind::ground, 0, lowest, {lowest.x(), lowest.y(), *ground_height}};
+  best = {
+      height, ObstacleKind::ground, 0, lower_end, {lower_end.x(), lower_end.y(), *ground_height}};
 }
 
 Closest KnownSpace::Impl::surface_closest(const Segment& leg, double up_to) const {
@@ -203,8 +204,8 @@ bool KnownSpace::continues_free(const Segment& leg, double clearance) const {
   // one.
   bool is_free = true;
   double reach = needed;
-  const auto meet = [&](double squared_distance, double least) {
-    if (squared_distance >= least * least) return;
+  const auto meet = [&](double squared_distance, double min) {
+    if (squared_distance >= min * min) return;
     is_free = false;
     reach = -1.0;
   };

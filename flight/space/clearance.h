@@ -82,17 +82,17 @@ class FreeSpace {
 inline constexpr double clearance_guard = 1e-6;
 
 /// Result of the verification of a leg.
-struct LegProof {
-  bool is_proven;  ///< True if every point of the leg keeps the clearance.
-  /// Verified lower bound on the distance of the leg [m], at most `up_to` of prove().
+struct LegVerification {
+  bool is_verified;  ///< True if every point of the leg keeps the clearance.
+  /// Verified lower bound on the distance of the leg [m], at most `up_to` of verify().
   double clearance;
   Closest closest;
 };
 
 /// Verifies a leg at `clearance` [m]. The search extends to `up_to` [m]; a larger value also
 /// determines the surplus.
-LegProof prove(const FreeSpace& space, const Segment& leg, double clearance,
-               double up_to = std::numeric_limits<double>::infinity());
+LegVerification verify(const FreeSpace& space, const Segment& leg, double clearance,
+                       double up_to = std::numeric_limits<double>::infinity());
 
 /// Space around a scene that is known in advance.
 class KnownSpace : public FreeSpace {

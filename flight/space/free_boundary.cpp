@@ -21,7 +21,7 @@ Cell step(const Side& side) { return Cell::Unit(side.axis) * (side.is_up ? 1 : -
 
 /// Returns, for each voxel of a block, the bit of its neighbour on a side, possibly from the next
 /// block.
-Slices of_neighbours(const Slices& own, const Slices& next, const Side& side) {
+Slices shift_slices(const Slices& own, const Slices& next, const Side& side) {
   constexpr std::uint64_t first_column = 0x0101010101010101ULL, last_column = first_column << 7;
   Slices moved{};
   for (int z = 0; z < 8; ++z) {
@@ -45,15 +45,15 @@ using Blocks = std::unordered_map<std::uint64_t, const VoxelBlock*>;
 void add_faces(const FileBlock& record, const Blocks& blocks, const MeasuredSpaceConfig& config,
                std::vector<Eigen::Vector3f>& faces) {
   const VoxelRegion region = voxel_region(config.region, config.voxel);
-  const Cell cell = cell_of(record.key);
-  const auto blocked = [&](const Cell& place) {
-    const auto found = blocks.find(cell_key(place));
-    return blocked_voxels({&region, 1}, place,
+  const Cell cell = unpack_cell(record.key);
+  const auto blocked = [&](const Cell& neighbour) {
+    const auto found = blocks.find(cell_key(neighbour));
+    return blocked_voxels({&region, 1}, neighbour,
                           found == blocks.end() ? VoxelBlock{} : *found->second);
   };
   const Slices own = blocked(cell);
   for (const Side& side : sides) {
-    const Slices beyond = of_neighbours(own, blocked(cell + step(side)), side);
+    const Slices beyond = shift_slices(own, blocked(cell + step(side)), side);
     const Eigen::Vector3d to_face = 0.5 * (Eigen::Vector3d::Ones() + step(side).cast<double>());
     for (int z = 0; z < 8; ++z) {
       for (std::uint64_t bits = record.block.passable(z) & beyond[z]; bits != 0; bits &= bits - 1) {

@@ -26,7 +26,7 @@ void MeasuredSpaceConfig::validate() const {
   require(!floor || std::isfinite(*floor), "measured_space.floor", floor.value_or(0.0),
           "a finite number");
   const auto is_near = [&](const Vector3d& corner) {  // False for NaN, too.
-    return (corner.array().abs() < 1e5 * voxel).all() && geometry::is_place(corner);
+    return (corner.array().abs() < 1e5 * voxel).all() && geometry::is_valid_position(corner);
   };
   const auto require_near = [&](const AlignedBox3d& box, const char* name) {
     if (box.isEmpty()) return;
@@ -35,7 +35,7 @@ void MeasuredSpaceConfig::validate() const {
             "within 100,000 voxels and 1e7 m of the origin");
   };
   require_near(region, "measured_space.region");
-  for (const AlignedBox3d& box : beside) require_near(box, "measured_space.beside");
+  for (const AlignedBox3d& box : extra_boxes) require_near(box, "measured_space.beside");
 }
 
 MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {
@@ -54,7 +54,7 @@ MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {
     impl_->boxes[0] = {Vector3d::Constant(-infinity), Vector3d::Constant(infinity)};
     return;
   }
-  for (const AlignedBox3d& box : config.beside) {
+  for (const AlignedBox3d& box : config.extra_boxes) {
     if (!box.isEmpty()) add(box);
   }
 }
@@ -68,15 +68,15 @@ void MeasuredSpace::declare_free(const Vector3d& centre, double radius) {
                             centre + Vector3d::Constant(radius));
   impl_->free_where(around, 1, [&](const AlignedBox3d& box) {
     const Vector3d farthest_corner = (centre - box.min()).cwiseMax(box.max() - centre);
-    if (farthest_corner.norm() <= radius) return BallSight::free;
-    return box.exteriorDistance(centre) > radius ? BallSight::hidden : BallSight::partial;
+    if (farthest_corner.norm() <= radius) return BallVisibility::free;
+    return box.exteriorDistance(centre) > radius ? BallVisibility::hidden : BallVisibility::partial;
   });
 }
 
 void MeasuredSpace::declare_free(const AlignedBox3d& region) {
   impl_->free_where(region, 1, [&](const AlignedBox3d& box) {
-    if (region.contains(box)) return BallSight::free;
-    return region.intersects(box) ? BallSight::partial : BallSight::hidden;
+    if (region.contains(box)) return BallVisibility::free;
+    return region.intersects(box) ? BallVisibility::partial : BallVisibility::hidden;
   });
 }
 
@@ -97,13 +97,13 @@ void MeasuredSpace::insert_points(const geometry::Scan& scan, unsigned threads) 
   impl_->occupy(scan, threads);
 }
 
-void MeasuredSpace::take_free(const MeasuredSpace& other) {
+void MeasuredSpace::merge_free(const MeasuredSpace& other) {
   const double voxel = impl_->config.voxel;
   require(other.impl_->config.voxel == voxel, "measured_space.voxel", other.impl_->config.voxel,
           "that of the space it is added to");
   const VoxelBlocks& blocks = other.impl_->blocks;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const Cell cell = cell_of(blocks.keys()[i]);
+    const Cell cell = unpack_cell(blocks.keys()[i]);
     const AlignedBox3d box = impl_->block_box(cell);
     if (!impl_->meets_region(box)) continue;
     const VoxelBlock* known = impl_->blocks.find(blocks.keys()[i]).block;
@@ -118,12 +118,12 @@ void MeasuredSpace::take_free(const MeasuredSpace& other) {
 Closest MeasuredSpace::closest(const Segment& leg, double up_to) const {
   // The leg is divided into pieces of a few blocks, whose boxes are slim. The search distance grows
   // until it contains an obstacle, so that distant blocks need not be examined.
-  const auto pieces =
+  const auto segments =
       static_cast<std::size_t>(std::ceil(leg.length() / (4.0 * impl_->block_size()))) + 1;
   for (double reach = std::min(up_to, impl_->block_size());; reach = std::min(up_to, 2.0 * reach)) {
     Closest best{reach};
-    for (std::size_t i = 0; i < pieces && best.distance > 0.0; ++i) {
-      const auto count = static_cast<double>(pieces);
+    for (std::size_t i = 0; i < segments && best.distance > 0.0; ++i) {
+      const auto count = static_cast<double>(segments);
       const double begin = static_cast<double>(i) / count, end = static_cast<double>(i + 1) / count;
       impl_->closest_in({leg.at(begin), leg.at(end)}, best);
     }
@@ -136,7 +136,7 @@ bool MeasuredSpace::continues_free(const Segment& leg, double clearance) const {
 }
 
 AlignedBox3d MeasuredSpace::extent() const {
-  return impl_->is_bounded() ? impl_->in_the_way() : impl_->extent;
+  return impl_->is_bounded() ? impl_->mapped_box() : impl_->extent;
 }
 
 AlignedBox3d MeasuredSpace::known_box() const {
@@ -155,7 +155,7 @@ double MeasuredSpace::free_volume() const {
   std::size_t voxels = 0;
   const VoxelBlocks& blocks = impl_->blocks;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (!impl_->boxes[0].intersects(impl_->block_box(cell_of(blocks.keys()[i])))) continue;
+    if (!impl_->boxes[0].intersects(impl_->block_box(unpack_cell(blocks.keys()[i])))) continue;
     for (int z = 0; z < 8; ++z) {
       voxels += static_cast<std::size_t>(std::popcount(blocks.blocks()[i].passable(z)));
     }

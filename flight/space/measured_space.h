@@ -41,7 +41,7 @@ struct MeasuredSpaceConfig {
   /// Further regions in which space must be measured to count as free. They belong to other surveys
   /// and require a region of this one. Their measurements are stored. They do not count in the
   /// volume or, in a space read from a file, as obstacles.
-  std::vector<Eigen::AlignedBox3d> beside;
+  std::vector<Eigen::AlignedBox3d> extra_boxes;
   /// Points below this height are discarded, because the ground is known more exactly from other
   /// data [m].
   std::optional<double> floor;
@@ -95,7 +95,7 @@ class MeasuredSpace : public FreeSpace {
   /// Copies the free space, but not the occupied space, of another survey in the same frame. Only
   /// blocks that intersect the region are copied. Throws Error{bad_config} if the voxel sizes
   /// differ.
-  void take_free(const MeasuredSpace& other);
+  void merge_free(const MeasuredSpace& other);
 
   Closest closest(const Segment& leg, double up_to) const override;
   bool continues_free(const Segment& leg, double clearance) const override;

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr char file_mark[16] = "skycap free v1\n";
 /// About 1 GB, for a survey of about 10^10 voxels.
-constexpr std::uint64_t most_blocks = 8'000'000;
+constexpr std::uint64_t max_blocks = 8'000'000;
 constexpr double no_floor = -std::numeric_limits<double>::infinity();
 
 /// File header. Plain numbers, written as in memory.
@@ -86,10 +86,10 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, name + ": " + error.what());
   }
-  if (head.blocks > most_blocks) {
+  if (head.blocks > max_blocks) {
     throw Error(ErrorKind::bad_file, name + ": is damaged: its header has " +
                                          std::to_string(head.blocks) + " blocks; at most " +
-                                         std::to_string(most_blocks) + " are allowed");
+                                         std::to_string(max_blocks) + " are allowed");
   }
   FileBlock block{};
   for (std::uint64_t i = 0; i < head.blocks; ++i) {
@@ -98,8 +98,8 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
                                            std::to_string(head.blocks) +
                                            " blocks; copy it again, or plan again");
     }
-    const Vector3d low = cell_of(block.key).cast<double>() * 8.0 * head.voxel;
-    if (!geometry::is_place(low)) {
+    const Vector3d low = unpack_cell(block.key).cast<double>() * 8.0 * head.voxel;
+    if (!geometry::is_valid_position(low)) {
       throw Error(ErrorKind::bad_file, name + ": is damaged: block " + std::to_string(i) +
                                            " is more than 1e7 m from the origin; plan again");
     }
@@ -115,7 +115,7 @@ MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name)
   const MeasuredSpaceFile file = read_measured_space(stream, name);
   MeasuredSpace space(file.config);
   for (const FileBlock& record : file.blocks) {
-    const Cell cell = cell_of(record.key);  // Ignores any further bits of the key.
+    const Cell cell = unpack_cell(record.key);  // Ignores any further bits of the key.
     space.impl_->set(cell, record.block);
   }
   return space;

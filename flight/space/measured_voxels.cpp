@@ -19,8 +19,8 @@ struct OccupiedVoxels {
 
 /// Returns the voxels in the order of the points. Neighbouring pixels usually belong to the same
 /// block.
-std::vector<OccupiedVoxels> voxels_of(std::span<const Eigen::Vector3f> points,
-                                      const MeasuredSpaceConfig& config) {
+std::vector<OccupiedVoxels> collect_voxels(std::span<const Eigen::Vector3f> points,
+                                           const MeasuredSpaceConfig& config) {
   std::vector<OccupiedVoxels> occupied;
   for (const Eigen::Vector3f& p : points) {
     const Vector3d point = p.cast<double>();
@@ -28,8 +28,9 @@ std::vector<OccupiedVoxels> voxels_of(std::span<const Eigen::Vector3f> points,
     const Cell voxel = (point / config.voxel).array().floor().matrix().cast<int>();
     const Cell block = voxel.unaryExpr([](int at) { return at >> 3; });
     if (occupied.empty() || occupied.back().block != block) occupied.push_back({block});
-    const Cell place = voxel - 8 * block;
-    occupied.back().voxels[place.z()] |= std::uint64_t{1} << (8 * place.y() + place.x());
+    const Cell local_voxel = voxel - 8 * block;
+    occupied.back().voxels[local_voxel.z()] |= std::uint64_t{1}
+                                               << (8 * local_voxel.y() + local_voxel.x());
   }
   return occupied;
 }
@@ -73,7 +74,7 @@ void MeasuredSpace::Impl::occupy(const geometry::Scan& scan, unsigned threads) {
   geometry::parallel_for(parts, threads, [&](std::size_t part) {
     const std::size_t first = part * part_size;
     occupied[part] =
-        voxels_of(points.subspan(first, std::min(part_size, points.size() - first)), config);
+        collect_voxels(points.subspan(first, std::min(part_size, points.size() - first)), config);
   });
   for (const std::vector<OccupiedVoxels>& part : occupied) {
     for (const auto& [cell, voxels] : part) {
@@ -86,11 +87,11 @@ void MeasuredSpace::Impl::occupy(const geometry::Scan& scan, unsigned threads) {
 
 void MeasuredSpace::Impl::carve(const RangeImage& image, unsigned threads) {
   free_where(image.reach(), threads, [&](const AlignedBox3d& box) {
-    return image.sight(box.center(), 0.5 * box.diagonal().norm(), config.depth_margin);
+    return image.visibility(box.center(), 0.5 * box.diagonal().norm(), config.depth_margin);
   });
 }
 
-void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& test,
+void MeasuredSpace::Impl::closest_in_cube(const Segment& segment, const BoxTest& test,
                                           const Cell& cell, const Cube& cube,
                                           const VoxelBlock& block, const Slices& blocked,
                                           Closest& best) const {
@@ -104,7 +105,7 @@ void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& t
   const AlignedBox3d box = cube_box(cell, cube);
   if (cube.edge < 8 && !test.is_near(box, best.distance)) return;
   if (all == mask) {
-    const NearestPoints pair = nearest(piece, box);
+    const NearestPoints pair = nearest(segment, box);
     if (!(pair.squared_distance < best.distance * best.distance)) return;
     const Cell voxel =
         (pair.on_other / config.voxel).array().floor().matrix().cast<int>() - 8 * cell;
@@ -119,17 +120,17 @@ void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& t
   const int half = cube.edge / 2;
   for (int corner = 0; corner < 8 && best.distance > 0.0; ++corner) {
     const Cell offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-    closest_in_cube(piece, test, cell, {cube.low + half * offset, half}, block, blocked, best);
+    closest_in_cube(segment, test, cell, {cube.low + half * offset, half}, block, blocked, best);
   }
 }
 
 /// Updates `best` with obstacles closer to a short piece.
-void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const {
+void MeasuredSpace::Impl::closest_in(const Segment& segment, Closest& best) const {
   const Vector3d reach = Vector3d::Constant(best.distance);
-  const AlignedBox3d around = in_the_way().intersection(
-      {piece.from.cwiseMin(piece.to) - reach, piece.from.cwiseMax(piece.to) + reach});
+  const AlignedBox3d around = mapped_box().intersection(
+      {segment.from.cwiseMin(segment.to) - reach, segment.from.cwiseMax(segment.to) + reach});
   if (around.isEmpty()) return;  // For example a return above all obstacles.
-  const BoxTest test(piece);
+  const BoxTest test(segment);
   for_each_block(around, [&](const Cell& cell) {
     const VoxelBlocks::Found found = blocks.find(cell_key(cell));
     // Most blocks are passable. Computing their distance would take longer.
@@ -137,7 +138,7 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
     const AlignedBox3d box = block_box(cell);
     if (!test.is_near(box, best.distance)) return true;
     if (found.block != nullptr) {
-      closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, *found.block,
+      closest_in_cube(segment, test, cell, {Cell::Zero(), 8}, *found.block,
                       blocked_voxels(regions, cell, *found.block), best);
       return best.distance > 0.0;
     }
@@ -145,7 +146,7 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
       const bool is_inside = (8 * cell.array() < regions[i].high.array()).all() &&
                              (8 * cell.array() + 8 > regions[i].low.array()).all();
       if (!is_inside) continue;
-      const NearestPoints pair = nearest(piece, box.intersection(boxes[i]));
+      const NearestPoints pair = nearest(segment, box.intersection(boxes[i]));
       if (pair.squared_distance < best.distance * best.distance) {
         best = {std::sqrt(pair.squared_distance), ObstacleKind::unknown_space, 0, pair.on_segment,
                 pair.on_other};

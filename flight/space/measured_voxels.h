@@ -46,13 +46,13 @@ struct MeasuredSpace::Impl {
         boxes, [&](const Eigen::AlignedBox3d& region) { return region.intersects(box); });
   }
   /// Returns a box outside of which everything is free.
-  Eigen::AlignedBox3d in_the_way() const {
+  Eigen::AlignedBox3d mapped_box() const {
     Eigen::AlignedBox3d hull = extent;
     for (const Eigen::AlignedBox3d& region : boxes) hull.extend(region);
     return hull;
   }
   double block_size() const { return 8.0 * config.voxel; }
-  Cell block_of(const Eigen::Vector3d& point) const {
+  Cell block_at(const Eigen::Vector3d& point) const {
     return (point / block_size()).array().floor().matrix().cast<int>();
   }
   Eigen::AlignedBox3d block_box(const Cell& cell) const {
@@ -84,8 +84,8 @@ struct MeasuredSpace::Impl {
   void free_within(const Cell& cell, const Cube& cube, VoxelBlock& block, Decide decide) const;
   void occupy(const geometry::Scan& scan, unsigned threads);
   void carve(const RangeImage& image, unsigned threads);
-  void closest_in(const Segment& piece, Closest& best) const;
-  void closest_in_cube(const Segment& piece, const BoxTest& test, const Cell& cell,
+  void closest_in(const Segment& segment, Closest& best) const;
+  void closest_in_cube(const Segment& segment, const BoxTest& test, const Cell& cell,
                        const Cube& cube, const VoxelBlock& block, const Slices& blocked,
                        Closest& best) const;
 };
@@ -93,7 +93,7 @@ struct MeasuredSpace::Impl {
 /// Visits all block cells that intersect the box. `visit` returns false to stop.
 template <typename Visit>
 void MeasuredSpace::Impl::for_each_block(const Eigen::AlignedBox3d& box, Visit visit) const {
-  const Cell low = block_of(box.min()), high = block_of(box.max());
+  const Cell low = block_at(box.min()), high = block_at(box.max());
   for (int z = low.z(); z <= high.z(); ++z) {
     for (int y = low.y(); y <= high.y(); ++y) {
       for (int x = low.x(); x <= high.x(); ++x) {
@@ -103,8 +103,8 @@ void MeasuredSpace::Impl::for_each_block(const Eigen::AlignedBox3d& box, Visit v
   }
 }
 
-/// Marks cubes for which `decide(box)` returns BallSight::free, in blocks that intersect both the
-/// box and a region. `decide` must be thread-safe.
+/// Marks cubes for which `decide(box)` returns BallVisibility::free, in blocks that intersect both
+/// the box and a region. `decide` must be thread-safe.
 template <typename Decide>
 void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, unsigned threads,
                                      Decide decide) {
@@ -141,9 +141,9 @@ template <typename Decide>
 void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, VoxelBlock& block,
                                       Decide decide) const {
   if (block.is_all_free(cube)) return;
-  const BallSight sight = decide(cube_box(cell, cube));
-  if (sight == BallSight::free) block.set_free(cube);
-  if (sight != BallSight::partial || cube.edge == 1) return;
+  const BallVisibility visibility = decide(cube_box(cell, cube));
+  if (visibility == BallVisibility::free) block.set_free(cube);
+  if (visibility != BallVisibility::partial || cube.edge == 1) return;
   const int half = cube.edge / 2;
   for (int corner = 0; corner < 8; ++corner) {
     const Cell offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);

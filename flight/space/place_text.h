@@ -10,11 +10,11 @@
 namespace skycap::flight {
 
 /// Returns the coordinates [m] as "(1.25, -3.00, 12.50)".
-inline std::string place_text(const Eigen::Vector3d& place) {
+inline std::string position_text(const Eigen::Vector3d& position) {
   char text[96];
   const auto hundredths = [](double value) { return std::round(value * 100.0) / 100.0 + 0.0; };
-  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", hundredths(place.x()),
-                hundredths(place.y()), hundredths(place.z()));
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", hundredths(position.x()),
+                hundredths(position.y()), hundredths(position.z()));
   return text;
 }
 

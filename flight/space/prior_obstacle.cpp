@@ -26,7 +26,7 @@ struct Part {
   WindingNumber winding;
 
   explicit Part(const NamedSurface& surface) : name(surface.name) {
-    mesh.triangles = triangles_of(surface.mesh);
+    mesh.triangles = to_triangles(surface.mesh);
     mesh.index();
     winding = WindingNumber(mesh.tree, mesh.triangles);
   }
@@ -45,27 +45,27 @@ AlignedBox3d endless(AlignedBox3d column) {
 }  // namespace
 
 void PriorObstacleConfig::validate() const {
-  const auto refuse = [&](ErrorKind kind, const std::string& what) {
+  const auto reject = [&](ErrorKind kind, const std::string& what) {
     throw Error(kind, name + " " + what);
   };
   const auto is_length = [](double length) { return length >= 0.0 && std::isfinite(length); };
   if (!is_length(uncertainty)) {
-    refuse(ErrorKind::bad_config, "has an uncertainty of " + std::to_string(uncertainty) +
+    reject(ErrorKind::bad_config, "has an uncertainty of " + std::to_string(uncertainty) +
                                       " m; it must be a finite number, zero or more");
   }
   if (!is_length(point_radius)) {
-    refuse(ErrorKind::bad_config, "has points of radius " + std::to_string(point_radius) +
+    reject(ErrorKind::bad_config, "has points of radius " + std::to_string(point_radius) +
                                       " m; it must be a finite number, zero or more");
   }
   for (const NamedSurface& surface : surfaces) geometry::validate(surface.mesh);
   if (!std::ranges::all_of(points, [](const auto& point) { return point.allFinite(); })) {
-    refuse(ErrorKind::bad_geometry, "has a point that is not finite");
+    reject(ErrorKind::bad_geometry, "has a point that is not finite");
   }
   const auto is_sound = [](const AlignedBox3d& box) {
     return box.min().allFinite() && box.max().allFinite() && !box.isEmpty();
   };
   if (!std::ranges::all_of(columns, is_sound)) {
-    refuse(ErrorKind::bad_geometry, "has a column that is not finite, or empty");
+    reject(ErrorKind::bad_geometry, "has a column that is not finite, or empty");
   }
 }
 

@@ -22,8 +22,8 @@ std::size_t slot(int row, int column, int width) {
 
 /// Returns the minimum of each cell and its neighbours, across the seam behind the sensor. The
 /// result is 0 (no depth) next to the poles.
-std::vector<float> least_around(const std::vector<float>& depths, int width, int height) {
-  std::vector<float> least(depths.size(), 0.0F);
+std::vector<float> min_filter(const std::vector<float>& depths, int width, int height) {
+  std::vector<float> min(depths.size(), 0.0F);
   for (int row = 1; row + 1 < height; ++row) {
     for (int column = 0; column < width; ++column) {
       float nearest = std::numeric_limits<float>::infinity();
@@ -32,10 +32,10 @@ std::vector<float> least_around(const std::vector<float>& depths, int width, int
           nearest = std::min(nearest, depths[slot(r, c, width)]);
         }
       }
-      least[slot(row, column, width)] = nearest;
+      min[slot(row, column, width)] = nearest;
     }
   }
-  return least;
+  return min;
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double
     const auto seen = static_cast<float>(std::min(range, max_depth));
     depth = depth == 0.0F ? seen : std::min(depth, seen);
   }
-  if (rays.is_scattered) depths = least_around(depths, width_, height_);
+  if (rays.is_scattered) depths = min_filter(depths, width_, height_);
   build_pyramid(std::move(depths), threads);
 }
 
@@ -113,9 +113,9 @@ void RangeImage::build_pyramid(std::vector<float> depths, unsigned threads) {
 
 RangeImage::Level RangeImage::Level::halved(unsigned threads) const {
   Level half{(width + 1) / 2, (height + 1) / 2, {}, {}};
-  half.least_depths.resize(slot(half.height, 0, half.width));
-  half.greatest_depths.resize(half.least_depths.size());
-  const std::vector<float>&low = least(), &high = greatest();
+  half.min_depths.resize(slot(half.height, 0, half.width));
+  half.max_depths.resize(half.min_depths.size());
+  const std::vector<float>&low = min(), &high = max();
   const auto halve_row = [&](int row) {
     for (int column = 0; column < half.width; ++column) {
       const std::size_t target = slot(row, column, half.width);
@@ -123,17 +123,16 @@ RangeImage::Level RangeImage::Level::halved(unsigned threads) const {
       const int bottom = std::min(2 * row + 1, height - 1);
       const std::size_t quad[] = {slot(2 * row, 2 * column, width), slot(2 * row, right, width),
                                   slot(bottom, 2 * column, width), slot(bottom, right, width)};
-      half.least_depths[target] =
-          std::min({low[quad[0]], low[quad[1]], low[quad[2]], low[quad[3]]});
-      half.greatest_depths[target] =
+      half.min_depths[target] = std::min({low[quad[0]], low[quad[1]], low[quad[2]], low[quad[3]]});
+      half.max_depths[target] =
           std::max({high[quad[0]], high[quad[1]], high[quad[2]], high[quad[3]]});
     }
   };
-  constexpr int rows_of_part = 64;
-  const int parts = (half.height + rows_of_part - 1) / rows_of_part;
+  constexpr int rows_per_part = 64;
+  const int parts = (half.height + rows_per_part - 1) / rows_per_part;
   geometry::parallel_for(static_cast<std::size_t>(parts), threads, [&](std::size_t part) {
-    const int first = static_cast<int>(part) * rows_of_part;
-    for (int row = first; row < std::min(half.height, first + rows_of_part); ++row) halve_row(row);
+    const int first = static_cast<int>(part) * rows_per_part;
+    for (int row = first; row < std::min(half.height, first + rows_per_part); ++row) halve_row(row);
   });
   return half;
 }
@@ -144,13 +143,13 @@ RangeImage::Depths RangeImage::over(int left, int right, int top, int bottom) co
   std::size_t level = 0;
   while (((right - left) >> level) > 2 || ((bottom - top) >> level) > 2) ++level;
   const int width = levels_[level].width;
-  const std::vector<float>&low = levels_[level].least(), &high = levels_[level].greatest();
+  const std::vector<float>&low = levels_[level].min(), &high = levels_[level].max();
   Depths depths{std::numeric_limits<float>::infinity(), 0.0F};
   for (int row = top >> level; row <= bottom >> level; ++row) {
     for (int column = left >> level; column <= right >> level; ++column) {
       const std::size_t i = slot(row, column, width);
-      depths.least = std::min(depths.least, low[i]);
-      depths.greatest = std::max(depths.greatest, high[i]);
+      depths.min = std::min(depths.min, low[i]);
+      depths.max = std::max(depths.max, high[i]);
     }
   }
   return depths;
@@ -165,7 +164,7 @@ RangeImage::Depths RangeImage::over_wrapped(const Patch& patch) const {
   if (left >= 0 && right < width_) return over(left, right, top, bottom);
   const int first = (left + width_) % width_, last = right % width_;
   const Depths one = over(first, width_ - 1, top, bottom), two = over(0, last, top, bottom);
-  return {std::min(one.least, two.least), std::max(one.greatest, two.greatest)};
+  return {std::min(one.min, two.min), std::max(one.max, two.max)};
 }
 
 std::optional<RangeImage::Patch> RangeImage::pinhole_patch(const Vector3d& centre,
@@ -175,9 +174,9 @@ std::optional<RangeImage::Patch> RangeImage::pinhole_patch(const Vector3d& centr
   const auto bounds = [&](double offset, int axis, double& low, double& high) {
     const double focal = camera_->focal_length_px()[axis];
     const double centre_px = camera_->principal_point_px()[axis];
-    const double least = offset - radius, most = offset + radius;
-    low = centre_px + focal * least / (least < 0.0 ? nearest : farthest);
-    high = centre_px + focal * most / (most > 0.0 ? nearest : farthest);
+    const double min = offset - radius, max = offset + radius;
+    low = centre_px + focal * min / (min < 0.0 ? nearest : farthest);
+    high = centre_px + focal * max / (max > 0.0 ? nearest : farthest);
   };
   Patch patch{};
   bounds(centre.x(), 0, patch.left, patch.right);
@@ -196,11 +195,12 @@ std::optional<RangeImage::Patch> RangeImage::spherical_patch(const Vector3d& cen
   const double half_angle = std::asin(radius / range);
   const double elevation = std::asin(std::clamp(centre.y() / range, -1.0, 1.0));
   const double azimuth = std::atan2(centre.x(), centre.z());
-  const double steepest = std::abs(elevation) + half_angle;
+  const double max_elevation = std::abs(elevation) + half_angle;
   // Half the azimuth width of a circle on the sphere, or pi if the circle contains a pole.
   const double half_width =
-      steepest >= pi / 2 ? pi
-                         : std::asin(std::min(1.0, std::sin(half_angle) / std::cos(elevation)));
+      max_elevation >= pi / 2
+          ? pi
+          : std::asin(std::min(1.0, std::sin(half_angle) / std::cos(elevation)));
   Patch patch{};
   patch.left = std::floor((azimuth - half_width + pi) * pixels_per_radian_);
   patch.right = std::floor((azimuth + half_width + pi) * pixels_per_radian_);
@@ -211,22 +211,23 @@ std::optional<RangeImage::Patch> RangeImage::spherical_patch(const Vector3d& cen
   return patch;
 }
 
-BallSight RangeImage::sight(const Vector3d& centre_in_world, double radius, double margin) const {
+BallVisibility RangeImage::visibility(const Vector3d& centre_in_world, double radius,
+                                      double margin) const {
   const Vector3d centre = sensor_from_world_ * centre_in_world;
   if (!camera_) {
     // A ray with a displaced origin passes within the spread of its apparent position.
     const std::optional<Patch> patch = spherical_patch(centre, radius + origin_spread_);
-    if (!patch) return BallSight::partial;
+    if (!patch) return BallVisibility::partial;
     const Depths depths = over_wrapped(*patch);
-    if (depths.least >= patch->farthest + margin) return BallSight::free;
-    return depths.greatest < patch->nearest ? BallSight::hidden : BallSight::partial;
+    if (depths.min >= patch->farthest + margin) return BallVisibility::free;
+    return depths.max < patch->nearest ? BallVisibility::hidden : BallVisibility::partial;
   }
-  if (centre.z() + radius <= 0.0) return BallSight::hidden;
+  if (centre.z() + radius <= 0.0) return BallVisibility::hidden;
   const std::optional<Patch> patch = pinhole_patch(centre, radius);
-  if (!patch) return BallSight::partial;
+  if (!patch) return BallVisibility::partial;
   if (patch->right < 0 || patch->bottom < 0 || patch->left > width_ - 1 ||
       patch->top > height_ - 1) {
-    return BallSight::hidden;
+    return BallVisibility::hidden;
   }
   const bool is_in_view = patch->left >= 0 && patch->top >= 0 && patch->right <= width_ - 1 &&
                           patch->bottom <= height_ - 1;
@@ -235,8 +236,8 @@ BallSight RangeImage::sight(const Vector3d& centre_in_world, double radius, doub
   };
   const Depths depths = over(clip(patch->left, width_), clip(patch->right, width_),
                              clip(patch->top, height_), clip(patch->bottom, height_));
-  if (is_in_view && depths.least >= patch->farthest + margin) return BallSight::free;
-  return depths.greatest < patch->nearest ? BallSight::hidden : BallSight::partial;
+  if (is_in_view && depths.min >= patch->farthest + margin) return BallVisibility::free;
+  return depths.max < patch->nearest ? BallVisibility::hidden : BallVisibility::partial;
 }
 
 Eigen::AlignedBox3d RangeImage::reach() const {

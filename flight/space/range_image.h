@@ -15,7 +15,7 @@
 namespace skycap::flight {
 
 /// Visibility of a ball from the sensor.
-enum class BallSight {
+enum class BallVisibility {
   free,     ///< Entirely in front of all measurements in its direction.
   hidden,   ///< Entirely outside the view, or behind all measurements in its direction.
   partial,  ///< All other cases.
@@ -35,10 +35,11 @@ class RangeImage {
 
   /// Returns the visibility of a ball (world coordinates) [m]. `margin` is the required free
   /// distance in front of measurements [m].
-  BallSight sight(const Eigen::Vector3d& centre_in_world, double radius, double margin) const;
+  BallVisibility visibility(const Eigen::Vector3d& centre_in_world, double radius,
+                            double margin) const;
 
   /// Returns the maximum depth in the image [m].
-  double farthest() const { return levels_.back().greatest().front(); }
+  double farthest() const { return levels_.back().max().front(); }
 
   /// Returns a box around all space that the image can prove free.
   Eigen::AlignedBox3d reach() const;
@@ -49,17 +50,15 @@ class RangeImage {
     double nearest, farthest;  ///< Depth interval of the ball [m].
   };
   struct Depths {
-    float least, greatest;
+    float min, max;
   };
   struct Level {
     int width, height;
-    /// Pyramid data. Empty `greatest_depths` means that they equal `least_depths`.
-    std::vector<float> least_depths, greatest_depths;
+    /// Pyramid data. Empty `max_depths` means that they equal `min_depths`.
+    std::vector<float> min_depths, max_depths;
 
-    const std::vector<float>& least() const { return least_depths; }
-    const std::vector<float>& greatest() const {
-      return greatest_depths.empty() ? least_depths : greatest_depths;
-    }
+    const std::vector<float>& min() const { return min_depths; }
+    const std::vector<float>& max() const { return max_depths.empty() ? min_depths : max_depths; }
     Level halved(unsigned threads) const;
   };
 

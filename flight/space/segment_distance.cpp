@@ -157,8 +157,8 @@ bool may_be_nearer(const Segment& segment, const Triangle& triangle, double reac
   const Vector3d normal = (b - a).cross(c - a);
   const double from = normal.dot(segment.from - a), to = normal.dot(segment.to - a);
   if ((from > 0.0) != (to > 0.0)) return true;
-  const double least = std::min(std::abs(from), std::abs(to));
-  return least * least < reach * reach * normal.squaredNorm() || normal.isZero(0.0);
+  const double min = std::min(std::abs(from), std::abs(to));
+  return min * min < reach * reach * normal.squaredNorm() || normal.isZero(0.0);
 }
 
 }  // namespace skycap::flight

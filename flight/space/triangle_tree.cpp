@@ -10,7 +10,7 @@ void TriangleTree::index() {
   tree = BoundingTree(boxes);
 }
 
-std::vector<Triangle> triangles_of(const geometry::Mesh& mesh) {
+std::vector<Triangle> to_triangles(const geometry::Mesh& mesh) {
   std::vector<Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles) {

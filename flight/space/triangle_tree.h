@@ -33,6 +33,6 @@ struct TriangleTree {
   }
 };
 
-std::vector<Triangle> triangles_of(const geometry::Mesh& mesh);
+std::vector<Triangle> to_triangles(const geometry::Mesh& mesh);
 
 }  // namespace skycap::flight

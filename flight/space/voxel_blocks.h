@@ -25,31 +25,31 @@ class VoxelBlocks {
 
   /// Returns the block of a cell_key(). The pointer is valid until the next set().
   Found find(std::uint64_t key) const {
-    const Place* const place = places_.find(key);
-    if (place == nullptr) return {};
-    return {&blocks_[place->index], place->is_all_passable};
+    const BlockSlot* const slot = slots_.find(key);
+    if (slot == nullptr) return {};
+    return {&blocks_[slot->index], slot->is_all_passable};
   }
 
   /// Inserts or replaces a block. Returns true if it is new.
   bool set(std::uint64_t key, const VoxelBlock& block) {
-    const auto [place, is_new] = places_.insert(key, {static_cast<std::uint32_t>(blocks_.size())});
+    const auto [slot, is_new] = slots_.insert(key, {static_cast<std::uint32_t>(blocks_.size())});
     if (is_new) {
       keys_.push_back(key);
       blocks_.push_back(block);
     } else {
-      blocks_[place.index] = block;
+      blocks_[slot.index] = block;
     }
-    place.is_all_passable = block.is_all_passable();
+    slot.is_all_passable = block.is_all_passable();
     return is_new;
   }
 
  private:
-  struct Place {
+  struct BlockSlot {
     std::uint32_t index = 0;
     bool is_all_passable = false;
   };
 
-  geometry::HashGrid<Place> places_;
+  geometry::HashGrid<BlockSlot> slots_;
   std::vector<std::uint64_t> keys_;
   std::vector<VoxelBlock> blocks_;
 };

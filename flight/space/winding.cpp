@@ -17,7 +17,7 @@ constexpr double far_radii = 2.5;
 constexpr double closed_remainder = 0.05;
 
 /// Returns the solid angle of a triangle divided by 4 pi (Van Oosterom & Strackee 1983).
-double share_of_sphere(const Triangle& triangle, const Vector3d& point) {
+double compute_sphere_fraction(const Triangle& triangle, const Vector3d& point) {
   const Vector3d a = triangle[0] - point, b = triangle[1] - point, c = triangle[2] - point;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double numerator = a.dot(b.cross(c));
@@ -90,7 +90,7 @@ double WindingNumber::sum(const BoundingTree& tree, const std::vector<Triangle>&
   }
   double total = 0.0;
   for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
-    total += share_of_sphere(triangles[tree.items()[slot]], point);
+    total += compute_sphere_fraction(triangles[tree.items()[slot]], point);
   }
   return total;
 }

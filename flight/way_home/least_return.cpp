@@ -14,24 +14,25 @@ using Eigen::Vector3d;
 /// (RTL_LOIT_TIME). Braking and two corners account for the rest [s].
 constexpr double waiting_time = 12.0;
 
-double least_height(const ReturnLaw& law) {
-  const bool has_dji = std::ranges::find(law.dialects, Dialect::dji) != law.dialects.end();
-  return std::ceil(std::max(law.landing_climb, has_dji ? least_of_dji : 0.0));
+double min_height(const RtlProfile& rtl_profile) {
+  const bool has_dji =
+      std::ranges::find(rtl_profile.autopilots, AutopilotType::dji) != rtl_profile.autopilots.end();
+  return std::ceil(std::max(rtl_profile.landing_climb, has_dji ? dji_min_return_altitude : 0.0));
 }
 
 /// Returns the altitudes to test in ascending order. They are not below the route, because a
-/// vehicle above the return altitude returns at its own. They are whole metres up to `highest`. For
-/// a route above that, the next metre is tested, then its own height in case of a lower fence.
-std::vector<double> heights_to_try(double least, double route, double highest) {
-  const double lowest = std::max(least, std::ceil(route));
-  if (lowest > highest) return {lowest, std::max(least, std::ceil(100.0 * route) / 100.0)};
+/// vehicle above the return altitude returns at its own. They are whole metres up to `max_height`.
+/// For a route above that, the next metre is tested, then its own height in case of a lower fence.
+std::vector<double> heights_to_try(double min, double route, double max_height) {
+  const double min_height = std::max(min, std::ceil(route));
+  if (min_height > max_height) return {min_height, std::max(min, std::ceil(100.0 * route) / 100.0)};
   std::vector<double> heights;
-  for (double height = lowest; height <= highest; height += 1.0) heights.push_back(height);
+  for (double height = min_height; height <= max_height; height += 1.0) heights.push_back(height);
   return heights;
 }
 
-double top_of(const std::vector<Segment>& legs, const ReturnLaw& law) {
-  double top = law.level;
+double compute_max_altitude(const std::vector<Segment>& legs, const RtlProfile& rtl_profile) {
+  double top = rtl_profile.level;
   for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
   return top;
 }
@@ -41,29 +42,33 @@ double top_of(const std::vector<Segment>& legs, const ReturnLaw& law) {
 constexpr std::array<double, 3> slacks{return_slack, 0.01, 0.002};
 
 /// Tests one altitude after another, starting with the leg that failed last.
-class LeastReturn {
+class MinReturnAltitude {
  public:
-  LeastReturn(const FreeSpace& space, const std::vector<Segment>& legs, double clearance,
-              double slack)
+  MinReturnAltitude(const FreeSpace& space, const std::vector<Segment>& legs, double clearance,
+                    double slack)
       : space_(space), legs_(legs), clearance_(clearance), slack_(slack), order_(legs.size()) {
     for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
   }
 
-  ReturnSearch prove(const ReturnLaw& law) {
-    Returns returns{.law = law, .height = law.level - law.landings.front().z()};
-    returns.nearest = prove_landings(space_, law, top_of(legs_, law), clearance_);
+  ReturnSearch verify(const RtlProfile& rtl_profile) {
+    Returns returns{.rtl_profile = rtl_profile,
+                    .height = rtl_profile.level - rtl_profile.landings.front().z()};
+    returns.nearest =
+        verify_landings(space_, rtl_profile, compute_max_altitude(legs_, rtl_profile), clearance_);
     queries_ += returns.nearest.queries;
-    if (!returns.nearest.is_proven) return failure(returns.nearest, false);
+    if (!returns.nearest.is_verified) return failure(returns.nearest, false);
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const ReturnProof proof = prove_returns(space_, legs_[order_[i]], law, clearance_, slack_);
-      queries_ += proof.queries;
-      if (!proof.is_proven) {
+      const ReturnVerification verification =
+          verify_returns(space_, legs_[order_[i]], rtl_profile, clearance_, slack_);
+      queries_ += verification.queries;
+      if (!verification.is_verified) {
         std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(i),
                     order_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-        const Segment place{proof.from, proof.from};
-        return failure(proof, prove_returns(space_, place, law, clearance_).is_proven);
+        const Segment position{verification.from, verification.from};
+        return failure(verification,
+                       verify_returns(space_, position, rtl_profile, clearance_).is_verified);
       }
-      if (proof.clearance < returns.nearest.clearance) returns.nearest = proof;
+      if (verification.clearance < returns.nearest.clearance) returns.nearest = verification;
     }
     returns.clearance = returns.nearest.clearance;
     returns.queries = queries_;
@@ -74,8 +79,8 @@ class LeastReturn {
   }
 
  private:
-  ReturnSearch failure(const ReturnProof& proof, bool is_by_slack) const {
-    return {std::nullopt, describe(proof, space_), is_by_slack};
+  ReturnSearch failure(const ReturnVerification& verification, bool is_by_slack) const {
+    return {std::nullopt, describe(verification, space_), is_by_slack};
   }
 
   const FreeSpace& space_;
@@ -86,64 +91,67 @@ class LeastReturn {
 };
 
 /// Returns the first verified altitude.
-ReturnSearch least_proven(LeastReturn search, const std::vector<Segment>& legs, ReturnLaw law,
-                          double highest) {
-  const double ground = law.landings.front().z();
+ReturnSearch min_verified_return(MinReturnAltitude search, const std::vector<Segment>& legs,
+                                 RtlProfile rtl_profile, double max_height) {
+  const double ground = rtl_profile.landings.front().z();
   char text[96];
-  std::snprintf(text, sizeof text, "no return altitude fits below %.1f m", highest);
-  ReturnSearch result{.found = std::nullopt, .why = text};
+  std::snprintf(text, sizeof text, "no return altitude fits below %.1f m", max_height);
+  ReturnSearch result{.found = std::nullopt, .reason = text};
   double top = ground;
   for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
-  for (const double height : heights_to_try(least_height(law), top - ground, highest - ground)) {
-    law.level = ground + height;
+  for (const double height :
+       heights_to_try(min_height(rtl_profile), top - ground, max_height - ground)) {
+    rtl_profile.level = ground + height;
     const bool failed_by_slack = result.fails_by_slack;
-    result = search.prove(law);
+    result = search.verify(rtl_profile);
     if (result.found) return result;
     result.fails_by_slack = result.fails_by_slack || failed_by_slack;
     std::snprintf(text, sizeof text, "at a return altitude of %g m ", height);
-    result.why = text + result.why;
+    result.reason = text + result.reason;
   }
   return result;
 }
 
 }  // namespace
 
-ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& legs,
-                           const ReturnLaw& law, double clearance) {
+ReturnSearch verify_returns(const FreeSpace& space, const std::vector<Segment>& legs,
+                            const RtlProfile& rtl_profile, double clearance) {
   ReturnSearch result;
   for (const double slack : slacks) {
-    result = LeastReturn(space, legs, clearance, slack).prove(law);
+    result = MinReturnAltitude(space, legs, clearance, slack).verify(rtl_profile);
     if (!result.fails_by_slack) break;
   }
   return result;
 }
 
-ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs,
-                          const ReturnLaw& law, double highest, double clearance) {
+ReturnSearch min_return_altitude(const FreeSpace& space, const std::vector<Segment>& legs,
+                                 const RtlProfile& rtl_profile, double max_height,
+                                 double clearance) {
   ReturnSearch result;
   for (const double slack : slacks) {
-    result = least_proven({space, legs, clearance, slack}, legs, law, highest);
+    result = min_verified_return({space, legs, clearance, slack}, legs, rtl_profile, max_height);
     if (!result.fails_by_slack) break;
   }
   return result;
 }
 
-double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place) {
+double return_energy(const Motion& motion, const RtlProfile& rtl_profile,
+                     const Vector3d& position) {
   // The lowest landing point has the longest descent.
-  double ground = law.landings.front().z();
-  for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
-  const double top = std::max(law.level, place.z());
-  const auto flown = [&](const Vector3d& way) {
-    return motion.leg_energy(way, motion.leg_time(way));
+  double ground = rtl_profile.landings.front().z();
+  for (const Vector3d& landing : rtl_profile.landings) ground = std::min(ground, landing.z());
+  const double top = std::max(rtl_profile.level, position.z());
+  const auto flight_energy = [&](const Vector3d& displacement) {
+    return motion.leg_energy(displacement, motion.leg_time(displacement));
   };
-  const double upright = flown({0.0, 0.0, top - place.z()}) +
+  const double upright = flight_energy({0.0, 0.0, top - position.z()}) +
                          motion.hover_energy(waiting_time + motion.landing_time(top - ground));
-  double most = 0.0;
-  for (const ReturnPiece& piece : return_pieces(law, place)) {
-    if (piece.part != ReturnPart::level) continue;
-    most = std::max(most, upright + flown(piece.line.to - piece.line.from));
+  double max = 0.0;
+  for (const ReturnSegment& segment : return_segments(rtl_profile, position)) {
+    if (segment.part != ReturnPart::level) continue;
+    max = std::max(max, upright + flight_energy(segment.line.to - segment.line.from));
   }
-  return most;
+  return max;
 }
 
 }  // namespace skycap::flight

@@ -40,8 +40,8 @@ inline constexpr double px4_landing_radius = 1.0;         ///< NAV_ACC_RAD.
 inline constexpr double dji_lands_at_once = 8.0;
 
 /// Landing points and altitude of returns. Heights are z in the local frame.
-struct ReturnLaw {
-  std::vector<Dialect> dialects;  ///< Autopilots whose variants are all covered.
+struct RtlProfile {
+  std::vector<AutopilotType> autopilots;  ///< Autopilots whose variants are all covered.
   double level = 0.0;  ///< Height z of the level flight, unless the vehicle is higher [m].
   /// Landing points on the ground: the pad, then rally points.
   std::vector<Eigen::Vector3d> landings;
@@ -56,24 +56,24 @@ struct ReturnLaw {
 enum class ReturnPart { climb, level, level_as_it_is, descent, landing };
 
 /// Level or vertical piece. The vehicle may be up to `spread` beside it [m].
-struct ReturnPiece {
+struct ReturnSegment {
   Segment line;
   double spread = 0.0;
   ReturnPart part = ReturnPart::climb;
 };
 
 /// Returns the name of a part for messages: "the climb", "the level flight", ...
-const char* name_of(ReturnPart part);
+const char* to_string(ReturnPart part);
 
-/// Returns the pieces of all returns from `place`, except the columns above the landing points.
+/// Returns the pieces of all returns from `position`, except the columns above the landing points.
 /// With `reach` [m], the pieces cover the returns from all positions within `reach`. Every piece of
 /// such a return has a counterpart here, at a distance no greater than that of the two positions
 /// (the law is 1-Lipschitz). Free space around these pieces, extended by `reach`, therefore implies
-/// free space around all those returns. prove_returns() relies on this property.
-std::vector<ReturnPiece> return_pieces(const ReturnLaw& law, const Eigen::Vector3d& place,
-                                       double reach = 0.0);
+/// free space around all those returns. verify_returns() relies on this property.
+std::vector<ReturnSegment> return_segments(const RtlProfile& rtl_profile,
+                                           const Eigen::Vector3d& position, double reach = 0.0);
 
 /// Returns the column above each landing point, from `top` (z) down to landing_climb above it.
-std::vector<ReturnPiece> landing_columns(const ReturnLaw& law, double top);
+std::vector<ReturnSegment> landing_columns(const RtlProfile& rtl_profile, double top);
 
 }  // namespace skycap::flight

@@ -12,21 +12,21 @@ using Eigen::Vector3d;
 
 /// Returns the piece with the minimum clearance, searched up to `reach` beyond the required
 /// clearance.
-ReturnProof nearest_of(const FreeSpace& space, const std::vector<ReturnPiece>& pieces,
-                       const Vector3d& from, double clearance, double reach) {
-  ReturnProof nearest;
+ReturnVerification find_nearest(const FreeSpace& space, const std::vector<ReturnSegment>& segments,
+                                const Vector3d& from, double clearance, double reach) {
+  ReturnVerification nearest;
   nearest.from = from;
   nearest.clearance = clearance + reach + return_surplus;
-  for (const ReturnPiece& piece : pieces) {
-    const Closest closest = space.closest(piece.line, nearest.clearance + piece.spread);
+  for (const ReturnSegment& segment : segments) {
+    const Closest closest = space.closest(segment.line, nearest.clearance + segment.spread);
     ++nearest.queries;
-    const double distance = closest.distance - piece.spread - clearance_guard;
+    const double distance = closest.distance - segment.spread - clearance_guard;
     if (closest.kind == ObstacleKind::none || distance >= nearest.clearance) continue;
     nearest.clearance = distance;
-    nearest.piece = piece;
+    nearest.segment = segment;
     nearest.closest = closest;
   }
-  nearest.is_proven = nearest.clearance >= clearance;
+  nearest.is_verified = nearest.clearance >= clearance;
   return nearest;
 }
 
@@ -37,10 +37,10 @@ struct Interval {
 
 }  // namespace
 
-ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const ReturnLaw& law,
-                          double clearance, double slack) {
+ReturnVerification verify_returns(const FreeSpace& space, const Segment& leg,
+                                  const RtlProfile& rtl_profile, double clearance, double slack) {
   const double length = leg.length();
-  ReturnProof all;
+  ReturnVerification all;
   all.clearance = clearance + return_surplus;
   std::vector<Interval> open{{0.0, 1.0}};
   while (!open.empty()) {
@@ -48,9 +48,9 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
     open.pop_back();
     const double middle = 0.5 * (begin + end);
     const double reach = 0.5 * (end - begin) * length;
-    const Vector3d place = leg.at(middle);
-    ReturnProof found =
-        nearest_of(space, return_pieces(law, place, reach), place, clearance, reach);
+    const Vector3d position = leg.at(middle);
+    ReturnVerification found = find_nearest(space, return_segments(rtl_profile, position, reach),
+                                            position, clearance, reach);
     found.queries += all.queries;
     // Radius within which all returns are free.
     const double covered = found.clearance - clearance;
@@ -58,15 +58,15 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
     const double needed = std::min(reach, slack);
     if (covered < needed) {
       // Pieces from other start positions do not determine the result at this one.
-      const ReturnProof here =
-          nearest_of(space, return_pieces(law, place, 0.0), place, clearance, reach);
+      const ReturnVerification here = find_nearest(
+          space, return_segments(rtl_profile, position, 0.0), position, clearance, reach);
       all.queries += here.queries;
       if (reach > slack && here.clearance - clearance >= needed) {
         open.push_back({begin, middle});
         open.push_back({middle, end});
         continue;
       }
-      found.is_proven = false;
+      found.is_verified = false;
       found.clearance = std::max(0.0, found.clearance);
       return found;
     }
@@ -79,24 +79,26 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
     open.push_back({begin, middle - share});
     open.push_back({middle + share, end});
   }
-  all.is_proven = true;
+  all.is_verified = true;
   return all;
 }
 
-ReturnProof prove_landings(const FreeSpace& space, const ReturnLaw& law, double top,
-                           double clearance) {
-  const std::vector<ReturnPiece> columns = landing_columns(law, top);
-  ReturnProof proof = nearest_of(space, columns, columns.front().line.from, clearance, 0.0);
-  if (proof.closest.kind != ObstacleKind::none) proof.from = proof.piece.line.from;
-  proof.clearance = std::max(0.0, proof.clearance);
-  return proof;
+ReturnVerification verify_landings(const FreeSpace& space, const RtlProfile& rtl_profile,
+                                   double top, double clearance) {
+  const std::vector<ReturnSegment> columns = landing_columns(rtl_profile, top);
+  ReturnVerification verification =
+      find_nearest(space, columns, columns.front().line.from, clearance, 0.0);
+  if (verification.closest.kind != ObstacleKind::none)
+    verification.from = verification.segment.line.from;
+  verification.clearance = std::max(0.0, verification.clearance);
+  return verification;
 }
 
-std::string describe(const ReturnProof& failed, const FreeSpace& space) {
-  const double distance = std::max(0.0, failed.closest.distance - failed.piece.spread);
-  return std::string(name_of(failed.piece.part)) + " of the return from " +
-         place_text(failed.from) + " comes within " + length_text(distance) + " of " +
-         space.name(failed.closest) + " at " + place_text(failed.closest.on_leg);
+std::string describe(const ReturnVerification& failed, const FreeSpace& space) {
+  const double distance = std::max(0.0, failed.closest.distance - failed.segment.spread);
+  return std::string(to_string(failed.segment.part)) + " of the return from " +
+         position_text(failed.from) + " comes within " + length_text(distance) + " of " +
+         space.name(failed.closest) + " at " + position_text(failed.closest.on_leg);
 }
 
 }  // namespace skycap::flight

@@ -17,13 +17,13 @@
 namespace skycap::flight {
 
 /// Result of the proof: the return with the minimum clearance, or the one that failed.
-struct ReturnProof {
-  bool is_proven = false;
+struct ReturnVerification {
+  bool is_verified = false;
   /// Verified lower bound of all returns [m]. At most return_surplus above the required clearance.
   double clearance = 0.0;
   /// Start of the return with the minimum clearance.
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
-  ReturnPiece piece;  ///< Closest piece of that return.
+  ReturnSegment segment;  ///< Closest piece of that return.
   Closest closest{};
   std::size_t queries = 0;  ///< Number of distance queries, as a measure of effort.
 };
@@ -43,16 +43,17 @@ inline constexpr double return_surplus = 1.0;
 
 /// Verifies the returns from every point of the leg, except the columns above the landing points.
 /// The balls have a radius of at least `slack` [m].
-ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const ReturnLaw& law,
-                          double clearance, double slack = return_slack);
+ReturnVerification verify_returns(const FreeSpace& space, const Segment& leg,
+                                  const RtlProfile& rtl_profile, double clearance,
+                                  double slack = return_slack);
 
 /// Verifies the columns above the landing points, from `top` (z) down to the height below which the
 /// pilot must check them.
-ReturnProof prove_landings(const FreeSpace& space, const ReturnLaw& law, double top,
-                           double clearance);
+ReturnVerification verify_landings(const FreeSpace& space, const RtlProfile& rtl_profile,
+                                   double top, double clearance);
 
 /// Returns the obstacle and its position: "the climb from (x, y, z) comes within 0.8 m of the
 /// ground".
-std::string describe(const ReturnProof& failed, const FreeSpace& space);
+std::string describe(const ReturnVerification& failed, const FreeSpace& space);
 
 }  // namespace skycap::flight

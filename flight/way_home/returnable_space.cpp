@@ -14,7 +14,7 @@ Closest ReturnableSpace::closest(const Segment& leg, double up_to) const {
 
 bool ReturnableSpace::continues_free(const Segment& leg, double clearance) const {
   return space_.continues_free(leg, clearance) &&
-         prove_returns(space_, leg, law_, return_clearance(clearance)).is_proven;
+         verify_returns(space_, leg, rtl_profile_, return_clearance(clearance)).is_verified;
 }
 
 double ReturnableSpace::surface_distance(const Vector3d& point, double up_to) const {
@@ -24,14 +24,15 @@ double ReturnableSpace::surface_distance(const Vector3d& point, double up_to) co
 bool ReturnableSpace::has_returns(const std::vector<Vector3d>& points, double clearance) const {
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Segment leg{points[i - 1], points[i]};
-    if (!prove_returns(space_, leg, law_, return_clearance(clearance)).is_proven) return false;
+    if (!verify_returns(space_, leg, rtl_profile_, return_clearance(clearance)).is_verified)
+      return false;
   }
   return true;
 }
 
-std::vector<Vector3d> ReturnableSpace::way_over(const Vector3d& from, const Vector3d& to) const {
-  const auto above = [&](const Vector3d& place) {
-    return Vector3d(place.x(), place.y(), std::max(law_.level, place.z()));
+std::vector<Vector3d> ReturnableSpace::path_over(const Vector3d& from, const Vector3d& to) const {
+  const auto above = [&](const Vector3d& position) {
+    return Vector3d(position.x(), position.y(), std::max(rtl_profile_.level, position.z()));
   };
   std::vector<Vector3d> points{from, above(from), above(to), to};
   points.erase(std::unique(points.begin(), points.end()), points.end());

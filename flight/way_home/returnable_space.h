@@ -13,9 +13,10 @@ namespace skycap::flight {
 /// Distances are those of the underlying space. Keeps a reference to it.
 class ReturnableSpace : public FreeSpace {
  public:
-  ReturnableSpace(const FreeSpace& space, ReturnLaw law) : space_(space), law_(std::move(law)) {}
+  ReturnableSpace(const FreeSpace& space, RtlProfile rtl_profile)
+      : space_(space), rtl_profile_(std::move(rtl_profile)) {}
 
-  const ReturnLaw& law() const { return law_; }
+  const RtlProfile& rtl_profile() const { return rtl_profile_; }
 
   Closest closest(const Segment& leg, double up_to) const override;
   /// Verifies returns at return_clearance().
@@ -29,12 +30,12 @@ class ReturnableSpace : public FreeSpace {
 
   /// Returns the path straight up to the return altitude, level, and straight down. If the returns
   /// from both positions are free, so are the first and last lines and the returns from them.
-  std::vector<Eigen::Vector3d> way_over(const Eigen::Vector3d& from,
-                                        const Eigen::Vector3d& to) const;
+  std::vector<Eigen::Vector3d> path_over(const Eigen::Vector3d& from,
+                                         const Eigen::Vector3d& to) const;
 
  private:
   const FreeSpace& space_;
-  ReturnLaw law_;
+  RtlProfile rtl_profile_;
 };
 
 }  // namespace skycap::flight

@@ -14,23 +14,23 @@
 namespace skycap::flight {
 
 /// Keeps a reference to `space`.
-class WaysHome {
+class ReturnPaths {
  public:
-  /// `home` is the position above the pad where routes start and end. `law` is the law to assume in
-  /// planning, see planning_law().
-  WaysHome(const FreeSpace& space, const ReturnLaw& law, const Eigen::Vector3d& home,
-           double clearance)
-      : space_(space), returnable_(space, law), home_(home), clearance_(clearance) {}
+  /// `home` is the position above the pad where routes start and end. `rtl_profile` is the law to
+  /// assume in planning, see planning_rtl_profile().
+  ReturnPaths(const FreeSpace& space, const RtlProfile& rtl_profile, const Eigen::Vector3d& home,
+              double clearance)
+      : space_(space), returnable_(space, rtl_profile), home_(home), clearance_(clearance) {}
 
-  const ReturnLaw& law() const { return returnable_.law(); }
+  const RtlProfile& rtl_profile() const { return returnable_.rtl_profile(); }
 
-  /// Returns the obstacle of a return from `place`, or of the path straight up and across to the
+  /// Returns the obstacle of a return from `position`, or of the path straight up and across to the
   /// pad, which is the fallback of with_returns(). Empty if both are free.
-  std::string why_none(const Eigen::Vector3d& place) const;
+  std::string no_return_reason(const Eigen::Vector3d& position) const;
 
-  /// Returns `way` if every point of it has a verified return, otherwise a short path that
-  /// satisfies this. Both ends must have a return, see why_none().
-  std::vector<Eigen::Vector3d> with_returns(std::vector<Eigen::Vector3d> way,
+  /// Returns `path` if every point of it has a verified return, otherwise a short path that
+  /// satisfies this. Both ends must have a return, see no_return_reason().
+  std::vector<Eigen::Vector3d> with_returns(std::vector<Eigen::Vector3d> path,
                                             double worthwhile_saving) const;
 
  private:
@@ -42,7 +42,7 @@ class WaysHome {
 
 /// Returns true if all returns from a curve are verified. Each piece lies within the hull of its
 /// control points.
-bool has_returns(const FreeSpace& space, const Curve& curve, const ReturnLaw& law,
+bool has_returns(const FreeSpace& space, const Curve& curve, const RtlProfile& rtl_profile,
                  double clearance);
 
 }  // namespace skycap::flight

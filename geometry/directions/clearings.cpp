@@ -17,14 +17,14 @@ using Eigen::Vector3d;
 constexpr int margin_cells = 2;            // margin beyond the edges of a face of the grid
 constexpr double members_per_cell = 1.35;  // at the centre of a face, for an even distribution
 constexpr int probe_stride = 3;            // squares between probes
-constexpr int most_cells = 4096;           // per edge of the cube
+constexpr int max_cells = 4096;            // per edge of the cube
 constexpr std::size_t few_parts = 16;      // fewer parts are not subdivided further
 constexpr std::size_t many_parts =
-    300;  // with more parts, testing each of them per facet is too slow
-constexpr double least_progress = 0.7;  // maximum fraction of parts remaining after a useful round
-constexpr int most_rounds = 10;         // each round halves the parts
+    300;                              // with more parts, testing each of them per facet is too slow
+constexpr double min_progress = 0.7;  // maximum fraction of parts remaining after a useful round
+constexpr int max_rounds = 10;        // each round halves the parts
 constexpr std::size_t squares_per_member = 12;  // maximum number of evaluated squares
-constexpr double rounding_of_parts = 1e-7;      // for sums of square roots of cosine differences
+constexpr double parts_rounding = 1e-7;         // for sums of square roots of cosine differences
 
 // Tolerance of the unit length of directions.
 constexpr double length_tolerance = 1e-6;
@@ -33,7 +33,7 @@ constexpr double smallest_length = 1.0 - 1.1 * length_tolerance;
 
 /// Position on one of the six faces of the cube [-1, 1]^3. In the local coordinates of a face, the
 /// face lies at z = 1.
-struct Place {
+struct FacePoint {
   int face;
   double x, y;
 
@@ -62,16 +62,16 @@ class CubeGrid {
   CubeGrid(std::span<const Vector3d> members, int cells_per_edge);
 
   /// Returns whether a cell inside the face contains a member.
-  bool holds_any(int face, int column, int row) const {
+  bool contains_any(int face, int column, int row) const {
     const std::size_t cell = cell_at(face, column + margin_cells, row + margin_cells);
     return cell_begin_[cell + 1] > cell_begin_[cell];
   }
 
-  /// Returns whether `look` returns true for a member near `place`. Tests all members within
-  /// `radius`, except for some beyond the margin, and tests close members early. `look` receives
-  /// local coordinates of the face.
-  template <typename Look>
-  bool any_around(const Place& place, double radius, Look look) const;
+  /// Returns whether `predicate` returns true for a member near `face_point`. Tests all members
+  /// within `radius`, except for some beyond the margin, and tests close members early. `predicate`
+  /// receives local coordinates of the face.
+  template <typename Predicate>
+  bool any_around(const FacePoint& face_point, double radius, Predicate predicate) const;
 
  private:
   int slot(double coordinate) const {
@@ -121,20 +121,21 @@ CubeGrid::CubeGrid(std::span<const Vector3d> members, int cells_per_edge)
   }
 }
 
-template <typename Look>
-bool CubeGrid::any_around(const Place& place, double radius, Look look) const {
+template <typename Predicate>
+bool CubeGrid::any_around(const FacePoint& face_point, double radius, Predicate predicate) const {
   // Upper bound of the magnification of a small circle by the projection from the sphere to the
   // face.
-  const double half = radius * (1.0 + place.x * place.x + place.y * place.y);
-  const int left = slot(place.x - half), right = slot(place.x + half);
+  const double half = radius * (1.0 + face_point.x * face_point.x + face_point.y * face_point.y);
+  const int left = slot(face_point.x - half), right = slot(face_point.x + half);
   const auto any_in_row = [&](int row) {
-    const std::uint32_t end = cell_begin_[cell_at(place.face, right + 1, row)];
-    for (std::uint32_t i = cell_begin_[cell_at(place.face, left, row)]; i < end; ++i) {
-      if (look(members_[i])) return true;
+    const std::uint32_t end = cell_begin_[cell_at(face_point.face, right + 1, row)];
+    for (std::uint32_t i = cell_begin_[cell_at(face_point.face, left, row)]; i < end; ++i) {
+      if (predicate(members_[i])) return true;
     }
     return false;
   };
-  const int bottom = slot(place.y - half), top = slot(place.y + half), middle = slot(place.y);
+  const int bottom = slot(face_point.y - half), top = slot(face_point.y + half),
+            middle = slot(face_point.y);
   if (any_in_row(middle)) return true;
   for (int away = 1; away <= std::max(middle - bottom, top - middle); ++away) {
     if (middle - away >= bottom && any_in_row(middle - away)) return true;
@@ -158,16 +159,16 @@ class Search {
   /// Evaluates directions distributed over the sphere. A better initial direction lets more squares
   /// be discarded early.
   void probe() {
-    visit_squares(probe_stride, [this](const Place& middle) { try_direction(middle); });
+    visit_squares(probe_stride, [this](const FacePoint& middle) { try_direction(middle); });
   }
 
   void cover_the_cube() {
-    visit_squares(1, [this](const Place& middle) { keep_if_clear(middle); });
+    visit_squares(1, [this](const FacePoint& middle) { keep_if_clear(middle); });
   }
 
   void cut_in_four() {
     edge_ *= 0.5;
-    std::vector<Place> before;
+    std::vector<FacePoint> before;
     before.swap(clear_);
     for (const auto& [face, x, y] : before) {
       for (const double up : {-0.5, 0.5}) {
@@ -183,10 +184,10 @@ class Search {
 
   std::vector<SpherePart> parts() const {
     std::vector<SpherePart> parts;
-    for (const Place& place : clear_) {
-      const Vector3d middle = place.on_cube();
-      parts.push_back(
-          {world_from_face(place.face, middle.normalized()), radius_of_square(middle.norm())});
+    for (const FacePoint& face_point : clear_) {
+      const Vector3d middle = face_point.on_cube();
+      parts.push_back({world_from_face(face_point.face, middle.normalized()),
+                       compute_square_radius(middle.norm())});
     }
     return parts;
   }
@@ -205,7 +206,7 @@ class Search {
   // Returns the maximum distance of points of a square from its centre, after projection to the
   // sphere: half the diagonal divided by the distance from the origin. `norm` is the norm of the
   // centre.
-  double radius_of_square(double norm) const {
+  double compute_square_radius(double norm) const {
     const double half_diagonal = edge_ / std::numbers::sqrt2;
     return half_diagonal / (norm - half_diagonal);
   }
@@ -216,32 +217,32 @@ class Search {
     for (int face = 0; face < 6; ++face) {
       for (int row = 0; row < squares; row += stride) {
         for (int column = 0; column < squares; column += stride) {
-          if (is_cell_too_near_ && grid_.holds_any(face, column, row)) continue;
+          if (is_cell_too_near_ && grid_.contains_any(face, column, row)) continue;
           visit({face, (column + 0.5) * edge_ - 1.0, (row + 0.5) * edge_ - 1.0});
         }
       }
     }
   }
 
-  // Returns whether place.q exceeds `product` for a member q near `place`. Tests at least all
+  // Returns whether place.q exceeds `product` for a member q near `face_point`. Tests at least all
   // members within `radius`.
-  bool is_any_above(double product, const Place& place, double radius) const {
-    const Vector3d on_cube = place.on_cube();
-    return grid_.any_around(place, radius,
+  bool is_any_above(double product, const FacePoint& face_point, double radius) const {
+    const Vector3d on_cube = face_point.on_cube();
+    return grid_.any_around(face_point, radius,
                             [&](const Vector3d& q) { return on_cube.dot(q) > product; });
   }
 
-  void try_direction(const Place& place) {
-    const Vector3d on_cube = place.on_cube();
-    if (is_any_above(cosine_ * on_cube.norm(), place, clear_radius_)) return;
-    const Vector3d direction = world_from_face(place.face, on_cube.normalized());
+  void try_direction(const FacePoint& face_point) {
+    const Vector3d on_cube = face_point.on_cube();
+    if (is_any_above(cosine_ * on_cube.norm(), face_point, clear_radius_)) return;
+    const Vector3d direction = world_from_face(face_point.face, on_cube.normalized());
     const double cosine = occluded_.nearest(direction).cosine;
     if (cosine < cosine_) set_cosine(cosine);
   }
 
-  void keep_if_clear(const Place& middle) {
+  void keep_if_clear(const FacePoint& middle) {
     ++squares_;
-    const double norm = middle.on_cube().norm(), radius = radius_of_square(norm);
+    const double norm = middle.on_cube().norm(), radius = compute_square_radius(norm);
     // All s of the square are within the angle b of its centre. Hence a member q at the angle c
     // from the centre satisfies s.q >= |q| cos(c + b). This exceeds the limit if the product of the
     // centre and q exceeds the following value. The radius is slightly larger than sin b.
@@ -262,7 +263,7 @@ class Search {
   double limit_sine_ = 0.0;        // sine that belongs to limit_ for a member of maximum length
   bool is_cell_too_near_ = false;  // each member violates the limit for every s in its grid cell
   std::size_t squares_ = 0;
-  std::vector<Place> clear_;  // centres of the kept squares
+  std::vector<FacePoint> clear_;  // centres of the kept squares
 };
 
 }  // namespace
@@ -270,7 +271,7 @@ class Search {
 bool Clearings::meet(const Vector3d& normal, double cap_cosine) const {
   const double cap_radius = std::sqrt(std::max(0.0, 2.0 - 2.0 * cap_cosine));
   return std::any_of(parts.begin(), parts.end(), [&](const SpherePart& part) {
-    const double reach = cap_radius + part.radius + rounding_of_parts;
+    const double reach = cap_radius + part.radius + parts_rounding;
     return 2.0 - 2.0 * part.centre.dot(normal) <= reach * reach;
   });
 }
@@ -282,16 +283,16 @@ Clearings find_clearings(DirectionIndex& occluded, double cosine) {
   const double radius = std::sqrt(std::max(0.0, 2.0 - 2.0 * cosine));
   const double edge =
       std::max(radius, std::sqrt(members_per_cell * 4.0 * std::numbers::pi / count));
-  Search search(occluded, cosine, std::clamp(static_cast<int>(2.0 / edge), 4, most_cells));
+  Search search(occluded, cosine, std::clamp(static_cast<int>(2.0 / edge), 4, max_cells));
   search.probe();
   search.cover_the_cube();
-  const auto most_squares = squares_per_member * occluded.members().size();
-  for (int round = 0; round < most_rounds && search.size() > few_parts; ++round) {
-    if (search.squares() + 4 * search.size() > most_squares) break;
+  const auto max_squares = squares_per_member * occluded.members().size();
+  for (int round = 0; round < max_rounds && search.size() > few_parts; ++round) {
+    if (search.squares() + 4 * search.size() > max_squares) break;
     const std::size_t before = search.size();
     search.cut_in_four();
     const bool is_stuck =
-        static_cast<double>(search.size()) > least_progress * static_cast<double>(before);
+        static_cast<double>(search.size()) > min_progress * static_cast<double>(before);
     if (is_stuck && search.size() <= many_parts) break;
   }
   if (search.size() > many_parts) return {{{Vector3d::UnitZ(), 2.0}}, search.cosine()};

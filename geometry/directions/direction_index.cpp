@@ -26,35 +26,35 @@ DirectionIndex::DirectionIndex(std::span<const Vector3d> directions) {
   half_edge_ = 1.0 / edge;
   // Slightly less than edge / 2, so that a coordinate rounded up from 1 stays in the last slot.
   const double scale = 0.5 * edge * (1.0 - slot_tolerance);
-  std::vector<std::uint16_t> cell_of(directions.size());  // edge^3 <= 2^15
-  std::vector<std::uint32_t> place(static_cast<std::size_t>(edge * edge * edge), 0);
+  std::vector<std::uint16_t> cell_indices(directions.size());  // edge^3 <= 2^15
+  std::vector<std::uint32_t> next_index(static_cast<std::size_t>(edge * edge * edge), 0);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Vector3d& q = directions[i];
     assert(std::abs(q.squaredNorm() - 1.0) < 2e-6);
     const int x = static_cast<int>((q.x() + 1.0) * scale);
     const int y = static_cast<int>((q.y() + 1.0) * scale);
     const int z = static_cast<int>((q.z() + 1.0) * scale);
-    cell_of[i] = static_cast<std::uint16_t>((z * edge + y) * edge + x);
-    ++place[cell_of[i]];
+    cell_indices[i] = static_cast<std::uint16_t>((z * edge + y) * edge + x);
+    ++next_index[cell_indices[i]];
   }
 
   std::vector<Vector3d> centres;
   std::uint32_t begin = 0;
-  for (std::size_t cell = 0; cell < place.size(); ++cell) {
-    const std::uint32_t members = place[cell];
+  for (std::size_t cell = 0; cell < next_index.size(); ++cell) {
+    const std::uint32_t members = next_index[cell];
     if (members == 0) continue;
     const int index = static_cast<int>(cell);
     const Eigen::Array3i slots(index % edge, index / edge % edge, index / (edge * edge));
     centres.emplace_back((2.0 * slots.cast<double>() + 1.0) * half_edge_ - 1.0);
     cell_begin_.push_back(begin);
-    place[cell] = begin;
+    next_index[cell] = begin;
     begin += members;
   }
   cell_begin_.push_back(begin);
 
   members_.resize(directions.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    members_[place[cell_of[i]]++] = directions[i];
+    members_[next_index[cell_indices[i]]++] = directions[i];
   }
 
   const auto cells = static_cast<Eigen::Index>(centres.size());
@@ -65,8 +65,8 @@ DirectionIndex::DirectionIndex(std::span<const Vector3d> directions) {
   cell_distance2_.resize(cells);
 }
 
-void DirectionIndex::look_into_cell(std::size_t cell, const Vector3d& s, double& best,
-                                    std::size_t& best_member) const {
+void DirectionIndex::search_cell(std::size_t cell, const Vector3d& s, double& best,
+                                 std::size_t& best_member) const {
   for (std::size_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) {
     const double cosine = members_[i].dot(s);
     if (cosine > best) {
@@ -88,11 +88,11 @@ DirectionIndex::Nearest DirectionIndex::nearest(const Vector3d& s) {
 
   double best = -std::numeric_limits<double>::infinity();
   std::size_t best_member = 0;
-  look_into_cell(static_cast<std::size_t>(likely), s, best, best_member);
+  search_cell(static_cast<std::size_t>(likely), s, best, best_member);
   for (Eigen::Index cell = 0; cell < cell_distance2_.size(); ++cell) {
     // |s - q|^2 = 2 - 2 s.q for unit vectors; 1e-5 covers rounding errors.
     if (cell_distance2_[cell] > 2.0 - 2.0 * best + 1e-5 || cell == likely) continue;
-    look_into_cell(static_cast<std::size_t>(cell), s, best, best_member);
+    search_cell(static_cast<std::size_t>(cell), s, best, best_member);
   }
   return {members_[best_member], best};
 }

@@ -34,8 +34,8 @@ class DirectionIndex {
   std::span<const Eigen::Vector3d> members() const { return members_; }
 
  private:
-  void look_into_cell(std::size_t cell, const Eigen::Vector3d& s, double& best,
-                      std::size_t& best_member) const;
+  void search_cell(std::size_t cell, const Eigen::Vector3d& s, double& best,
+                   std::size_t& best_member) const;
 
   // Members ordered by cell. Cell i contains [cell_begin_[i], cell_begin_[i + 1]).
   std::vector<Eigen::Vector3d> members_;

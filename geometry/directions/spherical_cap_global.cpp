@@ -30,7 +30,7 @@ namespace {
 using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-constexpr double proof_tolerance = 1e-9;  // depth inside a cap up to which it counts as empty
+constexpr double emptiness_tolerance = 1e-9;  // depth inside a cap up to which it counts as empty
 constexpr std::size_t members_without_clearings =
     100;  // holes are usually found with about 60 members
 
@@ -75,7 +75,7 @@ class Polytope {
 
 std::uint32_t Polytope::add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   Facet facet{{a, b, c}, {}, Vector3d::Zero(), std::numeric_limits<double>::infinity(), true};
-  const Vector3d normal = normal_of({points_[a], points_[b], points_[c]});
+  const Vector3d normal = compute_normal({points_[a], points_[b], points_[c]});
   // Facets too thin for double precision are assigned an infinite distance, because they never
   // bound a largest cap.
   if (normal.squaredNorm() > 0.0) {
@@ -224,7 +224,7 @@ std::optional<SphericalCap> largest_empty_cap(DirectionIndex& occluded,
     if (clearings && !clearings->meet(polytope.facet(facet).normal, distance)) continue;
     const auto deepest = occluded.nearest(polytope.facet(facet).normal);
     bound = std::min(bound, deepest.cosine);
-    if (deepest.cosine > distance + proof_tolerance &&
+    if (deepest.cosine > distance + emptiness_tolerance &&
         polytope.is_outside(deepest.direction, facet)) {
       polytope.add(deepest.direction, facet);
     } else {

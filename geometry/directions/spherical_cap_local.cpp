@@ -92,8 +92,8 @@ Probe descend(Prober& occluded, Probe best, double step) {
 
 // Returns n with n.q = 1 at each corner: the normal of the facet divided by its distance from the
 // origin.
-std::optional<Vector3d> polar_of(const Triangle& facet) {
-  const Vector3d normal = normal_of(facet);
+std::optional<Vector3d> compute_polar(const Triangle& facet) {
+  const Vector3d normal = compute_normal(facet);
   const double height = normal.dot(facet[0]);
   if (height == 0.0) return std::nullopt;
   return normal / height;
@@ -124,19 +124,20 @@ std::optional<Triangle> facet_around(Prober& occluded, const Vector3d& s) {
     facet[axis] = std::copysign(tiny, s[axis]) * Vector3d::Unit(axis);
   }
   for (int pivot = 0; pivot < max_pivots; ++pivot) {
-    const auto polar = polar_of(facet);
+    const auto polar = compute_polar(facet);
     if (!polar) return std::nullopt;
     const double distance = 1.0 / polar->norm();
     const auto entering = occluded.beyond(*polar * distance, distance + pivot_tolerance);
     if (!entering) return facet;
 
-    const auto of_ray = coordinates(facet, s), of_entering = coordinates(facet, *entering);
-    if (!of_ray || !of_entering) return std::nullopt;
+    const auto ray_coordinates = coordinates(facet, s),
+               entering_coordinates = coordinates(facet, *entering);
+    if (!ray_coordinates || !entering_coordinates) return std::nullopt;
     int leaving = -1;
     double smallest = 0.0;
     for (int i = 0; i < 3; ++i) {
-      if ((*of_entering)[i] <= 0.0) continue;
-      const double ratio = std::max((*of_ray)[i], 0.0) / (*of_entering)[i];
+      if ((*entering_coordinates)[i] <= 0.0) continue;
+      const double ratio = std::max((*ray_coordinates)[i], 0.0) / (*entering_coordinates)[i];
       if (leaving < 0 || ratio < smallest) leaving = i, smallest = ratio;
     }
     if (leaving < 0) return std::nullopt;
@@ -157,7 +158,7 @@ Minimum settle_on_facet(Prober& occluded, const Probe& start) {
   Minimum best{start, std::nullopt};
   while (true) {
     const auto facet = facet_around(occluded, best.probe.direction);
-    const auto polar = facet ? polar_of(*facet) : std::nullopt;
+    const auto polar = facet ? compute_polar(*facet) : std::nullopt;
     if (!polar) return best;
     const auto next = occluded.at_if_below(polar->normalized(), best.probe.cosine);
     if (!next) return best;

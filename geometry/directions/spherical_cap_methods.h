@@ -23,7 +23,7 @@ using Triangle = std::array<Eigen::Vector3d, 3>;
 
 /// Returns a normal of the facet with arbitrary sign and length, or zero if the facet is too thin
 /// for double precision.
-Eigen::Vector3d normal_of(const Triangle& facet);
+Eigen::Vector3d compute_normal(const Triangle& facet);
 
 /// Position of the origin relative to conv(Q).
 struct OriginInHull {

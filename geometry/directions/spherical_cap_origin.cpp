@@ -39,7 +39,7 @@ void offer_triangle(Candidate& best, const Vector3d& a, const Vector3d& b, const
   if (norm2 > 0.0 && between) offer(best, normal * (normal.dot(a) / norm2), {a, b, c});
 }
 
-Candidate nearest_of_simplex(const std::vector<Vector3d>& corners) {
+Candidate find_nearest_on_simplex(const std::vector<Vector3d>& corners) {
   Candidate best{corners[0], {corners[0]}};
   const std::size_t n = corners.size();
   for (std::size_t a = 0; a < n; ++a) {
@@ -73,7 +73,7 @@ double depth_in_tetrahedron(const std::vector<Vector3d>& corners) {
 
 }  // namespace
 
-Vector3d normal_of(const Triangle& facet) {
+Vector3d compute_normal(const Triangle& facet) {
   // Starts from the corner between the two shorter edges, because the difference of close points is
   // exact.
   std::size_t apex = 0;
@@ -104,7 +104,7 @@ OriginInHull locate_origin(DirectionIndex& occluded) {
       const double depth = depth_in_tetrahedron(corners);
       if (depth >= 0.0) return {Vector3d::Zero(), corners, depth > cap_tolerance};
     }
-    Candidate next = nearest_of_simplex(corners);
+    Candidate next = find_nearest_on_simplex(corners);
     // Due to rounding, the new support is not nearer to the origin.
     if (next.point.norm() >= distance) return {best.point, best.supports, false};
     best = std::move(next);

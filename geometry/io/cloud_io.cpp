@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Receives a piece of a cloud, the number of points of the file read so far, and the total number.
-using TakePiece =
-    std::function<void(const AttributedCloud& piece, std::size_t read, std::size_t all)>;
+using ChunkCallback =
+    std::function<void(const AttributedCloud& chunk, std::size_t read, std::size_t all)>;
 
 constexpr std::array<std::string_view, 10> ply_names{"x",  "y",    "z",   "nx",    "ny",
                                                      "nz", "view", "red", "green", "blue"};
@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 10> ply_names{"x",  "y",    "z",   "nx", 
 /// Number format of the colours of a PLY file.
 enum class ColourScale { none, bytes, words, reals };
 
-ColourScale colour_scale_of(const PlyElement& element) {
+ColourScale find_colour_scale(const PlyElement& element) {
   ColourScale scale = ColourScale::none;
   for (const std::string_view name : {"red", "green", "blue"}) {
     const auto property = std::ranges::find(element.properties, name, &PlyProperty::name);
@@ -45,15 +45,15 @@ ColourScale colour_scale_of(const PlyElement& element) {
 }
 
 /// Converts a colour to bytes. Returns nullopt if a number is outside the scale.
-std::optional<std::array<std::uint8_t, 3>> colour_of(const std::array<double, 3>& numbers,
-                                                     ColourScale scale) {
-  const double most = scale == ColourScale::bytes   ? 255.0
-                      : scale == ColourScale::words ? 65535.0
-                                                    : 1.0;
+std::optional<std::array<std::uint8_t, 3>> make_colour(const std::array<double, 3>& numbers,
+                                                       ColourScale scale) {
+  const double max = scale == ColourScale::bytes   ? 255.0
+                     : scale == ColourScale::words ? 65535.0
+                                                   : 1.0;
   std::array<std::uint8_t, 3> colour{};
   for (std::size_t channel = 0; channel < 3; ++channel) {
     const double value = numbers[channel];
-    if (!(value >= 0.0 && value <= most)) return std::nullopt;
+    if (!(value >= 0.0 && value <= max)) return std::nullopt;
     const double byte = scale == ColourScale::words   ? std::floor(value / 256.0)
                         : scale == ColourScale::reals ? std::round(255.0 * value)
                                                       : value;
@@ -63,9 +63,9 @@ std::optional<std::array<std::uint8_t, 3>> colour_of(const std::array<double, 3>
   return colour;
 }
 
-std::uint32_t view_of(const fs::path& path, std::size_t point, double value) {
-  constexpr double most = std::numeric_limits<std::uint32_t>::max();
-  if (value >= 0.0 && value <= most && value == std::floor(value)) {
+std::uint32_t parse_view_index(const fs::path& path, std::size_t point, double value) {
+  constexpr double max = std::numeric_limits<std::uint32_t>::max();
+  if (value >= 0.0 && value <= max && value == std::floor(value)) {
     return static_cast<std::uint32_t>(value);
   }
   fail_cloud(path, "point " + std::to_string(point) + " has the view " + std::to_string(value) +
@@ -73,7 +73,7 @@ std::uint32_t view_of(const fs::path& path, std::size_t point, double value) {
 }
 
 /// Returns no colours if any of them is outside the scale, because the scale is then unknown.
-AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, ColourScale scale,
+AttributedCloud ply_chunk(const fs::path& path, const PlyTable& table, ColourScale scale,
                           std::size_t first, std::size_t count) {
   const auto& columns = table.columns;
   const auto has = [&](std::size_t begin, std::size_t last) {
@@ -88,19 +88,19 @@ AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, ColourSca
   AttributedCloud cloud;
   cloud.positions.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d place(columns[0][i], columns[1][i], columns[2][i]);
-    if (!place.allFinite()) {
+    const Eigen::Vector3d point(columns[0][i], columns[1][i], columns[2][i]);
+    if (!point.allFinite()) {
       ++cloud.skipped;
       continue;
     }
-    cloud.positions.push_back(cloud_position(path, first + i, place.x(), place.y(), place.z()));
+    cloud.positions.push_back(cloud_position(path, first + i, point.x(), point.y(), point.z()));
     if (has_normals) {
       cloud.normals.push_back(
           Eigen::Vector3d(columns[3][i], columns[4][i], columns[5][i]).cast<float>());
     }
-    if (has_views) cloud.views.push_back(view_of(path, first + i, columns[6][i]));
+    if (has_views) cloud.views.push_back(parse_view_index(path, first + i, columns[6][i]));
     if (!has_colours) continue;
-    const auto colour = colour_of({columns[7][i], columns[8][i], columns[9][i]}, scale);
+    const auto colour = make_colour({columns[7][i], columns[8][i], columns[9][i]}, scale);
     has_colours = colour.has_value();
     if (colour) cloud.colours.push_back(*colour);
   }
@@ -108,7 +108,7 @@ AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, ColourSca
   return cloud;
 }
 
-void take_ply(const fs::path& path, std::string_view bytes, const TakePiece& take) {
+void read_ply_chunks(const fs::path& path, std::string_view bytes, const ChunkCallback& callback) {
   const std::string name = path.string();
   PlyReader reader(name, bytes);
   for (const PlyElement& element : reader.elements()) {
@@ -116,12 +116,12 @@ void take_ply(const fs::path& path, std::string_view bytes, const TakePiece& tak
       reader.read_element({});
       continue;
     }
-    const ColourScale scale = colour_scale_of(element);
+    const ColourScale scale = find_colour_scale(element);
     std::size_t first = 0;
     do {
-      const PlyTable table = reader.read_rows(ply_names, {}, piece_size);
-      const std::size_t count = std::min<std::size_t>(piece_size, element.count - first);
-      take(ply_piece(path, table, scale, first, count), first + count, element.count);
+      const PlyTable table = reader.read_rows(ply_names, {}, points_per_chunk);
+      const std::size_t count = std::min<std::size_t>(points_per_chunk, element.count - first);
+      callback(ply_chunk(path, table, scale, first, count), first + count, element.count);
       first += count;
     } while (first < element.count);
     return;
@@ -135,13 +135,13 @@ AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
     if (all.empty() && !more.empty()) all.reserve(count);
     all.insert(all.end(), more.begin(), more.end());
   };
-  take_ply(path, bytes, [&](const AttributedCloud& piece, std::size_t, std::size_t count) {
+  read_ply_chunks(path, bytes, [&](const AttributedCloud& chunk, std::size_t, std::size_t count) {
     require_few_points(path, count);
-    append(cloud.positions, piece.positions, count);
-    append(cloud.normals, piece.normals, count);
-    append(cloud.views, piece.views, count);
-    append(cloud.colours, piece.colours, count);
-    cloud.skipped += piece.skipped;
+    append(cloud.positions, chunk.positions, count);
+    append(cloud.normals, chunk.normals, count);
+    append(cloud.views, chunk.views, count);
+    append(cloud.colours, chunk.colours, count);
+    cloud.skipped += chunk.skipped;
   });
   if (cloud.colours.size() != cloud.positions.size()) cloud.colours.clear();
   return cloud;
@@ -150,16 +150,16 @@ AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
 AttributedCloud parse_text_cloud(const fs::path& path, std::string_view text) {
   AttributedCloud cloud;
   cloud.skipped =
-      take_text_cloud(path, text, [&](std::span<const Eigen::Vector3f> piece, std::size_t) {
-        cloud.positions.insert(cloud.positions.end(), piece.begin(), piece.end());
+      read_text_cloud(path, text, [&](std::span<const Eigen::Vector3f> chunk, std::size_t) {
+        cloud.positions.insert(cloud.positions.end(), chunk.begin(), chunk.end());
         require_few_points(path, cloud.positions.size());
       });
   return cloud;
 }
 
 bool is_text_cloud(const fs::path& path) {
-  constexpr std::array<std::string_view, 5> endings{".xyz", ".txt", ".asc", ".pts", ".csv"};
-  return std::ranges::find(endings, ending_of(path)) != endings.end();
+  constexpr std::array<std::string_view, 5> extensions{".xyz", ".txt", ".asc", ".pts", ".csv"};
+  return std::ranges::find(extensions, lower_extension(path)) != extensions.end();
 }
 
 /// Returns all bytes of a file; 16-bit text is converted to UTF-8.
@@ -171,12 +171,12 @@ std::string whole_file(const fs::path& path) {
 /// Reader of a format that is parsed in pieces.
 struct PiecewiseReader {
   AttributedCloud (*cloud)(const fs::path& path);
-  std::size_t (*positions)(const fs::path& path, const TakePositions& take);
+  std::size_t (*positions)(const fs::path& path, const PositionsCallback& callback);
 };
 
-std::optional<PiecewiseReader> piecewise_reader(std::string_view ending) {
-  if (ending == ".las" || ending == ".laz") return {{read_las_cloud, read_las_positions}};
-  if (ending == ".e57") return {{read_e57_cloud, read_e57_positions}};
+std::optional<PiecewiseReader> piecewise_reader(std::string_view extension) {
+  if (extension == ".las" || extension == ".laz") return {{read_las_cloud, read_las_positions}};
+  if (extension == ".e57") return {{read_e57_cloud, read_e57_positions}};
   return std::nullopt;
 }
 
@@ -206,8 +206,8 @@ void add_positions(const fs::path& path, std::size_t first,
 }
 
 void require_few_points(const fs::path& path, std::size_t points) {
-  if (points <= most_whole_points) return;
-  fail_cloud(path, "contains more than " + std::to_string(most_whole_points) +
+  if (points <= max_whole_points) return;
+  fail_cloud(path, "contains more than " + std::to_string(max_whole_points) +
                        " points; downsample it, or use LAS or E57, which are read in parts");
 }
 
@@ -218,10 +218,10 @@ void fail_without_points(const fs::path& path, std::size_t skipped) {
 }
 
 AttributedCloud read_cloud(const fs::path& path) {
-  const std::string ending = ending_of(path);
-  const auto piecewise = piecewise_reader(ending);
-  const auto parser = ending == ".ply"      ? parse_ply_cloud
-                      : ending == ".pcd"    ? parse_pcd_cloud
+  const std::string extension = lower_extension(path);
+  const auto piecewise = piecewise_reader(extension);
+  const auto parser = extension == ".ply"   ? parse_ply_cloud
+                      : extension == ".pcd" ? parse_pcd_cloud
                       : is_text_cloud(path) ? parse_text_cloud
                                             : nullptr;
   if (parser == nullptr && !piecewise) {
@@ -237,26 +237,27 @@ AttributedCloud read_cloud(const fs::path& path) {
 namespace {
 
 /// Reads files that are loaded whole, but whose points are parsed in pieces.
-std::size_t read_file_positions(const fs::path& path, const TakePositions& take) {
+std::size_t read_file_positions(const fs::path& path, const PositionsCallback& callback) {
   const std::string bytes = whole_file(path);
   bool has_points = false;
   std::size_t skipped = 0;
-  const auto hand_on = [&](std::span<const Eigen::Vector3f> piece, double read, double all) {
-    if (piece.empty()) return;
+  const auto hand_on = [&](std::span<const Eigen::Vector3f> chunk, double read, double all) {
+    if (chunk.empty()) return;
     has_points = true;
-    take(piece, read / all);
+    callback(chunk, read / all);
   };
   if (is_text_cloud(path)) {
     const auto all = static_cast<double>(bytes.size());
     skipped =
-        take_text_cloud(path, bytes, [&](std::span<const Eigen::Vector3f> piece, std::size_t read) {
-          hand_on(piece, static_cast<double>(read), all);
+        read_text_cloud(path, bytes, [&](std::span<const Eigen::Vector3f> chunk, std::size_t read) {
+          hand_on(chunk, static_cast<double>(read), all);
         });
   } else {
-    take_ply(path, bytes, [&](const AttributedCloud& piece, std::size_t read, std::size_t all) {
-      skipped += piece.skipped;
-      hand_on(piece.positions, static_cast<double>(read), static_cast<double>(all));
-    });
+    read_ply_chunks(path, bytes,
+                    [&](const AttributedCloud& chunk, std::size_t read, std::size_t all) {
+                      skipped += chunk.skipped;
+                      hand_on(chunk.positions, static_cast<double>(read), static_cast<double>(all));
+                    });
   }
   if (!has_points) fail_without_points(path, skipped);
   return skipped;
@@ -264,17 +265,18 @@ std::size_t read_file_positions(const fs::path& path, const TakePositions& take)
 
 }  // namespace
 
-std::size_t read_positions(const fs::path& path, const TakePositions& take) {
-  if (const auto piecewise = piecewise_reader(ending_of(path))) {
-    return piecewise->positions(path, take);
+std::size_t read_positions(const fs::path& path, const PositionsCallback& callback) {
+  if (const auto piecewise = piecewise_reader(lower_extension(path))) {
+    return piecewise->positions(path, callback);
   }
-  if (is_text_cloud(path) || ending_of(path) == ".ply") return read_file_positions(path, take);
+  if (is_text_cloud(path) || lower_extension(path) == ".ply")
+    return read_file_positions(path, callback);
   const AttributedCloud cloud = read_cloud(path);
   const std::vector<Eigen::Vector3f>& positions = cloud.positions;
-  for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
-    const std::size_t count = std::min(piece_size, positions.size() - begin);
-    take(std::span(positions).subspan(begin, count),
-         static_cast<double>(begin + count) / static_cast<double>(positions.size()));
+  for (std::size_t begin = 0; begin < positions.size(); begin += points_per_chunk) {
+    const std::size_t count = std::min(points_per_chunk, positions.size() - begin);
+    callback(std::span(positions).subspan(begin, count),
+             static_cast<double>(begin + count) / static_cast<double>(positions.size()));
   }
   return cloud.skipped;
 }

@@ -45,7 +45,7 @@ struct CloudColumns {
   std::vector<NamedMarks> marks = {};
 };
 
-inline CloudColumns columns_of(const AttributedCloud& cloud) {
+inline CloudColumns make_columns(const AttributedCloud& cloud) {
   return {cloud.positions, cloud.normals, cloud.views, cloud.colours, {}};
 }
 
@@ -70,12 +70,12 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
 AttributedCloud read_cloud(const std::filesystem::path& path);
 
 /// Receives consecutive points of a file. `share` is the fraction of the file that has been read.
-using TakePositions = std::function<void(std::span<const Eigen::Vector3f> piece, double share)>;
+using PositionsCallback = std::function<void(std::span<const Eigen::Vector3f> chunk, double share)>;
 
-/// Reads the positions of all formats of read_cloud() and passes them to `take` in order, in pieces
-/// of up to one million points. Returns the number of skipped points, as defined in
+/// Reads the positions of all formats of read_cloud() and passes them to `callback` in order, in
+/// pieces of up to one million points. Returns the number of skipped points, as defined in
 /// AttributedCloud.
-std::size_t read_positions(const std::filesystem::path& path, const TakePositions& take);
+std::size_t read_positions(const std::filesystem::path& path, const PositionsCallback& callback);
 
 /// Writes a binary little-endian PLY file: x y z (float), then the attributes that are present.
 /// These are nx ny nz (float), view (uint), red green blue (uchar) and marks (uchar). If the path

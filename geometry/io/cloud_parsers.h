@@ -30,7 +30,7 @@ void add_positions(const std::filesystem::path& path, std::size_t first,
 /// Maximum decompressed size of a cloud. It limits the memory of the cloud and its intermediate
 /// results to less than 2 GiB.
 inline constexpr std::size_t largest_unpacked_cloud = std::size_t{384} << 20,  // [bytes]
-    most_whole_points = std::size_t{1} << 26;
+    max_whole_points = std::size_t{1} << 26;
 
 /// Throws Error{bad_file} if `points` exceeds the limit.
 void require_few_points(const std::filesystem::path& path, std::size_t points);
@@ -50,19 +50,21 @@ AttributedCloud read_e57_cloud(const std::filesystem::path& path);
 std::string e57_bytes(const CloudColumns& cloud);
 
 /// Maximum number of points per piece.
-inline constexpr std::size_t piece_size = 1'000'000;
+inline constexpr std::size_t points_per_chunk = 1'000'000;
 
 /// Reads only the positions, as specified by read_positions().
-std::size_t read_las_positions(const std::filesystem::path& path, const TakePositions& take);
-std::size_t read_e57_positions(const std::filesystem::path& path, const TakePositions& take);
+std::size_t read_las_positions(const std::filesystem::path& path,
+                               const PositionsCallback& callback);
+std::size_t read_e57_positions(const std::filesystem::path& path,
+                               const PositionsCallback& callback);
 
 /// Receives consecutive points of text and the number of bytes that have been read with them.
-using TakeTextPiece = std::function<void(std::span<const Eigen::Vector3f>, std::size_t)>;
+using TextChunkCallback = std::function<void(std::span<const Eigen::Vector3f>, std::size_t)>;
 
 /// Parses text with one point per line, as specified by read_cloud(). Returns the number of skipped
 /// points.
-std::size_t take_text_cloud(const std::filesystem::path& path, std::string_view text,
-                            const TakeTextPiece& take);
+std::size_t read_text_cloud(const std::filesystem::path& path, std::string_view text,
+                            const TextChunkCallback& callback);
 
 /// Throws Error{bad_file} for a file without points, or in which all points were skipped.
 [[noreturn]] void fail_without_points(const std::filesystem::path& path, std::size_t skipped);

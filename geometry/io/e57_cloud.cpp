@@ -57,30 +57,31 @@ std::string e57_bytes(const CloudColumns& cloud) {
   for (const Eigen::Vector3f& position : cloud.positions) {
     scan.bounds.extend(position.cast<double>());
   }
-  const std::string packets = e57::packets_of(scan.fields, columns);
+  const std::string packets = e57::make_packets(scan.fields, columns);
   scan.records = cloud.positions.size();
   scan.checksum = e57::crc32c(packets);
-  scan.size_of_packets = packets.size();
-  return e57::beginning_of(scan) + e57::sealed(packets);
+  scan.packets_size = packets.size();
+  return e57::make_file_head(scan) + e57::sealed(packets);
 }
 
-std::size_t read_e57_positions(const std::filesystem::path& path, const TakePositions& take) {
+std::size_t read_e57_positions(const std::filesystem::path& path,
+                               const PositionsCallback& callback) {
   E57Reader reader(path);
   E57Points points;
-  std::vector<Eigen::Vector3f> piece;
+  std::vector<Eigen::Vector3f> chunk;
   std::size_t count = 0;
   std::uint64_t records_read = 0;
   const auto hand_out = [&] {
-    if (!piece.empty()) {
-      take(piece, static_cast<double>(records_read) / static_cast<double>(reader.points()));
+    if (!chunk.empty()) {
+      callback(chunk, static_cast<double>(records_read) / static_cast<double>(reader.points()));
     }
-    piece.clear();
+    chunk.clear();
   };
-  while (reader.next(points, piece_size - piece.size())) {
+  while (reader.next(points, points_per_chunk - chunk.size())) {
     records_read += points.records;
-    add_positions(path, count, points.positions, piece);
+    add_positions(path, count, points.positions, chunk);
     count += points.positions.size();
-    if (piece.size() == piece_size) hand_out();
+    if (chunk.size() == points_per_chunk) hand_out();
   }
   hand_out();
   if (count == 0) fail_without_points(path, reader.skipped());

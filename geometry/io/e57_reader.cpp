@@ -27,7 +27,7 @@ bool all_have(const std::vector<e57::ScanDescription>& scans, const Names& names
   return std::ranges::all_of(scans, [&](const auto& scan) { return has(scan, names); });
 }
 
-Eigen::Vector3d cartesian_of(const Eigen::Vector3d& range_azimuth_elevation) {
+Eigen::Vector3d spherical_to_cartesian(const Eigen::Vector3d& range_azimuth_elevation) {
   const double range = range_azimuth_elevation[0], azimuth = range_azimuth_elevation[1],
                elevation = range_azimuth_elevation[2];
   const double level = range * std::cos(elevation);
@@ -35,15 +35,15 @@ Eigen::Vector3d cartesian_of(const Eigen::Vector3d& range_azimuth_elevation) {
 }
 
 /// Returns the values of black and white of a channel.
-e57::Interval limits_of(const e57::ScanDescription& scan, std::size_t channel,
-                        const e57::Field& field) {
+e57::Interval make_limits(const e57::ScanDescription& scan, std::size_t channel,
+                          const e57::Field& field) {
   if (scan.colour_limits[channel]) return *scan.colour_limits[channel];
   const bool is_whole = field.coding == e57::Coding::integer;
   if (!is_whole) return {0.0, 1.0};
   return {static_cast<double>(field.minimum), static_cast<double>(field.maximum)};
 }
 
-std::uint8_t byte_of(double value, const e57::Interval& limits) {
+std::uint8_t to_byte(double value, const e57::Interval& limits) {
   const double share = (value - limits.low) / (limits.high - limits.low);
   if (!(share > 0.0)) return 0;
   return static_cast<std::uint8_t>(std::lround(255.0 * std::min(share, 1.0)));
@@ -51,14 +51,14 @@ std::uint8_t byte_of(double value, const e57::Interval& limits) {
 
 e57::Description read_description(e57::Pages& pages, const e57::FileHeader& header) {
   pages.bytes(0, e57::header::size);  // verifies the checksum of the header page
-  const std::uint64_t place = pages.logical(header.description, "its XML");
+  const std::uint64_t offset = pages.logical(header.description, "its XML");
   if (header.description_size > e57::longest_description ||
-      header.description_size > pages.size() - place) {
-    e57::refuse("has XML of " + std::to_string(header.description_size) +
-                " bytes; it must end within the file and have at most " +
-                std::to_string(e57::longest_description));
+      header.description_size > pages.size() - offset) {
+    e57::throw_bad_file("has XML of " + std::to_string(header.description_size) +
+                        " bytes; it must end within the file and have at most " +
+                        std::to_string(e57::longest_description));
   }
-  return e57::parse_description(pages.bytes(place, header.description_size));
+  return e57::parse_description(pages.bytes(offset, header.description_size));
 }
 
 }  // namespace
@@ -66,8 +66,8 @@ e57::Description read_description(e57::Pages& pages, const e57::FileHeader& head
 E57Reader::E57Reader(std::filesystem::path path)
     : file_(std::make_unique<SeekableFile>(std::move(path))) {
   file_->with_name([&] {
-    const auto read = [file = file_.get()](std::uint64_t place, std::uint64_t count) {
-      return file->bytes(place, count);
+    const auto read = [file = file_.get()](std::uint64_t offset, std::uint64_t count) {
+      return file->bytes(offset, count);
     };
     const e57::FileHeader header =
         e57::parse_file_header(read(0, e57::header::size), file_->size());
@@ -75,7 +75,7 @@ E57Reader::E57Reader(std::filesystem::path path)
     description_ = read_description(*pages_, header);
     has_colours_ = all_have(description_.scans, colours);
     has_normals_ = all_have(description_.scans, normals);
-    for (const e57::ScanDescription& scan : description_.scans) places_of(scan);
+    for (const e57::ScanDescription& scan : description_.scans) find_field_indices(scan);
   });
 }
 
@@ -85,37 +85,37 @@ std::uint64_t E57Reader::points() const {
   return sum;
 }
 
-E57Reader::Places E57Reader::places_of(const e57::ScanDescription& scan) const {
-  Places places;
-  places.is_spherical = !has(scan, cartesian);
-  if (places.is_spherical && !has(scan, spherical)) {
-    e57::refuse(
+E57Reader::FieldIndices E57Reader::find_field_indices(const e57::ScanDescription& scan) const {
+  FieldIndices field_indices;
+  field_indices.is_spherical = !has(scan, cartesian);
+  if (field_indices.is_spherical && !has(scan, spherical)) {
+    e57::throw_bad_file(
         "has a scan whose points have neither cartesianX, Y and Z nor sphericalRange, Azimuth and "
         "Elevation");
   }
   const auto add = [&](const Names& names) {
-    for (const char* name : names) places.fields.push_back(*scan.field(name));
-    return places.fields.size() - names.size();
+    for (const char* name : names) field_indices.fields.push_back(*scan.field(name));
+    return field_indices.fields.size() - names.size();
   };
-  add(places.is_spherical ? spherical : cartesian);
-  if (has_colours_) places.colours = add(colours);
-  if (has_normals_) places.normals = add(normals);
+  add(field_indices.is_spherical ? spherical : cartesian);
+  if (has_colours_) field_indices.colours = add(colours);
+  if (has_normals_) field_indices.normals = add(normals);
   const auto state =
-      scan.field(places.is_spherical ? "sphericalInvalidState" : "cartesianInvalidState");
+      scan.field(field_indices.is_spherical ? "sphericalInvalidState" : "cartesianInvalidState");
   if (state) {
-    places.state = places.fields.size();
-    places.fields.push_back(*state);
+    field_indices.state = field_indices.fields.size();
+    field_indices.fields.push_back(*state);
   }
-  return places;
+  return field_indices;
 }
 
-bool E57Reader::next(E57Points& points, std::size_t most) {
+bool E57Reader::next(E57Points& points, std::size_t max) {
   points.positions.clear();
   points.normals.clear();
   points.colours.clear();
   return file_->with_name([&] {
     while (true) {
-      const std::size_t count = records_ ? records_->next(most) : 0;
+      const std::size_t count = records_ ? records_->next(max) : 0;
       if (count > 0) {
         points.records = count;
         points.scan = static_cast<std::uint32_t>(next_scan_ - 1);
@@ -124,8 +124,8 @@ bool E57Reader::next(E57Points& points, std::size_t most) {
       }
       if (next_scan_ == description_.scans.size()) return false;
       const e57::ScanDescription& scan = description_.scans[next_scan_++];
-      places_ = places_of(scan);
-      records_.emplace(*pages_, scan, places_.fields);
+      field_indices_ = find_field_indices(scan);
+      records_.emplace(*pages_, scan, field_indices_.fields);
     }
   });
 }
@@ -138,28 +138,30 @@ void E57Reader::add_points(std::size_t count, E57Points& points) {
   };
   std::array<e57::Interval, 3> limits;
   for (std::size_t channel = 0; has_colours_ && channel < 3; ++channel) {
-    limits[channel] =
-        limits_of(scan, channel, scan.fields[places_.fields[places_.colours + channel]]);
+    limits[channel] = make_limits(
+        scan, channel, scan.fields[field_indices_.fields[field_indices_.colours + channel]]);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (places_.state != 0 && values[places_.state][i] != 0.0) continue;
+    if (field_indices_.state != 0 && values[field_indices_.state][i] != 0.0) continue;
     const Eigen::Vector3d stored = three(0, i);
     if (!stored.allFinite()) {
       ++skipped_;
       continue;
     }
     const Eigen::Vector3d position =
-        scan.file_from_scan * (places_.is_spherical ? cartesian_of(stored) : stored);
-    if (!position.allFinite()) e57::refuse("has a point whose coordinates are not finite numbers");
+        scan.file_from_scan *
+        (field_indices_.is_spherical ? spherical_to_cartesian(stored) : stored);
+    if (!position.allFinite())
+      e57::throw_bad_file("has a point whose coordinates are not finite numbers");
     points.positions.push_back(position);
     if (has_normals_) {
       points.normals.push_back(
-          (scan.file_from_scan.linear() * three(places_.normals, i)).cast<float>());
+          (scan.file_from_scan.linear() * three(field_indices_.normals, i)).cast<float>());
     }
     if (!has_colours_) continue;
     auto& colour = points.colours.emplace_back();
     for (std::size_t channel = 0; channel < 3; ++channel) {
-      colour[channel] = byte_of(values[places_.colours + channel][i], limits[channel]);
+      colour[channel] = to_byte(values[field_indices_.colours + channel][i], limits[channel]);
     }
   }
 }

@@ -47,19 +47,19 @@ class E57Reader {
   /// Returns the number of scans whose quaternion is four zeros. They are read as not rotated.
   std::size_t zero_rotations() const { return description_.zero_rotations; }
 
-  /// Replaces `points` with the next points, from at most `most` records of one scan. The result
+  /// Replaces `points` with the next points, from at most `max` records of one scan. The result
   /// may be empty if all records are invalid. Returns false at the end of the file. Throws
   /// Error{bad_file} if the file is damaged.
-  bool next(E57Points& points, std::size_t most = 1 << 16);
+  bool next(E57Points& points, std::size_t max = 1 << 16);
 
  private:
   /// Fields of a scan that are read.
-  struct Places {
+  struct FieldIndices {
     bool is_spherical = false;
     std::vector<std::size_t> fields;  ///< three of the position, then optional fields
     std::size_t state = 0, colours = 0, normals = 0;  ///< indices in `fields`; 0 if absent
   };
-  Places places_of(const e57::ScanDescription& scan) const;
+  FieldIndices find_field_indices(const e57::ScanDescription& scan) const;
   void add_points(std::size_t count, E57Points& points);
 
   std::unique_ptr<SeekableFile>
@@ -68,7 +68,7 @@ class E57Reader {
   e57::Description description_;
   bool has_colours_ = false, has_normals_ = false;
   std::size_t next_scan_ = 0, skipped_ = 0;
-  Places places_;
+  FieldIndices field_indices_;
   std::optional<e57::RecordStream> records_;
 };
 

@@ -35,7 +35,7 @@ std::string size_text(std::size_t bytes) {
                                        : std::to_string(bytes >> 20) + " MiB";
 }
 
-std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size_t most_bytes) {
+std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size_t max_bytes) {
   z_stream stream{};
   constexpr int gzip_only = 16 + MAX_WBITS;
   const int start = inflateInit2(&stream, gzip_only);
@@ -45,21 +45,21 @@ std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size
   int status = Z_OK;
   while (status == Z_OK || (status == Z_STREAM_END && !bytes.empty())) {
     if (status == Z_STREAM_END) inflateReset(&stream);  // gzip files may be concatenated
-    const auto given = std::min<std::size_t>(bytes.size(), std::numeric_limits<uInt>::max());
+    const auto chunk_size = std::min<std::size_t>(bytes.size(), std::numeric_limits<uInt>::max());
     // zlib does not modify its input, but its C interface is const only if ZLIB_CONST is defined.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream.avail_in = static_cast<uInt>(given);
+    stream.avail_in = static_cast<uInt>(chunk_size);
     stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
     stream.avail_out = static_cast<uInt>(chunk.size());
     status = inflate(&stream, Z_NO_FLUSH);
-    bytes.remove_prefix(given - stream.avail_in);
+    bytes.remove_prefix(chunk_size - stream.avail_in);
     inflated.append(chunk, 0, chunk.size() - stream.avail_out);
-    if (inflated.size() > most_bytes) break;
+    if (inflated.size() > max_bytes) break;
   }
   inflateEnd(&stream);
   if (status == Z_MEM_ERROR) throw std::bad_alloc();
-  if (inflated.size() > most_bytes) {
-    fail(path, "is larger than " + size_text(most_bytes) + " when decompressed");
+  if (inflated.size() > max_bytes) {
+    fail(path, "is larger than " + size_text(max_bytes) + " when decompressed");
   }
   if (status != Z_STREAM_END) {
     fail(path, "is not a complete gzip file (damaged or truncated); obtain it again");
@@ -77,8 +77,8 @@ class TemporaryFile {
               (".part-" + std::to_string(number) + "-" + target.filename().string());
       handle_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
       if (handle_ < 0) fail(target, "cannot be written: " + last_error());
-      const bool is_taken = ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-      if (!is_taken && is_still_there()) break;
+      const bool is_locked = ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      if (!is_locked && is_still_there()) break;
       ::close(std::exchange(handle_, -1));
     }
   }
@@ -117,7 +117,7 @@ class TemporaryFile {
 
 }  // namespace
 
-std::string ending_of(fs::path path) {
+std::string lower_extension(fs::path path) {
   const auto lower = [](std::string text) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return text;
@@ -144,14 +144,14 @@ std::ifstream open_stream(const fs::path& path) {
   return stream;
 }
 
-std::string read_file(const fs::path& path, std::size_t most_bytes, std::size_t most_decompressed) {
+std::string read_file(const fs::path& path, std::size_t max_bytes, std::size_t max_decompressed) {
   require_regular_file(path);
   std::ifstream stream = open_stream(path);
   if (!stream) fail(path, "cannot be opened: " + last_error());
-  const auto refuse_size = [&] { fail(path, "is larger than " + size_text(most_bytes)); };
+  const auto reject_size = [&] { fail(path, "is larger than " + size_text(max_bytes)); };
   std::error_code error;
   const auto size = fs::file_size(path, error);
-  if (!error && size > most_bytes) refuse_size();
+  if (!error && size > max_bytes) reject_size();
   std::string bytes;
   if (!error) bytes.reserve(size);
   constexpr std::uintmax_t largest_chunk = 1 << 20;
@@ -159,11 +159,11 @@ std::string read_file(const fs::path& path, std::size_t most_bytes, std::size_t 
   while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())),
          stream.gcount() > 0) {
     bytes.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
-    if (bytes.size() > most_bytes) refuse_size();
+    if (bytes.size() > max_bytes) reject_size();
   }
   if (stream.bad()) fail(path, "cannot be read: " + last_error());
   if (!is_gzip(bytes)) return bytes;
-  return inflate_gzip(path, bytes, std::min(most_bytes, most_decompressed));
+  return inflate_gzip(path, bytes, std::min(max_bytes, max_decompressed));
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
@@ -187,9 +187,9 @@ void sync_to_disk(const fs::path& path) {
   const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   // Some file systems do not support syncing folders, and do not require it.
   const bool is_done = handle >= 0 && (::fsync(handle) == 0 || errno == EINVAL);
-  const std::string why = is_done ? "" : last_error();
+  const std::string reason = is_done ? "" : last_error();
   if (handle >= 0) ::close(handle);
-  if (!is_done) fail(path, "cannot be flushed to the disk: " + why);
+  if (!is_done) fail(path, "cannot be flushed to the disk: " + reason);
 }
 
 }  // namespace skycap::geometry

@@ -19,18 +19,17 @@ std::ifstream open_stream(const std::filesystem::path& path);
 
 /// Returns the file extension in lower case with its dot, ignoring ".gz". Empty if the name has no
 /// extension.
-std::string ending_of(std::filesystem::path path);
+std::string lower_extension(std::filesystem::path path);
 
 /// Default limit of read_file() [bytes]. Larger files must be read in pieces.
 inline constexpr std::size_t largest_whole_file = std::size_t{1} << 30;
 
 /// Returns the content of a file. Decompresses gzip files independent of their name. Throws
 /// Error{bad_file} if the file is not a regular file, unreadable, damaged, larger than
-/// `most_bytes`, or decompresses to more than `most_decompressed` bytes. The second limit exists
+/// `max_bytes`, or decompresses to more than `max_decompressed` bytes. The second limit exists
 /// because a few bytes can decompress to a very large size.
-std::string read_file(const std::filesystem::path& path,
-                      std::size_t most_bytes = largest_whole_file,
-                      std::size_t most_decompressed = largest_whole_file);
+std::string read_file(const std::filesystem::path& path, std::size_t max_bytes = largest_whole_file,
+                      std::size_t max_decompressed = largest_whole_file);
 
 /// Replaces a file atomically: writes a temporary file in the same folder, syncs it to disk, and
 /// renames it. Readers never find an incomplete file, not even after a power failure. Creates the

@@ -12,13 +12,13 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr std::uint64_t ply_piece_size = 1'000'000;  // maximum rows in memory at a time
+constexpr std::uint64_t ply_chunk_rows = 1'000'000;  // maximum rows in memory at a time
 
 void read_ply_vertices(std::string_view name, PlyReader& reader, std::uint64_t count,
                        BoundedSoup& soup) {
   constexpr std::array<std::string_view, 3> coordinates{"x", "y", "z"};
   for (std::uint64_t read = 0; read < count;) {
-    const PlyTable table = reader.read_rows(coordinates, {}, ply_piece_size);
+    const PlyTable table = reader.read_rows(coordinates, {}, ply_chunk_rows);
     const auto& [x, y, z] = std::tie(table.columns[0], table.columns[1], table.columns[2]);
     if (x.size() != table.rows || y.size() != table.rows || z.size() != table.rows) {
       fail_mesh(name, "the element 'vertex' must have the properties x, y and z");
@@ -30,15 +30,15 @@ void read_ply_vertices(std::string_view name, PlyReader& reader, std::uint64_t c
 }
 
 /// Returns the name of the corner list of an element: a common name, otherwise its only list.
-std::string corner_list_of(std::string_view name, const PlyElement& element) {
+std::string find_corner_list(std::string_view name, const PlyElement& element) {
   constexpr std::array<std::string_view, 4> usual{"vertex_indices", "vertex_index",
                                                   "vertex_indexes", "vertices"};
   std::vector<std::string> lists;
   for (const PlyProperty& property : element.properties) {
     if (property.count_type) lists.push_back(property.name);
   }
-  for (const std::string_view wanted : usual) {
-    if (std::ranges::find(lists, wanted) != lists.end()) return std::string(wanted);
+  for (const std::string_view candidate : usual) {
+    if (std::ranges::find(lists, candidate) != lists.end()) return std::string(candidate);
   }
   if (lists.size() == 1) return lists[0];
   if (lists.empty() || element.count == 0) return {};
@@ -79,10 +79,10 @@ class StripReader {
 void read_ply_faces(std::string_view name, PlyReader& reader, const PlyElement& element,
                     std::uint64_t vertex_count, BoundedSoup& soup) {
   const bool is_strip = element.name == "tristrips";
-  const std::string list = corner_list_of(name, element);
+  const std::string list = find_corner_list(name, element);
   const std::array<std::string_view, 1> lists{list};
   for (std::uint64_t read = 0; read < element.count;) {
-    const PlyTable table = reader.read_rows({}, lists, ply_piece_size);
+    const PlyTable table = reader.read_rows({}, lists, ply_chunk_rows);
     for (std::size_t row = 0; row + 1 < table.list_begin.size(); ++row) {
       StripReader strip(soup);
       for (std::uint64_t i = table.list_begin[row]; i < table.list_begin[row + 1]; ++i) {

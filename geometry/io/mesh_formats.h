@@ -68,17 +68,17 @@ class BoundedSoup {
   /// Checks declared sizes before memory is allocated. Throws Error{bad_file} if they exceed the
   /// limits.
   void require(std::uint64_t vertices, std::uint64_t faces) const {
-    if (vertices > limits_.vertices || faces > limits_.faces) fail_of_size();
+    if (vertices > limits_.vertices || faces > limits_.faces) fail_too_large();
   }
 
   void add_vertex(const Eigen::Vector3d& vertex) {
-    if (soup_.vertices.size() == limits_.vertices) fail_of_size();
+    if (soup_.vertices.size() == limits_.vertices) fail_too_large();
     soup_.vertices.push_back(vertex);
   }
 
   /// Adds a corner to the current polygon, which close_polygon() completes.
   void add_corner(std::uint32_t vertex) {
-    if (soup_.corners.size() == limits_.corners) fail_of_size();
+    if (soup_.corners.size() == limits_.corners) fail_too_large();
     if (soup_.corners.size() - soup_.polygon_begin.back() == limits_.face_corners) {
       fail_mesh(name_, "face " + std::to_string(soup_.polygon_begin.size() - 1) +
                            " has more than " + std::to_string(limits_.face_corners) +
@@ -88,12 +88,12 @@ class BoundedSoup {
   }
 
   void close_polygon() {
-    if (soup_.polygon_begin.size() > limits_.faces) fail_of_size();
+    if (soup_.polygon_begin.size() > limits_.faces) fail_too_large();
     soup_.polygon_begin.push_back(soup_.corners.size());
   }
 
  private:
-  [[noreturn]] void fail_of_size() const {
+  [[noreturn]] void fail_too_large() const {
     fail_mesh(name_, "contains more than " + std::to_string(limits_.faces) + " faces, " +
                          std::to_string(limits_.corners) + " corners of faces or " +
                          std::to_string(limits_.vertices) + " vertices; simplify the mesh");

@@ -28,18 +28,18 @@ using Eigen::Vector3d;
 // Limits for files that decompress to a much larger size, so that less than 2 GiB are used,
 // including intermediate results. Uncompressed files are not limited, because their size is known
 // to the user.
-constexpr std::size_t largest_unpacked_mesh = std::size_t{256} << 20, most_unpacked = 10'000'000;
+constexpr std::size_t largest_unpacked_mesh = std::size_t{256} << 20, max_unpacked = 10'000'000;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
 }
 
 PolygonSoup parse(const fs::path& path) {
-  const std::string format = ending_of(path);
+  const std::string format = lower_extension(path);
   if (format == ".drc") {
     const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
     const Mesh mesh = decode_draco(path.string(), bytes);
-    if (mesh.triangles.size() > most_unpacked) fail(path, "contains more than 1e7 triangles");
+    if (mesh.triangles.size() > max_unpacked) fail(path, "contains more than 1e7 triangles");
     PolygonSoup soup{mesh.vertices, {}};  // checked like the polygons of other formats
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
@@ -129,7 +129,7 @@ bool is_single_precision(const Mesh& mesh) {
   });
 }
 
-std::string ply_of(const Mesh& mesh) {
+std::string format_ply(const Mesh& mesh) {
   const bool is_single = is_single_precision(mesh);
   std::array<PlyElement, 2> elements{
       {{"vertex", mesh.vertices.size(), {}},
@@ -150,7 +150,7 @@ std::string ply_of(const Mesh& mesh) {
   return bytes;
 }
 
-std::string obj_of(const Mesh& mesh) {
+std::string format_obj(const Mesh& mesh) {
   std::string text = "# written by Skycap\n";
   for (const Vector3d& vertex : mesh.vertices) {
     text += 'v';
@@ -165,7 +165,7 @@ std::string obj_of(const Mesh& mesh) {
   return text;
 }
 
-std::string off_of(const Mesh& mesh) {
+std::string format_off(const Mesh& mesh) {
   std::string text = "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
                      std::to_string(mesh.triangles.size()) + " 0\n";
   for (const Vector3d& vertex : mesh.vertices) {
@@ -180,7 +180,7 @@ std::string off_of(const Mesh& mesh) {
   return text;
 }
 
-std::string stl_of(const Mesh& mesh) {
+std::string format_stl(const Mesh& mesh) {
   std::string bytes = "written by Skycap";
   bytes.resize(80, ' ');
   append_value(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
@@ -200,7 +200,7 @@ std::string stl_of(const Mesh& mesh) {
 
 bool is_mesh_file(const fs::path& path) {
   constexpr std::array<std::string_view, 5> formats = {".ply", ".obj", ".stl", ".off", ".drc"};
-  return std::ranges::find(formats, ending_of(path)) != formats.end();
+  return std::ranges::find(formats, lower_extension(path)) != formats.end();
 }
 
 Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
@@ -234,10 +234,10 @@ std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
 
 void write_mesh(const fs::path& path, const Mesh& mesh) {
   const std::string format = path.extension().string();
-  if (format == ".ply") return write_file(path, ply_of(mesh));
-  if (format == ".obj") return write_file(path, obj_of(mesh));
-  if (format == ".off") return write_file(path, off_of(mesh));
-  if (format == ".stl") return write_file(path, stl_of(mesh));
+  if (format == ".ply") return write_file(path, format_ply(mesh));
+  if (format == ".obj") return write_file(path, format_obj(mesh));
+  if (format == ".off") return write_file(path, format_off(mesh));
+  if (format == ".stl") return write_file(path, format_stl(mesh));
   fail(path, "a mesh file to be written must end in .ply, .obj, .stl or .off");
 }
 

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::size_t most_ear_corners = 1000;  // ear clipping takes cubic time in the worst case
+constexpr std::size_t max_ear_corners = 1000;  // ear clipping takes cubic time in the worst case
 
 // Projects the polygon along its area vector (Newell's normal), so that it is counter-clockwise.
 std::vector<Vector2d> flattened(const Mesh& mesh, std::span<const std::uint32_t> polygon) {
@@ -105,8 +105,8 @@ Mesh triangulate(std::string_view name, PolygonSoup soup) {
     const std::span polygon(soup.corners.data() + soup.polygon_begin[i],
                             soup.polygon_begin[i + 1] - soup.polygon_begin[i]);
     for (const std::uint32_t v : polygon) {
-      if (is_place(mesh.vertices[v], farthest_vertex)) continue;
-      require_place(
+      if (is_valid_position(mesh.vertices[v], farthest_vertex)) continue;
+      require_valid_position(
           mesh.vertices[v],
           std::string(name) + ": face " + std::to_string(i) + ": vertex " + std::to_string(v),
           farthest_vertex);
@@ -119,7 +119,7 @@ Mesh triangulate(std::string_view name, PolygonSoup soup) {
     const std::vector<Vector2d> flat = flattened(mesh, polygon);
     if (is_convex(flat)) {
       cut_into_fan(mesh, polygon);
-    } else if (polygon.size() <= most_ear_corners) {
+    } else if (polygon.size() <= max_ear_corners) {
       for (const auto& [a, b, c] : clip_ears(flat)) {
         mesh.triangles.push_back({polygon[a], polygon[b], polygon[c]});
       }

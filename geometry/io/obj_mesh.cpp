@@ -27,7 +27,7 @@ string_view without_comment(string_view name) {
 class ObjReader {
  public:
   ObjReader(string_view name, string_view text, const MeshLimits& limits)
-      : scanner_(name, text), most_materials_(limits.materials), polygons_(name, limits) {}
+      : scanner_(name, text), max_materials_(limits.materials), polygons_(name, limits) {}
 
   PolygonSoup read() {
     do {
@@ -78,27 +78,27 @@ class ObjReader {
     // Faces before the first usemtl get the unnamed material.
     if (soup_.materials.empty() && !lines_.empty()) use_material("");
     soup_.polygon_materials.resize(lines_.size(), 0);
-    use_material(std::string(without_comment(scanner_.rest_of_line())));
+    use_material(std::string(without_comment(scanner_.remaining_line())));
   }
 
-  void use_material(const std::string& wanted) {
+  void use_material(const std::string& material) {
     const auto number = static_cast<std::uint32_t>(soup_.materials.size());
-    const auto [known, is_new] = materials_.emplace(wanted, number);
-    if (is_new && number == most_materials_) {
-      scanner_.fail("names more than " + std::to_string(most_materials_) + " materials");
+    const auto [known, is_new] = materials_.emplace(material, number);
+    if (is_new && number == max_materials_) {
+      scanner_.fail("names more than " + std::to_string(max_materials_) + " materials");
     }
     material_ = known->second;
-    if (is_new) soup_.materials.push_back(wanted);
+    if (is_new) soup_.materials.push_back(material);
   }
 
   void read_face() {
     if (!soup_.materials.empty()) soup_.polygon_materials.push_back(material_);
     lines_.push_back(static_cast<std::uint32_t>(scanner_.line()));
-    while (const auto corner = next()) polygons_.add_corner(vertex_of(*corner));
+    while (const auto corner = next()) polygons_.add_corner(parse_vertex(*corner));
     polygons_.close_polygon();
   }
 
-  std::uint32_t vertex_of(string_view corner) {
+  std::uint32_t parse_vertex(string_view corner) {
     const auto position = corner.substr(0, corner.find('/'));
     const auto index = scanner_.number<std::int64_t>(position, "a vertex index");
     // Indices are one-based, or negative relative to the latest vertex.
@@ -127,7 +127,7 @@ class ObjReader {
   }
 
   TextScanner scanner_;
-  std::size_t most_materials_;
+  std::size_t max_materials_;
   BoundedSoup polygons_;
   PolygonSoup& soup_ = polygons_.soup();
   std::vector<std::uint32_t> lines_;  // line of each polygon, for messages of check_corners()

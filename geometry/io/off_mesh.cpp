@@ -13,18 +13,18 @@ using std::string_view;
 
 /// Header before the counts.
 struct OffHeader {
-  std::size_t more_of_vertex =
+  std::size_t extra_vertex_values =
       0;                   ///< numbers per vertex after the coordinates: normal, colour, texture
   std::string_view glued;  ///< first count, if it directly follows the format in the same word
 };
 
 /// Parses the first word, such as "OFF", "COFF", "STNOFF" or ModelNet's "OFF8".
-std::optional<OffHeader> header_of(string_view word) {
+std::optional<OffHeader> parse_header(string_view word) {
   OffHeader header;
   const auto take = [&](string_view prefix, std::size_t numbers) {
     if (!word.starts_with(prefix)) return;
     word.remove_prefix(prefix.size());
-    header.more_of_vertex += numbers;
+    header.extra_vertex_values += numbers;
   };
   take("ST", 2);
   take("C", 4);
@@ -60,7 +60,7 @@ class OffReader {
 
   /// Returns the next word, limited to the current line if each vertex and face has a separate
   /// line.
-  std::optional<string_view> next_of_thing() {
+  std::optional<string_view> next_on_line() {
     if (!has_own_lines_) return next();
     const auto word = scanner_.word_in_line();
     return word && word->starts_with('#') ? std::nullopt : word;
@@ -68,7 +68,7 @@ class OffReader {
 
   void read_header() {
     const auto word = next();
-    const std::optional<OffHeader> header = header_of(word.value_or(""));
+    const std::optional<OffHeader> header = parse_header(word.value_or(""));
     if (!header) {
       scanner_.fail("an OFF file of points in space begins with 'OFF', 'COFF', 'NOFF' or 'STOFF'");
     }
@@ -106,22 +106,22 @@ class OffReader {
   /// Returns whether there is a line for each vertex and face. The first of them must be a vertex.
   bool has_line_for_each() const {
     TextScanner ahead = scanner_;
-    std::uint64_t lines = 0, numbers_of_first = 0;
+    std::uint64_t lines = 0, num_first_line_values = 0;
     while (ahead.next_line()) {
       const auto word = ahead.word_in_line();
       if (!word || word->starts_with('#')) continue;
       if (lines++ == 0) {
-        numbers_of_first = 1;
+        num_first_line_values = 1;
         for (auto more = ahead.word_in_line(); more && !more->starts_with('#');
              more = ahead.word_in_line()) {
-          ++numbers_of_first;
+          ++num_first_line_values;
         }
       }
       if (lines == vertices_ + faces_) break;
     }
     // Truncated files in line format must be detected, so that the message names the line.
     const bool is_short = lines < vertices_ + faces_;
-    return numbers_of_first >= 3 && (!is_short || numbers_of_first < 6);
+    return num_first_line_values >= 3 && (!is_short || num_first_line_values < 6);
   }
 
   /// Advances to the next line with content if each vertex and face has a separate line.
@@ -138,18 +138,18 @@ class OffReader {
     begin_thing();
     Eigen::Vector3d vertex;
     for (double& coordinate : vertex) {
-      coordinate = scanner_.number<double>(next_of_thing(), "a coordinate");
+      coordinate = scanner_.number<double>(next_on_line(), "a coordinate");
     }
-    for (std::size_t i = 0; i < header_.more_of_vertex && !has_own_lines_; ++i) next();
+    for (std::size_t i = 0; i < header_.extra_vertex_values && !has_own_lines_; ++i) next();
     soup_.add_vertex(vertex);
   }
 
   void read_face() {
     begin_thing();
     const auto corners =
-        scanner_.number<std::uint32_t>(next_of_thing(), "the number of a face's corners");
+        scanner_.number<std::uint32_t>(next_on_line(), "the number of a face's corners");
     for (std::uint32_t i = 0; i < corners; ++i) {
-      const auto vertex = scanner_.number<std::int64_t>(next_of_thing(), "a vertex index");
+      const auto vertex = scanner_.number<std::int64_t>(next_on_line(), "a vertex index");
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertices_) {
         scanner_.fail("the face " + no_such_vertex(vertex, vertices_));
       }

@@ -49,14 +49,14 @@ bool is_plain(std::string_view name) {
   return !name.empty() && name.find('/') == std::string_view::npos && name != "." && name != "..";
 }
 
-std::string journal_of(const std::vector<Change>& changes) {
+std::string format_journal(const std::vector<Change>& changes) {
   std::string text;  // Each name ends with NUL, the only character that names cannot contain
   for (const Change& change : changes) text += change.part + '\0' + change.name + '\0';
   return text;
 }
 
 /// Parses a journal. Names that a commit cannot have written are ignored.
-std::vector<Change> changes_of(std::string_view text) {
+std::vector<Change> parse_changes(std::string_view text) {
   std::vector<Change> changes;
   const auto next = [&] {
     const std::string_view name = text.substr(0, text.find('\0'));
@@ -111,7 +111,7 @@ void remove_file(const fs::path& path) {
 void finish_journal(const fs::path& folder) {
   const fs::path journal = folder / journal_name;
   if (!is_there(journal)) return;
-  carry_out(folder, changes_of(read_file(journal, largest_journal)));
+  carry_out(folder, parse_changes(read_file(journal, largest_journal)));
   sync_to_disk(folder);
   remove_file(journal);
 }
@@ -240,7 +240,7 @@ void OutputFolder::commit() {
     changes.push_back({temporary(name).filename().string(), name});
   }
   const fs::path journal = folder_ / journal_name;
-  write_file(journal, journal_of(changes));
+  write_file(journal, format_journal(changes));
   try {
     sync_to_disk(folder_);  // syncs the journal's name before any file is moved
     carry_out(folder_, changes);

@@ -34,7 +34,7 @@ struct PcdHeader {
   PcdData data = PcdData::text;
 };
 
-std::vector<std::string> words_of_line(TextScanner& scanner) {
+std::vector<std::string> split_line(TextScanner& scanner) {
   std::vector<std::string> words;
   while (const auto word = scanner.word_in_line()) words.emplace_back(*word);
   return words;
@@ -43,7 +43,7 @@ std::vector<std::string> words_of_line(TextScanner& scanner) {
 // Calls `set` for each field with its word. The number of words must equal the number of fields.
 template <typename Set>
 void for_each_field(TextScanner& scanner, PcdHeader& header, const std::string& key, Set set) {
-  const std::vector<std::string> words = words_of_line(scanner);
+  const std::vector<std::string> words = split_line(scanner);
   if (words.size() != header.fields.size()) {
     scanner.fail(key + " has " + std::to_string(words.size()) + " entries for " +
                  std::to_string(header.fields.size()) + " fields");
@@ -83,7 +83,7 @@ void go_to_data(TextScanner& scanner, std::string_view bytes, PcdHeader& header)
   if (has_bare_returns && is_cut && header.data != PcdData::text) --header.end;
 }
 
-PcdHeader header_of(const fs::path& path, const std::string& name, std::string_view bytes) {
+PcdHeader parse_header(const fs::path& path, const std::string& name, std::string_view bytes) {
   TextScanner scanner(name, bytes);
   PcdHeader header;
   std::optional<std::size_t> width, height, points;
@@ -96,7 +96,7 @@ PcdHeader header_of(const fs::path& path, const std::string& name, std::string_v
       return scanner.number<std::size_t>(std::string_view(word), "a number of " + key);
     };
     if (key == "FIELDS") {
-      for (const std::string& field : words_of_line(scanner)) header.fields.push_back({field});
+      for (const std::string& field : split_line(scanner)) header.fields.push_back({field});
     } else if (key == "SIZE") {
       for_each_field(scanner, header, key,
                      [&](auto& field, auto& word) { field.size = count(word); });
@@ -135,8 +135,8 @@ PcdHeader header_of(const fs::path& path, const std::string& name, std::string_v
 // LZF of M. Lehmann: literal runs, and copies of up to 264 bytes with offsets of up to 8 KiB.
 std::string decompressed(const fs::path& path, std::string_view from, std::size_t size) {
   const auto damaged = [&]() { fail_cloud(path, "has compressed data that are damaged"); };
-  constexpr std::size_t most_per_byte = 132;  // a copy of 264 bytes needs at least two bytes
-  if (size / most_per_byte > from.size()) damaged();
+  constexpr std::size_t max_expansion = 132;  // a copy of 264 bytes needs at least two bytes
+  if (size / max_expansion > from.size()) damaged();
   std::string to;
   to.reserve(size);
   std::size_t i = 0;
@@ -163,10 +163,10 @@ std::string decompressed(const fs::path& path, std::string_view from, std::size_
   return to;
 }
 
-double number_at(std::string_view bytes, std::size_t place, const PcdField& field) {
+double number_at(std::string_view bytes, std::size_t offset, const PcdField& field) {
   static_assert(std::endian::native == std::endian::little, "PCD files are little-endian");
   const auto as = [&](auto value) {
-    std::memcpy(&value, bytes.data() + place, sizeof value);
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
     return static_cast<double>(value);
   };
   if (field.type == 'F') return field.size == 4 ? as(0.0F) : as(0.0);
@@ -206,7 +206,7 @@ class Points {
     TextScanner scanner(name, text, header_.first_line);
     std::size_t point = 0;
     do {
-      const std::vector<std::string> words = words_of_line(scanner);
+      const std::vector<std::string> words = split_line(scanner);
       if (words.empty()) continue;
       Values values{};
       for (std::size_t i = 0; i < used(); ++i) {
@@ -270,7 +270,7 @@ class Points {
 
 AttributedCloud parse_pcd_cloud(const fs::path& path, std::string_view bytes) {
   const std::string name = path.string();
-  const PcdHeader header = header_of(path, name, bytes);
+  const PcdHeader header = parse_header(path, name, bytes);
   const std::string_view data = bytes.substr(header.end);
   Points points(path, header);
   if (header.data == PcdData::text) {

@@ -37,21 +37,21 @@ struct Record {
 };
 
 /// Parses a line without its line end. Returns nullopt if the record is damaged.
-std::optional<Record> record_of(std::string_view line) {
+std::optional<Record> parse_record(std::string_view line) {
   const auto stated = whole_number_in<std::uint32_t>(line.substr(0, digits), 16);
   if (!stated || line.size() < digits + 1 || line[digits] != ' ') return std::nullopt;
   line.remove_prefix(digits + 1);
   const std::size_t blank = line.find(' ');
-  if (blank == std::string_view::npos || crc32_of(line) != *stated) return std::nullopt;
+  if (blank == std::string_view::npos || compute_crc32(line) != *stated) return std::nullopt;
   const auto number = whole_number_in<std::size_t>(line.substr(0, blank), 10);
   if (!number) return std::nullopt;
   return Record{*number, line.substr(blank + 1)};
 }
 
-std::string line_of(const Record& record) {
+std::string format_line(const Record& record) {
   const std::string text = std::to_string(record.number).append(" ").append(record.text);
   std::array<char, digits + 1> head{};
-  std::snprintf(head.data(), head.size(), "%08x", static_cast<unsigned>(crc32_of(text)));
+  std::snprintf(head.data(), head.size(), "%08x", static_cast<unsigned>(compute_crc32(text)));
   return std::string(head.data()).append(" ").append(text).append("\n");
 }
 
@@ -60,7 +60,7 @@ bool has_record(std::string_view lines) {
   while (!lines.empty()) {
     const std::size_t end = lines.find('\n');
     if (end == std::string_view::npos) return false;
-    if (record_of(lines.substr(0, end))) return true;
+    if (parse_record(lines.substr(0, end))) return true;
     lines.remove_prefix(end + 1);
   }
   return false;
@@ -72,7 +72,7 @@ RecordedLines records_in(std::string_view bytes, const std::filesystem::path& fi
     const std::string_view rest = bytes.substr(found.whole_bytes);
     const std::size_t end = rest.find('\n'), number = found.records.size() + 1;
     const auto record =
-        end == std::string_view::npos ? std::nullopt : record_of(rest.substr(0, end));
+        end == std::string_view::npos ? std::nullopt : parse_record(rest.substr(0, end));
     if (!record && !has_record(rest)) {
       found.torn_bytes = rest.size();
       break;
@@ -88,19 +88,19 @@ RecordedLines records_in(std::string_view bytes, const std::filesystem::path& fi
   return found;
 }
 
-std::string bytes_of(const std::filesystem::path& file) {
+std::string read_bytes(const std::filesystem::path& file) {
   return std::filesystem::exists(file) ? read_file(file, largest_log) : std::string();
 }
 
 }  // namespace
 
-std::uint32_t crc32_of(std::string_view bytes) {
+std::uint32_t compute_crc32(std::string_view bytes) {
   return static_cast<std::uint32_t>(
       ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 RecordedLines read_records(const std::filesystem::path& file) {
-  return records_in(bytes_of(file), file);
+  return records_in(read_bytes(file), file);
 }
 
 RecordLog::RecordLog(std::filesystem::path file) : file_(std::move(file)) {
@@ -111,7 +111,7 @@ RecordLog::RecordLog(std::filesystem::path file) : file_(std::move(file)) {
     if (::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       fail("is being written to by another skycap; wait for it to end");
     }
-    found_ = records_in(bytes_of(file_), file_);
+    found_ = records_in(read_bytes(file_), file_);
     size_ = found_.whole_bytes;
     count_ = found_.records.size();
     if (found_.torn_bytes > 0) cut(size_);
@@ -135,7 +135,7 @@ void RecordLog::cut(std::size_t size) {
 
 void RecordLog::append(std::string_view text) {
   assert(text.find('\n') == std::string_view::npos);
-  const std::string line = line_of({count_ + 1, text});
+  const std::string line = format_line({count_ + 1, text});
   std::string_view rest = line;
   bool is_written = true;
   while (is_written && !rest.empty()) {
@@ -144,9 +144,9 @@ void RecordLog::append(std::string_view text) {
     is_written = count >= 0 || errno == EINTR;
   }
   if (!is_written || ::fsync(handle_) != 0) {
-    const std::string why = std::generic_category().message(errno);
+    const std::string reason = std::generic_category().message(errno);
     cut(size_);
-    fail("cannot be written: " + why);
+    fail("cannot be written: " + reason);
   }
   size_ += line.size();
   ++count_;

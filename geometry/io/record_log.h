@@ -23,7 +23,7 @@ struct RecordedLines {
 };
 
 /// Returns the CRC-32 used by zlib and PNG.
-std::uint32_t crc32_of(std::string_view bytes);
+std::uint32_t compute_crc32(std::string_view bytes);
 
 /// Reads the records of a file. Returns no records if the file does not exist. Throws
 /// Error{bad_file} that names the line if a damaged record precedes valid ones, because an

@@ -21,16 +21,16 @@ SeekableFile::SeekableFile(std::filesystem::path path) : path_(std::move(path)) 
   }
 }
 
-std::string SeekableFile::bytes(std::uint64_t place, std::uint64_t count) {
-  if (place >= size_) return {};
-  count = std::min(count, size_ - place);
-  if (!decompressed_.empty()) return decompressed_.substr(place, count);
+std::string SeekableFile::bytes(std::uint64_t offset, std::uint64_t count) {
+  if (offset >= size_) return {};
+  count = std::min(count, size_ - offset);
+  if (!decompressed_.empty()) return decompressed_.substr(offset, count);
   std::string result(count, '\0');
   stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(place));
+  stream_.seekg(static_cast<std::streamoff>(offset));
   stream_.read(result.data(), std::ssize(result));
   if (!stream_) {
-    throw Error(ErrorKind::bad_file, "cannot be read at byte " + std::to_string(place));
+    throw Error(ErrorKind::bad_file, "cannot be read at byte " + std::to_string(offset));
   }
   return result;
 }

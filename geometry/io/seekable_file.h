@@ -18,9 +18,9 @@ class SeekableFile {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }  ///< decompressed size [bytes]
 
-  /// Returns `count` bytes from offset `place`, or fewer at the end of the file. Throws
+  /// Returns `count` bytes from offset `offset`, or fewer at the end of the file. Throws
   /// Error{bad_file} without the file name in the message, for decoders called inside with_name().
-  std::string bytes(std::uint64_t place, std::uint64_t count);
+  std::string bytes(std::uint64_t offset, std::uint64_t count);
 
   /// Returns the result of `read`. Prepends the file name to the message of any Error.
   template <typename Read>

@@ -100,21 +100,22 @@ bool is_ascii_stl(std::string_view bytes) {
 PolygonSoup parse_stl(std::string_view name, std::string_view bytes, const MeshLimits& limits) {
   const bool has_count = bytes.size() >= stl_header;
   const std::uint64_t count = has_count ? stl_count(bytes) : 0;
-  const std::uint64_t wanted = stl_header + count * stl_triangle;
-  if (has_count && wanted == bytes.size()) return parse_binary_stl(name, bytes, count, limits);
+  const std::uint64_t expected_size = stl_header + count * stl_triangle;
+  if (has_count && expected_size == bytes.size())
+    return parse_binary_stl(name, bytes, count, limits);
   if (is_ascii_stl(bytes)) return AsciiStl(name, bytes, limits).read();
   if (!has_count) {
     fail_mesh(name, "is neither ascii STL, which begins with 'solid', nor binary STL");
   }
   // Writers without random access cannot set the count; such files contain as many triangles as
   // fit.
-  const std::uint64_t room = (bytes.size() - stl_header) / stl_triangle;
+  const std::uint64_t capacity = (bytes.size() - stl_header) / stl_triangle;
   const bool is_unknown = count == 0 || count == std::numeric_limits<std::uint32_t>::max();
-  if (is_unknown && room > 0) return parse_binary_stl(name, bytes, room, limits);
-  if (wanted > bytes.size()) {
+  if (is_unknown && capacity > 0) return parse_binary_stl(name, bytes, capacity, limits);
+  if (expected_size > bytes.size()) {
     fail_mesh(name, "declares " + std::to_string(count) + " triangles in binary STL, but is " +
                         std::to_string(bytes.size()) + " bytes long instead of " +
-                        std::to_string(wanted) + "; it may be truncated");
+                        std::to_string(expected_size) + "; it may be truncated");
   }
   return parse_binary_stl(name, bytes, count, limits);
 }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using std::string_view;
 
 /// A line with more numbers than any point has lost its line ends.
-constexpr std::size_t most_columns = 200;
+constexpr std::size_t max_columns = 200;
 
 /// Line format of a file.
 struct Layout {
@@ -40,7 +40,7 @@ string_view without_quotes(string_view text) {
   return text;
 }
 
-std::vector<string_view> fields_of(string_view line, char separator) {
+std::vector<string_view> split_fields(string_view line, char separator) {
   std::vector<string_view> fields;
   if (separator == ' ') {
     constexpr string_view blanks = " \t\f\v";
@@ -60,7 +60,7 @@ std::vector<string_view> fields_of(string_view line, char separator) {
 }
 
 /// Detects the layout from a line with a point or a header.
-Layout layout_of(string_view line) {
+Layout detect_layout(string_view line) {
   Layout layout;
   if (line.find(';') != string_view::npos) {
     layout.separator = ';';
@@ -68,7 +68,7 @@ Layout layout_of(string_view line) {
     return layout;
   }
   if (line.find(',') == string_view::npos) return layout;
-  const std::vector<string_view> words = fields_of(line, ' ');
+  const std::vector<string_view> words = split_fields(line, ' ');
   const auto is_number = [](string_view word) {
     return !word.starts_with(',') && !word.ends_with(',') && number_with_comma(word).has_value();
   };
@@ -112,8 +112,12 @@ bool is_count(string_view line) {
 
 class TextCloud {
  public:
-  TextCloud(const fs::path& path, string_view text, const TakeTextPiece& take)
-      : path_(path), name_(path.string()), text_(text), scanner_(name_, text), take_(take) {}
+  TextCloud(const fs::path& path, string_view text, const TextChunkCallback& callback)
+      : path_(path),
+        name_(path.string()),
+        text_(text),
+        scanner_(name_, text),
+        callback_(callback) {}
 
   std::size_t read() {
     do {
@@ -138,7 +142,7 @@ class TextCloud {
     if (layout_) return;
     const string_view line = whole_line(first);
     const string_view names = line.substr(std::min(line.find_first_not_of("/# \t"), line.size()));
-    const std::vector<string_view> fields = fields_of(names, layout_of(names).separator);
+    const std::vector<string_view> fields = split_fields(names, detect_layout(names).separator);
     if (const auto columns = columns_named(fields)) {
       named_columns_ = columns;
       named_fields_ = fields.size();
@@ -146,19 +150,19 @@ class TextCloud {
   }
 
   string_view whole_line(string_view first) {
-    const string_view rest = scanner_.rest_of_line();
+    const string_view rest = scanner_.remaining_line();
     const char* const end = rest.empty() ? first.data() + first.size() : rest.data() + rest.size();
     return {first.data(), static_cast<std::size_t>(end - first.data())};
   }
 
   void read_plain_point(string_view first) {
-    std::array<double, 3> place{};
-    place[0] = scanner_.number<double>(first, "a coordinate");
+    std::array<double, 3> point{};
+    point[0] = scanner_.number<double>(first, "a coordinate");
     const auto second = scanner_.word_in_line();
     if (!second && has_count_ && is_count(first)) return add_count(first);
-    place[1] = scanner_.number<double>(second, "a coordinate");
-    place[2] = scanner_.number<double>(scanner_.word_in_line(), "a coordinate");
-    add(place);
+    point[1] = scanner_.number<double>(second, "a coordinate");
+    point[2] = scanner_.number<double>(scanner_.word_in_line(), "a coordinate");
+    add(point);
   }
 
   void read_line(string_view first) {
@@ -166,18 +170,18 @@ class TextCloud {
     if (is_count(line)) return add_count(line);
     if (!layout_) {
       if (read_header(line)) return;
-      layout_ = layout_of(line);
+      layout_ = detect_layout(line);
       // A comment that names x, y and z is a header only if it names every column.
-      const std::size_t count = fields_of(line, layout_->separator).size();
+      const std::size_t count = split_fields(line, layout_->separator).size();
       const bool is_named = named_columns_ && (has_header_ || named_fields_ == count);
       if (is_named) layout_->columns = *named_columns_;
     }
-    const std::vector<string_view> fields = fields_of(line, layout_->separator);
-    if (fields.size() > most_columns) {
+    const std::vector<string_view> fields = split_fields(line, layout_->separator);
+    if (fields.size() > max_columns) {
       scanner_.fail("has " + std::to_string(fields.size()) +
                     " numbers; a text cloud has one point in a line");
     }
-    std::array<double, 3> place{};
+    std::array<double, 3> point{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t column = layout_->columns[axis];
       if (column >= fields.size() || fields[column].empty()) {
@@ -185,17 +189,17 @@ class TextCloud {
       }
       const auto value = layout_->has_decimal_commas ? number_with_comma(fields[column])
                                                      : number_in(fields[column]);
-      if (!value) scanner_.fail_of(fields[column], "a coordinate");
-      place[axis] = *value;
+      if (!value) scanner_.fail_on_word(fields[column], "a coordinate");
+      point[axis] = *value;
     }
     columns_of_last_ = fields.size();
-    add(place);
+    add(point);
   }
 
   /// Returns whether the first line with content names the columns.
   bool read_header(string_view line) {
     if (has_header_) return false;
-    const std::vector<string_view> fields = fields_of(line, layout_of(line).separator);
+    const std::vector<string_view> fields = split_fields(line, detect_layout(line).separator);
     const auto is_number = [](string_view field) { return number_with_comma(field).has_value(); };
     if (fields.size() < 3 || std::ranges::any_of(fields, is_number)) return false;
     has_header_ = true;
@@ -215,19 +219,19 @@ class TextCloud {
     declared_ += std::stoull(std::string(line));
   }
 
-  void add(const std::array<double, 3>& place) {
-    if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
+  void add(const std::array<double, 3>& point) {
+    if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2])) {
       ++skipped_;
       return;
     }
-    piece_.push_back(cloud_position(path_, points_ + skipped_, place[0], place[1], place[2]));
+    chunk_.push_back(cloud_position(path_, points_ + skipped_, point[0], point[1], point[2]));
     ++points_;
-    if (piece_.size() == piece_size) hand_on();
+    if (chunk_.size() == points_per_chunk) hand_on();
   }
 
   void hand_on() {
-    if (!piece_.empty()) take_(piece_, text_.size() - scanner_.remaining());
-    piece_.clear();
+    if (!chunk_.empty()) callback_(chunk_, text_.size() - scanner_.remaining());
+    chunk_.clear();
   }
 
   void require_all() const {
@@ -247,19 +251,20 @@ class TextCloud {
   const std::string name_;
   string_view text_;
   TextScanner scanner_;
-  const TakeTextPiece& take_;
+  const TextChunkCallback& callback_;
   std::optional<Layout> layout_;  ///< set after the first point
   std::optional<std::array<std::size_t, 3>> named_columns_;
   std::size_t named_fields_ = 0;  ///< number of columns named by the comment
   bool has_header_ = false, has_count_ = false;
   std::size_t declared_ = 0, points_ = 0, skipped_ = 0, columns_of_last_ = 0;
-  std::vector<Eigen::Vector3f> piece_;
+  std::vector<Eigen::Vector3f> chunk_;
 };
 
 }  // namespace
 
-std::size_t take_text_cloud(const fs::path& path, string_view text, const TakeTextPiece& take) {
-  return TextCloud(path, text, take).read();
+std::size_t read_text_cloud(const fs::path& path, string_view text,
+                            const TextChunkCallback& callback) {
+  return TextCloud(path, text, callback).read();
 }
 
 }  // namespace skycap::geometry

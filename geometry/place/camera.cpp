@@ -13,9 +13,9 @@ bool is_angle_of_view(double angle) { return angle > 0.0 && angle < std::numbers
 }  // namespace
 
 void CameraConfig::validate() const {
-  constexpr int most_pixels = 1 << 15;
-  require(width > 0 && width <= most_pixels, "width", width, "between 1 and 32768 pixels");
-  require(height > 0 && height <= most_pixels, "height", height, "between 1 and 32768 pixels");
+  constexpr int max_pixels = 1 << 15;
+  require(width > 0 && width <= max_pixels, "width", width, "between 1 and 32768 pixels");
+  require(height > 0 && height <= max_pixels, "height", height, "between 1 and 32768 pixels");
   require(static_cast<double>(width) * height <= 1e8, "width", width,
           "such that width times height is at most 1e8 pixels");
   require(is_angle_of_view(horizontal_fov), "horizontal_fov", horizontal_fov,

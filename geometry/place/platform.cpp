@@ -15,7 +15,7 @@ View turned_level(const Vector3d& position, const Vector3d& direction, double an
 
 }  // namespace
 
-Eigen::Quaterniond rotation_of(const Vector3d& angles) {
+Eigen::Quaterniond make_rotation(const Vector3d& angles) {
   return Eigen::AngleAxisd(angles.z(), Vector3d::UnitZ()) *
          Eigen::AngleAxisd(angles.y(), Vector3d::UnitY()) *
          Eigen::AngleAxisd(angles.x(), Vector3d::UnitX());
@@ -23,14 +23,14 @@ Eigen::Quaterniond rotation_of(const Vector3d& angles) {
 
 View nose_view(const ScannerMount& mount, const View& view) {
   const Vector3d right = camera_pose(view).linear().col(0);  // level
-  return turned_level(view.position, right, 0.5 * std::numbers::pi - mount.look_azimuth);
+  return turned_level(view.position, right, 0.5 * std::numbers::pi - mount.view_azimuth);
 }
 
 View scanner_view(const ScannerMount& mount, const View& nose) {
-  View view = turned_level(nose.position, nose.direction, mount.look_azimuth);
-  if (mount.look_pitch != 0.0) {
-    view.direction *= std::cos(mount.look_pitch);
-    view.direction.z() = std::sin(mount.look_pitch);
+  View view = turned_level(nose.position, nose.direction, mount.view_azimuth);
+  if (mount.view_pitch != 0.0) {
+    view.direction *= std::cos(mount.view_pitch);
+    view.direction.z() = std::sin(mount.view_pitch);
   }
   return view;
 }

@@ -20,9 +20,9 @@ struct Shutter {
 /// Mounting of a laser scanner on the vehicle.
 struct ScannerMount {
   Eigen::Isometry3d body_from_scanner = Eigen::Isometry3d::Identity();
-  double look_azimuth =
+  double view_azimuth =
       0.0;  ///< azimuth of the view direction, counter-clockwise from the nose [rad]
-  double look_pitch = 0.0;  ///< pitch of a scanner with a single view direction [rad]
+  double view_pitch = 0.0;  ///< pitch of a scanner with a single view direction [rad]
 };
 
 /// Straight path segment, flown at constant speed, on which a scan is measured.
@@ -33,7 +33,7 @@ struct Stretch {
 
 /// Returns the rotation composed of rotations about the x, then the y, then the z axis. `angles`
 /// are those of mission files [rad].
-Eigen::Quaterniond rotation_of(const Eigen::Vector3d& angles);
+Eigen::Quaterniond make_rotation(const Eigen::Vector3d& angles);
 
 /// Converts a view of the scanner to the level view of the vehicle's nose, or vice versa.
 View nose_view(const ScannerMount& mount, const View& view);

@@ -26,7 +26,7 @@ Eigen::Isometry3d camera_pose(const View& view) {
   return world_from_camera;
 }
 
-View view_of(const Eigen::Isometry3d& world_from_camera) {
+View to_view(const Eigen::Isometry3d& world_from_camera) {
   return {world_from_camera.translation(), world_from_camera.linear().col(2)};
 }
 

@@ -22,7 +22,7 @@ Eigen::Isometry3d camera_pose(const View& view);
 
 /// Returns the view of a camera at `world_from_camera`. Inverse of camera_pose() except for the
 /// roll.
-View view_of(const Eigen::Isometry3d& world_from_camera);
+View to_view(const Eigen::Isometry3d& world_from_camera);
 
 /// Returns the view from `position` to `target`, which must differ.
 View look_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target);

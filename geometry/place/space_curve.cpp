@@ -19,7 +19,7 @@ std::uint64_t spread(std::uint64_t bits) {
 }  // namespace
 
 std::uint64_t CurveGrid::key(const Eigen::Vector3f& point) const {
-  constexpr double last = (1 << most_bits) - 1;
+  constexpr double last = (1 << max_bits) - 1;
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double cell = (static_cast<double>(point[axis]) - origin[axis]) / step;
@@ -36,26 +36,26 @@ CurveGrid finest_grid(std::span<const Eigen::Vector3f> points) {
     high = high.cwiseMax(point);
   }
   const double side = (high - low).cast<double>().maxCoeff();
-  constexpr double room = 1.0 + 1e-9;  // keeps the farthest point in the last cell
-  return {low.cast<double>(), side > 0.0 ? side * room / (1 << CurveGrid::most_bits) : 1.0};
+  constexpr double slack = 1.0 + 1e-9;  // keeps the farthest point in the last cell
+  return {low.cast<double>(), side > 0.0 ? side * slack / (1 << CurveGrid::max_bits) : 1.0};
 }
 
 void sort_along_curve(std::vector<CurveEntry>& entries, std::span<const Eigen::Vector3f> points,
                       const CurveGrid& grid) {
   // Stable radix sort of the keys with twelve bits per pass.
-  constexpr int digit_bits = 12, most_passes = 3 * CurveGrid::most_bits / digit_bits;
+  constexpr int digit_bits = 12, max_passes = 3 * CurveGrid::max_bits / digit_bits;
   constexpr std::size_t digits = std::size_t{1} << digit_bits;
-  std::array<std::array<std::uint32_t, digits>, most_passes> begins{};
+  std::array<std::array<std::uint32_t, digits>, max_passes> begins{};
   std::uint64_t all = 0;
   for (CurveEntry& entry : entries) {
     entry.key = grid.key(points[entry.index]);
     all |= entry.key;
-    for (int pass = 0; pass < most_passes; ++pass) {
+    for (int pass = 0; pass < max_passes; ++pass) {
       ++begins[static_cast<std::size_t>(pass)][entry.key >> (pass * digit_bits) & (digits - 1)];
     }
   }
   std::vector<CurveEntry> other(entries.size());
-  for (int pass = 0; pass < most_passes && all >> (pass * digit_bits) != 0; ++pass) {
+  for (int pass = 0; pass < max_passes && all >> (pass * digit_bits) != 0; ++pass) {
     auto& begin = begins[static_cast<std::size_t>(pass)];
     std::uint32_t sum = 0;
     for (std::uint32_t& count : begin) sum += std::exchange(count, sum);

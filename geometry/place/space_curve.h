@@ -12,7 +12,7 @@ namespace skycap::geometry {
 
 /// Grid of cubic cells that covers all points.
 struct CurveGrid {
-  static constexpr int most_bits = 16;  ///< bits per cell index
+  static constexpr int max_bits = 16;  ///< bits per cell index
 
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< minimum corner of the grid [m]
   double step = 1.0;                                 ///< cell size [m]

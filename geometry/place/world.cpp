@@ -16,11 +16,12 @@ namespace {
 
 }  // namespace
 
-void require_place(const Eigen::Vector3d& place, const std::string& what, double farthest) {
-  if (is_place(place, farthest)) return;
+void require_valid_position(const Eigen::Vector3d& position, const std::string& what,
+                            double farthest) {
+  if (is_valid_position(position, farthest)) return;
   char rule[80];
   std::snprintf(rule, sizeof rule, "coordinates must be finite and within %g of zero", farthest);
-  fail(place, what, rule);
+  fail(position, what, rule);
 }
 
 void require_direction(const Eigen::Vector3d& direction, const std::string& what) {

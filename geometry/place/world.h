@@ -10,20 +10,22 @@ namespace skycap::geometry {
 
 /// Maximum absolute coordinate of a position [m]. It is a quarter of a meridian, so that map
 /// coordinates such as UTM are valid.
-inline constexpr double farthest_place = 1e7;
+inline constexpr double farthest_coordinate = 1e7;
 
 /// Maximum absolute coordinate of a mesh vertex before scaling, because mesh files may be in
 /// millimetres.
-inline constexpr double farthest_vertex = 1e3 * farthest_place;
+inline constexpr double farthest_vertex = 1e3 * farthest_coordinate;
 
 /// Returns whether all coordinates are finite and their absolute values do not exceed `farthest`.
-inline bool is_place(const Eigen::Vector3d& place, double farthest = farthest_place) {
-  return (place.array().abs() <= farthest).all();  // false for NaN
+inline bool is_valid_position(const Eigen::Vector3d& position,
+                              double farthest = farthest_coordinate) {
+  return (position.array().abs() <= farthest).all();  // false for NaN
 }
 
-/// Throws Error{bad_file} unless is_place(). The message begins with `what`, such as "flight.pad".
-void require_place(const Eigen::Vector3d& place, const std::string& what,
-                   double farthest = farthest_place);
+/// Throws Error{bad_file} unless is_valid_position(). The message begins with `what`, such as
+/// "flight.pad".
+void require_valid_position(const Eigen::Vector3d& position, const std::string& what,
+                            double farthest = farthest_coordinate);
 
 /// Throws Error{bad_file} unless the vector is finite and can be normalised.
 void require_direction(const Eigen::Vector3d& direction, const std::string& what);

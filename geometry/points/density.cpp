@@ -17,15 +17,15 @@ template <typename Visit>
 void visit_part(std::size_t part, std::size_t points, const ImagePixels& image, Visit visit) {
   const std::size_t first = part * returns_in_part;
   const std::size_t end = std::min(points, first + returns_in_part);
-  std::uint32_t first_of_row = 0;
+  std::uint32_t row_start = 0;
   for (std::size_t i = first; i < end; ++i) {
     const auto number = static_cast<std::uint32_t>(i);
     if (image.pixels.empty()) {
       visit(number, number % columns_without_image);
       continue;
     }
-    while (image.pixels[i] - first_of_row >= image.width) first_of_row += image.width;
-    visit(number, image.pixels[i] - first_of_row);
+    while (image.pixels[i] - row_start >= image.width) row_start += image.width;
+    visit(number, image.pixels[i] - row_start);
   }
 }
 
@@ -51,10 +51,10 @@ void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t v
       });
   cloud_.views.resize(cloud_.size(), view);
   labels_.resize(cloud_.size(), PointLabel::outlier);
-  given_up_.resize(cloud_.size(), 0);
+  discarded_.resize(cloud_.size(), 0);
 }
 
-std::uint32_t DensityMap::neighbours_of(std::uint32_t point) const {
+std::uint32_t DensityMap::count_neighbours(std::uint32_t point) const {
   return static_cast<std::uint32_t>(index_.grid().count_within(
       cloud_.positions[point], config_.radius, static_cast<std::size_t>(config_.core_threshold)));
 }
@@ -68,8 +68,8 @@ std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_
   parallel_for_each(non_core_.size(), threads, [&](std::size_t i) {
     NonCore& entry = non_core_[i];
     if (!index_.grid().is_near_batch(cloud_.positions[entry.point])) return;
-    const std::uint32_t count = neighbours_of(entry.point);
-    if (count != entry.neighbours) given_up_[entry.point] = 0;
+    const std::uint32_t count = count_neighbours(entry.point);
+    if (count != entry.neighbours) discarded_[entry.point] = 0;
     entry.neighbours = count;
   });
   std::vector<std::uint32_t> promoted;
@@ -80,7 +80,7 @@ std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_
 
   std::vector<std::uint32_t> counts(cloud_.size() - first_new);
   parallel_for_each(counts.size(), threads, [&](std::size_t i) {
-    counts[i] = neighbours_of(first_new + static_cast<std::uint32_t>(i));
+    counts[i] = count_neighbours(first_new + static_cast<std::uint32_t>(i));
   });
   for (auto point = first_new; point < cloud_.size(); ++point) {
     const std::uint32_t count = counts[point - first_new];
@@ -114,7 +114,7 @@ std::vector<std::uint32_t> DensityMap::points_to_relabel(
 }
 
 bool DensityMap::is_frontier(std::uint32_t point) const {
-  if (given_up_[point] != 0) return false;
+  if (discarded_[point] != 0) return false;
   std::vector<Neighbour> near;
   index_.grid().find_within(cloud_.positions[point], config_.radius, near);
   bool has_core = false, has_outlier = false;
@@ -167,10 +167,10 @@ DensityUpdate DensityMap::relabel(unsigned threads) {
   return update;
 }
 
-void DensityMap::give_up(std::uint32_t frontier) {
+void DensityMap::discard(std::uint32_t frontier) {
   assert(labels_[frontier] == PointLabel::frontier);
   labels_[frontier] = PointLabel::outlier;
-  given_up_[frontier] = 1;
+  discarded_[frontier] = 1;
 }
 
 }  // namespace skycap::geometry

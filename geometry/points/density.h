@@ -52,7 +52,7 @@ class DensityMap {
   const DensityConfig& config() const { return config_; }
   const PointCloud& cloud() const { return cloud_; }
   /// Moves the cloud out of the map. No other member function may be called afterwards.
-  PointCloud release_cloud() { return std::move(cloud_); }
+  PointCloud take_cloud() { return std::move(cloud_); }
   const SpatialIndex& index() const { return index_; }
   PointLabel label(std::uint32_t point) const { return labels_[point]; }
   const std::vector<PointLabel>& labels() const { return labels_; }
@@ -68,7 +68,7 @@ class DensityMap {
   DensityUpdate relabel(unsigned threads = 1);
 
   /// Labels a frontier as an outlier until a new point is inserted within r of it.
-  void give_up(std::uint32_t frontier);
+  void discard(std::uint32_t frontier);
 
  private:
   struct NonCore {
@@ -77,7 +77,7 @@ class DensityMap {
   };
 
   std::vector<std::uint32_t> promote_dense_points(std::uint32_t first_new, unsigned threads);
-  std::uint32_t neighbours_of(std::uint32_t point) const;
+  std::uint32_t count_neighbours(std::uint32_t point) const;
   std::vector<std::uint32_t> points_to_relabel(const std::vector<std::uint32_t>& promoted) const;
   bool is_frontier(std::uint32_t point) const;
 
@@ -87,7 +87,7 @@ class DensityMap {
   SpacedPoints spaced_;  // the same points in a finer grid, for spacing queries
   std::vector<PointLabel> labels_;
   std::vector<NonCore> non_core_;  // ascending by point
-  std::vector<std::uint8_t> given_up_;
+  std::vector<std::uint8_t> discarded_;
   std::uint32_t labelled_ = 0;  // number of labelled points
 };
 

@@ -51,9 +51,9 @@ DepthImage read_depth_png(const std::filesystem::path& path) {
   if (png_image_begin_read_from_file(&png, path.c_str()) == 0) {
     fail(path, "is not a PNG image", png.message);
   }
-  constexpr double most_pixels = most_depth_pixels;
+  constexpr double max_pixels = max_depth_pixels;
   const bool is_deep = (png.format & PNG_FORMAT_FLAG_LINEAR) != 0;
-  if (!is_deep || static_cast<double>(png.width) * png.height > most_pixels) {
+  if (!is_deep || static_cast<double>(png.width) * png.height > max_pixels) {
     png_image_free(&png);
     fail(path, "is not a depth image",
          is_deep ? "it has more than 2.5e7 pixels" : "it must have 16 bits a pixel");

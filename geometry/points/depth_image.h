@@ -18,7 +18,7 @@ struct DepthImage {
 };
 
 /// Maximum number of pixels of an image that is read.
-inline constexpr int most_depth_pixels = 25'000'000;
+inline constexpr int max_depth_pixels = 25'000'000;
 
 /// Converts an organised scan to a depth image. `unit` is the depth of one step [m].
 DepthImage depth_image(const Scan& scan, const Camera& camera, double unit);
@@ -26,7 +26,7 @@ DepthImage depth_image(const Scan& scan, const Camera& camera, double unit);
 /// Throws Error{bad_file} if the file cannot be written.
 void write_depth_png(const DepthImage& image, const std::filesystem::path& path);
 
-/// Throws Error{bad_file} if the file is not a 16-bit PNG image or has more than most_depth_pixels.
+/// Throws Error{bad_file} if the file is not a 16-bit PNG image or has more than max_depth_pixels.
 DepthImage read_depth_png(const std::filesystem::path& path);
 
 }  // namespace skycap::geometry

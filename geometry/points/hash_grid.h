@@ -27,7 +27,7 @@ class HashGrid {
 
   /// Returns the value of a key, or null. The pointer is valid until the next insert().
   const Value* find(std::uint64_t key) const {
-    const Slot& slot = slots_[slot_of(key)];
+    const Slot& slot = slots_[find_slot(key)];
     return slot.key == key ? &slot.value : nullptr;
   }
   Value* find(std::uint64_t key) { return const_cast<Value*>(std::as_const(*this).find(key)); }
@@ -38,11 +38,11 @@ class HashGrid {
   };
   /// Sets the value of a key unless the key exists. Returns the stored value.
   Inserted insert(std::uint64_t key, const Value& value = {}) {
-    std::size_t slot = slot_of(key);
+    std::size_t slot = find_slot(key);
     if (slots_[slot].key == key) return {slots_[slot].value, false};
     if (2 * (size_ + 1) > slots_.size()) {
       grow();
-      slot = slot_of(key);
+      slot = find_slot(key);
     }
     slots_[slot] = {key, value};
     ++size_;
@@ -63,7 +63,7 @@ class HashGrid {
 
   /// Returns the slot of a key, or the empty slot for its insertion. Uses Fibonacci hashing: the
   /// high bits of the product depend on all bits of the key.
-  std::size_t slot_of(std::uint64_t key) const {
+  std::size_t find_slot(std::uint64_t key) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = static_cast<std::size_t>(key * 0x9E3779B97F4A7C15U >> shift_);
     while (slots_[slot].key != key && slots_[slot].key != no_key) slot = (slot + 1) & mask;
@@ -74,7 +74,7 @@ class HashGrid {
     std::vector<Slot> old = std::move(slots_);
     set_slots(2 * old.size());
     for (const Slot& slot : old) {
-      if (slot.key != no_key) slots_[slot_of(slot.key)] = slot;
+      if (slot.key != no_key) slots_[find_slot(slot.key)] = slot;
     }
   }
 

@@ -9,8 +9,8 @@
 namespace skycap::geometry {
 namespace {
 
-bool has(const auto& cells, std::size_t place) { return (cells[place >> 6] >> (place & 63)) & 1; }
-void add(auto& cells, std::size_t place) { cells[place >> 6] |= std::uint64_t{1} << (place & 63); }
+bool has(const auto& cells, std::size_t bit) { return (cells[bit >> 6] >> (bit & 63)) & 1; }
+void add(auto& cells, std::size_t bit) { cells[bit >> 6] |= std::uint64_t{1} << (bit & 63); }
 
 }  // namespace
 
@@ -39,25 +39,25 @@ inline PointGrid::Key PointGrid::brick_key(const Cell& cell) {
   return part(cell[0]) << 42 | part(cell[1]) << 21 | part(cell[2]);
 }
 
-std::size_t PointGrid::word_of(std::int32_t x) {
+std::size_t PointGrid::word_index(std::int32_t x) {
   return static_cast<std::size_t>(x & (brick_width - 1));
 }
 
-inline std::size_t PointGrid::place_in_brick(const Cell& cell) {
+inline std::size_t PointGrid::index_in_brick(const Cell& cell) {
   constexpr std::int32_t mask = brick_width - 1;
   return static_cast<std::size_t>((cell[0] & mask) << (2 * brick_shift) |
                                   (cell[1] & mask) << brick_shift | (cell[2] & mask));
 }
 
-std::uint32_t PointGrid::brick_of(const Cell& cell) {
+std::uint32_t PointGrid::find_or_add_brick(const Cell& cell) {
   const auto next = static_cast<std::uint32_t>(bricks_.size());
-  const auto [index, is_new] = index_of_brick_.insert(brick_key(cell), next);
+  const auto [index, is_new] = brick_indices_.insert(brick_key(cell), next);
   if (is_new) bricks_.emplace_back();
   return index;
 }
 
 inline const PointGrid::Brick* PointGrid::find_brick(const Cell& cell) const {
-  const std::uint32_t* const index = index_of_brick_.find(brick_key(cell));
+  const std::uint32_t* const index = brick_indices_.find(brick_key(cell));
   return index == nullptr ? nullptr : &bricks_[*index];
 }
 
@@ -72,16 +72,16 @@ void PointGrid::start_batch_in(Brick& brick) const {
 // of its cells, the first and last x, and the bit pattern of the box in each CellSet word. Stops
 // and returns true when `visit` returns true.
 template <typename Visit>
-bool PointGrid::visit_bricks(const Cell& lowest, const Cell& highest, Visit visit) {
+bool PointGrid::visit_bricks(const Cell& min_cell, const Cell& max_cell, Visit visit) {
   const auto end_in_brick = [](std::int32_t from, std::int32_t last) {
     return std::min(last, from | (brick_width - 1));
   };
-  for (std::int32_t x = lowest[0], x_end; x <= highest[0]; x = x_end + 1) {
-    x_end = end_in_brick(x, highest[0]);
-    for (std::int32_t y = lowest[1], y_end; y <= highest[1]; y = y_end + 1) {
-      y_end = end_in_brick(y, highest[1]);
-      for (std::int32_t z = lowest[2], z_end; z <= highest[2]; z = z_end + 1) {
-        z_end = end_in_brick(z, highest[2]);
+  for (std::int32_t x = min_cell[0], x_end; x <= max_cell[0]; x = x_end + 1) {
+    x_end = end_in_brick(x, max_cell[0]);
+    for (std::int32_t y = min_cell[1], y_end; y <= max_cell[1]; y = y_end + 1) {
+      y_end = end_in_brick(y, max_cell[1]);
+      for (std::int32_t z = min_cell[2], z_end; z <= max_cell[2]; z = z_end + 1) {
+        z_end = end_in_brick(z, max_cell[2]);
         const std::uint64_t row = ((2U << (z_end - z)) - 1U) << (z & (brick_width - 1));
         std::uint64_t pattern = 0;
         for (std::int32_t i = y; i <= y_end; ++i) {
@@ -95,15 +95,15 @@ bool PointGrid::visit_bricks(const Cell& lowest, const Cell& highest, Visit visi
 }
 
 void PointGrid::mark_surroundings(const Cell& cell) {
-  const Cell lowest = {cell[0] - 1, cell[1] - 1, cell[2] - 1};
-  const Cell highest = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
-  visit_bricks(lowest, highest,
+  const Cell min_cell = {cell[0] - 1, cell[1] - 1, cell[2] - 1};
+  const Cell max_cell = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
+  visit_bricks(min_cell, max_cell,
                [&](const Cell& corner, std::int32_t x, std::int32_t x_end, std::uint64_t pattern) {
-                 Brick& brick = bricks_[brick_of(corner)];
+                 Brick& brick = bricks_[find_or_add_brick(corner)];
                  start_batch_in(brick);
                  for (; x <= x_end; ++x) {
-                   brick.near_occupied[word_of(x)] |= pattern;
-                   brick.near_new[word_of(x)] |= pattern;
+                   brick.near_occupied[word_index(x)] |= pattern;
+                   brick.near_new[word_index(x)] |= pattern;
                  }
                  return false;
                });
@@ -111,11 +111,11 @@ void PointGrid::mark_surroundings(const Cell& cell) {
 
 void PointGrid::insert(const Eigen::Vector3f& point) {
   const Cell cell = cell_at(point);
-  const std::size_t place = place_in_brick(cell);
-  const std::uint32_t index = brick_of(cell);
+  const std::size_t bit = index_in_brick(cell);
+  const std::uint32_t index = find_or_add_brick(cell);
   start_batch_in(bricks_[index]);
-  if (!has(bricks_[index].new_points, place)) {
-    add(bricks_[index].new_points, place);
+  if (!has(bricks_[index].new_points, bit)) {
+    add(bricks_[index].new_points, bit);
     mark_surroundings(cell);
   }
 
@@ -124,8 +124,8 @@ void PointGrid::insert(const Eigen::Vector3f& point) {
     brick.heads = static_cast<std::uint32_t>(heads_.size());
     heads_.resize(heads_.size() + cells_in_brick, none);
   }
-  add(brick.occupied, place);
-  std::uint32_t& head = heads_[brick.heads + place];
+  add(brick.occupied, bit);
+  std::uint32_t& head = heads_[brick.heads + bit];
   nodes_.push_back({point.x(), point.y(), point.z(), head});
   head = static_cast<std::uint32_t>(nodes_.size() - 1);
 }
@@ -133,7 +133,7 @@ void PointGrid::insert(const Eigen::Vector3f& point) {
 bool PointGrid::is_near_batch(const Eigen::Vector3f& point) const {
   const Cell cell = cell_at(point);
   const Brick* brick = find_brick(cell);
-  return brick != nullptr && brick->batch == batch_ && has(brick->near_new, place_in_brick(cell));
+  return brick != nullptr && brick->batch == batch_ && has(brick->near_new, index_in_brick(cell));
 }
 
 // Calls `visit` with the squared distance and index of each point within `radius` until it returns
@@ -153,12 +153,12 @@ void PointGrid::visit_near(const Eigen::Vector3f& query, double radius, Visit vi
   };
 
   const Cell own = cell_at(query);
-  const std::size_t own_place = place_in_brick(own);
+  const std::size_t own_index = index_in_brick(own);
   const Brick* own_brick = find_brick(own);
-  if (own_brick == nullptr || !has(own_brick->near_occupied, own_place)) {
+  if (own_brick == nullptr || !has(own_brick->near_occupied, own_index)) {
     if (radius <= cell_size_) return;
-  } else if (has(own_brick->occupied, own_place)) {
-    if (visit_cell(heads_[own_brick->heads + own_place])) return;
+  } else if (has(own_brick->occupied, own_index)) {
+    if (visit_cell(heads_[own_brick->heads + own_index])) return;
   }
 
   const Eigen::Vector3f reach =
@@ -173,11 +173,11 @@ void PointGrid::visit_near(const Eigen::Vector3f& query, double radius, Visit vi
         const Brick* brick = is_own ? own_brick : find_brick(corner);
         if (brick == nullptr || brick->heads == none) return false;
         for (; x <= x_end; ++x) {
-          std::uint64_t cells = brick->occupied[word_of(x)] & pattern;
-          if (x == own[0] && is_own) cells &= ~(std::uint64_t{1} << (own_place & 63U));
+          std::uint64_t cells = brick->occupied[word_index(x)] & pattern;
+          if (x == own[0] && is_own) cells &= ~(std::uint64_t{1} << (own_index & 63U));
           for (; cells != 0; cells &= cells - 1) {
-            const auto place = 64 * word_of(x) + static_cast<std::size_t>(std::countr_zero(cells));
-            if (visit_cell(heads_[brick->heads + place])) return true;
+            const auto bit = 64 * word_index(x) + static_cast<std::size_t>(std::countr_zero(cells));
+            if (visit_cell(heads_[brick->heads + bit])) return true;
           }
         }
         return false;

@@ -111,14 +111,14 @@ class PointGrid {
   };
   Cell cell_at(const Eigen::Vector3f& point) const;
   static Key brick_key(const Cell& cell);
-  static std::size_t word_of(std::int32_t x);
-  static std::size_t place_in_brick(const Cell& cell);
-  std::uint32_t brick_of(const Cell& cell);  // creates the brick if it does not exist
+  static std::size_t word_index(std::int32_t x);
+  static std::size_t index_in_brick(const Cell& cell);
+  std::uint32_t find_or_add_brick(const Cell& cell);  // creates the brick if it does not exist
   const Brick* find_brick(const Cell& cell) const;
   void start_batch_in(Brick& brick) const;
   void mark_surroundings(const Cell& cell);
   template <typename Visit>
-  static bool visit_bricks(const Cell& lowest, const Cell& highest, Visit visit);
+  static bool visit_bricks(const Cell& min_cell, const Cell& max_cell, Visit visit);
   template <typename Visit>
   void visit_within(const Eigen::Vector3f& query, double radius, Visit visit) const;
   template <typename Visit>
@@ -127,7 +127,7 @@ class PointGrid {
   double cell_size_;
   float inverse_cell_size_;
   std::uint32_t batch_ = 1;
-  HashGrid<std::uint32_t> index_of_brick_{128};
+  HashGrid<std::uint32_t> brick_indices_{128};
   std::vector<Brick> bricks_;
   std::vector<std::uint32_t> heads_;  // cells_in_brick entries for each brick with points
   std::vector<Node> nodes_;           // by point index

@@ -23,8 +23,8 @@ struct Match {
   double variance;   // variance of both
 };
 
-std::vector<Match> matches_of(std::span<const SurfacePatch> patches, const Isometry3d& correction,
-                              SurfaceMap& map, double reach) {
+std::vector<Match> find_matches(std::span<const SurfacePatch> patches, const Isometry3d& correction,
+                                SurfaceMap& map, double reach) {
   std::vector<Match> matches;
   matches.reserve(patches.size());
   for (const SurfacePatch& patch : patches) {
@@ -32,10 +32,10 @@ std::vector<Match> matches_of(std::span<const SurfacePatch> patches, const Isome
                              patch.deviation};
     const SurfacePatch* there = map.nearest(moved, reach);
     if (there == nullptr) continue;
-    const Vector3d way = moved.mean - there->mean;
-    const double error = there->normal.dot(way);
+    const Vector3d shift = moved.mean - there->mean;
+    const double error = there->normal.dot(shift);
     // Planes are valid only up to the border of the measured surface.
-    if ((way - error * there->normal).norm() > map.radius()) continue;
+    if ((shift - error * there->normal).norm() > map.radius()) continue;
     matches.push_back({moved.mean, there->normal, error, there->deviation,
                        patch.deviation * patch.deviation + there->deviation * there->deviation});
   }
@@ -62,7 +62,7 @@ struct Frame {
   double size = 0.0;
 };
 
-Frame frame_of(const std::vector<Match>& matches) {
+Frame make_frame(const std::vector<Match>& matches) {
   Frame frame;
   for (const Match& match : matches) frame.middle += match.point;
   const auto count = static_cast<double>(matches.size());
@@ -87,8 +87,8 @@ struct Scales {
 
 Scales fine_scales(const SurfaceMap& map) { return {0.01 * map.radius(), 0.03 * map.radius()}; }
 
-Equations equations_of(const std::vector<Match>& matches, const Frame& frame,
-                       const Scales& scales) {
+Equations make_equations(const std::vector<Match>& matches, const Frame& frame,
+                         const Scales& scales) {
   constexpr double normal_deviation = 1.4826, tukey = 4.685;
   const double scale = tukey * std::max(normal_deviation * median_error(matches), scales.error);
   Equations equations;
@@ -112,7 +112,7 @@ Equations equations_of(const std::vector<Match>& matches, const Frame& frame,
 
 using Eigenvectors = Eigen::SelfAdjointEigenSolver<Matrix6d>;
 
-RigidDirection direction_of(const Eigenvectors& axes, int k, const Frame& frame) {
+RigidDirection compute_direction(const Eigenvectors& axes, int k, const Frame& frame) {
   const Vector6d axis = axes.eigenvectors().col(k);
   return {.displacement = axis.head<3>(),
           .turn = axis.tail<3>() / frame.size,
@@ -130,7 +130,7 @@ Isometry3d motion(const Vector6d& step, const Frame& frame) {
 }
 
 /// Returns the Gauss-Newton step along the observable directions.
-Vector6d step_of(const Equations& equations) {
+Vector6d compute_step(const Equations& equations) {
   const Eigenvectors axes(equations.information);
   Vector6d step = Vector6d::Zero();
   for (int k = 0; k < 6; ++k) {
@@ -149,7 +149,7 @@ void measure(Registration& found, const Equations& equations, const Frame& frame
   moved << found.correction * found.middle - found.middle, frame.size * turn.angle() * turn.axis();
   for (int k = 0; k < 6; ++k) {
     RigidDirection& direction = found.directions[static_cast<std::size_t>(k)];
-    direction = direction_of(axes, k, frame);
+    direction = compute_direction(axes, k, frame);
     direction.amount = axes.eigenvectors().col(k).dot(moved);
   }
 }
@@ -162,31 +162,31 @@ struct Alignment {
 
 /// Aligns a scan with the map, starting from the matches `given` at its initial pose. Reduces first
 /// the search radius of partners, then the error scale. At the search radius d, the noise scale is
-/// `noise_of_reach` * d.
+/// `relative_noise` * d.
 Alignment aligned(std::span<const SurfacePatch> patches, SurfaceMap& map,
-                  const std::vector<Match>& given, double reach, std::size_t least_matches,
-                  double noise_of_reach) {
-  constexpr int most_rounds = 12;  // per stage
+                  const std::vector<Match>& given, double reach, std::size_t min_matches,
+                  double relative_noise) {
+  constexpr int max_rounds = 12;  // per stage
   const double radius = map.radius(), last = std::min(reach, 2.0 * radius), flat = 0.03 * radius;
   Alignment found{.matches = given};
   const auto settle = [&](const Scales& scales) {
-    for (int round = 0; round < most_rounds && found.matches.size() >= least_matches; ++round) {
-      const Frame frame = frame_of(found.matches);
-      const Vector6d step = step_of(equations_of(found.matches, frame, scales));
+    for (int round = 0; round < max_rounds && found.matches.size() >= min_matches; ++round) {
+      const Frame frame = make_frame(found.matches);
+      const Vector6d step = compute_step(make_equations(found.matches, frame, scales));
       found.correction = motion(step, frame) * found.correction;
-      found.matches = matches_of(patches, found.correction, map, reach);
+      found.matches = find_matches(patches, found.correction, map, reach);
       if (step.norm() < 1e-4 * radius) break;
     }
   };
-  for (; reach > last; reach = std::max(last, 0.5 * reach)) settle({noise_of_reach * reach, flat});
-  settle({noise_of_reach * reach, flat});
+  for (; reach > last; reach = std::max(last, 0.5 * reach)) settle({relative_noise * reach, flat});
+  settle({relative_noise * reach, flat});
   settle(fine_scales(map));
   return found;
 }
 
 /// Returns the misfit of an alignment in [0, 1]. Patches without a partner, or with an error of at
 /// least a quarter of the radius, count as 1.
-double misfit_of(const Alignment& alignment, std::size_t patches, double radius) {
+double compute_misfit(const Alignment& alignment, std::size_t patches, double radius) {
   double sum = static_cast<double>(patches - alignment.matches.size());
   for (const Match& match : alignment.matches) {
     const double share = std::min(1.0, std::abs(match.error) / (0.25 * radius));
@@ -198,30 +198,30 @@ double misfit_of(const Alignment& alignment, std::size_t patches, double radius)
 }  // namespace
 
 Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& map, double reach,
-                           std::size_t least_matches) {
-  least_matches = std::max<std::size_t>(least_matches, 1);
-  const std::vector<Match> given = matches_of(patches, Isometry3d::Identity(), map, reach);
-  if (given.size() < least_matches) return {.matches = given.size()};
+                           std::size_t min_matches) {
+  min_matches = std::max<std::size_t>(min_matches, 1);
+  const std::vector<Match> given = find_matches(patches, Isometry3d::Identity(), map, reach);
+  if (given.size() < min_matches) return {.matches = given.size()};
   Registration found{.first_error = median_error(given)};
   // With a narrow noise scale, surface that already fits keeps the rest in place, even a distant
   // wall that should move. With a wide scale, all surface contributes, including surface that was
   // not measured before. The better alignment is used.
   constexpr double narrow = 1.0 / 16.0, wide = 1.0 / 4.0, clearly = 0.8;
-  Alignment best = aligned(patches, map, given, reach, least_matches, narrow);
-  Alignment other = aligned(patches, map, given, reach, least_matches, wide);
-  if (misfit_of(other, patches.size(), map.radius()) <
-      clearly * misfit_of(best, patches.size(), map.radius())) {
+  Alignment best = aligned(patches, map, given, reach, min_matches, narrow);
+  Alignment other = aligned(patches, map, given, reach, min_matches, wide);
+  if (compute_misfit(other, patches.size(), map.radius()) <
+      clearly * compute_misfit(best, patches.size(), map.radius())) {
     best = std::move(other);
   }
   found.matches = best.matches.size();
-  if (found.matches < least_matches) return found;
+  if (found.matches < min_matches) return found;
   found.correction = best.correction;
-  const Frame frame = frame_of(best.matches);
+  const Frame frame = make_frame(best.matches);
   found.size = frame.size;
   found.middle = found.correction.inverse() * frame.middle;
   found.error = median_error(best.matches);
   found.deviation = median(best.matches, [](const Match& match) { return match.deviation; });
-  measure(found, equations_of(best.matches, frame, fine_scales(map)), frame);
+  measure(found, make_equations(best.matches, frame, fine_scales(map)), frame);
   return found;
 }
 

@@ -51,9 +51,9 @@ struct Registration {
 };
 
 /// Registers the patches of a scan with a map. The search radius for partners decreases from
-/// `reach` to twice the radius of the map. If fewer than `least_matches` partners are found in any
+/// `reach` to twice the radius of the map. If fewer than `min_matches` partners are found in any
 /// iteration, only `matches` is set. The result is deterministic.
 Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& map, double reach,
-                           std::size_t least_matches);
+                           std::size_t min_matches);
 
 }  // namespace skycap::geometry

@@ -76,9 +76,9 @@ class RowNeighbours {
   bool any_near(const Eigen::Vector3f& query, std::size_t column) {
     Eigen::Vector3f* const above = &found_[column + 1];
     if (squared_distance(*above, query) <= squared_radius_) return true;
-    for (const int beside : {-1, 1}) {
-      if (squared_distance(above[beside], query) > squared_radius_) continue;
-      *above = above[beside];
+    for (const int side : {-1, 1}) {
+      if (squared_distance(above[side], query) > squared_radius_) continue;
+      *above = above[side];
       return true;
     }
     const std::uint32_t found = grid_.first_within(query, radius_);
@@ -134,9 +134,9 @@ class SpacedPoints {
     std::uint32_t number, column;
   };
   template <typename VisitPart>
-  std::vector<std::uint32_t> with_room(std::span<const Eigen::Vector3f> points, std::size_t columns,
-                                       std::size_t parts, unsigned threads,
-                                       VisitPart visit_part) const;
+  std::vector<std::uint32_t> select_spaced(std::span<const Eigen::Vector3f> points,
+                                           std::size_t columns, std::size_t parts, unsigned threads,
+                                           VisitPart visit_part) const;
 
   double spacing_;
   PointGrid grid_;
@@ -159,7 +159,8 @@ void SpacedPoints::keep_all(std::span<const Eigen::Vector3f> points, std::size_t
     }
     return;
   }
-  const std::vector<std::uint32_t> kept = with_room(points, columns, parts, threads, visit_part);
+  const std::vector<std::uint32_t> kept =
+      select_spaced(points, columns, parts, threads, visit_part);
   parallel_for(2, threads, [&](std::size_t task) {
     if (task == 0) {
       for (const std::uint32_t number : kept) on_kept(number);
@@ -173,9 +174,10 @@ void SpacedPoints::keep_all(std::span<const Eigen::Vector3f> points, std::size_t
 // does not, so it runs on all threads and rejects most points. Meanwhile, one thread compares the
 // remaining points of the previous parts with each other.
 template <typename VisitPart>
-std::vector<std::uint32_t> SpacedPoints::with_room(std::span<const Eigen::Vector3f> points,
-                                                   std::size_t columns, std::size_t parts,
-                                                   unsigned threads, VisitPart visit_part) const {
+std::vector<std::uint32_t> SpacedPoints::select_spaced(std::span<const Eigen::Vector3f> points,
+                                                       std::size_t columns, std::size_t parts,
+                                                       unsigned threads,
+                                                       VisitPart visit_part) const {
   constexpr std::size_t parts_at_once = 8;
   PointGrid fresh(grid_.cell_size());
   RowNeighbours near_fresh(fresh, spacing_, columns);

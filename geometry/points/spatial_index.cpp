@@ -19,7 +19,7 @@ namespace {
 using Kernel = CGAL::Simple_cartesian<double>;
 
 /// Property map with which CGAL's trees store indices instead of points.
-struct PointOfIndex {
+struct IndexToPointMap {
   using value_type = Kernel::Point_3;
   using reference = value_type;
   using key_type = std::uint32_t;
@@ -27,14 +27,14 @@ struct PointOfIndex {
 
   const PointGrid* points;
 
-  friend reference get(const PointOfIndex& map, key_type index) {
+  friend reference get(const IndexToPointMap& map, key_type index) {
     const Eigen::Vector3f p = map.points->point(index);
     return {p.x(), p.y(), p.z()};
   }
 };
 
 using Traits =
-    CGAL::Search_traits_adapter<std::uint32_t, PointOfIndex, CGAL::Search_traits_3<Kernel>>;
+    CGAL::Search_traits_adapter<std::uint32_t, IndexToPointMap, CGAL::Search_traits_3<Kernel>>;
 using Tree = CGAL::Kd_tree<Traits>;
 using NearestSearch = CGAL::Orthogonal_k_neighbor_search<Traits>;
 using Ball = CGAL::Fuzzy_sphere<Traits>;
@@ -46,7 +46,7 @@ using Ball = CGAL::Fuzzy_sphere<Traits>;
 struct SpatialIndex::Forest {
   static constexpr std::size_t smallest_tree = 256;
 
-  struct TreeOfRange {
+  struct RangeTree {
     std::size_t first, last;
     std::unique_ptr<Tree> tree;
   };
@@ -62,7 +62,7 @@ struct SpatialIndex::Forest {
     std::iota(indices.begin(), indices.end(), static_cast<std::uint32_t>(first));
     // The tree stores the address of the grid, so an index cannot be moved.
     auto tree = std::make_unique<Tree>(indices.begin(), indices.end(), Tree::Splitter(),
-                                       Traits(PointOfIndex{&points}));
+                                       Traits(IndexToPointMap{&points}));
     tree->build();
     trees.push_back({first, points.size(), std::move(tree)});
   }
@@ -74,9 +74,9 @@ struct SpatialIndex::Forest {
     const double reach = radius * (1.0 + 1e-5) + 1e-6 * query.cwiseAbs().maxCoeff();
     const Kernel::Point_3 centre(query.x(), query.y(), query.z());
     std::vector<std::uint32_t> found;
-    for (const TreeOfRange& range : trees) {
+    for (const RangeTree& range : trees) {
       range.tree->search(std::back_inserter(found),
-                         Ball(centre, reach, 0.0, Traits(PointOfIndex{&points})));
+                         Ball(centre, reach, 0.0, Traits(IndexToPointMap{&points})));
     }
     for (const std::uint32_t index : found) visit(index);
     for (std::size_t i = trees.empty() ? 0 : trees.back().last; i < points.size(); ++i) {
@@ -84,7 +84,7 @@ struct SpatialIndex::Forest {
     }
   }
 
-  std::vector<TreeOfRange> trees;
+  std::vector<RangeTree> trees;
   std::mutex mutex;
 };
 
@@ -157,9 +157,9 @@ std::vector<Neighbour> SpatialIndex::nearest(const Eigen::Vector3f& query,
   const auto add = [&](std::uint32_t index) {
     candidates.push_back({squared_distance(query, point(index)), index});
   };
-  for (const Forest::TreeOfRange& range : forest_->trees) {
+  for (const Forest::RangeTree& range : forest_->trees) {
     const NearestSearch search(*range.tree, centre, static_cast<unsigned>(count), 0.0, true,
-                               NearestSearch::Distance(PointOfIndex{&grid_}));
+                               NearestSearch::Distance(IndexToPointMap{&grid_}));
     for (const auto& [index, distance] : search) add(index);
   }
   const std::size_t in_trees = forest_->trees.empty() ? 0 : forest_->trees.back().last;

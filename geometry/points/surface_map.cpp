@@ -11,19 +11,19 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t least_points = 8;
-constexpr double same_way = 0.5;  // cosine
+constexpr std::size_t min_points = 8;
+constexpr double same_direction = 0.5;  // cosine
 
 /// Returns the points within two standard deviations of the plane, which excludes points of an
 /// adjoining plane.
 std::vector<Vector3f> near_plane(std::span<const Vector3f> points, const PrincipalAxes& fit) {
-  const double most = 4.0 * fit.spreads[0];
+  const double max = 4.0 * fit.spreads[0];
   const Vector3d normal = fit.axes.col(0);
   std::vector<Vector3f> near;
   near.reserve(points.size());
   for (const Vector3f& point : points) {
     const double height = normal.dot(point.cast<double>() - fit.mean);
-    if (height * height <= most) near.push_back(point);
+    if (height * height <= max) near.push_back(point);
   }
   return near;
 }
@@ -31,9 +31,9 @@ std::vector<Vector3f> near_plane(std::span<const Vector3f> points, const Princip
 }  // namespace
 
 std::optional<SurfacePatch> fit_patch(std::span<const Vector3f> points, const Vector3d& sensor) {
-  if (points.size() < least_points) return std::nullopt;
+  if (points.size() < min_points) return std::nullopt;
   const std::vector<Vector3f> near = near_plane(points, principal_axes(points));
-  if (near.size() < least_points) return std::nullopt;
+  if (near.size() < min_points) return std::nullopt;
   const PrincipalAxes fit = principal_axes(near);
   constexpr double flat = 0.25, thin = 0.05;  // ratios of variances
   const bool is_plane =
@@ -47,9 +47,9 @@ std::optional<SurfacePatch> fit_patch(std::span<const Vector3f> points, const Ve
                       std::sqrt(std::max(0.0, fit.spreads[0])) / cut_deviation};
 }
 
-ScanPatches scan_patches(const ScanSpan& scan, double radius, std::size_t most_points,
-                         std::size_t most_patches) {
-  const std::size_t stride = std::max<std::size_t>(1, scan.points.size() / most_points);
+ScanPatches scan_patches(const ScanSpan& scan, double radius, std::size_t max_points,
+                         std::size_t max_patches) {
+  const std::size_t stride = std::max<std::size_t>(1, scan.points.size() / max_points);
   std::vector<Vector3f> points;
   points.reserve(scan.points.size() / stride + 1);
   for (std::size_t i = 0; i < scan.points.size(); i += stride) points.push_back(scan.points[i]);
@@ -57,7 +57,7 @@ ScanPatches scan_patches(const ScanSpan& scan, double radius, std::size_t most_p
   map.add(points, scan.sensor_position());
 
   const std::size_t seeds = map.spread_points().size();
-  ScanPatches found{.patches = {}, .tried = std::min(seeds, most_patches)};
+  ScanPatches found{.patches = {}, .tried = std::min(seeds, max_patches)};
   for (std::size_t i = 0; i < found.tried; ++i) {
     const auto& patch = map.patch_at(static_cast<std::uint32_t>(i * seeds / found.tried));
     if (patch) found.patches.push_back(*patch);
@@ -73,7 +73,7 @@ void SurfaceMap::add(std::span<const Vector3f> points, const Vector3d& sensor) {
   sensors_.push_back(sensor);
   for (const Vector3f& point : points) {
     if (!points_.keep(point)) continue;
-    sensor_of_point_.push_back(number);
+    sensor_indices_.push_back(number);
     if (seeds_.keep(point)) patches_.push_back({.sensor = number, .patch = {}});
   }
   for (const std::uint32_t seed : made_) patches_[seed].is_made = false;
@@ -100,7 +100,7 @@ const std::optional<SurfacePatch>& SurfaceMap::patch_at(std::uint32_t number) {
   if (!seed.patch) return seed.patch;
   // The other side of a thin wall is a different surface.
   const auto is_behind = [&](const Neighbour& point) {
-    const Vector3d& from = sensors_[sensor_of_point_[point.index]];
+    const Vector3d& from = sensors_[sensor_indices_[point.index]];
     return (from - seed.patch->mean).dot(seed.patch->normal) < 0.0;
   };
   if (std::erase_if(near, is_behind) > 0) seed.patch = fit(near, sensor);
@@ -115,7 +115,7 @@ const SurfacePatch* SurfaceMap::nearest(const SurfacePatch& patch, double reach)
     std::ranges::sort(found_);
     for (const Neighbour& near : found_) {
       const std::optional<SurfacePatch>& there = patch_at(near.index);
-      if (there && there->normal.dot(patch.normal) > same_way) return &*there;
+      if (there && there->normal.dot(patch.normal) > same_direction) return &*there;
     }
     if (radius >= reach) return nullptr;
   }

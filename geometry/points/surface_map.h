@@ -66,7 +66,7 @@ class SurfaceMap {
   double radius_;
   SpacedPoints points_;
   SpacedPoints seeds_;
-  std::vector<std::uint32_t> sensor_of_point_;
+  std::vector<std::uint32_t> sensor_indices_;
   std::vector<Eigen::Vector3d> sensors_;
   std::vector<Seed> patches_;        // by seed index
   std::vector<std::uint32_t> made_;  // seeds whose patches were computed since the last add()
@@ -79,9 +79,9 @@ struct ScanPatches {
   std::size_t tried = 0;  ///< number of evaluated positions, flat or not
 };
 
-/// Returns the patches with radius `radius` [m] at up to `most_patches` positions, computed from
-/// about `most_points` points. Positions and points are distributed evenly over the scan.
-ScanPatches scan_patches(const ScanSpan& scan, double radius, std::size_t most_points,
-                         std::size_t most_patches);
+/// Returns the patches with radius `radius` [m] at up to `max_patches` positions, computed from
+/// about `max_points` points. Positions and points are distributed evenly over the scan.
+ScanPatches scan_patches(const ScanSpan& scan, double radius, std::size_t max_points,
+                         std::size_t max_patches);
 
 }  // namespace skycap::geometry

@@ -19,7 +19,7 @@ bool is_usable(const Eigen::Vector3f& point) {
   return (point.array().abs() <= farthest_point).all();  // false for NaN
 }
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void reject(const std::string& what) {
   throw Error(ErrorKind::bad_geometry, "the scan " + what);
 }
 
@@ -29,7 +29,7 @@ void require_points(std::span<const Eigen::Vector3f> points) {
                                                  static_cast<Eigen::Index>(3 * points.size()));
   if (numbers.abs().maxCoeff<Eigen::PropagateNaN>() <= farthest_point) return;
   const auto bad = std::ranges::find_if_not(points, is_usable) - points.begin();
-  refuse("has point " + std::to_string(bad) + " that is not finite or more than " +
+  reject("has point " + std::to_string(bad) + " that is not finite or more than " +
          std::to_string(farthest) + " m from the origin; use a local frame");
 }
 
@@ -37,20 +37,20 @@ void require_points(std::span<const Eigen::Vector3f> points) {
 
 void require_usable(const ScanSpan& scan, const CameraConfig& camera) {
   if (!(scan.sensor_position().array().abs() <= farthest).all()) {
-    refuse("has a position that is not finite or more than " + std::to_string(farthest) +
+    reject("has a position that is not finite or more than " + std::to_string(farthest) +
            " m from the origin; use a local frame");
   }
   require_points(scan.points);
   if (scan.pixels.empty()) return;
   if (scan.pixels.size() != scan.points.size()) {
-    refuse("has " + std::to_string(scan.pixels.size()) + " pixels for " +
+    reject("has " + std::to_string(scan.pixels.size()) + " pixels for " +
            std::to_string(scan.points.size()) + " points; each point requires one");
   }
   const auto all = static_cast<std::uint64_t>(camera.width) * static_cast<unsigned>(camera.height);
   const bool ascends =
       std::ranges::adjacent_find(scan.pixels, std::ranges::greater_equal{}) == scan.pixels.end();
   if (!ascends || scan.pixels.back() >= all) {
-    refuse("has pixels that are not ascending, or are outside the mission's camera of " +
+    reject("has pixels that are not ascending, or are outside the mission's camera of " +
            std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels");
   }
 }

@@ -13,10 +13,10 @@ struct DistanceKernels {
   static constexpr std::size_t packet = 16;
 
   /// Computes the squared distances [m^2] of `count` points, a multiple of `packet`, from the
-  /// facets. `of_sliver` returns the squared distance of a point from a facet that is too thin to
-  /// define a plane.
+  /// facets. `sliver_distance` returns the squared distance of a point from a facet that is too
+  /// thin to define a plane.
   void (*squared_distances)(const FacetNode* nodes, const Facet* facets,
-                            double (*of_sliver)(const Facet& facet, const double* point),
+                            double (*sliver_distance)(const Facet& facet, const double* point),
                             std::size_t count, const double* const* points, double* squared);
 };
 

@@ -78,22 +78,23 @@ struct Packet {
   std::uint32_t nearest;  // facet found nearest most recently; first candidate of the next packet
 };
 
-struct Place {
+struct PointLanes {
   Doubles x, y, z;
 };
-inline Doubles dot(const double (&a)[3], const Place& b) {
+inline Doubles dot(const double (&a)[3], const PointLanes& b) {
   return (a[0] * b.x + a[1] * b.y) + a[2] * b.z;
 }
-inline Place minus(const Place& a, const double (&b)[3]) {
+inline PointLanes minus(const PointLanes& a, const double (&b)[3]) {
   return {a.x - b[0], a.y - b[1], a.z - b[2]};
 }
 
 // Computes the squared distances of points from a facet that is not a sliver. All regions of the
 // plane are evaluated, and each lane selects its own result.
-inline Doubles squared_distances(const Facet& facet, const Place& point) {
+inline Doubles squared_distances(const Facet& facet, const PointLanes& point) {
   const double(&ab)[3] = facet.to_second, (&ac)[3] = facet.to_third, (&corner)[3] = facet.corner;
   const Doubles zero{};
-  const Place from_a = minus(point, corner), from_b = minus(from_a, ab), from_c = minus(from_a, ac);
+  const PointLanes from_a = minus(point, corner), from_b = minus(from_a, ab),
+                   from_c = minus(from_a, ac);
   const Doubles d1 = dot(ab, from_a), d2 = dot(ac, from_a), d3 = dot(ab, from_b),
                 d4 = dot(ac, from_b), d5 = dot(ab, from_c), d6 = dot(ac, from_c);
   const Doubles c = d1 * d4 - d3 * d2, b = d5 * d2 - d1 * d6, a = d3 * d6 - d5 * d4;
@@ -136,21 +137,22 @@ inline void tighten(Packet& packet) {
   }
 }
 
-using OfSliver = double (*)(const Facet& facet, const double* point);
+using SliverDistance = double (*)(const Facet& facet, const double* point);
 
 // Updates the distances of the packet with a facet. Only groups of lanes with at least one
 // candidate point are evaluated.
-inline void look_at(const Facet& facet, std::uint32_t slot, std::uint32_t lanes, OfSliver of_sliver,
-                    Packet& packet) {
+inline void look_at(const Facet& facet, std::uint32_t slot, std::uint32_t lanes,
+                    SliverDistance sliver_distance, Packet& packet) {
   bool is_nearer = false;
   for (int part = 0; part < double_parts; ++part) {
     if ((lanes >> (part * double_lanes) & ((1U << double_lanes) - 1U)) == 0) continue;
-    const Place point{packet.exactly[0][part], packet.exactly[1][part], packet.exactly[2][part]};
+    const PointLanes point{packet.exactly[0][part], packet.exactly[1][part],
+                           packet.exactly[2][part]};
     Doubles squared{};
     if (facet.is_sliver) {
       for (int lane = 0; lane < double_lanes; ++lane) {
         const double at[3] = {point.x[lane], point.y[lane], point.z[lane]};
-        squared[lane] = of_sliver(facet, at);
+        squared[lane] = sliver_distance(facet, at);
       }
     } else {
       squared = squared_distances(facet, point);
@@ -190,7 +192,7 @@ struct Waiting {
     std::uint32_t node;
     int child;
   };
-  Entry entries[most_waiting];
+  Entry entries[max_pending];
   std::size_t size = 0;
 
   // Pushes the nearest child last, so that it is visited first.
@@ -211,19 +213,19 @@ struct Waiting {
     const std::size_t first = size;
     for (int child = 0; child < FacetNode::lanes; ++child) {
       if (!(bounds[child] <= packet.farthest)) continue;
-      std::size_t place = size++;
-      for (; place > first && entries[place - 1].bound < bounds[child]; --place) {
-        entries[place] = entries[place - 1];
+      std::size_t slot = size++;
+      for (; slot > first && entries[slot - 1].bound < bounds[child]; --slot) {
+        entries[slot] = entries[slot - 1];
       }
-      entries[place] = {bounds[child], index, child};
+      entries[slot] = {bounds[child], index, child};
     }
   }
 };
 
-inline void search(const FacetNode* nodes, const Facet* facets, OfSliver of_sliver,
+inline void search(const FacetNode* nodes, const Facet* facets, SliverDistance sliver_distance,
                    Packet& packet) {
   constexpr std::uint32_t all = (1U << packet_size) - 1U;
-  look_at(facets[packet.nearest], packet.nearest, all, of_sliver, packet);
+  look_at(facets[packet.nearest], packet.nearest, all, sliver_distance, packet);
   Waiting waiting;
   waiting.add_children(nodes, 0, packet);
   while (waiting.size > 0) {
@@ -238,7 +240,7 @@ inline void search(const FacetNode* nodes, const Facet* facets, OfSliver of_sliv
       continue;
     }
     const std::uint32_t slot = child & ~FacetNode::is_facet;
-    look_at(facets[slot], slot, near, of_sliver, packet);
+    look_at(facets[slot], slot, near, sliver_distance, packet);
   }
 }
 
@@ -260,13 +262,14 @@ inline void fill(Packet& packet, const double* const* points, std::size_t first)
   for (Doubles& squared : packet.squared) squared = Doubles{} + infinity;
 }
 
-void squared_distances_of(const FacetNode* nodes, const Facet* facets, OfSliver of_sliver,
-                          std::size_t count, const double* const* points, double* squared) {
+void find_squared_distances(const FacetNode* nodes, const Facet* facets,
+                            SliverDistance sliver_distance, std::size_t count,
+                            const double* const* points, double* squared) {
   Packet packet;
   packet.nearest = 0;
   for (std::size_t first = 0; first < count; first += packet_size) {
     fill(packet, points, first);
-    search(nodes, facets, of_sliver, packet);
+    search(nodes, facets, sliver_distance, packet);
     for (int i = 0; i < packet_size; ++i) {
       squared[first + i] = packet.squared[i / double_lanes][i % double_lanes];
     }
@@ -275,6 +278,6 @@ void squared_distances_of(const FacetNode* nodes, const Facet* facets, OfSliver 
 
 }  // namespace
 
-const DistanceKernels SKYCAP_KERNELS_NAME = {squared_distances_of};
+const DistanceKernels SKYCAP_KERNELS_NAME = {find_squared_distances};
 
 }  // namespace skycap::geometry

@@ -59,7 +59,7 @@ class EarClipper {
     return quality;
   }
 
-  double area_of_ear(std::size_t i) const {
+  double compute_ear_area(std::size_t i) const {
     return turn(polygon_[before_[i]], polygon_[i], polygon_[after_[i]]);
   }
 
@@ -71,7 +71,7 @@ class EarClipper {
     };
     std::size_t ear = best();
     // An ear that would leave only collinear corners must be cut after its last neighbour.
-    if (area_ - area_of_ear(ear) < nothing_) {
+    if (area_ - compute_ear_area(ear) < nothing_) {
       qualities_[ear] = -1.0;
       ear = best();
     }
@@ -79,7 +79,7 @@ class EarClipper {
   }
 
   void cut_off(std::size_t ear) {
-    area_ -= area_of_ear(ear);
+    area_ -= compute_ear_area(ear);
     const std::size_t a = before_[ear], c = after_[ear];
     add(a, ear, c);
     after_[a] = c;

@@ -27,6 +27,6 @@ struct alignas(64) FacetNode {
 
 /// Capacity of the stack of a search. Any mesh has at most 12 levels of binary splits and 16 levels
 /// of four-way splits, and each level adds at most three children.
-inline constexpr std::size_t most_waiting = 96;
+inline constexpr std::size_t max_pending = 96;
 
 }  // namespace skycap::geometry

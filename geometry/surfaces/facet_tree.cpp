@@ -77,7 +77,7 @@ float above(double x) { return -below(-x); }
 /// Height of a triangle, as a fraction of its longest edge, below which its plane is inaccurate.
 constexpr double sliver = 1e-6;
 
-Facet facet_of(const Mesh& mesh, std::uint32_t triangle) {
+Facet make_facet(const Mesh& mesh, std::uint32_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   const Vector3d &corner = mesh.vertices[a], ab = mesh.vertices[b] - corner,
                  ac = mesh.vertices[c] - corner;
@@ -125,11 +125,11 @@ struct Item {
 };
 
 /// Returns the items of all triangles with an area, in mesh order.
-std::vector<Item> items_of(const Mesh& mesh, unsigned threads) {
+std::vector<Item> make_items(const Mesh& mesh, unsigned threads) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<Item> items(mesh.triangles.size());
   parallel_for_each(items.size(), threads, [&](std::size_t t) {
-    const Facet facet = facet_of(mesh, static_cast<std::uint32_t>(t));
+    const Facet facet = make_facet(mesh, static_cast<std::uint32_t>(t));
     items[t] = Item(facet);
     if (!has_area(facet)) items[t].triangle = none;
   });
@@ -152,7 +152,7 @@ class TreeBuilder {
   using Cuts = std::array<std::uint32_t, lanes + 1>;
 
   void build_root(std::uint32_t count, unsigned threads) {
-    const Cuts cuts = cuts_of(0, count, 0);
+    const Cuts cuts = find_cuts(0, count, 0);
     Node root;
     std::array<std::vector<Node>, lanes> parts;
     parallel_for(lanes, threads, [&](std::size_t lane) {
@@ -179,14 +179,14 @@ class TreeBuilder {
   std::uint32_t build(std::uint32_t begin, std::uint32_t end, int depth, std::vector<Node>& made) {
     const auto index = static_cast<std::uint32_t>(made.size());
     made.emplace_back();
-    const Cuts cuts = cuts_of(begin, end, depth);
+    const Cuts cuts = find_cuts(begin, end, depth);
     Node node;
     for (int lane = 0; lane < lanes; ++lane) set_lane(node, lane, cuts, depth, made);
     made[index] = node;
     return index;
   }
 
-  Cuts cuts_of(std::uint32_t begin, std::uint32_t end, int depth) {
+  Cuts find_cuts(std::uint32_t begin, std::uint32_t end, int depth) {
     const std::uint32_t middle = part(begin, end, depth);
     return {begin, part(begin, middle, depth), middle, part(middle, end, depth), end};
   }
@@ -214,7 +214,7 @@ class TreeBuilder {
     Eigen::Index axis = 0;
     const float length = middles.sizes().maxCoeff(&axis);
     const float scale = slabs / length;
-    if (std::isfinite(scale) && depth < most_cuts) {
+    if (std::isfinite(scale) && depth < max_cuts) {
       return cut({begin, end, axis, middles.min()[axis], scale});
     }
     const std::uint32_t middle = begin + (end - begin) / 2;
@@ -249,7 +249,7 @@ class TreeBuilder {
     }
   };
 
-  static std::size_t slab_of(const Item& item, const Range& range) {
+  static std::size_t find_slab(const Item& item, const Range& range) {
     return std::min<std::size_t>(
         slabs - 1, static_cast<std::size_t>((item.middle(range.axis) - range.low) * range.scale));
   }
@@ -258,7 +258,7 @@ class TreeBuilder {
   std::uint32_t cut(const Range& range) {
     std::array<Group, slabs> groups;
     for (std::uint32_t slot = range.begin; slot < range.end; ++slot) {
-      groups[slab_of(items_[slot], range)].add(items_[slot].box);
+      groups[find_slab(items_[slot], range)].add(items_[slot].box);
     }
     std::array<double, slabs> cost_from{};
     Group sum;
@@ -267,23 +267,23 @@ class TreeBuilder {
       cost_from[i] = sum.cost();
     }
     sum = {};
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     std::size_t last = 0;  // last slab of the first part
     for (std::size_t i = 0; i + 1 < slabs; ++i) {
       sum.add(groups[i].box, groups[i].count);  // the first and the last slab are never empty
-      if (const double cost = sum.cost() + cost_from[i + 1]; cost < least) {
-        least = cost;
+      if (const double cost = sum.cost() + cost_from[i + 1]; cost < min) {
+        min = cost;
         last = i;
       }
     }
     const auto second =
         std::partition(items_.begin() + range.begin, items_.begin() + range.end,
-                       [&](const Item& item) { return slab_of(item, range) <= last; });
+                       [&](const Item& item) { return find_slab(item, range) <= last; });
     return static_cast<std::uint32_t>(second - items_.begin());
   }
 
   static constexpr std::size_t slabs = 16;
-  static constexpr int most_cuts =
+  static constexpr int max_cuts =
       12;  ///< levels with cost-based splits; below them, parts are halved by count
 
   std::vector<Item>& items_;
@@ -292,12 +292,12 @@ class TreeBuilder {
 }  // namespace
 
 FacetTree facet_tree(const Mesh& mesh, unsigned threads) {
-  std::vector<Item> items = items_of(mesh, threads);
+  std::vector<Item> items = make_items(mesh, threads);
   FacetTree tree;
   tree.nodes = std::move(TreeBuilder(items, threads).nodes);
   tree.facets.resize(items.size());
   parallel_for_each(items.size(), threads,
-                    [&](std::size_t i) { tree.facets[i] = facet_of(mesh, items[i].triangle); });
+                    [&](std::size_t i) { tree.facets[i] = make_facet(mesh, items[i].triangle); });
   return tree;
 }
 

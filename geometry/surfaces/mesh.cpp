@@ -21,12 +21,14 @@ Vector3d area_vector(const Mesh& mesh, const std::array<std::uint32_t, 3>& trian
 
 constexpr std::size_t things_in_block = 1 << 14;
 
-std::size_t blocks_of(std::size_t count) { return (count + things_in_block - 1) / things_in_block; }
+std::size_t count_blocks(std::size_t count) {
+  return (count + things_in_block - 1) / things_in_block;
+}
 
 /// Calls `work(block, first, end)` for each block of indices.
 template <typename Work>
 void for_each_block(std::size_t count, unsigned threads, Work work) {
-  parallel_for(blocks_of(count), threads, [&](std::size_t block) {
+  parallel_for(count_blocks(count), threads, [&](std::size_t block) {
     work(block, block * things_in_block, std::min(count, (block + 1) * things_in_block));
   });
 }
@@ -34,7 +36,7 @@ void for_each_block(std::size_t count, unsigned threads, Work work) {
 /// Returns the first index below `count` for which `is_bad` is true, or `count`.
 template <typename IsBad>
 std::size_t first_bad(std::size_t count, unsigned threads, IsBad is_bad) {
-  std::vector<std::size_t> found(blocks_of(count), count);
+  std::vector<std::size_t> found(count_blocks(count), count);
   for_each_block(count, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
     while (first < end && !is_bad(first)) ++first;
     if (first < end) found[block] = first;
@@ -64,7 +66,7 @@ void validate(const Mesh& mesh, unsigned threads) {
                                              std::to_string(*missing) + ", but there are only " +
                                              std::to_string(vertices));
   }
-  std::vector<double> areas(blocks_of(triangles), 0.0);
+  std::vector<double> areas(count_blocks(triangles), 0.0);
   for_each_block(triangles, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
     double area = 0.0;
     for (; first < end; ++first) area += area_vector(mesh, mesh.triangles[first]).norm();
@@ -76,7 +78,7 @@ void validate(const Mesh& mesh, unsigned threads) {
 }
 
 Eigen::AlignedBox3d bounding_box(const Mesh& mesh, unsigned threads) {
-  std::vector<Eigen::AlignedBox3d> boxes(blocks_of(mesh.triangles.size()));
+  std::vector<Eigen::AlignedBox3d> boxes(count_blocks(mesh.triangles.size()));
   for_each_block(mesh.triangles.size(), threads,
                  [&](std::size_t block, std::size_t first, std::size_t end) {
                    Eigen::AlignedBox3d box;

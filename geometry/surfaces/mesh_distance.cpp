@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-double squared_distance_of_sliver(const Facet& facet, const double* point) {
+double compute_sliver_squared_distance(const Facet& facet, const double* point) {
   const Vector3d at(point);
   return (nearest_on(facet, at) - at).squaredNorm();
 }
@@ -71,7 +71,7 @@ MeshDistance::Impl::Nearest MeshDistance::Impl::find(const Vector3d& point) cons
     float bound;  ///< lower bound of the squared distance
     std::uint32_t child;
   };
-  std::array<Entry, most_waiting> stack;
+  std::array<Entry, max_pending> stack;
   std::size_t size = 0;
   stack[size++] = {0.0F, 0};
   while (size > 0) {
@@ -94,11 +94,11 @@ MeshDistance::Impl::Nearest MeshDistance::Impl::find(const Vector3d& point) cons
       const float bound = bounds[lane];
       if (!(bound <= nearest.squared_distance)) continue;
       // Pushes the nearest child last, so that it is visited first.
-      std::size_t place = size++;
-      for (; place > first && stack[place - 1].bound < bound; --place) {
-        stack[place] = stack[place - 1];
+      std::size_t slot = size++;
+      for (; slot > first && stack[slot - 1].bound < bound; --slot) {
+        stack[slot] = stack[slot - 1];
       }
-      stack[place] = {bound, node.child[lane]};
+      stack[slot] = {bound, node.child[lane]};
     }
   }
   return nearest;
@@ -121,7 +121,7 @@ void MeshDistance::Impl::find_all(const Points& points, std::span<const CurveEnt
     const std::array<const double*, 3> axes{at[0].data(), at[1].data(), at[2].data()};
     std::array<double, batch> squared;
     distance_kernels().squared_distances(tree.nodes.data(), tree.facets.data(),
-                                         squared_distance_of_sliver, count, axes.data(),
+                                         compute_sliver_squared_distance, count, axes.data(),
                                          squared.data());
     for (std::size_t i = 0; i < own.size(); ++i) distances[own[i].index] = std::sqrt(squared[i]);
   });
@@ -164,10 +164,10 @@ void MeshDistance::distances(std::span<const Eigen::Vector3f> points, std::span<
 void MeshDistance::distances(std::span<const Vector3d> points, std::span<double> distances,
                              unsigned threads) const {
   assert(points.size() == distances.size());
-  std::vector<Eigen::Vector3f> places;
-  places.reserve(points.size());
-  for (const Vector3d& point : points) places.push_back(point.cast<float>());
-  impl_->find_all(points, along_curve(places, finest_grid(places)), distances, threads);
+  std::vector<Eigen::Vector3f> positions;
+  positions.reserve(points.size());
+  for (const Vector3d& point : points) positions.push_back(point.cast<float>());
+  impl_->find_all(points, along_curve(positions, finest_grid(positions)), distances, threads);
 }
 
 }  // namespace skycap::geometry

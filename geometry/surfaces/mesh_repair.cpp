@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::uint64_t hash_of(const Vector3d& p) {
+std::uint64_t compute_hash(const Vector3d& p) {
   std::uint64_t hash = 0;
   for (const double coordinate : p) {
     // Positive and negative zero are equal, so they need the same hash.
@@ -52,7 +52,7 @@ struct Neighbour {
 };
 
 // Returns for each triangle its neighbours across edges of exactly two triangles.
-std::vector<std::vector<Neighbour>> neighbours_of(const Mesh& mesh) {
+std::vector<std::vector<Neighbour>> find_neighbours(const Mesh& mesh) {
   std::vector<std::vector<Neighbour>> neighbours(mesh.triangles.size());
   const std::vector<Edge> edges = sorted_edges(mesh);
   for (std::size_t begin = 0; begin < edges.size();) {
@@ -112,7 +112,7 @@ void weld_vertices(Mesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!is_used[v]) continue;
     const Vector3d vertex = mesh.vertices[v];
-    std::size_t slot = hash_of(vertex) & (slots.size() - 1);
+    std::size_t slot = compute_hash(vertex) & (slots.size() - 1);
     while (slots[slot] != unused && mesh.vertices[slots[slot]] != vertex) {
       slot = (slot + 1) & (slots.size() - 1);
     }
@@ -139,7 +139,7 @@ void drop_degenerate_triangles(Mesh& mesh) {
 }
 
 void orient_outward(Mesh& mesh) {
-  const auto neighbours = neighbours_of(mesh);
+  const auto neighbours = find_neighbours(mesh);
   std::vector<bool> is_visited(mesh.triangles.size(), false);
   std::vector<bool> is_turned(mesh.triangles.size(), false);
   for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {

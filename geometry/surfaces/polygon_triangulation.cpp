@@ -40,8 +40,8 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
 struct Plane {
   Vector3d origin, right, up;
 
-  Vector2d flat(const Vector3d& place) const {
-    return {(place - origin).dot(right), (place - origin).dot(up)};
+  Vector2d flat(const Vector3d& position) const {
+    return {(position - origin).dot(right), (position - origin).dot(up)};
   }
 };
 
@@ -67,13 +67,13 @@ std::vector<Vector3d> without_repetition(std::span<const Vector3d> ring) {
 /// Returns whether a ring turns left at every corner and winds once; a pentagram winds twice.
 bool is_convex(std::span<const Vector2d> ring) {
   const std::size_t n = ring.size();
-  std::size_t turns_of_x = 0;
+  std::size_t num_x_turns = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vector2d edge = ring[(i + 1) % n] - ring[i], next = ring[(i + 2) % n] - ring[(i + 1) % n];
     if (edge.x() * next.y() - edge.y() * next.x() <= 0.0) return false;
-    if ((edge.x() < 0.0) != (next.x() < 0.0)) ++turns_of_x;
+    if ((edge.x() < 0.0) != (next.x() < 0.0)) ++num_x_turns;
   }
-  return turns_of_x <= 2;
+  return num_x_turns <= 2;
 }
 
 std::size_t add_fan(Mesh& mesh, const std::vector<Vector3d>& ring) {
@@ -87,14 +87,14 @@ std::size_t add_fan(Mesh& mesh, const std::vector<Vector3d>& ring) {
 }
 
 /// Returns whether an odd number of rings surrounds a position.
-bool is_inside(const Vector2d& place, const std::vector<std::vector<Vector2d>>& rings) {
+bool is_inside(const Vector2d& position, const std::vector<std::vector<Vector2d>>& rings) {
   bool is_odd = false;
   for (const std::vector<Vector2d>& ring : rings) {
     for (std::size_t i = 0, before = ring.size() - 1; i < ring.size(); before = i++) {
       const Vector2d &a = ring[before], &b = ring[i];
-      if ((a.y() > place.y()) == (b.y() > place.y())) continue;
-      const double x = a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-      if (place.x() < x) is_odd = !is_odd;
+      if ((a.y() > position.y()) == (b.y() > position.y())) continue;
+      const double x = a.x() + (position.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      if (position.x() < x) is_odd = !is_odd;
     }
   }
   return is_odd;
@@ -102,13 +102,13 @@ bool is_inside(const Vector2d& place, const std::vector<std::vector<Vector2d>>& 
 
 Vector2d to_eigen(const PlaneKernel::Point_2& point) { return {point.x(), point.y()}; }
 
-Vector2d middle_of(const Triangulation::Face_handle& face) {
+Vector2d compute_centre(const Triangulation::Face_handle& face) {
   Vector2d sum = Vector2d::Zero();
   for (int i = 0; i < 3; ++i) sum += to_eigen(face->vertex(i)->point());
   return sum / 3.0;
 }
 
-double area_of(const Triangulation::Face_handle& face) {
+double compute_area(const Triangulation::Face_handle& face) {
   const Vector2d a = to_eigen(face->vertex(0)->point()), b = to_eigen(face->vertex(1)->point()),
                  c = to_eigen(face->vertex(2)->point());
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -124,7 +124,7 @@ Triangulation::Face_handle mark_region(const Triangulation& triangulation,
   while (!open.empty()) {
     const Triangulation::Face_handle face = open.front();
     open.pop_front();
-    if (area_of(face) > area_of(largest)) largest = face;
+    if (compute_area(face) > compute_area(largest)) largest = face;
     for (int i = 0; i < 3; ++i) {
       const Triangulation::Face_handle next = face->neighbor(i);
       if (triangulation.is_infinite(next) || next->info().index >= 0 || face->is_constrained(i)) {
@@ -159,7 +159,7 @@ void insert_rings(Triangulation& triangulation, Mesh& mesh, const Plane& plane,
 }
 
 /// Returns the mesh vertex; at crossings of rings, adds a new one on the plane.
-std::uint32_t vertex_of(Mesh& mesh, const Plane& plane, Triangulation::Vertex_handle vertex) {
+std::uint32_t find_vertex(Mesh& mesh, const Plane& plane, Triangulation::Vertex_handle vertex) {
   std::uint32_t& index = vertex->info().index;
   if (index == no_vertex) {
     index = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -180,12 +180,12 @@ std::size_t add_triangulated(Mesh& mesh, const Plane& plane,
     if (face->info().index < 0) {
       const auto largest =
           mark_region(triangulation, face, static_cast<int>(is_region_inside.size()));
-      is_region_inside.push_back(is_inside(middle_of(largest), flat));
+      is_region_inside.push_back(is_inside(compute_centre(largest), flat));
     }
     if (!is_region_inside[static_cast<std::size_t>(face->info().index)]) continue;
     std::array<std::uint32_t, 3> triangle;
     for (int i = 0; i < 3; ++i) {
-      triangle[static_cast<std::size_t>(i)] = vertex_of(mesh, plane, face->vertex(i));
+      triangle[static_cast<std::size_t>(i)] = find_vertex(mesh, plane, face->vertex(i));
     }
     mesh.triangles.push_back(triangle);
     ++count;

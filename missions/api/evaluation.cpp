@@ -34,9 +34,9 @@ Evaluation evaluate(std::span<const Eigen::Vector3f> points, const geometry::Mes
                     const EvaluationRequest& request) {
   validate(points, request);
   geometry::validate(model);
-  evaluation::CloudJudge judge(model, request.samples, request.distance, request.threads);
-  judge.add(points);
-  const evaluation::CloudJudgement found = judge.judgement();
+  evaluation::CloudEvaluator evaluator(model, request.samples, request.distance, request.threads);
+  evaluator.add(points);
+  const evaluation::CloudEvaluation found = evaluator.result();
   return {.coverage = found.coverage,
           .mean = found.accuracy.mean,
           .root_mean_square = found.accuracy.root_mean_square,

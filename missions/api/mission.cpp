@@ -9,7 +9,7 @@
 namespace skycap::missions::api {
 namespace {
 
-std::vector<config::KeyOverride> overrides_of(const std::vector<Setting>& settings) {
+std::vector<config::KeyOverride> make_overrides(const std::vector<Setting>& settings) {
   std::vector<config::KeyOverride> overrides;
   for (const Setting& setting : settings) {
     overrides.push_back({"setting " + setting.key, setting.key, setting.value});
@@ -21,13 +21,13 @@ std::vector<config::KeyOverride> overrides_of(const std::vector<Setting>& settin
 
 Mission Mission::load(const std::filesystem::path& file, const std::vector<Setting>& settings) {
   return Mission(std::make_shared<const Contents>(
-      Contents{config::read_mission(file, overrides_of(settings)), file.parent_path()}));
+      Contents{config::read_mission(file, make_overrides(settings)), file.parent_path()}));
 }
 
 Mission Mission::parse(const std::string& text, const std::string& name,
                        const std::vector<Setting>& settings) {
   return Mission(std::make_shared<const Contents>(
-      Contents{config::parse_mission(text, name, overrides_of(settings)),
+      Contents{config::parse_mission(text, name, make_overrides(settings)),
                std::filesystem::path(name).parent_path()}));
 }
 

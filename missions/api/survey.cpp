@@ -13,7 +13,7 @@
 namespace skycap::missions::api {
 namespace {
 
-Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request) {
+Survey make_survey(const Mission::Contents& contents, const SurveyRequest& request) {
   const config::MissionSetup& setup = contents.setup;
   const unsigned threads = setup.run.threads;
   std::optional<geometry::OutputFolder> folder;
@@ -23,7 +23,7 @@ Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request
   Survey survey;
   session::SurveyRecord record =
       simulation::run_survey(setup.simulation, scene, setup.run.seed, threads, request.stop,
-                             [&](const session::JudgedView& view) {
+                             [&](const session::EvaluatedView& view) {
                                survey.views.push_back(view.surveyed);
                                survey.coverages.push_back(view.coverage);
                                if (request.report) request.report(view.surveyed, view.coverage);
@@ -39,7 +39,7 @@ Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request
   survey.summary = package::summary_json(setup, record, figures, flight);
   survey.end = record.stop_reason;
   survey.visible_coverage = figures.visible;
-  survey.attainable_coverage = figures.ceiling;
+  survey.attainable_coverage = figures.attainable_coverage;
   survey.cloud = std::move(record.cloud);
   return survey;
 }
@@ -48,7 +48,7 @@ Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request
 
 Survey plan(const Mission& mission, const SurveyRequest& request) {
   try {
-    return survey_of(mission.contents(), request);
+    return make_survey(mission.contents(), request);
   } catch (const Error& error) {
     throw Error(error.kind(), mission.name() + ": " + error.what());
   }

@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 /// Mission with a contestant, and its trials so far, ordered by seed.
 struct Entry {
   std::string title;
-  const batch::Contestant* contestant;
+  const batch::Method* method;
   /// Setup of each trial; shared, or one per generated scene.
   std::vector<std::shared_ptr<batch::Setup>> setups;
   std::vector<std::optional<batch::Trial>> trials;
@@ -38,9 +38,9 @@ struct Entry {
   std::uint64_t seed(std::size_t trial) const { return setups[trial]->mission.run.seed + trial; }
 };
 
-std::vector<const batch::Contestant*> chosen_contestants(const std::vector<std::string>& names) {
+std::vector<const batch::Method*> selected_methods(const std::vector<std::string>& names) {
   try {
-    return batch::contestants_named(names);
+    return batch::methods_by_name(names);
   } catch (const Error& error) {
     throw Error(error.kind(), std::string("--planners: ") + error.what());
   }
@@ -63,23 +63,23 @@ std::vector<std::string> chosen_scenes(const std::vector<std::string>& names) {
 
 /// Creates the entry of a planner on a mission. With a model family `scene`, each trial has its own
 /// generated scene.
-Entry entry_of(const fs::path& file, const batch::Contestant* contestant, const std::string& scene,
-               const BenchmarkOptions& options, const config::Report& report) {
+Entry make_entry(const fs::path& file, const batch::Method* method, const std::string& scene,
+                 const BenchmarkOptions& options, const config::Report& report) {
   // By default no vehicle is used: as in the paper, the sensor moves freely.
   std::vector<config::KeyOverride> overrides{{"benchmark", "flight.vehicle", "none"}};
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
-  Entry entry{"", contestant, {}, {}};
+  Entry entry{"", method, {}, {}};
   entry.trials.resize(options.trials);
   if (scene.empty()) {
     const auto setup = std::make_shared<batch::Setup>(
-        batch::read_setup(file, contestant, "--planners", overrides, report));
+        batch::read_setup(file, method, "--planners", overrides, report));
     entry.title = setup->title;
     entry.setups.assign(options.trials, setup);
     return entry;
   }
   overrides.push_back({"--scenes", "scene.model", "builtin:" + scene});
   for (std::size_t trial = 0; trial < options.trials; ++trial) {
-    batch::Setup setup = batch::read_setup(file, contestant, "--planners", overrides, report);
+    batch::Setup setup = batch::read_setup(file, method, "--planners", overrides, report);
     const std::string seed = std::to_string(setup.mission.run.seed + trial);
     setup.mission = config::with_keys(setup.mission, {{"--scenes", "scene.seed", seed}});
     entry.title = options.missions.size() == 1 ? scene : setup.title + " " + scene;
@@ -90,16 +90,16 @@ Entry entry_of(const fs::path& file, const batch::Contestant* contestant, const 
   return entry;
 }
 
-std::vector<Entry> entries_of(const BenchmarkOptions& options, const Console& console) {
+std::vector<Entry> make_entries(const BenchmarkOptions& options, const Console& console) {
   ProgressLine progress(console, options.is_quiet);
   std::vector<Entry> entries;
-  std::map<std::string, fs::path> file_of_title;
+  std::map<std::string, fs::path> files_by_title;
   const std::vector<std::string> scenes = chosen_scenes(options.scenes);
   for (const fs::path& file : options.missions) {
     for (const std::string& scene : scenes) {
-      for (const batch::Contestant* contestant : chosen_contestants(options.planners)) {
-        Entry entry = entry_of(file, contestant, scene, options, progress.teller());
-        const auto [known, is_new] = file_of_title.emplace(entry.title, file);
+      for (const batch::Method* method : selected_methods(options.planners)) {
+        Entry entry = make_entry(file, method, scene, options, progress.progress_callback());
+        const auto [known, is_new] = files_by_title.emplace(entry.title, file);
         if (!is_new && known->second != file) {
           throw Error(ErrorKind::bad_usage,
                       file.string() + " and " + known->second.string() +
@@ -113,11 +113,11 @@ std::vector<Entry> entries_of(const BenchmarkOptions& options, const Console& co
 }
 
 fs::path item_file(const fs::path& folder, const Entry& entry, std::uint64_t seed) {
-  return folder / "items" / entry.title / entry.contestant->name /
+  return folder / "items" / entry.title / entry.method->name /
          ("seed_" + std::to_string(seed) + ".json");
 }
 
-bool gives_view_limit(const batch::Setup& setup) {
+bool has_view_limit(const batch::Setup& setup) {
   return setup.mission.text("volumetric.view_limit") != "-";
 }
 
@@ -132,7 +132,7 @@ std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& 
     const batch::Setup& first = *entry.setups.front();
     json["entries"].push_back({{"mission", entry.title},
                                {"file", first.file.string()},
-                               {"planner", entry.contestant->name},
+                               {"planner", entry.method->name},
                                {"first_seed", first.mission.run.seed},
                                {"fingerprint", first.fingerprint}});
   }
@@ -144,14 +144,14 @@ class Benchmark {
   Benchmark(const BenchmarkOptions& options, const Console& console)
       : options_(options),
         console_(console),
-        entries_(entries_of(options, console)),
+        entries_(make_entries(options, console)),
         folder_(options.out.value_or("results/benchmark")),
         runner_("benchmark", console, options.is_quiet, options.threads) {}
 
   int run() {
-    run_entries([](const Entry& entry) { return !entry.contestant->is_volumetric; });
-    take_view_limits_from_see();
-    run_entries([](const Entry& entry) { return entry.contestant->is_volumetric; });
+    run_entries([](const Entry& entry) { return !entry.method->is_volumetric; });
+    derive_view_limits_from_see();
+    run_entries([](const Entry& entry) { return entry.method->is_volumetric; });
     report();
     return is_whole() ? 0 : 1;
   }
@@ -159,7 +159,7 @@ class Benchmark {
  private:
   template <typename Choice>
   void run_entries(Choice is_chosen) {
-    std::vector<batch::Item> items;
+    std::vector<batch::BatchItem> items;
     std::vector<std::optional<batch::Trial>*> trials;
     // The outer loop is over seeds, so that an interrupted run has trials of every entry.
     for (std::size_t trial = 0; trial < options_.trials; ++trial) {
@@ -177,18 +177,18 @@ class Benchmark {
   }
 
   /// Limits volumetric surveys to the maximum number of views used by SEE (paper §IV-B).
-  void take_view_limits_from_see() {
+  void derive_view_limits_from_see() {
     for (Entry& entry : entries_) {
-      if (!entry.contestant->is_volumetric || gives_view_limit(*entry.setups.front())) continue;
-      std::size_t most = 0;
+      if (!entry.method->is_volumetric || has_view_limit(*entry.setups.front())) continue;
+      std::size_t max = 0;
       for (const Entry& other : entries_) {
-        if (other.title != entry.title || other.contestant->name != "see") continue;
-        for (const auto& trial : other.trials) most = std::max(most, trial ? trial->views : 0);
+        if (other.title != entry.title || other.method->name != "see") continue;
+        for (const auto& trial : other.trials) max = std::max(max, trial ? trial->views : 0);
       }
-      if (most == 0) continue;
+      if (max == 0) continue;
       for (const auto& setup : entry.setups) {
         setup->mission = config::with_keys(
-            setup->mission, {{"benchmark", "volumetric.view_limit", std::to_string(most)}});
+            setup->mission, {{"benchmark", "volumetric.view_limit", std::to_string(max)}});
         setup->name_kind_and_fingerprint();
       }
     }
@@ -203,7 +203,7 @@ class Benchmark {
   void report() {
     std::vector<batch::BenchmarkCell> cells;
     for (const Entry& entry : entries_) {
-      batch::BenchmarkCell cell{entry.title, entry.contestant->name, {}};
+      batch::BenchmarkCell cell{entry.title, entry.method->name, {}};
       for (const auto& trial : entry.trials) {
         if (trial) cell.trials.push_back(*trial);
       }
@@ -229,7 +229,7 @@ class Benchmark {
 }  // namespace
 
 int benchmark(const BenchmarkOptions& options, const Console& console) {
-  const HoldsResults results(console);
+  const PendingResultsGuard results(console);
   return Benchmark(options, console).run();
 }
 

@@ -32,7 +32,7 @@ std::string vehicle_text(const Calibration& calibration, const std::string& pres
       "{}\nmode:\n  max_ascent: {}\n  max_descent: {}\n  acceleration: {}\n  "
       "vertical_acceleration: {}\n  jerk: {}\n  jerk_rise: {}\n  settle_time: {}\n  yaw_rate_deg: "
       "{}\n  yaw_acceleration_deg: {}\n  landing_speed: {}\n  landing_height: {}\n",
-      log, calibration.windows, calibration.flown, calibration.scatter,
+      log, calibration.windows, calibration.flight_time, calibration.scatter,
       100.0 * calibration.energy_error, name, preset, figure(vehicle.mass),
       figure(vehicle.rotor_diameter), figure(vehicle.battery_wh), figure(vehicle.endurance_min),
       figure(vehicle.avionics_power), figure(vehicle.drag_area), figure(vehicle.energy_error),
@@ -51,7 +51,7 @@ std::string report(const Calibration& calibration, const flight::Vehicle& before
       "not used in the fit within {:.1f}%: energy_error {:.2f}\n  wind      {:.1f} m/s during the "
       "flight\n",
       calibration.hover_power, vehicle.endurance_min, before.endurance_min, vehicle.avionics_power,
-      vehicle.drag_area, calibration.windows, calibration.flown, calibration.scatter,
+      vehicle.drag_area, calibration.windows, calibration.flight_time, calibration.scatter,
       100.0 * calibration.energy_error, vehicle.energy_error, calibration.wind.norm());
   if (calibration.outliers > 0) {
     text += fmt::format("  damage    {} readings skipped\n", calibration.outliers);

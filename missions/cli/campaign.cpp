@@ -11,15 +11,15 @@
 namespace skycap::missions::cli {
 namespace {
 
-int campaign_verb(const ItemOptions& options, const Console& console) {
-  const LastResort last_resort(console);
+int run_campaign_command(const BatchOptions& options, const Console& console) {
+  const SignalWatchdog watchdog(console);
   batch::CampaignFile file = batch::read_campaign(options.file);
   const std::filesystem::path out = options.folder(file.name);
-  ItemRun run(options, "campaign", std::move(file), out, console);
+  BatchRun run(options, "campaign", std::move(file), out, console);
   return run.run([&](const Collected& all, geometry::OutputFolder& folder) {
     std::vector<batch::BenchmarkCell> cells;
     for (const CollectedItem& item : all.items) {
-      const std::string& planner = item.contestant->name;
+      const std::string& planner = item.method->name;
       if (cells.empty() || cells.back().mission != item.title || cells.back().planner != planner) {
         cells.push_back({item.title, planner, {}});
       }
@@ -42,10 +42,11 @@ int campaign_verb(const ItemOptions& options, const Console& console) {
 }  // namespace
 
 void add_campaign(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("campaign", "Run a batch of surveys locally or on a cluster");
-  const auto options = std::make_shared<ItemOptions>();
-  add_item_options(*verb, *options, "Campaign file (docs/reference/batch-files.md)");
-  run(*verb, options, campaign_verb, console, action);
+  CLI::App* command =
+      app.add_subcommand("campaign", "Run a batch of surveys locally or on a cluster");
+  const auto options = std::make_shared<BatchOptions>();
+  add_batch_options(*command, *options, "Campaign file (docs/reference/batch-files.md)");
+  run(*command, options, run_campaign_command, console, action);
 }
 
 }  // namespace skycap::missions::cli

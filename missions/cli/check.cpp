@@ -33,13 +33,13 @@ namespace skycap::missions::cli {
 namespace {
 
 /// Returns the facts for checking a file. The pad and the views are taken from its package.
-flight::FlightFacts facts_of(const flight::FlightOptions& flight,
-                             const std::filesystem::path& route) {
+flight::FlightFacts make_flight_facts(const flight::FlightOptions& flight,
+                                      const std::filesystem::path& route) {
   flight::FlightFacts facts = flight.facts();
   const std::filesystem::path folder = route.parent_path();
   if (!std::filesystem::exists(folder / package::summary_name)) return facts;
   package::PackageSummary summary = package::read_package_summary(folder, {});
-  facts.views = summary.stations();
+  facts.views = summary.capture_points();
   if (!facts.is_pad_known && summary.pad) {
     facts.pad = *summary.pad;
     facts.is_pad_known = true;
@@ -48,18 +48,19 @@ flight::FlightFacts facts_of(const flight::FlightOptions& flight,
 }
 
 /// Returns the corners of all pieces that are not flown over the pad.
-std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
-  std::vector<Eigen::Vector3d> places;
-  for (const flight::FlownPiece& piece : route.pieces) {
-    if (piece.is_over_pad) continue;
-    if (places.empty()) places.push_back(piece.start.to);
-    places.push_back(piece.to);
+std::vector<Eigen::Vector3d> read_positions(const flight::InterpretedRoute& route) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const flight::InterpretedSegment& segment : route.segments) {
+    if (segment.is_over_pad) continue;
+    if (positions.empty()) positions.push_back(segment.start.to);
+    positions.push_back(segment.to);
   }
-  return places;
+  return positions;
 }
 
 /// Loads the mission's model. Errors are prefixed with the mission file.
-geometry::Mesh model_of(const scene::SceneOptions& scene, const std::filesystem::path& file) {
+geometry::Mesh load_scene_model(const scene::SceneOptions& scene,
+                                const std::filesystem::path& file) {
   try {
     return evaluation::placed_model(scene, file.parent_path());
   } catch (const Error& error) {
@@ -70,14 +71,14 @@ geometry::Mesh model_of(const scene::SceneOptions& scene, const std::filesystem:
 /// Prints unsuitable ground at the take-off and landing points. Returns whether all are suitable.
 bool check_pads(const std::string& file, const flight::FlightOptions& flight,
                 const geometry::Mesh& model, const Eigen::Vector3d& pad, const Console& console) {
-  if (!flight.is_flown()) return true;
+  if (!flight.has_vehicle()) return true;
   bool are_fit = true;
-  for (const flight::PadGround& ground : package::true_grounds(flight, model, pad)) {
-    const std::string why = why_unfit(ground, flight.ground_limits());
-    if (why.empty()) continue;
+  for (const flight::LandingSurface& ground : package::true_landing_surfaces(flight, model, pad)) {
+    const std::string reason = unfit_reason(ground, flight.ground_limits());
+    if (reason.empty()) continue;
     are_fit = false;
-    console.out << file << ": not safe, the landing point at " << flight::place_text(ground.place)
-                << " " << why << "\n";
+    console.out << file << ": not safe, the landing point at "
+                << flight::position_text(ground.position) << " " << reason << "\n";
   }
   return are_fit;
 }
@@ -91,44 +92,45 @@ int check_timetable(const CheckOptions& options, const flight::FlightOptions& fl
   }
   const std::string file = options.route->string();
   const flight::SeparationRule rule = flight.fleet.rule();
-  const package::TimetableProof proof =
-      package::prove_timetable(*options.route, flight, package::reported_distance);
-  for (const std::string& problem : proof.problems) console.out << file << ": " << problem << "\n";
+  const package::TimetableVerification verification =
+      package::verify_timetable(*options.route, flight, package::reported_distance);
+  for (const std::string& problem : verification.problems)
+    console.out << file << ": " << problem << "\n";
   console.out << file << ": "
               << fmt::format(
                      "{}, {} sorties of {} vehicles in {:.0f} s, separation at least {:.2f} m at "
                      "all times, each up to {} s early or late; required {} m\n",
-                     proof.problems.empty() ? "verified" : "not safe", proof.sorties,
-                     flight.fleet.vehicles.size(), proof.makespan, proof.distance,
+                     verification.problems.empty() ? "verified" : "not safe", verification.sorties,
+                     flight.fleet.vehicles.size(), verification.makespan, verification.distance,
                      support::short_text(rule.tolerance), support::short_text(rule.distance))
               << std::flush;
-  return proof.problems.empty() ? 0 : 1;
+  return verification.problems.empty() ? 0 : 1;
 }
 
 /// Verifies the flight of a route file against the mission's ground-truth scene.
 int check_route_file(const CheckOptions& options, const flight::FlightOptions& given,
                      const geometry::Mesh& model, const Console& console) {
   const std::string file = options.route->string();
-  const flight::FlightOptions flight = package::flight_of_file(*options.route, given);
-  const flight::FlightFacts facts = facts_of(flight, *options.route);
-  const flight::FlownRoute route = flight::interpret_file(*options.route, facts);
+  const flight::FlightOptions flight = package::find_file_flight(*options.route, given);
+  const flight::FlightFacts facts = make_flight_facts(flight, *options.route);
+  const flight::InterpretedRoute route = flight::interpret_file(*options.route, facts);
   const package::TrueSpace space = package::true_space(flight, model, facts.pad.z());
 
   ProgressLine progress(console, false);
-  progress.show(file + ": verifying " + std::to_string(route.pieces.size()) + " legs");
+  progress.show(file + ": verifying " + std::to_string(route.segments.size()) + " legs");
   const double asked_for = flight.clearance;
-  const flight::FlownProof proof = prove(route, space.everywhere, space.over_pad,
-                                         std::max(0.0, asked_for - flight::rounding_bound),
-                                         asked_for + flight::reported_surplus);
+  const flight::RouteVerification verification = verify(
+      route, space.everywhere, space.over_pad, std::max(0.0, asked_for - flight::rounding_bound),
+      asked_for + flight::reported_surplus);
   progress.clear();
-  for (const flight::Problems& problems : {route.problems, proof.problems}) {
+  for (const flight::Problems& problems : {route.problems, verification.problems}) {
     for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }
-  const bool is_fine = route.problems.empty() && proof.problems.empty();
+  const bool is_fine = route.problems.empty() && verification.problems.empty();
   console.out << file << ": " << (is_fine ? "verified" : "not safe") << ", "
-              << proof.problems.size() << " of " << route.pieces.size()
+              << verification.problems.size() << " of " << route.segments.size()
               << " legs violate the clearance of " << support::short_text(asked_for)
-              << " m, minimum " << support::short_text(proof.clearance) << " m; "
+              << " m, minimum " << support::short_text(verification.clearance) << " m; "
               << support::short_text(flight::length(route)) << " m long";
   if (!route.problems.empty()) console.out << "; " << route.problems.size() << " other problems";
   if (facts.views.empty() && !route.stops.empty()) {
@@ -137,11 +139,11 @@ int check_route_file(const CheckOptions& options, const flight::FlightOptions& g
   }
   console.out << "\n";
   const package::ReturnCheck returns = package::check_returns(
-      *options.route, options.return_height, flight, space.everywhere, places_of(route));
+      *options.route, options.return_height, flight, space.everywhere, read_positions(route));
   console.out << file << ": " << returns.text << "\n";
   Eigen::Vector3d pad = facts.pad;
-  if (!facts.is_pad_known && !route.pieces.empty()) {
-    pad.head<2>() = route.pieces.front().start.to.head<2>();
+  if (!facts.is_pad_known && !route.segments.empty()) {
+    pad.head<2>() = route.segments.front().start.to.head<2>();
   }
   const bool are_pads_fit = check_pads(file, flight, model, pad, console);
   console.out << std::flush;
@@ -164,7 +166,7 @@ std::string scene_text(const survey::PlannerOptions& planner, int core_threshold
       "  scene     {} triangles, {:.4g} x {:.4g} x {:.4g} m, {:.4g} m^2\n"
       "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core threshold k {}\n",
       scene.model().triangles.size(), size.x(), size.y(), size.z(),
-      geometry::surface_area(scene.model()), survey::title_of(planner.name).word,
+      geometry::surface_area(scene.model()), survey::find_title(planner.name).word,
       scene.view_distance(), planner.spacing, core_threshold);
 }
 
@@ -176,21 +178,20 @@ std::string rough_text(double number) {
 }
 
 /// Returns "12 to 20", or one number if both are equal.
-std::string range_text(double least, double most) {
-  const std::string low = rough_text(least), high = rough_text(most);
+std::string range_text(double min, double max) {
+  const std::string low = rough_text(min), high = rough_text(max);
   return low == high ? low : low + " to " + high;
 }
 
 std::string expectation_text(const simulation::Expectation& expected) {
-  const std::string views =
-      expected.least_views == expected.most_views
-          ? std::to_string(expected.most_views)
-          : fmt::format("{} to {}", expected.least_views, expected.most_views);
+  const std::string views = expected.min_views == expected.max_views
+                                ? std::to_string(expected.max_views)
+                                : fmt::format("{} to {}", expected.min_views, expected.max_views);
   return fmt::format(
       "  expected  {} views (oracle: {}), {} minutes of flight, {} MB\n  time      {} s on this "
       "machine, estimated from the first view\n",
-      views, expected.known_views, range_text(expected.least_minutes, expected.most_minutes),
-      rough_text(1e-6 * expected.memory), range_text(expected.least_time, expected.most_time));
+      views, expected.known_views, range_text(expected.min_minutes, expected.max_minutes),
+      rough_text(1e-6 * expected.memory), range_text(expected.min_time, expected.max_time));
 }
 
 /// Prints whether a survey of the mission is possible, and its estimated effort.
@@ -206,7 +207,7 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
         file + (found.problems.empty() ? ": no problems found\n" : ": cannot be surveyed\n");
     text +=
         scene_text(setup.survey().planner, core_threshold(package::settings_json(setup)), scene);
-    if (setup.scene().priors) text += site_data::text_of(*setup.scene().priors);
+    if (setup.scene().priors) text += site_data::format_priors(*setup.scene().priors);
     for (const std::string& problem : found.problems) text += "  problem   " + problem + "\n";
     for (const std::string& warning : found.warnings) text += "  warning   " + warning + "\n";
     if (found.problems.empty()) {
@@ -236,7 +237,7 @@ int check(const CheckOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show(setup.name + ": loading scene");
   if (!options.route) return check_survey(options, setup, progress, console);
-  const geometry::Mesh model = model_of(setup.scene(), options.mission);
+  const geometry::Mesh model = load_scene_model(setup.scene(), options.mission);
   progress.clear();
   return check_route_file(options, setup.flight(), model, console);
 }

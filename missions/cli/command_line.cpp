@@ -38,117 +38,127 @@ std::string planner_list() {
 }
 
 void add_plan(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("plan", "Plan a survey in simulation and write the mission files");
   const auto options = std::make_shared<PlanOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("mission", options->mission, "Mission file (docs/reference/mission-file.md)")
+  command->add_option("mission", options->mission, "Mission file (docs/reference/mission-file.md)")
       ->required();
-  verb->add_option("--out", options->out, "Folder for the results (default: results/NAME)");
-  verb->add_option("--planner", keys->planner, planner_list() + "; overrides the mission file");
-  verb->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
-  verb->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
-  verb->add_option("--max-views", keys->max_views, "Maximum number of views");
-  verb->add_option("--trials", options->trials,
+  command->add_option("--out", options->out, "Folder for the results (default: results/NAME)");
+  command->add_option("--planner", keys->planner, planner_list() + "; overrides the mission file");
+  command->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
+  command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
+  command->add_option("--max-views", keys->max_views, "Maximum number of views");
+  command
+      ->add_option("--trials", options->trials,
                    "Run this many seeds and write trials.csv and trials.json")
       ->check(CLI::Range(1, 100'000));
-  verb->add_flag("--resume", options->resumes,
-                 "Resume an interrupted survey in the results folder");
-  verb->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
-  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
-  verb->add_flag("--use-prior-as-truth", keys->uses_prior_as_truth,
-                 "Simulate with the target prior data as ground truth");
-  verb->add_flag("--verbose", options->is_verbose,
-                 "Print the planning time of each view by part, and lower bounds");
-  add_set_option(*verb, *keys);
-  run_with_keys(*verb, options, keys, plan, console, action);
+  command->add_flag("--resume", options->resumes,
+                    "Resume an interrupted survey in the results folder");
+  command->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only");
+  command->add_flag("--use-prior-as-truth", keys->uses_prior_as_truth,
+                    "Simulate with the target prior data as ground truth");
+  command->add_flag("--verbose", options->is_verbose,
+                    "Print the planning time of each view by part, and lower bounds");
+  add_set_option(*command, *keys);
+  run_with_keys(*command, options, keys, plan, console, action);
 }
 
 void add_benchmark(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("benchmark", "Compare planners over several missions and seeds");
   const auto options = std::make_shared<BenchmarkOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("missions", options->missions, "Mission files")->required();
-  verb->add_option("--planners", options->planners,
+  command->add_option("missions", options->missions, "Mission files")->required();
+  command
+      ->add_option("--planners", options->planners,
                    "all (the planners of the paper), or names such as see++,oa,skycap")
       ->delimiter(',');
-  verb->add_option("--scenes", options->scenes,
+  command
+      ->add_option("--scenes", options->scenes,
                    "all scene families, or names such as garage,church. Each replaces the scenes "
                    "of the missions and is generated for each seed")
       ->delimiter(',');
-  verb->add_option("--trials", options->trials,
+  command
+      ->add_option("--trials", options->trials,
                    "Number of seeds for each planner and mission (default: 10)")
       ->check(CLI::Range(1, 100'000));
-  verb->add_option(
+  command->add_option(
       "--out", options->out,
       "Folder for the results (default: results/benchmark). Finished runs are not repeated");
-  verb->add_option("--threads", options->threads, "Number of parallel surveys (0: all processors)")
+  command
+      ->add_option("--threads", options->threads, "Number of parallel surveys (0: all processors)")
       ->check(CLI::Range(0, 1024));
-  verb->add_option("--seed", keys->seed, "First seed; overrides the mission files");
-  verb->add_option("--max-views", keys->max_views, "Maximum number of views of every survey");
-  verb->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
-  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
-  add_set_option(*verb, *keys);
-  run_with_keys(*verb, options, keys, benchmark, console, action);
+  command->add_option("--seed", keys->seed, "First seed; overrides the mission files");
+  command->add_option("--max-views", keys->max_views, "Maximum number of views of every survey");
+  command->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only");
+  add_set_option(*command, *keys);
+  run_with_keys(*command, options, keys, benchmark, console, action);
 }
 
 void add_scan(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("scan", "Simulate a LiDAR or depth camera along a route");
-  const auto options = std::make_shared<ScanVerbOptions>();
+  CLI::App* command = app.add_subcommand("scan", "Simulate a LiDAR or depth camera along a route");
+  const auto options = std::make_shared<ScanCommandOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("mission", options->mission, "Mission file (docs/howto/simulate-lidar.md)")
+  command->add_option("mission", options->mission, "Mission file (docs/howto/simulate-lidar.md)")
       ->required();
-  verb->add_option("--route", options->route,
-                   "Route file, or folder of a mission package (default: from the mission file)");
-  verb->add_option("--sensor", options->sensor,
-                   "Sensor preset or file NAME.yaml; overrides the mission file");
-  verb->add_option("--out", options->out, "Folder for the results (default: results/NAME/scan)");
-  verb->add_option(
+  command->add_option(
+      "--route", options->route,
+      "Route file, or folder of a mission package (default: from the mission file)");
+  command->add_option("--sensor", options->sensor,
+                      "Sensor preset or file NAME.yaml; overrides the mission file");
+  command->add_option("--out", options->out, "Folder for the results (default: results/NAME/scan)");
+  command
+      ->add_option(
           "--format", options->formats,
           "Point formats, one or more of " + scan::cloud_format_names() + " (default: las)")
       ->delimiter(',');
-  verb->add_flag("--with-truth", options->with_truth,
-                 "Also write the points at their true positions");
-  CLI::Option* const resumes = verb->add_flag("--resume", options->resumes,
-                                              "Resume an interrupted scan in the results folder");
-  verb->add_option(
-          "--pieces", options->pieces,
+  command->add_flag("--with-truth", options->with_truth,
+                    "Also write the points at their true positions");
+  CLI::Option* const resumes = command->add_flag(
+      "--resume", options->resumes, "Resume an interrupted scan in the results folder");
+  command
+      ->add_option(
+          "--pieces", options->shards,
           "Split the flight into this many pieces and merge them; the result has the same bytes")
       ->check(CLI::Range(1, 1'000'000))
       ->excludes(resumes);
-  add_task_options(*verb, options->task, "piece");
-  verb->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
-  verb->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
-  verb->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
-  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
-  add_set_option(*verb, *keys);
-  run_with_keys(*verb, options, keys, scan, console, action);
+  add_task_options(*command, options->task, "piece");
+  command->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
+  command->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
+  command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only");
+  add_set_option(*command, *keys);
+  run_with_keys(*command, options, keys, scan, console, action);
 }
 
 void add_check(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("check", "Check a mission file, or verify the clearance of a route file");
   const auto options = std::make_shared<CheckOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   const auto prints_schema = std::make_shared<bool>(false);
   const auto prints_keys = std::make_shared<bool>(false);
   const auto rewritten = std::make_shared<std::filesystem::path>();
-  verb->add_option("mission", options->mission, "Mission file");
-  verb->add_option("--route", options->route,
-                   "Verify that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
-                   "keeps flight.clearance from the scene");
-  verb->add_option("--return-altitude", options->return_height,
+  command->add_option("mission", options->mission, "Mission file");
+  command->add_option(
+      "--route", options->route,
+      "Verify that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
+      "keeps flight.clearance from the scene");
+  command
+      ->add_option("--return-altitude", options->return_height,
                    "Return (RTL/RTH) altitude set on the vehicle, in metres above take-off")
       ->check(CLI::Range(0.0, 10'000.0));
-  add_set_option(*verb, *keys);
-  verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files");
-  verb->add_flag("--keys", *prints_keys, "Print the table of all keys");
-  verb->add_flag("--setup", options->prints_setup,
-                 "Print all keys, with defaults and derived values, as YAML");
-  verb->add_option("--rewrite", *rewritten,
-                   "Write the mission with the current names of keys and values to this file");
-  verb->callback([=, &console, &action] {
+  add_set_option(*command, *keys);
+  command->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files");
+  command->add_flag("--keys", *prints_keys, "Print the table of all keys");
+  command->add_flag("--setup", options->prints_setup,
+                    "Print all keys, with defaults and derived values, as YAML");
+  command->add_option("--rewrite", *rewritten,
+                      "Write the mission with the current names of keys and values to this file");
+  command->callback([=, &console, &action] {
     options->overrides = keys->overrides();
     action = [=, &console] {
       if (*prints_schema) return console.out << config::mission_json_schema(), 0;
@@ -157,146 +167,162 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
         throw Error(ErrorKind::bad_usage, "check: missing argument: mission file");
       }
       if (!rewritten->empty()) return rewrite(options->mission, *rewritten, console);
-      warn_of_former_names(files_of(*options), options->overrides, console);
+      warn_deprecated_names(collect_files(*options), options->overrides, console);
       return check(*options, console);
     };
   });
 }
 
 void add_fly_test(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
+  CLI::App* command = app.add_subcommand(
       "fly-test", "Simulate a planned flight many times with wind and failsafes");
-  const auto options = std::make_shared<FlyTestVerbOptions>();
+  const auto options = std::make_shared<FlyTestCommandOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("package", options->package, "Folder that plan wrote")->required();
-  verb->add_option("--flights", options->flights, "Simulated flights per route file (default: 100)")
+  command->add_option("package", options->package, "Folder that plan wrote")->required();
+  command
+      ->add_option("--flights", options->flights, "Simulated flights per route file (default: 100)")
       ->check(CLI::Range(1, 1'000'000));
-  verb->add_option("--returns", options->returns,
+  command
+      ->add_option("--returns", options->returns,
                    "Simulated returns from random positions (default: 1000; 0: none)")
       ->check(CLI::Range(0, 100'000'000));
-  verb->add_option("--wind", options->wind_speed,
+  command
+      ->add_option("--wind", options->wind_speed,
                    "Maximum steady wind in m/s, to which gusts are added (default: the mission's, "
                    "at least 5)")
       ->check(number_between(0.0, 100.0));
-  verb->add_option("--position-error", options->position_error,
+  command
+      ->add_option("--position-error", options->position_error,
                    "Maximum position error of the receiver in metres (default: from the mission)")
       ->check(number_between(0.0, 1000.0));
-  verb->add_option("--return-altitude", options->return_height,
+  command
+      ->add_option("--return-altitude", options->return_height,
                    "Return (RTL/RTH) altitude set on the vehicle, in metres above take-off")
       ->check(number_between(0.0, 10'000.0));
-  verb->add_option("--truth", options->truth,
-                   "Mission file: also check the flights against its scene (ground truth)");
-  verb->add_option("--out", options->out, "Folder for fly_test.json (default: the package)");
-  verb->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
-  verb->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
-  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
-  add_set_option(*verb, *keys);
-  run_with_keys(*verb, options, keys, fly_test, console, action);
+  command->add_option("--truth", options->truth,
+                      "Mission file: also check the flights against its scene (ground truth)");
+  command->add_option("--out", options->out, "Folder for fly_test.json (default: the package)");
+  command->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
+  command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only");
+  add_set_option(*command, *keys);
+  run_with_keys(*command, options, keys, fly_test, console, action);
 }
 
 void add_calibrate(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("calibrate", "Fit a vehicle file to a flight log");
+  CLI::App* command = app.add_subcommand("calibrate", "Fit a vehicle file to a flight log");
   const auto options = std::make_shared<CalibrateOptions>();
-  verb->add_option("log", options->log, "ArduPilot dataflash log (.bin), or .csv")->required();
-  verb->add_option("--vehicle", options->vehicle, "Preset to inherit from, such as m350_rtk")
+  command->add_option("log", options->log, "ArduPilot dataflash log (.bin), or .csv")->required();
+  command->add_option("--vehicle", options->vehicle, "Preset to inherit from, such as m350_rtk")
       ->required();
-  verb->add_option("--mass", options->mass,
+  command
+      ->add_option("--mass", options->mass,
                    "Take-off mass in kg, with payload (default: from the preset)")
       ->check(number_between(0.01, 1000.0));
-  verb->add_option("--battery", options->battery_wh,
+  command
+      ->add_option("--battery", options->battery_wh,
                    "Battery capacity in Wh (default: from the preset)")
       ->check(number_between(0.1, 1e5));
-  verb->add_option("--air-density", options->air_density,
+  command
+      ->add_option("--air-density", options->air_density,
                    "Air density during the flight in kg/m^3 (default: 1.225)")
       ->check(number_between(0.4, 1.9));
-  verb->add_option("--out", options->out, "Vehicle file (default: LOG.yaml)");
-  run(*verb, options, calibrate, console, action);
+  command->add_option("--out", options->out, "Vehicle file (default: LOG.yaml)");
+  run(*command, options, calibrate, console, action);
 }
 
 void add_evaluate(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("evaluate", "Compare a point cloud or mesh with a reference model");
   const auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* what = verb->add_option_group("what is evaluated");
+  CLI::App* what = command->add_option_group("what is evaluated");
   what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las, .laz, .e57 or .xyz");
   what->add_option("--mesh", options->mesh,
                    "Mesh instead of a cloud, for example from skycap reconstruct");
   what->require_option(1);
-  verb->add_option("--model", options->model,
+  command
+      ->add_option("--model", options->model,
                    "Reference: a mesh, builtin:NAME, model:NAME, or a mission file for its scene")
       ->required();
-  verb->add_option("--distance", options->distance, "Coverage distance in metres")
+  command->add_option("--distance", options->distance, "Coverage distance in metres")
       ->check(number_between(1e-6, 1e9));
-  verb->add_option("--samples", options->samples, "Number of surface samples (default: 100000)")
+  command->add_option("--samples", options->samples, "Number of surface samples (default: 100000)")
       ->check(CLI::Range(100, 10'000'000));
-  verb->add_option("--pieces", options->pieces,
+  command
+      ->add_option("--pieces", options->shards,
                    "Split the cloud into this many pieces; the values are the same")
       ->check(CLI::Range(1, 1'000'000));
-  verb->add_option("--out", options->out, "Folder for the pieces and the merged evaluation.json");
-  add_task_options(*verb, options->task, "piece");
-  verb->add_option("--threads", options->threads, "Number of threads (0: all processors)")
+  command->add_option("--out", options->out,
+                      "Folder for the pieces and the merged evaluation.json");
+  add_task_options(*command, options->task, "piece");
+  command->add_option("--threads", options->threads, "Number of threads (0: all processors)")
       ->check(CLI::Range(0, 1024));
-  verb->add_flag("--json", options->is_json, "Print the result as JSON");
-  verb->add_flag("--quiet", options->is_quiet, "Print errors only");
-  run(*verb, options, evaluate, console, action);
+  command->add_flag("--json", options->is_json, "Print the result as JSON");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only");
+  run(*command, options, evaluate, console, action);
 }
 
 void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("reconstruct", "Reconstruct a surface mesh from a point cloud (Poisson)");
   const auto options = std::make_shared<ReconstructOptions>();
-  verb->add_option("cloud", options->cloud,
+  command
+      ->add_option("cloud", options->cloud,
                    "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), with normals or without")
       ->required();
-  verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF file (default: CLOUD_mesh.ply)");
-  verb->add_option("--spacing", options->spacing, "Voxel size of downsampling in metres")
+  command->add_option("--out", options->out, "PLY, OBJ, STL or OFF file (default: CLOUD_mesh.ply)");
+  command->add_option("--spacing", options->spacing, "Voxel size of downsampling in metres")
       ->check(number_between(0.0, 1e6));
-  verb->add_option("--depth", options->depth,
+  command
+      ->add_option("--depth", options->depth,
                    "Octree depth, 2^depth cells a side (default: from the point spacing)")
       ->check(CLI::Range(0, 12));
-  verb->add_option("--trim", options->least_density,
+  command
+      ->add_option("--trim", options->min_density,
                    "Remove surface whose point density is below this fraction of the usual density "
                    "(default: 0.2)")
       ->check(number_between(0.0, 0.99));
-  verb->add_option("--threads", options->threads, "Number of threads (0: all processors)")
+  command->add_option("--threads", options->threads, "Number of threads (0: all processors)")
       ->check(CLI::Range(0, 1024));
-  run(*verb, options, reconstruct_cloud, console, action);
+  run(*command, options, reconstruct_cloud, console, action);
 }
 
 void add_report(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("report", "Write the HTML report of a results folder");
+  CLI::App* command = app.add_subcommand("report", "Write the HTML report of a results folder");
   const auto options = std::make_shared<ReportOptions>();
-  verb->add_option("folder", options->folder, "Folder that plan, scan or benchmark wrote")
+  command->add_option("folder", options->folder, "Folder that plan, scan or benchmark wrote")
       ->required();
-  verb->add_option("--out", options->out, "HTML file (default: in the folder)");
-  verb->add_option("--points", options->points,
+  command->add_option("--out", options->out, "HTML file (default: in the folder)");
+  command
+      ->add_option("--points", options->points,
                    "Maximum number of points in the report (default: 1000000)")
       ->check(CLI::Range(1, 100'000'000));
-  run(*verb, options, report_results, console, action);
+  run(*command, options, report_results, console, action);
 }
 
 void add_view(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("view", "Open results, a point cloud or a mission in the browser");
   const auto options = std::make_shared<ViewOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option(
+  command
+      ->add_option(
           "what", options->what,
           "Results folder, point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), or mission file")
       ->required();
-  verb->add_option("--out", options->out, "HTML file (default: beside the input)");
-  add_set_option(*verb, *keys);
-  run_with_keys(*verb, options, keys, view, console, action);
+  command->add_option("--out", options->out, "HTML file (default: beside the input)");
+  add_set_option(*command, *keys);
+  run_with_keys(*command, options, keys, view, console, action);
 }
 
 void add_completion(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("completion", "Print a shell script that completes commands and options");
   const auto shell = std::make_shared<std::string>();
-  verb->add_option("shell", *shell, "bash, zsh or fish")
+  command->add_option("shell", *shell, "bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-  verb->callback([=, &app, &console, &action] {
+  command->callback([=, &app, &console, &action] {
     action = [=, &app, &console] {
       console.out << completion_script(app, *shell) << std::flush;
       return 0;
@@ -342,23 +368,24 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_presets(app, console, action);
     add_completion(app, console, action);
     const auto known = app.get_subcommands({});
-    std::string verbs;
-    for (const CLI::App* verb : known) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+    std::string commands;
+    for (const CLI::App* command : known)
+      commands += (commands.empty() ? "" : ", ") + command->get_name();
     if (!arguments.empty() && !arguments[0].starts_with('-') &&
         std::ranges::find(known, arguments[0], &CLI::App::get_name) == known.end()) {
       throw Error(ErrorKind::bad_usage,
-                  "unknown command '" + arguments[0] + "'; expected one of: " + verbs);
+                  "unknown command '" + arguments[0] + "'; expected one of: " + commands);
     }
     std::vector<std::string> reversed = with_current_options(arguments, console);
     std::ranges::reverse(reversed);  // CLI11 expects reversed arguments
     app.parse(reversed);
     if (!action) {
       throw Error(ErrorKind::bad_usage,
-                  "no command given; expected one of: " + verbs + "; see --help");
+                  "no command given; expected one of: " + commands + "; see --help");
     }
     return action();
-  } catch (const CLI::Success& wish) {  // --help or --version
-    return app.exit(wish, console.out, console.err);
+  } catch (const CLI::Success& success) {  // --help or --version
+    return app.exit(success, console.out, console.err);
   } catch (const CLI::ParseError& failure) {
     return report_failure(console, std::string(failure.what()) + "; see --help", 2);
   } catch (const Interrupted&) {
@@ -384,7 +411,7 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
   std::ostream out(&buffer);
   const int exit_code =
       parse_and_run(arguments, {out, console.err, console.err_is_terminal, console.stop,
-                                console.results_held, console.ending_signal});
+                                console.results_held, console.termination_signal});
   if (out.flush()) return exit_code;
   return report_failure(console, "cannot write to standard output", 3);
 }

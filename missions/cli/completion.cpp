@@ -15,7 +15,7 @@ struct CompletedOption {
 };
 
 /// Returns the long options of a command, including --help.
-std::vector<CompletedOption> options_of(const CLI::App& command) {
+std::vector<CompletedOption> list_options(const CLI::App& command) {
   std::vector<CompletedOption> options;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) {
@@ -26,7 +26,9 @@ std::vector<CompletedOption> options_of(const CLI::App& command) {
   return options;
 }
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
+std::vector<const CLI::App*> list_subcommands(const CLI::App& app) {
+  return app.get_subcommands({});
+}
 
 /// Quotes a string for a shell with single quotes. Characters in `escaped` are prefixed with a
 /// backslash.
@@ -45,16 +47,16 @@ std::string quoted(const std::string& text, const std::string& escaped = "") {
 
 std::string bash_script(const CLI::App& app) {
   std::string names, cases;
-  for (const CLI::App* command : commands_of(app)) {
+  for (const CLI::App* command : list_subcommands(app)) {
     names += (names.empty() ? "" : " ") + command->get_name();
     std::string options;
-    for (const CompletedOption& option : options_of(*command)) {
+    for (const CompletedOption& option : list_options(*command)) {
       options += (options.empty() ? "" : " ") + option.name;
     }
     cases += "    " + command->get_name() + ") options='" + options + "' ;;\n";
   }
   std::string own;
-  for (const CompletedOption& option : options_of(app)) {
+  for (const CompletedOption& option : list_options(app)) {
     own += (own.empty() ? "" : " ") + option.name;
   }
   return "# Completion of skycap for bash: source <(skycap completion bash)\n"
@@ -85,7 +87,7 @@ std::string bash_script(const CLI::App& app) {
 std::string zsh_script(const CLI::App& app) {
   const auto arguments = [](const CLI::App& command) {
     std::string text;
-    for (const CompletedOption& option : options_of(command)) {
+    for (const CompletedOption& option : list_options(command)) {
       const std::string spec = option.name + (option.has_value ? "=" : "") + "[" +
                                option.description + "]" + (option.has_value ? ":value:_files" : "");
       // Brackets and colons would end the description.
@@ -100,7 +102,7 @@ std::string zsh_script(const CLI::App& app) {
     return text;
   };
   std::string names, cases;
-  for (const CLI::App* command : commands_of(app)) {
+  for (const CLI::App* command : list_subcommands(app)) {
     names += "    " + quoted(command->get_name() + ":" + command->get_description()) + "\n";
     cases += "    " + command->get_name() + ")\n      _arguments -s -S" + arguments(*command) +
              " \\\n        '*:file:_files' ;;\n";
@@ -130,15 +132,15 @@ std::string zsh_script(const CLI::App& app) {
 
 std::string fish_script(const CLI::App& app) {
   std::string text = "# Completion of skycap for fish: skycap completion fish | source\n";
-  for (const CompletedOption& option : options_of(app)) {
+  for (const CompletedOption& option : list_options(app)) {
     text += "complete -c skycap -n __fish_use_subcommand -l " + option.name.substr(2) + " -d " +
             quoted(option.description, "\\") + "\n";
   }
-  for (const CLI::App* command : commands_of(app)) {
+  for (const CLI::App* command : list_subcommands(app)) {
     const std::string name = command->get_name();
     text += "complete -c skycap -n __fish_use_subcommand -f -a " + name + " -d " +
             quoted(command->get_description(), "\\") + "\n";
-    for (const CompletedOption& option : options_of(*command)) {
+    for (const CompletedOption& option : list_options(*command)) {
       text += "complete -c skycap -n '__fish_seen_subcommand_from " + name + "' -l " +
               option.name.substr(2) + (option.has_value ? " -r" : "") + " -d " +
               quoted(option.description, "\\") + "\n";

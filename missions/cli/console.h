@@ -18,9 +18,10 @@ struct Console {
   std::ostream& err;             ///< progress, warnings and errors
   bool err_is_terminal = false;  ///< whether to show progress in a single rewritten line
   std::stop_token stop = {};     ///< requested by Ctrl-C
-  /// Number of HoldsResults objects. While it is zero, Ctrl-C ends the program immediately.
+  /// Number of PendingResultsGuard objects. While it is zero, Ctrl-C ends the program immediately.
   std::atomic<int>* results_held = nullptr;
-  const std::atomic<int>* ending_signal = nullptr;  ///< signal that requested the stop, or zero
+  const std::atomic<int>* termination_signal =
+      nullptr;  ///< signal that requested the stop, or zero
 };
 
 /// Prints a one-line warning. The command continues.
@@ -30,20 +31,20 @@ inline void warn(const Console& console, const std::string& what) {
 
 /// Returns the exit code of an interrupted command: 128 + SIGTERM after SIGTERM, otherwise 1.
 inline int interrupted_exit_code(const Console& console) {
-  const bool is_ended = console.ending_signal && *console.ending_signal == SIGTERM;
+  const bool is_ended = console.termination_signal && *console.termination_signal == SIGTERM;
   return is_ended ? 128 + SIGTERM : 1;
 }
 
 /// Marks a scope with unsaved results that Ctrl-C must not discard. Within this scope the command
 /// monitors Console::stop and saves its results within two seconds of a request.
-class HoldsResults {
+class PendingResultsGuard {
  public:
-  explicit HoldsResults(const Console& console) : count_(console.results_held) {
+  explicit PendingResultsGuard(const Console& console) : count_(console.results_held) {
     if (count_ != nullptr) ++*count_;
   }
-  HoldsResults(const HoldsResults&) = delete;
-  HoldsResults& operator=(const HoldsResults&) = delete;
-  ~HoldsResults() {
+  PendingResultsGuard(const PendingResultsGuard&) = delete;
+  PendingResultsGuard& operator=(const PendingResultsGuard&) = delete;
+  ~PendingResultsGuard() {
     if (count_ != nullptr) --*count_;
   }
 
@@ -68,7 +69,7 @@ class ProgressLine {
   }
 
   /// Returns a callback for show(). It must not outlive this object.
-  std::function<void(const std::string&)> teller() {
+  std::function<void(const std::string&)> progress_callback() {
     return [this](const std::string& text) { show(text); };
   }
 
@@ -90,7 +91,7 @@ auto read_shown(const Read& read, const Options& options, const Console& console
   bool is_quiet = false;
   if constexpr (requires { options.is_quiet; }) is_quiet = options.is_quiet;
   ProgressLine progress(console, is_quiet);
-  return read(options.mission, options.overrides, progress.teller());
+  return read(options.mission, options.overrides, progress.progress_callback());
 }
 
 }  // namespace skycap::missions::cli

@@ -16,40 +16,42 @@ using batch::SurveyedTarget;
 
 constexpr const char* not_complete = "the survey is not complete; see the warnings of its run";
 
-std::vector<SurveyedTarget> surveyed(const batch::Prepared& prepared, const Collected& all) {
+std::vector<SurveyedTarget> surveyed(const batch::DistrictPlan& district_plan,
+                                     const Collected& all) {
   std::vector<SurveyedTarget> targets;
-  for (const batch::PreparedTarget& target : prepared.targets) {
+  for (const batch::DistrictTarget& target : district_plan.targets) {
     const auto item = std::ranges::find(all.items, target.title, &CollectedItem::title);
-    SurveyedTarget& one = targets.emplace_back(SurveyedTarget{target, {}, target.refusal});
+    SurveyedTarget& one = targets.emplace_back(SurveyedTarget{target, {}, target.rejection_reason});
     if (item != all.items.end() && item->record) {
-      one.figures = batch::figures_of(item->folder, *item->record);
-    } else if (one.why_none.empty()) {
-      one.why_none = not_complete;
+      one.figures = batch::compute_figures(item->folder, *item->record);
+    } else if (one.failure_reason.empty()) {
+      one.failure_reason = not_complete;
     }
   }
   return targets;
 }
 
-int district_verb(const ItemOptions& options, const Console& console) {
-  const LastResort last_resort(console);
+int run_district_command(const BatchOptions& options, const Console& console) {
+  const SignalWatchdog watchdog(console);
   const batch::DistrictFile district = batch::read_district(options.file);
   const std::filesystem::path out = options.folder(district.name);
-  const batch::Prepared prepared = [&] {
+  const batch::DistrictPlan district_plan = [&] {
     ProgressLine progress(console, options.is_quiet);
-    return batch::prepare(district, out, progress.teller());
+    return batch::prepare(district, out, progress.progress_callback());
   }();
-  ItemRun run(options, "district", batch::campaign_of(district, prepared, out), out, console);
+  BatchRun run(options, "district", batch::make_campaign(district, district_plan, out), out,
+               console);
   // Plans the joint flight of completed surveys and writes the results and the HTML report.
   return run.run([&](const Collected& all, geometry::OutputFolder& folder) {
-    const std::vector<SurveyedTarget> targets = surveyed(prepared, all);
+    const std::vector<SurveyedTarget> targets = surveyed(district_plan, all);
     const batch::DistrictFlight flight = batch::plan_district(
-        district, prepared, targets, out, [&](const std::string& what) { run.runner().say(what); },
-        console.stop);
+        district, district_plan, targets, out,
+        [&](const std::string& what) { run.runner().show_status(what); }, console.stop);
     run.runner().clear();
     if (console.stop.stop_requested()) return interrupted_exit_code(console);
     folder.write(batch::table_name, batch::targets_csv(targets, flight));
     folder.write(batch::results_name,
-                 batch::results_json(district, prepared, targets, flight, out));
+                 batch::results_json(district, district_plan, targets, flight, out));
     write_page(batch::results_name, options.has_report, folder, console);
     folder.commit();
     const bool is_complete =
@@ -67,11 +69,11 @@ int district_verb(const ItemOptions& options, const Console& console) {
 }  // namespace
 
 void add_district(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
+  CLI::App* command = app.add_subcommand(
       "district", "Survey several buildings of a map and plan one flight for all");
-  const auto options = std::make_shared<ItemOptions>();
-  add_item_options(*verb, *options, "District file (docs/reference/batch-files.md)");
-  run(*verb, options, district_verb, console, action);
+  const auto options = std::make_shared<BatchOptions>();
+  add_batch_options(*command, *options, "District file (docs/reference/batch-files.md)");
+  run(*command, options, run_district_command, console, action);
 }
 
 }  // namespace skycap::missions::cli

@@ -19,12 +19,13 @@ namespace {
 struct Task {
   flight::FlightOptions flight;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<flight::Station> stations;
+  std::vector<flight::CapturePoint> capture_points;
 };
 
 /// Returns the waypoints not yet visited by a lost fleet vehicle, as a task for the remaining
 /// vehicles.
-Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& survey, Task task) {
+Task remaining_task(const ExportOptions& options, const package::PackagedSurvey& survey,
+                    Task task) {
   const flight::FlightOptions& flight = survey.flight;
   const std::size_t lost = *options.lost - 1, count = flight.fleet.vehicles.size();
   if (!flight.is_fleet() || lost >= count) {
@@ -39,12 +40,12 @@ Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& s
   }
   const std::vector<Eigen::Vector3d> left =
       package::left_by(table, flight, lost, options.after.value_or(0.0));
-  std::erase_if(task.stations, [&](const flight::Station& station) {
-    return std::ranges::none_of(left, [&](const Eigen::Vector3d& place) {
-      return (station.view.position - place).norm() <= flight::rounding_bound;
+  std::erase_if(task.capture_points, [&](const flight::CapturePoint& capture_point) {
+    return std::ranges::none_of(left, [&](const Eigen::Vector3d& position) {
+      return (capture_point.view.position - position).norm() <= flight::rounding_bound;
     });
   });
-  if (task.stations.empty()) {
+  if (task.capture_points.empty()) {
     throw Error(ErrorKind::bad_usage, "--lost " + std::to_string(*options.lost) +
                                           ": it had captured all of its views by then");
   }
@@ -57,10 +58,10 @@ Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& s
   return task;
 }
 
-Task task_of(const ExportOptions& options, const package::PackagedSurvey& survey) {
+Task make_task(const ExportOptions& options, const package::PackagedSurvey& survey) {
   Task task{survey.flight, survey.pad,
-            package::stations_of(survey.flight, survey.views, survey.ways)};
-  return options.lost ? task_of_rest(options, survey, std::move(task)) : task;
+            package::make_capture_points(survey.flight, survey.views, survey.paths)};
+  return options.lost ? remaining_task(options, survey, std::move(task)) : task;
 }
 
 void check_lost(const ExportOptions& options) {
@@ -84,18 +85,18 @@ int export_package(const ExportOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("reading " + options.package.string());
   const package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
-  const Task task = task_of(options, survey);
+  const Task task = make_task(options, survey);
   geometry::OutputFolder folder(options.out.value_or(options.package));
   progress.show(survey.name + ": planning the flight");
   package::SurveyMission flight;
-  flight.pictures = task.flight.picture_bounds();
-  flight.route = package::plan_flight(task.flight, survey.measured, task.pad, task.stations,
-                                      survey.grounds, console.stop);
+  flight.image_motion = task.flight.image_motion_bounds();
+  flight.route = package::plan_flight(task.flight, survey.measured, task.pad, task.capture_points,
+                                      survey.landing_surfaces, console.stop);
   const bool is_fleet = task.flight.is_fleet();
   if (is_fleet) {
-    flight.fleet =
-        package::staged_fleet(survey.name, task.flight, survey.measured, flight.route,
-                              survey.grounds, formats, folder, survey.run.threads, console.stop);
+    flight.fleet = package::staged_fleet(survey.name, task.flight, survey.measured, flight.route,
+                                         survey.landing_surfaces, formats, folder,
+                                         survey.run.threads, console.stop);
   } else {
     flight.files = package::stage_flight(survey.name, task.flight, flight.route, survey.measured,
                                          formats, folder);
@@ -114,26 +115,29 @@ int export_package(const ExportOptions& options, const Console& console) {
 }
 
 void add_export(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
+  CLI::App* command = app.add_subcommand(
       "export", "Export a planned flight in another format or for another vehicle");
   const auto options = std::make_shared<ExportOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("package", options->package, "Folder that plan wrote")->required();
-  verb->add_option(
+  command->add_option("package", options->package, "Folder that plan wrote")->required();
+  command
+      ->add_option(
           "--format", options->formats,
           "Format: plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; repeatable")
       ->required()
       ->type_size(1)
       ->allow_extra_args(false);
-  verb->add_option("--out", options->out, "Folder for the files (default: the package)");
-  verb->add_option("--lost", options->lost,
+  command->add_option("--out", options->out, "Folder for the files (default: the package)");
+  command
+      ->add_option("--lost", options->lost,
                    "Number of a lost vehicle of the fleet. Its remaining views are redistributed")
       ->check(CLI::Range(1, 1000));
-  verb->add_option("--after", options->after,
+  command
+      ->add_option("--after", options->after,
                    "Time of loss in the timetable, in seconds (default: before its start)")
       ->check(number_between(0.0, 1e9));
-  add_set_option(*verb, *keys);
-  run_with_keys(*verb, options, keys, export_package, console, action);
+  add_set_option(*command, *keys);
+  run_with_keys(*command, options, keys, export_package, console, action);
 }
 
 }  // namespace skycap::missions::cli

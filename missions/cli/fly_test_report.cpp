@@ -13,7 +13,7 @@ namespace skycap::missions::cli {
 namespace {
 
 using flight::TestFlight;
-using support::json_of;
+using support::to_json;
 using Json = nlohmann::ordered_json;
 
 constexpr double joules_per_wh = 3600.0;
@@ -58,89 +58,93 @@ Distribution distribution(const TestedFile& file,
 }
 
 bool any(const TestFlight&) { return true; }
-bool is_whole(const TestFlight& flight) { return !flight.draw.called_home; }
+bool is_whole(const TestFlight& flight) { return !flight.draw.return_time; }
 
-Distribution clearance(const TestedFile& file, std::size_t judge) {
+Distribution clearance(const TestedFile& file, std::size_t criterion) {
   return distribution(
-      file, [judge](const TestFlight& f) { return f.flown.nearest[judge].closest.distance; }, any);
+      file,
+      [criterion](const TestFlight& f) { return f.simulated.nearest[criterion].closest.distance; },
+      any);
 }
 
 std::size_t empty_batteries(const TestedFile& file) {
   return static_cast<std::size_t>(std::ranges::count_if(
       file.test.flights,
-      [&](const TestFlight& flight) { return flight.flown.energy > file.battery; }));
+      [&](const TestFlight& flight) { return flight.simulated.energy > file.battery; }));
 }
 
-double time_of(const TestFlight& flight) { return flight.flown.time; }
-double energy_wh_of(const TestFlight& flight) { return flight.flown.energy / joules_per_wh; }
-double off_line_of(const TestFlight& flight) { return flight.flown.off_line; }
+double simulated_flight_time(const TestFlight& flight) { return flight.simulated.time; }
+double flight_energy_wh(const TestFlight& flight) {
+  return flight.simulated.energy / joules_per_wh;
+}
+double max_cross_track(const TestFlight& flight) { return flight.simulated.off_line; }
 
-Json json_of_flight(const TestFlight& flight) {
+Json flight_to_json(const TestFlight& flight) {
   Json json{{"flight", flight.draw.number},
             {"wind_m_s", {flight.draw.wind.x(), flight.draw.wind.y()}},
             {"called_home_s", nullptr},
-            {"time_s", flight.flown.time},
-            {"energy_wh", energy_wh_of(flight)},
-            {"off_line_m", flight.flown.off_line},
+            {"time_s", flight.simulated.time},
+            {"energy_wh", flight_energy_wh(flight)},
+            {"off_line_m", flight.simulated.off_line},
             {"clearance_m", Json::array()}};
-  if (flight.draw.called_home) json["called_home_s"] = *flight.draw.called_home;
-  for (const flight::NearestPlace& nearest : flight.flown.nearest) {
+  if (flight.draw.return_time) json["called_home_s"] = *flight.draw.return_time;
+  for (const flight::NearestApproach& nearest : flight.simulated.nearest) {
     json["clearance_m"].push_back(nearest.closest.distance);
   }
   return json;
 }
 
 /// Returns the flight with the smallest distance.
-const TestFlight& nearest_flight(const TestedFile& file, std::size_t judge) {
-  return *std::ranges::min_element(file.test.flights, {}, [judge](const TestFlight& flight) {
-    return flight.flown.nearest[judge].closest.distance;
+const TestFlight& nearest_flight(const TestedFile& file, std::size_t criterion) {
+  return *std::ranges::min_element(file.test.flights, {}, [criterion](const TestFlight& flight) {
+    return flight.simulated.nearest[criterion].closest.distance;
   });
 }
 
-std::string judge_text(const TestedFile& file, std::size_t j) {
-  const flight::Judge& judge = file.judges[j];
+std::string criterion_text(const TestedFile& file, std::size_t j) {
+  const flight::ClearanceCriterion& criterion = file.criteria[j];
   const Distribution distances = clearance(file, j);
   std::string text = fmt::format(
       "  clearance minimum {:.2f} m to {}, 5% below {:.2f}, median {:.2f}; required {:.2f}, {} "
       "flights below\n",
-      distances.percentile(0), judge.name, distances.percentile(5), distances.percentile(50),
-      judge.limit, flights_nearer(file.test, file.judges, j));
+      distances.percentile(0), criterion.name, distances.percentile(5), distances.percentile(50),
+      criterion.limit, flights_nearer(file.test, file.criteria, j));
   const TestFlight& nearest = nearest_flight(file, j);
-  const flight::NearestPlace& place = nearest.flown.nearest[j];
-  if (place.closest.kind != flight::ObstacleKind::none) {
+  const flight::NearestApproach& approach = nearest.simulated.nearest[j];
+  if (approach.closest.kind != flight::ObstacleKind::none) {
     text += fmt::format("            minimum in flight {} after {:.0f} s{}, to {}\n",
-                        nearest.draw.number, place.time, place.is_on_way_home ? ", on return" : "",
-                        file.obstacles[j]);
+                        nearest.draw.number, approach.time,
+                        approach.is_returning ? ", on return" : "", file.obstacles[j]);
   }
-  if (file.test.returns.empty() || file.test.returns[j].flown == 0) return text;
+  if (file.test.returns.empty() || file.test.returns[j].simulated == 0) return text;
   const flight::ReturnTest& returns = file.test.returns[j];
   return text + fmt::format(
                     "  returns   {} from random positions, minimum clearance {:.3f} m to {}; "
                     "required {:.3f}, {} below\n",
-                    returns.flown, returns.nearest.distance, judge.name, judge.return_limit,
-                    returns.nearer);
+                    returns.simulated, returns.nearest.distance, criterion.name,
+                    criterion.return_limit, returns.nearer);
 }
 
 }  // namespace
 
 std::size_t failures(const TestedFile& file) {
   std::size_t sum = empty_batteries(file);
-  for (std::size_t j = 0; j < file.judges.size(); ++j) {
-    sum += flights_nearer(file.test, file.judges, j);
+  for (std::size_t j = 0; j < file.criteria.size(); ++j) {
+    sum += flights_nearer(file.test, file.criteria, j);
     if (!file.test.returns.empty()) sum += file.test.returns[j].nearer;
   }
   return sum;
 }
 
-std::string text_of(const TestedFile& file) {
+std::string format_report(const TestedFile& file) {
   const flight::FlyTest& test = file.test;
-  const auto home =
+  const auto return_count =
       test.flights.size() - static_cast<std::size_t>(std::ranges::count_if(test.flights, is_whole));
   std::string text = fmt::format("{}: {}, {} flights, {} of them with a return\n", file.name,
-                                 file.autopilot, test.flights.size(), home);
+                                 file.autopilot, test.flights.size(), return_count);
   if (test.flights.empty()) return text;
-  const Distribution times = distribution(file, time_of, is_whole);
-  const Distribution energies = distribution(file, energy_wh_of, is_whole);
+  const Distribution times = distribution(file, simulated_flight_time, is_whole);
+  const Distribution energies = distribution(file, flight_energy_wh, is_whole);
   if (!times.is_empty()) {
     text += fmt::format(
         "  time      estimated {:.0f} s; completed flights {:.0f} to {:.0f} s, median {:.0f}\n  "
@@ -148,61 +152,61 @@ std::string text_of(const TestedFile& file) {
         test.planned_time, times.percentile(0), times.percentile(100), times.percentile(50),
         energies.percentile(0), energies.percentile(100), energies.percentile(50));
   }
-  const Distribution all = distribution(file, energy_wh_of, any);
-  const Distribution off_line = distribution(file, off_line_of, any);
+  const Distribution all = distribution(file, flight_energy_wh, any);
+  const Distribution off_line = distribution(file, max_cross_track, any);
   text += fmt::format(
       "  battery   minimum {:.0f}% left, {} flights beyond it\n  off track median {:.2f} m, 95% "
       "below {:.2f}, maximum {:.2f}\n",
       100.0 * (1.0 - all.percentile(100) * joules_per_wh / file.battery), empty_batteries(file),
       off_line.percentile(50), off_line.percentile(95), off_line.percentile(100));
-  for (std::size_t j = 0; j < file.judges.size(); ++j) text += judge_text(file, j);
+  for (std::size_t j = 0; j < file.criteria.size(); ++j) text += criterion_text(file, j);
   return text;
 }
 
-Json json_of(const TestedFile& file) {
+Json to_json(const TestedFile& file) {
   Json json{{"file", file.name},
             {"autopilot", file.autopilot},
             {"failures", failures(file)},
             {"planned_time_s", file.test.planned_time},
             {"battery_wh", file.battery / joules_per_wh},
-            {"time_s", distribution(file, time_of, is_whole).json()},
-            {"energy_wh", distribution(file, energy_wh_of, is_whole).json()},
-            {"off_line_m", distribution(file, off_line_of, any).json()},
+            {"time_s", distribution(file, simulated_flight_time, is_whole).json()},
+            {"energy_wh", distribution(file, flight_energy_wh, is_whole).json()},
+            {"off_line_m", distribution(file, max_cross_track, any).json()},
             {"clearance", Json::array()},
             {"flights", Json::array()}};
-  for (std::size_t j = 0; j < file.judges.size(); ++j) {
-    Json clearances{{"from", file.judges[j].name},
-                    {"allowed_m", file.judges[j].limit},
-                    {"flights_nearer", flights_nearer(file.test, file.judges, j)},
+  for (std::size_t j = 0; j < file.criteria.size(); ++j) {
+    Json clearances{{"from", file.criteria[j].name},
+                    {"allowed_m", file.criteria[j].limit},
+                    {"flights_nearer", flights_nearer(file.test, file.criteria, j)},
                     {"distance_m", clearance(file, j).json()}};
-    if (!file.test.returns.empty() && file.test.returns[j].flown > 0) {
+    if (!file.test.returns.empty() && file.test.returns[j].simulated > 0) {
       const flight::ReturnTest& returns = file.test.returns[j];
-      clearances["returns"] = {{"flown", returns.flown},
-                               {"allowed_m", file.judges[j].return_limit},
+      clearances["returns"] = {{"flown", returns.simulated},
+                               {"allowed_m", file.criteria[j].return_limit},
                                {"nearer", returns.nearer},
                                {"least_m", returns.nearest.distance},
-                               {"least_from", json_of(returns.from)}};
+                               {"least_from", to_json(returns.from)}};
     }
     json["clearance"].push_back(std::move(clearances));
   }
   for (const TestFlight& flight : file.test.flights)
-    json["flights"].push_back(json_of_flight(flight));
+    json["flights"].push_back(flight_to_json(flight));
   return json;
 }
 
-std::string text_of(const flight::FleetFlightTest& test) {
+std::string format_report(const flight::FleetFlightTest& test) {
   return fmt::format(
       "fleet: {} flights of all vehicles, minimum separation {:.2f} m (median of flights {:.2f} "
       "m), {} below {:.2f} m\n",
-      test.flown, test.least, test.least_median, test.nearer, test.limit);
+      test.simulated, test.min_separation, test.median_min_separation, test.nearer, test.limit);
 }
 
-Json json_of(const flight::FleetFlightTest& test) {
-  return {{"flights", test.flown},
+Json to_json(const flight::FleetFlightTest& test) {
+  return {{"flights", test.simulated},
           {"nearer", test.nearer},
           {"limit_m", test.limit},
-          {"least_m", test.least},
-          {"least_median_m", test.least_median}};
+          {"least_m", test.min_separation},
+          {"least_median_m", test.median_min_separation}};
 }
 
 }  // namespace skycap::missions::cli

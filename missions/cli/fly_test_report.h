@@ -16,7 +16,7 @@ namespace skycap::missions::cli {
 struct TestedFile {
   std::string name;
   std::string autopilot;
-  std::vector<flight::Judge> judges;
+  std::vector<flight::ClearanceCriterion> criteria;
   flight::FlyTest test;
   double battery = 0.0;                ///< energy of the full battery [J]
   std::vector<std::string> obstacles;  ///< name of the nearest obstacle, by judge
@@ -27,12 +27,12 @@ struct TestedFile {
 std::size_t failures(const TestedFile& file);
 
 /// Returns a summary of several lines.
-std::string text_of(const TestedFile& file);
+std::string format_report(const TestedFile& file);
 
-nlohmann::ordered_json json_of(const TestedFile& file);
+nlohmann::ordered_json to_json(const TestedFile& file);
 
 /// Return the reports of a joint fleet flight.
-std::string text_of(const flight::FleetFlightTest& test);
-nlohmann::ordered_json json_of(const flight::FleetFlightTest& test);
+std::string format_report(const flight::FleetFlightTest& test);
+nlohmann::ordered_json to_json(const flight::FleetFlightTest& test);
 
 }  // namespace skycap::missions::cli

@@ -53,8 +53,8 @@ std::vector<std::string> with_current_options(std::vector<std::string> arguments
   return arguments;
 }
 
-void warn_of_former_names(std::span<const std::filesystem::path> files,
-                          std::span<const config::KeyOverride> overrides, const Console& console) {
+void warn_deprecated_names(std::span<const std::filesystem::path> files,
+                           std::span<const config::KeyOverride> overrides, const Console& console) {
   constexpr std::size_t largest = std::size_t{16} << 20;  // of a campaign or district file [byte]
   for (const std::filesystem::path& file : files) {
     if (file.extension() != ".yaml" && file.extension() != ".yml") continue;
@@ -67,7 +67,7 @@ void warn_of_former_names(std::span<const std::filesystem::path> files,
       if (is_mission) names = config::replace_former_names(root, "", file.string());
       if (names.empty()) continue;
       warn(console, file.string() + ":" + std::to_string(names.front().line) +
-                        ": uses names of version 0.1: " + config::text_of(names) +
+                        ": uses names of version 0.1: " + config::to_string(names) +
                         (is_mission ? "; skycap check " + file.string() +
                                           " --rewrite FILE writes a file with the current names"
                                     : "; use the current names") +
@@ -78,7 +78,7 @@ void warn_of_former_names(std::span<const std::filesystem::path> files,
   }
   try {
     const auto names = config::former_names_in(overrides);
-    if (!names.empty()) warn(console, "--set: " + config::text_of(names) + until);
+    if (!names.empty()) warn(console, "--set: " + config::to_string(names) + until);
   } catch (const Error&) {
     return;  // the command reports the error
   }

@@ -18,7 +18,7 @@ std::vector<std::string> with_current_options(std::vector<std::string> arguments
 /// Prints a one-line warning for each file or override that contains names of version 0.1. The
 /// files are missions, campaigns or districts. Unreadable files are ignored here, because the
 /// command that reads them reports the error.
-void warn_of_former_names(std::span<const std::filesystem::path> files,
-                          std::span<const config::KeyOverride> overrides, const Console& console);
+void warn_deprecated_names(std::span<const std::filesystem::path> files,
+                           std::span<const config::KeyOverride> overrides, const Console& console);
 
 }  // namespace skycap::missions::cli

@@ -36,7 +36,7 @@ struct InitOptions {
   fs::path out = "mission.yaml";
 
   bool is_room() const { return target == "room"; }
-  bool is_flown() const { return vehicle != "none"; }
+  bool has_vehicle() const { return vehicle != "none"; }
 };
 
 /// Values of the proposed mission; lengths in metres.
@@ -46,8 +46,8 @@ struct Proposal {
   config::SensorDescription sensor;
 };
 
-std::string vector_text(const Vector3d& place) {
-  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", place.x(), place.y(), place.z());
+std::string vector_text(const Vector3d& position) {
+  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", position.x(), position.y(), position.z());
 }
 
 std::string box_text(const AlignedBox3d& box) {
@@ -67,7 +67,7 @@ std::string model_text(const std::string& model, const fs::path& mission) {
   return yaml_quoted(fs::absolute(model).lexically_normal().lexically_proximate(folder).string());
 }
 
-AlignedBox3d target_of(const InitOptions& options) {
+AlignedBox3d make_target_box(const InitOptions& options) {
   if (!options.is_room()) {
     return geometry::bounding_box(evaluation::placed_model({.model = options.target}, ""));
   }
@@ -84,23 +84,24 @@ double max_range(const config::SensorDescription& sensor) {
 
 /// Returns the clearance [m]: vehicle radius, errors and a margin, rounded up to a multiple of 0.5
 /// m.
-double clearance_of(const std::string& name) {
+double compute_default_clearance(const std::string& name) {
   constexpr double margin = 0.5, unit = 0.5;
   const flight::FlightOptions usual;
   const flight::Vehicle vehicle = config::find_vehicle(name);
-  const double least =
+  const double min =
       vehicle.radius + vehicle.position_error + usual.tracking_error + usual.map_error + margin;
-  return unit * std::ceil(least / unit);
+  return unit * std::ceil(min / unit);
 }
 
 Proposal proposal_for(const InitOptions& options) {
-  Proposal proposal{.target = target_of(options), .sensor = config::find_sensor(options.sensor)};
+  Proposal proposal{.target = make_target_box(options),
+                    .sensor = config::find_sensor(options.sensor)};
   const double side = proposal.target.sizes().maxCoeff();
   const double farthest = 0.5 * max_range(proposal.sensor);
   proposal.coverage_distance = rounded(side / (options.is_room() ? 300.0 : 200.0));
   proposal.view_distance = rounded(std::min(options.is_room() ? 0.3 * side : side, farthest));
-  if (!options.is_flown()) return proposal;
-  proposal.clearance = clearance_of(options.vehicle);
+  if (!options.has_vehicle()) return proposal;
+  proposal.clearance = compute_default_clearance(options.vehicle);
   if (!options.is_room()) {
     proposal.view_distance =
         std::clamp(proposal.view_distance, rounded(1.5 * proposal.clearance), 25.0);
@@ -157,9 +158,9 @@ std::string sensor_text(const InitOptions& options, const Proposal& proposal) {
 
 std::string planner_text(const InitOptions& options, const Proposal& proposal) {
   AlignedBox3d scene = proposal.target;
-  const double beside = 0.05 * scene.sizes().maxCoeff();
-  scene.min().array() -= beside;
-  scene.max().array() += beside;
+  const double margin = 0.05 * scene.sizes().maxCoeff();
+  scene.min().array() -= margin;
+  scene.max().array() += margin;
   if (!options.is_room()) scene.min().z() = 0.005 * proposal.target.sizes().z();
   const double distance = proposal.coverage_distance;
   return fmt::format(
@@ -180,13 +181,13 @@ std::string planner_text(const InitOptions& options, const Proposal& proposal) {
 std::string limits_text(const InitOptions& options, const Proposal& proposal) {
   const AlignedBox3d& room = proposal.target;
   std::string text = "limits:\n  max_views: 150  # the survey ends earlier if nothing is missing\n";
-  if (!options.is_flown()) {
+  if (!options.has_vehicle()) {
     text +=
         fmt::format("  stand_off: {:g}  # metres, minimum distance of a view from any surface\n",
                     rounded(0.2 * proposal.view_distance));
   }
   if (!options.is_room()) return text;
-  const double wall = options.is_flown() ? proposal.clearance : 0.0;
+  const double wall = options.has_vehicle() ? proposal.clearance : 0.0;
   return text +
          fmt::format(
              "site:  # keeps views inside the room; the frame's origin is the middle of the floor\n"
@@ -199,12 +200,12 @@ std::string limits_text(const InitOptions& options, const Proposal& proposal) {
 }
 
 std::string flight_text(const InitOptions& options, const Proposal& proposal) {
-  if (!options.is_flown()) return "";
+  if (!options.has_vehicle()) return "";
   AlignedBox3d unknown = proposal.target;
   if (!options.is_room()) {
-    const double beside = std::ceil(proposal.clearance + 1.0);
-    unknown.min().head<2>().array() -= beside;
-    unknown.max().array() += beside;
+    const double margin = std::ceil(proposal.clearance + 1.0);
+    unknown.min().head<2>().array() -= margin;
+    unknown.max().array() += margin;
     unknown.min().z() = 0.0;
   }
   const bool is_file = fs::path(options.vehicle).extension() == ".yaml";
@@ -256,21 +257,23 @@ int init(const InitOptions& options, const Console& console) {
 }  // namespace
 
 void add_init(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
+  CLI::App* command = app.add_subcommand(
       "init", "Create a commented mission file for a model or a room, without a georeference");
   const auto options = std::make_shared<InitOptions>();
-  verb->add_option("target", options->target,
+  command
+      ->add_option("target", options->target,
                    "Mesh file, builtin:NAME, model:NAME, or room for a live survey")
       ->required();
-  verb->add_option("--sensor", options->sensor,
-                   "Sensor preset (skycap presets) or description NAME.yaml (default: intel_d435)");
-  verb->add_option("--vehicle", options->vehicle,
-                   "Vehicle preset (skycap presets), description NAME.yaml, or none (default)");
-  verb->add_option("--size", options->size, "Size of a room in metres: X Y Z (default: 6 4 2.8)")
+  command->add_option(
+      "--sensor", options->sensor,
+      "Sensor preset (skycap presets) or description NAME.yaml (default: intel_d435)");
+  command->add_option("--vehicle", options->vehicle,
+                      "Vehicle preset (skycap presets), description NAME.yaml, or none (default)");
+  command->add_option("--size", options->size, "Size of a room in metres: X Y Z (default: 6 4 2.8)")
       ->expected(3)
       ->check(number_between(0.5, 1000.0));
-  verb->add_option("--out", options->out, "Mission file (default: mission.yaml)");
-  run(*verb, options, init, console, action);
+  command->add_option("--out", options->out, "Mission file (default: mission.yaml)");
+  run(*command, options, init, console, action);
 }
 
 }  // namespace skycap::missions::cli

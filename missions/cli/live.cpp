@@ -31,13 +31,13 @@ namespace {
 
 constexpr int exit_complete = 10, exit_nowhere_to_go = 11, exit_wrong_pose = 12;
 
-int exit_code_of(const online::Proposal& proposal) {
-  if (proposal.warns_of_pose()) return exit_wrong_pose;
+int to_exit_code(const online::Proposal& proposal) {
+  if (proposal.has_pose_warning()) return exit_wrong_pose;
   if (!proposal.end) return 0;
   return *proposal.end == survey::StopReason::nowhere_to_go ? exit_nowhere_to_go : exit_complete;
 }
 
-Eigen::Isometry3d pose_of(const NextOptions& options) {
+Eigen::Isometry3d make_pose(const NextOptions& options) {
   if (options.pose.empty() == !options.pose_file) {
     throw Error(ErrorKind::bad_usage,
                 "--scan requires either --pose \"x y z qx qy qz qw\" or --pose-file FILE");
@@ -48,7 +48,7 @@ Eigen::Isometry3d pose_of(const NextOptions& options) {
                                  options.pose_file->string());
 }
 
-std::optional<online::PoseCovariance> covariance_of(const NextOptions& options) {
+std::optional<online::PoseCovariance> read_covariance(const NextOptions& options) {
   if (!options.pose_sigma.empty() && !options.pose_covariance.empty()) {
     throw Error(ErrorKind::bad_usage,
                 "--pose-sigma conflicts with --pose-covariance; remove one of them");
@@ -60,14 +60,14 @@ std::optional<online::PoseCovariance> covariance_of(const NextOptions& options) 
   return online::parse_pose_covariance(options.pose_covariance, "--pose-covariance");
 }
 
-online::ScanInput input_of(const NextOptions& options, const std::filesystem::path& file,
-                           const Eigen::Isometry3d& world_from_sensor) {
+online::ScanInput make_scan_input(const NextOptions& options, const std::filesystem::path& file,
+                                  const Eigen::Isometry3d& world_from_sensor) {
   online::ScanInput input{.file = file,
                           .world_from_sensor = world_from_sensor,
                           .is_in_world = options.is_in_world,
-                          .lens = {},
+                          .intrinsics = {},
                           .depth_unit = options.depth_unit};
-  if (!options.lens.empty()) input.lens = online::parse_lens(options.lens);
+  if (!options.intrinsics.empty()) input.intrinsics = online::parse_intrinsics(options.intrinsics);
   return input;
 }
 
@@ -89,11 +89,11 @@ void add_scan(const NextOptions& options, const std::string& name, const online:
               const std::string& id, const flight::FlightOptions& flight,
               online::LiveSurvey& survey, const Console& console) {
   online::require_usable(found.scan, flight);
-  const std::optional<online::PoseCovariance> covariance = covariance_of(options);
-  const bool is_new = options.is_on_way ? survey.add_on_way(found.scan, id, covariance)
-                                        : survey.add(found.scan, id, covariance);
+  const std::optional<online::PoseCovariance> covariance = read_covariance(options);
+  const bool is_new = options.is_en_route ? survey.add_en_route(found.scan, id, covariance)
+                                          : survey.add(found.scan, id, covariance);
   if (options.is_quiet) return;
-  const bool is_aside = is_new && survey.proposal().warns_of_pose();
+  const bool is_aside = is_new && survey.proposal().has_pose_warning();
   console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
                              is_new ? "" : "; known already, ignored",
                              is_aside ? "; rejected, pose inconsistent with the map" : "",
@@ -108,12 +108,12 @@ void add_recording(const NextOptions& options, const flight::FlightOptions& flig
   const online::RecordingChoice choice{
       .rawlog = {.sensor = options.sensor, .poses = options.poses},
       .count = options.until,
-      .image = input_of(options, {}, Eigen::Isometry3d::Identity())};
+      .image = make_scan_input(options, {}, Eigen::Isometry3d::Identity())};
   ProgressLine progress(console, options.is_quiet);
   progress.show(options.dataset->string() + ": reading poses");
   const auto recording = online::open_recording(
       *options.dataset, choice, flight.capture, live,
-      [&](const std::string& note) { warn(console, note); }, progress.teller());
+      [&](const std::string& note) { warn(console, note); }, progress.progress_callback());
   progress.clear();
   if (const std::string source = recording->pose_source(); !source.empty() && !options.is_quiet) {
     console.err << options.dataset->string() << ": poses from " << source << "\n";
@@ -121,7 +121,7 @@ void add_recording(const NextOptions& options, const flight::FlightOptions& flig
   while (!console.stop.stop_requested()) {
     const std::optional<online::Frame> frame = recording->next();
     if (!frame) return;
-    if (survey.number_of(frame->id)) continue;
+    if (survey.scan_number(frame->id)) continue;
     add_scan(options, frame->name, frame->scan(), frame->id, flight, survey, console);
   }
 }
@@ -137,7 +137,7 @@ void show_survey(const LiveOptions& options, const config::MissionSetup& setup,
     geometry::write_file(
         options.survey / package::report_name,
         report::live_page(summary, setup.survey(), setup.scene(), std::move(so_far),
-                          {proposal.view, proposal.way.points}));
+                          {proposal.view, proposal.path.points}));
   } catch (const Error& error) {  // report errors must not end a survey
     warn(console, "no report: " + std::string(error.what()));
   }
@@ -159,112 +159,121 @@ Finished write_package(const LiveOptions& options, const config::MissionSetup& s
   folder.commit();
   std::string text =
       fmt::format("{}: {} after {} scans, {} points\n", setup.name,
-                  session::name_of(record.stop_reason), record.views.size(), record.cloud.size());
+                  session::to_string(record.stop_reason), record.views.size(), record.cloud.size());
   if (flight) text += package::flight_text(*flight);
   text += "  results   " + options.survey.string() + "\n";
   if (flight) text += package::pilot_text(setup.flight(), *flight);
   return {text, !flight || flight->failure.empty()};
 }
 
-void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
-  verb.add_option("mission", options.mission, "Mission file (docs/howto/use-your-own-sensor.md)")
+void add_live_options(CLI::App& command, LiveOptions& options, KeyOptions& keys) {
+  command
+      .add_option("mission", options.mission, "Mission file (docs/howto/use-your-own-sensor.md)")
       ->required();
-  verb.add_option("--survey", options.survey, "Folder of the survey")->required();
-  verb.add_flag("!--no-report", options.has_report, "Do not write the HTML report");
-  verb.add_option("--seed", keys.seed, "Random seed; overrides the mission file");
-  verb.add_option("--threads", keys.threads, "Number of threads (0: all processors)");
-  add_set_option(verb, keys);
+  command.add_option("--survey", options.survey, "Folder of the survey")->required();
+  command.add_flag("!--no-report", options.has_report, "Do not write the HTML report");
+  command.add_option("--seed", keys.seed, "Random seed; overrides the mission file");
+  command.add_option("--threads", keys.threads, "Number of threads (0: all processors)");
+  add_set_option(command, keys);
 }
 
 void add_next(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("next", "Add a scan from a real sensor and print the next view");
   const auto options = std::make_shared<NextOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, *options, *keys);
-  verb->add_option("--scan", options->scan,
-                   "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz) or depth image (16-bit .png)");
-  verb->add_option(
+  add_live_options(*command, *options, *keys);
+  command->add_option(
+      "--scan", options->scan,
+      "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz) or depth image (16-bit .png)");
+  command->add_option(
       "--pose", options->pose,
       "Pose of the sensor's optical frame: \"x y z qx qy qz qw\" or a row-major matrix");
-  verb->add_option("--pose-file", options->pose_file, "File with the pose");
-  verb->add_option("--pose-sigma", options->pose_sigma,
-                   "Standard deviations of the pose: \"metres degrees\" (default: live.pose_sigma "
-                   "and live.pose_sigma_deg)");
-  verb->add_option("--pose-covariance", options->pose_covariance,
-                   "Covariance of the pose, instead of --pose-sigma: 36 numbers, row by row, of x "
-                   "y z rx ry rz in the mission frame [m, rad], or the 21 of its upper triangle");
-  verb->add_option("--intrinsics", options->lens,
-                   "Camera intrinsics of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 "
-                   "p2 k3\" (default: the mission's camera)");
-  verb->add_option("--depth-unit", options->depth_unit,
+  command->add_option("--pose-file", options->pose_file, "File with the pose");
+  command->add_option(
+      "--pose-sigma", options->pose_sigma,
+      "Standard deviations of the pose: \"metres degrees\" (default: live.pose_sigma "
+      "and live.pose_sigma_deg)");
+  command->add_option(
+      "--pose-covariance", options->pose_covariance,
+      "Covariance of the pose, instead of --pose-sigma: 36 numbers, row by row, of x "
+      "y z rx ry rz in the mission frame [m, rad], or the 21 of its upper triangle");
+  command->add_option(
+      "--intrinsics", options->intrinsics,
+      "Camera intrinsics of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 "
+      "p2 k3\" (default: the mission's camera)");
+  command
+      ->add_option("--depth-unit", options->depth_unit,
                    "Depth of one step of a 16-bit image, in metres (default: 0.001)")
       ->check(number_between(1e-6, 1.0));
-  verb->add_flag("--world", options->is_in_world, "The cloud is already in the mission frame");
-  verb->add_flag("--en-route", options->is_on_way,
-                 "The scan was taken en route to the proposed view");
-  verb->add_option("--id", options->id,
-                   "Identifier of the scan. A scan with a known identifier is not added again");
-  verb->add_option(
+  command->add_flag("--world", options->is_in_world, "The cloud is already in the mission frame");
+  command->add_flag("--en-route", options->is_en_route,
+                    "The scan was taken en route to the proposed view");
+  command->add_option("--id", options->id,
+                      "Identifier of the scan. A scan with a known identifier is not added again");
+  command->add_option(
       "--dataset", options->dataset,
       "Recording whose frames are added one by one: a TUM RGB-D folder (depth.txt, "
       "groundtruth.txt), a 7-Scenes folder (frame-NNNNNN.depth.png, .pose.txt), or an MRPT rawlog");
-  verb->add_option("--sensor", options->sensor, "Label of the sensor in a rawlog with several");
-  verb->add_option("--poses", options->poses,
-                   "TUM trajectory of the optical frame, instead of the rawlog's poses");
-  verb->add_option("--max-frames", options->until, "Maximum number of frames of the recording")
+  command->add_option("--sensor", options->sensor, "Label of the sensor in a rawlog with several");
+  command->add_option("--poses", options->poses,
+                      "TUM trajectory of the optical frame, instead of the rawlog's poses");
+  command->add_option("--max-frames", options->until, "Maximum number of frames of the recording")
       ->check(CLI::Range(1, 1'000'000));
-  verb->add_option("--refuse", options->refusal,
-                   "Reject the proposed view for this reason and request another");
-  verb->add_flag("--json", options->is_json, "Print the result as JSON");
-  verb->add_flag("--quiet", options->is_quiet, "Print the result and errors only");
-  run_with_keys(*verb, options, keys, next, console, action);
+  command->add_option("--refuse", options->rejection_reason,
+                      "Reject the proposed view for this reason and request another");
+  command->add_flag("--json", options->is_json, "Print the result as JSON");
+  command->add_flag("--quiet", options->is_quiet, "Print the result and errors only");
+  run_with_keys(*command, options, keys, next, console, action);
 }
 
 void add_serve(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("serve", "Run a live-survey server on a Unix or TCP socket");
+  CLI::App* command =
+      app.add_subcommand("serve", "Run a live-survey server on a Unix or TCP socket");
   const auto options = std::make_shared<ServeOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, *options, *keys);
-  verb->add_option("--socket", options->socket, "Path of a Unix socket, accessible only to you");
-  verb->add_option("--port", options->port, "TCP port of this machine; 0: any free port");
-  verb->add_flag("--quiet", options->is_quiet, "Print the address and errors only");
-  run_with_keys(*verb, options, keys, serve, console, action);
+  add_live_options(*command, *options, *keys);
+  command->add_option("--socket", options->socket, "Path of a Unix socket, accessible only to you");
+  command->add_option("--port", options->port, "TCP port of this machine; 0: any free port");
+  command->add_flag("--quiet", options->is_quiet, "Print the address and errors only");
+  run_with_keys(*command, options, keys, serve, console, action);
 }
 
 void add_finish(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("finish", "End a live survey and write its mission files");
+  CLI::App* command = app.add_subcommand("finish", "End a live survey and write its mission files");
   const auto options = std::make_shared<LiveOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, *options, *keys);
-  run_with_keys(*verb, options, keys, finish, console, action);
+  add_live_options(*command, *options, *keys);
+  run_with_keys(*command, options, keys, finish, console, action);
 }
 
 }  // namespace
 
 int next(const NextOptions& options, const Console& console) {
-  if (options.scan.has_value() + options.dataset.has_value() + options.refusal.has_value() > 1) {
+  if (options.scan.has_value() + options.dataset.has_value() +
+          options.rejection_reason.has_value() >
+      1) {
     throw Error(ErrorKind::bad_usage, "--scan, --dataset and --refuse exclude each other; use one");
   }
-  if (options.is_on_way && !options.scan) {
+  if (options.is_en_route && !options.scan) {
     throw Error(ErrorKind::bad_usage, "--en-route requires --scan");
   }
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   if (options.scan) {
-    const online::ScanInput input = input_of(options, *options.scan, pose_of(options));
+    const online::ScanInput input = make_scan_input(options, *options.scan, make_pose(options));
     const online::ScanFound found = online::read_scan(input, setup.flight().capture, setup.live);
     add_scan(options, options.scan->string(), found, options.id, setup.flight(), *survey, console);
   }
   if (options.dataset) add_recording(options, setup.flight(), setup.live, *survey, console);
-  if (options.refusal) survey->refuse(*options.refusal);
-  if (options.scan || options.dataset || options.refusal)
+  if (options.rejection_reason) survey->reject(*options.rejection_reason);
+  if (options.scan || options.dataset || options.rejection_reason)
     show_survey(options, setup, *survey, console);
   console.out << (options.is_json ? online::answer_json(*survey, setup.flight())
                                   : online::answer_text(*survey))
               << "\n"
               << std::flush;
-  return exit_code_of(survey->proposal());
+  return to_exit_code(survey->proposal());
 }
 
 int finish(const LiveOptions& options, const Console& console) {
@@ -294,7 +303,7 @@ int serve(const ServeOptions& options, const Console& console) {
   };
   online::Session session(setup.name, setup.flight(), setup.live, *survey, finish_survey,
                           [&] { show_survey(options, setup, *survey, console); });
-  const HoldsResults results(console);
+  const PendingResultsGuard results(console);
   online::Server server({.socket = options.socket.value_or(""), .port = options.port});
   console.out << server.address() << "\n" << std::flush;
   const auto note = [&](const std::string& text) {
@@ -311,20 +320,21 @@ struct FlyOptions : LiveOptions {
   std::string connect;               ///< address for online::parse_address()
   std::string sensor = "simulated";  ///< "simulated", or a folder that receives scans
   std::string on_failure = "hold";   ///< "hold" or "return"
-  std::string lens;                  ///< camera intrinsics of depth images
+  std::string intrinsics;            ///< camera intrinsics of depth images
   double depth_unit = 0.001;         ///< unit of depth values in images [m]
   bool is_quiet = false;
 };
 
-online::Sensor sensor_of(const FlyOptions& options, const evaluation::SimulationOptions& simulation,
-                         const online::LiveOptions& live, const session::RunOptions& run,
-                         const Console& console) {
+online::Sensor make_sensor(const FlyOptions& options,
+                           const evaluation::SimulationOptions& simulation,
+                           const online::LiveOptions& live, const session::RunOptions& run,
+                           const Console& console) {
   if (options.sensor == "simulated") {
     return simulated_sensor(simulation, options.mission.parent_path(), run);
   }
   online::ScanInput input;
   input.depth_unit = options.depth_unit;
-  if (!options.lens.empty()) input.lens = online::parse_lens(options.lens);
+  if (!options.intrinsics.empty()) input.intrinsics = online::parse_intrinsics(options.intrinsics);
   return online::folder_sensor(simulation.survey.flight, live, options.sensor, std::move(input),
                                online::FlightOptions{}.sensing_limit, console.stop);
 }
@@ -335,14 +345,14 @@ int fly_live(const FlyOptions& options, const Console& console) {
   const online::NetworkAddress address = online::parse_address(options.connect);
   const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
   online::require_flyable(setup.flight());
-  online::Sensor sensor = sensor_of(options, setup.simulation, setup.live, setup.run, console);
+  online::Sensor sensor = make_sensor(options, setup.simulation, setup.live, setup.run, console);
   const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   online::NetworkPort port(address);
-  if (!address.is_of_this_machine()) {
+  if (!address.is_loopback()) {
     warn(console, "MAVLink is not authenticated: anyone who can reach " + options.connect +
                       " can send commands to this vehicle");
   }
-  const HoldsResults results(console);
+  const PendingResultsGuard results(console);
   online::FlightOptions flight;
   flight.returns_on_failure = options.on_failure == "return";
   flight.show = [&] { show_survey(options, setup, *survey, console); };
@@ -351,8 +361,8 @@ int fly_live(const FlyOptions& options, const Console& console) {
   };
   const online::FlightEnd end = online::fly_survey(setup.flight(), *survey, port, std::move(sensor),
                                                    std::move(flight), console.stop);
-  if (end.trouble) {
-    console.err << "skycap: flight ended: " << printable_line(end.trouble->what)
+  if (end.failure) {
+    console.err << "skycap: flight ended: " << printable_line(end.failure->what)
                 << (end.has_landed ? "; landed at the take-off point" : "")
                 << "; repeat the command to resume the survey in "
                 << printable_line(options.survey.string()) << "\n"
@@ -365,28 +375,32 @@ int fly_live(const FlyOptions& options, const Console& console) {
 }
 
 void add_fly(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("fly", "Fly a live survey on ArduCopter over MAVLink (experimental)");
   const auto options = std::make_shared<FlyOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, *options, *keys);
-  verb->add_option("--connect", options->connect,
+  add_live_options(*command, *options, *keys);
+  command
+      ->add_option("--connect", options->connect,
                    "MAVLink connection: udp:127.0.0.1:14550 to listen, udpout:HOST:PORT or "
                    "tcp:HOST:PORT to connect")
       ->required();
-  verb->add_option("--sensor", options->sensor,
-                   "simulated (default; the mission requires a scene), or a folder to which "
-                   "another program writes scans");
-  verb->add_option("--on-failure", options->on_failure,
+  command->add_option("--sensor", options->sensor,
+                      "simulated (default; the mission requires a scene), or a folder to which "
+                      "another program writes scans");
+  command
+      ->add_option("--on-failure", options->on_failure,
                    "hold (default): hold position until a pilot takes control; return: return "
                    "along the verified path where possible")
       ->check(CLI::IsMember({"hold", "return"}));
-  verb->add_option("--intrinsics", options->lens, "Camera intrinsics of depth images, as for next");
-  verb->add_option("--depth-unit", options->depth_unit,
+  command->add_option("--intrinsics", options->intrinsics,
+                      "Camera intrinsics of depth images, as for next");
+  command
+      ->add_option("--depth-unit", options->depth_unit,
                    "Depth of one step of 16-bit images, in metres (default: 0.001)")
       ->check(number_between(1e-6, 1.0));
-  verb->add_flag("--quiet", options->is_quiet, "Print results and errors only");
-  run_with_keys(*verb, options, keys, fly_live, console, action);
+  command->add_flag("--quiet", options->is_quiet, "Print results and errors only");
+  run_with_keys(*command, options, keys, fly_live, console, action);
 }
 
 }  // namespace

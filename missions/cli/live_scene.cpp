@@ -29,8 +29,8 @@ support::Identity with_sphere(support::Identity identity, const survey::ViewSphe
 }
 
 online::LiveStart start_without_scene(const session::StartOptions& start, std::uint64_t seed) {
-  const std::vector<geometry::View> opening = session::opening_views(start, seed);
-  return {opening.empty() ? start.view : opening.front(), {}};
+  const std::vector<geometry::View> initial_pattern = session::initial_pattern_views(start, seed);
+  return {initial_pattern.empty() ? start.view : initial_pattern.front(), {}};
 }
 
 }  // namespace
@@ -61,9 +61,9 @@ online::Sensor simulated_sensor(const evaluation::SimulationOptions& options,
   const auto scene =
       std::make_shared<evaluation::SurveyScene>(options, mission_folder, run.threads);
   const auto sensor = std::make_shared<sim::SurveySensor>(options.sensor, run.seed);
-  return [scene, sensor, threads = run.threads](const geometry::View&, const geometry::View& taken,
-                                                std::size_t number) {
-    return sensor->scan(scene->scene(), taken, number, threads);
+  return [scene, sensor, threads = run.threads](
+             const geometry::View&, const geometry::View& actual_view, std::size_t number) {
+    return sensor->scan(scene->scene(), actual_view, number, threads);
   };
 }
 

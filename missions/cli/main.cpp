@@ -16,18 +16,18 @@
 namespace {
 
 /// Signals of Ctrl-C, service managers and schedulers, and closed terminals.
-constexpr int ending_signals[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int termination_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 /// The semaphore and the number are among the few objects that a signal handler may modify.
 sem_t interrupted;
-std::atomic<int> ending_signal = 0;
+std::atomic<int> termination_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void on_interrupt(int signal_number) {
-  ending_signal = signal_number;
+  termination_signal = signal_number;
   ::sem_post(&interrupted);
   // A second signal ends the program.
-  for (const int signal : ending_signals) std::signal(signal, SIG_DFL);
+  for (const int signal : termination_signals) std::signal(signal, SIG_DFL);
 }
 
 /// Ends the program when no results are unsaved. Files are committed by a single rename, and the
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     stop.request_stop();
     if (results_held == 0) leave(is_terminal);
   });
-  for (const int signal : ending_signals) {
+  for (const int signal : termination_signals) {
     // Signals ignored by the parent process, for example with nohup, remain ignored.
     if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const int exit_code = skycap::missions::cli::run_command_line(
       arguments,
-      {std::cout, std::cerr, is_terminal, stop.get_token(), &results_held, &ending_signal});
+      {std::cout, std::cerr, is_terminal, stop.get_token(), &results_held, &termination_signal});
   watcher.request_stop();
   ::sem_post(&interrupted);  // wakes the watcher thread to end it
   return exit_code;

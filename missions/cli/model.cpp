@@ -30,7 +30,7 @@ sim::LevelOfDetail level_of_detail(const std::string& word) {
   return word == "fine" ? sim::LevelOfDetail::fine : sim::LevelOfDetail::standard;
 }
 
-geometry::Mesh mesh_of(const std::string& model, const std::optional<std::string>& detail) {
+geometry::Mesh make_mesh(const std::string& model, const std::optional<std::string>& detail) {
   scene::SceneOptions scene{.model = model};
   if (detail) {
     if (!model.starts_with("builtin:")) {
@@ -69,7 +69,7 @@ struct Site {
 /// Returns the targets' box, enlarged on each side by its longest edge, because a map tile may
 /// contain a whole town.
 std::optional<Eigen::AlignedBox3d> around_targets(const site_data::SitePriors& site) {
-  const geometry::Mesh targets = surfaces_of(site, site_data::Role::target);
+  const geometry::Mesh targets = make_surfaces(site, site_data::Role::target);
   if (targets.triangles.empty()) return std::nullopt;
   const Eigen::AlignedBox3d box = geometry::bounding_box(targets);
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(box.sizes().maxCoeff());
@@ -83,10 +83,10 @@ ColouredMesh coloured_site(const Site& given, const std::optional<Eigen::Aligned
   const site_data::SitePriors& site = *scene.priors;
   ColouredMesh coloured;
   if (!scene.is_truth_prior()) coloured.add(model, {0.80F, 0.71F, 0.55F});
-  coloured.add(surfaces_of(site, site_data::Role::truth, near), {0.62F, 0.68F, 0.75F});
-  coloured.add(surfaces_of(site, site_data::Role::target, near), {0.20F, 0.55F, 0.30F});
-  coloured.add(surfaces_of(site, site_data::Role::obstacle, near), {0.75F, 0.28F, 0.12F});
-  coloured.add(surfaces_of(site, site_data::Role::terrain, near), {0.42F, 0.38F, 0.26F});
+  coloured.add(make_surfaces(site, site_data::Role::truth, near), {0.62F, 0.68F, 0.75F});
+  coloured.add(make_surfaces(site, site_data::Role::target, near), {0.20F, 0.55F, 0.30F});
+  coloured.add(make_surfaces(site, site_data::Role::obstacle, near), {0.75F, 0.28F, 0.12F});
+  coloured.add(make_surfaces(site, site_data::Role::terrain, near), {0.42F, 0.38F, 0.26F});
   return coloured;
 }
 
@@ -107,11 +107,11 @@ Site site_called(const ModelOptions& options, const config::Report& report) {
 geometry::Mesh model_called(const ModelOptions& options, const Console& console) {
   const std::string& name = options.name;
   if (name.find(':') != std::string::npos || fs::path(name).has_extension()) {
-    return mesh_of(name, options.detail);
+    return make_mesh(name, options.detail);
   }
-  if (contains(sim::builtin_models(), name)) return mesh_of("builtin:" + name, options.detail);
+  if (contains(sim::builtin_models(), name)) return make_mesh("builtin:" + name, options.detail);
   obtain_if_missing(name, console);
-  return mesh_of("model:" + name, options.detail);
+  return make_mesh("model:" + name, options.detail);
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ int model(const ModelOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show(options.name + ": loading the model");
   std::optional<Site> site;
-  if (is_mission(options.name)) site = site_called(options, progress.teller());
+  if (is_mission(options.name)) site = site_called(options, progress.progress_callback());
   const ColouredMesh whole =
       site ? coloured_site(*site, {}) : ColouredMesh{model_called(options, console), {}};
   const geometry::Mesh& mesh = whole.mesh;
@@ -149,17 +149,19 @@ int model(const ModelOptions& options, const Console& console) {
 }
 
 void add_model(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("model", "Download, export or render a scene model");
+  CLI::App* command = app.add_subcommand("model", "Download, export or render a scene model");
   const auto options = std::make_shared<ModelOptions>();
-  verb->add_option("name", options->name,
+  command
+      ->add_option("name", options->name,
                    "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
       ->required();
-  verb->add_option("--out", options->out, "Write the mesh to this PLY file");
-  verb->add_option("--detail", options->detail,
+  command->add_option("--out", options->out, "Write the mesh to this PLY file");
+  command
+      ->add_option("--detail", options->detail,
                    "Level of detail of a builtin model: coarse, standard or fine")
       ->check(CLI::IsMember({"coarse", "standard", "fine"}));
-  verb->add_option("--render", options->render, "Render the model into this PNG file");
-  run(*verb, options, model, console, action);
+  command->add_option("--render", options->render, "Render the model into this PNG file");
+  run(*command, options, model, console, action);
 }
 
 }  // namespace skycap::missions::cli

@@ -31,15 +31,15 @@ std::string seconds(double time) {
 }
 
 std::string progress_text(const std::string& name, std::size_t views,
-                          const session::JudgedView& judged, double planning_time) {
+                          const session::EvaluatedView& evaluated, double planning_time) {
   return fmt::format("{}: view {}, {} points, {} frontiers, {} covered, planned in {}", name, views,
-                     judged.surveyed.points, judged.surveyed.step.frontiers,
-                     percent(judged.coverage), seconds(planning_time));
+                     evaluated.surveyed.points, evaluated.surveyed.step.frontiers,
+                     percent(evaluated.coverage), seconds(planning_time));
 }
 
 /// Returns a row of the --verbose table: planning times of one view by part [ms].
-std::string times_row(std::size_t view, const session::JudgedView& judged) {
-  const survey::PlanningStep& step = judged.surveyed.step;
+std::string times_row(std::size_t view, const session::EvaluatedView& evaluated) {
+  const survey::PlanningStep& step = evaluated.surveyed.step;
   std::string row;
   if (view == 0) {
     row = "view  frontiers  total ms";
@@ -48,8 +48,8 @@ std::string times_row(std::size_t view, const session::JudgedView& judged) {
     }
     row += "\n";
   }
-  row +=
-      fmt::format("{:4} {:10} {:9.2f}", view, step.frontiers, 1e3 * judged.surveyed.planning_time);
+  row += fmt::format("{:4} {:10} {:9.2f}", view, step.frontiers,
+                     1e3 * evaluated.surveyed.planning_time);
   for (const survey::PartTime& time : step.times) {
     row += fmt::format(" {:10.3f}", 1e3 * time.seconds);
   }
@@ -73,11 +73,12 @@ std::string summary_text(const std::string& name, const PlanOptions& options,
                          const std::optional<package::SurveyMission>& flight,
                          const std::filesystem::path& folder) {
   std::string text =
-      fmt::format("{}: {} after {} views, {:.2f} m\n", name, session::name_of(record.stop_reason),
+      fmt::format("{}: {} after {} views, {:.2f} m\n", name, session::to_string(record.stop_reason),
                   record.views.size(), record.distance());
   text += "  coverage  " + percent(coverage.all) + " of the surface";
   if (coverage.visible) text += ", " + percent(*coverage.visible) + " of the visible surface";
-  if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
+  if (coverage.attainable_coverage)
+    text += "; attainable " + percent(*coverage.attainable_coverage);
   text += "\n" + package::target_text(package::target_coverage(
                      simulation.scene, simulation.evaluation.registration_distance,
                      record.cloud.positions));
@@ -87,7 +88,7 @@ std::string summary_text(const std::string& name, const PlanOptions& options,
   text += "  planning  " + seconds(record.planning_time());
   if (options.is_verbose) text += planning_text(record);
   text += "\n";
-  if (record.flown) text += package::flown_text(simulation.survey.flight, record);
+  if (record.flight_record) text += package::survey_flight_text(simulation.survey.flight, record);
   if (flight) text += package::flight_text(*flight, options.is_verbose);
   text += "  results   " + folder.string() + "\n";
   if (flight) text += package::pilot_text(simulation.survey.flight, *flight);
@@ -100,12 +101,12 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
   ProgressLine progress(console, options.is_quiet);
   std::size_t views = 0;
   double planning_time = 0.0;
-  const auto report = [&](const session::JudgedView& judged) {
-    planning_time += judged.surveyed.planning_time;
-    if (options.is_verbose) console.err << times_row(views, judged) << std::flush;
-    progress.show(progress_text(setup.name, ++views, judged, planning_time));
+  const auto report = [&](const session::EvaluatedView& evaluated) {
+    planning_time += evaluated.surveyed.planning_time;
+    if (options.is_verbose) console.err << times_row(views, evaluated) << std::flush;
+    progress.show(progress_text(setup.name, ++views, evaluated, planning_time));
   };
-  const HoldsResults results(console);
+  const PendingResultsGuard results(console);
   simulation::SurveyJournal journal(folder.path() / simulation::journal_name, setup.identity(),
                                     scene, options.resumes);
   if (journal.views() > 0 && !options.is_quiet) {
@@ -141,10 +142,10 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
 int plan_trials(const PlanOptions& options, const config::MissionSetup& mission,
                 geometry::OutputFolder& folder, const Console& console) {
   SurveyRunner runner("plan", console, options.is_quiet, mission.run.threads);
-  const HoldsResults results(console);
+  const PendingResultsGuard results(console);
   const auto setup =
       std::make_shared<const batch::Setup>(batch::own_setup(options.mission, mission));
-  std::vector<batch::Item> items;
+  std::vector<batch::BatchItem> items;
   for (std::size_t i = 0; i < options.trials; ++i) {
     const std::uint64_t seed = mission.run.seed + i;
     items.push_back(

@@ -22,21 +22,21 @@ struct PresetsOptions {
 
 double degrees(double radians) { return radians / geometry::radians_per_degree; }
 
-const char* autopilot_of(const flight::Vehicle& vehicle) {
-  switch (vehicle.dialect) {
-    case flight::Dialect::px4:
+const char* autopilot_name(const flight::Vehicle& vehicle) {
+  switch (vehicle.autopilot) {
+    case flight::AutopilotType::px4:
       return "PX4";
-    case flight::Dialect::ardupilot:
+    case flight::AutopilotType::ardupilot:
       return "ArduPilot";
-    case flight::Dialect::dji:
+    case flight::AutopilotType::dji:
       break;
   }
   return "DJI";
 }
 
-Json json_of(const flight::Vehicle& vehicle) {
+Json to_json(const flight::Vehicle& vehicle) {
   return {{"name", vehicle.name},
-          {"autopilot", autopilot_of(vehicle)},
+          {"autopilot", autopilot_name(vehicle)},
           {"mass_kg", vehicle.mass},
           {"radius_m", vehicle.radius},
           {"max_speed_m_s", vehicle.max_speed},
@@ -48,7 +48,7 @@ Json json_of(const flight::Vehicle& vehicle) {
 
 /// Returns the horizontal and vertical field of view of a scanner, as far as it follows from
 /// channels and rotation.
-Json json_of(const sim::LidarConfig& scanner) {
+Json to_json(const sim::LidarConfig& scanner) {
   Json json{{"kind", scanner.prisms.empty() ? "spinning LiDAR" : "rosette LiDAR"},
             {"min_range_m", scanner.min_range},
             {"max_range_m", scanner.max_range},
@@ -58,7 +58,7 @@ Json json_of(const sim::LidarConfig& scanner) {
   return json;
 }
 
-Json json_of(const sim::DepthCameraConfig& camera) {
+Json to_json(const sim::DepthCameraConfig& camera) {
   return {{"kind", "depth camera"},
           {"min_range_m", camera.camera.min_range},
           {"max_range_m", camera.camera.max_range},
@@ -71,14 +71,14 @@ Json json_of(const sim::DepthCameraConfig& camera) {
 Json all_presets() {
   Json vehicles = Json::array(), sensors = Json::array();
   for (const std::string_view name : config::vehicle_presets()) {
-    Json vehicle = json_of(config::find_vehicle(std::string(name)));
+    Json vehicle = to_json(config::find_vehicle(std::string(name)));
     vehicle["name"] = name;
     vehicles.push_back(std::move(vehicle));
   }
   for (const std::string_view name : config::sensor_presets()) {
     const config::SensorDescription found = config::find_sensor(std::string(name));
     Json sensor{{"name", name}, {"title", found.name}};
-    sensor.update(std::visit([](const auto& config) { return json_of(config); }, found.sensor));
+    sensor.update(std::visit([](const auto& config) { return to_json(config); }, found.sensor));
     sensors.push_back(std::move(sensor));
   }
   return {{"vehicles", vehicles}, {"sensors", sensors}};
@@ -130,11 +130,11 @@ int presets(const PresetsOptions& options, const Console& console) {
 }  // namespace
 
 void add_presets(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
+  CLI::App* command =
       app.add_subcommand("presets", "List vehicle and sensor presets with their main properties");
   const auto options = std::make_shared<PresetsOptions>();
-  verb->add_flag("--json", options->is_json, "Print the list as JSON");
-  run(*verb, options, presets, console, action);
+  command->add_flag("--json", options->is_json, "Print the list as JSON");
+  run(*command, options, presets, console, action);
 }
 
 }  // namespace skycap::missions::cli

@@ -20,7 +20,7 @@ int rewrite(const std::filesystem::path& mission, const std::filesystem::path& o
   const auto names = config::replace_former_names(root, "", file);
   geometry::write_file(out, current);
   console.out << out.string() << ": "
-              << (names.empty() ? "all names are current" : config::text_of(names)) << "\n"
+              << (names.empty() ? "all names are current" : config::to_string(names)) << "\n"
               << std::flush;
   return 0;
 }

@@ -23,17 +23,17 @@ namespace skycap::missions::cli {
 
 namespace fs = std::filesystem;
 
-SurveyRunner::SurveyRunner(std::string verb, const Console& console, bool is_quiet,
+SurveyRunner::SurveyRunner(std::string command, const Console& console, bool is_quiet,
                            unsigned threads, bool has_report)
-    : verb_(std::move(verb)),
+    : command_(std::move(command)),
       console_(console),
       threads_(threads),
       has_report_(has_report),
       line_(console, is_quiet) {}
 
-batch::Records SurveyRunner::run(const std::vector<batch::Item>& items,
+batch::Records SurveyRunner::run(const std::vector<batch::BatchItem>& items,
                                  const std::function<void(const Error&)>& failed) {
-  for (const batch::Item& item : items) {  // completed surveys are not counted
+  for (const batch::BatchItem& item : items) {  // completed surveys are not counted
     Kind& kind = kinds_[item.setup->kind];
     if (kind.announced == 0) continue;
     --kind.announced;
@@ -41,15 +41,15 @@ batch::Records SurveyRunner::run(const std::vector<batch::Item>& items,
     --total_;
   }
   const auto preparing = [&](const batch::Setup& setup) {
-    say(setup.title + ": computing attainable coverage");
+    show_status(setup.title + ": computing attainable coverage");
   };
-  const auto done = [&](const batch::Item& item, const batch::TrialRecord& record) {
+  const auto done = [&](const batch::BatchItem& item, const batch::TrialRecord& record) {
     survey_done(item.setup->kind, record.run.wall_time);
   };
   const auto packaged = [&](geometry::OutputFolder& folder) {
     write_page(package::summary_name, has_report_, folder, console_);
   };
-  const auto unfinished = [&](const batch::Item& item) {
+  const auto unfinished = [&](const batch::BatchItem& item) {
     const std::lock_guard lock(mutex_);
     ++kinds_[item.setup->kind].left;
     ++total_;
@@ -65,7 +65,7 @@ void SurveyRunner::announce(const std::string& kind, std::size_t surveys) {
   total_ += surveys;
 }
 
-void SurveyRunner::say(const std::string& text) {
+void SurveyRunner::show_status(const std::string& text) {
   const std::lock_guard lock(mutex_);
   line_.show(text);
 }
@@ -79,26 +79,26 @@ void SurveyRunner::survey_done(const std::string& kind, double seconds) {
   const std::lock_guard lock(mutex_);
   Kind& own = kinds_[kind];
   if (own.left > 0) --own.left;
-  for (Kind* known : {&own, &of_any_}) {
+  for (Kind* known : {&own, &all_kinds_}) {
     known->seconds += seconds;
     ++known->done;
   }
   const auto minutes =
       static_cast<int>(std::ceil(work_left() / geometry::thread_count(threads_) / 60.0));
-  line_.show(fmt::format("{}: {} of {} surveys, about {} min left; {}", verb_, of_any_.done, total_,
-                         minutes, kind));
+  line_.show(fmt::format("{}: {} of {} surveys, about {} min left; {}", command_, all_kinds_.done,
+                         total_, minutes, kind));
 }
 
 double SurveyRunner::work_left() const {
   double work = 0.0;
   for (const auto& [name, kind] : kinds_) {
-    const Kind& known = kind.done > 0 ? kind : of_any_;
+    const Kind& known = kind.done > 0 ? kind : all_kinds_;
     work += static_cast<double>(kind.left) * known.seconds / static_cast<double>(known.done);
   }
   return work;
 }
 
-fs::path ItemOptions::folder(const std::string& name) const {
+fs::path BatchOptions::folder(const std::string& name) const {
   return out.value_or(fs::path("results") / name);
 }
 
@@ -116,22 +116,22 @@ std::string Collected::missing_text() const {
   return cli::missing_text(missing);
 }
 
-ItemRun::ItemRun(const ItemOptions& options, std::string verb, batch::CampaignFile file,
-                 fs::path out, const Console& console)
+BatchRun::BatchRun(const BatchOptions& options, std::string command, batch::CampaignFile file,
+                   fs::path out, const Console& console)
     : options_(options),
       console_(console),
-      verb_(std::move(verb)),
+      command_(std::move(command)),
       manifest_(std::move(file)),
       out_(std::move(out)),
       threads_(options.threads.value_or(options.task.index ? 1 : 0)),
-      runner_(verb_, console, options.is_quiet, threads_, options.has_report) {}
+      runner_(command_, console, options.is_quiet, threads_, options.has_report) {}
 
-int ItemRun::run(const Collect& collect) {
+int BatchRun::run(const Collect& collect) {
   if (options_.lists) return console_.out << manifest_.text() << std::flush, 0;
-  std::string title = verb_ + " " + manifest_.file().name;
+  std::string title = command_ + " " + manifest_.file().name;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   const TaskWork work{
-      .job = {.command = {verb_, fs::absolute(options_.file), "--out", fs::absolute(out_)},
+      .job = {.command = {command_, fs::absolute(options_.file), "--out", fs::absolute(out_)},
               .out = out_,
               .title = std::move(title),
               .name = manifest_.file().name,
@@ -156,7 +156,7 @@ int ItemRun::run(const Collect& collect) {
   return run_tasks(work, options_.task, console_);
 }
 
-void ItemRun::tell_failure(const Error& error, std::size_t items, bool is_alone) {
+void BatchRun::report_failure(const Error& error, std::size_t items, bool is_alone) {
   if (is_alone) throw Error(error.kind(), error.what());
   runner_.clear();
   warn(console_,
@@ -165,48 +165,50 @@ void ItemRun::tell_failure(const Error& error, std::size_t items, bool is_alone)
 
 /// Runs pending items and returns the number of completed items. Failures are reported while other
 /// items continue. Throws Error if the range has a single item.
-std::size_t ItemRun::work_on(const batch::ItemRange& range) {
-  const auto tell = [&](const Error& error, std::size_t items) {
-    tell_failure(error, items, range.size() == 1);
+std::size_t BatchRun::work_on(const batch::ItemRange& range) {
+  const auto report = [&](const Error& error, std::size_t items) {
+    report_failure(error, items, range.size() == 1);
   };
   for (std::size_t i = 0; i < manifest_.entries(); ++i) {
-    runner_.announce(manifest_.entry(i).kind(), manifest_.numbers_of_entry(i, range).size());
+    runner_.announce(manifest_.entry(i).kind(), manifest_.entry_run_numbers(i, range).size());
   }
   std::size_t done = 0;
-  const auto work = [&](const std::vector<batch::Item>& items) {
-    for (const auto& record : runner_.run(items, [&](const Error& error) { tell(error, 1); })) {
+  const auto work = [&](const std::vector<batch::BatchItem>& items) {
+    for (const auto& record : runner_.run(items, [&](const Error& error) { report(error, 1); })) {
       done += record ? 1 : 0;
     }
   };
-  batch::for_each_batch(manifest_, out_, range,
-                        {work, tell, [&](const std::string& what) { runner_.say(what); }});
+  batch::for_each_batch(manifest_, out_, range, {work, report, [&](const std::string& what) {
+                                                   runner_.show_status(what);
+                                                 }});
   runner_.clear();
   return done;
 }
 
 /// Returns the existing results. They do not depend on which machines ran the items.
-Collected ItemRun::collected() {
+Collected BatchRun::collected() {
   Collected all;
-  const auto keep = [&](const std::vector<batch::Item>& items) {
+  const auto keep = [&](const std::vector<batch::BatchItem>& items) {
     batch::Records records = batch::finished_items(items);
     for (std::size_t i = 0; i < items.size(); ++i) {
-      all.items.push_back({items[i].number, items[i].setup->title, items[i].setup->contestant,
+      all.items.push_back({items[i].number, items[i].setup->title, items[i].setup->method,
                            items[i].record.parent_path(), std::move(records[i])});
     }
   };
   const auto failed = [&](const Error& error, std::size_t items) {
-    tell_failure(error, items, manifest_.size() == 1);
+    report_failure(error, items, manifest_.size() == 1);
   };
-  batch::for_each_batch(manifest_, out_, {0, manifest_.size()},
-                        {keep, failed, [&](const std::string& what) { runner_.say(what); }});
+  batch::for_each_batch(
+      manifest_, out_, {0, manifest_.size()},
+      {keep, failed, [&](const std::string& what) { runner_.show_status(what); }});
   runner_.clear();
   return all;
 }
 
-struct LastResort::Watcher {
+struct SignalWatchdog::Watcher {
   explicit Watcher(const Console& console) {
     thread = std::jthread([this, &console](const std::stop_token& over) {
-      const std::stop_callback told(console.stop, [this] {
+      const std::stop_callback on_stop(console.stop, [this] {
         const std::lock_guard guard(mutex);
         changed.notify_all();
       });
@@ -222,23 +224,25 @@ struct LastResort::Watcher {
   std::jthread thread;
 };
 
-LastResort::LastResort(const Console& console) : results_(console) {
-  if (console.ending_signal != nullptr) watcher_ = std::make_unique<Watcher>(console);
+SignalWatchdog::SignalWatchdog(const Console& console) : results_(console) {
+  if (console.termination_signal != nullptr) watcher_ = std::make_unique<Watcher>(console);
 }
 
-LastResort::~LastResort() = default;
+SignalWatchdog::~SignalWatchdog() = default;
 
-void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what) {
-  verb.add_option("file", options.file, what)->required();
-  verb.add_option("--out", options.out,
-                  "Folder for the results (default: results/NAME). Complete runs are not repeated");
-  verb.add_option("--threads", options.threads,
+void add_batch_options(CLI::App& command, BatchOptions& options, const std::string& what) {
+  command.add_option("file", options.file, what)->required();
+  command.add_option(
+      "--out", options.out,
+      "Folder for the results (default: results/NAME). Complete runs are not repeated");
+  command
+      .add_option("--threads", options.threads,
                   "Number of parallel runs, 0: all processors (default: 0; with --index: 1)")
       ->check(CLI::Range(0, 1024));
-  auto* lists = verb.add_flag("--list", options.lists, "Print the runs and exit");
-  for (CLI::Option* other : add_task_options(verb, options.task, "run")) lists->excludes(other);
-  verb.add_flag("!--no-report", options.has_report, "Do not write the HTML reports");
-  verb.add_flag("--quiet", options.is_quiet, "Print warnings and errors only");
+  auto* lists = command.add_flag("--list", options.lists, "Print the runs and exit");
+  for (CLI::Option* other : add_task_options(command, options.task, "run")) lists->excludes(other);
+  command.add_flag("!--no-report", options.has_report, "Do not write the HTML reports");
+  command.add_flag("--quiet", options.is_quiet, "Print warnings and errors only");
 }
 
 }  // namespace skycap::missions::cli

@@ -24,20 +24,20 @@ namespace skycap::missions::cli {
 /// completed, it uses the mean of all kinds.
 class SurveyRunner {
  public:
-  /// `verb` is the prefix of the progress line. Up to `threads` surveys run concurrently; zero
+  /// `command` is the prefix of the progress line. Up to `threads` surveys run concurrently; zero
   /// selects the number of processors. `has_report` adds HTML reports to the packages.
-  SurveyRunner(std::string verb, const Console& console, bool is_quiet, unsigned threads,
+  SurveyRunner(std::string command, const Console& console, bool is_quiet, unsigned threads,
                bool has_report = false);
 
   /// Runs the items with batch::run_items(). `failed`, if set, is called for each failure.
-  batch::Records run(const std::vector<batch::Item>& items,
+  batch::Records run(const std::vector<batch::BatchItem>& items,
                      const std::function<void(const Error&)>& failed = {});
 
   /// Adds expected surveys of a kind to the progress total. run() adds surveys that were not
   /// announced.
   void announce(const std::string& kind, std::size_t surveys);
 
-  void say(const std::string& text);
+  void show_status(const std::string& text);
   void clear();
 
  private:
@@ -49,18 +49,18 @@ class SurveyRunner {
   void survey_done(const std::string& kind, double seconds);
   double work_left() const;
 
-  std::string verb_;
+  std::string command_;
   const Console& console_;
   unsigned threads_;
   bool has_report_;
   ProgressLine line_;
   std::mutex mutex_;
   std::size_t total_ = 0;
-  Kind of_any_;
+  Kind all_kinds_;
   std::map<std::string, Kind> kinds_;
 };
 
-struct ItemOptions {
+struct BatchOptions {
   std::filesystem::path file;                ///< file that lists the missions
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
   TaskOptions task;
@@ -72,14 +72,14 @@ struct ItemOptions {
   std::filesystem::path folder(const std::string& name) const;
 };
 
-/// Adds the options of ItemOptions. `what` is the placeholder for the file in the help.
-void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what);
+/// Adds the options of BatchOptions. `what` is the placeholder for the file in the help.
+void add_batch_options(CLI::App& command, BatchOptions& options, const std::string& what);
 
 /// Result of one item, if it exists.
 struct CollectedItem {
   std::size_t number;  ///< index in the manifest
   std::string title;   ///< mission title
-  const batch::Contestant* contestant;
+  const batch::Method* method;
   std::filesystem::path folder;              ///< folder of the result
   std::optional<batch::TrialRecord> record;  ///< nullopt if the result is missing
 };
@@ -96,15 +96,15 @@ struct Collected {
 
 /// Executes the items of a campaign according to the options: all locally, one task, or a scheduler
 /// job.
-class ItemRun {
+class BatchRun {
  public:
   /// Stages and commits the collected results and returns the exit code. The manifest and the
   /// timings are already staged.
   using Collect = std::function<int(const Collected&, geometry::OutputFolder&)>;
 
-  /// `verb` is the command name.
-  ItemRun(const ItemOptions& options, std::string verb, batch::CampaignFile file,
-          std::filesystem::path out, const Console& console);
+  /// `command` is the command name.
+  BatchRun(const BatchOptions& options, std::string command, batch::CampaignFile file,
+           std::filesystem::path out, const Console& console);
 
   /// Runs the items and collects the results. Returns the exit code.
   int run(const Collect& collect);
@@ -115,11 +115,11 @@ class ItemRun {
  private:
   std::size_t work_on(const batch::ItemRange& range);
   Collected collected();
-  void tell_failure(const Error& error, std::size_t items, bool is_alone);
+  void report_failure(const Error& error, std::size_t items, bool is_alone);
 
-  const ItemOptions& options_;
+  const BatchOptions& options_;
   const Console& console_;
-  std::string verb_;
+  std::string command_;
   batch::Manifest manifest_;
   std::filesystem::path out_;
   unsigned threads_;
@@ -128,14 +128,14 @@ class ItemRun {
 
 /// Terminates the program if it does not end soon after a signal, because scene loading cannot be
 /// interrupted. No results are lost: they are committed by a single rename.
-class LastResort {
+class SignalWatchdog {
  public:
-  explicit LastResort(const Console& console);
-  ~LastResort();
+  explicit SignalWatchdog(const Console& console);
+  ~SignalWatchdog();
 
  private:
   struct Watcher;
-  HoldsResults results_;
+  PendingResultsGuard results_;
   std::unique_ptr<Watcher> watcher_;
 };
 

@@ -23,12 +23,12 @@ int submit(const TaskWork& work, const TaskOptions& options, const Console& cons
   job.chunk = options.chunk;
   ProgressLine progress(console, work.is_quiet);
   progress.show("waiting for " + *options.engine);
-  const auto tell = [&](const std::string& what) {
+  const auto report = [&](const std::string& what) {
     progress.clear();
     warn(console, what);
   };
   const batch::Submission submission =
-      batch::submit(batch::engine_named(*options.engine), job, folder, console.stop, tell);
+      batch::submit(batch::engine_named(*options.engine), job, folder, console.stop, report);
   progress.clear();
   if (!submission.is_queued) {
     return console.stop.stop_requested() ? interrupted_exit_code(console) : work.collect(folder);
@@ -46,7 +46,7 @@ int submit(const TaskWork& work, const TaskOptions& options, const Console& cons
 int run_task(const TaskWork& work, const TaskOptions& options, const Console& console) {
   const std::size_t task = batch::task_index(options.index.value(), batch::program_environment());
   const batch::ItemRange range =
-      batch::items_of_task(task, std::max<std::size_t>(1, options.chunk), work.job.items);
+      batch::items_in_task(task, std::max<std::size_t>(1, options.chunk), work.job.items);
   if (range.size() == 0) {
     warn(console, fmt::format("task {} has no runs; there are {}", task, work.job.items));
     return 0;
@@ -59,12 +59,12 @@ int run_task(const TaskWork& work, const TaskOptions& options, const Console& co
 }  // namespace
 
 std::string missing_text(const std::vector<std::size_t>& missing) {
-  constexpr std::size_t most = 20;
+  constexpr std::size_t max = 20;
   std::string text;
-  for (std::size_t i = 0; i < std::min(most, missing.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(max, missing.size()); ++i) {
     text += (i == 0 ? "; missing " : ", ") + std::to_string(missing[i]);
   }
-  return missing.size() > most ? text + ", ..." : text;
+  return missing.size() > max ? text + ", ..." : text;
 }
 
 int run_tasks(const TaskWork& work, const TaskOptions& options, const Console& console) {
@@ -79,37 +79,37 @@ int run_tasks(const TaskWork& work, const TaskOptions& options, const Console& c
   return console.stop.stop_requested() ? interrupted_exit_code(console) : work.collect(folder);
 }
 
-fs::path folder_of_pieces(const fs::path& results) { return results / "pieces"; }
+fs::path shards_folder(const fs::path& results) { return results / "pieces"; }
 
-fs::path folder_of_piece(const fs::path& results, std::size_t number, std::size_t pieces) {
-  return folder_of_pieces(results) / fmt::format("{}_of_{}", number, pieces);
+fs::path shard_folder(const fs::path& results, std::size_t number, std::size_t shards) {
+  return shards_folder(results) / fmt::format("{}_of_{}", number, shards);
 }
 
-int run_pieces(const batch::JobRequest& job, const TaskOptions& options, bool is_quiet,
-               const std::string& summary, const std::function<std::unique_ptr<PieceWork>()>& begin,
-               const Console& console) {
-  std::unique_ptr<PieceWork> begun;
-  const auto work = [&]() -> PieceWork& {
+int run_shards(const batch::JobRequest& job, const TaskOptions& options, bool is_quiet,
+               const std::string& summary,
+               const std::function<std::unique_ptr<ShardedJob>()>& begin, const Console& console) {
+  std::unique_ptr<ShardedJob> begun;
+  const auto work = [&]() -> ShardedJob& {
     if (!begun) begun = begin();
     return *begun;
   };
-  const auto do_pieces = [&](const batch::ItemRange& range) {
+  const auto process_shards = [&](const batch::ItemRange& range) {
     std::size_t number = range.first;
-    while (number < range.end && work().do_piece(number)) ++number;
+    while (number < range.end && work().process_shard(number)) ++number;
     return number - range.first;
   };
   const auto is_collected = [&] {
     std::error_code ignored;
-    return !fs::exists(folder_of_pieces(job.out), ignored) &&
+    return !fs::exists(shards_folder(job.out), ignored) &&
            package::is_complete_result(job.out / summary);
   };
   const auto collect = [&](geometry::OutputFolder& folder) {
     std::vector<std::size_t> missing;
     std::error_code ignored;
     for (std::size_t number = 0; number < job.items; ++number) {
-      const fs::path piece = folder_of_piece(job.out, number, job.items);
-      if (fs::exists(piece, ignored)) geometry::finish_commit(piece);
-      if (!work().take_piece(number)) missing.push_back(number);
+      const fs::path shard = shard_folder(job.out, number, job.items);
+      if (fs::exists(shard, ignored)) geometry::finish_commit(shard);
+      if (!work().load_shard(number)) missing.push_back(number);
     }
     if (!missing.empty()) {
       warn(console, fmt::format("{} of {} pieces are complete{}", job.items - missing.size(),
@@ -117,10 +117,10 @@ int run_pieces(const batch::JobRequest& job, const TaskOptions& options, bool is
       return 1;
     }
     const int exit_code = work().join(folder);
-    if (exit_code == 0) fs::remove_all(folder_of_pieces(job.out), ignored);
+    if (exit_code == 0) fs::remove_all(shards_folder(job.out), ignored);
     return exit_code;
   };
-  return run_tasks({job, is_quiet, {}, do_pieces, is_collected, collect}, options, console);
+  return run_tasks({job, is_quiet, {}, process_shards, is_collected, collect}, options, console);
 }
 
 }  // namespace skycap::missions::cli

@@ -37,35 +37,35 @@ struct TaskWork {
 int run_tasks(const TaskWork& work, const TaskOptions& options, const Console& console);
 
 /// Returns the folder that contains the pieces of incomplete results.
-std::filesystem::path folder_of_pieces(const std::filesystem::path& results);
+std::filesystem::path shards_folder(const std::filesystem::path& results);
 /// Returns the folder of one piece.
-std::filesystem::path folder_of_piece(const std::filesystem::path& results, std::size_t number,
-                                      std::size_t pieces);
+std::filesystem::path shard_folder(const std::filesystem::path& results, std::size_t number,
+                                   std::size_t shards);
 
 /// Interface for a result that is computed in pieces.
-class PieceWork {
+class ShardedJob {
  public:
-  virtual ~PieceWork() = default;
+  virtual ~ShardedJob() = default;
 
   /// Computes a piece unless it is already complete. Returns false if interrupted.
-  virtual bool do_piece(std::size_t number) = 0;
+  virtual bool process_shard(std::size_t number) = 0;
   /// Returns whether a piece is complete, and stores its data for join().
-  virtual bool take_piece(std::size_t number) = 0;
-  /// Joins all pieces, which were passed to take_piece() in order, and commits the result. Returns
+  virtual bool load_shard(std::size_t number) = 0;
+  /// Joins all pieces, which were passed to load_shard() in order, and commits the result. Returns
   /// the exit code.
   virtual int join(geometry::OutputFolder& folder) = 0;
 
  protected:
-  PieceWork() = default;
-  PieceWork(const PieceWork&) = default;
-  PieceWork& operator=(const PieceWork&) = default;
+  ShardedJob() = default;
+  ShardedJob(const ShardedJob&) = default;
+  ShardedJob& operator=(const ShardedJob&) = default;
 };
 
 /// Executes a job whose items are pieces, as run_tasks(). The pieces are removed once the results
 /// are complete. `summary` is the result file that indicates completeness; `begin` reads the
 /// inputs.
-int run_pieces(const batch::JobRequest& job, const TaskOptions& options, bool is_quiet,
-               const std::string& summary, const std::function<std::unique_ptr<PieceWork>()>& begin,
-               const Console& console);
+int run_shards(const batch::JobRequest& job, const TaskOptions& options, bool is_quiet,
+               const std::string& summary,
+               const std::function<std::unique_ptr<ShardedJob>()>& begin, const Console& console);
 
 }  // namespace skycap::missions::cli

@@ -25,24 +25,26 @@ std::vector<config::KeyOverride> KeyOptions::overrides() const {
   return all;
 }
 
-void add_set_option(CLI::App& verb, KeyOptions& keys) {
-  verb.add_option(
+void add_set_option(CLI::App& command, KeyOptions& keys) {
+  command
+      .add_option(
           "--set", keys.set,
           "KEY=VALUE: set any key of the mission file, for example planner.density=213; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
 }
 
-std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
+std::vector<CLI::Option*> add_task_options(CLI::App& command, TaskOptions& options,
                                            const std::string& item) {
-  verb.add_option("--chunk", options.chunk, "Number of " + item + "s per task (default: 1)")
+  command.add_option("--chunk", options.chunk, "Number of " + item + "s per task (default: 1)")
       ->check(CLI::Range(1, 1'000'000));
   std::vector<CLI::Option*> all{
-      verb.add_option("--index", options.index,
-                      "Run one task: its 0-based index, or slurm, mpi, kubernetes, parallel or "
-                      "auto to read it from the scheduler's environment"),
-      verb.add_flag("--collect", options.collects, "Merge what is complete"),
-      verb.add_option("--submit", options.engine,
+      command.add_option("--index", options.index,
+                         "Run one task: its 0-based index, or slurm, mpi, kubernetes, parallel or "
+                         "auto to read it from the scheduler's environment"),
+      command.add_flag("--collect", options.collects, "Merge what is complete"),
+      command
+          .add_option("--submit", options.engine,
                       "Submit to slurm, parallel or mpi; writes the job script")
           ->check(CLI::IsMember({"slurm", "parallel", "mpi"}))};
   for (CLI::Option* one : all) {
@@ -53,8 +55,8 @@ std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
   return all;
 }
 
-CLI::Validator number_between(double least, double most) {
-  const CLI::Range range(least, most);
+CLI::Validator number_between(double min, double max) {
+  const CLI::Range range(min, max);
   return {[range](std::string& text) {
             double number = 0.0;
             const bool is_number = CLI::detail::lexical_cast(text, number) && number == number;

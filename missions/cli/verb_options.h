@@ -31,15 +31,15 @@ struct KeyOptions {
   std::vector<config::KeyOverride> overrides() const;
 };
 
-void add_set_option(CLI::App& verb, KeyOptions& keys);
+void add_set_option(CLI::App& command, KeyOptions& keys);
 
 /// Adds the options of a command that processes items; `item` is the noun in the help. All options
 /// except the chunk size are mutually exclusive. Returns the mutually exclusive options.
-std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
+std::vector<CLI::Option*> add_task_options(CLI::App& command, TaskOptions& options,
                                            const std::string& item);
 
 /// Returns a validator for numbers in a closed interval. Unlike CLI::Range, it rejects NaN.
-CLI::Validator number_between(double least, double most);
+CLI::Validator number_between(double min, double max);
 
 /// Add commands whose options are defined in their own source files.
 void add_site(CLI::App& app, const Console& console, Action& action);
@@ -53,7 +53,7 @@ void add_presets(CLI::App& app, const Console& console, Action& action);
 
 /// Returns the input files that may contain mission keys.
 template <class Options>
-std::vector<std::filesystem::path> files_of(const Options& options) {
+std::vector<std::filesystem::path> collect_files(const Options& options) {
   if constexpr (requires { options.missions; }) {
     return options.missions;
   } else if constexpr (requires { options.mission; }) {
@@ -69,27 +69,28 @@ std::vector<std::filesystem::path> files_of(const Options& options) {
 
 /// Registers a callback that runs the command with the parsed options.
 template <class Options>
-void run(CLI::App& verb, std::shared_ptr<Options> options,
-         int (*run_verb)(const Options&, const Console&), const Console& console, Action& action) {
-  verb.callback([=, &console, &action] {
+void run(CLI::App& command, std::shared_ptr<Options> options,
+         int (*run_command)(const Options&, const Console&), const Console& console,
+         Action& action) {
+  command.callback([=, &console, &action] {
     action = [=, &console] {
-      warn_of_former_names(files_of(*options), {}, console);
-      return run_verb(*options, console);
+      warn_deprecated_names(collect_files(*options), {}, console);
+      return run_command(*options, console);
     };
   });
 }
 
 /// Registers a callback as run() and passes mission-key options as overrides.
 template <class Options>
-void run_with_keys(CLI::App& verb, std::shared_ptr<Options> options,
+void run_with_keys(CLI::App& command, std::shared_ptr<Options> options,
                    const std::shared_ptr<KeyOptions>& keys,
-                   int (*run_verb)(const Options&, const Console&), const Console& console,
+                   int (*run_command)(const Options&, const Console&), const Console& console,
                    Action& action) {
-  verb.callback([=, &console, &action] {
+  command.callback([=, &console, &action] {
     options->overrides = keys->overrides();
     action = [=, &console] {
-      warn_of_former_names(files_of(*options), options->overrides, console);
-      return run_verb(*options, console);
+      warn_deprecated_names(collect_files(*options), options->overrides, console);
+      return run_command(*options, console);
     };
   });
 }

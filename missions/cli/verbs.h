@@ -21,7 +21,7 @@ struct TaskOptions {
   bool collects = false;              ///< collects completed items without running any
   std::optional<std::string> engine;  ///< scheduler that runs all tasks
 
-  bool is_given() const { return index || engine || collects || chunk > 0; }
+  bool is_set() const { return index || engine || collects || chunk > 0; }
 };
 
 struct PlanOptions {
@@ -54,17 +54,17 @@ struct NextOptions : LiveOptions {
   std::optional<std::filesystem::path> pose_file;  ///< or this file
   std::string pose_sigma;                          ///< standard deviations of the pose; either this
   std::string pose_covariance;  ///< or this covariance; default: from the mission
-  std::string lens;             ///< camera intrinsics of a depth image
+  std::string intrinsics;       ///< camera intrinsics of a depth image
   double depth_unit = 0.001;    ///< unit of depth values in an image [m]
   bool is_in_world = false;     ///< whether the cloud's points are in the world frame
-  bool is_on_way = false;       ///< whether the scan was captured en route
+  bool is_en_route = false;     ///< whether the scan was captured en route
   std::string id;               ///< identifier of the scan; default: its checksum
   std::optional<std::filesystem::path> dataset;  ///< recording to add instead of a scan
   std::string sensor;                            ///< sensor label in a rawlog
   /// Poses of a rawlog's sensor; default: those in the rawlog.
   std::optional<std::filesystem::path> poses;
-  std::size_t until = 1'000'000;       ///< maximum number of frames from the recording
-  std::optional<std::string> refusal;  ///< reason for rejecting the proposed view
+  std::size_t until = 1'000'000;                ///< maximum number of frames from the recording
+  std::optional<std::string> rejection_reason;  ///< reason for rejecting the proposed view
   bool is_json = false;
   bool is_quiet = false;
 };
@@ -89,7 +89,7 @@ int serve(const ServeOptions& options, const Console& console);
 
 struct BenchmarkOptions {
   std::vector<std::filesystem::path> missions;
-  std::vector<std::string> planners = {"all"};  ///< names from contestants(), or "all"
+  std::vector<std::string> planners = {"all"};  ///< names from methods(), or "all"
   /// Names from sim::model_families(), or "all". A model of each family replaces the missions'
   /// scene model; each trial's seed generates a different model. Empty: the missions' own models.
   std::vector<std::string> scenes;
@@ -133,7 +133,7 @@ struct ExportOptions {
 /// another vehicle. Returns exit code 1 if no view is reachable.
 int export_package(const ExportOptions& options, const Console& console);
 
-struct FlyTestVerbOptions {
+struct FlyTestCommandOptions {
   std::filesystem::path package;             ///< package folder written by plan()
   std::optional<std::filesystem::path> out;  ///< output folder; default: the package
   /// Mission file whose scene is used as ground truth for the clearance.
@@ -152,7 +152,7 @@ struct FlyTestVerbOptions {
 /// Simulates repeated flights of every route file in a package, with wind and failsafes, and writes
 /// fly_test.json. Returns exit code 1 if interrupted, if the battery is insufficient, or if a
 /// flight violates the clearance. Permitted errors are deducted from the clearance.
-int fly_test(const FlyTestVerbOptions& options, const Console& console);
+int fly_test(const FlyTestCommandOptions& options, const Console& console);
 
 struct CalibrateOptions {
   std::filesystem::path log;  ///< ArduPilot .bin log or .csv file
@@ -167,7 +167,7 @@ struct CalibrateOptions {
 /// Fits a vehicle's power and endurance to a flight log and writes a vehicle file.
 int calibrate(const CalibrateOptions& options, const Console& console);
 
-struct ScanVerbOptions {
+struct ScanCommandOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> route;  ///< route file; default: from the mission
   std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
@@ -178,7 +178,7 @@ struct ScanVerbOptions {
   bool with_truth = false;  ///< also records ground-truth points
   bool resumes = false;     ///< resumes an interrupted scan
   bool has_report = true;   ///< whether to write an HTML report
-  std::size_t pieces = 0;   ///< number of separately recorded pieces; zero: not divided
+  std::size_t shards = 0;   ///< number of separately recorded pieces; zero: not divided
   TaskOptions task;         ///< tasks whose items are pieces
   std::vector<config::KeyOverride> overrides;
   bool is_quiet = false;
@@ -186,7 +186,7 @@ struct ScanVerbOptions {
 
 /// Simulates the flight along a route and records the sensor's measurements. Returns exit code 1 if
 /// interrupted or if a piece is missing.
-int scan(const ScanVerbOptions& options, const Console& console);
+int scan(const ScanCommandOptions& options, const Console& console);
 
 struct EvaluateOptions {
   std::filesystem::path cloud;     ///< point cloud; either this
@@ -194,7 +194,7 @@ struct EvaluateOptions {
   std::string model;               ///< builtin:NAME, model:NAME, mesh file or mission file
   std::optional<double> distance;  ///< coverage distance r_d [m]; default: from the mission file
   std::size_t samples = 100'000;
-  std::size_t pieces = 0;  ///< separately evaluated pieces of a cloud; zero: not divided
+  std::size_t shards = 0;  ///< separately evaluated pieces of a cloud; zero: not divided
   std::optional<std::filesystem::path> out;  ///< output folder for the pieces and their results
   TaskOptions task;                          ///< tasks whose items are pieces
   unsigned threads = 0;                      ///< zero: one per processor
@@ -211,7 +211,7 @@ struct ReconstructOptions {
   std::optional<std::filesystem::path> out;  ///< default: CLOUD_mesh.ply in the cloud's folder
   int depth = 0;
   double spacing = 0.0;
-  double least_density = 0.2;
+  double min_density = 0.2;
   unsigned threads = 0;
 };
 

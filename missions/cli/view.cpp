@@ -14,19 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-report::MadePage page_of_mission(const ViewOptions& options, const config::Report& report) {
+report::MadePage make_mission_page(const ViewOptions& options, const config::Report& report) {
   const config::MissionSetup setup = config::read_mission(options.what, options.overrides, report);
   const evaluation::SurveyScene scene(setup.simulation, options.what.parent_path(),
                                       setup.run.threads);
   const geometry::View first = scene.first_view(setup.run.seed);
   std::optional<Eigen::Vector3d> pad;
-  if (setup.flight().is_flown()) pad = setup.flight().pad(first.position);
+  if (setup.flight().has_vehicle()) pad = setup.flight().pad(first.position);
   return {
       options.out.value_or(fs::path("results") / setup.name / "mission.html"),
       report::mission_page(setup.name, setup.survey(), setup.scene(), scene.samples().points, pad)};
 }
 
-std::vector<report::MadePage> pages_of(const ViewOptions& options, const config::Report& report) {
+std::vector<report::MadePage> make_pages(const ViewOptions& options, const config::Report& report) {
   const fs::path& what = options.what;
   std::error_code ignored;
   if (fs::is_directory(what, ignored)) {
@@ -35,8 +35,8 @@ std::vector<report::MadePage> pages_of(const ViewOptions& options, const config:
   if (!options.out && !fs::exists(what, ignored)) {
     throw Error(ErrorKind::bad_file, what.string() + ": does not exist");
   }
-  const std::string ending = what.extension().string();
-  if (ending == ".yaml" || ending == ".yml") return {page_of_mission(options, report)};
+  const std::string extension = what.extension().string();
+  if (extension == ".yaml" || extension == ".yml") return {make_mission_page(options, report)};
   fs::path file = what;
   file.replace_extension(".html");
   return {{options.out.value_or(file), report::cloud_page(what)}};
@@ -56,7 +56,7 @@ bool is_opened(const fs::path& file) {
 int view(const ViewOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("reading " + options.what.string());
-  for (const report::MadePage& page : pages_of(options, progress.teller())) {
+  for (const report::MadePage& page : make_pages(options, progress.progress_callback())) {
     if (page.text) geometry::write_file(page.file, *page.text);
     progress.clear();
     const bool is_shown = is_opened(page.file);

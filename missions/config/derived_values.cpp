@@ -27,7 +27,7 @@ constexpr std::size_t usual_view_limit = 130;
 constexpr const char* targets_as_truth = "prior";
 
 /// Maximum number of points per target in the prior surface.
-constexpr std::size_t most_target_points = 300'000;
+constexpr std::size_t max_target_points = 300'000;
 
 bool has_role(const MissionDocument& document, Role role) {
   return std::ranges::find(document.prior, role, &site_data::Source::role) != document.prior.end();
@@ -35,12 +35,12 @@ bool has_role(const MissionDocument& document, Role role) {
 
 /// Returns how scans of a flown scanner provide free space. Returns nullopt for single-line
 /// scanners, because the space between their scan lines is unobserved.
-std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) {
+std::optional<flight::SweepRays> make_sweep_rays(const MissionDocument& document) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   const sim::LidarConfig& scanner = *sensor.scanner;
   const double speed = document.flight.options.cruise_speed;
   const double lever_arm = sensor.mount.value().body_from_scanner.translation().norm();
-  switch (kind_of(scanner)) {
+  switch (find_scanner_kind(scanner)) {
     case ScannerKind::ring: {
       // The cells are slightly larger than those of a revolution, so that each contains a ray. The
       // ray origins deviate from the vehicle position by the lever arm, half the distance flown per
@@ -48,17 +48,17 @@ std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) 
       constexpr double wider = 1.02;
       return flight::SweepRays{.spacing = wider * ray_spacing(scanner),
                                .axis = Vector3d::UnitX(),
-                               .origin_spread = lever_arm + 0.5 * sim::spread_of_turns +
+                               .origin_spread = lever_arm + 0.5 * sim::revolution_spread +
                                                 0.5 * speed / std::abs(scanner.rotation_rate)};
     }
     case ScannerKind::rosette: {
       // In flight, the rays of a rosette do not interleave as at rest but are distributed almost
       // randomly. The cells are enlarged to contain at least four times as many rays.
       constexpr double wider = 2.0;
-      const double flown = sensor.is_moving() ? speed * sensor.frame_period : 0.0;
+      const double travelled = sensor.is_moving() ? speed * sensor.frame_period : 0.0;
       return flight::SweepRays{.spacing = wider * document.sensor.rosette.value().gap,
                                .axis = Vector3d::UnitX(),
-                               .origin_spread = lever_arm + 0.5 * flown,
+                               .origin_spread = lever_arm + 0.5 * travelled,
                                .is_scattered = true};
     }
     case ScannerKind::line:
@@ -69,10 +69,10 @@ std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) 
 
 flight::AirspaceOptions airspace_options(const MissionDocument& document) {
   flight::AirspaceOptions airspace{.base = document.scene.position,
-                                   .ground_height = ground_height_of(document),
+                                   .ground_height = compute_ground_height(document),
                                    .geofence = document.site.geofence,
                                    .no_fly = document.site.no_fly,
-                                   .highest_height = document.site.highest_height};
+                                   .max_height = document.site.max_height};
   const std::shared_ptr<const site_data::SitePriors>& priors = document.scene.priors;
   if (!priors) return airspace;
   airspace.priors = priors->obstacles;
@@ -90,67 +90,67 @@ flight::AirspaceOptions airspace_options(const MissionDocument& document) {
 flight::CaptureOptions capture_options(const MissionDocument& document) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   flight::CaptureOptions capture{.camera = sensor.camera.camera,
-                                 .view_distance = view_distance_of(document),
+                                 .view_distance = compute_view_distance(document),
                                  .is_scanner = document.sensor.lidar.has_value(),
                                  .mount = sensor.mount,
                                  .shutter = sensor.shutter,
                                  .settle = sensor.settle,
                                  .is_moving = sensor.is_moving(),
                                  .frame_period = sensor.frame_period};
-  if (sensor.mount) capture.rays = sweep_rays_of(document);
+  if (sensor.mount) capture.rays = make_sweep_rays(document);
   return capture;
 }
 
 /// Returns the cost of a stop as an equivalent path length [m] at cruise speed. It includes the
 /// rest and the acceleration phases of the straight segments before it: 2.5 on average in surveys
 /// of buildings.
-double price_of_stop(const flight::FlightOptions& flight) {
-  constexpr double pieces = 2.5, long_way = 100.0;
-  const flight::Motion motion(flight.flown(), flight.route(Vector3d::Zero()).conditions);
+double compute_stop_price(const flight::FlightOptions& flight) {
+  constexpr double segments = 2.5, long_leg = 100.0;
+  const flight::Motion motion(flight.required_vehicle(), flight.route(Vector3d::Zero()).conditions);
   const double speed = motion.leg_speed(Vector3d::UnitX());
-  const double ramps = motion.leg_time({long_way, 0.0, 0.0}) - long_way / speed;
+  const double ramps = motion.leg_time({long_leg, 0.0, 0.0}) - long_leg / speed;
   return speed *
-         (flight.rest_before() + flight.rest_after() + pieces * (ramps + flight::corner_hold));
+         (flight.rest_before() + flight.rest_after() + segments * (ramps + flight::corner_hold));
 }
 
 /// Returns the cost of a view for the planner skycap, excluding the path to it, as a path length
 /// [m] according to planner.goal. Returns nullopt if the planner's own default applies.
-std::optional<double> view_price_of(const MissionDocument& document,
-                                    const flight::FlightOptions& flight) {
+std::optional<double> compute_view_price(const MissionDocument& document,
+                                         const flight::FlightOptions& flight) {
   if (document.planner.goal == PlannerGoal::views) return std::nullopt;
-  return flight.is_flown() ? price_of_stop(flight) : view_distance_of(document);
+  return flight.has_vehicle() ? compute_stop_price(flight) : compute_view_distance(document);
 }
 
-survey::skycap::SkycapConfig skycap_config(const MissionDocument& document,
+survey::surfel::SurfelConfig skycap_config(const MissionDocument& document,
                                            const flight::FlightOptions& flight) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
-  survey::skycap::SkycapConfig config{.coverage_radius = document.evaluation.registration_distance,
-                                      .spacing = spacing_of(document),
-                                      .view_distance = view_distance_of(document),
+  survey::surfel::SurfelConfig config{.coverage_radius = document.evaluation.registration_distance,
+                                      .spacing = compute_spacing(document),
+                                      .view_distance = compute_view_distance(document),
                                       .max_incidence = sensor.camera.max_incidence,
                                       .scene_box = document.planner.sampling.scene_box,
                                       .limits = view_limits(document),
-                                      .stop = document.planner.skycap_stop,
-                                      .ideas = document.planner.skycap_ideas};
+                                      .stop = document.planner.surfel_stop,
+                                      .ablation = document.planner.ablation};
   // With the limits, the planner selects the best view that is still within reach of them.
   const LimitsSection& limits = document.limits;
-  config.stop.most_length = limits.options.max_distance;
-  if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
+  config.stop.max_length = limits.options.max_distance;
+  if (limits.max_minutes) config.stop.max_time = 60.0 * *limits.max_minutes;
   config.stop.speed = limits.options.speed;
   config.stop.time_per_view = limits.options.time_per_view;
-  config.view_price = view_price_of(document, flight);
+  config.view_price = compute_view_price(document, flight);
   if (sensor.is_moving()) {
     config.frame_spacing = flight.cruise_speed * sensor.frame_period;
     const auto& scanner = sensor.scanner;
-    config.counts_ways = scanner && kind_of(*scanner) != ScannerKind::ring;
-    config.sees_lines = scanner && kind_of(*scanner) == ScannerKind::line;
+    config.counts_en_route = scanner && find_scanner_kind(*scanner) != ScannerKind::ring;
+    config.sees_lines = scanner && find_scanner_kind(*scanner) == ScannerKind::line;
   }
-  if (flight.is_flown()) {  // isotropic approximation of the pose errors
+  if (flight.has_vehicle()) {  // isotropic approximation of the pose errors
     const sim::NavigationErrors& poses = document.scan.navigation;
     const auto mean = [](double twice, double once) {
       return std::sqrt((2.0 * twice * twice + once * once) / 3.0);
     };
-    config.place_error = mean(poses.horizontal_sigma, poses.vertical_sigma);
+    config.position_error = mean(poses.horizontal_sigma, poses.vertical_sigma);
     config.angle_error = mean(poses.tilt_sigma, poses.heading_sigma);
   }
   return config;
@@ -163,10 +163,10 @@ survey::volumetric::VolumetricConfig volumetric_config(
   survey::volumetric::VolumetricConfig config{
       .metric = metric,
       .resolution = document.planner.sampling.resolution_radius,
-      .spacing = spacing_of(document),
+      .spacing = compute_spacing(document),
       .scene_box = document.planner.sampling.scene_box,
       .candidates = static_cast<std::size_t>(std::lround(views)),
-      .least_height = least_view_height(document),
+      .min_height = min_view_height(document),
       .settings = settings};
   if (settings.sphere_centre) config.sphere_centre = *settings.sphere_centre;
   if (settings.sphere_radius) config.sphere_radius = *settings.sphere_radius;
@@ -174,9 +174,9 @@ survey::volumetric::VolumetricConfig volumetric_config(
 }
 
 /// Returns the surfaces of the targets as prior surface for the planner, or null without targets.
-std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(
+std::shared_ptr<const survey::surfel::PriorSurface> prior_surface(
     const site_data::SitePriors& site, const geometry::CameraConfig& camera, double distance) {
-  auto surface = std::make_shared<survey::skycap::PriorSurface>();
+  auto surface = std::make_shared<survey::surfel::PriorSurface>();
   // Spacing of the points: the planner's finest resolution is four pixels, so that one point each
   // suffices.
   const double pixel = distance / geometry::Camera(camera).focal_length_px().minCoeff();
@@ -184,11 +184,11 @@ std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(
     if (site.sources[i].role != Role::target) continue;
     for (const site_data::Object& object : site.priors[i].objects) {
       const site_data::SurfacePoints points =
-          site_data::spread_over(object, most_target_points, 2.0 * pixel);
+          site_data::spread_over(object, max_target_points, 2.0 * pixel);
       surface->positions.insert(surface->positions.end(), points.positions.begin(),
                                 points.positions.end());
       surface->normals.insert(surface->normals.end(), points.normals.begin(), points.normals.end());
-      surface->areas.resize(surface->positions.size(), static_cast<float>(points.area_of_each));
+      surface->areas.resize(surface->positions.size(), static_cast<float>(points.area_per_point));
       surface->uncertainties.resize(surface->positions.size(),
                                     static_cast<float>(site.priors[i].uncertainty));
     }
@@ -198,16 +198,16 @@ std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(
 
 }  // namespace
 
-bool has_place(const MissionDocument& document) {
+bool is_georeferenced(const MissionDocument& document) {
   return document.georeference.latitude_deg && document.georeference.longitude_deg;
 }
 
-flight::Site site_of(const MissionDocument& document) {
-  const Georeference& place = document.georeference;
+flight::Site make_site(const MissionDocument& document) {
+  const Georeference& georeference = document.georeference;
   flight::Site site;
-  site.origin = {place.latitude_deg.value_or(0.0), place.longitude_deg.value_or(0.0),
-                 place.ellipsoid_height};
-  site.geoid_undulation = place.geoid_undulation;
+  site.origin = {georeference.latitude_deg.value_or(0.0), georeference.longitude_deg.value_or(0.0),
+                 georeference.ellipsoid_height};
+  site.geoid_undulation = georeference.geoid_undulation;
   return site;
 }
 
@@ -222,22 +222,22 @@ survey::see::SeeConfig see_config(const MissionDocument& document) {
   return see;
 }
 
-double spacing_of(const MissionDocument& document) {
+double compute_spacing(const MissionDocument& document) {
   return see_config(document).effective_spacing();
 }
 
-double view_distance_of(const MissionDocument& document) {
+double compute_view_distance(const MissionDocument& document) {
   const SamplingSection& sampling = document.planner.sampling;
   return sampling.view_distance.value_or(geometry::view_distance(
       geometry::Camera(document.sensor.options.camera.camera), sampling.density));
 }
 
-AlignedBox3d unknown_box_of(const MissionDocument& document) {
+AlignedBox3d compute_unknown_box(const MissionDocument& document) {
   return document.flight.unknown_box ? *document.flight.unknown_box
                                      : document.planner.sampling.scene_box.value_or(AlignedBox3d());
 }
 
-double ground_height_of(const MissionDocument& document) {
+double compute_ground_height(const MissionDocument& document) {
   double height = document.scene.position.z();
   if (!document.scene.priors) return height;
   const site_data::SitePriors& site = *document.scene.priors;
@@ -249,48 +249,48 @@ double ground_height_of(const MissionDocument& document) {
   return height;
 }
 
-std::optional<double> least_view_height(const MissionDocument& document) {
+std::optional<double> min_view_height(const MissionDocument& document) {
   const std::optional<double>& clearance = document.limits.ground_clearance;
-  return clearance ? std::optional(ground_height_of(document) + *clearance) : std::nullopt;
+  return clearance ? std::optional(compute_ground_height(document) + *clearance) : std::nullopt;
 }
 
 survey::ViewLimits view_limits(const MissionDocument& document) {
   const LimitsSection& limits = document.limits;
   const sim::SurveySensorOptions& sensor = document.sensor.options;
-  survey::ViewLimits result{.least_height = document.site.lowest_height,
-                            .most_height = document.site.highest_height,
+  survey::ViewLimits result{.min_height = document.site.min_height,
+                            .max_height = document.site.max_height,
                             .geofence = document.site.geofence,
                             .no_fly = document.site.no_fly,
-                            .stand_off = limits.stand_off,
-                            .least_pitch = limits.lowest_pitch,
-                            .most_pitch = limits.highest_pitch};
-  if (const std::optional<double> least = least_view_height(document)) {
-    result.least_height = std::max(*least, result.least_height.value_or(*least));
+                            .min_standoff = limits.min_standoff,
+                            .min_pitch = limits.min_pitch,
+                            .max_pitch = limits.max_pitch};
+  if (const std::optional<double> min = min_view_height(document)) {
+    result.min_height = std::max(*min, result.min_height.value_or(*min));
   }
   const auto terrain = document.scene.priors ? document.scene.priors->terrain : nullptr;
   if (terrain && limits.ground_clearance) {
-    result.least_height_over = [terrain, plane = document.scene.position.z(),
-                                clearance = *limits.ground_clearance](const Eigen::Vector2d& at) {
+    result.min_height_at = [terrain, plane = document.scene.position.z(),
+                            clearance = *limits.ground_clearance](const Eigen::Vector2d& at) {
       return terrain->height(at).value_or(plane) + clearance;
     };
   }
-  if (document.flight.is_flown()) {
-    const flight::Vehicle& vehicle = document.flight.options.flown();
+  if (document.flight.has_vehicle()) {
+    const flight::Vehicle& vehicle = document.flight.options.required_vehicle();
     if (!sensor.mount) {  // only cameras are mounted on a gimbal
-      result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
-      result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
-    } else if (kind_of(*sensor.scanner) == ScannerKind::rosette) {
+      result.min_pitch = std::max(result.min_pitch, vehicle.gimbal_min);
+      result.max_pitch = std::min(result.max_pitch, vehicle.gimbal_max);
+    } else if (find_scanner_kind(*sensor.scanner) == ScannerKind::rosette) {
       constexpr double hair = 1e-5;  // tolerance, so that the pitch interval is not empty
-      result.least_pitch = std::max(result.least_pitch, sensor.mount->look_pitch - hair);
-      result.most_pitch = std::min(result.most_pitch, sensor.mount->look_pitch + hair);
+      result.min_pitch = std::max(result.min_pitch, sensor.mount->view_pitch - hair);
+      result.max_pitch = std::min(result.max_pitch, sensor.mount->view_pitch + hair);
     }
-    result.stand_off = std::max(result.stand_off, document.flight.options.clearance);
+    result.min_standoff = std::max(result.min_standoff, document.flight.options.clearance);
   }
   return result;
 }
 
 std::size_t view_limit(const MissionDocument& document) {
-  const bool is_volumetric = survey::title_of(document.planner.name).metric.has_value();
+  const bool is_volumetric = survey::find_title(document.planner.name).metric.has_value();
   return is_volumetric ? std::min(document.planner.volumetric.view_limit.value_or(usual_view_limit),
                                   document.limits.options.max_views)
                        : document.limits.options.max_views;
@@ -308,16 +308,16 @@ std::optional<Role> truth_role(const MissionDocument& document) {
 
 flight::FlightOptions flight_options(const MissionDocument& document) {
   flight::FlightOptions options = document.flight.options;
-  options.unknown_box = unknown_box_of(document);
+  options.unknown_box = compute_unknown_box(document);
   options.has_own_box = document.flight.unknown_box.has_value();
-  const std::vector<Vector3d>& corners = document.flight.unknown_beside;
+  const std::vector<Vector3d>& corners = document.flight.extra_unknown_boxes;
   for (std::size_t i = 0; i + 1 < corners.size(); i += 2) {
-    options.unknown_beside.emplace_back(corners[i], corners[i + 1]);
+    options.extra_unknown_boxes.emplace_back(corners[i], corners[i + 1]);
   }
   options.airspace = airspace_options(document);
   options.capture = capture_options(document);
-  options.site = site_of(document);
-  options.has_place = has_place(document);
+  options.site = make_site(document);
+  options.is_georeferenced = is_georeferenced(document);
   return options;
 }
 
@@ -326,13 +326,13 @@ survey::PlannerOptions planner_options(const MissionDocument& document,
   const SamplingSection& sampling = document.planner.sampling;
   survey::PlannerOptions options{.name = document.planner.name,
                                  .camera = document.sensor.options.camera.camera,
-                                 .spacing = spacing_of(document),
-                                 .view_distance = view_distance_of(document),
+                                 .spacing = compute_spacing(document),
+                                 .view_distance = compute_view_distance(document),
                                  .resolution_radius = sampling.resolution_radius,
                                  .scene_box = sampling.scene_box,
                                  .max_incidence = document.sensor.options.camera.max_incidence,
                                  .limits = view_limits(document)};
-  if (const auto metric = survey::title_of(options.name).metric) {
+  if (const auto metric = survey::find_title(options.name).metric) {
     options.method = volumetric_config(document, *metric);
   } else if (options.name == survey::PlannerName::skycap) {
     options.method = skycap_config(document, flight);
@@ -344,7 +344,7 @@ survey::PlannerOptions planner_options(const MissionDocument& document,
     }
   } else {
     survey::see::SeeConfig see = see_config(document);
-    see.least_height = least_view_height(document);
+    see.min_height = min_view_height(document);
     options.method = see;
   }
   return options;
@@ -357,11 +357,11 @@ session::StartOptions start_options(const MissionDocument& document,
   session::StartOptions start{
       .box = flight.unknown_box,
       .clearance = flight.clearance,
-      .lowest = std::max(view_limits(document).least_height.value_or(base), base),
+      .min_height = std::max(view_limits(document).min_height.value_or(base), base),
       .view_distance = flight.capture.view_distance,
       .mount = document.sensor.options.mount,
-      .sees_lines = scanner && kind_of(*scanner) == ScannerKind::line};
-  if (flight.is_flown()) start.opening = document.flight.opening;
+      .sees_lines = scanner && find_scanner_kind(*scanner) == ScannerKind::line};
+  if (flight.has_vehicle()) start.initial_pattern = document.flight.initial_pattern;
   if (const auto& position = document.start.position) {
     start.view = document.start.look_at
                      ? geometry::look_at(*position, *document.start.look_at)

@@ -16,30 +16,30 @@
 namespace skycap::missions::config {
 
 /// Returns whether the document has a georeference (latitude and longitude).
-bool has_place(const MissionDocument& document);
+bool is_georeferenced(const MissionDocument& document);
 
 /// Returns the georeference of the frame's origin, or 0° N 0° E if the document has none.
-flight::Site site_of(const MissionDocument& document);
+flight::Site make_site(const MissionDocument& document);
 
 /// Returns the settings of SEE and SEE++, including the sampling settings shared by all planners.
 survey::see::SeeConfig see_config(const MissionDocument& document);
 
 /// Returns epsilon, the point spacing [m]: planner.spacing, or rho^(-1/2) if the key is missing.
-double spacing_of(const MissionDocument& document);
+double compute_spacing(const MissionDocument& document);
 
 /// Returns the distance between views and surfaces [m]: planner.view_distance, or else the distance
 /// at which the sensor's pixel density equals planner.density.
-double view_distance_of(const MissionDocument& document);
+double compute_view_distance(const MissionDocument& document);
 
 /// Returns the box in which unobserved space is treated as occupied; an empty box disables this.
-Eigen::AlignedBox3d unknown_box_of(const MissionDocument& document);
+Eigen::AlignedBox3d compute_unknown_box(const MissionDocument& document);
 
 /// Returns the z [m] below which everything is solid. This is the scene's base height, or the
 /// minimum terrain height minus its uncertainty if that is lower.
-double ground_height_of(const MissionDocument& document);
+double compute_ground_height(const MissionDocument& document);
 
 /// Returns the minimum z of a view [m] according to limits.ground_clearance, if that key is set.
-std::optional<double> least_view_height(const MissionDocument& document);
+std::optional<double> min_view_height(const MissionDocument& document);
 
 /// Combines the view limits of `site`, `limits` and the vehicle. Heights are z in the mission frame
 /// [m].

@@ -48,7 +48,7 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     {"frontier_spacing", "planner.frontier_spacing"},
     {"core_threshold", "planner.core_threshold"},
     {"max_evaluations", "planner.cap.max_evaluations"},
-    // survey::skycap::SkycapConfig
+    // survey::surfel::SurfelConfig
     {"coverage_radius", "evaluation.coverage_distance"},
     {"view_price", "planner.goal"},
     {"stop.wanted_coverage", "planner.target_coverage"},
@@ -78,7 +78,7 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
 });
 
 /// Returns the key of a field, or an empty string if no key sets the field.
-constexpr std::string_view key_of_field(std::string_view field) {
+constexpr std::string_view find_field_key(std::string_view field) {
   for (const FieldKey& known : field_keys) {
     if (known.field == field) return known.key;
   }

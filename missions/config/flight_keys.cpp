@@ -42,7 +42,7 @@ auto fleet(auto member) {
 
 /// Removes the value of a key for missions without a fleet. `fallback` describes the default for a
 /// fleet.
-Key of_fleet(std::string fallback, Key key) {
+Key fleet_key(std::string fallback, Key key) {
   key.fallback = std::move(fallback);
   key.get = [get = key.get](const MissionDocument& mission) -> std::optional<KeyValue> {
     return mission.flight.options.fleet.names.empty() ? std::nullopt : get(mission);
@@ -74,26 +74,27 @@ std::vector<Key> fleet_keys() {
   return {
       vehicles_key(),
       pads_key(),
-      of_fleet("makespan", choice_key("flight.fleet_goal", {"makespan", "total_time"},
-                                      fleet(&flight::FleetOptions::goal),
-                                      "Goal of the distribution of views over flight.vehicles: the "
-                                      "earliest last landing, or the least total flight time.")),
-      of_fleet("10 m",
-               number_key("flight.separation", "m", above(0, 10'000),
-                          fleet(&flight::FleetOptions::separation),
-                          "Minimum planned separation between any two airborne vehicles of "
-                          "flight.vehicles, at all times. Includes their radii and errors.")),
-      of_fleet("10 s", number_key("flight.timing_tolerance", "s", between(0, 3600),
-                                  fleet(&flight::FleetOptions::timing_tolerance),
-                                  "Time by which each of flight.vehicles may be early or late, "
-                                  "anywhere in its flight, and still keep flight.separation.")),
+      fleet_key("makespan",
+                choice_key("flight.fleet_goal", {"makespan", "total_time"},
+                           fleet(&flight::FleetOptions::goal),
+                           "Goal of the distribution of views over flight.vehicles: the "
+                           "earliest last landing, or the least total flight time.")),
+      fleet_key("10 m",
+                number_key("flight.separation", "m", above(0, 10'000),
+                           fleet(&flight::FleetOptions::separation),
+                           "Minimum planned separation between any two airborne vehicles of "
+                           "flight.vehicles, at all times. Includes their radii and errors.")),
+      fleet_key("10 s", number_key("flight.timing_tolerance", "s", between(0, 3600),
+                                   fleet(&flight::FleetOptions::timing_tolerance),
+                                   "Time by which each of flight.vehicles may be early or late, "
+                                   "anywhere in its flight, and still keep flight.separation.")),
   };
 }
 
 /// Creates the key `flight.extra_unknown_boxes`: boxes around neighbours.
-Key unknown_beside_key() {
+Key extra_unknown_boxes_key() {
   Key key = metre_list_key(
-      "flight.extra_unknown_boxes", KeyType::vectors, section(&FlightSection::unknown_beside),
+      "flight.extra_unknown_boxes", KeyType::vectors, section(&FlightSection::extra_unknown_boxes),
       "Further boxes in which unknown space is treated as occupied, for example around "
       "neighbours that are surveyed as well: lower and upper corner of each, one after "
       "the other. The package keeps what was measured in them for the joint flight.");
@@ -133,7 +134,7 @@ std::vector<Key> safety_keys() {
       otherwise("planner.scene_box",
                 box_corner("flight.unknown_box.max", section(&FlightSection::unknown_box), true,
                            "Upper corner of the unknown box.")),
-      unknown_beside_key(),
+      extra_unknown_boxes_key(),
       number_key("flight.no_return_free_range", "m", between(0, 1e4),
                  flight(&flight::FlightOptions::free_without_return),
                  "Depth up to which no-return pixels count as free space. 0: they do not; right "
@@ -160,7 +161,7 @@ std::vector<Key> conduct_keys() {
                     "Slope of the ground at the take-off point and the rally points, as inspected "
                     "by the pilot. Slopes that the survey measures take precedence.")),
       angle_key("flight.max_pad_slope_deg", between(0, 60),
-                flight(&flight::FlightOptions::steepest_pad),
+                flight(&flight::FlightOptions::max_pad_slope),
                 "Maximum slope of the ground for take-off and landing."),
       number_key("flight.cruise_speed", "m/s", above(0, 100),
                  flight(&flight::FlightOptions::cruise_speed), "Cruise speed on legs."),
@@ -185,7 +186,7 @@ std::vector<Key> conduct_keys() {
           "orbit or strips with sensor.lidar, otherwise none",
           choice_key(
               "flight.initial_pattern", {"none", "orbit", "strips"},
-              section(&FlightSection::opening),
+              section(&FlightSection::initial_pattern),
               "Flight pattern flown outside unknown_box before view planning starts: orbits around "
               "the box, or strips above it (for boxes wider than twice their height).")),
       choice_key(
@@ -219,11 +220,11 @@ std::vector<Key> site_keys() {
           "mission frame."),
       otherwise("unlimited", number_key(
                                  "site.min_height", "m", between(-1e6, 1e6),
-                                 [](auto& m) -> auto& { return m.site.lowest_height; },
+                                 [](auto& m) -> auto& { return m.site.min_height; },
                                  "Minimum z of a view in the mission frame.")),
       otherwise("unlimited", number_key(
                                  "site.max_height", "m", between(-1e6, 1e6),
-                                 [](auto& m) -> auto& { return m.site.highest_height; },
+                                 [](auto& m) -> auto& { return m.site.max_height; },
                                  "Maximum z of a view in the mission frame.")),
       otherwise(
           "unknown",

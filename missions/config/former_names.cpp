@@ -139,7 +139,7 @@ bool are_equal(const YamlNode& a, const YamlNode& b) {
 }
 
 /// Splits text into lines, including their line ends.
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> split_lines(const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t at = 0; at < text.size();) {
     const auto end = std::min(text.find('\n', at), text.size() - 1) + 1;
@@ -213,15 +213,15 @@ std::vector<FormerName> former_names_in(std::span<const KeyOverride> overrides) 
 }
 
 std::string with_current_names(const std::string& text, const std::string& name) {
-  YamlNode wanted = support::parse_yaml(text, name);
-  if (wanted.kind != YamlNode::Kind::map) {
+  YamlNode expected = support::parse_yaml(text, name);
+  if (expected.kind != YamlNode::Kind::map) {
     throw Error(ErrorKind::bad_config, name +
                                            ":1: is not a map; a mission is a list of "
                                            "'key: value'");
   }
   Renaming renaming(name);
-  renaming.rename(wanted, "");
-  std::vector<std::string> lines = lines_of(text);
+  renaming.rename(expected, "");
+  std::vector<std::string> lines = split_lines(text);
   std::vector<std::size_t> begins(lines.size(), 0);  // start of the part not yet rewritten, by line
   for (const Replacement& one : renaming.replaced_) {
     const auto number = static_cast<std::size_t>(one.line) - 1;
@@ -237,7 +237,7 @@ std::string with_current_names(const std::string& text, const std::string& name)
   }
   std::string result;
   for (const std::string& line : lines) result += line;
-  if (!are_equal(support::parse_yaml(result, name), wanted)) {
+  if (!are_equal(support::parse_yaml(result, name), expected)) {
     throw Error(ErrorKind::bad_config,
                 name +
                     ": cannot be rewritten, keys of the same name are in one line; write each "
@@ -246,7 +246,7 @@ std::string with_current_names(const std::string& text, const std::string& name)
   return result;
 }
 
-std::string text_of(std::span<const FormerName> names) {
+std::string to_string(std::span<const FormerName> names) {
   std::string text;
   for (const FormerName& name : names) {
     text += (text.empty() ? "" : ", ") + name.former + " is now " + name.current;

@@ -36,7 +36,7 @@ std::vector<FormerName> replace_former_names(support::YamlNode& node, const std:
 std::vector<FormerName> replace_former_batch_names(support::YamlNode& node,
                                                    const std::string& name);
 
-/// Returns the former names in command-line overrides, such as --set planner.least_gain=0.01.
+/// Returns the former names in command-line overrides, such as --set planner.min_gain=0.01.
 std::vector<FormerName> former_names_in(std::span<const KeyOverride> overrides);
 
 /// Returns the text of a mission file with current names; comments and layout are preserved. Throws
@@ -44,7 +44,7 @@ std::vector<FormerName> former_names_in(std::span<const KeyOverride> overrides);
 /// of the name, so that the replacement is ambiguous.
 std::string with_current_names(const std::string& text, const std::string& name);
 
-/// Returns a one-line list of renamings, such as "planner.least_gain is now planner.min_gain".
-std::string text_of(std::span<const FormerName> names);
+/// Returns a one-line list of renamings, such as "planner.min_gain is now planner.min_gain".
+std::string to_string(std::span<const FormerName> names);
 
 }  // namespace skycap::missions::config

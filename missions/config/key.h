@@ -35,9 +35,9 @@ enum class KeyType {
 
 /// Permitted range of a number. For a vector, it applies to each component.
 struct KeyRange {
-  double least = -std::numeric_limits<double>::max();
-  double most = std::numeric_limits<double>::max();
-  bool excludes_least = false;
+  double min = -std::numeric_limits<double>::max();
+  double max = std::numeric_limits<double>::max();
+  bool excludes_min = false;
 };
 
 /// Value in the unit of the mission file. Strings and choices are both stored as std::string.

@@ -8,8 +8,8 @@
 namespace skycap::missions::config {
 namespace {
 
-std::optional<KeyValue> value_of(const BoundField& field, const MissionDocument& mission,
-                                 double factor) {
+std::optional<KeyValue> read_value(const BoundField& field, const MissionDocument& mission,
+                                   double factor) {
   return field.access->read(field.find(mission), factor);
 }
 
@@ -21,9 +21,9 @@ Key key_for(std::string path, KeyType type, BoundField field, std::string meanin
   key.type = type;
   key.meaning = std::move(meaning);
   key.set = [=](MissionDocument& mission, const KeyValue& value) {
-    field.access->write(field.place(mission), factor, value);
+    field.access->write(field.location(mission), factor, value);
   };
-  key.get = [=](const MissionDocument& mission) { return value_of(field, mission, factor); };
+  key.get = [=](const MissionDocument& mission) { return read_value(field, mission, factor); };
   return key;
 }
 
@@ -95,11 +95,11 @@ Key choice_key(std::string path, std::vector<std::string> choices, BoundField fi
   key.meaning = std::move(meaning);
   key.set = [field, names = key.choices](MissionDocument& mission, const KeyValue& value) {
     const auto name = std::ranges::find(names, std::get<std::string>(value));
-    field.access->write(field.place(mission), 1.0, std::int64_t{name - names.begin()});
+    field.access->write(field.location(mission), 1.0, std::int64_t{name - names.begin()});
   };
   key.get = [field,
              names = key.choices](const MissionDocument& mission) -> std::optional<KeyValue> {
-    const auto number = value_of(field, mission, 1.0);
+    const auto number = read_value(field, mission, 1.0);
     if (!number) return std::nullopt;
     return names[static_cast<std::size_t>(std::get<std::int64_t>(*number))];
   };

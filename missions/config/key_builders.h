@@ -16,8 +16,8 @@ namespace skycap::missions::config {
 
 inline constexpr double far_away = 1e9;  // upper bound for lengths in a survey [m]
 
-constexpr KeyRange above(double least, double most = far_away) { return {least, most, true}; }
-constexpr KeyRange between(double least, double most) { return {least, most, false}; }
+constexpr KeyRange above(double min, double max = far_away) { return {min, max, true}; }
+constexpr KeyRange between(double min, double max) { return {min, max, false}; }
 
 /// Type-erased read and write access to a field. Field values are `factor` times the file's values.
 struct FieldAccess {
@@ -87,13 +87,13 @@ inline constexpr FieldAccess access_to{write_field<Stored>, read_field<Stored>};
 struct BoundField {
   template <class Field, class Reference = std::invoke_result_t<Field, MissionDocument&>>
   BoundField(Field field)  // implicit, so that key tables list only the accessor
-      : place([field](MissionDocument& mission) -> void* { return &field(mission); }),
+      : location([field](MissionDocument& mission) -> void* { return &field(mission); }),
         find([field](const MissionDocument& mission) -> const void* { return &field(mission); }),
         access(&detail::access_to<std::remove_reference_t<Reference>>) {
     static_assert(std::is_lvalue_reference_v<Reference>);
   }
 
-  std::function<void*(MissionDocument&)> place;
+  std::function<void*(MissionDocument&)> location;
   std::function<const void*(const MissionDocument&)> find;
   const FieldAccess* access;
 };

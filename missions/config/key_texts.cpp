@@ -11,7 +11,7 @@ namespace skycap::missions::config {
 namespace {
 
 /// Returns the sources with file names instead of paths.
-std::vector<site_data::Source> wherever_they_lie(std::vector<site_data::Source> sources) {
+std::vector<site_data::Source> without_folders(std::vector<site_data::Source> sources) {
   for (site_data::Source& source : sources) {
     source.file = source.file.filename();
     source.select.within = source.select.within.filename();
@@ -43,14 +43,14 @@ std::vector<support::Setting> survey_settings(
     if (key.path == "flight.vehicle" && vehicle_checksum) {
       text = fmt::format("description {:08x}", *vehicle_checksum);
     }
-    if (key.path == "prior") text = to_text(wherever_they_lie(document.prior));
+    if (key.path == "prior") text = to_text(without_folders(document.prior));
     settings.push_back({key.path, std::move(text)});
   }
   // Prior data is identified by its content as well.
   if (!document.scene.priors) return settings;
   std::size_t number = 0;
-  for (const std::string& digest : document.scene.priors->digests) {
-    settings.push_back({"prior[" + std::to_string(number++) + "]", digest});
+  for (const std::string& file_checksum : document.scene.priors->checksums) {
+    settings.push_back({"prior[" + std::to_string(number++) + "]", file_checksum});
   }
   return settings;
 }
@@ -64,7 +64,8 @@ std::string attainable_inputs(const MissionDocument& document) {
   }
   // Terrain hides surface and limits view heights, as part of the prior data.
   if (!document.scene.priors) return inputs;
-  for (const std::string& digest : document.scene.priors->digests) inputs += "\n" + digest;
+  for (const std::string& file_checksum : document.scene.priors->checksums)
+    inputs += "\n" + file_checksum;
   return inputs;
 }
 

@@ -74,8 +74,8 @@ struct PlannerSection {
   PlannerPreset preset = PlannerPreset::paper;
   SamplingSection sampling;
   survey::see::SeeConfig see;  ///< settings used only by SEE and SEE++
-  survey::skycap::StopRule skycap_stop;
-  survey::skycap::SkycapIdeas skycap_ideas;
+  survey::surfel::StopRule surfel_stop;
+  survey::surfel::AblationSwitches ablation;
   survey::volumetric::VolumetricSettings volumetric;  ///< settings of the planners rsv to ae
 };
 
@@ -91,18 +91,18 @@ struct LimitsSection {
   std::optional<double> max_minutes;  ///< maximum flight time [min]
   /// Minimum height of a view above the z of `scene.position` [m].
   std::optional<double> ground_clearance;
-  double stand_off = 0.0;  ///< minimum distance between a view and all measured points [m]
-  double lowest_pitch = -std::numbers::pi / 2.0;  ///< minimum gimbal pitch [rad], negative is down
-  double highest_pitch = std::numbers::pi / 2.0;  ///< maximum gimbal pitch [rad]
+  double min_standoff = 0.0;  ///< minimum distance between a view and all measured points [m]
+  double min_pitch = -std::numbers::pi / 2.0;  ///< minimum gimbal pitch [rad], negative is down
+  double max_pitch = std::numbers::pi / 2.0;   ///< maximum gimbal pitch [rad]
 };
 
 /// Airspace limits in the mission frame: x east, y north, z up [m].
 struct SiteSection {
   /// Polygon that contains all views and paths; empty: unlimited.
   std::vector<Eigen::Vector2d> geofence;
-  std::vector<geometry::Prism> no_fly;   ///< prisms that no view or path may enter
-  std::optional<double> lowest_height;   ///< minimum z [m]
-  std::optional<double> highest_height;  ///< maximum z [m]
+  std::vector<geometry::Prism> no_fly;  ///< prisms that no view or path may enter
+  std::optional<double> min_height;     ///< minimum z [m]
+  std::optional<double> max_height;     ///< maximum z [m]
 };
 
 /// Georeference of the local frame (x east, y north, z up). Without it, files that require
@@ -119,10 +119,10 @@ struct FlightSection {
   flight::FlightOptions options;
   std::optional<Eigen::AlignedBox3d> unknown_box;  ///< box in which unobserved space is occupied
   /// Lower and upper corners of further such boxes, alternating.
-  std::vector<Eigen::Vector3d> unknown_beside;
-  session::Opening opening = session::Opening::none;
+  std::vector<Eigen::Vector3d> extra_unknown_boxes;
+  session::InitialPattern initial_pattern = session::InitialPattern::none;
 
-  bool is_flown() const { return options.vehicle_name != "none"; }
+  bool has_vehicle() const { return options.vehicle_name != "none"; }
 };
 
 /// Published results for this scene, printed next to the results of trials.
@@ -137,7 +137,7 @@ struct ReferenceSection {
 struct MissionDocument {
   std::string file;  ///< file name in messages
   /// Location of each given key: "FILE:LINE", or the origin of an override.
-  std::map<std::string, std::string, std::less<>> places;
+  std::map<std::string, std::string, std::less<>> locations;
 
   std::string name;  ///< mission name, used for the results folder
   scene::SceneOptions scene;
@@ -150,17 +150,17 @@ struct MissionDocument {
   FlightSection flight;
   std::vector<site_data::Source> prior;
   evaluation::EvaluationOptions evaluation;
-  scan::FlownScanOptions scan;
+  scan::ScanFlightOptions scan;
   online::LiveOptions live;
   ReferenceSection paper;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: one per processor
 
-  bool gives(std::string_view key) const;
+  bool has(std::string_view key) const;
 
   /// Throws Error{bad_config} with the one-line message "FILE:LINE: key KEY WHAT". Line 1 is
   /// reported for keys that are not in the file.
-  [[noreturn]] void refuse(std::string_view key, const std::string& what) const;
+  [[noreturn]] void reject(std::string_view key, const std::string& what) const;
 };
 
 }  // namespace skycap::missions::config

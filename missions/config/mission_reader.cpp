@@ -25,14 +25,14 @@ namespace {
 constexpr std::size_t largest_file = 1 << 20;  // [byte]; missions typically have a few thousand
 
 /// YAML value with its location.
-struct Given {
-  std::string file;   ///< file name or option name
-  std::string place;  ///< "FILE:LINE" or option name
+struct ParsedValue {
+  std::string file;      ///< file name or option name
+  std::string location;  ///< "FILE:LINE" or option name
   support::YamlNode node;
 };
 
 /// Values by key path. The keys are known; the values are not yet parsed.
-using GivenValues = std::map<std::string, Given, std::less<>>;
+using ParsedValues = std::map<std::string, ParsedValue, std::less<>>;
 
 /// Keys permitted in a map, and their prefix in messages.
 struct KnownKeys {
@@ -50,12 +50,12 @@ struct KnownKeys {
   }
 };
 
-[[noreturn]] void fail(const std::string& place, std::string_view key, const std::string& what) {
-  throw Error(ErrorKind::bad_config, place + ": key " + support::about_key(key, what));
+[[noreturn]] void fail(const std::string& location, std::string_view key, const std::string& what) {
+  throw Error(ErrorKind::bad_config, location + ": key " + support::about_key(key, what));
 }
 
 /// Returns the current key path of an override, and its value with current names.
-std::pair<std::string, Given> given_by(const KeyOverride& change) {
+std::pair<std::string, ParsedValue> parse_override(const KeyOverride& change) {
   std::string path = current_path(change.path);
   if (!find_key(path)) fail(change.origin, path, unknown_key_message(path, mission_keys()));
   support::YamlNode value = support::parse_yaml(change.value, change.origin);
@@ -65,18 +65,18 @@ std::pair<std::string, Given> given_by(const KeyOverride& change) {
 
 /// Collects the values of a map and its nested maps by key path.
 void collect(const support::YamlNode& map, const std::string& prefix, const KnownKeys& known,
-             GivenValues& values) {
+             ParsedValues& values) {
   for (const support::YamlEntry& entry : map.entries) {
     const std::string path = prefix + entry.key;
-    const std::string place = known.file + ":" + std::to_string(entry.line);
+    const std::string location = known.file + ":" + std::to_string(entry.line);
     if (known.find(path)) {
-      values[path] = {known.file, place, entry.value};
+      values[path] = {known.file, location, entry.value};
     } else if (!known.has_section(path)) {
-      fail(place, known.of + path, unknown_key_message(path, known.keys));
+      fail(location, known.of + path, unknown_key_message(path, known.keys));
     } else if (entry.value.kind == support::YamlNode::Kind::map) {
       collect(entry.value, path + ".", known, values);
     } else {
-      fail(place, known.of + path, "is a section; put its keys below it, indented");
+      fail(location, known.of + path, "is a section; put its keys below it, indented");
     }
   }
 }
@@ -106,7 +106,7 @@ std::string described(const support::YamlNode& node) {
 }
 
 bool contains(const KeyRange& range, double value) {
-  return value <= range.most && (range.excludes_least ? value > range.least : value >= range.least);
+  return value <= range.max && (range.excludes_min ? value > range.min : value >= range.min);
 }
 
 /// Returns the node's value if it is a finite number within `range`.
@@ -228,46 +228,48 @@ std::optional<KeyValue> value_for(const Key& key, const support::YamlNode& node)
   return std::nullopt;
 }
 
-[[noreturn]] void refuse_value(const Given& given, const Key& key, const std::string& of) {
-  fail(given.place, of + key.path, described(given.node) + "; it must be " + expected_value(key));
+[[noreturn]] void reject_value(const ParsedValue& parsed_value, const Key& key,
+                               const std::string& of) {
+  fail(parsed_value.location, of + key.path,
+       described(parsed_value.node) + "; it must be " + expected_value(key));
 }
 
-void apply(const Given& given, const Key& key, MissionDocument& mission,
+void apply(const ParsedValue& parsed_value, const Key& key, MissionDocument& mission,
            const std::string& of = "") {
-  const auto value = value_for(key, given.node);
-  if (!value) refuse_value(given, key, of);
+  const auto value = value_for(key, parsed_value.node);
+  if (!value) reject_value(parsed_value, key, of);
   key.set(mission, *value);
 }
 
-/// Reads one map of a list. The locations of its keys are stored in `result.places`.
+/// Reads one map of a list. The locations of its keys are stored in `result.locations`.
 site_data::Source source_in(const support::YamlNode& node, const KnownKeys& known,
                             MissionDocument& result) {
-  const std::string place = known.file + ":" + std::to_string(node.line);
+  const std::string location = known.file + ":" + std::to_string(node.line);
   const std::string name = known.of.substr(0, known.of.size() - 1);
   if (node.kind != support::YamlNode::Kind::map)
-    fail(place, name, described(node) + "; it must be a map");
-  GivenValues values;
+    fail(location, name, described(node) + "; it must be a map");
+  ParsedValues values;
   collect(node, "", known, values);
   MissionDocument mission;
   mission.prior.emplace_back();
-  result.places[name] = place;
-  for (const auto& [path, given] : values) {
-    apply(given, *known.find(path), mission, known.of);
-    result.places[known.of + path] = given.place;
+  result.locations[name] = location;
+  for (const auto& [path, parsed_value] : values) {
+    apply(parsed_value, *known.find(path), mission, known.of);
+    result.locations[known.of + path] = parsed_value.location;
   }
   for (const Key& key : known.keys) {
     if (!key.is_required || values.contains(key.path)) continue;
-    fail(place, known.of + key.path, "is missing; it must be " + expected_value(key));
+    fail(location, known.of + key.path, "is missing; it must be " + expected_value(key));
   }
   return mission.prior.back();
 }
 
-void apply_sources(const Given& given, const Key& key, MissionDocument& result) {
-  if (given.node.kind != support::YamlNode::Kind::list) refuse_value(given, key, "");
+void apply_sources(const ParsedValue& parsed_value, const Key& key, MissionDocument& result) {
+  if (parsed_value.node.kind != support::YamlNode::Kind::list) reject_value(parsed_value, key, "");
   std::vector<site_data::Source> sources;
-  for (const support::YamlNode& item : given.node.items) {
+  for (const support::YamlNode& item : parsed_value.node.items) {
     const std::string of = key.path + "[" + std::to_string(sources.size()) + "].";
-    sources.push_back(source_in(item, {key.items, of, given.file}, result));
+    sources.push_back(source_in(item, {key.items, of, parsed_value.file}, result));
   }
   key.set(result, sources);
 }
@@ -285,12 +287,12 @@ void apply_presets(MissionDocument& mission) {
   if (mission.planner.preset == PlannerPreset::building) {
     see.visibility_update_limit = 1000;
     see.max_attempts = 2;
-    see.still_occluded = survey::see::StillOccluded::put_off;
+    see.still_occluded = survey::see::StillOccluded::deferred;
   }
 }
 
-GivenValues collected(const std::string& text, const std::string& name,
-                      const std::vector<KeyOverride>& overrides) {
+ParsedValues collected(const std::string& text, const std::string& name,
+                       const std::vector<KeyOverride>& overrides) {
   support::YamlNode root = support::parse_yaml(text, name);
   if (root.kind == support::YamlNode::Kind::null) {
     throw Error(ErrorKind::bad_config, name +
@@ -302,38 +304,38 @@ GivenValues collected(const std::string& text, const std::string& name,
                                            ": is not a map; a mission is a list of 'key: value'");
   }
   replace_former_names(root, "", name);
-  GivenValues values;
+  ParsedValues values;
   collect(root, "", {mission_keys(), "", name}, values);
   for (const KeyOverride& change : overrides) {
-    auto [path, given] = given_by(change);
+    auto [path, parsed_value] = parse_override(change);
     // Published results do not apply to another planner than that in the file.
     if (path == "planner.name") {
       std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("paper."); });
     }
-    values[path] = std::move(given);
+    values[path] = std::move(parsed_value);
   }
   return values;
 }
 
 MissionDocument mission_from(const std::string& text, const std::string& name,
                              const std::vector<KeyOverride>& overrides) {
-  const GivenValues given = collected(text, name, overrides);
+  const ParsedValues parsed_value = collected(text, name, overrides);
   MissionDocument result{.file = name};
-  for (const auto& [path, value] : given) result.places[path] = value.place;
+  for (const auto& [path, value] : parsed_value) result.locations[path] = value.location;
   result.name = std::filesystem::path(name).stem().string();
 
   for (const char* path : {"sensor.preset", "planner.preset", "planner.name"}) {
-    const auto preset = given.find(path);
-    if (preset != given.end()) apply(preset->second, *find_key(path), result);
+    const auto preset = parsed_value.find(path);
+    if (preset != parsed_value.end()) apply(preset->second, *find_key(path), result);
   }
   apply_presets(result);
-  for (const auto& [path, value] : given) {
+  for (const auto& [path, value] : parsed_value) {
     const Key& key = *find_key(path);
     key.type == KeyType::sources ? apply_sources(value, key, result) : apply(value, key, result);
   }
   for (const Key& key : mission_keys()) {
-    if (!key.is_required || given.contains(key.path)) continue;
-    result.refuse(key.path, "is missing; it must be " + expected_value(key));
+    if (!key.is_required || parsed_value.contains(key.path)) continue;
+    result.reject(key.path, "is missing; it must be " + expected_value(key));
   }
   return result;
 }
@@ -346,11 +348,11 @@ std::string one_line(std::string message) {
 
 }  // namespace
 
-bool MissionDocument::gives(std::string_view key) const { return places.contains(key); }
+bool MissionDocument::has(std::string_view key) const { return locations.contains(key); }
 
-void MissionDocument::refuse(std::string_view key, const std::string& what) const {
-  const auto place = places.find(key);
-  fail(one_line(place == places.end() ? file + ":1" : place->second), key, one_line(what));
+void MissionDocument::reject(std::string_view key, const std::string& what) const {
+  const auto location = locations.find(key);
+  fail(one_line(location == locations.end() ? file + ":1" : location->second), key, one_line(what));
 }
 
 MissionDocument parse_mission_document(const std::string& text, const std::string& name,
@@ -364,28 +366,28 @@ MissionDocument parse_mission_document(const std::string& text, const std::strin
 
 void override_keys(MissionDocument& document, const std::vector<KeyOverride>& changes) {
   for (const KeyOverride& change : changes) {
-    const auto [path, given] = given_by(change);
-    apply(given, *find_key(path), document);
-    document.places[path] = change.origin;
+    const auto [path, parsed_value] = parse_override(change);
+    apply(parsed_value, *find_key(path), document);
+    document.locations[path] = change.origin;
   }
 }
 
 MissionDocument read_mission_document(const std::filesystem::path& file,
                                       const std::vector<KeyOverride>& overrides) {
-  const auto refuse = [&](const std::string& what) {
+  const auto reject = [&](const std::string& what) {
     throw Error(ErrorKind::bad_file, file.string() + ": " + what);
   };
   std::error_code failure;
-  if (std::filesystem::is_directory(file, failure)) refuse("is a folder; expected a mission file");
+  if (std::filesystem::is_directory(file, failure)) reject("is a folder; expected a mission file");
   std::ifstream stream = geometry::open_stream(file);
   if (!stream)
-    refuse(std::string("cannot be read (") + std::generic_category().message(errno) +
+    reject(std::string("cannot be read (") + std::generic_category().message(errno) +
            "); check its name");
   std::string text(largest_file + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > largest_file) refuse("is larger than 1 MiB; this is not a mission file");
-  if (text.find('\0') != std::string::npos) refuse("is not text; expected a mission file");
+  if (text.size() > largest_file) reject("is larger than 1 MiB; this is not a mission file");
+  if (text.find('\0') != std::string::npos) reject("is not text; expected a mission file");
   return parse_mission_document(text, file.string(), overrides);
 }
 

@@ -20,284 +20,290 @@ namespace {
 
 using support::short_text;
 
-void check_builtin(const MissionDocument& given, std::string_view name) {
+void check_builtin(const MissionDocument& document, std::string_view name) {
   const auto models = sim::builtin_models();
   if (std::ranges::find(models, name) != models.end()) return;
   std::string known;
   for (const std::string_view model : models) {
     known += (known.empty() ? "builtin:" : ", builtin:") + std::string(model);
   }
-  given.refuse("scene.model", "unknown model " + given.scene.model + "; expected one of: " + known);
+  document.reject("scene.model",
+                  "unknown model " + document.scene.model + "; expected one of: " + known);
 }
 
-void check_views(const MissionDocument& given) {
-  if (given.flight.options.views != flight::MissionViews::anew) return;
-  if (given.planner.name != survey::PlannerName::skycap) {
-    given.refuse("flight.views",
-                 "replanned requires the planner skycap; the planner " +
-                     std::string(survey::title_of(given.planner.name).word) +
-                     " keeps no surface model. Set planner.name: skycap or remove flight.views");
+void check_views(const MissionDocument& document) {
+  if (document.flight.options.views != flight::MissionViews::replanned) return;
+  if (document.planner.name != survey::PlannerName::skycap) {
+    document.reject("flight.views",
+                    "replanned requires the planner skycap; the planner " +
+                        std::string(survey::find_title(document.planner.name).word) +
+                        " keeps no surface model. Set planner.name: skycap or remove flight.views");
   }
-  if (given.flight.options.order == flight::VisitOrder::survey) {
-    given.refuse("flight.views",
-                 "replanned conflicts with flight.order: survey; remove one of the two");
+  if (document.flight.options.order == flight::VisitOrder::survey) {
+    document.reject("flight.views",
+                    "replanned conflicts with flight.order: survey; remove one of the two");
   }
 }
 
-void check_capture(const MissionDocument& given) {
-  if (!given.sensor.options.is_moving()) {
-    if (!given.gives("sensor.frame_period")) return;
-    given.refuse("sensor.frame_period",
-                 "requires sensor.capture: moving (en-route frames); remove it");
+void check_capture(const MissionDocument& document) {
+  if (!document.sensor.options.is_moving()) {
+    if (!document.has("sensor.frame_period")) return;
+    document.reject("sensor.frame_period",
+                    "requires sensor.capture: moving (en-route frames); remove it");
   }
   const char* const wants = "moving requires ";
-  if (!given.flight.is_flown()) {
-    given.refuse("sensor.capture", std::string(wants) + "a vehicle; set flight.vehicle");
+  if (!document.flight.has_vehicle()) {
+    document.reject("sensor.capture", std::string(wants) + "a vehicle; set flight.vehicle");
   }
-  if (given.planner.name != survey::PlannerName::skycap) {
-    given.refuse(
+  if (document.planner.name != survey::PlannerName::skycap) {
+    document.reject(
         "sensor.capture",
         std::string(wants) + "a planner that uses en-route frames; set planner.name: skycap");
   }
 }
 
 /// Keys that require several vehicles.
-constexpr const char* keys_of_fleets[] = {"flight.pads", "flight.fleet_goal", "flight.separation",
-                                          "flight.timing_tolerance"};
+constexpr const char* fleet_only_keys[] = {"flight.pads", "flight.fleet_goal", "flight.separation",
+                                           "flight.timing_tolerance"};
 
 /// Returns the minimum separation [m]: the radii of the two largest vehicles plus twice the
 /// position and tracking errors.
-double least_separation(const flight::FlightOptions& flight) {
+double min_separation(const flight::FlightOptions& flight) {
   std::vector<double> radii;
   for (const flight::Vehicle& vehicle : flight.fleet.vehicles) radii.push_back(vehicle.radius);
   std::ranges::sort(radii, std::greater());
   return radii[0] + radii[1] + 2.0 * (flight.position_error + flight.tracking_error);
 }
 
-void check_pads_given(const MissionDocument& given) {
-  const flight::FlightOptions& flight = given.flight.options;
+void check_required_pads(const MissionDocument& document) {
+  const flight::FlightOptions& flight = document.flight.options;
   const std::vector<Eigen::Vector3d>& pads = flight.fleet.pads;
   if (pads.empty()) return;
   if (pads.size() != flight.fleet.names.size()) {
-    given.refuse("flight.pads", "has " + std::to_string(pads.size()) + " take-off points for " +
-                                    std::to_string(flight.fleet.names.size()) +
-                                    " vehicles of flight.vehicles; list one for each");
+    document.reject("flight.pads", "has " + std::to_string(pads.size()) + " take-off points for " +
+                                       std::to_string(flight.fleet.names.size()) +
+                                       " vehicles of flight.vehicles; list one for each");
   }
   if (flight.takeoff && *flight.takeoff != pads.front()) {
-    given.refuse("flight.takeoff", "must be the first of flight.pads; remove it");
+    document.reject("flight.takeoff", "must be the first of flight.pads; remove it");
   }
 }
 
 }  // namespace
 
-void check_scene(const MissionDocument& given) {
-  const scene::SceneOptions& scene = given.scene;
-  if (given.name.find('/') != std::string::npos || given.name.starts_with('.')) {
-    given.refuse("name",
-                 "invalid name " + given.name +
-                     "; it is used as a folder name and must not contain '/' or begin with '.'");
+void check_scene(const MissionDocument& document) {
+  const scene::SceneOptions& scene = document.scene;
+  if (document.name.find('/') != std::string::npos || document.name.starts_with('.')) {
+    document.reject("name",
+                    "invalid name " + document.name +
+                        "; it is used as a folder name and must not contain '/' or begin with '.'");
   }
   constexpr std::string_view builtin = "builtin:";
-  if (scene.model.starts_with(builtin)) check_builtin(given, scene.model.substr(builtin.size()));
-  if (given.gives("scene.detail") && !scene.model.starts_with("builtin:")) {
-    given.refuse("scene.detail",
-                 "requires a builtin model; " + scene.model + " has the detail of its file");
+  if (scene.model.starts_with(builtin)) check_builtin(document, scene.model.substr(builtin.size()));
+  if (document.has("scene.detail") && !scene.model.starts_with("builtin:")) {
+    document.reject("scene.detail",
+                    "requires a builtin model; " + scene.model + " has the detail of its file");
   }
   if (scene.longest_side && scene.scale) {
-    given.refuse("scene.scale", "conflicts with scene.longest_side; remove one of the two");
+    document.reject("scene.scale", "conflicts with scene.longest_side; remove one of the two");
   }
-  const auto& box = given.planner.sampling.scene_box;
-  if (scene.ground && !box && !has_target(given)) {
-    given.refuse(
+  const auto& box = document.planner.sampling.scene_box;
+  if (scene.ground && !box && !has_target(document)) {
+    document.reject(
         "scene.ground",
         "requires planner.scene_box, which keeps the ground out of the plan; set its min and max");
   }
-  if (scene.neighbours && !has_obstacle(given)) {
-    given.refuse("scene.neighbours", "requires prior data with role: obstacle");
+  if (scene.neighbours && !has_obstacle(document)) {
+    document.reject("scene.neighbours", "requires prior data with role: obstacle");
   }
   if (box && !(box->min().array() < box->max().array()).all()) {
-    given.refuse(
+    document.reject(
         "planner.scene_box.max",
         "must be greater than planner.scene_box.min on every axis; swap or widen the corners");
   }
 }
 
-void check_live(const MissionDocument& given) {
-  if (!given.planner.sampling.scene_box && !has_target(given)) {
-    given.refuse("planner.scene_box.min",
-                 "is missing: without scene.model the mission is a live survey and requires "
-                 "planner.scene_box; set its min and max");
+void check_live(const MissionDocument& document) {
+  if (!document.planner.sampling.scene_box && !has_target(document)) {
+    document.reject("planner.scene_box.min",
+                    "is missing: without scene.model the mission is a live survey and requires "
+                    "planner.scene_box; set its min and max");
   }
-  if (given.flight.is_flown() && !given.start.position) {
-    given.refuse("start.position",
-                 "is missing: a live survey with a vehicle requires the position of its first "
-                 "view, to verify the path to it");
+  if (document.flight.has_vehicle() && !document.start.position) {
+    document.reject("start.position",
+                    "is missing: a live survey with a vehicle requires the position of its first "
+                    "view, to verify the path to it");
   }
 }
 
-void check_start(const MissionDocument& given) {
-  const StartSection& start = given.start;
+void check_start(const MissionDocument& document) {
+  const StartSection& start = document.start;
   if (!start.position && (start.look_at || start.direction)) {
-    given.refuse(start.look_at ? "start.look_at" : "start.direction",
-                 "requires start.position; set it, or remove both for a random start");
+    document.reject(start.look_at ? "start.look_at" : "start.direction",
+                    "requires start.position; set it, or remove both for a random start");
   }
   if (start.position && start.look_at.has_value() == start.direction.has_value()) {
-    given.refuse("start.position", "requires either start.look_at or start.direction");
+    document.reject("start.position", "requires either start.look_at or start.direction");
   }
   if (start.direction && start.direction->norm() < 1e-6) {
-    given.refuse("start.direction", "must not have zero length");
+    document.reject("start.direction", "must not have zero length");
   }
   if (start.look_at && (*start.look_at - *start.position).norm() < 1e-6) {
-    given.refuse("start.look_at", "must differ from start.position");
+    document.reject("start.look_at", "must differ from start.position");
   }
 }
 
-void check_sensor(const MissionDocument& given) {
-  const geometry::CameraConfig& camera = given.sensor.options.camera.camera;
+void check_sensor(const MissionDocument& document) {
+  const geometry::CameraConfig& camera = document.sensor.options.camera.camera;
   if (camera.max_range <= camera.min_range) {
-    given.refuse("sensor.max_range", "must be greater than sensor.min_range; raise it");
+    document.reject("sensor.max_range", "must be greater than sensor.min_range; raise it");
   }
   if (static_cast<double>(camera.width) * camera.height > 1e8) {
-    given.refuse(
+    document.reject(
         "sensor.width",
         "image of more than 1e8 pixels (sensor.width times sensor.height); reduce the size");
   }
-  check_capture(given);
+  check_capture(document);
 }
 
-void check_boxes_beside(const MissionDocument& given) {
-  const std::vector<Eigen::Vector3d>& corners = given.flight.unknown_beside;
+void check_extra_unknown_boxes(const MissionDocument& document) {
+  const std::vector<Eigen::Vector3d>& corners = document.flight.extra_unknown_boxes;
   if (corners.size() % 2 != 0) {
-    given.refuse("flight.extra_unknown_boxes",
-                 "has " + std::to_string(corners.size()) +
-                     " corners; list the lower and the upper corner of each box");
+    document.reject("flight.extra_unknown_boxes",
+                    "has " + std::to_string(corners.size()) +
+                        " corners; list the lower and the upper corner of each box");
   }
   for (std::size_t i = 0; i < corners.size(); i += 2) {
     if ((corners[i].array() < corners[i + 1].array()).all()) continue;
-    given.refuse("flight.extra_unknown_boxes",
-                 "an upper corner must be greater than its lower corner on every axis; swap or "
-                 "widen the corners");
+    document.reject("flight.extra_unknown_boxes",
+                    "an upper corner must be greater than its lower corner on every axis; swap or "
+                    "widen the corners");
   }
 }
 
-void check_flight(const MissionDocument& given) {
-  const Georeference& place = given.georeference;
-  if (place.latitude_deg.has_value() != place.longitude_deg.has_value()) {
-    given.refuse(place.latitude_deg ? "site.latitude_deg" : "site.longitude_deg",
-                 "incomplete georeference; set both site.latitude_deg and site.longitude_deg");
+void check_flight(const MissionDocument& document) {
+  const Georeference& georeference = document.georeference;
+  if (georeference.latitude_deg.has_value() != georeference.longitude_deg.has_value()) {
+    document.reject(georeference.latitude_deg ? "site.latitude_deg" : "site.longitude_deg",
+                    "incomplete georeference; set both site.latitude_deg and site.longitude_deg");
   }
-  if (!given.flight.is_flown()) return;
-  const flight::FlightOptions flight = flight_options(given);
-  if (const auto& box = given.flight.unknown_box;
+  if (!document.flight.has_vehicle()) return;
+  const flight::FlightOptions flight = flight_options(document);
+  if (const auto& box = document.flight.unknown_box;
       box && !(box->min().array() < box->max().array()).all()) {
-    given.refuse(
+    document.reject(
         "flight.unknown_box.max",
         "must be greater than flight.unknown_box.min on every axis; swap or widen the corners");
   }
-  check_boxes_beside(given);
+  check_extra_unknown_boxes(document);
   if (flight.unknown_box.isEmpty()) {
-    given.refuse("flight.vehicle",
-                 "requires flight.unknown_box around the building, in which unknown space counts "
-                 "as occupied; set its min and max");
+    document.reject(
+        "flight.vehicle",
+        "requires flight.unknown_box around the building, in which unknown space counts "
+        "as occupied; set its min and max");
   }
   const flight::ClearanceBudget budget = flight.budget();
   if (budget.margin < 0.0) {
-    given.refuse("flight.clearance", "must be at least the sum of the vehicle's radius (" +
-                                         short_text(budget.vehicle_radius) +
-                                         " m) and the position, tracking and map errors: " +
-                                         short_text(budget.total() - budget.margin) +
-                                         " m; raise it or lower the errors");
+    document.reject("flight.clearance", "must be at least the sum of the vehicle's radius (" +
+                                            short_text(budget.vehicle_radius) +
+                                            " m) and the position, tracking and map errors: " +
+                                            short_text(budget.total() - budget.margin) +
+                                            " m; raise it or lower the errors");
   }
-  check_views(given);
-  if (flight.style == flight::FlightStyle::pass && given.sensor.options.settle > 0.0) {
-    given.refuse("flight.style",
-                 "fly-through conflicts with a sensor that must rest before each capture "
-                 "(sensor.settle); choose stop, blend or smooth");
+  check_views(document);
+  if (flight.style == flight::FlightStyle::pass && document.sensor.options.settle > 0.0) {
+    document.reject("flight.style",
+                    "fly-through conflicts with a sensor that must rest before each capture "
+                    "(sensor.settle); choose stop, blend or smooth");
   }
   if (const double climb = flight.climb(); climb <= flight.clearance) {
-    given.refuse("flight.takeoff_climb",
-                 "a climb of " + short_text(climb) +
-                     " m ends within the clearance of the ground; set more than flight.clearance");
+    document.reject(
+        "flight.takeoff_climb",
+        "a climb of " + short_text(climb) +
+            " m ends within the clearance of the ground; set more than flight.clearance");
   }
-  if (!flight.rally.empty() && flight.flown().dialect == flight::Dialect::dji) {
-    given.refuse("flight.rally",
-                 "conflicts with flight.vehicle " + flight.vehicle_name +
-                     ": DJI vehicles return to their take-off point only; remove it");
+  if (!flight.rally.empty() && flight.required_vehicle().autopilot == flight::AutopilotType::dji) {
+    document.reject("flight.rally",
+                    "conflicts with flight.vehicle " + flight.vehicle_name +
+                        ": DJI vehicles return to their take-off point only; remove it");
   }
-  if (const double sigma = given.sensor.options.camera.noise.sigma;
+  if (const double sigma = document.sensor.options.camera.noise.sigma;
       flight.map_error < 3.0 * sigma) {
-    given.refuse("flight.map_error",
-                 "must be at least three standard deviations of the sensor noise: " +
-                     short_text(3.0 * sigma) + " m");
+    document.reject("flight.map_error",
+                    "must be at least three standard deviations of the sensor noise: " +
+                        short_text(3.0 * sigma) + " m");
   }
-  if (const double most = flight.flown().max_wind; flight.wind_speed >= most) {
-    given.refuse("flight.wind_speed", "must be less than the maximum wind of " + short_text(most) +
-                                          " m/s that " + flight.vehicle_name + " allows");
+  if (const double max = flight.required_vehicle().max_wind; flight.wind_speed >= max) {
+    document.reject("flight.wind_speed", "must be less than the maximum wind of " +
+                                             short_text(max) + " m/s that " + flight.vehicle_name +
+                                             " allows");
   }
 }
 
-void lead_fleet(MissionDocument& given) {
-  flight::FlightOptions& flight = given.flight.options;
+void lead_fleet(MissionDocument& document) {
+  flight::FlightOptions& flight = document.flight.options;
   flight::FleetOptions& fleet = flight.fleet;
   if (fleet.names.empty()) {
     // A resolved fleet of one vehicle is a single vehicle.
-    if (given.gives("flight.vehicles") && given.flight.is_flown()) {
+    if (document.has("flight.vehicles") && document.flight.has_vehicle()) {
       if (!fleet.pads.empty()) {
-        given.refuse("flight.pads", "requires flight.vehicles");
+        document.reject("flight.pads", "requires flight.vehicles");
       }
       if (!flight.vehicle && !fleet.vehicles.empty()) flight.vehicle = fleet.vehicles.front();
       fleet = {};
       return;
     }
-    for (const char* key : keys_of_fleets) {
-      if (given.gives(key)) given.refuse(key, "requires flight.vehicles");
+    for (const char* key : fleet_only_keys) {
+      if (document.has(key)) document.reject(key, "requires flight.vehicles");
     }
     return;
   }
-  if (given.flight.is_flown() && flight.vehicle_name != fleet.names.front()) {
-    given.refuse("flight.vehicle", "must be the first of flight.vehicles; remove it");
+  if (document.flight.has_vehicle() && flight.vehicle_name != fleet.names.front()) {
+    document.reject("flight.vehicle", "must be the first of flight.vehicles; remove it");
   }
-  check_pads_given(given);
+  check_required_pads(document);
   flight.vehicle_name = fleet.names.front();
   flight.vehicle = fleet.vehicles.front();
   if (!fleet.pads.empty()) flight.takeoff = fleet.pads.front();
   if (fleet.names.size() == 1) fleet = {};
 }
 
-void check_fleet(const MissionDocument& given) {
-  if (!given.flight.options.is_fleet()) return;
-  if (!has_place(given)) {
-    given.refuse("flight.vehicles",
-                 "requires a georeference, because the separation is verified on the route files; "
-                 "set site.latitude_deg and site.longitude_deg");
+void check_fleet(const MissionDocument& document) {
+  if (!document.flight.options.is_fleet()) return;
+  if (!is_georeferenced(document)) {
+    document.reject(
+        "flight.vehicles",
+        "requires a georeference, because the separation is verified on the route files; "
+        "set site.latitude_deg and site.longitude_deg");
   }
-  const flight::FlightOptions& flight = given.flight.options;
+  const flight::FlightOptions& flight = document.flight.options;
   if (flight.style != flight::FlightStyle::stop) {
-    given.refuse("flight.style",
-                 "conflicts with flight.vehicles: the separation is verified for flights with "
-                 "stops; remove it");
+    document.reject("flight.style",
+                    "conflicts with flight.vehicles: the separation is verified for flights with "
+                    "stops; remove it");
   }
-  if (const double least = least_separation(flight); flight.fleet.separation < least) {
-    given.refuse("flight.separation",
-                 "must be at least the sum of two vehicles' radii, position and tracking errors: " +
-                     support::short_text(least) + " m; raise it");
+  if (const double min = min_separation(flight); flight.fleet.separation < min) {
+    document.reject(
+        "flight.separation",
+        "must be at least the sum of two vehicles' radii, position and tracking errors: " +
+            support::short_text(min) + " m; raise it");
   }
   for (std::size_t v = 1; v < flight.fleet.names.size(); ++v) {
-    MissionDocument own = given;
-    own.flight.options = flight.of_vehicle(v, flight.takeoff.value_or(Eigen::Vector3d::Zero()));
+    MissionDocument own = document;
+    own.flight.options = flight.for_vehicle(v, flight.takeoff.value_or(Eigen::Vector3d::Zero()));
     check_flight(own);
   }
 }
 
-void check_view_limits(const MissionDocument& given) {
-  const survey::ViewLimits limits = view_limits(given);
-  if (limits.least_height && limits.most_height && *limits.least_height >= *limits.most_height) {
-    given.refuse(
+void check_view_limits(const MissionDocument& document) {
+  const survey::ViewLimits limits = view_limits(document);
+  if (limits.min_height && limits.max_height && *limits.min_height >= *limits.max_height) {
+    document.reject(
         "site.max_height",
         "must be greater than site.min_height and limits.ground_clearance; no airspace is left");
   }
-  if (limits.least_pitch >= limits.most_pitch) {
-    given.refuse("limits.max_pitch_deg", "must be greater than limits.min_pitch_deg; raise it");
+  if (limits.min_pitch >= limits.max_pitch) {
+    document.reject("limits.max_pitch_deg", "must be greater than limits.min_pitch_deg; raise it");
   }
 }
 
@@ -307,12 +313,12 @@ namespace {
 /// sphere keys are set.
 void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
   const survey::volumetric::VolumetricSettings& settings = config.settings;
-  if (!settings.sphere_centre || !settings.sphere_radius || !config.least_height) return;
-  const double highest = config.sphere_centre.z() + config.sphere_radius;
-  if (highest > *config.least_height) return;
+  if (!settings.sphere_centre || !settings.sphere_radius || !config.min_height) return;
+  const double max_height = config.sphere_centre.z() + config.sphere_radius;
+  if (max_height > *config.min_height) return;
   throw Error(ErrorKind::bad_config, "sphere_radius is " + short_text(config.sphere_radius) +
                                          "; the sphere must reach above the minimum height of " +
-                                         short_text(*config.least_height) +
+                                         short_text(*config.min_height) +
                                          " m (limits.ground_clearance)");
 }
 
@@ -323,13 +329,13 @@ namespace {
 /// Replaces field names in a message by mission keys. Only words with an underscore are treated as
 /// field names.
 std::string in_keys(std::string_view message) {
-  const auto is_of_name = [](char c) { return c == '_' || c == '.' || (c >= 'a' && c <= 'z'); };
+  const auto is_name_char = [](char c) { return c == '_' || c == '.' || (c >= 'a' && c <= 'z'); };
   std::string text;
   while (!message.empty()) {
-    const auto end = std::ranges::find_if_not(message, is_of_name);
+    const auto end = std::ranges::find_if_not(message, is_name_char);
     const std::string_view word(message.begin(), end);
     const bool is_name = word.find('_') != std::string_view::npos;
-    const std::string_view key = is_name ? key_of_field(word) : std::string_view();
+    const std::string_view key = is_name ? find_field_key(word) : std::string_view();
     text += key.empty() ? word : key;
     const std::size_t rest = std::min(message.size(), std::max<std::size_t>(word.size(), 1));
     if (word.empty()) text += message.front();
@@ -340,9 +346,9 @@ std::string in_keys(std::string_view message) {
 
 }  // namespace
 
-void check_planner(const MissionDocument& given) {
+void check_planner(const MissionDocument& document) {
   try {
-    const survey::PlannerOptions planner = planner_options(given, flight_options(given));
+    const survey::PlannerOptions planner = planner_options(document, flight_options(document));
     planner.validate();
     if (const auto* volumetric =
             std::get_if<survey::volumetric::VolumetricConfig>(&planner.method)) {
@@ -352,9 +358,9 @@ void check_planner(const MissionDocument& given) {
     // Message: "FIELD is 3; it must be ...", or a sentence about several fields.
     const std::string_view message = error.what();
     const std::string_view field = message.substr(0, message.find(' '));
-    const std::string_view key = key_of_field(field);
-    if (key.empty()) given.refuse("planner", in_keys(message));
-    given.refuse(key, in_keys(message.substr(std::min(field.size() + 1, message.size()))));
+    const std::string_view key = find_field_key(field);
+    if (key.empty()) document.reject("planner", in_keys(message));
+    document.reject(key, in_keys(message.substr(std::min(field.size() + 1, message.size()))));
   }
 }
 

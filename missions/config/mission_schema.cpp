@@ -18,14 +18,14 @@ constexpr double unlimited = std::numeric_limits<double>::max();
 std::string number_text(double value) { return fmt::format("{:.12g}", value); }
 
 std::string range_text(const KeyRange& range) {
-  const bool has_least = range.least > -unlimited;
-  const bool has_most = range.most < unlimited;
+  const bool has_min = range.min > -unlimited;
+  const bool has_max = range.max < unlimited;
   std::string text;
-  if (has_least && range.excludes_least) {
-    text = " above " + number_text(range.least);
-    if (has_most) text += " and at most " + number_text(range.most);
-  } else if (has_least && has_most) {
-    text = " from " + number_text(range.least) + " to " + number_text(range.most);
+  if (has_min && range.excludes_min) {
+    text = " above " + number_text(range.min);
+    if (has_max) text += " and at most " + number_text(range.max);
+  } else if (has_min && has_max) {
+    text = " from " + number_text(range.min) + " to " + number_text(range.max);
   }
   return text;
 }
@@ -50,10 +50,10 @@ std::string default_text(const Key& key) {
 
 Json number_schema(const Key& key, const char* type) {
   Json schema{{"type", type}};
-  if (key.range.least > -unlimited) {
-    schema[key.range.excludes_least ? "exclusiveMinimum" : "minimum"] = key.range.least;
+  if (key.range.min > -unlimited) {
+    schema[key.range.excludes_min ? "exclusiveMinimum" : "minimum"] = key.range.min;
   }
-  if (key.range.most < unlimited) schema["maximum"] = key.range.most;
+  if (key.range.max < unlimited) schema["maximum"] = key.range.max;
   return schema;
 }
 

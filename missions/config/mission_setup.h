@@ -30,7 +30,7 @@ struct MissionSetup {
   std::string name;  ///< mission name, used for the results folder
   evaluation::SimulationOptions simulation;
   std::optional<std::string> lidar;  ///< preset or description of the surveying laser scanner
-  scan::FlownScanOptions scan;
+  scan::ScanFlightOptions scan;
   online::LiveOptions live;
   ReferenceResults reference;
   session::RunOptions run;  ///< values from the mission file or from command-line options

@@ -18,11 +18,11 @@ auto sampling(auto member) {
   return [member](auto& m) -> auto& { return m.planner.sampling.*member; };
 }
 
-Key idea(const std::string& name, bool survey::skycap::SkycapIdeas::*member,
-         const std::string& meaning) {
+Key ablation_switch(const std::string& name, bool survey::surfel::AblationSwitches::*member,
+                    const std::string& meaning) {
   return boolean_key(
-      "planner.ablation." + name,
-      [member](auto& m) -> auto& { return m.planner.skycap_ideas.*member; }, "skycap: " + meaning);
+      "planner.ablation." + name, [member](auto& m) -> auto& { return m.planner.ablation.*member; },
+      "skycap: " + meaning);
 }
 
 std::vector<std::string> planner_words() {
@@ -146,7 +146,7 @@ std::vector<Key> occlusion_keys() {
 }
 
 /// Returns the keys of view selection and of discarding frontiers.
-std::vector<Key> choice_of_view_keys() {
+std::vector<Key> view_selection_keys() {
   return {
       boolean_key("planner.visibility_graph", see(&See::visibility_graph),
                   "Weight views by the number of frontiers that they observe (SEE++)."),
@@ -176,30 +176,34 @@ std::vector<Key> choice_of_view_keys() {
 }
 
 std::vector<Key> skycap_keys() {
-  using Stop = survey::skycap::StopRule;
-  using Ideas = survey::skycap::SkycapIdeas;
+  using Stop = survey::surfel::StopRule;
+  using Switches = survey::surfel::AblationSwitches;
   const auto stop = [](auto member) {
-    return [member](auto& m) -> auto& { return m.planner.skycap_stop.*member; };
+    return [member](auto& m) -> auto& { return m.planner.surfel_stop.*member; };
   };
   return {
       number_key(
-          "planner.target_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),
+          "planner.target_coverage", "share", above(0, 1), stop(&Stop::target_coverage),
           "The survey ends when skycap estimates that this fraction of the surface is covered."),
-      number_key("planner.min_gain", "share", between(0, 1), stop(&Stop::least_gain),
+      number_key("planner.min_gain", "share", between(0, 1), stop(&Stop::min_gain),
                  "The survey ends when no view is predicted to add at least this fraction of the "
                  "known surface. If seven times the largest area that one view has covered is "
                  "smaller, the fraction is of that area. Planner skycap only."),
-      idea("coverage_model", &Ideas::dose,
-           "weight observations of a surface by the noise; off: one observation covers it."),
-      idea("unseen_surface", &Ideas::unseen_surface, "predict where the surface continues."),
-      idea("free_space", &Ideas::free_space,
-           "discard predicted surface that the sensor saw through."),
-      idea("learned_rates", &Ideas::learned_rates,
-           "weight predicted surface by the success of earlier predictions."),
-      idea("targeted_views", &Ideas::targeted_views,
-           "propose views of missing surface; off: from fixed directions only."),
-      idea("refinement", &Ideas::refinement, "optimise the best views around their target."),
-      idea("batch", &Ideas::batch, "plan several views ahead; off: the next best view only."),
+      ablation_switch(
+          "coverage_model", &Switches::coverage_model,
+          "weight observations of a surface by the noise; off: one observation covers it."),
+      ablation_switch("unseen_surface", &Switches::surface_prediction,
+                      "predict where the surface continues."),
+      ablation_switch("free_space", &Switches::free_space,
+                      "discard predicted surface that the sensor saw through."),
+      ablation_switch("learned_rates", &Switches::learned_rates,
+                      "weight predicted surface by the success of earlier predictions."),
+      ablation_switch("targeted_views", &Switches::targeted_views,
+                      "propose views of missing surface; off: from fixed directions only."),
+      ablation_switch("refinement", &Switches::refinement,
+                      "optimise the best views around their target."),
+      ablation_switch("batch", &Switches::batch,
+                      "plan several views ahead; off: the next best view only."),
   };
 }
 
@@ -207,7 +211,7 @@ std::vector<Key> skycap_keys() {
 
 std::vector<Key> planner_keys() {
   return joined(
-      {which_planner(), density_keys(), occlusion_keys(), choice_of_view_keys(), skycap_keys()});
+      {which_planner(), density_keys(), occlusion_keys(), view_selection_keys(), skycap_keys()});
 }
 
 }  // namespace skycap::missions::config

@@ -15,9 +15,9 @@ using site_data::Source;
 
 /// Returns the names of all values of an enumeration, in order.
 template <typename Word>
-std::vector<std::string> names_of(std::initializer_list<Word> all) {
+std::vector<std::string> to_strings(std::initializer_list<Word> all) {
   std::vector<std::string> names;
-  for (const Word each : all) names.emplace_back(name_of(each));
+  for (const Word each : all) names.emplace_back(to_string(each));
   return names;
 }
 
@@ -56,7 +56,7 @@ Key vertical_key() {
   Key key;
   key.path = "vertical";
   key.type = KeyType::choice;
-  key.choices = names_of({HeightDatum::ellipsoid, HeightDatum::geoid, HeightDatum::takeoff});
+  key.choices = to_strings({HeightDatum::ellipsoid, HeightDatum::geoid, HeightDatum::takeoff});
   key.meaning =
       "Vertical datum of the file's heights: the WGS84 ellipsoid, the geoid (the file's own, "
       "otherwise EGM96), or the take-off point.";
@@ -111,8 +111,8 @@ Key base_key() {
 
 /// Creates a key of the optional georeference, which is created when the first of its keys is set.
 template <class Value>
-Key place_key(std::string path, KeyType type, std::string unit, KeyRange range, double factor,
-              Value site_data::Place::*member, std::string meaning) {
+Key source_pose_key(std::string path, KeyType type, std::string unit, KeyRange range, double factor,
+                    Value site_data::SourcePose::*member, std::string meaning) {
   Key key;
   key.path = std::move(path);
   key.type = type;
@@ -120,26 +120,26 @@ Key place_key(std::string path, KeyType type, std::string unit, KeyRange range, 
   key.range = range;
   key.meaning = std::move(meaning);
   key.set = [=](MissionDocument& mission, const KeyValue& value) {
-    std::optional<site_data::Place>& place = mission.prior.back().place;
-    if (!place) place.emplace();
-    (*place).*member = factor * std::get<Value>(value);
+    std::optional<site_data::SourcePose>& pose = mission.prior.back().pose;
+    if (!pose) pose.emplace();
+    (*pose).*member = factor * std::get<Value>(value);
   };
   key.get = [=](const MissionDocument& mission) -> std::optional<KeyValue> {
-    const std::optional<site_data::Place>& place = mission.prior.back().place;
-    if (!place) return std::nullopt;
-    return KeyValue(Value((*place).*member / factor));
+    const std::optional<site_data::SourcePose>& pose = mission.prior.back().pose;
+    if (!pose) return std::nullopt;
+    return KeyValue(Value((*pose).*member / factor));
   };
   return key;
 }
 
 /// Returns the keys of file, role and georeference.
-std::vector<Key> place_keys() {
+std::vector<Key> source_pose_keys() {
   return {
       required(path_key("file", source(&Source::file),
                         "Map, model, terrain or scan, relative to the mission file. The format is "
                         "detected by content (docs/reference/prior-formats.md).")),
       required(choice_key(
-          "role", names_of({Role::target, Role::obstacle, Role::terrain, Role::truth}),
+          "role", to_strings({Role::target, Role::obstacle, Role::terrain, Role::truth}),
           source(&Source::role),
           "Role in the survey. target: the object to survey; predicted surface where it is not "
           "measured yet. obstacle: to be avoided by every leg. terrain: the ground. truth: ground "
@@ -148,13 +148,14 @@ std::vector<Key> place_keys() {
                         "Coordinate reference system, horizontal or compound, for example "
                         "EPSG:25832+7837; any that PROJ knows."),
       vertical_key(),
-      otherwise("-", place_key("place.position", KeyType::vector, "m", between(-1e6, 1e6), 1.0,
-                               &site_data::Place::position,
-                               "Origin of a file without coordinate reference system, in the "
-                               "mission frame; excludes crs.")),
-      otherwise("0", place_key("place.heading_deg", KeyType::number, "degrees", between(-360, 360),
-                               geometry::radians_per_degree, &site_data::Place::heading,
-                               "Direction of the file's y axis, clockwise from north.")),
+      otherwise("-", source_pose_key("place.position", KeyType::vector, "m", between(-1e6, 1e6),
+                                     1.0, &site_data::SourcePose::position,
+                                     "Origin of a file without coordinate reference system, in the "
+                                     "mission frame; excludes crs.")),
+      otherwise("0",
+                source_pose_key("place.heading_deg", KeyType::number, "degrees", between(-360, 360),
+                                geometry::radians_per_degree, &site_data::SourcePose::heading,
+                                "Direction of the file's y axis, clockwise from north.")),
       vector_key(
           "offset", "m", between(-1e8, 1e8), source(&Source::offset),
           "Coordinate offset (global shift) added to all coordinates, in the file's system."),
@@ -219,7 +220,7 @@ std::vector<Key> prior_keys() {
   key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     return mission.prior.empty() ? std::nullopt : std::optional<KeyValue>(mission.prior);
   };
-  key.items = joined({place_keys(), selection_keys(), meaning_keys()});
+  key.items = joined({source_pose_keys(), selection_keys(), meaning_keys()});
   return {otherwise("none", key)};
 }
 

@@ -14,7 +14,7 @@ namespace {
 using site_data::Role;
 using site_data::Source;
 
-std::string key_of(std::size_t source, const std::string& key) {
+std::string make_key(std::size_t source, const std::string& key) {
   return "prior[" + std::to_string(source) + "]." + key;
 }
 
@@ -26,19 +26,19 @@ void make_absolute(std::filesystem::path& path, const std::filesystem::path& fol
 
 void check_source(const MissionDocument& document, std::size_t i) {
   const Source& source = document.prior[i];
-  if (source.place && !source.crs.empty()) {
-    document.refuse(key_of(i, "crs"), "conflicts with place; keep one of the two");
+  if (source.pose && !source.crs.empty()) {
+    document.reject(make_key(i, "crs"), "conflicts with place; keep one of the two");
   }
-  if (!source.crs.empty() && !has_place(document)) {
-    document.refuse(key_of(i, "crs"),
+  if (!source.crs.empty() && !is_georeferenced(document)) {
+    document.reject(make_key(i, "crs"),
                     "requires the georeference of the mission frame; set site.latitude_deg and "
                     "site.longitude_deg");
   }
   if (source.base_on_terrain && source.role == Role::terrain) {
-    document.refuse(key_of(i, "base"), "the base of terrain must be a number");
+    document.reject(make_key(i, "base"), "the base of terrain must be a number");
   }
   if (source.role == Role::truth && !document.scene.model.empty()) {
-    document.refuse(key_of(i, "role"), "truth conflicts with scene.model; remove one of the two");
+    document.reject(make_key(i, "role"), "truth conflicts with scene.model; remove one of the two");
   }
 }
 
@@ -71,7 +71,7 @@ site_data::SiteFrame site_frame(const MissionDocument& document, std::optional<d
     frame.takeoff_z = takeoff->z();
     frame.ground_z = *frame.takeoff_z;
   }
-  if (has_place(document)) frame.origin = site_of(document).origin;
+  if (is_georeferenced(document)) frame.origin = make_site(document).origin;
   return frame;
 }
 
@@ -84,7 +84,7 @@ std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& 
   const std::vector<Source>& sources = placed.prior;
   for (std::size_t i = 0; i < sources.size(); ++i) check_source(document, i);
   const auto failed = [&](std::size_t i, const std::string& what) {
-    document.refuse(key_of(i, "file"), what);
+    document.reject(make_key(i, "file"), what);
   };
   std::size_t begun = 0;
   const auto reading = [&](std::size_t i) {
@@ -100,13 +100,13 @@ std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& 
 void check_truth(const MissionDocument& document) {
   if (!document.scene.is_truth_prior()) return;
   if (prior_truth(document.scene).triangles.empty()) {
-    document.refuse("scene.model",
+    document.reject("scene.model",
                     "prior requires a target or truth with a surface in the prior data");
   }
   for (const char* key : {"scene.up_axis", "scene.rotation_deg", "scene.longest_side",
                           "scene.scale", "scene.copies", "scene.materials"}) {
     if (differs_from_default(document, key)) {
-      document.refuse(key,
+      document.reject(key,
                       "conflicts with ground truth from prior data, which has its own position "
                       "keys; remove it");
     }

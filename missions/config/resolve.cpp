@@ -27,41 +27,41 @@ using Eigen::Vector3d;
 using sim::ScannerKind;
 
 /// Default margin around targets in the scene box, unless their uncertainty is larger [m].
-constexpr double most_beside_targets = 3.0;
+constexpr double max_target_offset = 3.0;
 
-std::filesystem::path folder_of(const MissionDocument& document) {
+std::filesystem::path find_folder(const MissionDocument& document) {
   return std::filesystem::path(document.file).parent_path();
 }
 
 /// Returns the vehicle name in results. Paths relative to the mission's folder are made absolute,
 /// because a package stores the mission in another folder.
-std::string vehicle_name(const MissionDocument& document, const std::string& given) {
-  if (!given.ends_with(".yaml")) return given;
-  return std::filesystem::absolute(named_from(folder_of(document), given)).string();
+std::string vehicle_name(const MissionDocument& document, const std::string& requested) {
+  if (!requested.ends_with(".yaml")) return requested;
+  return std::filesystem::absolute(named_from(find_folder(document), requested)).string();
 }
 
-flight::Vehicle read_vehicle_of(const MissionDocument& document, const std::string& given,
-                                const char* key) {
+flight::Vehicle read_mission_vehicle(const MissionDocument& document, const std::string& requested,
+                                     const char* key) {
   try {
-    return find_vehicle(vehicle_name(document, given));
+    return find_vehicle(vehicle_name(document, requested));
   } catch (const Error& error) {
-    document.refuse(key, error.what());
+    document.reject(key, error.what());
   }
 }
 
 /// Returns the CRC-32 of a vehicle description file, or nullopt for a preset.
-std::optional<std::uint32_t> checksum_of_vehicle(const MissionDocument& document,
-                                                 const std::string& given) {
+std::optional<std::uint32_t> compute_vehicle_checksum(const MissionDocument& document,
+                                                      const std::string& requested) {
   constexpr std::size_t max_bytes = 1 << 20;
-  const std::string file = vehicle_name(document, given);
+  const std::string file = vehicle_name(document, requested);
   if (!file.ends_with(".yaml")) return std::nullopt;
-  return geometry::crc32_of(geometry::read_file(file, max_bytes));
+  return geometry::compute_crc32(geometry::read_file(file, max_bytes));
 }
 
 /// Reads the scanner named by `sensor.lidar`.
 sim::LidarConfig read_scanner(const MissionDocument& document) {
   const SensorDescription description =
-      find_sensor(named_from(folder_of(document), *document.sensor.lidar));
+      find_sensor(named_from(find_folder(document), *document.sensor.lidar));
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,
@@ -76,8 +76,8 @@ sim::LidarConfig read_scanner(const MissionDocument& document) {
 void mount_scanner(MissionDocument& document) {
   sim::SurveySensorOptions& sensor = document.sensor.options;
   const sim::LidarConfig& lidar = *sensor.scanner;
-  const bool spins = kind_of(lidar) != ScannerKind::rosette;
-  if (!document.gives("scan.mount.rotation_deg")) {
+  const bool spins = find_scanner_kind(lidar) != ScannerKind::rosette;
+  if (!document.has("scan.mount.rotation_deg")) {
     constexpr double right_angle = 0.5 * std::numbers::pi;
     document.scan.mount_rotation =
         spins ? Vector3d(0.0, right_angle, 0.0) : Vector3d(0.0, right_angle / 3.0, right_angle);
@@ -85,38 +85,38 @@ void mount_scanner(MissionDocument& document) {
   const Eigen::Isometry3d mount = document.scan.mount();
   constexpr double level = 0.02;
   if (spins && std::abs(mount.linear()(2, 2)) > level) {
-    document.refuse("scan.mount.rotation_deg",
+    document.reject("scan.mount.rotation_deg",
                     "the scanner's axis must be level for planned flights; remove the key, or "
                     "set [0, 90, 0] (along the flight direction)");
   }
-  constexpr double steepest = 75.0 * std::numbers::pi / 180.0;
-  if (!spins && std::abs(mount.linear()(2, 0)) > std::sin(steepest)) {
-    document.refuse("scan.mount.rotation_deg",
+  constexpr double max_slope = 75.0 * std::numbers::pi / 180.0;
+  if (!spins && std::abs(mount.linear()(2, 0)) > std::sin(max_slope)) {
+    document.reject("scan.mount.rotation_deg",
                     "the scanner must not look up or down by more than 75 degrees in planned "
                     "flights; remove the key, or set [0, 30, 90] (to the left, 30 degrees down)");
   }
   sensor.mount = scanner_mount(lidar, mount);
-  if (kind_of(lidar) == ScannerKind::line && document.gives("sensor.capture") &&
+  if (find_scanner_kind(lidar) == ScannerKind::line && document.has("sensor.capture") &&
       !sensor.is_moving()) {
-    document.refuse("sensor.capture",
+    document.reject("sensor.capture",
                     "stops conflicts with a single-line LiDAR, which measures next to nothing at "
                     "a stop; remove it");
   }
-  if (!document.gives("sensor.capture")) sensor.capture = sim::Capture::moving;
-  if (!document.gives("sensor.frame_period")) sensor.frame_period = sim::scanner_period;
+  if (!document.has("sensor.capture")) sensor.capture = sim::Capture::moving;
+  if (!document.has("sensor.frame_period")) sensor.frame_period = sim::scanner_period;
 }
 
 /// Replaces the camera by the scanner.
 void complete_scanner(MissionDocument& document, const Profiles& profiles) {
   if (!document.sensor.lidar) return;
   document.sensor.options.scanner = profiles.scanner;
-  if (document.flight.is_flown()) mount_scanner(document);
+  if (document.flight.has_vehicle()) mount_scanner(document);
   try {
-    document.sensor.rosette = flown_rosette(document.sensor.options);
+    document.sensor.rosette = compute_rosette_field(document.sensor.options);
     document.sensor.options.camera =
         planning_camera(document.sensor.options, document.sensor.rosette);
   } catch (const Error& error) {
-    document.refuse("sensor.lidar", error.what());
+    document.reject("sensor.lidar", error.what());
   }
 }
 
@@ -125,8 +125,8 @@ void complete_scanner(MissionDocument& document, const Profiles& profiles) {
 /// the ground at the pad is observed from its far side as well.
 double noise_aside(const MissionDocument& document) {
   const sim::LidarConfig& scanner = *document.sensor.options.scanner;
-  const Eigen::AlignedBox3d box = unknown_box_of(document);
-  if (kind_of(scanner) != ScannerKind::rosette || box.isEmpty()) return 0.0;
+  const Eigen::AlignedBox3d box = compute_unknown_box(document);
+  if (find_scanner_kind(scanner) != ScannerKind::rosette || box.isEmpty()) return 0.0;
   return scanner.errors.angle_sigma * box.sizes().head<2>().norm();
 }
 
@@ -134,8 +134,8 @@ double noise_aside(const MissionDocument& document) {
 /// period.
 void derive_line_camera(MissionDocument& document) {
   sim::SurveySensorOptions& sensor = document.sensor.options;
-  if (kind_of(*sensor.scanner) != ScannerKind::line) return;
-  const double distance = view_distance_of(document);
+  if (find_scanner_kind(*sensor.scanner) != ScannerKind::line) return;
+  const double distance = compute_view_distance(document);
   document.planner.sampling.view_distance = distance;
   sensor.camera =
       line_camera(*sensor.scanner, sensor.frame_period,
@@ -147,26 +147,28 @@ void derive_scanner_flight(MissionDocument& document) {
   const sim::SurveySensorOptions& sensor = document.sensor.options;
   if (!sensor.mount) return;
   flight::FlightOptions& flight = document.flight.options;
-  if (!document.gives("flight.initial_pattern")) {
-    document.flight.opening = session::usual_opening(unknown_box_of(document));
+  if (!document.has("flight.initial_pattern")) {
+    document.flight.initial_pattern =
+        session::default_initial_pattern(compute_unknown_box(document));
   }
   // En-route measurements are made on the legs of the survey, so that its order is kept.
   const bool keeps_views = flight.views == flight::MissionViews::survey;
-  if (!document.gives("flight.order") && keeps_views) flight.order = flight::VisitOrder::survey;
-  if (!document.gives("flight.cruise_speed")) {
-    flight.cruise_speed = scanning_speed(sensor, view_distance_of(document), spacing_of(document),
-                                         flight.flown().max_speed);
+  if (!document.has("flight.order") && keeps_views) flight.order = flight::VisitOrder::survey;
+  if (!document.has("flight.cruise_speed")) {
+    flight.cruise_speed =
+        scanning_speed(sensor, compute_view_distance(document), compute_spacing(document),
+                       flight.required_vehicle().max_speed);
   }
   derive_line_camera(document);
-  if (!document.gives("flight.map_error")) {
+  if (!document.has("flight.map_error")) {
     // Points with errors above five standard deviations are rare among 100 million points. Surfaces
     // near the path are measured from up to twice the view distance.
     constexpr double deviations = 5.0;
-    const double noise = range_noise(*sensor.scanner, 2.0 * view_distance_of(document));
+    const double noise = range_noise(*sensor.scanner, 2.0 * compute_view_distance(document));
     flight.map_error =
         std::max(flight.map_error, deviations * std::hypot(noise, noise_aside(document)));
   }
-  if (!document.gives("scan.sensor")) document.scan.sensor = *document.sensor.lidar;
+  if (!document.has("scan.sensor")) document.scan.sensor = *document.sensor.lidar;
 }
 
 /// Derives the point spacing. If no further point fits, every surface position is within the
@@ -174,15 +176,15 @@ void derive_scanner_flight(MissionDocument& document) {
 /// noise. It is not smaller than the distance between camera rays, because no view could provide
 /// such points.
 void derive_spacing(MissionDocument& document) {
-  if (document.gives("planner.spacing")) return;
+  if (document.has("planner.spacing")) return;
   constexpr double share = 0.8;
   double covering = share * document.evaluation.registration_distance;
   if (!document.sensor.lidar) {
     const Eigen::Vector2d pixels =
         geometry::Camera(document.sensor.options.camera.camera).focal_length_px();
-    covering = std::max(covering, view_distance_of(document) / std::sqrt(pixels.prod()));
+    covering = std::max(covering, compute_view_distance(document) / std::sqrt(pixels.prod()));
   }
-  document.planner.sampling.spacing = std::min(spacing_of(document), covering);
+  document.planner.sampling.spacing = std::min(compute_spacing(document), covering);
 }
 
 /// Derives values of the building preset for keys that are not set.
@@ -194,15 +196,15 @@ void derive_spacing(MissionDocument& document) {
 void derive_building_preset(MissionDocument& document) {
   if (document.planner.preset != PlannerPreset::building) return;
   survey::see::SeeConfig& see = document.planner.see;
-  const double distance = view_distance_of(document);
-  if (!document.gives("planner.occlusion_search_distance")) {
+  const double distance = compute_view_distance(document);
+  if (!document.has("planner.occlusion_search_distance")) {
     see.occlusion_search_distance = distance;
   }
-  if (!document.gives("planner.frontier_spacing")) see.frontier_spacing = 0.05 * distance;
-  if (!document.gives("planner.occluder_spacing")) {
+  if (!document.has("planner.frontier_spacing")) see.frontier_spacing = 0.05 * distance;
+  if (!document.has("planner.occluder_spacing")) {
     see.occluder_spacing = 2.0 * document.planner.sampling.resolution_radius;
   }
-  if (!document.gives("planner.core_threshold")) {
+  if (!document.has("planner.core_threshold")) {
     see.core_threshold = see_config(document).half_disc_threshold();
   }
 }
@@ -211,7 +213,7 @@ void derive_building_preset(MissionDocument& document) {
 void derive_ground_clearance(MissionDocument& document) {
   std::optional<double>& clearance = document.limits.ground_clearance;
   // A small margin, so that paths to a view at the limit can be verified.
-  if (document.flight.is_flown() && !clearance) {
+  if (document.flight.has_vehicle() && !clearance) {
     clearance = document.flight.options.clearance + 0.01;
   }
   if (document.scene.ground && !clearance) clearance = 0.0;
@@ -219,19 +221,19 @@ void derive_ground_clearance(MissionDocument& document) {
 
 /// Returns the margin around targets within which their surface is expected [m]. It does not extend
 /// to neighbours that the sensor observes.
-double beside_targets_of(const MissionDocument& document, const Eigen::AlignedBox3d& targets) {
+double margin_around_targets(const MissionDocument& document, const Eigen::AlignedBox3d& targets) {
   const site_data::SitePriors& site = *document.scene.priors;
-  double beside = most_beside_targets;
+  double margin = max_target_offset;
   if (document.scene.neighbours || document.scene.model.empty()) {
-    for (const geometry::Mesh* neighbour : scene::neighbours_of(site)) {
-      beside = std::min(beside, 0.5 * targets.exteriorDistance(geometry::bounding_box(*neighbour)));
+    for (const geometry::Mesh* neighbour : scene::find_neighbours(site)) {
+      margin = std::min(margin, 0.5 * targets.exteriorDistance(geometry::bounding_box(*neighbour)));
     }
   }
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     if (site.sources[i].role != site_data::Role::target) continue;
-    beside = std::max(beside, site.priors[i].uncertainty);
+    margin = std::max(margin, site.priors[i].uncertainty);
   }
-  return beside;
+  return margin;
 }
 
 /// Derives planner.scene_box from the targets. The margin is 3 m, or half the distance to the
@@ -240,13 +242,13 @@ double beside_targets_of(const MissionDocument& document, const Eigen::AlignedBo
 void derive_scene_box(MissionDocument& document) {
   std::optional<Eigen::AlignedBox3d>& scene_box = document.planner.sampling.scene_box;
   if (scene_box || !document.scene.priors) return;
-  const geometry::Mesh targets = surfaces_of(*document.scene.priors, site_data::Role::target);
+  const geometry::Mesh targets = make_surfaces(*document.scene.priors, site_data::Role::target);
   if (targets.triangles.empty()) return;
   Eigen::AlignedBox3d box = geometry::bounding_box(targets);
-  const double beside = beside_targets_of(document, box);
-  box.min().array() -= beside;
-  box.max().array() += beside;
-  if (document.scene.ground || document.flight.is_flown()) {
+  const double margin = margin_around_targets(document, box);
+  box.min().array() -= margin;
+  box.max().array() += margin;
+  if (document.scene.ground || document.flight.has_vehicle()) {
     // Points close to the ground count as ground, which is not a target.
     const double ground =
         document.scene.position.z() + 2.0 * document.evaluation.registration_distance;
@@ -260,24 +262,24 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   flight::FlightOptions& flight = document.flight.options;
   flight.vehicle_name = vehicle_name(document, flight.vehicle_name);
   flight.vehicle = profiles.vehicle;
-  flight.stand_ins = profiles.stand_ins;
+  flight.substitutes = profiles.substitutes;
   for (std::string& name : flight.fleet.names) name = vehicle_name(document, name);
   flight.fleet.vehicles = profiles.fleet;
   lead_fleet(document);
-  if (document.flight.is_flown() && !document.gives("flight.position_error")) {
-    flight.position_error = flight.flown().position_error;
+  if (document.flight.has_vehicle() && !document.has("flight.position_error")) {
+    flight.position_error = flight.required_vehicle().position_error;
     for (const flight::Vehicle& vehicle : flight.fleet.vehicles) {
       flight.position_error = std::max(flight.position_error, vehicle.position_error);
     }
   }
   // Flown missions use the planner skycap by default; the paper's planners serve for comparison.
-  if (document.flight.is_flown() && !document.gives("planner.name")) {
+  if (document.flight.has_vehicle() && !document.has("planner.name")) {
     document.planner.name = survey::PlannerName::skycap;
   }
   // Only an explicit sensor.capture changes the default goal; a scanner's default of moving capture
   // does not.
-  if (document.gives("sensor.capture") && document.sensor.options.is_moving() &&
-      !document.gives("planner.goal")) {
+  if (document.has("sensor.capture") && document.sensor.options.is_moving() &&
+      !document.has("planner.goal")) {
     document.planner.goal = PlannerGoal::minutes;
   }
   complete_scanner(document, profiles);
@@ -314,16 +316,16 @@ survey::SurveyLimits survey_limits(const MissionDocument& document) {
   return limits;
 }
 
-scan::FlownScanOptions scan_options(const MissionDocument& document) {
-  scan::FlownScanOptions options = document.scan;
-  if (has_place(document)) options.site = site_of(document);
+scan::ScanFlightOptions scan_options(const MissionDocument& document) {
+  scan::ScanFlightOptions options = document.scan;
+  if (is_georeferenced(document)) options.site = make_site(document);
   options.pad = document.flight.options.takeoff.value_or(Vector3d::Zero());
   return options;
 }
 
 /// Returns the options of all modules for a completed document.
-MissionSetup setup_of(const MissionDocument& document,
-                      const std::optional<std::uint32_t>& vehicle_checksum) {
+MissionSetup make_setup(const MissionDocument& document,
+                        const std::optional<std::uint32_t>& vehicle_checksum) {
   MissionSetup setup{.name = document.name};
   evaluation::SimulationOptions& simulation = setup.simulation;
   simulation.scene = document.scene;
@@ -335,7 +337,7 @@ MissionSetup setup_of(const MissionDocument& document,
   simulation.survey.start = start_options(document, simulation.survey.flight);
   simulation.evaluation = document.evaluation;
   simulation.oracle = {.max_views = document.limits.options.max_views,
-                       .least_gain = document.planner.skycap_stop.least_gain};
+                       .min_gain = document.planner.surfel_stop.min_gain};
   simulation.attainable_inputs = attainable_inputs(document);
   setup.lidar = document.sensor.lidar;
   setup.scan = scan_options(document);
@@ -360,45 +362,47 @@ struct MissionSetup::Source {
 Profiles read_profiles(const MissionDocument& document) {
   Profiles profiles;
   const flight::FlightOptions& flight = document.flight.options;
-  if (document.flight.is_flown()) {
-    profiles.vehicle = read_vehicle_of(document, flight.vehicle_name, "flight.vehicle");
-    profiles.vehicle_checksum = checksum_of_vehicle(document, flight.vehicle_name);
+  if (document.flight.has_vehicle()) {
+    profiles.vehicle = read_mission_vehicle(document, flight.vehicle_name, "flight.vehicle");
+    profiles.vehicle_checksum = compute_vehicle_checksum(document, flight.vehicle_name);
   }
   for (const std::string& name : flight.fleet.names) {
-    profiles.fleet.push_back(read_vehicle_of(document, name, "flight.vehicles"));
+    profiles.fleet.push_back(read_mission_vehicle(document, name, "flight.vehicles"));
   }
   if (!flight.fleet.names.empty()) {
-    profiles.vehicle_checksum = checksum_of_vehicle(document, flight.fleet.names.front());
+    profiles.vehicle_checksum = compute_vehicle_checksum(document, flight.fleet.names.front());
   }
   for (const char* name : {"generic", "generic_ardupilot", "m350_rtk"}) {  // one per dialect
-    profiles.stand_ins.push_back(find_vehicle(name));
+    profiles.substitutes.push_back(find_vehicle(name));
   }
   MissionDocument led = document;  // reports conflicts of fleet keys before those of the sensor
   led.flight.options.fleet.vehicles = profiles.fleet;
   lead_fleet(led);
   if (!document.sensor.lidar) return profiles;
-  for (const auto& [path, place] : document.places) {
+  for (const auto& [path, location] : document.locations) {
     if (path.starts_with("sensor.") && path != "sensor.lidar" && path != "sensor.capture" &&
         path != "sensor.frame_period") {
-      document.refuse(path, "conflicts with sensor.lidar; remove one of the two");
+      document.reject(path, "conflicts with sensor.lidar; remove one of the two");
     }
   }
   try {
     profiles.scanner = read_scanner(document);
-    kind_of(*profiles.scanner);
+    find_scanner_kind(*profiles.scanner);
   } catch (const Error& error) {
-    document.refuse("sensor.lidar", error.what());
+    document.reject("sensor.lidar", error.what());
   }
   return profiles;
 }
 
 std::optional<double> geoid_undulation(const MissionDocument& document) {
-  const Georeference& place = document.georeference;
-  const bool is_flown = document.flight.is_flown() || !document.flight.options.fleet.names.empty();
-  const bool is_asked_for = is_flown || !document.prior.empty();
-  if (place.geoid_undulation || !has_place(document) || !is_asked_for) return std::nullopt;
+  const Georeference& location = document.georeference;
+  const bool has_vehicle =
+      document.flight.has_vehicle() || !document.flight.options.fleet.names.empty();
+  const bool is_asked_for = has_vehicle || !document.prior.empty();
+  if (location.geoid_undulation || !is_georeferenced(document) || !is_asked_for)
+    return std::nullopt;
   try {
-    return site_data::egm96_undulation(*place.latitude_deg, *place.longitude_deg);
+    return site_data::egm96_undulation(*location.latitude_deg, *location.longitude_deg);
   } catch (const Error&) {  // PROJ or its grid is not installed
     return std::nullopt;
   }
@@ -413,7 +417,7 @@ MissionSetup resolve(MissionDocument document, const Profiles& profiles,
   std::optional<double>& undulation = document.georeference.geoid_undulation;
   if (!undulation) undulation = geoid;
   complete_with_priors(document, std::move(priors));
-  MissionSetup setup = setup_of(document, profiles.vehicle_checksum);
+  MissionSetup setup = make_setup(document, profiles.vehicle_checksum);
   setup.source = std::move(source);
   setup.document = std::make_shared<const MissionDocument>(std::move(document));
   return setup;
@@ -453,7 +457,7 @@ MissionSetup read_mission(const std::filesystem::path& file,
                           const std::vector<KeyOverride>& overrides, const Report& report) {
   MissionDocument document = read_mission_document(file, overrides);
   if (document.scene.model.empty() && !truth_role(document)) {
-    document.refuse(
+    document.reject(
         "scene.model",
         std::string("is missing; set a model, for example builtin:teapot") +
             (has_target(document)

@@ -28,12 +28,12 @@ struct Profiles {
   /// CRC-32 of the first vehicle's file; nullopt for presets
   std::optional<std::uint32_t> vehicle_checksum;
   std::vector<flight::Vehicle> fleet;
-  std::vector<flight::Vehicle> stand_ins;  ///< vehicles of other autopilots, see FlightOptions
+  std::vector<flight::Vehicle> substitutes;  ///< vehicles of other autopilots, see FlightOptions
   std::optional<sim::LidarConfig> scanner;
 };
 
 /// Reads the vehicle and scanner descriptions named in the document. Throws Error{bad_config}
-/// through MissionDocument::refuse().
+/// through MissionDocument::reject().
 Profiles read_profiles(const MissionDocument& document);
 
 /// Returns the EGM96 undulation [m] at the site if a vehicle or prior data requires it and no key
@@ -45,14 +45,14 @@ std::optional<double> geoid_undulation(const MissionDocument& document);
 site_data::SiteFrame site_frame(const MissionDocument& document, std::optional<double> geoid);
 
 /// Reads the prior data of a document; returns null without prior data. The document's own keys
-/// must already be checked. Throws Error{bad_config} through MissionDocument::refuse() for the key
+/// must already be checked. Throws Error{bad_config} through MissionDocument::reject() for the key
 /// of the source. `report` receives the name of each file, as there may be thousands.
 std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& document,
                                                          const site_data::SiteFrame& frame,
                                                          const Report& report = {});
 
 /// Derives missing values, and checks the key combinations and the planner's settings. Throws
-/// Error{bad_config} through MissionDocument::refuse() for the first violation.
+/// Error{bad_config} through MissionDocument::reject() for the first violation.
 MissionSetup resolve(MissionDocument document, const Profiles& profiles,
                      std::shared_ptr<const site_data::SitePriors> priors,
                      std::optional<double> geoid = {});

@@ -20,9 +20,9 @@ std::vector<Key> orbit_keys() {
                  "Centre of the platform's circles; heights are relative to its z."),
       number_key("scan.orbit.radius", "m", above(0, 1e4), orbit(&Orbit::radius),
                  "Radius of the circles."),
-      number_key("scan.orbit.min_height", "m", between(-1e4, 1e4), orbit(&Orbit::lowest),
+      number_key("scan.orbit.min_height", "m", between(-1e4, 1e4), orbit(&Orbit::min_height),
                  "Height of the first circle."),
-      number_key("scan.orbit.max_height", "m", between(-1e4, 1e4), orbit(&Orbit::highest),
+      number_key("scan.orbit.max_height", "m", between(-1e4, 1e4), orbit(&Orbit::max_height),
                  "Height of the last circle."),
       integer_key("scan.orbit.circles", "", between(1, 1000), orbit(&Orbit::circles),
                   "Number of circles, evenly spaced in height; a single one is the lowest."),
@@ -61,28 +61,28 @@ std::vector<Key> navigation_keys() {
 
 std::vector<Key> source_keys() {
   return {
-      text_key("scan.sensor", scan(&scan::FlownScanOptions::sensor),
+      text_key("scan.sensor", scan(&scan::ScanFlightOptions::sensor),
                "Sensor of skycap scan: a preset of sim/sensors/presets, or the path of a sensor "
                "file (NAME.yaml), relative to the mission file."),
       otherwise("the orbit below",
-                text_key("scan.route", scan(&scan::FlownScanOptions::route),
+                text_key("scan.route", scan(&scan::ScanFlightOptions::route),
                          "Route file to fly, relative to the mission file; the same as --route.")),
   };
 }
 
-std::vector<Key> carrier_keys() {
+std::vector<Key> platform_keys() {
   return {
-      choice_key("scan.crs", {"local", "utm"}, scan(&scan::FlownScanOptions::crs),
+      choice_key("scan.crs", {"local", "utm"}, scan(&scan::ScanFlightOptions::crs),
                  "Coordinates of LAS and E57 files: local is the mission frame; utm is WGS84/UTM "
                  "in the zone of the site, which requires a georeference. Heights are above the "
                  "EGM96 geoid if site.geoid_undulation is known, otherwise above the ellipsoid."),
-      number_key("scan.speed", "m/s", above(0, 100), scan(&scan::FlownScanOptions::speed),
+      number_key("scan.speed", "m/s", above(0, 100), scan(&scan::ScanFlightOptions::speed),
                  "Speed along a route whose file has no times."),
       vector_key("scan.mount.position", "m", between(-10, 10),
-                 scan(&scan::FlownScanOptions::mount_position),
+                 scan(&scan::ScanFlightOptions::mount_position),
                  "Position of the sensor in the platform frame (x forward, y left, z up)."),
       angles_key("scan.mount.rotation_deg", between(-360, 360),
-                 scan(&scan::FlownScanOptions::mount_rotation),
+                 scan(&scan::ScanFlightOptions::mount_rotation),
                  "Rotation of the sensor in the platform frame: about x, then y, then z."),
   };
 }
@@ -90,16 +90,16 @@ std::vector<Key> carrier_keys() {
 std::vector<Key> recording_keys() {
   return {
       vector_key("scan.lever_arm_error", "m", between(-10, 10),
-                 scan(&scan::FlownScanOptions::lever_arm_error),
+                 scan(&scan::ScanFlightOptions::lever_arm_error),
                  "Lever-arm error: error of the estimated mount.position."),
       angles_key("scan.boresight_error_deg", between(-45, 45),
-                 scan(&scan::FlownScanOptions::boresight_error),
+                 scan(&scan::ScanFlightOptions::boresight_error),
                  "Boresight error: error of the estimated mount rotation, small angles about the "
                  "platform's axes."),
       number_key("scan.frame_period", "s", between(1e-6, 1e5),
-                 scan(&scan::FlownScanOptions::frame_period),
+                 scan(&scan::ScanFlightOptions::frame_period),
                  "Interval between camera images along a route that does not define them."),
-      number_key("scan.depth_unit", "m", above(0, 1), scan(&scan::FlownScanOptions::depth_unit),
+      number_key("scan.depth_unit", "m", above(0, 1), scan(&scan::ScanFlightOptions::depth_unit),
                  "Depth of one step of a 16-bit depth image."),
   };
 }
@@ -107,7 +107,8 @@ std::vector<Key> recording_keys() {
 }  // namespace
 
 std::vector<Key> scan_keys() {
-  return joined({source_keys(), orbit_keys(), carrier_keys(), navigation_keys(), recording_keys()});
+  return joined(
+      {source_keys(), orbit_keys(), platform_keys(), navigation_keys(), recording_keys()});
 }
 
 }  // namespace skycap::missions::config

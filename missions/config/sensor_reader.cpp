@@ -34,10 +34,11 @@ std::vector<sim::Channel> read_channels(support::YamlSection section) {
   if (section.has("count")) {  // evenly spaced from top to bottom, as sensors number channels
     const int count = section.integer("count", 1);
     if (count < 2 || count > 1024) section.fail_at("count", "must be between 2 and 1024");
-    const double lowest = section.number("lowest_deg"), highest = section.number("highest_deg");
+    const double min_elevation = section.number("lowest_deg"),
+                 max_elevation = section.number("highest_deg");
     const double height = 1e-3 * section.number("height_mm", 0.0);
     for (int i = 0; i < count; ++i) {
-      const double elevation = highest + (lowest - highest) * i / (count - 1);
+      const double elevation = max_elevation + (min_elevation - max_elevation) * i / (count - 1);
       channels.push_back({.elevation = elevation * degree, .height = height});
     }
   } else {

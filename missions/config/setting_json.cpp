@@ -60,7 +60,7 @@ Json setting_json(const KeyValue& value) {
         using Value = std::decay_t<decltype(plain)>;
         if constexpr (std::is_same_v<Value, Eigen::Vector3d> ||
                       std::is_same_v<Value, std::vector<Eigen::Vector3d>>) {
-          return support::json_of(plain);
+          return support::to_json(plain);
         } else if constexpr (requires { list_json(plain); }) {
           return list_json(plain);
         } else {

@@ -74,18 +74,18 @@ void add_camera(const geometry::CameraConfig& camera, Lines& lines) {
 
 void add_planner(const survey::PlannerOptions& planner, Lines& lines) {
   lines.section("planner");
-  lines.value("name", std::string(survey::title_of(planner.name).word));
+  lines.value("name", std::string(survey::find_title(planner.name).word));
   lines.value("spacing", planner.spacing);
   lines.value("view_distance", planner.view_distance);
   lines.value("resolution_radius", planner.resolution_radius);
   lines.value("scene_box", planner.scene_box.value_or(AlignedBox3d()));
   lines.section("view_limits");
-  lines.value("min_height", planner.limits.least_height);
-  lines.value("max_height", planner.limits.most_height);
-  lines.value("follows_terrain", static_cast<bool>(planner.limits.least_height_over));
-  lines.value("min_standoff", planner.limits.stand_off);
-  lines.angle("min_pitch_deg", planner.limits.least_pitch);
-  lines.angle("max_pitch_deg", planner.limits.most_pitch);
+  lines.value("min_height", planner.limits.min_height);
+  lines.value("max_height", planner.limits.max_height);
+  lines.value("follows_terrain", static_cast<bool>(planner.limits.min_height_at));
+  lines.value("min_standoff", planner.limits.min_standoff);
+  lines.angle("min_pitch_deg", planner.limits.min_pitch);
+  lines.angle("max_pitch_deg", planner.limits.max_pitch);
   lines.end();
   lines.end();
 }
@@ -115,7 +115,7 @@ void add_clearance(const flight::FlightOptions& flight, Lines& lines) {
 void add_flight(const flight::FlightOptions& flight, const session::StartOptions& start,
                 std::uint64_t seed, Lines& lines) {
   lines.section("flight");
-  lines.value("vehicle", flight.flown().name);
+  lines.value("vehicle", flight.required_vehicle().name);
   add_clearance(flight, lines);
   const flight::MeasuredSpaceConfig space = flight.measured_space();
   lines.value("unknown_box", flight.unknown_box);
@@ -130,11 +130,11 @@ void add_flight(const flight::FlightOptions& flight, const session::StartOptions
   lines.value("hold_after_capture", flight.rest_after());
   lines.value("captures_en_route", flight.capture.is_moving);
   lines.value("capture_period", flight.capture.frame_period);
-  if (const auto pictures = flight.picture_bounds()) {
-    lines.value("motion_blur_px", pictures->blur_px);
-    lines.value("rolling_shutter_skew_px", pictures->shear_px);
+  if (const auto image_motion = flight.image_motion_bounds()) {
+    lines.value("motion_blur_px", image_motion->blur_px);
+    lines.value("rolling_shutter_skew_px", image_motion->shear_px);
   }
-  lines.value("initial_pattern_views", session::opening_views(start, seed).size());
+  lines.value("initial_pattern_views", session::initial_pattern_views(start, seed).size());
   if (start.view) lines.value("takeoff", flight.pad(start.view->position));
   lines.end();
 }
@@ -157,7 +157,7 @@ std::string setup_text(const MissionSetup& setup) {
     lines.value("direction", view->direction);
     lines.end();
   }
-  if (setup.flight().is_flown()) {
+  if (setup.flight().has_vehicle()) {
     add_flight(setup.flight(), setup.survey().start, setup.run.seed, lines);
   }
   lines.end();

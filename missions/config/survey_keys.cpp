@@ -45,16 +45,16 @@ std::vector<Key> limits_keys() {
                     "Minimum height of a view above the scene's base.")),
       number_key(
           "limits.stand_off", "m", between(0, 1e4),
-          [](auto& m) -> auto& { return m.limits.stand_off; },
+          [](auto& m) -> auto& { return m.limits.min_standoff; },
           "Minimum distance from a view to any measured surface. With the planner skycap, inside "
           "planner.scene_box, also to unknown space."),
       angle_key(
           "limits.min_pitch_deg", between(-right_angle, right_angle),
-          [](auto& m) -> auto& { return m.limits.lowest_pitch; },
+          [](auto& m) -> auto& { return m.limits.min_pitch; },
           "Minimum pitch of the gimbal; straight down is -90."),
       angle_key(
           "limits.max_pitch_deg", between(-right_angle, right_angle),
-          [](auto& m) -> auto& { return m.limits.highest_pitch; }, "Maximum pitch of the gimbal."),
+          [](auto& m) -> auto& { return m.limits.max_pitch; }, "Maximum pitch of the gimbal."),
       otherwise("unlimited",
                 number_key(
                     "limits.max_minutes", "min", above(0),
@@ -89,7 +89,7 @@ std::vector<Key> evaluation_keys() {
           "distance is tested. A sample without a free direction is not visible surface."),
       integer_key(
           "evaluation.attainable_views", "", between(0, 1e4),
-          [](auto& m) -> auto& { return m.evaluation.ceiling_views; },
+          [](auto& m) -> auto& { return m.evaluation.attainable_views; },
           "Number of views used to compute the attainable coverage; 0: not computed."),
       otherwise("with a vehicle flight.clearance, otherwise limits.stand_off",
                 number_key(

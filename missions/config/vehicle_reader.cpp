@@ -23,7 +23,7 @@ template <typename Owner>
 struct NumberKey {
   const char* key;
   double Owner::*field;
-  double least, most;
+  double min, max;
   double unit = 1.0;
 };
 
@@ -73,14 +73,15 @@ class VehicleReader {
       : root_(root), vehicle_(vehicle), keeps_(keeps) {}
 
   void read() {
-    using flight::Dialect;
+    using flight::AutopilotType;
     vehicle_.name = root_.text("name");
     if (wants(root_, "dialect")) {
-      vehicle_.dialect = root_.choice<Dialect>(
-          "dialect",
-          {{"px4", Dialect::px4}, {"ardupilot", Dialect::ardupilot}, {"dji", Dialect::dji}});
+      vehicle_.autopilot =
+          root_.choice<AutopilotType>("dialect", {{"px4", AutopilotType::px4},
+                                                  {"ardupilot", AutopilotType::ardupilot},
+                                                  {"dji", AutopilotType::dji}});
     }
-    if (vehicle_.dialect == Dialect::dji || root_.has("wpml")) read_codes();
+    if (vehicle_.autopilot == AutopilotType::dji || root_.has("wpml")) read_codes();
     read_numbers<Vehicle>(root_, vehicle_, vehicle_numbers);
     if (root_.has(position_error.key)) {  // optional, because descriptions of version 0.1 lack it
       read_numbers<Vehicle>(root_, vehicle_, std::span(&position_error, 1));
@@ -109,14 +110,14 @@ class VehicleReader {
     for (const NumberKey<Owner>& number : keys) {
       if (!wants(section, number.key)) continue;
       const double value = section.number(number.key);
-      section.require_between(number.key, value, number.least, number.most);
+      section.require_between(number.key, value, number.min, number.max);
       owner.*number.field = number.unit * value;
     }
   }
 
-  int whole_number(const std::string& key, int least, int most) {
-    root_.require_between(key, root_.number(key), least, most);
-    return root_.integer(key, least);
+  int whole_number(const std::string& key, int min, int max) {
+    root_.require_between(key, root_.number(key), min, max);
+    return root_.integer(key, min);
   }
 
   void read_mode() {
@@ -124,9 +125,9 @@ class VehicleReader {
     if (!section) return;
     MissionMode& mode = vehicle_.mode;
     if (wants(*section, "law")) {
-      mode.law = section->choice<flight::LegLaw>(
-          "law", {{"s_curve", flight::LegLaw::s_curve},
-                  {"braking_distance", flight::LegLaw::braking_distance}});
+      mode.leg_profile = section->choice<flight::LegProfile>(
+          "law", {{"s_curve", flight::LegProfile::s_curve},
+                  {"braking_distance", flight::LegProfile::braking_distance}});
     }
     read_numbers<MissionMode>(*section, mode, mode_numbers);
     section->finish();
@@ -159,8 +160,8 @@ flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
   const support::YamlNode tree = support::parse_yaml(text, file);
   support::YamlSection root(tree, "", file);
   Vehicle vehicle;
-  const bool is_like_another = root.has("like");
-  if (is_like_another) {
+  const bool has_base_vehicle = root.has("like");
+  if (has_base_vehicle) {
     const std::string preset = root.text("like");
     if (preset.ends_with(".yaml")) root.fail_at("like", "must be the name of a preset");
     try {
@@ -169,7 +170,7 @@ flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
       root.fail_at("like", error.what());
     }
   }
-  VehicleReader(root, vehicle, is_like_another).read();
+  VehicleReader(root, vehicle, has_base_vehicle).read();
   root.finish();
   if (vehicle.gimbal_min >= vehicle.gimbal_max) {
     root.fail_at("gimbal_max_deg", "must be greater than gimbal_min_deg");

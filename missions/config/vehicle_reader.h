@@ -10,8 +10,8 @@
 
 namespace skycap::missions::config {
 
-/// Parses a vehicle description. `file` is the file name in messages. With the key `like`, the
-/// named preset provides the values of missing keys; otherwise every key is required. Throws
+/// Parses a vehicle description. `file` is the file name in messages. With the key `base_vehicle`,
+/// the named preset provides the values of missing keys; otherwise every key is required. Throws
 /// Error{bad_config} with "FILE:LINE: key KEY WHAT IS WRONG" for unknown, missing, mistyped and
 /// out-of-range keys.
 flight::Vehicle read_vehicle(const std::string& text, const std::string& file);

@@ -79,7 +79,7 @@ std::vector<Key> map_keys() {
                      setting(&Settings::shadow_length),
                      "s: distance behind measurements up to which voxels are marked as occluded.")),
       boolean_key(
-          "volumetric.thinned", setting(&Settings::thinned),
+          "volumetric.thinned", setting(&Settings::downsampled),
           "Insert only the points kept at the spacing into the voxels, instead of whole scans."),
       boolean_key("volumetric.carve_no_returns", setting(&Settings::carve_no_returns),
                   "Count space along no-return pixels as free up to ray_depth."),

@@ -7,20 +7,20 @@
 namespace skycap::missions::evaluation {
 
 AccuracyMeter::AccuracyMeter(const geometry::Mesh& truth, unsigned threads,
-                             const geometry::Mesh& beside)
+                             const geometry::Mesh& surroundings)
     : distance_(truth, threads), threads_(threads) {
-  if (!beside.triangles.empty()) beside_.emplace(beside, threads);
+  if (!surroundings.triangles.empty()) surroundings_.emplace(surroundings, threads);
 }
 
 void AccuracyMeter::add(std::span<const Eigen::Vector3f> points) {
-  piece_.resize(points.size());
-  distance_.distances(points, piece_, threads_);
-  piece_beside_.assign(points.size(), std::numeric_limits<double>::infinity());
-  if (beside_) beside_->distances(points, piece_beside_, threads_);
+  distances_.resize(points.size());
+  distance_.distances(points, distances_, threads_);
+  surroundings_distances_.assign(points.size(), std::numeric_limits<double>::infinity());
+  if (surroundings_) surroundings_->distances(points, surroundings_distances_, threads_);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double distance = piece_[i];
-    if (piece_beside_[i] < distance) {
-      ++tally_.beside;
+    const double distance = distances_[i];
+    if (surroundings_distances_[i] < distance) {
+      ++tally_.surroundings;
       continue;
     }
     tally_.sum.add(distance);
@@ -40,16 +40,16 @@ void DistanceTally::add(const DistanceTally& more) {
   sum.add(more.sum);
   squares.add(more.squares);
   distances.insert(distances.end(), more.distances.begin(), more.distances.end());
-  beside += more.beside;
+  surroundings += more.surroundings;
 }
 
 CloudAccuracy DistanceTally::accuracy() {
   if (distances.empty()) return {};
   const auto count = static_cast<double>(distances.size());
   const auto quantile = [&](double share) -> double {
-    const auto place = distances.begin() + static_cast<std::ptrdiff_t>(share * (count - 1.0));
-    std::ranges::nth_element(distances, place);
-    return *place;
+    const auto rank = distances.begin() + static_cast<std::ptrdiff_t>(share * (count - 1.0));
+    std::ranges::nth_element(distances, rank);
+    return *rank;
   };
   return {sum.value() / count, std::sqrt(squares.value() / count), quantile(0.5), quantile(0.95),
           *std::ranges::max_element(distances)};

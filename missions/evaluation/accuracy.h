@@ -31,24 +31,24 @@ struct CloudAccuracy {
 struct DistanceTally {
   ExactSum sum, squares;
   std::vector<float> distances;
-  std::uint64_t beside = 0;  ///< points on adjacent objects, not on the surface
+  std::uint64_t surroundings = 0;  ///< points on adjacent objects, not on the surface
 
   void add(const DistanceTally& more);
   /// Computes the statistics. Sorts the stored distances.
   CloudAccuracy accuracy();
 };
 
-/// Computes distance statistics incrementally. Points closer to the mesh `beside` (such as ground)
-/// than to the surface are attributed to it and excluded from the statistics.
+/// Computes distance statistics incrementally. Points closer to the mesh `surroundings` (such as
+/// ground) than to the surface are attributed to it and excluded from the statistics.
 class AccuracyMeter {
  public:
   explicit AccuracyMeter(const geometry::Mesh& truth, unsigned threads = 0,
-                         const geometry::Mesh& beside = {});
+                         const geometry::Mesh& surroundings = {});
 
   void add(std::span<const Eigen::Vector3f> points);
 
   std::size_t points() const { return tally_.distances.size(); }  ///< points on the surface
-  std::uint64_t beside() const { return tally_.beside; }
+  std::uint64_t surroundings() const { return tally_.surroundings; }
   /// Returns the tally and resets it.
   DistanceTally take_tally() { return std::exchange(tally_, {}); }
 
@@ -60,9 +60,10 @@ class AccuracyMeter {
 
  private:
   geometry::MeshDistance distance_;
-  std::optional<geometry::MeshDistance> beside_;
+  std::optional<geometry::MeshDistance> surroundings_;
   unsigned threads_;
-  std::vector<double> piece_, piece_beside_;  ///< reused buffers for the distances of added points
+  std::vector<double> distances_,
+      surroundings_distances_;  ///< reused buffers for the distances of added points
   DistanceTally tally_;
 };
 

@@ -4,19 +4,20 @@
 
 namespace skycap::missions::evaluation {
 
-std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size_t count) {
+std::vector<Eigen::Vector3f> sample_positions(const geometry::Mesh& truth, std::size_t count) {
   constexpr std::uint64_t seed = 1;
   return geometry::sample_surface(truth, count, seed).points;
 }
 
-CloudJudge::CloudJudge(const geometry::Mesh& truth, std::size_t places,
-                       double registration_distance, unsigned threads, const geometry::Mesh& beside)
+CloudEvaluator::CloudEvaluator(const geometry::Mesh& truth, std::size_t sample_count,
+                               double registration_distance, unsigned threads,
+                               const geometry::Mesh& surroundings)
     : area_(geometry::surface_area(truth)),
       threads_(threads),
-      coverage_(places_asked(truth, places), registration_distance),
-      accuracy_(truth, threads, beside) {}
+      coverage_(sample_positions(truth, sample_count), registration_distance),
+      accuracy_(truth, threads, surroundings) {}
 
-void CloudJudge::add(std::span<const Eigen::Vector3f> points) {
+void CloudEvaluator::add(std::span<const Eigen::Vector3f> points) {
   geometry::parallel_for(2, threads_, [&](std::size_t part) {
     if (part == 0) {
       coverage_.add(points);
@@ -26,9 +27,9 @@ void CloudJudge::add(std::span<const Eigen::Vector3f> points) {
   });
 }
 
-CloudJudgement CloudJudge::judgement() {
+CloudEvaluation CloudEvaluator::result() {
   CloudTally tally = take_tally();
-  return judgement_of(tally, area_);
+  return evaluate_tally(tally, area_);
 }
 
 void CloudTally::add(const CloudTally& more) {
@@ -37,9 +38,9 @@ void CloudTally::add(const CloudTally& more) {
   for (std::size_t i = 0; i < is_covered.size(); ++i) is_covered[i] |= more.is_covered[i];
 }
 
-CloudJudgement judgement_of(CloudTally& tally, double area) {
+CloudEvaluation evaluate_tally(CloudTally& tally, double area) {
   return {tally.distances.distances.size(),
-          tally.distances.beside,
+          tally.distances.surroundings,
           marked_share(tally.is_covered),
           tally.distances.accuracy(),
           area,

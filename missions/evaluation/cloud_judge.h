@@ -14,10 +14,10 @@
 
 namespace skycap::missions::evaluation {
 
-struct CloudJudgement {
-  std::size_t points = 0;    ///< points on the surface
-  std::uint64_t beside = 0;  ///< points on adjacent objects
-  double coverage = 0.0;     ///< covered fraction of the surface, in [0, 1]
+struct CloudEvaluation {
+  std::size_t points = 0;          ///< points on the surface
+  std::uint64_t surroundings = 0;  ///< points on adjacent objects
+  double coverage = 0.0;           ///< covered fraction of the surface, in [0, 1]
   CloudAccuracy accuracy;
   double area = 0.0;  ///< surface area [m^2]
   /// For each surface sample, 1 if it is covered and 0 otherwise. Empty if not recorded.
@@ -37,24 +37,25 @@ struct CloudTally {
 };
 
 /// Computes the evaluation for a surface of `area` [m^2]. Sorts the distances in `tally`.
-CloudJudgement judgement_of(CloudTally& tally, double area);
+CloudEvaluation evaluate_tally(CloudTally& tally, double area);
 
 /// Returns `count` deterministic, evenly distributed samples of a surface.
-std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size_t count);
+std::vector<Eigen::Vector3f> sample_positions(const geometry::Mesh& truth, std::size_t count);
 
 /// Evaluates a cloud that is added in pieces of any size.
-class CloudJudge {
+class CloudEvaluator {
  public:
-  /// Prepares `places` surface samples. A sample is covered if a point is within
-  /// `registration_distance` of it [m]. Points on `beside` are handled as in AccuracyMeter.
-  CloudJudge(const geometry::Mesh& truth, std::size_t places, double registration_distance,
-             unsigned threads = 0, const geometry::Mesh& beside = {});
+  /// Prepares `sample_count` surface samples. A sample is covered if a point is within
+  /// `registration_distance` of it [m]. Points on `surroundings` are handled as in AccuracyMeter.
+  CloudEvaluator(const geometry::Mesh& truth, std::size_t sample_count,
+                 double registration_distance, unsigned threads = 0,
+                 const geometry::Mesh& surroundings = {});
 
   void add(std::span<const Eigen::Vector3f> points);
 
   /// Returns the tally of all points so far and clears the stored distances.
   CloudTally take_tally() { return {accuracy_.take_tally(), coverage_.is_covered()}; }
-  CloudJudgement judgement();  ///< evaluates take_tally()
+  CloudEvaluation result();  ///< evaluates take_tally()
 
  private:
   double area_;

@@ -18,14 +18,14 @@ CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double re
       ranges_(samples.size()) {
   std::vector<Cell> cells;
   cells.reserve(samples.size());
-  for (const Eigen::Vector3f& sample : samples) cells.push_back(cell_of(sample));
+  for (const Eigen::Vector3f& sample : samples) cells.push_back(sample_cell(sample));
   std::vector<std::uint32_t> order(samples.size());
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return cells[i]; });
   samples_.reserve(samples.size());
   for (const std::uint32_t i : order) {
-    const auto place = static_cast<std::uint32_t>(samples_.size());
-    ++ranges_.insert(cells[i], {place, place}).value.end;
+    const auto sample_index = static_cast<std::uint32_t>(samples_.size());
+    ++ranges_.insert(cells[i], {sample_index, sample_index}).value.end;
     samples_.push_back({samples[i], i});
   }
 }
@@ -37,7 +37,7 @@ CoverageMeter::Cell CoverageMeter::cell_at(std::int64_t x, std::int64_t y, std::
   return static_cast<Cell>((x & mask) << 42 | (y & mask) << 21 | (z & mask));
 }
 
-CoverageMeter::Cell CoverageMeter::cell_of(const Eigen::Vector3f& sample) const {
+CoverageMeter::Cell CoverageMeter::sample_cell(const Eigen::Vector3f& sample) const {
   const auto cell = [&](int axis) {
     return static_cast<std::int64_t>(std::floor(double{sample[axis]} / cell_size_));
   };

@@ -40,7 +40,7 @@ class CoverageMeter {
   };
 
   static Cell cell_at(std::int64_t x, std::int64_t y, std::int64_t z);
-  Cell cell_of(const Eigen::Vector3f& sample) const;
+  Cell sample_cell(const Eigen::Vector3f& sample) const;
   void cover_cell(Cell cell, const Eigen::Vector3f& point);
 
   double cell_size_;

@@ -31,19 +31,19 @@ struct Neighbours {
 
   /// Removes samples visible from a direction. Admissibility is tested first, because it takes less
   /// time than occlusion.
-  void look(const Vector3d& direction, std::vector<std::uint8_t>& is_visible) {
-    std::array<sim::Scene::Sight, sim::Scene::most_sights> sights;
-    std::array<std::size_t, sim::Scene::most_sights> targets;
+  void mark_visible(const Vector3d& direction, std::vector<std::uint8_t>& is_visible) {
+    std::array<sim::Scene::SightLine, sim::Scene::max_sight_lines> sight_lines;
+    std::array<std::size_t, sim::Scene::max_sight_lines> targets;
     std::size_t count = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const Vector3d& target = samples[i].position;
       const Vector3d from = target + admissible->view_distance * direction;
       if (admissible->allows && !admissible->allows({from, -direction})) continue;
-      sights[count] = {from, target + admissible->clearance * direction};
+      sight_lines[count] = {from, target + admissible->clearance * direction};
       targets[count++] = i;
     }
     if (count == 0) return;
-    const std::uint32_t blocked = scene->blocked(std::span(sights).first(count));
+    const std::uint32_t blocked = scene->blocked(std::span(sight_lines).first(count));
     for (std::size_t k = 0; k < count; ++k) {
       if ((blocked >> k & 1U) == 0) is_visible[samples[targets[k]].index] = 1;
     }
@@ -72,7 +72,7 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
   std::vector<std::uint8_t> is_visible(samples.size(), 0);
   const std::vector<geometry::CurveEntry> order =
       geometry::along_curve(samples, geometry::finest_grid(samples));
-  constexpr std::size_t group = sim::Scene::most_sights;
+  constexpr std::size_t group = sim::Scene::max_sight_lines;
   geometry::parallel_for((samples.size() + group - 1) / group, threads, [&](std::size_t i) {
     if (stop.stop_requested()) return;
     const std::size_t begin = i * group;
@@ -84,18 +84,16 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
     // Each sample group starts with another direction, which avoids a directional bias. A free
     // direction is found as fast as with any fixed order.
     for (std::size_t k = 0; k < directions.size() && !hidden.samples.empty(); ++k) {
-      hidden.look(directions[(i + k) % directions.size()], is_visible);
+      hidden.mark_visible(directions[(i + k) % directions.size()], is_visible);
     }
   });
   return is_visible;
 }
 
-std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
-                                             std::span<const std::uint8_t> is_visible,
-                                             const sim::Scene& scene, const TakeScan& take_scan,
-                                             const Admissible& admissible,
-                                             const CeilingConfig& config,
-                                             const std::stop_token& stop) {
+std::vector<std::uint8_t> attainable_samples(
+    std::span<const Vector3f> samples, std::span<const std::uint8_t> is_visible,
+    const sim::Scene& scene, const CaptureScan& capture_scan, const Admissible& admissible,
+    const AttainableConfig& config, const std::stop_token& stop) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   geometry::RandomNumbers random(config.seed);
   std::vector<std::uint32_t> targets;  // visible samples in random order
@@ -105,7 +103,7 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
   std::shuffle(targets.begin(), targets.end(), random);
 
   CoverageMeter meter(samples, config.registration_distance);
-  ThinnedCloud cloud(config.spacing);
+  DownsampledCloud cloud(config.spacing);
   geometry::Scan scan;
   std::size_t next = 0;
   for (std::size_t view = 0; view < config.views && !stop.stop_requested(); ++view) {
@@ -115,7 +113,7 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
     const auto position =
         free_position(target, directions, random() % directions.size(), scene, admissible);
     if (!position) continue;  // does not occur, because the sample is visible
-    scan = take_scan(geometry::look_at(*position, target), view, std::move(scan));
+    scan = capture_scan(geometry::look_at(*position, target), view, std::move(scan));
     meter.add(cloud.store(scan.points, config.box));
   }
   return meter.is_covered();

@@ -44,7 +44,7 @@ std::vector<std::uint8_t> visible_samples(std::span<const Eigen::Vector3f> sampl
                                           unsigned threads = 0, std::stop_token stop = {});
 
 /// Settings for computing the attainable coverage.
-struct CeilingConfig {
+struct AttainableConfig {
   std::size_t views = 100;
   double spacing = 0.003;                ///< epsilon, minimum distance between stored points [m]
   double registration_distance = 0.005;  ///< r_d, coverage distance [m]
@@ -53,19 +53,17 @@ struct CeilingConfig {
 };
 
 /// Simulates a scan from a view. `frame` is the scan's number in the noise sequence; the memory of
-/// `recycled` may be reused.
-using TakeScan = std::function<geometry::Scan(const geometry::View& view, std::uint64_t frame,
-                                              geometry::Scan recycled)>;
+/// `buffer` may be reused.
+using CaptureScan = std::function<geometry::Scan(const geometry::View& view, std::uint64_t frame,
+                                                 geometry::Scan buffer)>;
 
 /// Returns 1 for each sample that a survey could cover despite sensor noise and point spacing, and
 /// 0 for the others. The samples are covered by up to `views` admissible views, each aimed at a
 /// visible sample not covered by previous views. Ends early if all visible samples are covered. The
 /// result is invalid after a stop request.
-std::vector<std::uint8_t> attainable_samples(std::span<const Eigen::Vector3f> samples,
-                                             std::span<const std::uint8_t> is_visible,
-                                             const sim::Scene& scene, const TakeScan& take_scan,
-                                             const Admissible& admissible,
-                                             const CeilingConfig& config,
-                                             const std::stop_token& stop = {});
+std::vector<std::uint8_t> attainable_samples(
+    std::span<const Eigen::Vector3f> samples, std::span<const std::uint8_t> is_visible,
+    const sim::Scene& scene, const CaptureScan& capture_scan, const Admissible& admissible,
+    const AttainableConfig& config, const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::evaluation

@@ -30,8 +30,8 @@ class ExactSum {
  private:
   static void carry(Digits& sum);
 
-  Digits digits_{};                ///< each below 2^63
-  std::uint32_t not_carried_ = 0;  ///< additions since the last carry()
+  Digits digits_{};                      ///< each below 2^63
+  std::uint32_t pending_additions_ = 0;  ///< additions since the last carry()
 };
 
 }  // namespace skycap::missions::evaluation

@@ -26,26 +26,26 @@ constexpr std::uint32_t divided = 0;
 /// Position of a cell relative to the height range of paths.
 enum class Heights { outside, partly, inside };
 
-using Place = std::array<std::int32_t, 3>;
+using GridPoint = std::array<std::int32_t, 3>;
 
-Place child_of(const Place& corner, std::int32_t half, std::uint32_t child) {
-  Place place = corner;
+GridPoint child_corner(const GridPoint& corner, std::int32_t half, std::uint32_t child) {
+  GridPoint location = corner;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (child >> axis & 1U) place[axis] += half;
+    if (child >> axis & 1U) location[axis] += half;
   }
-  return place;
+  return location;
 }
 
 /// Returns offsets to the surrounding finest cells, nearest first.
-const std::vector<Place>& steps_around() {
+const std::vector<GridPoint>& steps_around() {
   static const auto steps = [] {
-    std::vector<Place> all;
+    std::vector<GridPoint> all;
     for (int x = -nearby; x <= nearby; ++x) {
       for (int y = -nearby; y <= nearby; ++y) {
         for (int z = -nearby; z <= nearby; ++z) all.push_back({x, y, z});
       }
     }
-    const auto length = [](const Place& step) {
+    const auto length = [](const GridPoint& step) {
       return step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
     };
     std::ranges::stable_sort(all, {}, length);
@@ -64,11 +64,11 @@ ReachableSpace::ReachableSpace(const geometry::MeshDistance& surface,
   lay_out(box, config);
   grow(surface, config);
   std::vector<Cell> pending;
-  if (!config.start || !is_inside(place_of(*config.start))) {
+  if (!config.start || !is_inside(grid_point(*config.start))) {
     reach_outside(pending);
   } else {
     visit_near(*config.start, [&](const Cell& cell) {
-      const bool is_own = box_of(cell).contains(*config.start);
+      const bool is_own = cell_box(cell).contains(*config.start);
       if (nodes_[cell.node] == open &&
           (is_own || joins(*config.start, nearest(cell, *config.start)))) {
         reach(cell, pending);
@@ -84,15 +84,15 @@ void ReachableSpace::lay_out(Eigen::AlignedBox3d box, const Config& config) {
   // A layer of open cells around the box.
   const Vector3d margin = Vector3d::Constant(config.radius + 2.0 * cell_);
   box = Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
-  is_floored_ = config.least_height && *config.least_height > box.min().z();
+  is_floored_ = config.min_height && *config.min_height > box.min().z();
   if (is_floored_) {
-    box.min().z() = *config.least_height;
+    box.min().z() = *config.min_height;
     box.max().z() = std::max(box.max().z(), box.min().z() + cell_);
   }
   while (width_ * cell_ < box.sizes().maxCoeff()) width_ *= 2;
   origin_ = box.min();
-  const Eigen::Vector2d spare = Eigen::Vector2d::Constant(width_ * cell_) - box.sizes().head<2>();
-  origin_.head<2>() -= 0.5 * spare;
+  const Eigen::Vector2d excess = Eigen::Vector2d::Constant(width_ * cell_) - box.sizes().head<2>();
+  origin_.head<2>() -= 0.5 * excess;
 }
 
 /// Builds the octree by levels, so that distances are computed for many cells at once.
@@ -100,7 +100,7 @@ void ReachableSpace::grow(const geometry::MeshDistance& surface, const Config& c
   nodes_ = {closed};
   std::vector<Cell> level{{0, {}, width_}};
   while (!level.empty()) {
-    const std::vector<std::uint32_t> states = states_of(level, surface, config);
+    const std::vector<std::uint32_t> states = compute_states(level, surface, config);
     std::vector<Cell> next;
     for (std::size_t i = 0; i < level.size(); ++i) {
       const Cell& cell = level[i];
@@ -111,7 +111,7 @@ void ReachableSpace::grow(const geometry::MeshDistance& surface, const Config& c
       nodes_.resize(first + 8, closed);
       const std::int32_t half = cell.size / 2;
       for (std::uint32_t child = 0; child < 8; ++child) {
-        next.push_back({first + child, child_of(cell.corner, half, child), half});
+        next.push_back({first + child, child_corner(cell.corner, half, child), half});
       }
     }
     level = std::move(next);
@@ -122,19 +122,19 @@ void ReachableSpace::grow(const geometry::MeshDistance& surface, const Config& c
 }
 
 /// Determines whether cells of one size are closed, open, or to be subdivided.
-std::vector<std::uint32_t> ReachableSpace::states_of(std::span<const Cell> cells,
-                                                     const geometry::MeshDistance& surface,
-                                                     const Config& config) const {
+std::vector<std::uint32_t> ReachableSpace::compute_states(std::span<const Cell> cells,
+                                                          const geometry::MeshDistance& surface,
+                                                          const Config& config) const {
   std::vector<std::uint32_t> states(cells.size(), closed);
   std::vector<std::size_t> asked;
   std::vector<Vector3d> centres;
   const auto heights = [&](const Cell& cell) {
     const double low = origin_.z() + cell_ * cell.corner[2], high = low + cell_ * cell.size;
-    const double least = config.least_height.value_or(low);
-    const double most = config.most_height.value_or(high);
-    return high <= least || low >= most   ? Heights::outside
-           : low >= least && high <= most ? Heights::inside
-                                          : Heights::partly;
+    const double min = config.min_height.value_or(low);
+    const double max = config.max_height.value_or(high);
+    return high <= min || low >= max   ? Heights::outside
+           : low >= min && high <= max ? Heights::inside
+                                       : Heights::partly;
   };
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (heights(cells[i]) == Heights::outside) continue;
@@ -176,34 +176,35 @@ std::uint32_t ReachableSpace::merged(std::uint32_t node, std::vector<std::uint32
   return state;
 }
 
-ReachableSpace::Place ReachableSpace::place_of(const Vector3d& point) const {
-  Place place{};
+ReachableSpace::GridPoint ReachableSpace::grid_point(const Vector3d& point) const {
+  GridPoint location{};
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = std::floor((point[axis] - origin_[axis]) / cell_);
-    place[static_cast<std::size_t>(axis)] =
+    location[static_cast<std::size_t>(axis)] =
         static_cast<std::int32_t>(std::clamp(cells, -1.0, static_cast<double>(width_)));
   }
-  return place;
+  return location;
 }
 
-bool ReachableSpace::is_inside(const Place& place) const {
-  return std::ranges::all_of(place, [&](std::int32_t at) { return at >= 0 && at < width_; });
+bool ReachableSpace::is_inside(const GridPoint& location) const {
+  return std::ranges::all_of(location, [&](std::int32_t at) { return at >= 0 && at < width_; });
 }
 
-Eigen::AlignedBox3d ReachableSpace::box_of(const Cell& cell) const {
+Eigen::AlignedBox3d ReachableSpace::cell_box(const Cell& cell) const {
   const Vector3d low = origin_ + cell_ * Vector3d(cell.corner[0], cell.corner[1], cell.corner[2]);
   return {low, low + Vector3d::Constant(cell_ * cell.size)};
 }
 
-ReachableSpace::Cell ReachableSpace::cell_at(const Place& place, std::int32_t least_size) const {
+ReachableSpace::Cell ReachableSpace::cell_at(const GridPoint& location,
+                                             std::int32_t min_size) const {
   Cell cell{0, {}, width_};
-  while (cell.size > least_size && !is_leaf(nodes_[cell.node])) {
+  while (cell.size > min_size && !is_leaf(nodes_[cell.node])) {
     const std::int32_t half = cell.size / 2;
     std::uint32_t child = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (place[axis] >= cell.corner[axis] + half) child |= 1U << axis;
+      if (location[axis] >= cell.corner[axis] + half) child |= 1U << axis;
     }
-    cell = {nodes_[cell.node] + child, child_of(cell.corner, half, child), half};
+    cell = {nodes_[cell.node] + child, child_corner(cell.corner, half, child), half};
   }
   return cell;
 }
@@ -215,34 +216,34 @@ void ReachableSpace::visit_face(const Cell& cell, std::size_t axis, bool is_uppe
   for (std::uint32_t child = 0; child < 8; ++child) {
     if ((child >> axis & 1U) != (is_upper ? 1U : 0U)) continue;
     const std::int32_t half = cell.size / 2;
-    visit_face({nodes_[cell.node] + child, child_of(cell.corner, half, child), half}, axis,
+    visit_face({nodes_[cell.node] + child, child_corner(cell.corner, half, child), half}, axis,
                is_upper, visit);
   }
 }
 
 template <class Visit>
 bool ReachableSpace::visit_near(const Vector3d& point, const Visit& visit) const {
-  const Place own = place_of(point);
-  for (const Place& step : steps_around()) {
-    const Place place{own[0] + step[0], own[1] + step[1], own[2] + step[2]};
-    if (is_inside(place) && visit(cell_at(place, 1))) return true;
+  const GridPoint own = grid_point(point);
+  for (const GridPoint& step : steps_around()) {
+    const GridPoint location{own[0] + step[0], own[1] + step[1], own[2] + step[2]};
+    if (is_inside(location) && visit(cell_at(location, 1))) return true;
   }
   return false;
 }
 
-bool ReachableSpace::leads_to(const Vector3d& place, const Joins& joins) const {
-  const Place own = place_of(place);
+bool ReachableSpace::leads_to(const Vector3d& location, const Joins& joins) const {
+  const GridPoint own = grid_point(location);
   if (!is_inside(own)) return is_outside_reached_;
   const std::uint32_t state = nodes_[cell_at(own, 1).node];
   if (state != closed) return state == reached;
-  return visit_near(place, [&](const Cell& cell) {
-    return nodes_[cell.node] == reached && joins(place, nearest(cell, place));
+  return visit_near(location, [&](const Cell& cell) {
+    return nodes_[cell.node] == reached && joins(location, nearest(cell, location));
   });
 }
 
-Vector3d ReachableSpace::nearest(const Cell& cell, const Vector3d& place) const {
-  const Eigen::AlignedBox3d box = box_of(cell);
-  return place.cwiseMax(box.min()).cwiseMin(box.max());
+Vector3d ReachableSpace::nearest(const Cell& cell, const Vector3d& location) const {
+  const Eigen::AlignedBox3d box = cell_box(cell);
+  return location.cwiseMax(box.min()).cwiseMin(box.max());
 }
 
 void ReachableSpace::reach(const Cell& cell, std::vector<Cell>& pending) {
@@ -270,7 +271,7 @@ void ReachableSpace::flood(std::vector<Cell> pending) {
     pending.pop_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const bool is_upper : {false, true}) {
-        Place beyond = cell.corner;
+        GridPoint beyond = cell.corner;
         beyond[axis] += is_upper ? cell.size : -1;
         if (is_inside(beyond)) {
           visit_face(cell_at(beyond, cell.size), axis, !is_upper,

@@ -32,25 +32,26 @@ class ReachableSpace {
  public:
   struct Config {
     double radius = 0.0;  ///< radius of the sphere [m]; zero: every gap that is resolved is passed
-    std::optional<double> least_height;    ///< minimum z of paths [m]
-    std::optional<double> most_height;     ///< maximum z of paths [m]
+    std::optional<double> min_height;      ///< minimum z of paths [m]
+    std::optional<double> max_height;      ///< maximum z of paths [m]
     std::optional<Eigen::Vector3d> start;  ///< empty: outside the scene
     unsigned threads = 0;                  ///< zero: one per processor; does not affect the result
   };
 
   /// Returns whether the platform can move straight from a reached position to a nearby position.
   /// Called concurrently from several threads.
-  using Joins = std::function<bool(const Eigen::Vector3d& place, const Eigen::Vector3d& reached)>;
+  using Joins =
+      std::function<bool(const Eigen::Vector3d& location, const Eigen::Vector3d& reached)>;
 
   /// Computes the reachable space of a surface within a box. No reference to `surface` is stored.
   /// `joins` is called only for the start.
   ReachableSpace(const geometry::MeshDistance& surface, const Eigen::AlignedBox3d& box,
                  const Config& config, const Joins& joins);
 
-  /// Returns whether a path leads to `place`. This is the case if its cell is reached, or if its
+  /// Returns whether a path leads to `location`. This is the case if its cell is reached, or if its
   /// cell is closed and `joins` it with a reached cell at most two cells away. Height limits apply
-  /// to paths but not to `place`.
-  bool leads_to(const Eigen::Vector3d& place, const Joins& joins) const;
+  /// to paths but not to `location`.
+  bool leads_to(const Eigen::Vector3d& location, const Joins& joins) const;
 
   /// Returns whether no cell is reached, because the start is enclosed more tightly than cells
   /// resolve.
@@ -72,30 +73,30 @@ class ReachableSpace {
   ReachableSpace() = default;
   static bool is_leaf(std::uint32_t node);
   bool is_whole() const;
-  using Place = std::array<std::int32_t, 3>;  // in finest cells from the corner of the domain
+  using GridPoint = std::array<std::int32_t, 3>;  // in finest cells from the corner of the domain
   struct Cell {
     std::uint32_t node = 0;
-    Place corner{};
+    GridPoint corner{};
     std::int32_t size = 0;  // in finest cells
   };
 
   void lay_out(Eigen::AlignedBox3d box, const Config& config);
   void grow(const geometry::MeshDistance& surface, const Config& config);
-  std::vector<std::uint32_t> states_of(std::span<const Cell> cells,
-                                       const geometry::MeshDistance& surface,
-                                       const Config& config) const;
+  std::vector<std::uint32_t> compute_states(std::span<const Cell> cells,
+                                            const geometry::MeshDistance& surface,
+                                            const Config& config) const;
   std::uint32_t merged(std::uint32_t node, std::vector<std::uint32_t>& nodes) const;
   void reach(const Cell& cell, std::vector<Cell>& pending);
   void reach_outside(std::vector<Cell>& pending);
   void flood(std::vector<Cell> pending);
 
-  Place place_of(const Eigen::Vector3d& point) const;
-  bool is_inside(const Place& place) const;
-  Eigen::AlignedBox3d box_of(const Cell& cell) const;
-  Eigen::Vector3d nearest(const Cell& cell, const Eigen::Vector3d& place) const;
-  // Returns the leaf that contains `place`, or the inner cell of `least_size` if the leaf is
+  GridPoint grid_point(const Eigen::Vector3d& point) const;
+  bool is_inside(const GridPoint& location) const;
+  Eigen::AlignedBox3d cell_box(const Cell& cell) const;
+  Eigen::Vector3d nearest(const Cell& cell, const Eigen::Vector3d& location) const;
+  // Returns the leaf that contains `location`, or the inner cell of `min_size` if the leaf is
   // smaller.
-  Cell cell_at(const Place& place, std::int32_t least_size) const;
+  Cell cell_at(const GridPoint& location, std::int32_t min_size) const;
   // Visits the leaves of a cell that touch one of its faces.
   template <class Visit>
   void visit_face(const Cell& cell, std::size_t axis, bool is_upper, const Visit& visit) const;

@@ -11,7 +11,7 @@ namespace skycap::missions::evaluation {
 namespace {
 
 constexpr char file_mark[16] = "skycap reach v1";
-constexpr std::uint64_t most_nodes = 1U << 28;
+constexpr std::uint64_t max_nodes = 1U << 28;
 
 /// File header, followed by the 4-byte states of the cells.
 struct Head {
@@ -26,10 +26,10 @@ struct Head {
 };
 
 /// Returns the checksum of the cells and the other header fields.
-std::uint32_t checksum_of(Head head, const std::vector<std::uint32_t>& nodes) {
-  head.checksum = geometry::crc32_of(
+std::uint32_t compute_checksum(Head head, const std::vector<std::uint32_t>& nodes) {
+  head.checksum = geometry::compute_crc32(
       {reinterpret_cast<const char*>(nodes.data()), nodes.size() * sizeof(std::uint32_t)});
-  return geometry::crc32_of({reinterpret_cast<const char*>(&head), sizeof head});
+  return geometry::compute_crc32({reinterpret_cast<const char*>(&head), sizeof head});
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ std::string ReachableSpace::bytes() const {
   head.is_floored = is_floored_, head.is_outside_reached = is_outside_reached_;
   head.is_empty = is_empty_;
   head.nodes = nodes_.size();
-  head.checksum = checksum_of(head, nodes_);
+  head.checksum = compute_checksum(head, nodes_);
   std::string text(sizeof head + nodes_.size() * sizeof(std::uint32_t), '\0');
   std::memcpy(text.data(), &head, sizeof head);
   std::memcpy(text.data() + sizeof head, nodes_.data(), nodes_.size() * sizeof(std::uint32_t));
@@ -55,7 +55,7 @@ std::optional<ReachableSpace> ReachableSpace::read(std::string_view bytes) {
   if (bytes.size() < sizeof head) return std::nullopt;
   std::memcpy(&head, bytes.data(), sizeof head);
   if (std::memcmp(head.mark, file_mark, sizeof head.mark) != 0 || head.nodes == 0 ||
-      head.nodes > most_nodes || bytes.size() != sizeof head + head.nodes * sizeof(std::uint32_t)) {
+      head.nodes > max_nodes || bytes.size() != sizeof head + head.nodes * sizeof(std::uint32_t)) {
     return std::nullopt;
   }
   ReachableSpace space;
@@ -67,7 +67,8 @@ std::optional<ReachableSpace> ReachableSpace::read(std::string_view bytes) {
   space.is_empty_ = head.is_empty != 0;
   space.nodes_.resize(head.nodes);
   std::memcpy(space.nodes_.data(), bytes.data() + sizeof head, head.nodes * sizeof(std::uint32_t));
-  if (checksum_of(head, space.nodes_) != head.checksum || !space.is_whole()) return std::nullopt;
+  if (compute_checksum(head, space.nodes_) != head.checksum || !space.is_whole())
+    return std::nullopt;
   return space;
 }
 

@@ -10,19 +10,19 @@
 namespace skycap::missions::evaluation {
 namespace {
 
-using survey::skycap::BelievedPatch;
+using survey::surfel::EstimatedPatch;
 
 /// Patches indexed by position and normal.
-class PatchesByPlace {
+class PatchGrid {
  public:
-  PatchesByPlace(std::span<const BelievedPatch> patches, double reach)
+  PatchGrid(std::span<const EstimatedPatch> patches, double reach)
       : patches_(patches), reach_(reach), grid_(reach) {
-    for (const BelievedPatch& patch : patches) grid_.insert(patch.position);
+    for (const EstimatedPatch& patch : patches) grid_.insert(patch.position);
   }
 
-  std::optional<float> share_at(const Eigen::Vector3f& place, const Eigen::Vector3f& normal) {
+  std::optional<float> share_at(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) {
     near_.clear();
-    grid_.find_within(place, reach_, near_);
+    grid_.find_within(position, reach_, near_);
     std::optional<geometry::Neighbour> nearest;
     for (const geometry::Neighbour& here : near_) {
       if (patches_[here.index].normal.dot(normal) <= 0.0F) continue;
@@ -33,7 +33,7 @@ class PatchesByPlace {
   }
 
  private:
-  std::span<const BelievedPatch> patches_;
+  std::span<const EstimatedPatch> patches_;
   double reach_;
   geometry::PointGrid grid_;
   std::vector<geometry::Neighbour> near_;
@@ -43,11 +43,11 @@ double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 
 }  // namespace
 
-Reliability reliability(std::span<const BelievedPatch> belief,
+Reliability reliability(std::span<const EstimatedPatch> estimate,
                         const geometry::SurfaceSamples& samples,
                         std::span<const std::uint8_t> is_covered,
                         std::span<const std::uint8_t> counts, double reach) {
-  PatchesByPlace patches(belief, reach);
+  PatchGrid patches(estimate, reach);
   Reliability found;
   double counted = 0.0;
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
@@ -63,13 +63,13 @@ Reliability reliability(std::span<const BelievedPatch> belief,
     const double last = Reliability::bands_count - 1;
     const double band = std::clamp(std::floor(*share * (last + 1.0)), 0.0, last);
     Reliability::Band& sums = found.bands[static_cast<std::size_t>(band)];
-    sums.believed += *share;
+    sums.estimated += *share;
     sums.covered += covered;
     ++sums.share;
   }
   for (Reliability::Band& band : found.bands) {
-    found.error += ratio(std::abs(band.believed - band.covered), counted - found.unknown_share);
-    band = {ratio(band.believed, band.share), ratio(band.covered, band.share),
+    found.error += ratio(std::abs(band.estimated - band.covered), counted - found.unknown_share);
+    band = {ratio(band.estimated, band.share), ratio(band.covered, band.share),
             ratio(band.share, counted)};
   }
   found.unknown_covered = ratio(found.unknown_covered, found.unknown_share);

@@ -16,7 +16,7 @@ struct EvaluationOptions {
   double registration_distance = 0.005;
   std::size_t samples = 100'000;         ///< number of samples on the scene's surface
   std::size_t visible_directions = 200;  ///< directions tested for the visibility of a sample
-  std::size_t ceiling_views = 100;       ///< views for the attainable coverage; zero: not computed
+  std::size_t attainable_views = 100;    ///< views for the attainable coverage; zero: not computed
   /// Radius of a sphere that must fit through paths to views [m]. Default: minimum distance of
   /// views from surfaces according to the limits.
   std::optional<double> radius;
@@ -26,7 +26,7 @@ struct EvaluationOptions {
 struct OracleOptions {
   std::size_t max_views = 1000;
   /// Minimum coverage gain per view, as a fraction of the visible surface.
-  double least_gain = 0.003;
+  double min_gain = 0.003;
 };
 
 struct SimulationOptions {

@@ -25,11 +25,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint64_t sample_seed = 1;  // coverage is evaluated at the same samples in all runs
-constexpr std::uint64_t ceiling_seed = 1;
+constexpr std::uint64_t attainable_seed = 1;
 
 /// Returns the surfaces of the triangles of placed_model(); empty if all are matt.
-std::vector<sim::Surface> surfaces_of(const scene::SceneOptions& options,
-                                      const std::filesystem::path& folder) {
+std::vector<sim::Surface> make_surfaces(const scene::SceneOptions& options,
+                                        const std::filesystem::path& folder) {
   if (options.is_truth_prior()) return {};
   const std::vector<sim::Surface> one = scene::load_surfaces(options, folder);
   std::vector<sim::Surface> all;
@@ -39,14 +39,14 @@ std::vector<sim::Surface> surfaces_of(const scene::SceneOptions& options,
   return all;
 }
 
-sim::Scene scene_of(const geometry::Mesh& model, const SimulationOptions& options,
-                    const std::filesystem::path& folder, unsigned threads) {
+sim::Scene make_scene(const geometry::Mesh& model, const SimulationOptions& options,
+                      const std::filesystem::path& folder, unsigned threads) {
   if (options.sensor.scanner) {  // laser measurements depend on the reflectance of surfaces
     return scene::reflecting_scene(options.scene, folder).scene(threads);
   }
   geometry::Mesh mesh = model;
-  geometry::append(mesh, scene::surroundings_of(options.scene, geometry::bounding_box(model)));
-  std::vector<sim::Surface> surfaces = surfaces_of(options.scene, folder);
+  geometry::append(mesh, scene::make_surroundings(options.scene, geometry::bounding_box(model)));
+  std::vector<sim::Surface> surfaces = make_surfaces(options.scene, folder);
   if (!surfaces.empty()) surfaces.resize(mesh.triangles.size(), sim::Surface::matt);
   return sim::Scene(std::array{sim::ScenePart{mesh, {}, {}, surfaces}}, threads);
 }
@@ -118,11 +118,11 @@ SurveyScene::SurveyScene(const SimulationOptions& options, const std::filesystem
     : options_(options),
       threads_(threads),
       model_(placed_model(options.scene, folder)),
-      scene_(scene_of(model_, options, folder, threads)),
+      scene_(make_scene(model_, options, folder, threads)),
       samples_(geometry::sample_surface(model_, options.evaluation.samples, sample_seed)),
       view_distance_(options.survey.planner.view_distance),
       view_sphere_(sphere_around(samples_.points, view_distance_)),
-      radius_(options.evaluation.radius.value_or(options.survey.planner.limits.stand_off)),
+      radius_(options.evaluation.radius.value_or(options.survey.planner.limits.min_standoff)),
       kept_(kept) {}
 
 const ReachableSpace& SurveyScene::reachable() const {
@@ -153,29 +153,29 @@ ReachableSpace SurveyScene::reachable_space() const {
   return {truth(),
           geometry::bounding_box(model_),
           {.radius = radius_,
-           .least_height = limits.least_height,
-           .most_height = limits.most_height,
+           .min_height = limits.min_height,
+           .max_height = limits.max_height,
            .start = start ? std::optional(start->position) : std::nullopt,
            .threads = threads_},
-          [this](const Vector3d& place, const Vector3d& reached) {
-            return is_in_sight(place, reached);
+          [this](const Vector3d& position, const Vector3d& reached) {
+            return has_line_of_sight(position, reached);
           }};
 }
 
-bool SurveyScene::is_in_sight(const Vector3d& a, const Vector3d& b) const {
+bool SurveyScene::has_line_of_sight(const Vector3d& a, const Vector3d& b) const {
   return !scene_.is_blocked(a, b);
 }
 
-bool SurveyScene::is_reachable(const Vector3d& place) const {
-  return reachable().leads_to(place, [this](const Vector3d& from, const Vector3d& reached) {
-    return is_in_sight(from, reached);
+bool SurveyScene::is_reachable(const Vector3d& position) const {
+  return reachable().leads_to(position, [this](const Vector3d& from, const Vector3d& reached) {
+    return has_line_of_sight(from, reached);
   });
 }
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   const session::StartOptions& begins = options_.survey.start;
-  const std::vector<geometry::View> opening = session::opening_views(begins, seed);
-  if (!opening.empty()) return opening.front();
+  const std::vector<geometry::View> initial_pattern = session::initial_pattern_views(begins, seed);
+  if (!initial_pattern.empty()) return initial_pattern.front();
   if (const auto& start = begins.view) {
     if (!reachable().is_empty()) return *start;
     throw Error(
@@ -187,8 +187,8 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;
   geometry::RandomNumbers random(seed);
-  constexpr int most_attempts = 10'000;
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+  constexpr int max_attempts = 10'000;
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
     geometry::View view = geometry::look_at(position, view_sphere_.centre);
     if (limits.allow(view) && options_.survey.flight.is_in_known_airspace(position) &&
@@ -207,18 +207,19 @@ Admissible SurveyScene::admissible() const {
   survey::ViewLimits limits = options_.survey.planner.limits;
   // The target may be anywhere in the image, not only at its centre.
   const double half_fov = 0.5 * options_.survey.planner.camera.vertical_fov;
-  limits.least_pitch -= half_fov;
-  limits.most_pitch += half_fov;
-  const auto joins = [this](const Vector3d& place, const Vector3d& reached) {
-    return radius_ > 0.0 ? truth().keeps(place, reached, radius_) : is_in_sight(place, reached);
+  limits.min_pitch -= half_fov;
+  limits.max_pitch += half_fov;
+  const auto joins = [this](const Vector3d& position, const Vector3d& reached) {
+    return radius_ > 0.0 ? truth().keeps(position, reached, radius_)
+                         : has_line_of_sight(position, reached);
   };
   // Paths already keep the radius from the model. Neighbours are outside its box and require a
   // separate test.
-  const bool asks_distance = limits.stand_off > radius_ || options_.scene.neighbours;
-  const double least = std::max(limits.stand_off, radius_);
-  const auto allows = [this, limits, joins, asks_distance, least](const geometry::View& view) {
+  const bool asks_distance = limits.min_standoff > radius_ || options_.scene.neighbours;
+  const double min = std::max(limits.min_standoff, radius_);
+  const auto allows = [this, limits, joins, asks_distance, min](const geometry::View& view) {
     return limits.allow(view) && reachable().leads_to(view.position, joins) &&
-           (!asks_distance || truth().distance(view.position) >= least);
+           (!asks_distance || truth().distance(view.position) >= min);
   };
   return {.view_distance = view_distance_,
           .allows = allows,
@@ -228,7 +229,7 @@ Admissible SurveyScene::admissible() const {
 
 std::vector<std::uint8_t> SurveyScene::visible(unsigned threads,
                                                const std::stop_token& stop) const {
-  const std::filesystem::path cached = scene::user_cache() / "visible" / ceiling_key();
+  const std::filesystem::path cached = scene::user_cache() / "visible" / attainable_key();
   if (auto known = marks_in_file(cached, samples_.points.size())) return std::move(*known);
   std::vector<std::uint8_t> marks =
       visible_samples(samples_.points, scene_, admissible(), threads, stop);
@@ -243,29 +244,29 @@ std::vector<std::uint8_t> SurveyScene::visible(unsigned threads,
 std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
     const std::vector<std::uint8_t>& is_visible, unsigned threads,
     const std::stop_token& stop) const {
-  if (options_.evaluation.ceiling_views == 0) return std::nullopt;
-  const std::filesystem::path cached = scene::user_cache() / "ceilings" / ceiling_key();
+  if (options_.evaluation.attainable_views == 0) return std::nullopt;
+  const std::filesystem::path cached = scene::user_cache() / "ceilings" / attainable_key();
   if (auto known = marks_in_file(cached, samples_.points.size())) return known;
 
-  CeilingConfig config;
-  config.views = options_.evaluation.ceiling_views;
+  AttainableConfig config;
+  config.views = options_.evaluation.attainable_views;
   config.spacing = options_.survey.planner.spacing;
   config.registration_distance = options_.evaluation.registration_distance;
   config.box = options_.scene_box();
-  config.seed = ceiling_seed;
+  config.seed = attainable_seed;
   const sim::SurveySensor sensor(options_.sensor, options_.sensor.camera.noise.seed);
-  const auto take_scan = [&](const geometry::View& view, std::uint64_t frame,
-                             geometry::Scan recycled) {
-    return sensor.scan(scene_, view, frame, threads, std::move(recycled));
+  const auto capture_scan = [&](const geometry::View& view, std::uint64_t frame,
+                                geometry::Scan buffer) {
+    return sensor.scan(scene_, view, frame, threads, std::move(buffer));
   };
   std::vector<std::uint8_t> marks = attainable_samples(samples_.points, is_visible, scene_,
-                                                       take_scan, admissible(), config, stop);
+                                                       capture_scan, admissible(), config, stop);
   if (stop.stop_requested()) return std::nullopt;
   keep_marks(cached, marks);
   return marks;
 }
 
-std::string SurveyScene::ceiling_key() const {
+std::string SurveyScene::attainable_key() const {
   std::ostringstream inputs;
   inputs.exceptions(std::ios::badbit);  // reports text lost because of low memory
   inputs.precision(17);
@@ -273,7 +274,7 @@ std::string SurveyScene::ceiling_key() const {
   inputs << options_.attainable_inputs;
   // The contents of a vehicle file, not only its name.
   const survey::ViewLimits& limits = options_.survey.planner.limits;
-  inputs << "\n" << limits.least_pitch << " " << limits.most_pitch << " " << limits.stand_off;
+  inputs << "\n" << limits.min_pitch << " " << limits.max_pitch << " " << limits.min_standoff;
   // The surface samples identify the mesh found under the model's name.
   inputs << "\n" << support::sha256(std::as_bytes(std::span(samples_.points)));
   // Their materials identify the contents of a material file.

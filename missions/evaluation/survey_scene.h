@@ -63,7 +63,7 @@ class SurveyScene {
 
   /// Returns whether the sensor can reach a position, for example not inside closed rooms. The
   /// distance from surfaces is not tested.
-  bool is_reachable(const Eigen::Vector3d& place) const;
+  bool is_reachable(const Eigen::Vector3d& position) const;
 
  private:
   /// Data computed on first use by any thread, because a survey may require neither.
@@ -73,11 +73,11 @@ class SurveyScene {
     std::optional<geometry::MeshDistance> distance;
   };
 
-  std::string ceiling_key() const;
+  std::string attainable_key() const;
   const ReachableSpace& reachable() const;
   ReachableSpace reachable_space() const;
   const geometry::MeshDistance& truth() const;
-  bool is_in_sight(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
+  bool has_line_of_sight(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   SimulationOptions options_;
   unsigned threads_;

@@ -16,13 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* piece_name = "piece.json";
+constexpr const char* shard_file_name = "piece.json";
 constexpr const char* distances_name = "distances.bin";
 
 static_assert(std::endian::native == std::endian::little);
 
 Json parsed(const fs::path& folder) {
-  return geometry::parse_json<Json>(geometry::read_file(folder / piece_name));
+  return geometry::parse_json<Json>(geometry::read_file(folder / shard_file_name));
 }
 
 }  // namespace
@@ -33,19 +33,19 @@ void stage_tally(const std::string& identity, const CloudTally& tally,
   for (const std::uint8_t mark : tally.is_covered) covered += mark != 0 ? '1' : '0';
   const Json json{{"of", identity},
                   {"points", tally.distances.distances.size()},
-                  {"beside", tally.distances.beside},
+                  {"beside", tally.distances.surroundings},
                   {"sum", tally.distances.sum.all_digits()},
                   {"squares", tally.distances.squares.all_digits()},
                   {"covered", covered}};
   const std::vector<float>& distances = tally.distances.distances;
   folder.write(distances_name,
                {reinterpret_cast<const char*>(distances.data()), distances.size() * sizeof(float)});
-  folder.write(piece_name, json.dump() + "\n");
+  folder.write(shard_file_name, json.dump() + "\n");
 }
 
 bool has_tally(const fs::path& folder, const std::string& identity) {
   std::error_code missing;
-  if (!fs::is_regular_file(folder / piece_name, missing)) return false;
+  if (!fs::is_regular_file(folder / shard_file_name, missing)) return false;
   try {
     return parsed(folder).at("of") == Json(identity);
   } catch (const Json::exception&) {
@@ -60,7 +60,7 @@ CloudTally read_tally(const fs::path& folder) {
     const Json json = parsed(folder);
     CloudTally tally;
     tally.distances.sum = ExactSum(json.at("sum").get<ExactSum::Digits>());
-    tally.distances.beside = json.at("beside").get<std::uint64_t>();
+    tally.distances.surroundings = json.at("beside").get<std::uint64_t>();
     tally.distances.squares = ExactSum(json.at("squares").get<ExactSum::Digits>());
     for (const char mark : json.at("covered").get<std::string>()) {
       tally.is_covered.push_back(mark == '1' ? 1 : 0);
@@ -74,7 +74,7 @@ CloudTally read_tally(const fs::path& folder) {
     }
     return tally;
   } catch (const Json::exception& failure) {
-    throw Error(ErrorKind::bad_file, (folder / piece_name).string() + ": " + failure.what());
+    throw Error(ErrorKind::bad_file, (folder / shard_file_name).string() + ": " + failure.what());
   }
 }
 

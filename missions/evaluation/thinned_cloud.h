@@ -11,9 +11,9 @@
 
 namespace skycap::missions::evaluation {
 
-class ThinnedCloud {
+class DownsampledCloud {
  public:
-  explicit ThinnedCloud(double spacing) : kept_(spacing) {}
+  explicit DownsampledCloud(double spacing) : kept_(spacing) {}
 
   /// Stores the points inside `box` that are farther than the spacing from all stored points. An
   /// empty box is unlimited. Returns the stored points.

@@ -23,15 +23,15 @@ Colour covered_colour(float covered_share) {
   return colour;
 }
 
-Colour colour_of(const survey::skycap::BelievedPatch& patch) {
+Colour make_colour(const survey::surfel::EstimatedPatch& patch) {
   switch (patch.reason) {
-    case survey::skycap::MissingReason::seen_too_thinly:
+    case survey::surfel::MissingReason::seen_too_thinly:
       return amber;
-    case survey::skycap::MissingReason::never_seen:
+    case survey::surfel::MissingReason::never_seen:
       return red;
-    case survey::skycap::MissingReason::unreachable:
+    case survey::surfel::MissingReason::unreachable:
       return violet;
-    case survey::skycap::MissingReason::none:
+    case survey::surfel::MissingReason::none:
       break;
   }
   return covered_colour(patch.covered_share);
@@ -39,12 +39,12 @@ Colour colour_of(const survey::skycap::BelievedPatch& patch) {
 
 }  // namespace
 
-geometry::AttributedCloud coverage_map(std::span<const survey::skycap::BelievedPatch> patches) {
+geometry::AttributedCloud coverage_map(std::span<const survey::surfel::EstimatedPatch> patches) {
   geometry::AttributedCloud map;
-  for (const survey::skycap::BelievedPatch& patch : patches) {
+  for (const survey::surfel::EstimatedPatch& patch : patches) {
     map.positions.push_back(patch.position);
     map.normals.push_back(patch.normal);
-    map.colours.push_back(colour_of(patch));
+    map.colours.push_back(make_colour(patch));
   }
   return map;
 }
@@ -69,14 +69,14 @@ void write_true_coverage(const std::filesystem::path& path, const TrueCoverage& 
                                          {"attainable", truth.is_attainable}}});
 }
 
-std::optional<survey::skycap::MissingReason> reason_of(const Colour& colour) {
-  using enum survey::skycap::MissingReason;
+std::optional<survey::surfel::MissingReason> find_reason(const Colour& colour) {
+  using enum survey::surfel::MissingReason;
   if (colour == amber) return seen_too_thinly;
   if (colour == red) return never_seen;
   if (colour == violet) return unreachable;
   for (std::size_t i = 0; i < colour.size(); ++i) {
-    const auto [least, most] = std::minmax(covered_hardly[i], covered_surely[i]);
-    if (colour[i] < least || colour[i] > most) return std::nullopt;
+    const auto [min, max] = std::minmax(covered_hardly[i], covered_surely[i]);
+    if (colour[i] < min || colour[i] > max) return std::nullopt;
   }
   return none;
 }

@@ -20,7 +20,7 @@ namespace skycap::missions::package {
 ///     amber   observed, but undersampled for the noise;
 ///     red     unobserved, only predicted;
 ///     violet  known, but without a good view within the limits.
-geometry::AttributedCloud coverage_map(std::span<const survey::skycap::BelievedPatch> patches);
+geometry::AttributedCloud coverage_map(std::span<const survey::surfel::EstimatedPatch> patches);
 
 /// Ground-truth surface samples with one mark per sample: covered by the survey, visible from
 /// positions that the sensor can reach, and attainable by any view. Marks that were not computed
@@ -36,6 +36,6 @@ struct TrueCoverage {
 void write_true_coverage(const std::filesystem::path& path, const TrueCoverage& truth);
 
 /// Returns the reason for a colour of a coverage map, or an empty value for other colours.
-std::optional<survey::skycap::MissingReason> reason_of(const std::array<std::uint8_t, 3>& colour);
+std::optional<survey::surfel::MissingReason> find_reason(const std::array<std::uint8_t, 3>& colour);
 
 }  // namespace skycap::missions::package

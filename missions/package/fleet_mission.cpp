@@ -27,19 +27,19 @@ struct RowedSorties {
 };
 
 /// Returns the sorties of all variants, as in the file for the vehicle's own autopilot.
-RowedSorties sorties_of(const FleetMission& fleet, const std::vector<Variants>& variants) {
+RowedSorties collect_sorties(const FleetMission& fleet, const std::vector<Variants>& variants) {
   RowedSorties all;
   const auto add = [&](std::size_t v, std::size_t variant, std::size_t i) {
     const flight::FlightOptions& own = fleet.members[v].flight;
     const flight::Route& route = variants[v][variant];
-    const flight::Format format = own_format(own.flown().dialect);
+    const flight::Format format = own_format(own.required_vehicle().autopilot);
     const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
-    const std::string name = stem_of(v) + number;
+    const std::string name = make_stem(v) + number;
     const flight::FlightPlan plan = flight_plan(route, i, name, own.site, own.rules());
-    all.sorties.push_back({v, i, flown_file(own, write(plan, format), format).script,
+    all.sorties.push_back({v, i, interpret_flight_file(own, write(plan, format), format).script,
                            plan.vehicle.mode.jerk, variant});
-    all.rows.push_back({v, own.vehicle_name, i, name + flight::format_info(format).ending, 0.0, 0.0,
-                        fleet.members[v].pad});
+    all.rows.push_back({v, own.vehicle_name, i, name + flight::format_info(format).extension, 0.0,
+                        0.0, fleet.members[v].pad});
   };
   for (std::size_t v = 0; v < variants.size(); ++v) {
     for (std::size_t k = 0; k < variants[v].size(); ++k) {
@@ -67,7 +67,7 @@ void check_pads(const FleetMission& fleet, const std::vector<flight::FleetSortie
 /// Selects the variant and the take-off times of each vehicle that minimise the last landing time.
 void make_timetable(const flight::SeparationRule& rule, std::vector<Variants> variants,
                     FleetMission& fleet) {
-  RowedSorties all = sorties_of(fleet, variants);
+  RowedSorties all = collect_sorties(fleet, variants);
   const flight::Timetable table = timetable(all.sorties, fleet.members.size(), rule);
   std::vector<flight::FleetSortie> sorties;
   std::vector<flight::TimedFlight> flights;
@@ -83,7 +83,7 @@ void make_timetable(const flight::SeparationRule& rule, std::vector<Variants> va
   for (std::size_t v = 0; v < variants.size(); ++v) {
     if (variants[v].empty()) continue;
     fleet.members[v].route = std::move(variants[v][table.variants[v]]);
-    fleet.flown += fleet.members[v].route.duration;
+    fleet.total_flight_time += fleet.members[v].route.duration;
   }
   check_pads(fleet, sorties);
   fleet.makespan = table.makespan;
@@ -92,8 +92,9 @@ void make_timetable(const flight::SeparationRule& rule, std::vector<Variants> va
   for (std::size_t i = 0; i < flights.size(); ++i) {
     for (std::size_t j = i + 1; j < flights.size(); ++j) {
       if (sorties[i].vehicle == sorties[j].vehicle) continue;
-      fleet.distance = std::min(fleet.distance, proven_distance(flights[i], flights[j],
-                                                                rule.tolerance, reported_distance));
+      fleet.distance =
+          std::min(fleet.distance,
+                   verified_distance(flights[i], flights[j], rule.tolerance, reported_distance));
     }
   }
 }
@@ -112,22 +113,22 @@ class FleetSpace {
   flight::InterruptibleSpace space_;
 };
 
-std::vector<flight::FleetMember> flown_members(const std::vector<FleetMember>& members) {
-  std::vector<flight::FleetMember> flown;
-  flown.reserve(members.size());
+std::vector<flight::FleetMember> to_fleet_members(const std::vector<FleetMember>& members) {
+  std::vector<flight::FleetMember> fleet_members;
+  fleet_members.reserve(members.size());
   for (const FleetMember& member : members) {
-    flown.push_back({member.flight.flown(), member.flight.route(member.pad)});
+    fleet_members.push_back({member.flight.required_vehicle(), member.flight.route(member.pad)});
   }
-  return flown;
+  return fleet_members;
 }
 
 /// Returns the stations that at least one vehicle can reach, in the order of the route through all.
-std::vector<std::uint32_t> order_of(const std::vector<flight::Station>& stations,
-                                    const std::vector<flight::Unreached>& unreached) {
+std::vector<std::uint32_t> compute_order(const std::vector<flight::CapturePoint>& capture_points,
+                                         const std::vector<flight::Unreached>& unreached) {
   std::vector<std::uint32_t> order;
-  for (std::uint32_t i = 0; i < stations.size(); ++i) {
+  for (std::uint32_t i = 0; i < capture_points.size(); ++i) {
     const bool is_missed = std::ranges::any_of(unreached, [&](const flight::Unreached& missed) {
-      return missed.station.view_index == stations[i].view_index;
+      return missed.capture_point.view_index == capture_points[i].view_index;
     });
     if (!is_missed) order.push_back(i);
   }
@@ -136,13 +137,13 @@ std::vector<std::uint32_t> order_of(const std::vector<flight::Station>& stations
 
 /// Divides the stations until all legs of the division are verified. A quick search first
 /// determines the relevant legs. Throws Error{bad_config} if no division exists.
-flight::FleetSplit share(flight::FleetGoal goal, flight::CertifiedCosts& costs,
+flight::FleetSplit share(flight::FleetGoal goal, flight::VerifiedCosts& costs,
                          const std::vector<std::uint32_t>& order, unsigned threads) {
   flight::FleetSplit split;
   for (const std::size_t chains : {std::size_t{1}, flight::thorough}) {
     do {
       split = flight::share_among(costs.problem(), order, goal, chains, threads);
-    } while (costs.certify(split));
+    } while (costs.verify_legs(split));
   }
   if (!split.parts.empty()) return split;
   throw Error(ErrorKind::bad_config,
@@ -156,21 +157,21 @@ void stage_fleet(const std::string& name, FleetMission& fleet,
   for (std::size_t v = 0; v < fleet.members.size(); ++v) {
     FleetMember& member = fleet.members[v];
     if (member.route.sorties.empty()) continue;
-    const flight::Dialect dialect = member.flight.flown().dialect;
-    const flight::Format own = own_format(dialect);
+    const flight::AutopilotType autopilot = member.flight.required_vehicle().autopilot;
+    const flight::Format own = own_format(autopilot);
     const std::span<const flight::Format> asked =
-        formats.empty() ? package_formats(dialect) : formats;
+        formats.empty() ? package_formats(autopilot) : formats;
     std::vector<flight::Format> all(asked.begin(), asked.end());
     if (std::ranges::find(all, own) == all.end()) all.push_back(own);
     member.files =
-        stage_flight(name, member.flight, member.route, measured, all, folder, stem_of(v));
+        stage_flight(name, member.flight, member.route, measured, all, folder, make_stem(v));
   }
   for (const TimetableRow& row : fleet.timetable) {
     if (!folder.staged(row.file).empty()) continue;
-    std::string why;
-    for (const std::string& note : fleet.members[row.vehicle].files.notes) why += "; " + note;
+    std::string reason;
+    for (const std::string& note : fleet.members[row.vehicle].files.notes) reason += "; " + note;
     throw Error(ErrorKind::bad_config, "vehicle " + std::to_string(row.vehicle + 1) +
-                                           " of the fleet has no " + row.file + why);
+                                           " of the fleet has no " + row.file + reason);
   }
   folder.write(timetable_name, timetable_csv(fleet.timetable));
 }
@@ -178,40 +179,44 @@ void stage_fleet(const std::string& name, FleetMission& fleet,
 }  // namespace
 
 FleetMission plan_fleet(const flight::FlightOptions& options, const flight::MeasuredSpace& measured,
-                        const flight::Route& alone, std::span<const flight::PadGround> grounds,
-                        unsigned threads, const std::stop_token& stop) {
+                        const flight::Route& alone,
+                        std::span<const flight::LandingSurface> landing_surfaces, unsigned threads,
+                        const std::stop_token& stop) {
   FleetMission fleet;
   const std::vector<Vector3d> pads = options.fleet_pads(alone.options.takeoff);
   for (std::size_t v = 0; v < pads.size(); ++v) {
-    fleet.members.push_back({options.of_vehicle(v, pads[v]), pads[v], {}, {}});
+    fleet.members.push_back({options.for_vehicle(v, pads[v]), pads[v], {}, {}});
   }
   const FleetSpace free(options.rules(), measured, stop);
-  flight::CertifiedCosts costs(alone.stations, flown_members(fleet.members), free.space(), threads);
+  flight::VerifiedCosts costs(alone.capture_points, to_fleet_members(fleet.members), free.space(),
+                              threads);
   fleet.unreached = costs.unreached();
-  const flight::FleetSplit split =
-      share(options.fleet.goal, costs, order_of(alone.stations, fleet.unreached), threads);
+  const flight::FleetSplit split = share(
+      options.fleet.goal, costs, compute_order(alone.capture_points, fleet.unreached), threads);
   std::vector<Variants> variants(pads.size());
   for (std::size_t v = 0; v < pads.size(); ++v) {
-    std::vector<std::uint32_t> order = split.parts[v].stations;
+    std::vector<std::uint32_t> order = split.parts[v].capture_points;
     for (int turns = 0; turns < 2 && !order.empty(); ++turns, std::ranges::reverse(order)) {
       const FleetMember& member = fleet.members[v];
       variants[v].push_back(plan_flight(member.flight, measured, member.pad,
-                                        costs.stations_of(v, order), grounds, stop));
+                                        costs.ordered_capture_points(v, order), landing_surfaces,
+                                        stop));
     }
   }
   make_timetable(options.fleet.rule(), std::move(variants), fleet);
   fleet.bound = fleet_bound(costs.problem(), fleet.makespan);
-  fleet.least = fleet_bound(costs.least(), fleet.makespan);
+  fleet.lower_bound = fleet_bound(costs.lower_bound(), fleet.makespan);
   return fleet;
 }
 
 std::shared_ptr<const FleetMission> staged_fleet(
     const std::string& name, const flight::FlightOptions& options,
     const flight::MeasuredSpace& measured, const flight::Route& alone,
-    std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
-    geometry::OutputFolder& folder, unsigned threads, const std::stop_token& stop) {
-  auto fleet =
-      std::make_shared<FleetMission>(plan_fleet(options, measured, alone, grounds, threads, stop));
+    std::span<const flight::LandingSurface> landing_surfaces,
+    std::span<const flight::Format> formats, geometry::OutputFolder& folder, unsigned threads,
+    const std::stop_token& stop) {
+  auto fleet = std::make_shared<FleetMission>(
+      plan_fleet(options, measured, alone, landing_surfaces, threads, stop));
   stage_fleet(name, *fleet, measured, formats, folder);
   return fleet;
 }

@@ -22,7 +22,7 @@ namespace skycap::missions::package {
 /// Vehicle of a fleet with its verified route. The route has no stations if none are assigned to
 /// the vehicle.
 struct FleetMember {
-  /// Flight options of this vehicle, see FlightOptions::of_vehicle().
+  /// Flight options of this vehicle, see FlightOptions::for_vehicle().
   flight::FlightOptions flight;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   flight::Route route;
@@ -34,12 +34,12 @@ struct FleetMission {
   /// Sorties of all vehicles, in order of vehicle and sortie.
   std::vector<package::TimetableRow> timetable;
   std::vector<flight::Unreached> unreached;  ///< Stations that none of the vehicles can reach.
-  double makespan = 0.0;  ///< Time from the first take-off to the last landing [s].
-  double flown = 0.0;     ///< Total flight time of all vehicles [s].
-  double delay = 0.0;     ///< Delay of the last landing caused by the separation [s].
-  /// Lower bound for all fleets with such legs, see flight::CertifiedCosts.
+  double makespan = 0.0;           ///< Time from the first take-off to the last landing [s].
+  double total_flight_time = 0.0;  ///< Total flight time of all vehicles [s].
+  double delay = 0.0;              ///< Delay of the last landing caused by the separation [s].
+  /// Lower bound for all fleets with such legs, see flight::VerifiedCosts.
   flight::FleetBound bound;
-  flight::FleetBound least;  ///< Lower bound for all fleets, independent of the legs.
+  flight::FleetBound lower_bound;  ///< Lower bound for all fleets, independent of the legs.
   /// Verified minimum distance between vehicles at all times, limited to reported_distance [m].
   double distance = 0.0;
 };
@@ -53,8 +53,9 @@ inline constexpr double reported_distance = 100.0;
 /// verified. Throws all errors of plan_route(). Throws Error{bad_config} if the stations cannot be
 /// divided, or if a vehicle violates the clearance to one on the ground.
 FleetMission plan_fleet(const flight::FlightOptions& options, const flight::MeasuredSpace& measured,
-                        const flight::Route& alone, std::span<const flight::PadGround> grounds,
-                        unsigned threads, const std::stop_token& stop = {});
+                        const flight::Route& alone,
+                        std::span<const flight::LandingSurface> landing_surfaces, unsigned threads,
+                        const std::stop_token& stop = {});
 
 /// Plans the fleet mission like plan_fleet(), and stages its timetable and the route files of each
 /// vehicle. The files are in `formats` and in the native format of the vehicle's autopilot. Without
@@ -62,7 +63,8 @@ FleetMission plan_fleet(const flight::FlightOptions& options, const flight::Meas
 std::shared_ptr<const FleetMission> staged_fleet(
     const std::string& name, const flight::FlightOptions& options,
     const flight::MeasuredSpace& measured, const flight::Route& alone,
-    std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
-    geometry::OutputFolder& folder, unsigned threads, const std::stop_token& stop = {});
+    std::span<const flight::LandingSurface> landing_surfaces,
+    std::span<const flight::Format> formats, geometry::OutputFolder& folder, unsigned threads,
+    const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::package

@@ -9,7 +9,7 @@
 namespace skycap::missions::package {
 namespace {
 
-using support::json_of;
+using support::to_json;
 using Json = nlohmann::ordered_json;
 
 /// Returns the relative difference between a value and its lower bound [%].
@@ -17,7 +17,7 @@ double gap(double figure, double bound) {
   return bound > 0.0 ? 100.0 * (figure / bound - 1.0) : 0.0;
 }
 
-Json json_of(const TimetableRow& row) {
+Json to_json(const TimetableRow& row) {
   return {{"vehicle", row.vehicle + 1},
           {"sortie", row.sortie + 1},
           {"file", row.file},
@@ -31,7 +31,7 @@ Json member_json(const FleetMember& member) {
   for (const std::string& name : member.files.parameters) files.push_back(name);
   const std::optional<flight::Returns>& returns = member.route.returns;
   return {{"vehicle", member.flight.vehicle_name},
-          {"pad", json_of(member.pad)},
+          {"pad", to_json(member.pad)},
           {"order", order_json(member.route)},
           {"sorties", sorties_json(member.route)},
           {"duration_s", member.route.duration},
@@ -47,13 +47,15 @@ Json member_json(const FleetMember& member) {
 std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
   std::string text = fmt::format(
       "  fleet     {} vehicles, last landing after {:.1f} min, total flight time {:.1f} min\n",
-      fleet.members.size(), fleet.makespan / 60.0, fleet.flown / 60.0);
+      fleet.members.size(), fleet.makespan / 60.0, fleet.total_flight_time / 60.0);
   if (is_verbose) {
     text += fmt::format(
         "            above the lower bounds on legs like these by {:.1f}% and {:.1f}%, on any legs "
         "by {:.1f}% and {:.1f}%\n",
-        gap(fleet.makespan, fleet.bound.makespan), gap(fleet.flown, fleet.bound.flown),
-        gap(fleet.makespan, fleet.least.makespan), gap(fleet.flown, fleet.least.flown));
+        gap(fleet.makespan, fleet.bound.makespan),
+        gap(fleet.total_flight_time, fleet.bound.total_flight_time),
+        gap(fleet.makespan, fleet.lower_bound.makespan),
+        gap(fleet.total_flight_time, fleet.lower_bound.total_flight_time));
   }
   text += fmt::format(
       "  separation at least {:.2f} m at all times, verified; it delays the last landing by {:.0f} "
@@ -65,7 +67,7 @@ std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
                     fmt::format("vehicle {}", row.vehicle + 1), row.start, row.landing, row.file);
   }
   for (const flight::Unreached& missed : fleet.unreached) {
-    text += fmt::format("  skipped   view {}, by the fleet: {}\n", missed.station.view_index,
+    text += fmt::format("  skipped   view {}, by the fleet: {}\n", missed.capture_point.view_index,
                         missed.reason);
   }
   return text;
@@ -75,14 +77,14 @@ Json fleet_json(const FleetMission& fleet, const std::string& goal,
                 const flight::SeparationRule& asked) {
   Json vehicles = Json::array(), timetable = Json::array();
   for (const FleetMember& member : fleet.members) vehicles.push_back(member_json(member));
-  for (const TimetableRow& row : fleet.timetable) timetable.push_back(json_of(row));
+  for (const TimetableRow& row : fleet.timetable) timetable.push_back(to_json(row));
   return {{"goal", goal},
           {"makespan_s", fleet.makespan},
           {"makespan_bound_s", fleet.bound.makespan},
-          {"makespan_least_s", fleet.least.makespan},
-          {"flown_s", fleet.flown},
-          {"flown_bound_s", fleet.bound.flown},
-          {"flown_least_s", fleet.least.flown},
+          {"makespan_least_s", fleet.lower_bound.makespan},
+          {"flown_s", fleet.total_flight_time},
+          {"flown_bound_s", fleet.bound.total_flight_time},
+          {"flown_least_s", fleet.lower_bound.total_flight_time},
           {"delay_s", fleet.delay},
           {"separation",
            {{"asked_m", asked.distance},

@@ -17,12 +17,12 @@
 namespace skycap::missions::package {
 namespace {
 
-using flight::Dialect;
+using flight::AutopilotType;
 using flight::Format;
 
-constexpr std::array formats_of_mavlink{Format::plan, Format::waypoints, Format::kml,
-                                        Format::geojson, Format::csv};
-constexpr std::array formats_of_dji{Format::kmz, Format::kml, Format::geojson, Format::csv};
+constexpr std::array mavlink_formats{Format::plan, Format::waypoints, Format::kml, Format::geojson,
+                                     Format::csv};
+constexpr std::array dji_formats{Format::kmz, Format::kml, Format::geojson, Format::csv};
 
 /// Returns true for formats in the local frame, which do not require a georeference.
 bool is_local(Format format) {
@@ -32,12 +32,12 @@ bool is_local(Format format) {
 /// Returns the requirement of a format that the mission does not meet; empty if it meets all.
 std::string what_is_missing_for(Format format, const flight::FlightOptions& options) {
   if (is_local(format)) return "";
-  if (!options.has_place) {
+  if (!options.is_georeferenced) {
     return "requires a georeference; set site.latitude_deg and site.longitude_deg";
   }
   const bool has_sea_level =
       format == Format::plan || format == Format::kml ||
-      (format == Format::waypoints && options.flown().dialect != Dialect::px4);
+      (format == Format::waypoints && options.required_vehicle().autopilot != AutopilotType::px4);
   if (!has_sea_level || options.site.geoid_undulation) return "";
   return "requires heights above mean sea level; set site.geoid_undulation";
 }
@@ -45,23 +45,24 @@ std::string what_is_missing_for(Format format, const flight::FlightOptions& opti
 /// Adapts the plan to the programs that read the format. For vehicles with another autopilot,
 /// QGroundControl files use the PX4 dialect, Mission Planner files the ArduPilot dialect, and DJI
 /// files the codes of a DJI vehicle. Size, energy and gimbal remain those of the vehicle.
-flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
-                              const flight::FlightOptions& options,
-                              std::vector<std::string>& notes) {
-  const bool is_dji = plan.vehicle.dialect == Dialect::dji;
-  const auto write_for = [&](Dialect dialect, const std::string& file, const std::string& whom) {
+flight::FlightPlan adapt_to_autopilot(flight::FlightPlan plan, Format format,
+                                      const flight::FlightOptions& options,
+                                      std::vector<std::string>& notes) {
+  const bool is_dji = plan.vehicle.autopilot == AutopilotType::dji;
+  const auto write_for = [&](AutopilotType autopilot, const std::string& file,
+                             const std::string& whom) {
     notes.push_back(file + " is written for " + whom + ": " + plan.vehicle.name +
                     " does not read this format");
-    plan.vehicle = options.flown_by(std::move(plan.vehicle), dialect);
+    plan.vehicle = options.vehicle_for(std::move(plan.vehicle), autopilot);
   };
-  if (format == Format::plan && is_dji) write_for(Dialect::px4, "the .plan file", "PX4");
+  if (format == Format::plan && is_dji) write_for(AutopilotType::px4, "the .plan file", "PX4");
   if (format == Format::waypoints && is_dji) {
-    write_for(Dialect::ardupilot, "the .waypoints file", "ArduPilot");
+    write_for(AutopilotType::ardupilot, "the .waypoints file", "ArduPilot");
   }
   if (format == Format::kmz && !is_dji) {
-    const auto stand_in =
-        std::ranges::find(options.stand_ins, Dialect::dji, &flight::Vehicle::dialect);
-    write_for(Dialect::dji, "the .kmz file", stand_in->name);
+    const auto substitute =
+        std::ranges::find(options.substitutes, AutopilotType::dji, &flight::Vehicle::autopilot);
+    write_for(AutopilotType::dji, "the .kmz file", substitute->name);
   }
   return plan;
 }
@@ -69,21 +70,24 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
 /// Sets the returns for the plan's dialect. The route's returns are used if they were planned for
 /// this dialect; otherwise new returns are searched for. Throws Error{bad_config} if there are no
 /// verified returns.
-void certify_dialect(flight::FlightPlan& plan, const flight::FreeSpace& space, double highest) {
+void verify_autopilot_returns(flight::FlightPlan& plan, const flight::FreeSpace& space,
+                              double max_height) {
   if (!plan.returns) return;
-  flight::ReturnLaw law = plan.returns->law;
-  if (std::ranges::find(law.dialects, plan.vehicle.dialect) != law.dialects.end()) return;
-  law.dialects = {plan.vehicle.dialect};
+  flight::RtlProfile rtl_profile = plan.returns->rtl_profile;
+  if (std::ranges::find(rtl_profile.autopilots, plan.vehicle.autopilot) !=
+      rtl_profile.autopilots.end())
+    return;
+  rtl_profile.autopilots = {plan.vehicle.autopilot};
   // DJI vehicles do not support rally points.
-  if (plan.vehicle.dialect == Dialect::dji) law.landings.resize(1);
+  if (plan.vehicle.autopilot == AutopilotType::dji) rtl_profile.landings.resize(1);
   std::vector<flight::Segment> legs;
   for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
     legs.push_back({plan.waypoints[i - 1].position, plan.waypoints[i].position});
   }
-  flight::ReturnSearch search =
-      least_return(space, legs, law, highest, flight::return_clearance(plan.clearance));
+  flight::ReturnSearch search = min_return_altitude(space, legs, rtl_profile, max_height,
+                                                    flight::return_clearance(plan.clearance));
   if (!search.found) {
-    throw Error(ErrorKind::bad_config, "no verified return altitude: " + search.why);
+    throw Error(ErrorKind::bad_config, "no verified return altitude: " + search.reason);
   }
   search.found->energy = plan.returns->energy;
   plan.returns = std::move(search.found);
@@ -94,11 +98,11 @@ bool has_parameters(Format format) { return format == Format::plan || format == 
 /// Writes the parameter file and reads it back to verify its contents.
 std::string checked_parameters(const flight::FlightPlan& plan) {
   std::string text = flight::write_parameters(plan);
-  const flight::Dialect dialect = plan.vehicle.dialect;
+  const flight::AutopilotType autopilot = plan.vehicle.autopilot;
   const std::vector<flight::Parameter> read = flight::read_parameters(text);
-  flight::throw_first(flight::return_problems(read, dialect),
+  flight::throw_first(flight::return_problems(read, autopilot),
                       "the return parameters are not those that were verified");
-  if (flight::return_height(read, dialect) != plan.returns->height) {
+  if (flight::return_height(read, autopilot) != plan.returns->height) {
     throw Error(ErrorKind::bad_file, "the parameters do not contain the verified return altitude");
   }
   return text;
@@ -106,8 +110,8 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
 
 /// Returns the prefix of a route file's name.
 std::string stem_in(std::string_view name) {
-  const std::optional<std::size_t> vehicle = vehicle_of_file(name);
-  return vehicle ? stem_of(*vehicle) : "mission";
+  const std::optional<std::size_t> vehicle = parse_vehicle_number(name);
+  return vehicle ? make_stem(*vehicle) : "mission";
 }
 
 /// Stages a route in each format, sortie by sortie.
@@ -146,15 +150,15 @@ class RouteFiles {
     if (std::ranges::find(files_.notes, note) == files_.notes.end()) files_.notes.push_back(note);
   }
 
-  void leave_out(Format format, const std::string& why, ErrorKind kind) {
-    const std::string note = "no " + stem_ + flight::format_info(format).ending + ": " + why;
+  void leave_out(Format format, const std::string& reason, ErrorKind kind) {
+    const std::string note = "no " + stem_ + flight::format_info(format).extension + ": " + reason;
     if (has_one_format_) throw Error(kind, note);
     add_note(note);
   }
 
   void stage_sortie(Format format, std::size_t sortie) {
     const std::string number = route_.sorties.size() > 1 ? "-" + std::to_string(sortie + 1) : "";
-    const std::string name = stem_ + number + flight::format_info(format).ending;
+    const std::string name = stem_ + number + flight::format_info(format).extension;
     const std::filesystem::path file = folder_.stage(name);
     try {
       write_sortie(format, sortie, number, name, file);
@@ -165,10 +169,10 @@ class RouteFiles {
         throw;
       }
       // Files have temporary names until all are written.
-      std::string why = error.what();
-      const std::size_t place = why.find(file.string());
-      if (place != std::string::npos) why.replace(place, file.string().size(), name);
-      leave_out(format, why, error.kind());
+      std::string reason = error.what();
+      const std::size_t name_begin = reason.find(file.string());
+      if (name_begin != std::string::npos) reason.replace(name_begin, file.string().size(), name);
+      leave_out(format, reason, error.kind());
     }
   }
 
@@ -177,19 +181,22 @@ class RouteFiles {
                     const std::string& name, const std::filesystem::path& file) {
     const flight::FormatInfo& info = flight::format_info(format);
     std::vector<std::string> notes;
-    const bool holds_curves = flight::holds_curves(format);
-    if (!holds_curves && options_.style != flight::FlightStyle::stop) {
-      const bool passes = options_.style == flight::FlightStyle::pass;
-      notes.push_back(stem_ + info.ending + " stops " + (passes ? "at every view and " : "") +
+    const bool supports_curves = flight::supports_curves(format);
+    if (!supports_curves && options_.style != flight::FlightStyle::stop) {
+      const bool is_fly_through = options_.style == flight::FlightStyle::pass;
+      notes.push_back(stem_ + info.extension + " stops " +
+                      (is_fly_through ? "at every view and " : "") +
                       "in every corner: the format cannot define curves");
     }
-    const auto corners = holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
-    flight::FlightPlan plan =
-        in_dialect(flight_plan(route_, sortie, name_ + number, options_.site, rules_, corners),
-                   format, options_, notes);
-    certify_dialect(plan, space_, options_.highest_return(plan.pad.z(), plan.pad.z()));
+    const auto corners = supports_curves ? flight::Corners::rounded : flight::Corners::stopped_in;
+    flight::FlightPlan plan = adapt_to_autopilot(
+        flight_plan(route_, sortie, name_ + number, options_.site, rules_, corners), format,
+        options_, notes);
+    verify_autopilot_returns(plan, space_,
+                             options_.max_return_altitude(plan.pad.z(), plan.pad.z()));
     if (has_parameters(format) && plan.returns) {
-      parameters_[flight::parameters_name(plan.vehicle.dialect, stem_)] = checked_parameters(plan);
+      parameters_[flight::parameters_name(plan.vehicle.autopilot, stem_)] =
+          checked_parameters(plan);
     }
     const flight::ExportResult result = export_flight(plan, format, space_, file);
     files_.written.push_back({name, info.heights, result.min_clearance, sortie, flight_time(plan)});
@@ -213,40 +220,44 @@ class RouteFiles {
 
 }  // namespace
 
-std::span<const Format> package_formats(Dialect dialect) {
-  if (dialect == Dialect::dji) return formats_of_dji;
-  return formats_of_mavlink;
+std::span<const Format> package_formats(AutopilotType autopilot) {
+  if (autopilot == AutopilotType::dji) return dji_formats;
+  return mavlink_formats;
 }
 
-flight::FlightOptions in_given_order(flight::FlightOptions options) {
+flight::FlightOptions with_fixed_order(flight::FlightOptions options) {
   options.order = flight::VisitOrder::survey;
   return options;
 }
 
-std::vector<flight::Station> stations_of(const flight::FlightOptions& options,
-                                         const std::vector<geometry::View>& views,
-                                         const std::vector<Way>& ways) {
+std::vector<flight::CapturePoint> make_capture_points(const flight::FlightOptions& options,
+                                                      const std::vector<geometry::View>& views,
+                                                      const std::vector<Polyline>& paths) {
   const std::optional<geometry::ScannerMount>& mount = options.capture.mount;
-  const int shots = options.capture.scans_in_flight() ? 0 : 1;
-  std::vector<flight::Station> stations;
+  const int captures = options.capture.scans_in_flight() ? 0 : 1;
+  std::vector<flight::CapturePoint> capture_points;
   for (std::uint32_t i = 0; i < views.size(); ++i) {
-    stations.push_back({mount ? geometry::nose_view(*mount, views[i]) : views[i],
-                        options.rest_before(), shots, i, options.rest_after(), ways.at(i)});
+    capture_points.push_back({mount ? geometry::nose_view(*mount, views[i]) : views[i],
+                              options.rest_before(), captures, i, options.rest_after(),
+                              paths.at(i)});
   }
-  return stations;
+  return capture_points;
 }
 
 flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
-                          const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,
+                          const std::vector<Polyline>& paths,
+                          std::span<const flight::LandingSurface> landing_surfaces,
                           std::stop_token stop) {
-  return plan_flight(options, measured, pad, stations_of(options, views, ways), grounds,
-                     std::move(stop));
+  return plan_flight(options, measured, pad, make_capture_points(options, views, paths),
+                     landing_surfaces, std::move(stop));
 }
 
 flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
-                          const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
-                          std::span<const flight::PadGround> grounds, std::stop_token stop) {
+                          const Eigen::Vector3d& pad,
+                          std::vector<flight::CapturePoint> capture_points,
+                          std::span<const flight::LandingSurface> landing_surfaces,
+                          std::stop_token stop) {
   flight::Obstacles rules = options.rules();
   const flight::KnownSpace known(rules);
   // The climb starts on the measured ground. The pilot must check the ground at the pad.
@@ -254,8 +265,9 @@ flight::Route plan_flight(const flight::FlightOptions& options, const flight::Fr
   const flight::JointSpace joint({&measured, &known});
   const flight::InterruptibleSpace space(joint, std::move(stop));
   flight::RouteOptions route = options.route(pad);
-  route.grounds = options.grounds(pad, grounds);
-  return plan_route(std::move(stations), options.flown(), space, &pad_space, route);
+  route.landing_surfaces = options.landing_surfaces(pad, landing_surfaces);
+  return plan_route(std::move(capture_points), options.required_vehicle(), space, &pad_space,
+                    route);
 }
 
 FlightFiles stage_flight(const std::string& name, const flight::FlightOptions& options,
@@ -266,11 +278,11 @@ FlightFiles stage_flight(const std::string& name, const flight::FlightOptions& o
 }
 
 bool is_flight_file(std::string_view name) {
-  const auto is_parameters = [&](Dialect dialect) {
-    return name == flight::parameters_name(dialect, stem_in(name));
+  const auto is_parameters = [&](AutopilotType autopilot) {
+    return name == flight::parameters_name(autopilot, stem_in(name));
   };
-  return name == timetable_name || is_parameters(Dialect::ardupilot) ||
-         is_parameters(Dialect::px4) ||
+  return name == timetable_name || is_parameters(AutopilotType::ardupilot) ||
+         is_parameters(AutopilotType::px4) ||
          std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
            return is_flight_file(name, info.format);
          });
@@ -283,7 +295,7 @@ bool is_flight_file(std::string_view name, Format format) {
   if (name.starts_with('-')) {
     name.remove_prefix(std::min(name.size(), name.find_first_not_of("0123456789", 1)));
   }
-  return name == flight::format_info(format).ending;
+  return name == flight::format_info(format).extension;
 }
 
 }  // namespace skycap::missions::package

@@ -22,39 +22,40 @@
 namespace skycap::missions::package {
 
 /// Path as a list of points.
-using Way = std::vector<Eigen::Vector3d>;
+using Polyline = std::vector<Eigen::Vector3d>;
 
 /// Returns the options with a fixed order of views and given paths between them. Replanned views,
 /// and surveys in their own order, are flown with these options.
-flight::FlightOptions in_given_order(flight::FlightOptions options);
+flight::FlightOptions with_fixed_order(flight::FlightOptions options);
 
-/// Plans a route through views of a survey, verified in the space that the survey measured. `ways`
+/// Plans a route through views of a survey, verified in the space that the survey measured. `paths`
 /// contains the survey's path to each view from the previous view or from above the pad. Unknown
-/// paths are empty. `grounds` contains the measured ground of the pad and rally points. The route
-/// lists the views that this flight cannot reach. Throws all errors of plan_route(). Throws
-/// Error{bad_usage} shortly after a stop request.
+/// paths are empty. `landing_surfaces` contains the measured ground of the pad and rally points.
+/// The route lists the views that this flight cannot reach. Throws all errors of plan_route().
+/// Throws Error{bad_usage} shortly after a stop request.
 flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
-                          const std::vector<Way>& ways,
-                          std::span<const flight::PadGround> grounds = {},
+                          const std::vector<Polyline>& paths,
+                          std::span<const flight::LandingSurface> landing_surfaces = {},
                           std::stop_token stop = {});
 
 /// Returns a station for each view, with the rest times of the mission.
-std::vector<flight::Station> stations_of(const flight::FlightOptions& options,
-                                         const std::vector<geometry::View>& views,
-                                         const std::vector<Way>& ways);
+std::vector<flight::CapturePoint> make_capture_points(const flight::FlightOptions& options,
+                                                      const std::vector<geometry::View>& views,
+                                                      const std::vector<Polyline>& paths);
 
-/// Plans a verified route through `stations`, including their hold times and actions.
+/// Plans a verified route through `capture_points`, including their hold times and actions.
 flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
-                          const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
-                          std::span<const flight::PadGround> grounds = {},
+                          const Eigen::Vector3d& pad,
+                          std::vector<flight::CapturePoint> capture_points,
+                          std::span<const flight::LandingSurface> landing_surfaces = {},
                           std::stop_token stop = {});
 
 /// Route file and its verified minimum clearance, determined by reading the file back.
 struct FlightFile {
   std::string name;
   std::string heights;         ///< Altitude reference.
-  double min_clearance = 0.0;  ///< Verified minimum clearance [m], see flight::LegProof.
+  double min_clearance = 0.0;  ///< Verified minimum clearance [m], see flight::LegVerification.
   std::size_t sortie = 0;      ///< Index of the sortie in the route.
   double duration = 0.0;       ///< Duration with the autopilot that the file is written for [s].
 };
@@ -66,7 +67,7 @@ struct FlightFiles {
 };
 
 /// Returns the formats of a mission package: those of the autopilot, of maps and of other programs.
-std::span<const flight::Format> package_formats(flight::Dialect dialect);
+std::span<const flight::Format> package_formats(flight::AutopilotType autopilot);
 
 /// Stages the route of the mission `name` in each format. Several sorties are written to numbered
 /// files such as "mission-1.plan", with `stem` as the prefix. Each file is read back and verified.
@@ -82,19 +83,20 @@ FlightFiles stage_flight(const std::string& name, const flight::FlightOptions& o
 
 /// Coverage of a simulated re-flight with an empty cloud and different noise, as fractions of the
 /// surface samples.
-struct FlownAgain {
+struct ReflightCoverage {
   double all = 0.0;               ///< Fraction of the whole surface.
   std::optional<double> visible;  ///< Fraction of the visible surface.
   /// Fraction of the visible surface if all points are kept, without downsampling.
-  std::optional<double> visible_unthinned;
+  std::optional<double> visible_before_downsampling;
 };
 
 /// Mission for which replanning was enabled.
-struct AnewMission {
+struct ReplannedMission {
   package::MissionChoice choice;
-  std::optional<FlownAgain> again;  ///< Coverage of the replanned mission; only in simulations.
+  std::optional<ReflightCoverage>
+      again;  ///< Coverage of the replanned mission; only in simulations.
   /// Coverage of the mission through the survey's views.
-  std::optional<FlownAgain> survey_again{};
+  std::optional<ReflightCoverage> survey_again{};
 };
 
 struct FleetMission;
@@ -104,10 +106,11 @@ struct SurveyMission {
   flight::Route route;  ///< Verified route, without stations if planning failed.
   FlightFiles files;
   /// Limits on motion blur and skew of the images.
-  std::optional<flight::PictureBounds> pictures{};
-  std::string failure;                ///< Reason why planning failed; empty after success.
-  std::optional<AnewMission> anew{};  ///< Result of replanning, if it was enabled.
-  std::optional<FlownAgain> again{};  ///< Coverage of a scanner's mission along the survey's paths.
+  std::optional<flight::ImageMotionBounds> image_motion{};
+  std::string failure;  ///< Reason why planning failed; empty after success.
+  std::optional<ReplannedMission> replanned{};  ///< Result of replanning, if it was enabled.
+  std::optional<ReflightCoverage>
+      again{};  ///< Coverage of a scanner's mission along the survey's paths.
   /// Division of the route among several vehicles; null without a fleet.
   std::shared_ptr<const FleetMission> fleet{};
 };

@@ -27,14 +27,14 @@ std::string return_text(const SurveyMission& flight) {
 }
 
 /// Describes a fly-through flight and the files that support it.
-std::string passage_text(const flight::Route& route) {
+std::string fly_through_text(const flight::Route& route) {
   if (route.options.style != flight::FlightStyle::pass) return "";
   std::size_t views = 0, stops = 0;
   double length = 0.0;
   for (const flight::Sortie& sortie : route.sorties) {
-    if (!sortie.passage) continue;
-    views += sortie.passage->views.size(), stops += sortie.passage->stops;
-    length += sortie.passage->length + 2.0 * route.options.takeoff_climb;
+    if (!sortie.fly_through) continue;
+    views += sortie.fly_through->views.size(), stops += sortie.fly_through->stops;
+    length += sortie.fly_through->length + 2.0 * route.options.takeoff_climb;
   }
   const double speed = std::min(route.options.passing.speed, route.options.conditions.cruise_speed);
   if (views == 0) {
@@ -46,12 +46,12 @@ std::string passage_text(const flight::Route& route) {
   return fmt::format(
       "  passing   {} views at up to {:.1f} m/s, {} stops, {:.1f} m in {:.1f} min, in the "
       "trajectory and KML files only\n",
-      views, speed, stops, length, flight::least_duration(route) / 60.0);
+      views, speed, stops, length, flight::min_duration(route) / 60.0);
 }
 
-std::string pictures_text(const SurveyMission& flight) {
-  if (!flight.pictures) return "";
-  const auto& [blur, shear, distance] = *flight.pictures;
+std::string image_motion_text(const SurveyMission& flight) {
+  if (!flight.image_motion) return "";
+  const auto& [blur, shear, distance] = *flight.image_motion;
   std::string text = fmt::format("  images    motion blur up to {:.2f} px", blur);
   if (shear > 0.0) text += fmt::format(", rolling-shutter skew up to {:.2f} px", shear);
   return text + fmt::format(" at {:.1f} m\n", distance);
@@ -59,18 +59,19 @@ std::string pictures_text(const SurveyMission& flight) {
 
 }  // namespace
 
-std::string flown_text(const flight::FlightOptions& options, const session::SurveyRecord& record) {
-  const session::FlownSurvey& flown = record.flown.value();
+std::string survey_flight_text(const flight::FlightOptions& options,
+                               const session::SurveyRecord& record) {
+  const session::FlightRecord& flight_record = record.flight_record.value();
   std::string text =
       fmt::format("  survey    {:.1f} m in {:.1f} min, from take-off to the last view",
-                  flown.length(), flown.time() / 60.0);
+                  flight_record.length(), flight_record.time() / 60.0);
   if (options.capture.scans_in_flight()) {
-    text += fmt::format("; {} en-route scans at {:g} m/s", record.frames_on_way(),
+    text += fmt::format("; {} en-route scans at {:g} m/s", record.en_route_frames(),
                         options.cruise_speed);
   } else if (options.capture.is_moving) {
-    const flight::PictureBounds bounds = session::moving_bounds_of(options);
-    text += fmt::format("; {} en-route frames, motion blur up to {:.2f} px", record.frames_on_way(),
-                        bounds.blur_px);
+    const flight::ImageMotionBounds bounds = session::compute_motion_bounds(options);
+    text += fmt::format("; {} en-route frames, motion blur up to {:.2f} px",
+                        record.en_route_frames(), bounds.blur_px);
     if (bounds.shear_px > 0.0)
       text += fmt::format(", rolling-shutter skew up to {:.2f} px", bounds.shear_px);
     text += fmt::format(" at {:.1f} m", bounds.distance);
@@ -86,7 +87,7 @@ std::string flight_text(const SurveyMission& flight, bool is_verbose) {
   const flight::ClearanceBudget& clearance = route.options.clearance;
   std::string text =
       fmt::format("  flight    {}, {} views, {:.1f} m in {:.1f} min, {}", route.vehicle.name,
-                  route.stations.size(), route.length, route.duration / 60.0,
+                  route.capture_points.size(), route.length, route.duration / 60.0,
                   support::counted(route.sorties.size(), "sortie"));
   if (is_verbose && route.options.order_is_free && route.order_bound > 0.0) {
     text += fmt::format("; tour at most {:.1f}% longer than the shortest",
@@ -97,14 +98,15 @@ std::string flight_text(const SurveyMission& flight, bool is_verbose) {
       "position {:.2f} + tracking {:.2f} + map {:.2f} + margin {:.2f})\n",
       route.min_clearance, clearance.total(), clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
-  text += passage_text(route);
-  if (flight.anew) text += anew_text(*flight.anew);
+  text += fly_through_text(route);
+  if (flight.replanned) text += replanned_text(*flight.replanned);
   if (flight.again) text += "  coverage  " + again_text(*flight.again) + "\n";
-  text += grounds_text(route.options.grounds);
+  text += landing_surfaces_text(route.options.landing_surfaces);
   text += return_text(flight);
-  text += pictures_text(flight);
+  text += image_motion_text(flight);
   for (const flight::Unreached& missed : route.unreached) {
-    text += fmt::format("  skipped   view {}: {}\n", missed.station.view_index, missed.reason);
+    text +=
+        fmt::format("  skipped   view {}: {}\n", missed.capture_point.view_index, missed.reason);
   }
   std::string files;
   for (const FlightFile& file : flight.files.written) {

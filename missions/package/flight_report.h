@@ -10,7 +10,8 @@
 namespace skycap::missions::package {
 
 /// Returns one line about the flight during the survey.
-std::string flown_text(const flight::FlightOptions& options, const session::SurveyRecord& record);
+std::string survey_flight_text(const flight::FlightOptions& options,
+                               const session::SurveyRecord& record);
 
 /// Returns several lines: route, clearance budget, skipped views, files and notes. With
 /// `is_verbose`, these include the gaps of tour and fleet to their lower bounds.

@@ -10,42 +10,42 @@
 namespace skycap::missions::package {
 
 using flight::GroundSource;
-using flight::PadGround;
+using flight::LandingSurface;
 using Json = nlohmann::ordered_json;
 
-Json grounds_json(std::span<const PadGround> grounds) {
+Json landing_surfaces_json(std::span<const LandingSurface> landing_surfaces) {
   Json list = Json::array();
-  for (const PadGround& ground : grounds) {
-    list.push_back({{"place", support::json_of(ground.place)},
+  for (const LandingSurface& ground : landing_surfaces) {
+    list.push_back({{"place", support::to_json(ground.position)},
                     {"slope_deg", ground.slope * geometry::degrees_per_radian},
                     {"unevenness_m", ground.unevenness},
                     {"rise_m", ground.rise},
-                    {"known", name_of(ground.source)}});
+                    {"known", to_string(ground.source)}});
   }
   return list;
 }
 
-std::vector<PadGround> measured_grounds(const Json& list, const std::string& name) {
-  std::vector<PadGround> grounds;
+std::vector<LandingSurface> measured_landing_surfaces(const Json& list, const std::string& name) {
+  std::vector<LandingSurface> landing_surfaces;
   for (const Json& json : list) {
-    if (json.at("known") != Json(name_of(GroundSource::measured))) continue;
+    if (json.at("known") != Json(to_string(GroundSource::measured))) continue;
     const Eigen::Vector3d figures(json.at("slope_deg").get<double>(),
                                   json.at("unevenness_m").get<double>(),
                                   json.at("rise_m").get<double>());
-    geometry::require_place(figures, name + ": flight.grounds");
-    grounds.push_back({support::vector_of(json.at("place")),
-                       figures.x() * geometry::radians_per_degree, figures.y(), figures.z(),
-                       GroundSource::measured});
-    geometry::require_place(grounds.back().place, name + ": flight.grounds");
+    geometry::require_valid_position(figures, name + ": flight.grounds");
+    landing_surfaces.push_back({support::to_vector(json.at("place")),
+                                figures.x() * geometry::radians_per_degree, figures.y(),
+                                figures.z(), GroundSource::measured});
+    geometry::require_valid_position(landing_surfaces.back().position, name + ": flight.grounds");
   }
-  return grounds;
+  return landing_surfaces;
 }
 
-std::string grounds_text(std::span<const PadGround> grounds) {
+std::string landing_surfaces_text(std::span<const LandingSurface> landing_surfaces) {
   std::string text;
-  for (const PadGround& ground : grounds) {
+  for (const LandingSurface& ground : landing_surfaces) {
     text += fmt::format("{}slope {:.1f} degrees {}", text.empty() ? "  pad       " : ", ",
-                        ground.slope * geometry::degrees_per_radian, name_of(ground.source));
+                        ground.slope * geometry::degrees_per_radian, to_string(ground.source));
   }
   return text.empty() ? "" : text + "\n";
 }

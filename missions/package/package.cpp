@@ -35,7 +35,7 @@
 namespace skycap::missions::package {
 namespace {
 
-using support::vector_of;
+using support::to_vector;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* coverage_name = "coverage.ply";
@@ -46,7 +46,7 @@ constexpr const char* true_coverage_name = "true_coverage.ply";
 }
 
 /// Throws Error{bad_file}.
-Json json_of_summary(const std::string& text, const std::string& name) {
+Json parse_summary(const std::string& text, const std::string& name) {
   Json summary = geometry::parse_json<Json>(text);
   use_current_fields(summary);
   if (summary.is_object()) return summary;
@@ -56,35 +56,35 @@ Json json_of_summary(const std::string& text, const std::string& name) {
 }
 
 /// Returns the path to a view from its entry in the summary of a flown survey.
-Way way_of(const Json& view, const std::string& what) {
-  Way way;
-  if (!view.contains("way")) return way;
+Polyline path_from_json(const Json& view, const std::string& what) {
+  Polyline path;
+  if (!view.contains("way")) return path;
   for (const Json& point : view["way"]) {
-    way.push_back(vector_of(point));
-    geometry::require_place(way.back(), what);
+    path.push_back(to_vector(point));
+    geometry::require_valid_position(path.back(), what);
   }
-  return way;
+  return path;
 }
 
-std::vector<Way> ways_of(const session::FlownSurvey& flown) {
-  std::vector<Way> ways;
-  for (const session::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
-  return ways;
+std::vector<Polyline> flown_paths(const session::FlightRecord& flight_record) {
+  std::vector<Polyline> paths;
+  for (const session::ExecutedLeg& leg : flight_record.legs) paths.push_back(leg.points);
+  return paths;
 }
 
 /// Returns the sensor positions by scan number.
 std::vector<Eigen::Vector3d> sensor_positions(const session::SurveyRecord& record) {
   std::vector<Eigen::Vector3d> positions;
-  for (const session::TakenScan& scan : record.scans) positions.push_back(scan.position);
+  for (const session::RecordedScan& scan : record.scans) positions.push_back(scan.position);
   if (!positions.empty()) return positions;
-  for (const session::JudgedView& judged : record.views) {
-    positions.push_back(judged.surveyed.view.position);
+  for (const session::EvaluatedView& evaluated : record.views) {
+    positions.push_back(evaluated.surveyed.view.position);
   }
   return positions;
 }
 
 /// Returns, for each point of the cloud, the view at which or on the path to which it was measured.
-std::vector<std::uint32_t> views_of_points(const session::SurveyRecord& record) {
+std::vector<std::uint32_t> collect_point_views(const session::SurveyRecord& record) {
   std::vector<std::uint32_t> views = record.cloud.views;
   if (record.scans.empty()) return views;
   for (std::uint32_t& view : views) view = record.scans[view].view;
@@ -95,30 +95,31 @@ std::vector<std::uint32_t> views_of_points(const session::SurveyRecord& record) 
 void plan_route(const evaluation::SimulationOptions& simulation, const session::RunOptions& run,
                 const session::SurveyRecord& record, const CoverageFigures& coverage,
                 const std::stop_token& stop, SurveyMission& flight) {
-  const session::FlownSurvey& flown = *record.flown;
+  const session::FlightRecord& flight_record = *record.flight_record;
   const flight::FlightOptions& options = simulation.survey.flight;
   const bool scans_in_flight = options.capture.scans_in_flight();
-  flight.pictures = options.picture_bounds();
+  flight.image_motion = options.image_motion_bounds();
   // A scanner's en-route measurements are valid only for the paths of the survey.
-  flight.route = plan_flight(scans_in_flight ? in_given_order(options) : options, *flown.measured,
-                             flown.pad, views_of(record), ways_of(flown), flown.grounds, stop);
+  flight.route = plan_flight(scans_in_flight ? with_fixed_order(options) : options,
+                             *flight_record.measured, flight_record.pad, collect_views(record),
+                             flown_paths(flight_record), flight_record.landing_surfaces, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
     const flight::Unreached& first = flight.route.unreached.front();
     throw Error(ErrorKind::bad_config, "no view can be part of the flight; view " +
-                                           std::to_string(first.station.view_index) + ": " +
+                                           std::to_string(first.capture_point.view_index) + ": " +
                                            first.reason);
   }
-  if (flight.route.stations.empty()) return;
+  if (flight.route.capture_points.empty()) return;
   if (!record.surface) {
-    const bool passes = options.style == flight::FlightStyle::pass;
-    if ((scans_in_flight || passes) && coverage.fly_again) {
-      flight.again = flown_again(coverage, session::measured_views(options, flight.route));
+    const bool is_fly_through = options.style == flight::FlightStyle::pass;
+    if ((scans_in_flight || is_fly_through) && coverage.fly_again) {
+      flight.again = simulate_reflight(coverage, session::measured_views(options, flight.route));
     }
     return;
   }
-  flight.anew = anew_mission(simulation.survey, choice_options(simulation.sensor, run), record,
-                             coverage, std::move(flight.route), stop);
-  flight.route = std::move(flight.anew->choice.route);
+  flight.replanned = replan_mission(simulation.survey, choice_options(simulation.sensor, run),
+                                    record, coverage, std::move(flight.route), stop);
+  flight.route = std::move(flight.replanned->choice.route);
 }
 
 /// Runs a part of the flight planning. Errors are stored in `flight.failure`, so that the survey
@@ -141,7 +142,7 @@ std::optional<SurveyMission> planned_mission(const evaluation::SimulationOptions
                                              const session::SurveyRecord& record,
                                              const CoverageFigures& coverage,
                                              const std::stop_token& stop) {
-  if (!record.flown) return std::nullopt;
+  if (!record.flight_record) return std::nullopt;
   SurveyMission flight;
   attempt(flight, [&] { plan_route(simulation, run, record, coverage, stop, flight); });
   return flight;
@@ -154,37 +155,38 @@ void stage_mission(const std::string& name, const flight::FlightOptions& options
   std::ostringstream free_space;
   free_space.exceptions(
       std::ios::badbit);  // Without this, text is silently lost when memory is exhausted.
-  record.flown->measured->write(free_space);
+  record.flight_record->measured->write(free_space);
   folder.write(free_space_name, free_space.str());
   attempt(flight, [&] {
-    const flight::MeasuredSpace& measured = *record.flown->measured;
+    const flight::MeasuredSpace& measured = *record.flight_record->measured;
     flight.files = stage_flight(name, options, flight.route, measured,
-                                package_formats(options.flown().dialect), folder);
+                                package_formats(options.required_vehicle().autopilot), folder);
     if (!options.is_fleet()) return;
-    flight.fleet = staged_fleet(name, options, measured, flight.route, record.flown->grounds, {},
-                                folder, threads, stop);
+    flight.fleet = staged_fleet(name, options, measured, flight.route,
+                                record.flight_record->landing_surfaces, {}, folder, threads, stop);
   });
 }
 
 void stage_coverage(const session::SurveyRecord& record, const CoverageFigures& coverage,
                     geometry::OutputFolder& folder) {
   if (const auto patches = known_surface(record, coverage); !patches.empty()) {
-    geometry::write_cloud(folder.stage(coverage_name), columns_of(coverage_map(patches)));
+    geometry::write_cloud(folder.stage(coverage_name), make_columns(coverage_map(patches)));
   }
   if (coverage.truth) write_true_coverage(folder.stage(true_coverage_name), *coverage.truth);
 }
 
 }  // namespace
 
-std::vector<geometry::View> views_of(const session::SurveyRecord& record) {
+std::vector<geometry::View> collect_views(const session::SurveyRecord& record) {
   std::vector<geometry::View> views;
-  for (const session::JudgedView& judged : record.views) views.push_back(judged.surveyed.view);
+  for (const session::EvaluatedView& evaluated : record.views)
+    views.push_back(evaluated.surveyed.view);
   return views;
 }
 
-std::span<const survey::skycap::BelievedPatch> known_surface(const session::SurveyRecord& record,
-                                                             const CoverageFigures& coverage) {
-  return record.belief ? record.belief->patches : coverage.patches;
+std::span<const survey::surfel::EstimatedPatch> known_surface(const session::SurveyRecord& record,
+                                                              const CoverageFigures& coverage) {
+  return record.estimate ? record.estimate->patches : coverage.patches;
 }
 
 std::string views_csv(const session::SurveyRecord& record) {
@@ -192,8 +194,8 @@ std::string views_csv(const session::SurveyRecord& record) {
       "view,x,y,z,direction_x,direction_y,direction_z,returns,points_new,points,frontiers,"
       "coverage,distance_m\n";
   for (std::size_t i = 0; i < record.views.size(); ++i) {
-    const session::JudgedView& judged = record.views[i];
-    const survey::SurveyedView& view = judged.surveyed;
+    const session::EvaluatedView& evaluated = record.views[i];
+    const survey::SurveyedView& view = evaluated.surveyed;
     csv += std::to_string(i);
     for (const Eigen::Vector3d& vector : {view.view.position, view.view.direction}) {
       for (int axis = 0; axis < 3; ++axis)
@@ -203,7 +205,7 @@ std::string views_csv(const session::SurveyRecord& record) {
          {view.returns, view.step.points_new, view.points, view.step.frontiers}) {
       csv.append(",").append(std::to_string(count));
     }
-    csv.append(",").append(support::exact_text(judged.coverage));
+    csv.append(",").append(support::exact_text(evaluated.coverage));
     csv.append(",").append(support::exact_text(view.distance)).append("\n");
   }
   return csv;
@@ -240,15 +242,15 @@ CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
       is_visible.clear();
     } else {
       figures.visible = evaluation::covered_share(record.is_covered, is_visible);
-      if (marks) figures.ceiling = evaluation::marked_share(*marks);
+      if (marks) figures.attainable_coverage = evaluation::marked_share(*marks);
       is_attainable = marks.value_or(is_attainable);
     }
     figures.fly_again = [&options, &scene, seed = record.seed,
                          threads](const std::vector<session::ViewInFlight>& views) {
-      return simulation::covered_when_flown_again(options, scene, views, seed, threads);
+      return simulation::reflight_coverage(options, scene, views, seed, threads);
     };
   }
-  if (!record.belief) {
+  if (!record.estimate) {
     figures.patches = true_patches(scene.samples(), geometry::surface_area(scene.model()),
                                    record.is_covered, is_visible);
   }
@@ -290,7 +292,7 @@ std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
   const std::filesystem::path cloud_file = folder.stage("cloud.ply");
   geometry::parallel_for(2, threads, [&](std::size_t part) {
     if (part == 0) {
-      const std::vector<std::uint32_t> views = views_of_points(record);
+      const std::vector<std::uint32_t> views = collect_point_views(record);
       geometry::write_cloud(
           cloud_file,
           {.positions = record.cloud.positions, .normals = normals, .views = views, .colours = {}});
@@ -316,27 +318,27 @@ PackageSummary read_package_summary(const std::filesystem::path& folder,
 PackageSummary parse_package_summary(const std::string& text, const std::string& name,
                                      const std::vector<config::KeyOverride>& overrides) {
   try {
-    const Json json = json_of_summary(text, name);
+    const Json json = parse_summary(text, name);
     PackageSummary summary;
-    summary.mission = mission_of_settings(json.at("settings"), name, overrides);
+    summary.mission = mission_from_settings(json.at("settings"), name, overrides);
     if (json.contains("flight")) {
-      summary.pad = summary.mission.flight().takeoff.value_or(vector_of(json["flight"].at("pad")));
-      geometry::require_place(*summary.pad, name + ": flight.pad");
+      summary.pad = summary.mission.flight().takeoff.value_or(to_vector(json["flight"].at("pad")));
+      geometry::require_valid_position(*summary.pad, name + ": flight.pad");
       if (json["flight"].contains("grounds")) {
-        summary.grounds = measured_grounds(json["flight"]["grounds"], name);
+        summary.landing_surfaces = measured_landing_surfaces(json["flight"]["grounds"], name);
       }
       summary.has_choice = json["flight"].contains("replanned");
-      if (summary.has_choice && summary.mission.flight().views == flight::MissionViews::anew) {
-        summary.anew = anew_stations(json["flight"]["replanned"], name);
+      if (summary.has_choice && summary.mission.flight().views == flight::MissionViews::replanned) {
+        summary.replanned = replanned_capture_points(json["flight"]["replanned"], name);
       }
     }
     for (const Json& view : json.at("per_view")) {
-      summary.views.push_back({vector_of(view.at("position")), vector_of(view.at("direction"))});
-      const std::string place =
+      summary.views.push_back({to_vector(view.at("position")), to_vector(view.at("direction"))});
+      const std::string location =
           name + ": per_view[" + std::to_string(summary.views.size() - 1) + "].";
-      geometry::require_place(summary.views.back().position, place + "position");
-      geometry::require_direction(summary.views.back().direction, place + "direction");
-      summary.ways.push_back(way_of(view, place + "way"));
+      geometry::require_valid_position(summary.views.back().position, location + "position");
+      geometry::require_direction(summary.views.back().direction, location + "direction");
+      summary.paths.push_back(path_from_json(view, location + "way"));
     }
     return summary;
   } catch (const Json::exception& error) {
@@ -360,7 +362,7 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   if (!summary.pad) {
     fail(folder / summary_name, "is a survey without a vehicle; plan it with flight.vehicle");
   }
-  if (summary.mission.flight().views == flight::MissionViews::anew && !summary.has_choice) {
+  if (summary.mission.flight().views == flight::MissionViews::replanned && !summary.has_choice) {
     fail(folder / summary_name,
          "contains no replanned views; plan the mission again, or set flight.views=survey");
   }
@@ -372,18 +374,18 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   }
   if (!space.is_open()) fail(space_file, "cannot be read; plan the mission again");
   flight::FlightOptions options = summary.mission.flight();
-  if (summary.anew) {
-    options = in_given_order(std::move(options));
-    summary.views = std::move(summary.anew->views);
-    summary.ways = std::move(summary.anew->ways);
+  if (summary.replanned) {
+    options = with_fixed_order(std::move(options));
+    summary.views = std::move(summary.replanned->views);
+    summary.paths = std::move(summary.replanned->paths);
   }
   return {.name = summary.mission.name,
           .flight = std::move(options),
           .run = summary.mission.run,
           .views = std::move(summary.views),
-          .ways = std::move(summary.ways),
+          .paths = std::move(summary.paths),
           .pad = *summary.pad,
-          .grounds = std::move(summary.grounds),
+          .landing_surfaces = std::move(summary.landing_surfaces),
           .measured = flight::MeasuredSpace::read(space, space_file.string())};
 }
 

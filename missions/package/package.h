@@ -27,12 +27,12 @@ namespace skycap::missions::package {
 /// Coverage of a finished survey as fractions of the surface samples. Empty members were not
 /// measured.
 struct CoverageFigures {
-  double all = 0.0;               ///< Fraction of the whole surface.
-  std::optional<double> visible;  ///< Fraction of the visible surface.
-  std::optional<double> ceiling;  ///< Attainable fraction of the whole surface.
+  double all = 0.0;                           ///< Fraction of the whole surface.
+  std::optional<double> visible;              ///< Fraction of the visible surface.
+  std::optional<double> attainable_coverage;  ///< Attainable fraction of the whole surface.
   /// Ground-truth surface for the map and the holes of a survey whose planner has no surface
   /// estimate; see true_patches().
-  std::vector<survey::skycap::BelievedPatch> patches = {};
+  std::vector<survey::surfel::EstimatedPatch> patches = {};
   std::optional<TrueCoverage> truth = {};  ///< Ground-truth coverage of a simulated survey.
   /// Computes the coverage of a simulated re-flight. Null if a re-flight cannot be simulated or if
   /// the survey was interrupted.
@@ -80,14 +80,18 @@ inline constexpr const char* fly_test_name = "fly_test.json";
 struct PackageSummary {
   config::MissionSetup mission;  ///< Mission with all effective keys.
   std::vector<geometry::View> views;
-  std::vector<Way> ways;               ///< ways[i] is the flown path to view i; empty if unknown.
+  std::vector<Polyline> paths;         ///< ways[i] is the flown path to view i; empty if unknown.
   std::optional<Eigen::Vector3d> pad;  ///< Pad of a flown survey.
-  std::vector<flight::PadGround> grounds;      ///< Measured ground of the pad and rally points.
-  bool has_choice = false;                     ///< Replanning was enabled.
-  std::optional<package::StationPlan> anew{};  ///< Replanned stations, if the mission uses them.
+  std::vector<flight::LandingSurface>
+      landing_surfaces;     ///< Measured ground of the pad and rally points.
+  bool has_choice = false;  ///< Replanning was enabled.
+  std::optional<package::CapturePlan>
+      replanned{};  ///< Replanned stations, if the mission uses them.
 
   /// Returns the views of the mission: the replanned stations or the survey's views.
-  const std::vector<geometry::View>& stations() const { return anew ? anew->views : views; }
+  const std::vector<geometry::View>& capture_points() const {
+    return replanned ? replanned->views : views;
+  }
 };
 
 /// Parses the text of a package's summary. `name` is the file name in messages.
@@ -102,13 +106,14 @@ PackageSummary read_package_summary(const std::filesystem::path& folder,
 /// Package of a flown survey.
 struct PackagedSurvey {
   std::string name;  ///< Name of the mission.
-  /// Options from all effective keys. For replanned stations, those of in_given_order().
+  /// Options from all effective keys. For replanned stations, those of with_fixed_order().
   flight::FlightOptions flight;
   session::RunOptions run;
-  std::vector<geometry::View> views;  ///< Views of the mission, PackageSummary::stations().
-  std::vector<Way> ways;              ///< Paths to the views.
+  std::vector<geometry::View> views;  ///< Views of the mission, PackageSummary::capture_points().
+  std::vector<Polyline> paths;        ///< Paths to the views.
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  std::vector<flight::PadGround> grounds;  ///< Measured ground of the pad and rally points.
+  std::vector<flight::LandingSurface>
+      landing_surfaces;  ///< Measured ground of the pad and rally points.
   flight::MeasuredSpace measured;
 };
 
@@ -120,12 +125,12 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<config::KeyOverride>& overrides);
 
 /// Returns the views of a survey in order.
-std::vector<geometry::View> views_of(const session::SurveyRecord& record);
+std::vector<geometry::View> collect_views(const session::SurveyRecord& record);
 
 /// Returns the known surface patches: the planner's estimate if it exists, otherwise the ground
 /// truth.
-std::span<const survey::skycap::BelievedPatch> known_surface(const session::SurveyRecord& record,
-                                                             const CoverageFigures& coverage);
+std::span<const survey::surfel::EstimatedPatch> known_surface(const session::SurveyRecord& record,
+                                                              const CoverageFigures& coverage);
 
 /// Returns the contents of views.csv, one line per view.
 std::string views_csv(const session::SurveyRecord& record);

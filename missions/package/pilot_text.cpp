@@ -13,7 +13,7 @@
 namespace skycap::missions::package {
 namespace {
 
-using flight::Dialect;
+using flight::AutopilotType;
 
 /// Part of a mission for one vehicle.
 struct Part {
@@ -24,18 +24,18 @@ struct Part {
 
 /// Returns the names of the written files with this ending, separated by commas; empty if there are
 /// none.
-std::string names_of(const FlightFiles& files, std::string_view ending) {
+std::string join_names(const FlightFiles& files, std::string_view extension) {
   std::string names;
   for (const FlightFile& file : files.written) {
-    if (file.name.ends_with(ending)) names += (names.empty() ? "" : ", ") + file.name;
+    if (file.name.ends_with(extension)) names += (names.empty() ? "" : ", ") + file.name;
   }
   return names;
 }
 
 std::string parameter_file(const Part& part) {
-  const std::string ending = flight::parameters_name(part.route.vehicle.dialect, "");
+  const std::string extension = flight::parameters_name(part.route.vehicle.autopilot, "");
   for (const std::string& name : part.files.parameters) {
-    if (name.ends_with(ending)) return name;
+    if (name.ends_with(extension)) return name;
   }
   return "";
 }
@@ -44,7 +44,7 @@ std::string takeoff_text(const Part& part) {
   const Eigen::Vector3d& pad = part.route.options.takeoff;
   const std::string local =
       fmt::format("({:.1f}, {:.1f}, {:.1f}) of the mission frame", pad.x(), pad.y(), pad.z());
-  if (!part.options.has_place) return local;
+  if (!part.options.is_georeferenced) return local;
   const flight::GeodeticPoint point = flight::LocalFrame(part.options.site.origin).to_geodetic(pad);
   return fmt::format("latitude {:.7f}, longitude {:.7f}, {}", point.latitude_deg,
                      point.longitude_deg, local);
@@ -76,8 +76,8 @@ std::vector<std::string> ardupilot_steps(const Part& part) {
     steps.push_back("Set BATT_CAPACITY, BATT_LOW_MAH and BATT_CRT_MAH as the comments in " +
                     parameters + " state.");
   }
-  const std::string plan = names_of(part.files, ".plan");
-  const std::string waypoints = names_of(part.files, ".waypoints");
+  const std::string plan = join_names(part.files, ".plan");
+  const std::string waypoints = join_names(part.files, ".waypoints");
   if (const std::string extras = plan_extras(part); !extras.empty() && !plan.empty()) {
     steps.push_back("Upload " + extras + " from " + plan + ".");
   }
@@ -101,12 +101,13 @@ std::vector<std::string> px4_steps(const Part& part) {
         "0.",
         flight::return_altitude_text(part.route.returns->height), verified));
   }
-  const std::string plan = names_of(part.files, ".plan");
+  const std::string plan = join_names(part.files, ".plan");
   const std::string extras = plan_extras(part);
   if (!plan.empty()) {
     steps.push_back("Upload " + plan + " in QGroundControl (Plan view)" +
                     (extras.empty() ? "." : ": the mission, " + extras + "."));
-  } else if (const std::string waypoints = names_of(part.files, ".waypoints"); !waypoints.empty()) {
+  } else if (const std::string waypoints = join_names(part.files, ".waypoints");
+             !waypoints.empty()) {
     steps.push_back("Upload the mission: " + waypoints + ".");
   }
   return steps;
@@ -114,7 +115,7 @@ std::vector<std::string> px4_steps(const Part& part) {
 
 std::vector<std::string> dji_steps(const Part& part) {
   std::vector<std::string> steps;
-  if (const std::string kmz = names_of(part.files, ".kmz"); !kmz.empty()) {
+  if (const std::string kmz = join_names(part.files, ".kmz"); !kmz.empty()) {
     steps.push_back("Import " + kmz + " in DJI Pilot 2 as a flight route, or in FlightHub 2.");
   }
   if (part.route.returns) {
@@ -129,21 +130,21 @@ std::vector<std::string> dji_steps(const Part& part) {
   return steps;
 }
 
-std::vector<std::string> steps_of(const Part& part) {
+std::vector<std::string> pilot_steps(const Part& part) {
   std::vector<std::string> steps;
-  switch (part.route.vehicle.dialect) {
-    case Dialect::ardupilot:
+  switch (part.route.vehicle.autopilot) {
+    case AutopilotType::ardupilot:
       steps = ardupilot_steps(part);
       break;
-    case Dialect::px4:
+    case AutopilotType::px4:
       steps = px4_steps(part);
       break;
-    case Dialect::dji:
+    case AutopilotType::dji:
       steps = dji_steps(part);
       break;
   }
   steps.push_back("Take off at " + takeoff_text(part) + ".");
-  if (part.route.vehicle.dialect == Dialect::dji) {
+  if (part.route.vehicle.autopilot == AutopilotType::dji) {
     steps.back() += " Check that the home point is there.";
   } else {
     steps.back() += " After arming, check that home is within 2 m of it: returns end at home.";
@@ -154,7 +155,7 @@ std::vector<std::string> steps_of(const Part& part) {
 std::string part_text(const Part& part, const std::string& whom) {
   std::string text = "To do before the flight, " + whom + ":\n";
   std::size_t number = 0;
-  for (const std::string& step : steps_of(part)) {
+  for (const std::string& step : pilot_steps(part)) {
     text += fmt::format("  {}. {}\n", ++number, step);
   }
   return text;
@@ -177,7 +178,7 @@ std::string limits_text(const flight::FlightOptions& options, const SurveyMissio
 /// Warns about pads with unknown slope.
 std::string slope_warning(const flight::Route& route, const std::string& whose) {
   const std::size_t rally = route.options.returns ? route.options.returns->rally.size() : 0;
-  const std::size_t known = route.options.grounds.size();
+  const std::size_t known = route.options.landing_surfaces.size();
   if (known > rally) return "";
   std::string what = "the take-off pad" + whose + " is";
   if (rally > 0) {
@@ -199,11 +200,11 @@ std::string time_warning(const flight::Route& route, const std::string& whose) {
 }
 
 std::string images_warning(const SurveyMission& flight) {
-  if (!flight.pictures || flight.pictures->is_sharp()) return "";
+  if (!flight.image_motion || flight.image_motion->is_sharp()) return "";
   return fmt::format(
       "Warning: image motion of more than one pixel at {:.1f} m. Shorten sensor.exposure or "
       "sensor.readout, or raise the view distance.\n",
-      flight.pictures->distance);
+      flight.image_motion->distance);
 }
 
 }  // namespace

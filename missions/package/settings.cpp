@@ -42,17 +42,17 @@ Json settings_json(const config::MissionSetup& setup) {
   Json values = Json::object();
   for (const config::Key& key : config::mission_keys()) {
     // A LiDAR replaces the camera, whose keys are then rejected.
-    const bool is_of_flight = key.path == "sensor.capture" || key.path == "sensor.frame_period";
-    const bool is_of_camera = key.path.starts_with("sensor.") && key.path != "sensor.lidar" &&
-                              !(is_of_flight && setup.sensor().mount);
-    if (is_of_camera && document.sensor.lidar) continue;
+    const bool is_flight_key = key.path == "sensor.capture" || key.path == "sensor.frame_period";
+    const bool is_camera_key = key.path.starts_with("sensor.") && key.path != "sensor.lidar" &&
+                               !(is_flight_key && setup.sensor().mount);
+    if (is_camera_key && document.sensor.lidar) continue;
     if (const auto value = key.get(document)) values[key.path] = config::setting_json(*value);
   }
   return values;
 }
 
-config::MissionSetup mission_of_settings(const Json& settings, const std::string& name,
-                                         const std::vector<config::KeyOverride>& overrides) {
+config::MissionSetup mission_from_settings(const Json& settings, const std::string& name,
+                                           const std::vector<config::KeyOverride>& overrides) {
   std::string text;
   try {
     text = mission_text(settings);

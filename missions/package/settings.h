@@ -16,8 +16,8 @@ nlohmann::ordered_json settings_json(const config::MissionSetup& setup);
 
 /// Restores the mission from stored settings and applies overrides. `name` is the file name in
 /// messages. Throws Error{bad_file} for unknown keys, and all errors of parse_mission().
-config::MissionSetup mission_of_settings(const nlohmann::ordered_json& settings,
-                                         const std::string& name,
-                                         const std::vector<config::KeyOverride>& overrides = {});
+config::MissionSetup mission_from_settings(const nlohmann::ordered_json& settings,
+                                           const std::string& name,
+                                           const std::vector<config::KeyOverride>& overrides = {});
 
 }  // namespace skycap::missions::package

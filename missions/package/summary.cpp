@@ -21,29 +21,29 @@
 namespace skycap::missions::package {
 namespace {
 
-using support::json_of;
+using support::to_json;
 using Json = nlohmann::ordered_json;
 
-Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+Json to_json(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
 
-Json json_of(const std::vector<survey::PartTime>& times) {
+Json to_json(const std::vector<survey::PartTime>& times) {
   Json parts = Json::object();
   for (const auto& [part, seconds] : times) parts[part] = seconds;
   return parts;
 }
 
 /// Compares the planner's estimated coverage with the ground truth on the visible surface.
-Json reliability_summary(const survey::skycap::SurveyBelief& belief,
+Json reliability_summary(const survey::surfel::SurveyEstimate& estimate,
                          const std::optional<TrueCoverage>& truth, double resolution_radius) {
   // Empty after an interruption or if it was not computed.
   if (!truth || truth->is_visible.empty()) return {};
   const double reach = 2.0 * resolution_radius;
   const evaluation::Reliability found = evaluation::reliability(
-      belief.patches, truth->samples, truth->is_covered, truth->is_visible, reach);
+      estimate.patches, truth->samples, truth->is_covered, truth->is_visible, reach);
   Json bands = Json::array();
   for (const evaluation::Reliability::Band& band : found.bands) {
     bands.push_back(
-        {{"estimated", band.believed}, {"covered", band.covered}, {"share", band.share}});
+        {{"estimated", band.estimated}, {"covered", band.covered}, {"share", band.share}});
   }
   return {{"error", found.error},
           {"bands", bands},
@@ -51,63 +51,63 @@ Json reliability_summary(const survey::skycap::SurveyBelief& belief,
 }
 
 /// Returns the planner's final estimate. Fractions refer to the observed and predicted surface.
-Json belief_summary(const session::SurveyRecord& record, const CoverageFigures& coverage,
-                    double resolution_radius) {
-  if (!record.belief) return {};
-  const survey::skycap::SurveyBelief& belief = *record.belief;
+Json estimate_summary(const session::SurveyRecord& record, const CoverageFigures& coverage,
+                      double resolution_radius) {
+  if (!record.estimate) return {};
+  const survey::surfel::SurveyEstimate& estimate = *record.estimate;
   // Contains either the completion rule or the reason for an early end, so that there is only one
   // reason.
   const std::string stop =
-      record.is_complete() ? record.stop_rule : session::name_of(record.stop_reason);
+      record.is_complete() ? record.stop_rule : session::to_string(record.stop_reason);
   return {{"stop", stop},
-          {"estimated_coverage", belief.coverage},
-          {"area_m2", belief.area},
+          {"estimated_coverage", estimate.coverage},
+          {"area_m2", estimate.area},
           {"missing",
-           {{"undersampled", belief.seen_too_thinly},
-            {"unobserved", belief.never_seen},
-            {"unreachable", belief.unreachable}}},
-          {"next_gain", belief.next_gain},
-          {"noise_m", belief.noise},
-          {"growing_noise", belief.growing_noise},
-          {"reliability", reliability_summary(belief, coverage.truth, resolution_radius)}};
+           {{"undersampled", estimate.seen_too_thinly},
+            {"unobserved", estimate.never_seen},
+            {"unreachable", estimate.unreachable}}},
+          {"next_gain", estimate.next_gain},
+          {"noise_m", estimate.noise},
+          {"growing_noise", estimate.growing_noise},
+          {"reliability", reliability_summary(estimate, coverage.truth, resolution_radius)}};
 }
 
 /// Lists the missing surface in connected pieces, from the planner's estimate or the ground truth.
 Json surface_summary(const session::SurveyRecord& record, const CoverageFigures& coverage) {
   const auto patches = known_surface(record, coverage);
   if (patches.empty()) return {};
-  const MissingSurface missing = missing_surface(patches, views_of(record));
+  const MissingSurface missing = missing_surface(patches, collect_views(record));
   Json holes = Json::array();
   for (const Hole& hole : missing.holes) {
-    holes.push_back({{"reason", name_of(hole.reason)},
+    holes.push_back({{"reason", to_string(hole.reason)},
                      {"area_m2", hole.area},
-                     {"centre", json_of(hole.centre)},
-                     {"normal", json_of(hole.normal)},
+                     {"centre", to_json(hole.centre)},
+                     {"normal", to_json(hole.normal)},
                      {"radius_m", hole.radius},
-                     {"pieces", hole.pieces},
+                     {"pieces", hole.hole_patches},
                      {"nearest_view", hole.nearest_view},
                      {"view_distance_m", hole.view_distance}});
   }
-  return {{"known_by", record.belief ? "planner" : "simulator"},
+  return {{"known_by", record.estimate ? "planner" : "simulator"},
           {"area_m2", missing.area},
           {"link_m", missing.link},
-          {"least_hole_m2", missing.least_hole},
+          {"least_hole_m2", missing.min_hole_area},
           {"holes", holes},
           {"smaller", {{"holes", missing.smaller}, {"area_m2", missing.smaller_area}}},
           {"rest_m2", missing.rest}};
 }
 
-Json json_of(const CoveredPart& part) {
+Json to_json(const CoveredPart& part) {
   return {{"name", part.name}, {"area_m2", part.area}, {"coverage", part.covered}};
 }
 
 Json targets_summary(const std::vector<TargetCoverage>& targets) {
   Json list = Json::array();
   for (const TargetCoverage& target : targets) {
-    Json json = json_of(target.object);
+    Json json = to_json(target.object);
     json["within_m"] = target.radius;
     json["kinds"] = Json::array();
-    for (const CoveredPart& kind : target.kinds) json["kinds"].push_back(json_of(kind));
+    for (const CoveredPart& kind : target.kinds) json["kinds"].push_back(to_json(kind));
     list.push_back(std::move(json));
   }
   return list;
@@ -127,31 +127,31 @@ Json return_summary(const SurveyMission& flight) {
   return {{"height_m", returns.height},
           {"clearance_m", returns.clearance},
           {"nearest",
-           {{"from", json_of(returns.nearest.from)},
-            {"part", name_of(returns.nearest.piece.part)},
+           {{"from", to_json(returns.nearest.from)},
+            {"part", to_string(returns.nearest.segment.part)},
             {"obstacle", returns.obstacle}}},
-          {"landings", json_of(returns.law.landings)},
+          {"landings", to_json(returns.rtl_profile.landings)},
           {"energy_wh", returns.energy / 3600.0},
           {"parameters", flight.files.parameters}};
 }
 
-Json pictures_summary(const SurveyMission& flight) {
-  if (!flight.pictures) return {};
-  return {{"blur_px", flight.pictures->blur_px},
-          {"shear_px", flight.pictures->shear_px},
-          {"distance_m", flight.pictures->distance}};
+Json image_motion_summary(const SurveyMission& flight) {
+  if (!flight.image_motion) return {};
+  return {{"blur_px", flight.image_motion->blur_px},
+          {"shear_px", flight.image_motion->shear_px},
+          {"distance_m", flight.image_motion->distance}};
 }
 
 /// Returns the flight of the survey in metres, seconds and watt hours.
-Json survey_flight_summary(const session::FlownSurvey& flown) {
-  return {{"length_m", flown.length()},
-          {"duration_s", flown.time()},
-          {"min_clearance_m", flown.min_clearance()},
-          {"views_refused", flown.refused},
-          {"free_volume_m3", flown.measured->free_volume()}};
+Json survey_flight_summary(const session::FlightRecord& flight_record) {
+  return {{"length_m", flight_record.length()},
+          {"duration_s", flight_record.time()},
+          {"min_clearance_m", flight_record.min_clearance()},
+          {"views_refused", flight_record.rejected},
+          {"free_volume_m3", flight_record.measured->free_volume()}};
 }
 
-Json flight_summary(const session::FlownSurvey& flown, const SurveyMission& flight) {
+Json flight_summary(const session::FlightRecord& flight_record, const SurveyMission& flight) {
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
   Json files = Json::array();
@@ -169,13 +169,13 @@ Json flight_summary(const session::FlownSurvey& flown, const SurveyMission& flig
             {"tracking_error", clearance.tracking_error},
             {"map_error", clearance.map_error},
             {"margin", clearance.margin}}},
-          {"pad", json_of(flown.pad)},
-          {"survey", survey_flight_summary(flown)},
+          {"pad", to_json(flight_record.pad)},
+          {"survey", survey_flight_summary(flight_record)},
           {"route",
-           {{"stations", route.stations.size()},
+           {{"stations", route.capture_points.size()},
             {"order", order_json(route)},
             {"length_m", route.length},
-            {"station_length_m", route.station_length},
+            {"station_length_m", route.capture_leg_length},
             {"straight_length_m", route.straight_length},
             {"order_length_m", route.order_length},
             {"order_bound_m", route.order_bound},
@@ -186,24 +186,24 @@ Json flight_summary(const session::FlownSurvey& flown, const SurveyMission& flig
             {"sorties", sorties_json(route)},
             {"skipped_views", unreached_json(route.unreached)}}},
           {"return", return_summary(flight)},
-          {"pictures", pictures_summary(flight)},
+          {"pictures", image_motion_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
 }
 
-Json view_summary(std::size_t number, const session::JudgedView& judged) {
-  const survey::SurveyedView& view = judged.surveyed;
+Json view_summary(std::size_t number, const session::EvaluatedView& evaluated) {
+  const survey::SurveyedView& view = evaluated.surveyed;
   return {{"view", number},
-          {"position", json_of(view.view.position)},
-          {"direction", json_of(view.view.direction)},
-          {"en_route_frames", view.on_way.views.size()},
+          {"position", to_json(view.view.position)},
+          {"direction", to_json(view.view.direction)},
+          {"en_route_frames", view.en_route.views.size()},
           {"returns", view.returns},
           {"points_new", view.step.points_new},
           {"points", view.points},
           {"frontiers", view.step.frontiers},
-          {"coverage", judged.coverage},
+          {"coverage", evaluated.coverage},
           {"planning_time_s", view.planning_time},
-          {"planning_time_parts_s", json_of(view.step.times)},
+          {"planning_time_parts_s", to_json(view.step.times)},
           {"sensing_time_s", view.sensing_time},
           {"distance_m", view.distance}};
 }
@@ -212,8 +212,8 @@ Json view_summary(std::size_t number, const session::JudgedView& judged) {
 
 std::vector<survey::PartTime> planning_time_by_part(const session::SurveyRecord& record) {
   std::vector<survey::PartTime> sums;
-  for (const session::JudgedView& judged : record.views) {
-    for (const auto& [part, seconds] : judged.surveyed.step.times) {
+  for (const session::EvaluatedView& evaluated : record.views) {
+    for (const auto& [part, seconds] : evaluated.surveyed.step.times) {
       const auto sum = std::ranges::find(sums, part, &survey::PartTime::part);
       if (sum == sums.end()) {
         sums.push_back({part, seconds});
@@ -236,17 +236,17 @@ std::string summary_json(const config::MissionSetup& setup, const session::Surve
       {"threads", record.threads},
       {"version", version},
       {"complete", record.is_complete()},
-      {"stop_reason", session::name_of(record.stop_reason)},
+      {"stop_reason", session::to_string(record.stop_reason)},
       {"views", record.views.size()},
       {"points", record.cloud.size()},
       {"coverage", coverage.all},
-      {"coverage_visible", json_of(coverage.visible)},
-      {"attainable_coverage", json_of(coverage.ceiling)},
+      {"coverage_visible", to_json(coverage.visible)},
+      {"attainable_coverage", to_json(coverage.attainable_coverage)},
       {"planning_time_s", record.planning_time()},
-      {"planning_time_parts_s", json_of(planning_time_by_part(record))},
+      {"planning_time_parts_s", to_json(planning_time_by_part(record))},
       {"sensing_time_s", record.sensing_time()},
       {"distance_m", record.distance()},
-      {"estimate", belief_summary(record, coverage, setup.survey().planner.resolution_radius)},
+      {"estimate", estimate_summary(record, coverage, setup.survey().planner.resolution_radius)},
       {"surface", surface_summary(record, coverage)}};
   if (has_target(setup.scene())) {
     summary["targets"] = targets_summary(target_coverage(
@@ -255,27 +255,29 @@ std::string summary_json(const config::MissionSetup& setup, const session::Surve
   if (flight && flight->failure.empty()) {
     summary["route_length_m"] = flight->route.length;
     summary["min_clearance_m"] = flight->route.min_clearance;
-    summary["flight"] = flight_summary(*record.flown, *flight);
-    if (flight->anew) summary["flight"]["replanned"] = anew_json(*flight->anew);
+    summary["flight"] = flight_summary(*record.flight_record, *flight);
+    if (flight->replanned) summary["flight"]["replanned"] = replanned_json(*flight->replanned);
     if (flight->again) summary["flight"]["reflight"] = again_json(*flight->again);
     if (flight->fleet) {
       summary["flight"]["fleet"] =
           fleet_json(*flight->fleet, setup.text("flight.fleet_goal"), setup.flight().fleet.rule());
     }
   } else if (flight) {
-    summary["flight"] = {{"pad", json_of(record.flown->pad)},
-                         {"survey", survey_flight_summary(*record.flown)},
+    summary["flight"] = {{"pad", to_json(record.flight_record->pad)},
+                         {"survey", survey_flight_summary(*record.flight_record)},
                          {"failure", flight->failure}};
   }
   if (flight) {
-    const session::FlownSurvey& flown = *record.flown;
-    summary["flight"]["grounds"] = grounds_json(setup.flight().grounds(flown.pad, flown.grounds));
+    const session::FlightRecord& flight_record = *record.flight_record;
+    summary["flight"]["grounds"] = landing_surfaces_json(
+        setup.flight().landing_surfaces(flight_record.pad, flight_record.landing_surfaces));
   }
   summary["settings"] = settings_json(setup);
   summary["per_view"] = Json::array();
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));
-    if (record.flown) summary["per_view"].back()["way"] = json_of(record.flown->legs[i].points);
+    if (record.flight_record)
+      summary["per_view"].back()["way"] = to_json(record.flight_record->legs[i].points);
   }
   return support::json_text(summary);
 }

@@ -15,7 +15,7 @@ namespace {
 using site_data::SurfaceKind;
 
 /// Maximum number of points on an object, which resolves fractions of 0.1%.
-constexpr std::size_t most_points = 100'000;
+constexpr std::size_t max_points = 100'000;
 
 /// Number of points per radius, where this gives fewer points.
 constexpr double points_per_radius = 2.0;
@@ -24,40 +24,41 @@ struct NamedKind {
   SurfaceKind kind;
   const char* name;
 };
-constexpr std::array<NamedKind, 4> told_kinds{{{SurfaceKind::wall, "wall"},
-                                               {SurfaceKind::roof, "roof"},
-                                               {SurfaceKind::opening, "opening"},
-                                               {SurfaceKind::other, "other"}}};
+constexpr std::array<NamedKind, 4> reported_kinds{{{SurfaceKind::wall, "wall"},
+                                                   {SurfaceKind::roof, "roof"},
+                                                   {SurfaceKind::opening, "opening"},
+                                                   {SurfaceKind::other, "other"}}};
 
 template <typename IsMeant>
-CoveredPart part_of(const std::string& name, const site_data::SurfacePoints& points,
-                    std::span<const std::uint8_t> is_covered, IsMeant is_meant) {
+CoveredPart make_part(const std::string& name, const site_data::SurfacePoints& points,
+                      std::span<const std::uint8_t> is_covered, IsMeant is_meant) {
   std::size_t all = 0, covered = 0;
   for (std::size_t i = 0; i < points.kinds.size(); ++i) {
     if (!is_meant(points.kinds[i])) continue;
     ++all;
     covered += is_covered[i];
   }
-  return {name, points.area_of_each * static_cast<double>(all),
+  return {name, points.area_per_point * static_cast<double>(all),
           all > 0 ? static_cast<double>(covered) / static_cast<double>(all) : 0.0};
 }
 
-TargetCoverage coverage_of(const site_data::Object& object, const site_data::SurfacePoints& points,
-                           std::span<const Eigen::Vector3f> measured, double radius) {
+TargetCoverage compute_target_coverage(const site_data::Object& object,
+                                       const site_data::SurfacePoints& points,
+                                       std::span<const Eigen::Vector3f> measured, double radius) {
   evaluation::CoverageMeter meter(points.positions, radius);
   meter.add(measured);
   const auto& is_covered = meter.is_covered();
   TargetCoverage coverage{.radius = radius};
-  coverage.object = part_of(object.id, points, is_covered, [](SurfaceKind) { return true; });
-  for (const auto& [kind, name] : told_kinds) {
+  coverage.object = make_part(object.id, points, is_covered, [](SurfaceKind) { return true; });
+  for (const auto& [kind, name] : reported_kinds) {
     const auto is_meant = [kind = kind](SurfaceKind other) { return other == kind; };
-    CoveredPart part = part_of(name, points, is_covered, is_meant);
+    CoveredPart part = make_part(name, points, is_covered, is_meant);
     if (part.area > 0.0) coverage.kinds.push_back(std::move(part));
   }
   return coverage;
 }
 
-std::string text_of(const CoveredPart& part) {
+std::string to_string(const CoveredPart& part) {
   return fmt::format("{:.2f}% of {:.4g} m^2", 100.0 * part.covered, part.area);
 }
 
@@ -74,9 +75,9 @@ std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
     const double radius = registration_distance + site.priors[i].uncertainty;
     for (const site_data::Object& object : site.priors[i].objects) {
       const site_data::SurfacePoints points =
-          site_data::spread_over(object, most_points, radius / points_per_radius);
+          site_data::spread_over(object, max_points, radius / points_per_radius);
       if (points.positions.empty()) continue;
-      targets.push_back(coverage_of(object, points, measured, radius));
+      targets.push_back(compute_target_coverage(object, points, measured, radius));
     }
   }
   return targets;
@@ -85,8 +86,8 @@ std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
 std::string target_text(const std::vector<TargetCoverage>& targets) {
   std::string text;
   for (const TargetCoverage& target : targets) {
-    text += fmt::format("  target    {}: {}", target.object.name, text_of(target.object));
-    for (const CoveredPart& kind : target.kinds) text += ", " + kind.name + " " + text_of(kind);
+    text += fmt::format("  target    {}: {}", target.object.name, to_string(target.object));
+    for (const CoveredPart& kind : target.kinds) text += ", " + kind.name + " " + to_string(kind);
     text += fmt::format("; within {:.2f} m of the map's surface\n", target.radius);
   }
   return text;

@@ -31,7 +31,7 @@ struct CloudCode {
   int bits = 1;                                      ///< bits per index of a cell
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< minimum corner of the grid [m]
   double step = 1.0;     ///< cell size; a decoded point is the centre of its cell [m]
-  double spacing = 0.0;  ///< distance between points, see spacing_of() [m]
+  double spacing = 0.0;  ///< distance between points, see compute_spacing() [m]
   struct Attribute {
     std::string name;
     /// Number of distinct values 0, 1, ...; more than 256 require two byte planes.
@@ -41,19 +41,19 @@ struct CloudCode {
   std::string bytes;  ///< compressed data
 };
 
-/// Encodes a cloud. If it exceeds `most_points`, every n-th point in key order is encoded, which is
+/// Encodes a cloud. If it exceeds `max_points`, every n-th point in key order is encoded, which is
 /// evenly distributed in space. The step is an eighth of the spacing, but at least 2^-16 of the
 /// cloud's longest side. Positions must be finite.
 CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
-                       std::span<const CloudAttribute> attributes, std::size_t most_points);
+                       std::span<const CloudAttribute> attributes, std::size_t max_points);
 
 /// Estimates the distance between neighbouring points on a surface [m]. Returns 0 for fewer than
 /// two points.
-double spacing_of(std::span<const Eigen::Vector3f> positions);
+double compute_spacing(std::span<const Eigen::Vector3f> positions);
 
 /// Estimates the distance between neighbouring points on a surface, in cells. It is the side of
 /// cubes that contain two points on average, divided by the square root of two. `keys` are
 /// ascending, with `bits` bits per coordinate.
-double spacing_of_keys(std::span<const std::uint64_t> keys, int bits);
+double compute_key_spacing(std::span<const std::uint64_t> keys, int bits);
 
 }  // namespace skycap::missions::report

@@ -23,7 +23,7 @@ using Colour = std::array<std::uint8_t, 3>;
 /// Reduced set of colours, and the colour index of each point.
 struct Palette {
   std::vector<Colour> colours;
-  std::vector<std::uint16_t> of_points;
+  std::vector<std::uint16_t> point_colours;
 };
 
 /// Replaces the lowest `bits` of each channel by a constant.
@@ -36,21 +36,21 @@ Colour rounded(Colour colour, int bits) {
 
 /// Returns a palette of up to 256 colours, because the report stores one byte per point. Colours
 /// are rounded only as far as necessary.
-Palette palette_of(const std::vector<Colour>& colours) {
-  constexpr std::size_t most = 256;
+Palette make_palette(const std::vector<Colour>& colours) {
+  constexpr std::size_t max = 256;
   for (int bits = 0;; ++bits) {
-    std::map<Colour, std::uint16_t> places;
-    for (std::size_t i = 0; i < colours.size() && places.size() <= most; ++i) {
-      places.emplace(rounded(colours[i], bits), 0);
+    std::map<Colour, std::uint16_t> indices;
+    for (std::size_t i = 0; i < colours.size() && indices.size() <= max; ++i) {
+      indices.emplace(rounded(colours[i], bits), 0);
     }
-    if (places.size() > most) continue;
+    if (indices.size() > max) continue;
     Palette palette;
-    for (auto& [colour, place] : places) {
-      place = static_cast<std::uint16_t>(palette.colours.size());
+    for (auto& [colour, index] : indices) {
+      index = static_cast<std::uint16_t>(palette.colours.size());
       palette.colours.push_back(colour);
     }
     for (const Colour& colour : colours) {
-      palette.of_points.push_back(places.at(rounded(colour, bits)));
+      palette.point_colours.push_back(indices.at(rounded(colour, bits)));
     }
     return palette;
   }
@@ -63,8 +63,8 @@ std::string cloud_page(const std::filesystem::path& file) {
   const std::vector<std::uint16_t> views = view_numbers(cloud);
   std::vector<CloudAttribute> attributes;
   if (!views.empty()) attributes.push_back({"view", views});
-  const Palette palette = palette_of(cloud.colours);
-  if (!palette.of_points.empty()) attributes.push_back({"colour", palette.of_points});
+  const Palette palette = make_palette(cloud.colours);
+  if (!palette.point_colours.empty()) attributes.push_back({"colour", palette.point_colours});
   const std::string name = file.filename().string();
   const Json data = {{"kind", "cloud"},
                      {"title", name},

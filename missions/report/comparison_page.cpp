@@ -34,7 +34,7 @@ std::string benchmark_page(const ResultFinder& results) {
         {"files", files_json({"results.json", "table1.csv", "trials.csv", "report.md"}, results)}};
     return page_text(data.at("title"), data, {});
   } catch (const Json::exception& error) {
-    refuse_results(file, error.what());
+    reject_results(file, error.what());
   }
 }
 
@@ -51,7 +51,7 @@ std::string trials_page(const ResultFinder& results) {
         {"facts",
          {"planner " + summary.at("planner").get<std::string>(),
           "first seed " + std::to_string(summary.at("first_seed").get<std::uint64_t>())}},
-        {"verdict", json_of(Verdict{
+        {"verdict", to_json(Verdict{
                         .is_complete = is_whole,
                         .because = std::to_string(done) + " of " + support::counted(asked, "trial"),
                         .lights = {}})},
@@ -60,7 +60,7 @@ std::string trials_page(const ResultFinder& results) {
         {"files", files_json({"trials.json", "trials.csv"}, results)}};
     return page_text(summary.at("mission").get<std::string>(), data, {});
   } catch (const Json::exception& error) {
-    refuse_results(file, error.what());
+    reject_results(file, error.what());
   }
 }
 

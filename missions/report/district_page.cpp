@@ -22,10 +22,10 @@ Verdict district_verdict(const Json& summary) {
                   .lights = {}};
   if (const Json& flight = summary.at("flight"); flight.is_object()) {
     const auto views = flight.at("views").get<std::size_t>();
-    const auto flown = flight.at("views_flown").get<std::size_t>();
+    const auto visited = flight.at("views_flown").get<std::size_t>();
     verdict.lights = {
-        {"views in the flight of " + std::to_string(views), "flight.views_flown", "count", flown,
-         flown == views ? "green" : "amber", "green: all of them"},
+        {"views in the flight of " + std::to_string(views), "flight.views_flown", "count", visited,
+         visited == views ? "green" : "amber", "green: all of them"},
         {"minimum clearance (verified)", "flight.min_clearance_m", "metres",
          flight.at("min_clearance_m"), "green", "green: every leg keeps the required clearance"},
         {"sorties", "flight.sorties", "count", flight.at("sorties"), "none", ""},
@@ -48,13 +48,13 @@ std::string district_page(const ResultFinder& results) {
          {summary.at("map"), support::counted(summary.at("targets").size(), "target"),
           "vehicle " + summary.at("vehicle").get<std::string>(),
           "planner " + summary.at("planner").get<std::string>()}},
-        {"verdict", json_of(district_verdict(summary))},
+        {"verdict", to_json(district_verdict(summary))},
         {"summary", summary},
         {"stop_words", stop_words()},
         {"files", files_json({"district.json", "targets.csv", "times.csv"}, results)}};
     return page_text(title, data, {});
   } catch (const Json::exception& error) {
-    refuse_results(file, error.what());
+    reject_results(file, error.what());
   }
 }
 

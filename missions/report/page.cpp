@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const CloudCode& code) {
+Json to_json(const CloudCode& code) {
   Json attributes = Json::array();
   for (const CloudCode::Attribute& attribute : code.attributes) {
     attributes.push_back({{"name", attribute.name}, {"values", attribute.values}});
@@ -69,7 +69,7 @@ std::string page_text(const std::string& title, Json data, const std::vector<Pag
   data["clouds"] = Json::object();
   std::string blocks;
   for (const PageCloud& cloud : clouds) {
-    data["clouds"][cloud.name] = json_of(cloud.code);
+    data["clouds"][cloud.name] = to_json(cloud.code);
     blocks +=
         data_block("application/octet-stream", "cloud-" + cloud.name, base64(cloud.code.bytes));
   }

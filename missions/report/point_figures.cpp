@@ -40,21 +40,20 @@ std::vector<std::uint16_t> view_numbers(const geometry::AttributedCloud& cloud) 
 std::vector<std::uint16_t> incidence_steps(const geometry::AttributedCloud& cloud,
                                            std::span<const geometry::View> views) {
   // Compares cosines with those of the step limits, which is faster than computing arc cosines.
-  std::vector<float> least_cosines;
+  std::vector<float> min_cosines;
   for (double angle = incidence_step_deg; angle < 180.0; angle += incidence_step_deg) {
-    least_cosines.push_back(static_cast<float>(std::cos(angle * geometry::radians_per_degree)));
+    min_cosines.push_back(static_cast<float>(std::cos(angle * geometry::radians_per_degree)));
   }
   std::vector<std::uint16_t> steps(cloud.positions.size(), no_incidence);
   if (cloud.normals.empty()) return steps;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (!has_view(cloud, views, i)) continue;
-    const Vector3f way = to_sensor(cloud, views, i);
-    const float lengths = way.norm() * cloud.normals[i].norm();
+    const Vector3f ray = to_sensor(cloud, views, i);
+    const float lengths = ray.norm() * cloud.normals[i].norm();
     if (!(lengths > 0.0F)) continue;
-    const float cosine = way.dot(cloud.normals[i]) / lengths;
-    const auto end =
-        std::ranges::find_if(least_cosines, [&](float least) { return cosine > least; });
-    steps[i] = static_cast<std::uint16_t>(end - least_cosines.begin());
+    const float cosine = ray.dot(cloud.normals[i]) / lengths;
+    const auto end = std::ranges::find_if(min_cosines, [&](float min) { return cosine > min; });
+    steps[i] = static_cast<std::uint16_t>(end - min_cosines.begin());
   }
   return steps;
 }
@@ -72,9 +71,10 @@ std::vector<std::uint16_t> map_states(const geometry::AttributedCloud& map) {
   std::vector<std::uint16_t> states;
   states.reserve(map.positions.size());
   for (std::size_t i = 0; i < map.positions.size(); ++i) {
-    const auto reason = i < map.colours.size() ? package::reason_of(map.colours[i]) : std::nullopt;
+    const auto reason =
+        i < map.colours.size() ? package::find_reason(map.colours[i]) : std::nullopt;
     states.push_back(
-        static_cast<std::uint16_t>(reason.value_or(survey::skycap::MissingReason::none)));
+        static_cast<std::uint16_t>(reason.value_or(survey::surfel::MissingReason::none)));
   }
   return states;
 }
@@ -83,16 +83,17 @@ std::vector<std::uint16_t> point_states(const geometry::AttributedCloud& cloud,
                                         const geometry::AttributedCloud& map, double reach) {
   std::vector<std::uint16_t> states(cloud.positions.size(), 0);
   if (!(reach > 0.0)) return states;
-  constexpr auto thin = static_cast<std::uint16_t>(survey::skycap::MissingReason::seen_too_thinly);
-  const std::vector<std::uint16_t> of_map = map_states(map);
-  geometry::SpatialIndex thin_pieces(reach);
-  for (std::size_t i = 0; i < of_map.size(); ++i) {
-    if (of_map[i] == thin) thin_pieces.insert(map.positions[i]);
+  constexpr auto undersampled =
+      static_cast<std::uint16_t>(survey::surfel::MissingReason::seen_too_thinly);
+  const std::vector<std::uint16_t> surface_states = map_states(map);
+  geometry::SpatialIndex undersampled_patches(reach);
+  for (std::size_t i = 0; i < surface_states.size(); ++i) {
+    if (surface_states[i] == undersampled) undersampled_patches.insert(map.positions[i]);
   }
-  if (thin_pieces.size() == 0) return states;
+  if (undersampled_patches.size() == 0) return states;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    const std::uint32_t found = thin_pieces.grid().first_within(cloud.positions[i], reach);
-    if (found != geometry::PointGrid::none) states[i] = thin;
+    const std::uint32_t found = undersampled_patches.grid().first_within(cloud.positions[i], reach);
+    if (found != geometry::PointGrid::none) states[i] = undersampled;
   }
   return states;
 }
@@ -101,8 +102,8 @@ std::vector<float> surface_errors(const geometry::AttributedCloud& cloud,
                                   std::span<const std::uint16_t> incidence, const PointNoise& noise,
                                   double reach) {
   if (!(noise.head_on > 0.0) || !(reach > 0.0) || cloud.positions.empty()) return {};
-  constexpr std::size_t most_samples = 2'500;
-  const std::size_t stride = (cloud.positions.size() + most_samples - 1) / most_samples;
+  constexpr std::size_t max_samples = 2'500;
+  const std::size_t stride = (cloud.positions.size() + max_samples - 1) / max_samples;
   geometry::PointGrid samples(reach);
   for (std::size_t i = 0; i < cloud.positions.size(); i += stride) {
     samples.insert(cloud.positions[i]);
@@ -141,10 +142,10 @@ std::vector<std::size_t> histogram(std::span<const float> values, double low, do
 }
 
 nlohmann::ordered_json point_scales() {
-  using enum survey::skycap::MissingReason;
+  using enum survey::surfel::MissingReason;
   nlohmann::ordered_json states = nlohmann::ordered_json::array();
   for (const auto state : {none, seen_too_thinly, never_seen, unreachable}) {
-    states[static_cast<std::size_t>(state)] = package::name_of(state);
+    states[static_cast<std::size_t>(state)] = package::to_string(state);
   }
   return {{"states", states},
           {"incidence_step_deg", incidence_step_deg},
@@ -159,9 +160,9 @@ nlohmann::ordered_json accuracy_json(std::span<const std::uint16_t> incidence,
     json[name] = {{"low", 0.0}, {"high", high}, {"counts", histogram(values, 0.0, high, bins)}};
   };
   const auto largest = [](std::span<const float> values) {
-    float most = 0.0F;  // unlike std::max_element, handles NaN values
-    for (const float value : values) most = value > most ? value : most;
-    return static_cast<double>(most);
+    float max = 0.0F;  // unlike std::max_element, handles NaN values
+    for (const float value : values) max = value > max ? value : max;
+    return static_cast<double>(max);
   };
   std::vector<float> degrees;
   for (const std::uint16_t step : incidence) {

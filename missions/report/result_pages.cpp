@@ -25,7 +25,7 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
   return found;
 }
 
-[[noreturn]] void refuse_folder(const fs::path& folder) {
+[[noreturn]] void reject_folder(const fs::path& folder) {
   std::string names;
   for (const ResultPage& page : result_pages()) {
     names += (names.empty() ? "" : ", ") + page.results;
@@ -65,7 +65,7 @@ const std::vector<ResultPage>& result_pages() {
   return pages;
 }
 
-std::vector<MadePage> made_pages(const fs::path& folder, std::size_t most_points,
+std::vector<MadePage> made_pages(const fs::path& folder, std::size_t max_points,
                                  const std::optional<fs::path>& out) {
   geometry::finish_commit(folder);
   const std::vector<ResultPage> found = pages_in(folder);
@@ -74,7 +74,7 @@ std::vector<MadePage> made_pages(const fs::path& folder, std::size_t most_points
     if (!out) return {{kept, std::nullopt}};
     return {{*out, geometry::read_file(kept)}};
   }
-  if (found.empty()) refuse_folder(folder);
+  if (found.empty()) reject_folder(folder);
   if (out && found.size() > 1) {
     throw Error(ErrorKind::bad_usage, folder.string() +
                                           ": contains several reports; remove --out, or move one "
@@ -83,16 +83,16 @@ std::vector<MadePage> made_pages(const fs::path& folder, std::size_t most_points
   std::vector<MadePage> pages;
   pages.reserve(found.size());
   for (const ResultPage& page : found) {
-    pages.push_back({out.value_or(folder / page.name), page.make(results_in(folder), most_points)});
+    pages.push_back({out.value_or(folder / page.name), page.make(results_in(folder), max_points)});
   }
   return pages;
 }
 
-std::optional<std::string> stage_page(const std::string& results, bool is_wanted,
+std::optional<std::string> stage_page(const std::string& results, bool is_selected,
                                       geometry::OutputFolder& folder) {
   const auto page = std::ranges::find(result_pages(), results, &ResultPage::results);
   folder.replace([&](std::string_view name) { return name == page->name; });
-  if (!is_wanted) return std::nullopt;
+  if (!is_selected) return std::nullopt;
   std::vector<std::string> asked;
   const auto staged = [&](const std::string& name) {
     asked.push_back(name);

@@ -15,7 +15,7 @@ namespace skycap::missions::report {
 struct ResultPage {
   std::string results;  ///< main results file, such as summary.json
   std::string name;     ///< file name of the report, such as report.html
-  std::string (*make)(const ResultFinder& results, std::size_t most_points);
+  std::string (*make)(const ResultFinder& results, std::size_t max_points);
 };
 
 /// Returns the reports of surveys, trials, comparisons, scans and districts.
@@ -27,17 +27,17 @@ struct MadePage {
   std::optional<std::string> text;  ///< contents; nullopt if the existing file is current
 };
 
-/// Generates the reports of a folder with up to `most_points` points, to be written in the folder
+/// Generates the reports of a folder with up to `max_points` points, to be written in the folder
 /// or at `out`. A running live survey keeps the report written by its own commands. Throws
 /// Error{bad_file} if the folder has no results, and Error{bad_usage} if several reports share
 /// `out`.
-std::vector<MadePage> made_pages(const std::filesystem::path& folder, std::size_t most_points,
+std::vector<MadePage> made_pages(const std::filesystem::path& folder, std::size_t max_points,
                                  const std::optional<std::filesystem::path>& out);
 
-/// Stages the report of staged results if `is_wanted`; otherwise an existing report is removed.
+/// Stages the report of staged results if `is_selected`; otherwise an existing report is removed.
 /// Errors, such as a cloud too far from the origin, do not affect the results. The report is then
 /// omitted, and the reason is returned.
-std::optional<std::string> stage_page(const std::string& results, bool is_wanted,
+std::optional<std::string> stage_page(const std::string& results, bool is_selected,
                                       geometry::OutputFolder& folder);
 
 }  // namespace skycap::missions::report

@@ -38,17 +38,17 @@ Json read_results(const fs::path& file) {
           ": is not a JSON object, or nested too deep; give a results folder written by skycap");
 }
 
-void refuse_results(const fs::path& file, std::string_view why) {
-  throw Error(ErrorKind::bad_file, file.string() + ": is damaged (" + std::string(why) + ")");
+void reject_results(const fs::path& file, std::string_view reason) {
+  throw Error(ErrorKind::bad_file, file.string() + ": is damaged (" + std::string(reason) + ")");
 }
 
 Json files_json(const std::vector<std::string>& names, const ResultFinder& results,
-                bool has_digests) {
+                bool has_checksums) {
   Json files = Json::array();
   for (const std::string& name : names) {
     if (fs::path(name).filename() != name || !is_there(results(name))) continue;
     files.push_back({{"name", name}, {"bytes", fs::file_size(results(name))}});
-    if (has_digests) files.back()["sha256"] = support::sha256_of_file(results(name));
+    if (has_checksums) files.back()["sha256"] = support::compute_file_sha256(results(name));
   }
   return files;
 }

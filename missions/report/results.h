@@ -31,12 +31,12 @@ std::string results_text(const std::filesystem::path& file);
 nlohmann::ordered_json read_results(const std::filesystem::path& file);
 
 /// Throws Error{bad_file} for missing or invalid values in the file.
-[[noreturn]] void refuse_results(const std::filesystem::path& file, std::string_view why);
+[[noreturn]] void reject_results(const std::filesystem::path& file, std::string_view reason);
 
 /// Returns {"name", "bytes", "sha256"} of existing files, so that users can verify that a file
 /// belongs to the report. Hashes of large files take seconds and are omitted after Ctrl-C
-/// (`has_digests`). Names in other folders are ignored.
+/// (`has_checksums`). Names in other folders are ignored.
 nlohmann::ordered_json files_json(const std::vector<std::string>& names,
-                                  const ResultFinder& results, bool has_digests = true);
+                                  const ResultFinder& results, bool has_checksums = true);
 
 }  // namespace skycap::missions::report

@@ -37,19 +37,19 @@ std::vector<flight::TimedPose> poses_in(const fs::path& file) {
 }
 
 /// Downsamples a trajectory to a maximum number of poses, including the last.
-std::vector<flight::TimedPose> thinned(const std::vector<flight::TimedPose>& poses) {
-  constexpr std::size_t most = 3000;
-  if (poses.size() <= most) return poses;
+std::vector<flight::TimedPose> downsampled(const std::vector<flight::TimedPose>& poses) {
+  constexpr std::size_t max = 3000;
+  if (poses.size() <= max) return poses;
   std::vector<flight::TimedPose> kept;
-  for (std::size_t i = 0; i < most; ++i) kept.push_back(poses[i * (poses.size() - 1) / (most - 1)]);
+  for (std::size_t i = 0; i < max; ++i) kept.push_back(poses[i * (poses.size() - 1) / (max - 1)]);
   return kept;
 }
 
 Json trajectory_json(const std::vector<flight::TimedPose>& poses) {
   Json times = Json::array(), points = Json::array();
-  for (const flight::TimedPose& pose : thinned(poses)) {
+  for (const flight::TimedPose& pose : downsampled(poses)) {
     times.push_back(pose.time);
-    points.push_back(support::json_of(Eigen::Vector3d(pose.world_from_camera.translation())));
+    points.push_back(support::to_json(Eigen::Vector3d(pose.world_from_camera.translation())));
   }
   return {{"times", times}, {"points", points}};
 }
@@ -62,34 +62,34 @@ const flight::TimedPose& pose_at(const std::vector<flight::TimedPose>& poses, do
 
 /// Returns the sensor pose of each piece of the flight: at the middle of the piece, or of the
 /// image.
-std::vector<flight::TimedPose> piece_poses(const Json& preview,
-                                           const std::vector<flight::TimedPose>& believed,
-                                           std::size_t pieces) {
-  if (!preview.contains("piece_s") || believed.empty()) return believed;
+std::vector<flight::TimedPose> segment_poses(const Json& preview,
+                                             const std::vector<flight::TimedPose>& estimated,
+                                             std::size_t segments) {
+  if (!preview.contains("piece_s") || estimated.empty()) return estimated;
   const auto start = preview.at("start_s").get<double>();
   const auto length = preview.at("piece_s").get<double>();
   std::vector<flight::TimedPose> poses;
-  for (std::size_t i = 0; i < pieces; ++i) {
+  for (std::size_t i = 0; i < segments; ++i) {
     const double time = start + (static_cast<double>(i) + 0.5) * length;
-    poses.push_back({time, pose_at(believed, time).world_from_camera});
+    poses.push_back({time, pose_at(estimated, time).world_from_camera});
   }
   return poses;
 }
 
-Json pieces_json(const std::vector<flight::TimedPose>& poses,
-                 const std::vector<std::size_t>& points) {
+Json segments_json(const std::vector<flight::TimedPose>& poses,
+                   const std::vector<std::size_t>& points) {
   Json list = Json::array();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Isometry3d& pose = poses[i].world_from_camera;
     list.push_back({{"time_s", poses[i].time},
-                    {"position", support::json_of(Eigen::Vector3d(pose.translation()))},
-                    {"direction", support::json_of(Eigen::Vector3d(pose.linear().col(2)))},
+                    {"position", support::to_json(Eigen::Vector3d(pose.translation()))},
+                    {"direction", support::to_json(Eigen::Vector3d(pose.linear().col(2)))},
                     {"points", i < points.size() ? points[i] : 0}});
   }
   return list;
 }
 
-std::vector<std::size_t> counts_of(const std::vector<std::uint32_t>& views) {
+std::vector<std::size_t> count_points_per_view(const std::vector<std::uint32_t>& views) {
   std::vector<std::size_t> counts;
   for (const std::uint32_t view : views) {
     if (view >= counts.size()) counts.resize(std::min<std::size_t>(view + 1UL, 0x10000), 0);
@@ -104,7 +104,7 @@ struct Shown {
   std::vector<float> ranges;
 };
 
-Shown shown_of(geometry::AttributedCloud& cloud, const std::vector<flight::TimedPose>& poses) {
+Shown select_shown(geometry::AttributedCloud& cloud, const std::vector<flight::TimedPose>& poses) {
   std::vector<geometry::View> views;
   std::vector<Eigen::Vector3d> sensors;
   for (const flight::TimedPose& pose : poses) {
@@ -116,7 +116,7 @@ Shown shown_of(geometry::AttributedCloud& cloud, const std::vector<flight::Timed
   if (is_known && cloud.views.size() == cloud.positions.size()) {
     // Fitting a plane to noisy points requires several neighbours on all sides.
     constexpr double spacings = 5.0;
-    const double radius = spacings * spacing_of(cloud.positions);
+    const double radius = spacings * compute_spacing(cloud.positions);
     if (radius > 0.0) {
       cloud.normals = package::cloud_normals({cloud.positions, cloud.views}, sensors, radius, 0);
     }
@@ -135,7 +135,7 @@ std::vector<std::string> file_names(const Json& summary) {
   return names;
 }
 
-Json verdict_of(const Json& summary) {
+Json make_verdict(const Json& summary) {
   const bool is_complete = summary.value("complete", false);
   Verdict verdict{.is_complete = is_complete,
                   .because = is_complete ? "the complete route was flown" : "interrupted",
@@ -147,7 +147,7 @@ Json verdict_of(const Json& summary) {
   add("Images", "images", "count");
   add("Shots", "shots", "count");
   add("Points", "points", "count");
-  return json_of(verdict);
+  return to_json(verdict);
 }
 
 /// Returns the field of view of the depth camera described in camera.json.
@@ -165,11 +165,11 @@ Json page_data(const Json& summary, const fs::path& file) {
   Json data = {{"kind", "scan"},
                {"title", summary.at("mission")},
                {"facts", {"sensor " + summary.at("sensor").get<std::string>()}},
-               {"verdict", verdict_of(summary)},
+               {"verdict", make_verdict(summary)},
                {"summary", summary}};
   if (summary.contains("settings")) {
     const config::MissionSetup setup =
-        package::mission_of_settings(summary["settings"], file.string());
+        package::mission_from_settings(summary["settings"], file.string());
     data["facts"].push_back(setup.scene().model);
     data["scene"] = scene_outline(setup.survey(), setup.scene(), std::nullopt);
   }
@@ -185,7 +185,7 @@ fs::path estimated_poses(const ResultFinder& results, bool is_laser) {
   return results(is_laser ? "trajectory_believed.tum" : "believed.txt");
 }
 
-std::string scan_page(const ResultFinder& results, std::size_t most_points) {
+std::string scan_page(const ResultFinder& results, std::size_t max_points) {
   const fs::path file = results("scan.json");
   const Json summary = read_results(file);
   try {
@@ -193,19 +193,19 @@ std::string scan_page(const ResultFinder& results, std::size_t most_points) {
     geometry::AttributedCloud cloud;
     if (is_there(results("preview.ply"))) cloud = geometry::read_cloud(results("preview.ply"));
     const bool is_laser = summary.contains("shots");
-    const auto believed = poses_in(estimated_poses(results, is_laser));
-    const auto flown = poses_in(results(is_laser ? "trajectory.tum" : "groundtruth.txt"));
-    const std::vector<std::size_t> counts = counts_of(cloud.views);
-    const auto poses = piece_poses(preview, believed, counts.size());
-    const Shown shown = shown_of(cloud, poses);
+    const auto estimated = poses_in(estimated_poses(results, is_laser));
+    const auto ground_truth = poses_in(results(is_laser ? "trajectory.tum" : "groundtruth.txt"));
+    const std::vector<std::size_t> counts = count_points_per_view(cloud.views);
+    const auto poses = segment_poses(preview, estimated, counts.size());
+    const Shown shown = select_shown(cloud, poses);
     Json data = page_data(summary, file);
     if (data.contains("scene") && is_there(results("camera.json"))) {
       data["scene"]["sensor"] = camera_outline(read_results(results("camera.json")));
     }
     data["piece"] = is_laser ? "piece" : "image";
-    data["pieces"] = pieces_json(poses, counts);
-    data["trajectory"] = {{"flown", trajectory_json(flown)},
-                          {"believed", trajectory_json(believed)}};
+    data["pieces"] = segments_json(poses, counts);
+    data["trajectory"] = {{"flown", trajectory_json(ground_truth)},
+                          {"believed", trajectory_json(estimated)}};
     data["accuracy"] = accuracy_json(shown.incidence, shown.ranges, {});
     data["files"] = files_json(file_names(summary), results, summary.value("complete", false));
     std::vector<CloudAttribute> attributes;
@@ -213,9 +213,9 @@ std::string scan_page(const ResultFinder& results, std::size_t most_points) {
       attributes = {{"view", shown.views}, {"incidence", shown.incidence}};
     }
     return page_text(summary.at("mission").get<std::string>(), data,
-                     {{"measured", encode_cloud(cloud.positions, attributes, most_points)}});
+                     {{"measured", encode_cloud(cloud.positions, attributes, max_points)}});
   } catch (const Json::exception& error) {
-    refuse_results(file, error.what());
+    reject_results(file, error.what());
   }
 }
 

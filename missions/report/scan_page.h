@@ -8,9 +8,9 @@
 
 namespace skycap::missions::report {
 
-/// Returns the report of the scan described in scan.json, with up to `most_points` points of
+/// Returns the report of the scan described in scan.json, with up to `max_points` points of
 /// preview.ply, if present. Normals are estimated from planes through neighbouring points and
 /// determine the incidence angles. Throws Error{bad_file} with the file name if a file is invalid.
-std::string scan_page(const ResultFinder& results, std::size_t most_points);
+std::string scan_page(const ResultFinder& results, std::size_t max_points);
 
 }  // namespace skycap::missions::report

@@ -43,18 +43,19 @@ Json box(const char* role, const char* name, const Eigen::AlignedBox3d& box) {
 /// Returns the triangle corners of a prior, rounded to centimetres. Empty if there are too many
 /// triangles to display.
 Json surface(const site_data::Source& source, const site_data::Prior& prior) {
-  constexpr std::size_t most_triangles = 20'000;
+  constexpr std::size_t max_triangles = 20'000;
   geometry::Mesh mesh;
   for (const site_data::Object& object : prior.objects) geometry::append(mesh, object.mesh);
   if (prior.grid.rows > 0) {
     const std::size_t cells = prior.grid.rows * prior.grid.columns;
     const auto step = static_cast<std::size_t>(
-        std::max(1.0, std::ceil(std::sqrt(2.0 * static_cast<double>(cells) / most_triangles))));
+        std::max(1.0, std::ceil(std::sqrt(2.0 * static_cast<double>(cells) / max_triangles))));
     geometry::append(
-        mesh, site_data::mesh_of(triangles_of(step > 1 ? thinned(prior.grid, step) : prior.grid)));
+        mesh,
+        site_data::make_mesh(to_triangles(step > 1 ? downsampled(prior.grid, step) : prior.grid)));
   }
   Json corners = Json::array();
-  if (mesh.triangles.size() <= most_triangles) {
+  if (mesh.triangles.size() <= max_triangles) {
     for (const auto& triangle : mesh.triangles) {
       for (const std::uint32_t vertex : triangle) {
         for (const double coordinate : mesh.vertices[vertex]) {
@@ -63,7 +64,7 @@ Json surface(const site_data::Source& source, const site_data::Prior& prior) {
       }
     }
   }
-  return {{"role", site_data::name_of(source.role)},
+  return {{"role", site_data::to_string(source.role)},
           {"name", source.file.filename().string()},
           {"corners", corners}};
 }
@@ -92,7 +93,7 @@ Json scene_outline(const session::SurveyOptions& survey, const scene::SceneOptio
   }
   const geometry::CameraConfig& camera = flight.capture.camera;
   Json outline{{"ground", scene.position.z()},
-               {"flown", flight.is_flown()},
+               {"flown", flight.has_vehicle()},
                {"pad", pad ? Json{pad->x(), pad->y(), pad->z()} : Json()},
                {"volumes", volumes},
                {"sensor",

@@ -59,9 +59,9 @@ std::string script_json(const nlohmann::ordered_json& json) {
 
 std::string deflated(std::string_view bytes, Repetition repetition) {
   // Level 9 takes three times as long as level 6 and reduces the size by 1% only.
-  constexpr int level = 6, most_memory = 9;
+  constexpr int level = 6, max_memory = 9;
   z_stream stream{};
-  if (deflateInit2(&stream, level, Z_DEFLATED, MAX_WBITS, most_memory,
+  if (deflateInit2(&stream, level, Z_DEFLATED, MAX_WBITS, max_memory,
                    repetition == Repetition::runs ? Z_RLE : Z_DEFAULT_STRATEGY) != Z_OK) {
     throw std::bad_alloc();
   }

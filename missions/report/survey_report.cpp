@@ -36,7 +36,7 @@ geometry::AttributedCloud cloud_if_there(const fs::path& file) {
 }
 
 /// Returns the files in the folder other than the summary.
-Json files_of(const Json& summary, const ResultFinder& results) {
+Json collect_files(const Json& summary, const ResultFinder& results) {
   std::vector<std::string> names = {"cloud.ply", "coverage.ply",   "true_coverage.ply",
                                     "views.csv", "trajectory.tum", package::free_space_name};
   const auto add_all = [&](const Json::json_pointer& pointer, const char* field) {
@@ -57,22 +57,22 @@ Json files_of(const Json& summary, const ResultFinder& results) {
 }
 
 /// Returns latitude, longitude and ellipsoidal height of the holes' centres.
-Json hole_places(const Json& summary, const flight::FlightOptions& options) {
-  Json places = Json::array();
+Json hole_positions(const Json& summary, const flight::FlightOptions& options) {
+  Json hole_list = Json::array();
   const Json::json_pointer holes("/surface/holes");
-  if (!options.has_place || !summary.contains(holes)) return places;
+  if (!options.is_georeferenced || !summary.contains(holes)) return hole_list;
   const flight::LocalFrame frame(options.site.origin);
   for (const Json& hole : summary[holes]) {
     const Json& centre = hole.at("centre");
-    const flight::GeodeticPoint place = frame.to_geodetic(
+    const flight::GeodeticPoint geodetic = frame.to_geodetic(
         {centre.at(0).get<double>(), centre.at(1).get<double>(), centre.at(2).get<double>()});
-    places.push_back({place.latitude_deg, place.longitude_deg, place.height});
+    hole_list.push_back({geodetic.latitude_deg, geodetic.longitude_deg, geodetic.height});
   }
-  return places;
+  return hole_list;
 }
 
 /// Returns the noise estimated by the planner, or else that of the mission.
-PointNoise noise_of(const Json& summary, const sim::NoiseConfig& stated) {
+PointNoise read_noise(const Json& summary, const sim::NoiseConfig& stated) {
   const Json::json_pointer learnt("/estimate/noise_m");
   const bool is_learnt = summary.contains(learnt) && summary[learnt].is_number() &&
                          summary[learnt].get<double>() > 0.0;
@@ -82,17 +82,17 @@ PointNoise noise_of(const Json& summary, const sim::NoiseConfig& stated) {
 
 PageCloud measured_cloud(const geometry::AttributedCloud& cloud,
                          std::span<const std::uint16_t> states,
-                         std::span<const std::uint16_t> incidence, std::size_t most_points) {
+                         std::span<const std::uint16_t> incidence, std::size_t max_points) {
   const std::vector<std::uint16_t> views = view_numbers(cloud);
   std::vector<CloudAttribute> attributes;
   if (!views.empty()) attributes.push_back({"view", views});
   attributes.push_back({"state", states});
   if (!incidence.empty()) attributes.push_back({"incidence", incidence});
-  return {"measured", encode_cloud(cloud.positions, attributes, most_points)};
+  return {"measured", encode_cloud(cloud.positions, attributes, max_points)};
 }
 
 /// Returns the uncovered surface patches.
-PageCloud missing_cloud(const geometry::AttributedCloud& map, std::size_t most_points) {
+PageCloud missing_cloud(const geometry::AttributedCloud& map, std::size_t max_points) {
   const std::vector<std::uint16_t> all = map_states(map);
   std::vector<Eigen::Vector3f> positions;
   std::vector<std::uint16_t> states;
@@ -102,23 +102,23 @@ PageCloud missing_cloud(const geometry::AttributedCloud& map, std::size_t most_p
     states.push_back(all[i]);
   }
   const CloudAttribute attribute{"state", states};
-  return {"missing", encode_cloud(positions, {&attribute, 1}, most_points)};
+  return {"missing", encode_cloud(positions, {&attribute, 1}, max_points)};
 }
 
 /// Returns the boundary of observed free space, with a limited number of faces selected evenly
 /// along a space-filling curve.
 PageCloud free_cloud(const fs::path& file) {
-  constexpr std::size_t most_faces = 50'000;
+  constexpr std::size_t max_faces = 50'000;
   std::vector<Eigen::Vector3f> faces;
   if (is_there(file)) {
     std::ifstream stream = geometry::open_stream(file);
     faces = flight::free_boundary(stream, file.string());
   }
-  return {"free", encode_cloud(faces, {}, most_faces)};
+  return {"free", encode_cloud(faces, {}, max_faces)};
 }
 
 /// Returns half the maximum distance between connected surface patches [m].
-double reach_of(const Json& summary) {
+double read_reach(const Json& summary) {
   const Json::json_pointer link("/surface/link_m");
   return summary.contains(link) && summary[link].is_number() ? summary[link].get<double>() / 2.0
                                                              : 0.0;
@@ -129,7 +129,7 @@ double reach_of(const Json& summary) {
 std::string live_page(const std::string& summary_text, const session::SurveyOptions& survey,
                       const scene::SceneOptions& scene, session::SurveyRecord so_far,
                       const NextView& next) {
-  constexpr std::size_t most_points = 250'000;
+  constexpr std::size_t max_points = 250'000;
   const package::CoverageFigures unknown{so_far.coverage(), {}, {}};
   const Json summary = Json::parse(summary_text);
   const auto patches = package::known_surface(so_far, unknown);
@@ -149,18 +149,18 @@ std::string live_page(const std::string& summary_text, const session::SurveyOpti
                      {"verdict", shown},
                      {"summary", summary},
                      {"scene", scene_outline(survey, scene, survey.flight.takeoff)},
-                     {"hole_places", hole_places(summary, survey.flight)},
+                     {"hole_places", hole_positions(summary, survey.flight)},
                      {"live",
-                      {{"position", goes_on ? support::json_of(next.view->position) : Json()},
-                       {"direction", goes_on ? support::json_of(next.view->direction) : Json()},
-                       {"way", support::json_of(next.way)}}}};
+                      {{"position", goes_on ? support::to_json(next.view->position) : Json()},
+                       {"direction", goes_on ? support::to_json(next.view->direction) : Json()},
+                       {"way", support::to_json(next.path)}}}};
   return page_text(
       name, data,
-      {measured_cloud(cloud, point_states(cloud, map, reach_of(summary)), {}, most_points),
-       missing_cloud(map, most_points)});
+      {measured_cloud(cloud, point_states(cloud, map, read_reach(summary)), {}, max_points),
+       missing_cloud(map, max_points)});
 }
 
-std::string survey_report(const ResultFinder& results, std::size_t most_points) {
+std::string survey_report(const ResultFinder& results, std::size_t max_points) {
   const fs::path summary_file = results(package::summary_name);
   const std::string text = results_text(summary_file);
   try {
@@ -176,15 +176,15 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
     Json accuracy;
     geometry::parallel_for(2, survey.mission.run.threads, [&](std::size_t part) {
       if (part == 0) {
-        const std::vector<std::uint16_t> states = point_states(cloud, map, reach_of(summary));
-        clouds[0] = measured_cloud(cloud, states, incidence, most_points);
+        const std::vector<std::uint16_t> states = point_states(cloud, map, read_reach(summary));
+        clouds[0] = measured_cloud(cloud, states, incidence, max_points);
         return;
       }
-      clouds[1] = missing_cloud(map, most_points);
+      clouds[1] = missing_cloud(map, max_points);
       clouds[2] = free_cloud(free_space);
-      const std::vector<float> errors =
-          surface_errors(cloud, incidence, noise_of(summary, survey.mission.sensor().camera.noise),
-                         survey.mission.evaluation().registration_distance);
+      const std::vector<float> errors = surface_errors(
+          cloud, incidence, read_noise(summary, survey.mission.sensor().camera.noise),
+          survey.mission.evaluation().registration_distance);
       accuracy = accuracy_json(incidence, ranges(cloud, survey.views), errors);
     });
     const Json data = {
@@ -193,12 +193,12 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
         {"verdict", verdict(summary)},
         {"summary", summary},
         {"scene", scene_outline(survey.mission.survey(), survey.mission.scene(), survey.pad)},
-        {"hole_places", hole_places(summary, survey.mission.flight())},
+        {"hole_places", hole_positions(summary, survey.mission.flight())},
         {"accuracy", std::move(accuracy)},
-        {"files", files_of(summary, results)}};
+        {"files", collect_files(summary, results)}};
     return page_text(data.at("title"), data, clouds);
   } catch (const Json::exception& error) {
-    refuse_results(summary_file, error.what());
+    reject_results(summary_file, error.what());
   }
 }
 

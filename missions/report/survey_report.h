@@ -17,15 +17,15 @@
 
 namespace skycap::missions::report {
 
-/// Returns the report of the survey described in summary.json, with up to `most_points` points of
+/// Returns the report of the survey described in summary.json, with up to `max_points` points of
 /// cloud.ply. cloud.ply and coverage.ply are optional. Throws Error{bad_file} with the file name if
 /// a file is invalid.
-std::string survey_report(const ResultFinder& results, std::size_t most_points);
+std::string survey_report(const ResultFinder& results, std::size_t max_points);
 
 /// Next view of a running survey, if any, and the path to it.
 struct NextView {
   std::optional<geometry::View> view;
-  std::vector<Eigen::Vector3d> way;
+  std::vector<Eigen::Vector3d> path;
 };
 
 /// Returns the report of a running survey, which browsers reload periodically. To reduce the cost,

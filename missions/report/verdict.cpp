@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 /// Thresholds of the coverage rating: complete and usable.
 constexpr double good_coverage = 0.95, fair_coverage = 0.85;
 
-Json json_of(const Light& light) {
+Json to_json(const Light& light) {
   return {{"name", light.name}, {"figure", light.figure}, {"value", light.value},
           {"form", light.form}, {"light", light.light},   {"rule", light.rule}};
 }
@@ -39,9 +39,9 @@ Light coverage(const std::string& name, const std::string& figure, const Json& v
 }
 
 void add_coverage(const Json& summary, std::vector<Light>& lights) {
-  if (const Json believed = at(summary, "/estimate/estimated_coverage"); believed.is_number()) {
+  if (const Json estimated = at(summary, "/estimate/estimated_coverage"); estimated.is_number()) {
     lights.push_back(
-        coverage("Coverage (planner estimate)", "estimate.estimated_coverage", believed));
+        coverage("Coverage (planner estimate)", "estimate.estimated_coverage", estimated));
   }
   if (const Json visible = at(summary, "/coverage_visible"); visible.is_number()) {
     lights.push_back(
@@ -86,9 +86,9 @@ void add_flight(const Json& summary, std::vector<Light>& lights) {
 
 }  // namespace
 
-Json json_of(const Verdict& verdict) {
+Json to_json(const Verdict& verdict) {
   Json lights = Json::array();
-  for (const Light& light : verdict.lights) lights.push_back(json_of(light));
+  for (const Light& light : verdict.lights) lights.push_back(to_json(light));
   return {{"answer", verdict.is_complete ? "complete" : "incomplete"},
           {"because", verdict.because},
           {"light", verdict.is_complete ? "green" : verdict.else_light},
@@ -97,17 +97,17 @@ Json json_of(const Verdict& verdict) {
 
 Json stop_words() {
   using enum survey::StopReason;
-  return {{session::name_of(complete), "no remaining view adds enough coverage"},
-          {session::name_of(view_limit), "view limit reached"},
-          {session::name_of(distance_limit), "distance limit reached"},
-          {session::name_of(time_limit), "time limit reached"},
-          {session::name_of(nowhere_to_go), "no remaining view is reachable"},
-          {session::name_of(interrupted), "interrupted"}};
+  return {{session::to_string(complete), "no remaining view adds enough coverage"},
+          {session::to_string(view_limit), "view limit reached"},
+          {session::to_string(distance_limit), "distance limit reached"},
+          {session::to_string(time_limit), "time limit reached"},
+          {session::to_string(nowhere_to_go), "no remaining view is reachable"},
+          {session::to_string(interrupted), "interrupted"}};
 }
 
 Json verdict(const Json& summary) {
   const std::string stop = summary.value("stop_reason", std::string());
-  const bool is_interrupted = stop == session::name_of(survey::StopReason::interrupted);
+  const bool is_interrupted = stop == session::to_string(survey::StopReason::interrupted);
   Verdict verdict{.is_complete = at(summary, "/complete") == Json(true),
                   .because = stop_words().value(stop, stop),
                   .lights = {},
@@ -117,7 +117,7 @@ Json verdict(const Json& summary) {
     verdict.lights.push_back({"Views", "views", "count", views});
   }
   add_flight(summary, verdict.lights);
-  return json_of(verdict);
+  return to_json(verdict);
 }
 
 }  // namespace skycap::missions::report

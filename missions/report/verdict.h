@@ -26,7 +26,7 @@ struct Verdict {
 
 /// Returns {"answer": "complete", "because": "...", "light": "green", "lights": [{"name", "figure",
 /// "value", "form", "light", "rule"}]}.
-nlohmann::ordered_json json_of(const Verdict& verdict);
+nlohmann::ordered_json to_json(const Verdict& verdict);
 
 /// Returns descriptions of the stop reasons by their names in files: {"complete": "nothing more is
 /// worth a view", ...}.

@@ -43,8 +43,8 @@ enum class ReturnPosition {
   actual,    ///< Position on the surface that the pulse hit.
 };
 
-inline const std::vector<Eigen::Vector3f>& positions_of(const sim::LidarReturns& returns,
-                                                        ReturnPosition position) {
+inline const std::vector<Eigen::Vector3f>& select_positions(const sim::LidarReturns& returns,
+                                                            ReturnPosition position) {
   return position == ReturnPosition::reported ? returns.points : returns.true_points;
 }
 

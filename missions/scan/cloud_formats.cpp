@@ -16,13 +16,13 @@ namespace {
 
 using geometry::put_value;
 
-CloudTotals totals_of(const sim::LidarReturns& returns) {
+CloudTotals compute_totals(const sim::LidarReturns& returns) {
   CloudTotals totals;  // Data for the headers of these formats.
   totals.points = returns.size();
   return totals;
 }
 
-std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+std::vector<std::uint8_t> to_bytes(const std::string& text) { return {text.begin(), text.end()}; }
 
 /// Common part of PLY and PCD, which differ only in their headers.
 class RecordFormat : public CloudFormat {
@@ -30,9 +30,9 @@ class RecordFormat : public CloudFormat {
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override {
     constexpr std::size_t size = 28;
-    chunk.totals = totals_of(returns);
+    chunk.totals = compute_totals(returns);
     chunk.bytes.resize(returns.size() * size);
-    const auto& points = positions_of(returns, position);
+    const auto& points = select_positions(returns, position);
     std::uint8_t* out = chunk.bytes.data();
     double farthest = 0.0;
     for (std::size_t i = 0; i < returns.size(); ++i, out += size) {
@@ -44,7 +44,7 @@ class RecordFormat : public CloudFormat {
       put_value(out, 16, returns.times[i]);
       put_value(out, 24, returns.channels[i]);
       out[26] = returns.return_numbers[i];
-      out[27] = returns.returns_of_shots[i];
+      out[27] = returns.number_of_returns[i];
     }
     if (farthest > geometry::farthest_single_coordinate) {
       throw Error(ErrorKind::bad_geometry,
@@ -63,7 +63,7 @@ class PlyFormat final : public RecordFormat {
     vertex.add(PlyType::float64, {"time"});
     vertex.add(PlyType::uint16, {"channel"});
     vertex.add(PlyType::uint8, {"return_number", "returns"});
-    return bytes_of(geometry::growing_ply_header(vertex));
+    return to_bytes(geometry::growing_ply_header(vertex));
   }
 };
 
@@ -71,7 +71,7 @@ class PcdFormat final : public RecordFormat {
  public:
   std::vector<std::uint8_t> header(const CloudState& grown) const override {
     const std::string count = std::to_string(grown.totals.points);
-    return bytes_of("# .PCD v0.7 - Point Cloud Data file format, written by Skycap" +
+    return to_bytes("# .PCD v0.7 - Point Cloud Data file format, written by Skycap" +
                     std::string(2 * (20 - count.size()), ' ') +
                     "\nVERSION 0.7\nFIELDS x y z intensity time channel return_number returns\n"
                     "SIZE 4 4 4 4 8 2 1 1\nTYPE F F F F F U U U\nCOUNT 1 1 1 1 1 1 1 1\n"
@@ -84,15 +84,15 @@ class PcdFormat final : public RecordFormat {
 class XyzFormat final : public CloudFormat {
  public:
   std::vector<std::uint8_t> header(const CloudState&) const override {
-    return bytes_of("# x y z intensity time channel return_number returns\n");
+    return to_bytes("# x y z intensity time channel return_number returns\n");
   }
 
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override {
     constexpr std::size_t longest_line = 200;  // Eight numbers below 1e15.
-    chunk.totals = totals_of(returns);
+    chunk.totals = compute_totals(returns);
     chunk.bytes.resize(returns.size() * longest_line);
-    const auto& points = positions_of(returns, position);
+    const auto& points = select_positions(returns, position);
     char* const begin = reinterpret_cast<char*>(chunk.bytes.data());
     char* out = begin;
     const auto put = [&](double number, int decimals) {
@@ -110,13 +110,13 @@ class XyzFormat final : public CloudFormat {
       put(returns.times[i], 7);
       put_whole(returns.channels[i], ' ');
       put_whole(returns.return_numbers[i], ' ');
-      put_whole(returns.returns_of_shots[i], '\n');
+      put_whole(returns.number_of_returns[i], '\n');
     }
     chunk.bytes.resize(static_cast<std::size_t>(out - begin));
   }
 };
 
-CoordinateGrid grid_of(const CloudFormatContext& context) {
+CoordinateGrid make_grid(const CloudFormatContext& context) {
   CoordinateGrid grid;
   Eigen::Vector3d centre = context.scene_centre;
   if (context.projection != nullptr) {
@@ -134,14 +134,14 @@ const std::array<CloudFormatInfo, 7>& formats() {
   static const std::array<CloudFormatInfo, 7> all = {{
       {"las", ".las",
        [](const Context& context) {
-         return las_format({6, grid_of(context)});
+         return las_format({6, make_grid(context)});
        }},
       {"las7", ".las",
        [](const Context& context) {
-         return las_format({7, grid_of(context)});
+         return las_format({7, make_grid(context)});
        }},
       {"e57", ".e57",
-       [](const Context& context) { return e57_format(grid_of(context), context.sensor_name); }},
+       [](const Context& context) { return e57_format(make_grid(context), context.sensor_name); }},
       {"ply", ".ply", [](const Context&) { return ply_format(); }},
       {"pcd", ".pcd", [](const Context&) { return pcd_format(); }},
       {"xyz", ".xyz", [](const Context&) { return xyz_format(); }},

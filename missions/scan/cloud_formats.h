@@ -52,7 +52,7 @@ std::shared_ptr<const CloudFormat> rawlog_format(const CloudFormatContext& conte
 
 /// Name, file name extension and factory function of a format.
 struct CloudFormatInfo {
-  std::string name, ending;
+  std::string name, extension;
   std::shared_ptr<const CloudFormat> (*make)(const CloudFormatContext& context);
 };
 

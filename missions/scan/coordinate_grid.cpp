@@ -16,10 +16,10 @@ void CoordinateGrid::validate() const {
 }
 
 Eigen::AlignedBox3d CoordinateGrid::bounds(const Eigen::AlignedBox3d& units) const {
-  constexpr double most = std::numeric_limits<std::int32_t>::max();
-  if (!(units.min().array() >= -most).all() || !(units.max().array() <= most).all()) {
+  constexpr double max = std::numeric_limits<std::int32_t>::max();
+  if (!(units.min().array() >= -max).all() || !(units.max().array() <= max).all()) {
     throw Error(ErrorKind::bad_geometry,
-                "a point is more than " + std::to_string(most * scale) +
+                "a point is more than " + std::to_string(max * scale) +
                     " m from the file's offset; set an offset near the scene");
   }
   Eigen::AlignedBox3d written;
@@ -30,18 +30,18 @@ Eigen::AlignedBox3d CoordinateGrid::bounds(const Eigen::AlignedBox3d& units) con
   return written;
 }
 
-Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points) {
+Eigen::AlignedBox3f compute_bounds(const std::vector<Eigen::Vector3f>& points) {
   using FourPoints = Eigen::Array<float, 12, 1>;  // Fills whole vector registers.
-  FourPoints lowest = points[0].replicate<4, 1>(), highest = lowest;
+  FourPoints min_corner = points[0].replicate<4, 1>(), max_corner = min_corner;
   const std::size_t whole = points.size() / 4 * 4;
   for (std::size_t i = 0; i < whole; i += 4) {
     const FourPoints some = Eigen::Map<const FourPoints>(points[i].data());
-    lowest = lowest.min(some);
-    highest = highest.max(some);
+    min_corner = min_corner.min(some);
+    max_corner = max_corner.max(some);
   }
   Eigen::AlignedBox3f box;
   for (int i = 0; i < 4; ++i) {
-    box.extend(lowest.segment<3>(3 * i).matrix()).extend(highest.segment<3>(3 * i).matrix());
+    box.extend(min_corner.segment<3>(3 * i).matrix()).extend(max_corner.segment<3>(3 * i).matrix());
   }
   for (std::size_t i = whole; i < points.size(); ++i) box.extend(points[i]);
   return box;

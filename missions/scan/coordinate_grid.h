@@ -42,7 +42,7 @@ inline std::int32_t nearest(double number) {
 }
 
 /// Returns the bounding box of `points`, which must not be empty.
-Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points);
+Eigen::AlignedBox3f compute_bounds(const std::vector<Eigen::Vector3f>& points);
 
 /// Calls `encode(units)`. `units` converts a point to integer steps relative to the offset and must
 /// be called for every point. Returns the bounds of the points as written; `points` must not be
@@ -58,15 +58,15 @@ Eigen::AlignedBox3d encode_on_grid(const CoordinateGrid& grid, const sim::LidarR
       return (point.cast<double>() + shift) * per_unit;
     };
     encode(units);
-    const Eigen::AlignedBox3f relative = box_of(points);
+    const Eigen::AlignedBox3f relative = compute_bounds(points);
     return grid.bounds({units(relative.min()), units(relative.max())});
   }
   Eigen::AlignedBox3d box;
   const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
     const Eigen::Vector3d local = returns.origin + point.cast<double>();
-    Eigen::Vector3d place = (grid.projection->to_map(local) - grid.offset) * per_unit;
-    box.extend(place);
-    return place;
+    Eigen::Vector3d position = (grid.projection->to_map(local) - grid.offset) * per_unit;
+    box.extend(position);
+    return position;
   };
   encode(units);
   return grid.bounds(box);

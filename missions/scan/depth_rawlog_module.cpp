@@ -9,7 +9,7 @@
 namespace skycap::missions::scan {
 namespace {
 
-mrpt::obs::CObservationRobotPose pose_of(const DepthFrame& frame) {
+mrpt::obs::CObservationRobotPose make_pose(const DepthFrame& frame) {
   mrpt::obs::CObservationRobotPose observation;
   observation.timestamp = mrpt::Clock::fromDouble(frame.time);
   observation.sensorLabel = "CARRIER";
@@ -18,7 +18,7 @@ mrpt::obs::CObservationRobotPose pose_of(const DepthFrame& frame) {
   return observation;
 }
 
-mrpt::obs::CObservation3DRangeScan image_of(const DepthFrame& frame) {
+mrpt::obs::CObservation3DRangeScan make_image(const DepthFrame& frame) {
   mrpt::obs::CObservation3DRangeScan scan;
   scan.timestamp = mrpt::Clock::fromDouble(frame.time);
   scan.sensorLabel = "DEPTH";
@@ -49,7 +49,7 @@ extern "C" [[gnu::visibility("default")]] void skycap_encode_depth_frame(
     const skycap::missions::scan::DepthFrame& frame, std::vector<std::uint8_t>& bytes) {
   mrpt::io::CMemoryStream stream;
   auto archive = mrpt::serialization::archiveFrom(stream);
-  archive << skycap::missions::scan::pose_of(frame) << skycap::missions::scan::image_of(frame);
+  archive << skycap::missions::scan::make_pose(frame) << skycap::missions::scan::make_image(frame);
   const auto* data = static_cast<const std::uint8_t*>(stream.getRawBufferData());
   bytes.assign(data, data + stream.getTotalBytesCount());
 }

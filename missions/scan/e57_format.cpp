@@ -14,7 +14,7 @@ namespace {
 namespace e57 = geometry::e57;
 
 /// Field indices in a record.
-enum Column : std::size_t { x, y, z, intensity, time, return_number, returns_of_shot, columns };
+enum Column : std::size_t { x, y, z, intensity, time, return_number, number_of_returns, columns };
 
 std::vector<e57::Field> fields_on(const CoordinateGrid& grid) {
   const auto coordinate = [&](const char* name, int axis) {
@@ -47,11 +47,11 @@ class E57Format final : public CloudFormat {
     scan.records = grown.totals.points;
     scan.bounds = grown.totals.bounds;
     scan.checksum = grown.totals.checksum;
-    std::string bytes = e57::beginning_of(scan);
+    std::string bytes = e57::make_file_head(scan);
     if (grown.bytes > bytes.size()) {
       const std::uint64_t size = grown.bytes - bytes.size();
-      scan.size_of_packets = size - size / e57::page_size * e57::checksum_size;
-      bytes = e57::beginning_of(scan);
+      scan.packets_size = size - size / e57::page_size * e57::checksum_size;
+      bytes = e57::make_file_head(scan);
     }
     return {bytes.begin(), bytes.end()};
   }
@@ -75,9 +75,9 @@ class E57Format final : public CloudFormat {
       put(intensity, i, returns.intensities[i]);
       put(time, i, returns.times[i]);
       put(return_number, i, static_cast<std::uint8_t>(returns.return_numbers[i] - 1));
-      put(returns_of_shot, i, returns.returns_of_shots[i]);
+      put(number_of_returns, i, returns.number_of_returns[i]);
     }
-    const std::string packets = e57::packets_of(fields_, values);
+    const std::string packets = e57::make_packets(fields_, values);
     chunk.bytes.assign(packets.begin(), packets.end());
     chunk.totals.points = returns.size();
     chunk.totals.checksum = e57::crc32c(packets);
@@ -86,13 +86,13 @@ class E57Format final : public CloudFormat {
  private:
   void put_positions(const sim::LidarReturns& returns, ReturnPosition position,
                      std::array<std::string, columns>& values, CloudTotals& totals) const {
-    const auto& points = positions_of(returns, position);
+    const auto& points = select_positions(returns, position);
     const auto put_all = [&](const auto& units) {
       for (std::size_t i = 0; i < points.size(); ++i) {
-        const Eigen::Vector3d place = units(points[i]);
+        const Eigen::Vector3d coordinates = units(points[i]);
         for (const Column axis : {x, y, z}) {
           // Stored values are relative to the minimum of the 32-bit range.
-          const auto stored = static_cast<std::uint32_t>(nearest(place[axis])) ^ 0x80000000U;
+          const auto stored = static_cast<std::uint32_t>(nearest(coordinates[axis])) ^ 0x80000000U;
           geometry::put_value(values[axis].data(), 4 * i, stored);
         }
       }

@@ -62,7 +62,7 @@ class FrameRawlog {
 
   void append(const Frame& frame, const geometry::DepthImage& image) {
     const Eigen::Isometry3d world_from_sensor =
-        frame.believed_from_camera * body_from_camera().inverse();
+        frame.estimated_from_camera * body_from_camera().inverse();
     encode_({frame.time, world_from_sensor, image, camera_.focal_length_px(),
              camera_.principal_point_px(), unit_, camera_.config().max_range},
             bytes_);
@@ -99,11 +99,11 @@ class FrameRawlog {
 /// Adds the selected points of an image at their estimated positions.
 void add_preview(const geometry::Scan& scan, const Frame& frame, std::uint32_t number, double share,
                  geometry::PointCloud& preview) {
-  const Eigen::Isometry3d believed_from_real =
-      frame.believed_from_camera * frame.world_from_camera.inverse();
+  const Eigen::Isometry3d estimated_from_true =
+      frame.estimated_from_camera * frame.world_from_camera.inverse();
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (!is_previewed(number, i, share)) continue;
-    const Eigen::Vector3d point = believed_from_real * scan.points[i].cast<double>();
+    const Eigen::Vector3d point = estimated_from_true * scan.points[i].cast<double>();
     preview.positions.emplace_back(point.cast<float>());
     preview.views.push_back(number);
   }
@@ -129,8 +129,8 @@ class FrameRecording {
   FrameResult run() {
     auto written_down = Clock::now();
     while (result_.frames < frames_.size() && !options_.stop.stop_requested()) {
-      take(frames_[result_.frames]);
-      if (result_.frames - synced_ == most_not_synced) sync_images();
+      capture(frames_[result_.frames]);
+      if (result_.frames - synced_ == max_unsynced) sync_images();
       if (options_.report) options_.report(result_.frames, result_.points);
       const auto now = Clock::now();
       if (std::chrono::duration<double>(now - written_down).count() < options_.checkpoint_period) {
@@ -144,20 +144,20 @@ class FrameRecording {
   }
 
   void stage(geometry::OutputFolder& folder) const {
-    std::vector<flight::TimedPose> truth, believed;
+    std::vector<flight::TimedPose> truth, estimated;
     std::string list = "# timestamp filename\n";
     for (std::size_t i = 0; i < result_.frames; ++i) {
       const Frame& frame = frames_[i];
       journal_.stage_on_disk(file_name(i), folder);
       list += flight::fixed(frame.time, 6) + " " + file_name(i) + "\n";
       truth.push_back({frame.time, frame.world_from_camera});
-      believed.push_back({frame.time, frame.believed_from_camera});
+      estimated.push_back({frame.time, frame.estimated_from_camera});
     }
     if (rawlog_ && result_.frames > 0) journal_.stage(rawlog_name, folder);
     journal_.stage(preview_name, folder);
     folder.write("depth.txt", list);
     folder.write("groundtruth.txt", flight::write_tum(truth));
-    folder.write("estimated.txt", flight::write_tum(believed));
+    folder.write("estimated.txt", flight::write_tum(estimated));
     folder.write("camera.json",
                  support::json_text(camera_json(camera_.camera(), options_.depth_unit)));
   }
@@ -165,7 +165,7 @@ class FrameRecording {
  private:
   static constexpr const char* rawlog_name = "frames.rawlog";
   // Flushing takes some milliseconds per image, which would delay the end of an interrupted scan.
-  static constexpr std::size_t most_not_synced = 16;
+  static constexpr std::size_t max_unsynced = 16;
 
   /// Restores the state of a checkpoint. Returns the size of the rawlog [bytes].
   std::uint64_t go_on() {
@@ -196,7 +196,7 @@ class FrameRecording {
     preview_ = {std::move(read.positions), std::move(read.views)};
   }
 
-  void take(const Frame& frame) {
+  void capture(const Frame& frame) {
     scan_ = camera_.scan(scene_, frame.world_from_camera, result_.frames, options_.threads,
                          std::move(scan_));
     const geometry::DepthImage image =

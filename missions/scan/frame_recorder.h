@@ -22,7 +22,7 @@ struct Frame {
   /// Actual pose of the optical frame.
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
   /// Estimated pose of the optical frame.
-  Eigen::Isometry3d believed_from_camera = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d estimated_from_camera = Eigen::Isometry3d::Identity();
 };
 
 struct FrameOptions {

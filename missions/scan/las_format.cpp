@@ -19,8 +19,8 @@ class LasFormat final : public CloudFormat {
   std::vector<std::uint8_t> header(const CloudState& grown) const override {
     const CloudTotals& totals = grown.totals;
     const CoordinateGrid& grid = config_.grid;
-    return las::header_of({config_.point_format, grid.crs_wkt, grid.scale, grid.offset,
-                           totals.points, totals.points_by_return, totals.bounds});
+    return las::make_header({config_.point_format, grid.crs_wkt, grid.scale, grid.offset,
+                             totals.points, totals.points_by_return, totals.bounds});
   }
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override;
@@ -41,7 +41,7 @@ void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position
   chunk.totals.points = returns.size();
   chunk.bytes.resize(returns.size() * point_size_);
   if (returns.size() == 0) return;
-  const auto& points = positions_of(returns, position);
+  const auto& points = select_positions(returns, position);
   chunk.totals.bounds = encode_on_grid(config_.grid, returns, points, [&](const auto& units) {
     encode_points(returns, points, units, chunk);
   });
@@ -54,18 +54,19 @@ void LasFormat::encode_points(const sim::LidarReturns& returns,
   constexpr double scan_angle_unit = las::point::scan_angle_unit_deg * geometry::radians_per_degree;
   std::uint8_t* out = chunk.bytes.data();
   for (std::size_t i = 0; i < returns.size(); ++i, out += point_size_) {
-    const Eigen::Vector3d place = units(points[i]);
+    const Eigen::Vector3d coordinates = units(points[i]);
     const double brightness = 65535.0 * std::clamp(returns.intensities[i], 0.0F, 1.0F);
     const double angle = static_cast<double>(returns.scan_angles[i]) * (1.0 / scan_angle_unit);
     const std::uint8_t number = returns.return_numbers[i];
-    las::put_point(out, config_.point_format,
-                   {.position = {nearest(place.x()), nearest(place.y()), nearest(place.z())},
-                    .intensity = static_cast<std::uint16_t>(nearest(brightness)),
-                    .return_number = number,
-                    .returns = returns.returns_of_shots[i],
-                    .user_data = static_cast<std::uint8_t>(returns.channels[i] & 0xFFU),
-                    .scan_angle = static_cast<std::int16_t>(nearest(angle)),
-                    .time = returns.times[i]});
+    las::put_point(
+        out, config_.point_format,
+        {.position = {nearest(coordinates.x()), nearest(coordinates.y()), nearest(coordinates.z())},
+         .intensity = static_cast<std::uint16_t>(nearest(brightness)),
+         .return_number = number,
+         .returns = returns.number_of_returns[i],
+         .user_data = static_cast<std::uint8_t>(returns.channels[i] & 0xFFU),
+         .scan_angle = static_cast<std::int16_t>(nearest(angle)),
+         .time = returns.times[i]});
     ++chunk.totals.points_by_return[number - 1];
   }
 }

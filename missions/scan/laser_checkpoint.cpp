@@ -8,14 +8,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const CloudState& state) {
+Json to_json(const CloudState& state) {
   Json json{{"bytes", state.bytes},
             {"points", state.totals.points},
             {"points_by_return", state.totals.points_by_return},
             {"checksum", state.totals.checksum}};
   if (!state.totals.bounds.isEmpty()) {
-    json["low"] = support::json_of(state.totals.bounds.min());
-    json["high"] = support::json_of(state.totals.bounds.max());
+    json["low"] = support::to_json(state.totals.bounds.min());
+    json["high"] = support::to_json(state.totals.bounds.max());
   }
   return json;
 }
@@ -28,16 +28,16 @@ CloudState parse_state(const Json& json) {
   // Not present in checkpoints of earlier versions.
   state.totals.checksum = json.value("checksum", std::uint64_t{0});
   if (json.contains("low")) {
-    state.totals.bounds = {support::vector_of(json["low"]), support::vector_of(json.at("high"))};
+    state.totals.bounds = {support::to_vector(json["low"]), support::to_vector(json.at("high"))};
   }
   return state;
 }
 
 }  // namespace
 
-Json json_of(const LaserCheckpoint& checkpoint) {
+Json to_json(const LaserCheckpoint& checkpoint) {
   Json files = Json::array();
-  for (const CloudState& state : checkpoint.files) files.push_back(json_of(state));
+  for (const CloudState& state : checkpoint.files) files.push_back(to_json(state));
   return {{"firings", checkpoint.progress.firings},
           {"points", checkpoint.progress.points},
           {"simulation_s", checkpoint.time},
@@ -46,9 +46,9 @@ Json json_of(const LaserCheckpoint& checkpoint) {
 
 LaserCheckpoint parse_laser_checkpoint(const Json& json, std::size_t files,
                                        const std::string& name) {
-  const auto fail = [&](const std::string& why) -> void {
+  const auto fail = [&](const std::string& reason) -> void {
     throw Error(ErrorKind::bad_file,
-                name + ": the last line is damaged (" + why + "); start again without --resume");
+                name + ": the last line is damaged (" + reason + "); start again without --resume");
   };
   LaserCheckpoint checkpoint;
   try {

@@ -17,9 +17,9 @@ struct LaserCheckpoint {
   std::vector<CloudState> files;
 };
 
-nlohmann::ordered_json json_of(const LaserCheckpoint& checkpoint);
+nlohmann::ordered_json to_json(const LaserCheckpoint& checkpoint);
 
-/// Restores a checkpoint from json_of(). Throws Error{bad_file} with the prefix `name` if the JSON
+/// Restores a checkpoint from to_json(). Throws Error{bad_file} with the prefix `name` if the JSON
 /// is invalid or has another number of files.
 LaserCheckpoint parse_laser_checkpoint(const nlohmann::ordered_json& json, std::size_t files,
                                        const std::string& name);

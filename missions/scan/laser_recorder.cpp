@@ -48,7 +48,7 @@ LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
       file.sync();
       reached.files.push_back(file.state());
     }
-    journal.checkpoint(json_of(reached));
+    journal.checkpoint(to_json(reached));
   };
   options.begun = reached.progress;
   options.checkpoint = write_down;
@@ -63,19 +63,20 @@ LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
   return {result, std::move(reached)};
 }
 
-std::string piece_text(const std::string& identity, const LaserCheckpoint& reached) {
-  return support::json_text({{"of", identity}, {"holds", json_of(reached)}});
+std::string completed_shard_text(const std::string& identity, const LaserCheckpoint& reached) {
+  return support::json_text({{"of", identity}, {"holds", to_json(reached)}});
 }
 
-std::optional<LaserCheckpoint> complete_piece(const fs::path& folder, const std::string& identity,
-                                              std::size_t files) {
-  const fs::path file = folder / piece_name;
+std::optional<LaserCheckpoint> read_completed_shard(const fs::path& folder,
+                                                    const std::string& identity,
+                                                    std::size_t files) {
+  const fs::path file = folder / shard_file_name;
   std::error_code missing;
   if (!fs::is_regular_file(file, missing)) return std::nullopt;
   try {
-    const Json piece = geometry::parse_json<Json>(geometry::read_file(file));
-    if (piece.at("of") != Json(identity)) return std::nullopt;
-    return parse_laser_checkpoint(piece.at("holds"), files, file.string());
+    const Json shard = geometry::parse_json<Json>(geometry::read_file(file));
+    if (shard.at("of") != Json(identity)) return std::nullopt;
+    return parse_laser_checkpoint(shard.at("holds"), files, file.string());
   } catch (const Json::exception&) {
     return std::nullopt;
   } catch (const Error&) {  // The piece will be measured again.
@@ -83,19 +84,19 @@ std::optional<LaserCheckpoint> complete_piece(const fs::path& folder, const std:
   }
 }
 
-LaserResult join_pieces(std::span<const CompletePiece> pieces, std::span<LaserOutput> outputs,
+LaserResult join_shards(std::span<const CompletedShard> shards, std::span<LaserOutput> outputs,
                         geometry::OutputFolder& folder) {
   LaserResult result;
-  for (const CompletePiece& piece : pieces) {
-    result.reached.progress.firings = piece.holds.progress.firings;
-    result.reached.progress.points += piece.holds.progress.points;
-    result.reached.time += piece.holds.time;
+  for (const CompletedShard& shard : shards) {
+    result.reached.progress.firings = shard.checkpoint.progress.firings;
+    result.reached.progress.points += shard.checkpoint.progress.points;
+    result.reached.time += shard.checkpoint.time;
   }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     LaserOutput& output = outputs[i];
     CloudFile file(folder.stage(output.name), output.format, output.position);
-    for (const CompletePiece& piece : pieces) {
-      file.append_file(piece.folder / output.name, piece.holds.files[i]);
+    for (const CompletedShard& shard : shards) {
+      file.append_file(shard.folder / output.name, shard.checkpoint.files[i]);
     }
     result.reached.files.push_back(file.state());
     file.finish();

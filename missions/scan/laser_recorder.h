@@ -42,25 +42,25 @@ LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
 
 /// File that marks a piece as complete. It contains the identity of the piece and the extents of
 /// its files.
-inline constexpr const char* piece_name = "piece.json";
+inline constexpr const char* shard_file_name = "piece.json";
 
 /// Returns the contents of piece.json. `identity` identifies the piece (support::identity_text()).
-std::string piece_text(const std::string& identity, const LaserCheckpoint& reached);
+std::string completed_shard_text(const std::string& identity, const LaserCheckpoint& reached);
 
 /// Returns the final state of the piece in `folder`. Returns an empty value if it is incomplete, or
 /// has another identity or number of files.
-std::optional<LaserCheckpoint> complete_piece(const std::filesystem::path& folder,
-                                              const std::string& identity, std::size_t files);
+std::optional<LaserCheckpoint> read_completed_shard(const std::filesystem::path& folder,
+                                                    const std::string& identity, std::size_t files);
 
 /// Complete piece of a flight.
-struct CompletePiece {
+struct CompletedShard {
   std::filesystem::path folder;
-  LaserCheckpoint holds;
+  LaserCheckpoint checkpoint;
 };
 
 /// Joins all pieces in order and stages the outputs in `folder`. The outputs equal those of
 /// record_laser() for the whole flight. Throws Error{bad_file} if a file cannot be read or written.
-LaserResult join_pieces(std::span<const CompletePiece> pieces, std::span<LaserOutput> outputs,
+LaserResult join_shards(std::span<const CompletedShard> shards, std::span<LaserOutput> outputs,
                         geometry::OutputFolder& folder);
 
 }  // namespace skycap::missions::scan

@@ -13,11 +13,12 @@
 namespace skycap::missions::scan {
 namespace {
 
-constexpr double wanted_shots = 1.5e6;
+constexpr double target_pulses = 1.5e6;
 
 class PreviewFormat final : public CloudFormat {
  public:
-  PreviewFormat(const PreviewPieces& pieces, double share) : pieces_(pieces), share_(share) {}
+  PreviewFormat(const PreviewSegments& segments, double share)
+      : segments_(segments), share_(share) {}
 
   std::vector<std::uint8_t> header(const CloudState& grown) const override {
     geometry::PlyElement vertex{"vertex", grown.totals.points, {}};
@@ -30,7 +31,7 @@ class PreviewFormat final : public CloudFormat {
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override {
     constexpr std::size_t size = 16;
-    const auto& points = positions_of(returns, position);
+    const auto& points = select_positions(returns, position);
     chunk.totals = {};
     chunk.bytes.clear();
     for (std::size_t i = 0; i < returns.size(); ++i) {
@@ -42,36 +43,39 @@ class PreviewFormat final : public CloudFormat {
       std::uint8_t* out = &chunk.bytes[chunk.bytes.size() - size];
       for (int axis = 0; axis < 3; ++axis)
         geometry::put_value(out, 4UL * axis, static_cast<float>(point[axis]));
-      const double piece = std::floor((time - pieces_.start) / pieces_.length);
-      geometry::put_value(out, 12, static_cast<std::uint32_t>(std::max(0.0, piece)));
+      const double segment = std::floor((time - segments_.start) / segments_.length);
+      geometry::put_value(out, 12, static_cast<std::uint32_t>(std::max(0.0, segment)));
       ++chunk.totals.points;
     }
   }
 
  private:
-  PreviewPieces pieces_;
+  PreviewSegments segments_;
   double share_;
 };
 
 }  // namespace
 
-double preview_share(double shots) { return shots > wanted_shots ? wanted_shots / shots : 1.0; }
+double preview_share(double pulses) {
+  return pulses > target_pulses ? target_pulses / pulses : 1.0;
+}
 
 bool is_previewed(std::uint64_t time, std::uint64_t number, double share) {
   const std::uint64_t random = geometry::split_mix(geometry::split_mix(time) + number);
   return std::ldexp(static_cast<double>(random), -64) < share;
 }
 
-PreviewPieces preview_pieces(const sim::LidarConfig& sensor, const sim::Trajectory& flown) {
-  constexpr double most_pieces = 1000.0;
+PreviewSegments make_preview_segments(const sim::LidarConfig& sensor,
+                                      const sim::Trajectory& ground_truth) {
+  constexpr double max_pieces = 1000.0;
   const bool spins = sensor.prisms.empty() && sensor.rotation_rate != 0.0;
   const double turn = spins ? 1.0 / std::abs(sensor.rotation_rate) : 0.1;
-  const double turns = (flown.end() - flown.start()) / turn;
-  return {flown.start(), turn * std::max(1.0, std::ceil(turns / most_pieces))};
+  const double turns = (ground_truth.end() - ground_truth.start()) / turn;
+  return {ground_truth.start(), turn * std::max(1.0, std::ceil(turns / max_pieces))};
 }
 
-std::shared_ptr<const CloudFormat> preview_format(const PreviewPieces& pieces, double share) {
-  return std::make_shared<PreviewFormat>(pieces, share);
+std::shared_ptr<const CloudFormat> preview_format(const PreviewSegments& segments, double share) {
+  return std::make_shared<PreviewFormat>(segments, share);
 }
 
 }  // namespace skycap::missions::scan

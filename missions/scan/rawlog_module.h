@@ -19,8 +19,8 @@ namespace skycap::missions::scan {
 
 /// Motion of a sensor, actual or estimated.
 struct SensorMotion {
-  std::function<Eigen::Isometry3d(double time)> world_from_carrier;
-  Eigen::Isometry3d carrier_from_sensor = Eigen::Isometry3d::Identity();
+  std::function<Eigen::Isometry3d(double time)> world_from_platform;
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
 };
 
 struct RawlogSetup {

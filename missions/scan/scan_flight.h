@@ -18,30 +18,30 @@ namespace skycap::missions::scan {
 
 /// Pose of the sensor on its platform (body_from_sensor): actual, and estimated by calibration.
 struct Mount {
-  Eigen::Isometry3d real, believed;
+  Eigen::Isometry3d real, estimated;
 };
 
 struct ScanFlight {
   ScanRoute route;
-  sim::Trajectory believed;  ///< Trajectory of the platform as estimated by its navigation.
+  sim::Trajectory estimated;  ///< Trajectory of the platform as estimated by its navigation.
   Mount mount;
 
   /// Returns the flight of a laser scanner. It keeps references to this object.
-  sim::LidarFlight of_scanner() const {
-    return {route.carrier, believed, mount.real, mount.believed};
+  sim::LidarFlight lidar_flight() const {
+    return {route.platform, estimated, mount.real, mount.estimated};
   }
 };
 
 /// Returns the flight along `route_file`, or along the options' route (relative to `folder`), or
 /// along the options' orbit. `seed` is used for navigation errors. Throws all errors of
 /// read_scan_route().
-ScanFlight scan_flight(const FlownScanOptions& options, std::uint64_t seed,
+ScanFlight scan_flight(const ScanFlightOptions& options, std::uint64_t seed,
                        const std::filesystem::path& folder,
-                       const std::optional<std::filesystem::path>& route_file, Carrier carrier);
+                       const std::optional<std::filesystem::path>& route_file, Platform platform);
 
 /// Returns a checksum that identifies a flight. It covers the actual and estimated poses, both
 /// mounts and the image times.
-std::string digest_of(const ScanFlight& flight);
+std::string compute_checksum(const ScanFlight& flight);
 
 /// Part of a flight [s].
 struct TimeSpan {
@@ -55,6 +55,6 @@ std::function<bool(const Eigen::AlignedBox3d& box)> within_reach(const ScanFligh
                                                                  double range);
 
 /// Throws Error{bad_config} if the scan has too many firings to be simulated.
-void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown);
+void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& ground_truth);
 
 }  // namespace skycap::missions::scan

@@ -53,7 +53,7 @@ Json ScanJournal::open(const support::Identity& run, const Json& more, bool resu
   return records.size() > 1 ? geometry::parse_json<Json>(records.back()) : Json();
 }
 
-bool ScanJournal::is_of(const support::Identity& run, const Json& more) const {
+bool ScanJournal::matches_run(const support::Identity& run, const Json& more) const {
   try {
     const std::vector<std::string> records = geometry::read_records(file_).records;
     return !records.empty() && records.front() == support::identity_text(run, more);

@@ -37,7 +37,7 @@ class ScanJournal {
                               bool resumes);
 
   /// Returns true if an interrupted scan with exactly these inputs exists, which open() can resume.
-  bool is_of(const support::Identity& run, const nlohmann::ordered_json& more) const;
+  bool matches_run(const support::Identity& run, const nlohmann::ordered_json& more) const;
 
   /// Returns the path of a file of the scan.
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }

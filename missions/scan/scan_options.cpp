@@ -4,8 +4,8 @@
 
 namespace skycap::missions::scan {
 
-Eigen::Isometry3d FlownScanOptions::mount() const {
-  Eigen::Isometry3d mount(geometry::rotation_of(mount_rotation));
+Eigen::Isometry3d ScanFlightOptions::mount() const {
+  Eigen::Isometry3d mount(geometry::make_rotation(mount_rotation));
   mount.translation() = mount_position;
   return mount;
 }

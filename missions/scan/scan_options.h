@@ -17,11 +17,11 @@ struct OrbitOptions {
   /// Centre of the circles. Heights are relative to its z [m].
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 30.0;
-  double lowest = 10.0;   ///< Height of the first circle [m].
-  double highest = 30.0;  ///< Height of the last circle [m].
-  int circles = 3;        ///< Number of circles, at equal height intervals.
-  double speed = 6.0;     ///< Speed on circles and climbs [m/s].
-  double start = 0.0;     ///< Start angle of the circles, anticlockwise from east [rad].
+  double min_height = 10.0;  ///< Height of the first circle [m].
+  double max_height = 30.0;  ///< Height of the last circle [m].
+  int circles = 3;           ///< Number of circles, at equal height intervals.
+  double speed = 6.0;        ///< Speed on circles and climbs [m/s].
+  double start = 0.0;        ///< Start angle of the circles, anticlockwise from east [rad].
 };
 
 /// Coordinate system of the LAS and E57 files of a scan.
@@ -32,7 +32,7 @@ enum class ScanCrs {
 
 /// Settings of `skycap scan`, including the navigation errors of the platform. Body frame: x
 /// forward, y left, z up.
-struct FlownScanOptions {
+struct ScanFlightOptions {
   std::string sensor = "ouster_os1_128";  ///< Name of a preset, or path of a description.
   std::optional<std::string> route;       ///< Route file; replaces the orbit.
   OrbitOptions orbit;

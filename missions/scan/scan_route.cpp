@@ -32,8 +32,8 @@ sim::StampedPose level_pose(double time, const Vector3d& position, double headin
 }
 
 /// Returns the pose of the platform at a view. Headings are anticlockwise from east.
-sim::StampedPose pose_at(double time, const View& view, Carrier carrier) {
-  if (carrier == Carrier::airframe) {
+sim::StampedPose pose_at(double time, const View& view, Platform platform) {
+  if (platform == Platform::airframe) {
     return level_pose(time, view.position, std::atan2(view.direction.y(), view.direction.x()));
   }
   return stamped(time, geometry::camera_pose(view) * body_from_camera().inverse());
@@ -47,39 +47,39 @@ ScanRoute from_tum(const std::string& text) {
   return {sim::Trajectory(std::move(poses)), {}};
 }
 
-ScanRoute from_states(const std::vector<flight::TimedState>& states, Carrier carrier) {
+ScanRoute from_states(const std::vector<flight::TimedState>& states, Platform platform) {
   const std::vector<flight::TimedPose> cameras = flight::camera_poses(states);
   std::vector<sim::StampedPose> poses;
   std::vector<double> image_times;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const flight::TimedState& state = states[i];
-    if (state.is_shot) image_times.push_back(state.time);
+    if (state.is_capture) image_times.push_back(state.time);
     poses.push_back(
-        carrier == Carrier::gimbal
+        platform == Platform::gimbal
             ? stamped(state.time, cameras[i].world_from_camera * body_from_camera().inverse())
             : level_pose(state.time, state.position, 0.5 * std::numbers::pi - state.yaw));
   }
   return {sim::Trajectory(std::move(poses)), std::move(image_times)};
 }
 
-std::vector<View> views_of(const std::string& text) {
-  const std::vector<std::string> lines = flight::lines_of(text);
+std::vector<View> parse_views(const std::string& text) {
+  const std::vector<std::string> lines = flight::split_lines(text);
   std::vector<View> views;
   for (std::size_t line = 1; line < lines.size(); ++line) {
     if (lines[line].empty()) continue;
-    const std::string place = "line " + std::to_string(line + 1);
+    const std::string location = "line " + std::to_string(line + 1);
     const std::vector<std::string> fields = flight::split(lines[line], ',');
     if (fields.size() < 7) {
-      throw Error(ErrorKind::bad_file, place + " has " + std::to_string(fields.size()) +
+      throw Error(ErrorKind::bad_file, location + " has " + std::to_string(fields.size()) +
                                            " fields; a view requires at least 7");
     }
     flight::Problems problems;
     const auto numbers =
-        flight::to_numbers({fields.begin() + 1, fields.begin() + 7}, place + " ", problems);
+        flight::to_numbers({fields.begin() + 1, fields.begin() + 7}, location + " ", problems);
     if (!numbers) throw Error(ErrorKind::bad_file, problems.front());
     const Vector3d direction((*numbers)[3], (*numbers)[4], (*numbers)[5]);
     if (direction.norm() < 1e-6) {
-      throw Error(ErrorKind::bad_file, place + " has a direction of zero length");
+      throw Error(ErrorKind::bad_file, location + " has a direction of zero length");
     }
     views.push_back(
         {Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]), direction.normalized()});
@@ -87,18 +87,18 @@ std::vector<View> views_of(const std::string& text) {
   return views;
 }
 
-ScanRoute from_views(const std::vector<View>& views, double speed, Carrier carrier) {
-  constexpr double turn_rate = 1.0;    // [rad/s]
-  constexpr double least_time = 1e-3;  // Minimum time between views at the same position [s].
+ScanRoute from_views(const std::vector<View>& views, double speed, Platform platform) {
+  constexpr double turn_rate = 1.0;  // [rad/s]
+  constexpr double min_time = 1e-3;  // Minimum time between views at the same position [s].
   std::vector<sim::StampedPose> poses;
   std::vector<double> image_times;
   double time = 0.0;
   for (const View& view : views) {
-    sim::StampedPose pose = pose_at(time, view, carrier);
+    sim::StampedPose pose = pose_at(time, view, platform);
     if (!poses.empty()) {
-      const double way = (pose.position - poses.back().position).norm();
+      const double travelled = (pose.position - poses.back().position).norm();
       const double turn = pose.attitude.angularDistance(poses.back().attitude);
-      time += std::max({way / speed, turn / turn_rate, least_time});
+      time += std::max({travelled / speed, turn / turn_rate, min_time});
       pose.time = time;
     }
     poses.push_back(pose);
@@ -112,13 +112,13 @@ ScanRoute from_points(const std::vector<Vector3d>& points, double speed) {
   std::vector<View> views;  // Each corner occurs twice: at arrival and at departure.
   Vector3d ahead = Vector3d::UnitX();
   for (std::size_t i = 1; i < points.size(); ++i) {
-    const Vector3d way = points[i] - points[i - 1];
-    const Vector3d level(way.x(), way.y(), 0.0);
+    const Vector3d travelled = points[i] - points[i - 1];
+    const Vector3d level(travelled.x(), travelled.y(), 0.0);
     if (level.norm() > 1e-3) ahead = level.normalized();
     views.push_back({points[i - 1], ahead});
     views.push_back({points[i], ahead});
   }
-  ScanRoute route = from_views(views, speed, Carrier::airframe);
+  ScanRoute route = from_views(views, speed, Platform::airframe);
   route.image_times.clear();
   return route;
 }
@@ -155,7 +155,7 @@ std::vector<std::filesystem::path> sorties_in(const std::filesystem::path& folde
 /// Concatenates sorties with a short pause that does not represent the time for changing the
 /// battery.
 ScanRoute from_sorties(const std::vector<std::filesystem::path>& files, double speed,
-                       Carrier carrier) {
+                       Platform platform) {
   constexpr double pause = 1.0;  // [s]
   std::vector<flight::TimedState> all;
   for (const std::filesystem::path& file : files) {
@@ -163,8 +163,8 @@ ScanRoute from_sorties(const std::vector<std::filesystem::path>& files, double s
       double later = 0.0;
       for (flight::TimedState& state : flight::read_trajectory_csv(route_text(file))) {
         if (later == 0.0 && !all.empty()) {
-          const double way = (state.position - all.back().position).norm();
-          later = all.back().time + std::max(pause, way / speed) - state.time;
+          const double travelled = (state.position - all.back().position).norm();
+          later = all.back().time + std::max(pause, travelled / speed) - state.time;
         }
         state.time += later;
         all.push_back(state);
@@ -173,22 +173,23 @@ ScanRoute from_sorties(const std::vector<std::filesystem::path>& files, double s
       fail_in(file, error);
     }
   }
-  return from_states(all, carrier);
+  return from_states(all, platform);
 }
 
 }  // namespace
 
-ScanRoute read_scan_route(const std::filesystem::path& path, const FlownScanOptions& options,
-                          Carrier carrier) {
+ScanRoute read_scan_route(const std::filesystem::path& path, const ScanFlightOptions& options,
+                          Platform platform) {
   std::filesystem::path file = path;
   if (std::filesystem::is_directory(path)) {
     const std::vector<std::filesystem::path> sorties = sorties_in(path);
-    if (!sorties.empty()) return from_sorties(sorties, options.speed, carrier);
+    if (!sorties.empty()) return from_sorties(sorties, options.speed, platform);
     file = path / "views.csv";
   }
-  const std::string ending = file.extension().string();
-  const bool has_local_places = ending == ".tum" || ending == ".txt" || ending == ".csv";
-  if (!has_local_places) {
+  const std::string extension = file.extension().string();
+  const bool has_local_positions =
+      extension == ".tum" || extension == ".txt" || extension == ".csv";
+  if (!has_local_positions) {
     if (!options.site) {
       throw Error(ErrorKind::bad_config,
                   file.string() +
@@ -198,9 +199,9 @@ ScanRoute read_scan_route(const std::filesystem::path& path, const FlownScanOpti
   }
   const std::string text = route_text(file);
   try {
-    if (ending != ".csv") return from_tum(text);
-    if (text.starts_with("view,")) return from_views(views_of(text), options.speed, carrier);
-    return from_states(flight::read_trajectory_csv(text), carrier);
+    if (extension != ".csv") return from_tum(text);
+    if (text.starts_with("view,")) return from_views(parse_views(text), options.speed, platform);
+    return from_states(flight::read_trajectory_csv(text), platform);
   } catch (const Error& error) {
     fail_in(file, error);
   }
@@ -211,26 +212,27 @@ sim::Trajectory orbit_trajectory(const OrbitOptions& orbit) {
   constexpr double interval = 0.02;
   const double round = 2.0 * std::numbers::pi * orbit.radius;
   const double step =
-      orbit.circles > 1 ? (orbit.highest - orbit.lowest) / (orbit.circles - 1) : 0.0;
+      orbit.circles > 1 ? (orbit.max_height - orbit.min_height) / (orbit.circles - 1) : 0.0;
   const double climb = std::abs(step);
   const double length = orbit.circles * round + (orbit.circles - 1) * climb;
-  const auto pose_after = [&](double time, double way) {
-    const auto circle = std::min<int>(static_cast<int>(way / (round + climb)), orbit.circles - 1);
-    const double rest = way - circle * (round + climb);
+  const auto pose_after = [&](double time, double travelled) {
+    const auto circle =
+        std::min<int>(static_cast<int>(travelled / (round + climb)), orbit.circles - 1);
+    const double rest = travelled - circle * (round + climb);
     const double angle = orbit.start + std::min(rest, round) / orbit.radius;
     const double climbed = climb > 0.0 ? std::max(0.0, rest - round) / climb : 0.0;
-    const double height = orbit.lowest + step * (circle + climbed);
+    const double height = orbit.min_height + step * (circle + climbed);
     const Vector3d spoke(std::cos(angle), std::sin(angle), 0.0);
     return level_pose(time, orbit.centre + orbit.radius * spoke + height * Vector3d::UnitZ(),
                       angle + 0.5 * std::numbers::pi);
   };
   const double duration = length / orbit.speed;
-  constexpr double most_poses = 3e6;  // 16 hours.
-  if (!(duration / interval <= most_poses)) {
+  constexpr double max_poses = 3e6;  // 16 hours.
+  if (!(duration / interval <= max_poses)) {
     throw Error(ErrorKind::bad_config,
                 "scan.orbit.speed: these circles take " + support::short_text(duration) +
                     " s and " + support::short_text(duration / interval) +
-                    " poses; the maximum is " + support::short_text(most_poses) +
+                    " poses; the maximum is " + support::short_text(max_poses) +
                     "; fly faster, or fewer or smaller circles");
   }
   std::vector<sim::StampedPose> poses;

@@ -18,8 +18,8 @@ namespace {
 /// Returns the number of firings per portion, small enough for the returns and their bytes to stay
 /// in the cache of a core.
 std::uint64_t firings_in_portion(const sim::Lidar& lidar) {
-  constexpr std::uint64_t shots = 1 << 12, block = 32;
-  return std::max<std::uint64_t>(1, shots / (lidar.config().channels.size() * block)) * block;
+  constexpr std::uint64_t pulses = 1 << 12, block = 32;
+  return std::max<std::uint64_t>(1, pulses / (lidar.config().channels.size() * block)) * block;
 }
 
 /// Some thousand pulses, encoded for each file.
@@ -43,9 +43,9 @@ class ScanRun {
         files_(files),
         options_(options),
         firings_in_portion_(firings_in_portion(lidar)) {
-    const sim::FiringRange range = firings_of(options.piece, lidar, flight.flown);
+    const sim::FiringRange range = find_firings(options.shard, lidar, flight.ground_truth);
     end_firing_ = range.first + range.count;
-    progress_.all_firings = lidar.firings(flight.flown);
+    progress_.all_firings = lidar.firings(flight.ground_truth);
     portions_ = (end_firing_ + firings_in_portion_ - 1) / firings_in_portion_;
     ring_.resize(8UL * geometry::thread_count(options.threads));
     for (Portion& portion : ring_) portion.chunks.resize(files.size());
@@ -97,7 +97,7 @@ class ScanRun {
   // requested.
   std::uint64_t next_number() {
     std::unique_lock lock(mutex_);
-    has_room_.wait(lock, [&] { return is_over_ || measured_ < appended_ + ring_.size(); });
+    space_available_.wait(lock, [&] { return is_over_ || measured_ < appended_ + ring_.size(); });
     if (options_.stop.stop_requested()) is_over_ = true;
     return is_over_ || measured_ >= portions_ ? portions_ : measured_++;
   }
@@ -119,7 +119,7 @@ class ScanRun {
       lock.lock();
       portion.is_ready = false;
       ++appended_;
-      has_room_.notify_all();
+      space_available_.notify_all();
     }
     is_appending_ = false;
   }
@@ -136,7 +136,7 @@ class ScanRun {
   void abandon() {
     const std::lock_guard lock(mutex_);
     is_over_ = true;
-    has_room_.notify_all();
+    space_available_.notify_all();
   }
 
   const sim::Scene& scene_;
@@ -148,7 +148,7 @@ class ScanRun {
   std::uint64_t end_firing_ = 0, portions_ = 0;
 
   std::mutex mutex_;
-  std::condition_variable has_room_;
+  std::condition_variable space_available_;
   std::vector<Portion> ring_;  // Portion i is at index i % size.
   std::uint64_t measured_ = 0, appended_ = 0;
   bool is_appending_ = false, is_over_ = false;
@@ -158,15 +158,15 @@ class ScanRun {
 
 }  // namespace
 
-sim::FiringRange firings_of(const FlightPiece& piece, const sim::Lidar& lidar,
-                            const sim::Trajectory& flown) {
-  const std::uint64_t all = lidar.firings(flown), portion = firings_in_portion(lidar);
+sim::FiringRange find_firings(const FlightShard& shard, const sim::Lidar& lidar,
+                              const sim::Trajectory& ground_truth) {
+  const std::uint64_t all = lidar.firings(ground_truth), portion = firings_in_portion(lidar);
   const std::uint64_t portions = (all + portion - 1) / portion;
-  const auto begin_of = [&](std::uint64_t number) {
-    return std::min(all, portions * number / piece.count * portion);
+  const auto compute_begin = [&](std::uint64_t number) {
+    return std::min(all, portions * number / shard.count * portion);
   };
-  const std::uint64_t first = begin_of(piece.number);
-  return {first, begin_of(piece.number + 1) - first};
+  const std::uint64_t first = compute_begin(shard.number);
+  return {first, compute_begin(shard.number + 1) - first};
 }
 
 ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,

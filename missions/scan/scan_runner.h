@@ -24,19 +24,19 @@ struct ScanResult {
 };
 
 /// Piece of a flight. Pieces can be measured by separate processes.
-struct FlightPiece {
+struct FlightShard {
   std::size_t number = 0;  ///< Index from 0.
   std::size_t count = 1;   ///< Number of pieces of the flight.
 };
 
 /// Returns the firings of a piece. Pieces have approximately equal sizes and cover the whole
 /// flight. In all formats, the concatenated pieces have the bytes of the whole flight.
-sim::FiringRange firings_of(const FlightPiece& piece, const sim::Lidar& lidar,
-                            const sim::Trajectory& flown);
+sim::FiringRange find_firings(const FlightShard& shard, const sim::Lidar& lidar,
+                              const sim::Trajectory& ground_truth);
 
 struct ScanOptions {
   unsigned threads = 0;  ///< Number of threads (0: all processors).
-  FlightPiece piece;     ///< Piece to measure.
+  FlightShard shard;     ///< Piece to measure.
   ScanProgress begun;    ///< Checkpoint to resume from; without firings, a new scan starts.
   /// Called at intervals of at least `checkpoint_period`, never concurrently. The files then
   /// contain exactly the data up to the progress. May be empty.

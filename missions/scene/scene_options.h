@@ -57,7 +57,7 @@ geometry::Mesh prior_truth(const SceneOptions& scene);
 
 /// Returns the surfaces of obstacles, except those that are also targets or ground truth. Files
 /// with a target typically also contain its surroundings and are read once per role.
-std::vector<const geometry::Mesh*> neighbours_of(const site_data::SitePriors& site);
+std::vector<const geometry::Mesh*> find_neighbours(const site_data::SitePriors& site);
 
 /// Returns the neighbouring obstacles from the prior data as one mesh, except targets and ground
 /// truth. Empty unless `neighbours` is set.

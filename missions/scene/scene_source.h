@@ -26,9 +26,9 @@ std::vector<sim::Surface> load_surfaces(const SceneOptions& scene,
 
 /// Returns the input files of a scanner (preset name or path of a description) and of the scene,
 /// without prior data. Throws Error{bad_file} for a model:NAME that is not stored.
-std::vector<std::filesystem::path> files_of(const SceneOptions& scene,
-                                            const std::optional<std::string>& lidar,
-                                            const std::filesystem::path& folder);
+std::vector<std::filesystem::path> collect_files(const SceneOptions& scene,
+                                                 const std::optional<std::string>& lidar,
+                                                 const std::filesystem::path& folder);
 
 /// Returns the rotation and scaling of a model defined by `scene`, without its position and without
 /// scaling to a size.
@@ -41,7 +41,7 @@ void place_model(const SceneOptions& scene, geometry::Mesh& model);
 
 /// Returns the transforms from the first model, as placed by place_model(), to each model, starting
 /// with the identity for the first.
-std::vector<Eigen::Isometry3d> copies_of(const SceneOptions& scene);
+std::vector<Eigen::Isometry3d> compute_copy_poses(const SceneOptions& scene);
 
 /// Returns all models of the scene as one mesh.
 geometry::Mesh with_copies(const SceneOptions& scene, const geometry::Mesh& placed_model);
@@ -51,16 +51,16 @@ struct ReflectingScene {
   geometry::Mesh model;                ///< First of the models.
   std::vector<float> reflectances;     ///< Diffuse reflectance of each triangle.
   std::vector<sim::Surface> surfaces;  ///< Optical type of each triangle; empty if all are matt.
-  std::vector<Eigen::Isometry3d> places;
-  geometry::Mesh beside;  ///< Result of surroundings_of() for all models.
-  std::vector<float> beside_reflectances;
+  std::vector<Eigen::Isometry3d> poses;
+  geometry::Mesh surroundings;  ///< Result of make_surroundings() for all models.
+  std::vector<float> surroundings_reflectances;
 
   /// Returns the scene prepared for ray casting. Copies share the memory of the model.
   sim::Scene scene(unsigned threads) const;
   /// Returns the centre of the bounding box of all models.
   Eigen::Vector3d centre() const;
   /// Returns the checksums of all parts, which identify the scene.
-  std::string digest() const;
+  std::string content_checksum() const;
 };
 
 /// Returns the placed model, its copies and its surroundings with the reflectances of `scene`.
@@ -70,11 +70,11 @@ ReflectingScene reflecting_scene(const SceneOptions& scene, const std::filesyste
 
 /// Returns the ground that sensors measure: the terrain of the mission's prior data, otherwise
 /// ground_under(). `model` is the bounding box of the placed model.
-geometry::Mesh ground_of(const SceneOptions& scene, const Eigen::AlignedBox3d& model);
+geometry::Mesh make_ground(const SceneOptions& scene, const Eigen::AlignedBox3d& model);
 
 /// Returns the surroundings that the scene includes: ground and neighbouring objects. `model` is
 /// the bounding box of the placed model. The mesh is empty if neither is enabled.
-geometry::Mesh surroundings_of(const SceneOptions& scene, const Eigen::AlignedBox3d& model);
+geometry::Mesh make_surroundings(const SceneOptions& scene, const Eigen::AlignedBox3d& model);
 
 /// Returns a square at the height of the model's base, ten times as wide as the bounding box
 /// `model`.

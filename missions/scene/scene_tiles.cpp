@@ -37,7 +37,7 @@ class TileEntry {
   /// `file` is the path of the tiles file in the scene. Paths in it are relative to its folder.
   TileEntry(support::YamlSection& section, const SceneOptions& scene, const fs::path& file,
             const fs::path& folder)
-      : section_(section), place_(fs::path(file).parent_path()), folder_(folder) {
+      : section_(section), base_path_(fs::path(file).parent_path()), folder_(folder) {
     one_.ground = scene.ground;  // Prevents tiles from having their own ground.
   }
 
@@ -73,7 +73,7 @@ class TileEntry {
     std::vector<std::string> names;
     std::error_code failure;
     for (const auto& entry :
-         fs::directory_iterator(folder_ / place_ / pattern.parent_path() / ".", failure)) {
+         fs::directory_iterator(folder_ / base_path_ / pattern.parent_path() / ".", failure)) {
       const std::string name = entry.path().filename();
       if (fnmatch(pattern.filename().c_str(), name.c_str(), FNM_PERIOD) == 0) {
         names.push_back(name);
@@ -86,7 +86,7 @@ class TileEntry {
     }
     std::ranges::sort(names);
     for (const std::string& name : names) {
-      one_.model = place_ / pattern.parent_path() / name;
+      one_.model = base_path_ / pattern.parent_path() / name;
       tiles.push_back({one_, {origin_}});
     }
   }
@@ -102,7 +102,7 @@ class TileEntry {
   void append_blocks(std::vector<TileKind>& tiles) {
     const std::string model = section_.text("model");
     const bool is_builtin = model.starts_with("builtin:");
-    one_.model = is_builtin || model.starts_with("model:") ? model : (place_ / model).string();
+    one_.model = is_builtin || model.starts_with("model:") ? model : (base_path_ / model).string();
     const int columns = count("columns"), rows = count("rows");
     const bool is_alone = columns == 1 && rows == 1;
     const double spacing = is_alone ? section_.number("spacing", 0.0) : section_.number("spacing");
@@ -133,38 +133,39 @@ class TileEntry {
   }
 
   support::YamlSection& section_;
-  fs::path place_, folder_;
+  fs::path base_path_, folder_;
   SceneOptions one_;
   Vector3d origin_ = Vector3d::Zero();
 };
 
 void require_for_tiles(const SceneOptions& scene) {
-  const auto refuse = [](const char* key) {
+  const auto reject = [](const char* key) {
     throw Error(ErrorKind::bad_config, std::string(key) + " conflicts with a tile list; remove it");
   };
-  if (!scene.copies.empty()) refuse("scene.copies");
-  if (scene.longest_side) refuse("scene.longest_side");
-  if (scene.materials) refuse("scene.materials");
+  if (!scene.copies.empty()) reject("scene.copies");
+  if (scene.longest_side) reject("scene.longest_side");
+  if (scene.materials) reject("scene.materials");
 }
 
 std::uint32_t checksum(const geometry::Mesh& mesh) {
-  const auto sum_of = [](const auto& items) {
-    return geometry::crc32_of(
+  const auto compute_checksum = [](const auto& items) {
+    return geometry::compute_crc32(
         {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
   };
-  return sum_of(mesh.vertices) ^ static_cast<std::uint32_t>(geometry::split_mix(
-                                     sum_of(mesh.triangles)));  // Avoids cancellation.
+  return compute_checksum(mesh.vertices) ^
+         static_cast<std::uint32_t>(
+             geometry::split_mix(compute_checksum(mesh.triangles)));  // Avoids cancellation.
 }
 
-Eigen::AlignedBox3d at(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& place) {
-  return {box.min() + place.translation(), box.max() + place.translation()};
+Eigen::AlignedBox3d at(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& pose) {
+  return {box.min() + pose.translation(), box.max() + pose.translation()};
 }
 
 }  // namespace
 
 bool is_tiled(const SceneOptions& scene) { return scene.model.ends_with(".tiles"); }
 
-std::vector<TileKind> tiles_of(const SceneOptions& scene, const fs::path& folder) {
+std::vector<TileKind> find_tiles(const SceneOptions& scene, const fs::path& folder) {
   require_for_tiles(scene);
   const std::string name = (folder / scene.model).string();
   const support::YamlNode root = support::parse_yaml(geometry::read_file(name), name);
@@ -181,34 +182,35 @@ std::vector<TileKind> tiles_of(const SceneOptions& scene, const fs::path& folder
 TiledScene::TiledScene(const SceneOptions& scene, const fs::path& folder, unsigned threads,
                        const fs::path& index)
     : scene_(scene), folder_(folder) {
-  for (TileKind& tile : tiles_of(scene_, folder)) kinds_.push_back({std::move(tile), {}, 0, {}});
+  for (TileKind& tile : find_tiles(scene_, folder)) kinds_.push_back({std::move(tile), {}, 0, {}});
   if (!read_index(index)) {
     geometry::parallel_for(kinds_.size(), threads, [&](std::size_t i) { look_at(kinds_[i]); });
     write_index(index);
   }
-  std::string digests;
+  std::string checksums;
   for (const Kind& kind : kinds_) {
-    digests += kind.digest;
-    for (const Eigen::Isometry3d& place : places_of(kind.tile)) {
-      const Eigen::AlignedBox3d box = at(kind.box, place);
+    checksums += kind.content_checksum;
+    for (const Eigen::Isometry3d& pose : copy_poses(kind.tile)) {
+      const Eigen::AlignedBox3d box = at(kind.box, pose);
       for (const Vector3d& corner : {box.min(), box.max()}) {
-        geometry::require_place(corner, kind.tile.scene.model + ": a corner of the placed tile");
+        geometry::require_valid_position(corner,
+                                         kind.tile.scene.model + ": a corner of the placed tile");
       }
       box_.extend(box);
       triangles_ += kind.triangles;
-      for (const double at : place.translation()) digests += fmt::format(" {}", at);
+      for (const double at : pose.translation()) checksums += fmt::format(" {}", at);
     }
   }
-  beside_ = surroundings_of(scene, box_);
-  digest_ = fmt::format("{} tiles {:08x} {:08x}", kinds_.size(), geometry::crc32_of(digests),
-                        checksum(beside_));
+  surroundings_ = make_surroundings(scene, box_);
+  content_checksum_ = fmt::format("{} tiles {:08x} {:08x}", kinds_.size(),
+                                  geometry::compute_crc32(checksums), checksum(surroundings_));
 }
 
 void TiledScene::look_at(Kind& kind) const {
   const geometry::Mesh mesh = turned_and_scaled(kind.tile);
   kind.box = geometry::bounding_box(mesh);
   kind.triangles = mesh.triangles.size();
-  kind.digest = fmt::format("{:08x}", checksum(mesh));
+  kind.content_checksum = fmt::format("{:08x}", checksum(mesh));
 }
 
 /// Returns all inputs that determine the result of look_at().
@@ -236,10 +238,10 @@ bool TiledScene::read_index(const fs::path& index) {
     const auto& kinds = json.at("kinds");
     if (json.at("of") != index_key() || kinds.size() != kinds_.size()) return false;
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
-      kinds_[i].box = {support::vector_of(kinds[i].at("low")),
-                       support::vector_of(kinds[i].at("high"))};
+      kinds_[i].box = {support::to_vector(kinds[i].at("low")),
+                       support::to_vector(kinds[i].at("high"))};
       kinds_[i].triangles = kinds[i].at("triangles").get<std::size_t>();
-      kinds_[i].digest = kinds[i].at("digest").get<std::string>();
+      kinds_[i].content_checksum = kinds[i].at("digest").get<std::string>();
     }
     return true;
   } catch (const nlohmann::json::exception&) {
@@ -253,10 +255,10 @@ void TiledScene::write_index(const fs::path& index) const {
   if (index.empty()) return;
   auto kinds = nlohmann::ordered_json::array();
   for (const Kind& kind : kinds_) {
-    kinds.push_back({{"low", support::json_of(Vector3d(kind.box.min()))},
-                     {"high", support::json_of(Vector3d(kind.box.max()))},
+    kinds.push_back({{"low", support::to_json(Vector3d(kind.box.min()))},
+                     {"high", support::to_json(Vector3d(kind.box.max()))},
                      {"triangles", kind.triangles},
-                     {"digest", kind.digest}});
+                     {"digest", kind.content_checksum}});
   }
   try {
     geometry::write_file(index, support::json_text({{"of", index_key()}, {"kinds", kinds}}));
@@ -272,31 +274,32 @@ geometry::Mesh TiledScene::turned_and_scaled(const TileKind& tile) const {
   return mesh;
 }
 
-std::vector<Eigen::Isometry3d> TiledScene::places_of(const TileKind& tile) const {
+std::vector<Eigen::Isometry3d> TiledScene::copy_poses(const TileKind& tile) const {
   const Eigen::Affine3d turn = turn_and_scale(scene_);
-  std::vector<Eigen::Isometry3d> places;
+  std::vector<Eigen::Isometry3d> poses;
   for (const Vector3d& shift : tile.shifts) {
-    places.emplace_back(Eigen::Translation3d(scene_.position + turn.linear() * shift));
+    poses.emplace_back(Eigen::Translation3d(scene_.position + turn.linear() * shift));
   }
-  return places;
+  return poses;
 }
 
-sim::Scene TiledScene::scene(unsigned threads, const IsWanted& is_wanted) const {
+sim::Scene TiledScene::scene(unsigned threads, const TileFilter& tile_filter) const {
   sim::SceneBuilder builder(centre(), threads);
   const auto reflectance = static_cast<float>(scene_.reflectance);
-  const auto reflectances_of = [&](const geometry::Mesh& mesh) {
+  const auto collect_reflectances = [&](const geometry::Mesh& mesh) {
     const bool is_usual = reflectance == sim::Scene::default_reflectance;
     return std::vector<float>(is_usual ? 0 : mesh.triangles.size(), reflectance);
   };
   for (const Kind& kind : kinds_) {
-    std::vector<Eigen::Isometry3d> places = places_of(kind.tile);
-    std::erase_if(places, [&](const auto& place) { return !is_wanted(at(kind.box, place)); });
-    if (places.empty()) continue;
+    std::vector<Eigen::Isometry3d> poses = copy_poses(kind.tile);
+    std::erase_if(poses, [&](const auto& pose) { return !tile_filter(at(kind.box, pose)); });
+    if (poses.empty()) continue;
     const geometry::Mesh mesh = turned_and_scaled(kind.tile);
     const std::vector<sim::Surface> surfaces = load_surfaces(kind.tile.scene, folder_);
-    builder.add({mesh, reflectances_of(mesh), places, surfaces});
+    builder.add({mesh, collect_reflectances(mesh), poses, surfaces});
   }
-  if (!beside_.triangles.empty()) builder.add({beside_, reflectances_of(beside_), {}});
+  if (!surroundings_.triangles.empty())
+    builder.add({surroundings_, collect_reflectances(surroundings_), {}});
   return builder.finish();
 }
 

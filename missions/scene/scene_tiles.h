@@ -32,10 +32,10 @@ bool is_tiled(const SceneOptions& scene);
 /// positions from south to north and from west to east. Throws Error naming the file if it is
 /// missing or invalid or a pattern matches no file. Throws Error also if a key of `scene` does not
 /// apply to tiles.
-std::vector<TileKind> tiles_of(const SceneOptions& scene, const std::filesystem::path& folder);
+std::vector<TileKind> find_tiles(const SceneOptions& scene, const std::filesystem::path& folder);
 
 /// Selects parts of a scene by their bounding boxes.
-using IsWanted = std::function<bool(const Eigen::AlignedBox3d& box)>;
+using TileFilter = std::function<bool(const Eigen::AlignedBox3d& box)>;
 
 /// Scene of tiles. It stores the properties of each mesh, but not the meshes.
 class TiledScene {
@@ -48,34 +48,34 @@ class TiledScene {
   /// Returns the centre of the bounding box of all tiles.
   Eigen::Vector3d centre() const { return box_.center(); }
   /// Returns a checksum of the meshes and their arrangement, which identifies the scene.
-  const std::string& digest() const { return digest_; }
+  const std::string& content_checksum() const { return content_checksum_; }
   std::size_t triangles() const { return triangles_; }
 
   /// Returns the selected tiles and the surroundings of all tiles, prepared for ray casting. Hits
   /// on a tile do not depend on the selection of other tiles.
-  sim::Scene scene(unsigned threads, const IsWanted& is_wanted) const;
+  sim::Scene scene(unsigned threads, const TileFilter& tile_filter) const;
 
  private:
   struct Kind {
     TileKind tile;
     Eigen::AlignedBox3d box;  ///< Bounding box of the rotated and scaled mesh.
     std::size_t triangles = 0;
-    std::string digest;
+    std::string content_checksum;
   };
   void look_at(Kind& kind) const;
   std::string index_key() const;
   bool read_index(const std::filesystem::path& index);
   void write_index(const std::filesystem::path& index) const;
   geometry::Mesh turned_and_scaled(const TileKind& tile) const;
-  std::vector<Eigen::Isometry3d> places_of(const TileKind& tile) const;
+  std::vector<Eigen::Isometry3d> copy_poses(const TileKind& tile) const;
 
   SceneOptions scene_;
   std::filesystem::path folder_;
-  geometry::Mesh beside_;  ///< Result of surroundings_of() for the tiles.
+  geometry::Mesh surroundings_;  ///< Result of make_surroundings() for the tiles.
   std::vector<Kind> kinds_;
   Eigen::AlignedBox3d box_;
   std::size_t triangles_ = 0;
-  std::string digest_;
+  std::string content_checksum_;
 };
 
 }  // namespace skycap::missions::scene

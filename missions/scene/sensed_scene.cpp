@@ -23,13 +23,14 @@ Eigen::Vector3d SensedScene::centre() const {
   return std::visit([](const auto& scene) -> Eigen::Vector3d { return scene.centre(); }, scene_);
 }
 
-std::string SensedScene::digest() const {
-  return std::visit([](const auto& scene) -> std::string { return scene.digest(); }, scene_);
+std::string SensedScene::content_checksum() const {
+  return std::visit([](const auto& scene) -> std::string { return scene.content_checksum(); },
+                    scene_);
 }
 
-sim::Scene SensedScene::scene(unsigned threads, const IsWanted& is_wanted) const {
+sim::Scene SensedScene::scene(unsigned threads, const TileFilter& tile_filter) const {
   if (const auto* const tiles = std::get_if<TiledScene>(&scene_)) {
-    return tiles->scene(threads, is_wanted);
+    return tiles->scene(threads, tile_filter);
   }
   return std::get<ReflectingScene>(scene_).scene(threads);
 }

@@ -26,9 +26,9 @@ class SensedScene {
   /// Returns the centre of the bounding box of all models.
   Eigen::Vector3d centre() const;
   /// Returns a checksum that identifies the scene.
-  std::string digest() const;
+  std::string content_checksum() const;
   /// Returns the whole scene or the selected tiles, prepared for ray casting.
-  sim::Scene scene(unsigned threads, const IsWanted& is_wanted) const;
+  sim::Scene scene(unsigned threads, const TileFilter& tile_filter) const;
 
  private:
   std::variant<ReflectingScene, TiledScene> scene_;

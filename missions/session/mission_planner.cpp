@@ -14,22 +14,23 @@ namespace {
 constexpr std::size_t surface_targets = 6000;
 
 /// Copies the data that only planners with coverage estimates provide.
-void record_belief(const survey::Planner& planner, SurveyRecord& record) {
+void record_estimate(const survey::Planner& planner, SurveyRecord& record) {
   const survey::CoverageEstimator* const estimator = planner.estimator();
   if (estimator == nullptr) return;
-  record.belief = estimator->belief();
+  record.estimate = estimator->estimate();
   record.stop_rule = estimator->stop_rule();
 }
 
 }  // namespace
 
-struct MissionPlanner::Impl {
+struct ConstrainedPlanner::Impl {
   Impl(const SurveyOptions& given, const std::optional<geometry::View>& first_view,
        const survey::PlannerRun& run)
       : options(given), seed(run.seed), planner(survey::make_planner(options.planner, run)) {
-    if (!options.flight.is_flown()) return;
+    if (!options.flight.has_vehicle()) return;
     flight.emplace(options.flight, first_view.value(), run.threads);
-    planner->keep_to([this](const Eigen::Vector3d& place) { return flight->may_be_at(place); });
+    planner->keep_to(
+        [this](const Eigen::Vector3d& position) { return flight->may_be_at(position); });
   }
 
   SurveyOptions options;
@@ -38,61 +39,63 @@ struct MissionPlanner::Impl {
   std::optional<SurveyFlight> flight;
 };
 
-MissionPlanner::MissionPlanner(const SurveyOptions& options,
-                               const std::optional<geometry::View>& first_view,
-                               const survey::PlannerRun& run)
+ConstrainedPlanner::ConstrainedPlanner(const SurveyOptions& options,
+                                       const std::optional<geometry::View>& first_view,
+                                       const survey::PlannerRun& run)
     : impl_(std::make_unique<Impl>(options, first_view, run)) {}
 
-MissionPlanner::~MissionPlanner() = default;
+ConstrainedPlanner::~ConstrainedPlanner() = default;
 
-survey::Planner& MissionPlanner::planner() { return *impl_->planner; }
+survey::Planner& ConstrainedPlanner::planner() { return *impl_->planner; }
 
-SurveyFlight* MissionPlanner::flight() { return impl_->flight ? &*impl_->flight : nullptr; }
+SurveyFlight* ConstrainedPlanner::flight() { return impl_->flight ? &*impl_->flight : nullptr; }
 
-survey::SurveyPorts MissionPlanner::ports() {
-  survey::SurveyPorts ports;
+survey::SurveyCallbacks ConstrainedPlanner::callbacks() {
+  survey::SurveyCallbacks callbacks;
   Impl& impl = *impl_;
-  const std::vector<geometry::View> opening = opening_views(impl.options.start, impl.seed);
-  if (!opening.empty()) ports.opening.assign(opening.begin() + 1, opening.end());
-  if (!impl.flight) return ports;
-  ports.sensed = [&impl](const geometry::Scan& scan) {
+  const std::vector<geometry::View> initial_pattern =
+      initial_pattern_views(impl.options.start, impl.seed);
+  if (!initial_pattern.empty())
+    callbacks.initial_pattern.assign(initial_pattern.begin() + 1, initial_pattern.end());
+  if (!impl.flight) return callbacks;
+  callbacks.sensed = [&impl](const geometry::Scan& scan) {
     impl.flight->fly();
-    impl.flight->take_in(scan);
+    impl.flight->add_scan(scan);
   };
-  ports.sensed_on_way = [&impl](const geometry::Scan& scan) { impl.flight->take_in(scan); };
-  ports.stop_on = [&impl](std::stop_token stop) { impl.flight->stop_on(std::move(stop)); };
-  ports.can_reach = [&impl](const Eigen::Vector3d& from, const geometry::View& view) {
+  callbacks.sensed_en_route = [&impl](const geometry::Scan& scan) { impl.flight->add_scan(scan); };
+  callbacks.stop_on = [&impl](std::stop_token stop) { impl.flight->stop_on(std::move(stop)); };
+  callbacks.can_reach = [&impl](const Eigen::Vector3d& from, const geometry::View& view) {
     return impl.flight->can_reach(from, view);
   };
   if (impl.options.flight.capture.is_moving) {
-    ports.views_on_way = [&impl](const geometry::View& from, const geometry::View& to) {
+    callbacks.en_route_views = [&impl](const geometry::View& from, const geometry::View& to) {
       std::vector<geometry::View> views;
       for (const ViewInFlight& frame : impl.flight->frames(from, to)) views.push_back(frame.view);
       return views;
     };
   }
-  return ports;
+  return callbacks;
 }
 
-survey::SurveyLimits MissionPlanner::limits() const { return impl_->options.limits; }
+survey::SurveyLimits ConstrainedPlanner::limits() const { return impl_->options.limits; }
 
-void MissionPlanner::tell(SurveyRecord& record) const {
-  record_belief(*impl_->planner, record);
+void ConstrainedPlanner::fill_record(SurveyRecord& record) const {
+  record_estimate(*impl_->planner, record);
   record.cloud = impl_->planner->cloud();
 }
 
-void MissionPlanner::finish(SurveyRecord& record) {
-  record_belief(*impl_->planner, record);
+void ConstrainedPlanner::finish(SurveyRecord& record) {
+  record_estimate(*impl_->planner, record);
   const survey::CoverageEstimator* const estimator = impl_->planner->estimator();
   if (estimator != nullptr && impl_->flight &&
-      impl_->options.flight.views == flight::MissionViews::anew) {
+      impl_->options.flight.views == flight::MissionViews::replanned) {
     record.surface = estimator->known_surface(surface_targets);
   }
-  record.cloud = impl_->planner->release_cloud();
+  record.cloud = impl_->planner->take_cloud();
   if (!impl_->flight) return;
   std::vector<geometry::View> views;
-  for (const JudgedView& judged : record.views) views.push_back(judged.surveyed.view);
-  record.flown = impl_->flight->finish(views);
+  for (const EvaluatedView& evaluated : record.views) views.push_back(evaluated.surveyed.view);
+  record.flight_record = impl_->flight->finish(views);
 }
 
 }  // namespace skycap::missions::session

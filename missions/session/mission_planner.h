@@ -15,27 +15,27 @@
 
 namespace skycap::missions::session {
 
-class MissionPlanner {
+class ConstrainedPlanner {
  public:
   /// `first_view` is required only for missions with a vehicle. Throws all errors of
   /// survey::make_planner() and SurveyFlight.
-  MissionPlanner(const SurveyOptions& options, const std::optional<geometry::View>& first_view,
-                 const survey::PlannerRun& run);
-  ~MissionPlanner();
+  ConstrainedPlanner(const SurveyOptions& options, const std::optional<geometry::View>& first_view,
+                     const survey::PlannerRun& run);
+  ~ConstrainedPlanner();
 
   survey::Planner& planner();
 
   /// Returns null for missions without a vehicle.
   SurveyFlight* flight();
 
-  /// Returns `opening`, and for missions with a vehicle also `sensed`, `can_reach` and related
-  /// ports. The ports refer to this object.
-  survey::SurveyPorts ports();
+  /// Returns `initial_pattern`, and for missions with a vehicle also `sensed`, `can_reach` and
+  /// related ports. The ports refer to this object.
+  survey::SurveyCallbacks callbacks();
 
   survey::SurveyLimits limits() const;
 
   /// Copies the planner's current cloud and estimate to `record`, without the flight.
-  void tell(SurveyRecord& record) const;
+  void fill_record(SurveyRecord& record) const;
 
   /// Moves the cloud, the flight and the planner's final estimate to `record`. No other member
   /// function may be called afterwards.

@@ -18,20 +18,20 @@ double distance_from_box(const StartOptions& start) { return 1.5 * start.clearan
 /// Returns the number of orbits: one per height band. The height of a band is at most the distance
 /// of the orbit from the centre of the box or, if larger, the view distance.
 unsigned circles_round(const AlignedBox3d& box, const StartOptions& start) {
-  constexpr double most = 32.0;
+  constexpr double max = 32.0;
   const double away = 0.5 * box.sizes().head<2>().minCoeff() + distance_from_box(start);
   const double apart = std::max(away, start.view_distance);
-  return static_cast<unsigned>(std::clamp(std::ceil(box.sizes().z() / apart - 1e-9), 1.0, most));
+  return static_cast<unsigned>(std::clamp(std::ceil(box.sizes().z() / apart - 1e-9), 1.0, max));
 }
 
 /// Returns anticlockwise orbits with the box on the left: a single orbit that alternates between
 /// two heights, or several level orbits connected by climbs on their last sides.
 std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
   const AlignedBox3d box = start.box;
-  const double spare = distance_from_box(start);
-  const Vector3d low = box.min() - Vector3d::Constant(spare);
-  const Vector3d high = box.max() + Vector3d::Constant(spare);
-  const double bottom = std::max(low.z(), (start.lowest + 0.5));
+  const double margin = distance_from_box(start);
+  const Vector3d low = box.min() - Vector3d::Constant(margin);
+  const Vector3d high = box.max() + Vector3d::Constant(margin);
+  const double bottom = std::max(low.z(), (start.min_height + 0.5));
   constexpr double lower_share = 0.2, upper_share = 0.9;
   const unsigned circles = circles_round(box, start);
   std::vector<View> views;
@@ -40,11 +40,11 @@ std::vector<View> orbit(const StartOptions& start, std::uint64_t seed) {
     const auto corner = static_cast<unsigned>((seed + i) % 4);
     const double up = circles == 1 ? i % 2 : std::min(i / 4, circles - 1) / (circles - 1.0);
     const double share = lower_share + up * (upper_share - lower_share);
-    const Vector3d place(corner == 1 || corner == 2 ? high.x() : low.x(),
-                         corner >= 2 ? high.y() : low.y(),
-                         bottom + share * (box.max().z() - bottom));
-    const Vector3d middle(box.center().x(), box.center().y(), place.z());
-    views.push_back(geometry::look_at(place, middle));
+    const Vector3d position(corner == 1 || corner == 2 ? high.x() : low.x(),
+                            corner >= 2 ? high.y() : low.y(),
+                            bottom + share * (box.max().z() - bottom));
+    const Vector3d middle(box.center().x(), box.center().y(), position.z());
+    views.push_back(geometry::look_at(position, middle));
   }
   return views;
 }
@@ -65,10 +65,10 @@ std::vector<View> strips(const StartOptions& start, std::uint64_t seed) {
   std::vector<View> views;
   for (int strip = 0; strip < count; ++strip) {
     for (const bool is_end : {false, true}) {
-      Vector3d place(0.0, 0.0, height);
-      place[across] = box.min()[across] + width * (strip + 0.5) / count;
-      place[along] = is_end == (strip % 2 == 0) ? box.max()[along] : box.min()[along];
-      views.push_back({place, direction});
+      Vector3d position(0.0, 0.0, height);
+      position[across] = box.min()[across] + width * (strip + 0.5) / count;
+      position[along] = is_end == (strip % 2 == 0) ? box.max()[along] : box.min()[along];
+      views.push_back({position, direction});
     }
   }
   if (seed % 2 == 0) std::ranges::reverse(views);
@@ -87,20 +87,20 @@ void begin_inside(std::vector<View>& strips) {
 
 }  // namespace
 
-Opening usual_opening(const AlignedBox3d& box) {
-  if (box.isEmpty()) return Opening::none;
+InitialPattern default_initial_pattern(const AlignedBox3d& box) {
+  if (box.isEmpty()) return InitialPattern::none;
   const bool is_flat = box.sizes().head<2>().minCoeff() > 2.0 * box.sizes().z();
-  return is_flat ? Opening::strips : Opening::orbit;
+  return is_flat ? InitialPattern::strips : InitialPattern::orbit;
 }
 
-std::vector<View> opening_views(const StartOptions& start, std::uint64_t seed) {
+std::vector<View> initial_pattern_views(const StartOptions& start, std::uint64_t seed) {
   std::vector<View> views;
-  if (start.opening == Opening::orbit) views = orbit(start, seed);
-  if (start.opening == Opening::strips) {
+  if (start.initial_pattern == InitialPattern::orbit) views = orbit(start, seed);
+  if (start.initial_pattern == InitialPattern::strips) {
     views = strips(start, seed);
     if (start.sees_lines) begin_inside(views);
   }
-  if (const auto& mount = start.mount; mount && mount->look_pitch != 0.0) {
+  if (const auto& mount = start.mount; mount && mount->view_pitch != 0.0) {
     for (View& view : views) {
       view = geometry::scanner_view(*mount, geometry::nose_view(*mount, view));
     }

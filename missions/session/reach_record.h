@@ -14,10 +14,10 @@
 namespace skycap::missions::session {
 
 struct ReachRecord {
-  std::size_t refused = 0;    ///< Number of unreachable proposals.
+  std::size_t rejected = 0;   ///< Number of unreachable proposals.
   bool is_reached = false;    ///< True if a reachable proposal was found.
-  FlownLeg way;               ///< Path to the reachable view, for surveys with a vehicle.
-  std::size_t unreached = 0;  ///< Value of SurveyFlight::refused() after these proposals.
+  ExecutedLeg path;           ///< Path to the reachable view, for surveys with a vehicle.
+  std::size_t unreached = 0;  ///< Value of SurveyFlight::rejected() after these proposals.
 };
 
 /// Convert a record to and from its journal entry. parse_reach() throws exceptions of
@@ -26,7 +26,7 @@ nlohmann::ordered_json reach_json(const ReachRecord& record);
 ReachRecord parse_reach(const nlohmann::ordered_json& json);
 
 /// Records whether views are reachable and replays recorded results.
-class ReachMemory {
+class ReachabilityCache {
  public:
   using CanReach = std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)>;
 

@@ -6,17 +6,17 @@ namespace skycap::missions::session {
 namespace {
 
 template <class Field>
-double sum_over(const std::vector<JudgedView>& views, Field field) {
+double sum_over(const std::vector<EvaluatedView>& views, Field field) {
   double sum = 0.0;
-  for (const JudgedView& view : views) sum += view.surveyed.*field;
+  for (const EvaluatedView& view : views) sum += view.surveyed.*field;
   return sum;
 }
 
 }  // namespace
 
-std::size_t SurveyRecord::frames_on_way() const {
+std::size_t SurveyRecord::en_route_frames() const {
   std::size_t count = 0;
-  for (const JudgedView& judged : views) count += judged.surveyed.on_way.views.size();
+  for (const EvaluatedView& evaluated : views) count += evaluated.surveyed.en_route.views.size();
   return count;
 }
 

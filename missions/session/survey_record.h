@@ -18,14 +18,14 @@
 namespace skycap::missions::session {
 
 /// View of the survey with the coverage after it.
-struct JudgedView {
+struct EvaluatedView {
   survey::SurveyedView surveyed;
   /// Coverage after the view. NaN for live surveys, which have no ground truth.
   double coverage = 0.0;
 };
 
 /// Scan of a survey.
-struct TakenScan {
+struct RecordedScan {
   std::uint32_t view = 0;  ///< View at which, or on the path to which, the scan was taken.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
@@ -35,30 +35,31 @@ struct SurveyRecord {
   std::uint64_t seed = 1;
   unsigned threads = 1;
   survey::StopReason stop_reason = survey::StopReason::complete;
-  std::vector<JudgedView> views;
+  std::vector<EvaluatedView> views;
   geometry::PointCloud cloud;
   /// Scans that the views of the cloud's points refer to. If empty, they refer to `views`.
-  std::vector<TakenScan> scans{};
+  std::vector<RecordedScan> scans{};
   std::vector<std::uint8_t> is_covered;  ///< Whether each sample of the scene is covered.
-  std::optional<FlownSurvey> flown;      ///< Flight of a mission with a vehicle; otherwise empty.
+  std::optional<FlightRecord>
+      flight_record;  ///< Flight of a mission with a vehicle; otherwise empty.
 
   /// Final estimate of planners that estimate coverage; otherwise empty.
-  std::optional<survey::skycap::SurveyBelief> belief;
+  std::optional<survey::surfel::SurveyEstimate> estimate;
   /// Measured surface, if replanning is enabled; otherwise null.
-  std::shared_ptr<const survey::skycap::GainField> surface;
+  std::shared_ptr<const survey::surfel::GainField> surface;
   /// Completion rule of the planner, see CoverageEstimator::stop_rule(); empty for other planners.
   std::string stop_rule{};
 
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }
   double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
   double distance() const { return views.empty() ? 0.0 : views.back().surveyed.distance; }
-  std::size_t frames_on_way() const;
+  std::size_t en_route_frames() const;
   double planning_time() const;
   double sensing_time() const;
 };
 
 /// Returns the name of a stop reason in files.
-using survey::name_of;
+using survey::to_string;
 
 /// Returns the stop reason with this name. Throws Error{bad_file}.
 survey::StopReason stop_reason_named(const std::string& name);

@@ -16,25 +16,26 @@ using Eigen::Vector3d;
 using geometry::View;
 
 double turn_between(const View& from, const View& to) {
-  return std::remainder(flight::yaw_of(to) - flight::yaw_of(from), 2.0 * std::numbers::pi);
+  return std::remainder(flight::compute_yaw(to) - flight::compute_yaw(from),
+                        2.0 * std::numbers::pi);
 }
 
 /// Returns the direction after the fraction `share` of the rotation between two views.
 Vector3d direction_between(const View& from, const View& to, double share) {
-  const double yaw = flight::yaw_of(from) + share * turn_between(from, to);
-  const double pitch =
-      flight::pitch_of(from) + share * (flight::pitch_of(to) - flight::pitch_of(from));
+  const double yaw = flight::compute_yaw(from) + share * turn_between(from, to);
+  const double pitch = flight::compute_pitch(from) +
+                       share * (flight::compute_pitch(to) - flight::compute_pitch(from));
   return {std::cos(pitch) * std::sin(yaw), std::cos(pitch) * std::cos(yaw), std::sin(pitch)};
 }
 
-struct PlaceInFlight {
+struct FlightState {
   Vector3d position, velocity;
 };
 
 /// Returns position and velocity on a straight segment of duration `duration` after the fraction
 /// `share` of this time. The seven-phase profile approximates those of all autopilots.
-PlaceInFlight place_on(const Vector3d& begin, const Vector3d& end, const flight::Motion& motion,
-                       double duration, double share) {
+FlightState state_on_leg(const Vector3d& begin, const Vector3d& end, const flight::Motion& motion,
+                         double duration, double share) {
   const double distance = (end - begin).norm();
   const Vector3d direction = (end - begin) / distance;
   const double speed = motion.leg_speed(direction),
@@ -48,57 +49,60 @@ PlaceInFlight place_on(const Vector3d& begin, const Vector3d& end, const flight:
 
 }  // namespace
 
-WayMotion::WayMotion(const flight::FlightOptions& options)
-    : motion_(options.flown(), options.route(Vector3d::Zero()).conditions),
+LegMotion::LegMotion(const flight::FlightOptions& options)
+    : motion_(options.required_vehicle(), options.route(Vector3d::Zero()).conditions),
       climb_(options.climb()),
       rest_(std::max(flight::corner_hold, options.rest_before()) + options.rest_after()),
       turns_last_(options.capture.mount.has_value()) {}
 
-double WayMotion::time(const FlownLeg& way, const View& from, const View& to) const {
+double LegMotion::time(const ExecutedLeg& flown_leg, const View& from, const View& to) const {
   double time = 0.0;
-  for (std::size_t i = 1; i < way.points.size(); ++i) {
-    const double piece = motion_.leg_time(way.points[i] - way.points[i - 1]);
-    const bool is_last = i + 1 == way.points.size();
-    time += is_last ? motion_.aimed_time(piece, turn_between(from, to),
-                                         flight::pitch_of(to) - flight::pitch_of(from))
-                    : piece + flight::corner_hold;
+  for (std::size_t i = 1; i < flown_leg.points.size(); ++i) {
+    const double segment_time = motion_.leg_time(flown_leg.points[i] - flown_leg.points[i - 1]);
+    const bool is_last = i + 1 == flown_leg.points.size();
+    time += is_last ? motion_.aimed_time(segment_time, turn_between(from, to),
+                                         flight::compute_pitch(to) - flight::compute_pitch(from))
+                    : segment_time + flight::corner_hold;
   }
   return time;
 }
 
-std::vector<ViewInFlight> WayMotion::frames(const FlownLeg& way, const View& from, const View& to,
-                                            double period) const {
-  const double all = time(way, from, to);
+std::vector<ViewInFlight> LegMotion::frames(const ExecutedLeg& flown_leg, const View& from,
+                                            const View& to, double period) const {
+  const double all = time(flown_leg, from, to);
   std::vector<ViewInFlight> frames;
   std::size_t number = 1;
   double begun = 0.0;
-  for (std::size_t i = 1; i < way.points.size(); ++i) {
-    const Vector3d &begin = way.points[i - 1], &end = way.points[i];
-    const double piece = motion_.leg_time(end - begin);
-    while (piece > 0.0) {
+  for (std::size_t i = 1; i < flown_leg.points.size(); ++i) {
+    const Vector3d &begin = flown_leg.points[i - 1], &end = flown_leg.points[i];
+    const double segment_time = motion_.leg_time(end - begin);
+    while (segment_time > 0.0) {
       const double at = static_cast<double>(number) * period;
-      if (at > begun + piece || at > all - 0.5 * period) break;
-      const PlaceInFlight place = place_on(begin, end, motion_, piece, (at - begun) / piece);
+      if (at > begun + segment_time || at > all - 0.5 * period) break;
+      const FlightState state =
+          state_on_leg(begin, end, motion_, segment_time, (at - begun) / segment_time);
       const auto view_at = [&](double moment) {
-        const double on_last = i + 1 < way.points.size() ? 0.0 : (moment - begun) / (all - begun);
-        return View{place_on(begin, end, motion_, piece, (moment - begun) / piece).position,
+        const double on_last =
+            i + 1 < flown_leg.points.size() ? 0.0 : (moment - begun) / (all - begun);
+        return View{state_on_leg(begin, end, motion_, segment_time, (moment - begun) / segment_time)
+                        .position,
                     direction_between(from, to, turns_last_ ? on_last : moment / all)};
       };
-      frames.push_back({view_at(at), place.velocity, at});
+      frames.push_back({view_at(at), state.velocity, at});
       if (turns_last_) {
         const double first = std::max(at - 0.5 * period, begun);
-        const double last = std::min(at + 0.5 * period, begun + piece);
+        const double last = std::min(at + 0.5 * period, begun + segment_time);
         frames.back().stretch = {view_at(first), view_at(last), last - first};
       }
       ++number;
     }
-    begun += piece + flight::corner_hold;
+    begun += segment_time + flight::corner_hold;
     // Frames during the stop at a corner are taken after the stop.
   }
   return frames;
 }
 
-std::vector<double> WayMotion::survey_times(const std::vector<FlownLeg>& legs,
+std::vector<double> LegMotion::survey_times(const std::vector<ExecutedLeg>& legs,
                                             const std::vector<View>& views) const {
   std::vector<double> times;
   double now = motion_.takeoff_time(climb_) + flight::corner_hold;
@@ -121,8 +125,8 @@ class RouteViews {
 
   std::vector<ViewInFlight> all() {
     for (const flight::Sortie& sortie : route_.sorties) {
-      if (sortie.passage) {
-        mount_ ? scan_passage(*sortie.passage) : take_pictures(sortie);
+      if (sortie.fly_through) {
+        mount_ ? scan_fly_through(*sortie.fly_through) : capture_images(sortie);
       } else {
         fly(sortie);
       }
@@ -133,55 +137,57 @@ class RouteViews {
 
  private:
   void fly(const flight::Sortie& sortie) {
-    const View &first = route_.stations[sortie.first].view,
-               &last = route_.stations[sortie.last].view;
+    const View &first = route_.capture_points[sortie.first].view,
+               &last = route_.capture_points[sortie.last].view;
     fly(sortie.out, first, first);
     for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
-      fly(route_.legs[i], route_.stations[i].view, route_.stations[i + 1].view);
+      fly(route_.legs[i], route_.capture_points[i].view, route_.capture_points[i + 1].view);
     }
     if (mount_) fly(sortie.back, last, last);
   }
 
   /// Adds the en-route scans of a leg and the measurement at its end.
   void fly(const flight::Leg& leg, const View& from, const View& to) {
-    const FlownLeg way{leg.points};
+    const ExecutedLeg flown_leg{leg.points};
     if (mount_) {
-      for (const ViewInFlight& nose : motion_.frames(way, from, to, period_)) {
+      for (const ViewInFlight& nose : motion_.frames(flown_leg, from, to, period_)) {
         add(geometry::scanner_view(*mount_, nose.view), nose.velocity, nose.time);
         views_.back().stretch = nose.stretch;
       }
     }
-    now_ += motion_.time(way, from, to);
+    now_ += motion_.time(flown_leg, from, to);
     View view = to;
     if (mount_) view = geometry::scanner_view(*mount_, {leg.points.back(), to.direction});
     add(view, Vector3d::Zero(), 0.0);
     now_ += motion_.rest();
   }
 
-  static View nose_on(const flight::Passage& passage, double time) {
-    return {state_at(passage.curve, time).position, direction_of(passage.aim_at(time))};
+  static View nose_on(const flight::FlyThrough& fly_through, double time) {
+    return {state_at(fly_through.curve, time).position,
+            compute_direction(fly_through.aim_at(time))};
   }
 
-  void scan_passage(const flight::Passage& passage) {
-    for (std::size_t k = 1; static_cast<double>(k) * period_ < passage.duration; ++k) {
+  void scan_fly_through(const flight::FlyThrough& fly_through) {
+    for (std::size_t k = 1; static_cast<double>(k) * period_ < fly_through.duration; ++k) {
       const double time = static_cast<double>(k) * period_;
-      const View nose = nose_on(passage, time);
-      add(geometry::scanner_view(*mount_, nose), state_at(passage.curve, time).velocity, time);
-      const double last = std::min(time + 0.5 * period_, passage.duration);
+      const View nose = nose_on(fly_through, time);
+      add(geometry::scanner_view(*mount_, nose), state_at(fly_through.curve, time).velocity, time);
+      const double last = std::min(time + 0.5 * period_, fly_through.duration);
       const double first = time - 0.5 * period_;
-      views_.back().stretch = {nose_on(passage, first), nose_on(passage, last), last - first};
+      views_.back().stretch = {nose_on(fly_through, first), nose_on(fly_through, last),
+                               last - first};
     }
-    now_ += passage.duration;
+    now_ += fly_through.duration;
   }
 
-  void take_pictures(const flight::Sortie& sortie) {
-    const flight::Passage& passage = *sortie.passage;
+  void capture_images(const flight::Sortie& sortie) {
+    const flight::FlyThrough& fly_through = *sortie.fly_through;
     for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
-      const flight::PassedView& picture = passage.views[i - sortie.first];
-      add({picture.position, route_.stations[i].view.direction},
-          state_at(passage.curve, picture.moment).velocity, picture.moment);
+      const flight::PassedView& photo = fly_through.views[i - sortie.first];
+      add({photo.position, route_.capture_points[i].view.direction},
+          state_at(fly_through.curve, photo.moment).velocity, photo.moment);
     }
-    now_ += passage.duration;
+    now_ += fly_through.duration;
   }
 
   void add(const View& view, const Vector3d& velocity, double time) {
@@ -189,7 +195,7 @@ class RouteViews {
   }
 
   const flight::Route& route_;
-  WayMotion motion_;
+  LegMotion motion_;
   double period_;
   std::optional<geometry::ScannerMount> mount_;  ///< Set for scanners.
   double now_ = 0.0;
@@ -203,12 +209,12 @@ std::vector<ViewInFlight> measured_views(const flight::FlightOptions& options,
   return RouteViews(options, route).all();
 }
 
-flight::PictureBounds moving_bounds_of(const flight::FlightOptions& options) {
-  flight::Vehicle vehicle = options.flown();
+flight::ImageMotionBounds compute_motion_bounds(const flight::FlightOptions& options) {
+  flight::Vehicle vehicle = options.required_vehicle();
   vehicle.sway_speed += options.cruise_speed;
   const flight::CaptureOptions& capture = options.capture;
-  return picture_bounds(vehicle, geometry::Camera(capture.camera), capture.shutter,
-                        capture.view_distance);
+  return image_motion_bounds(vehicle, geometry::Camera(capture.camera), capture.shutter,
+                             capture.view_distance);
 }
 
 }  // namespace skycap::missions::session

@@ -18,26 +18,27 @@
 
 namespace skycap::missions::session {
 
-class WayMotion {
+class LegMotion {
  public:
   /// Uses the vehicle and the weather of `options`.
-  explicit WayMotion(const flight::FlightOptions& options);
+  explicit LegMotion(const flight::FlightOptions& options);
 
   /// Returns the time from the departure from `from` until the camera is aimed at `to` at the end
   /// of the path, with a stop at each corner [s].
-  double time(const FlownLeg& way, const geometry::View& from, const geometry::View& to) const;
+  double time(const ExecutedLeg& flown_leg, const geometry::View& from,
+              const geometry::View& to) const;
 
   /// Returns the en-route views at intervals of `period` [s] from the start of the path, except
   /// within half a period of its end. Times are relative to the start. Returns an empty list for a
   /// path of zero length.
-  std::vector<ViewInFlight> frames(const FlownLeg& way, const geometry::View& from,
+  std::vector<ViewInFlight> frames(const ExecutedLeg& flown_leg, const geometry::View& from,
                                    const geometry::View& to, double period) const;
 
   double rest() const { return rest_; }  ///< Returns the time at rest at a view [s].
 
   /// Returns the times from take-off until the departure from each view [s]: take-off, paths and
-  /// rests at views, without the return. `legs` is as in FlownSurvey.
-  std::vector<double> survey_times(const std::vector<FlownLeg>& legs,
+  /// rests at views, without the return. `legs` is as in FlightRecord.
+  std::vector<double> survey_times(const std::vector<ExecutedLeg>& legs,
                                    const std::vector<geometry::View>& views) const;
 
  private:
@@ -53,6 +54,6 @@ std::vector<ViewInFlight> measured_views(const flight::FlightOptions& options,
                                          const flight::Route& route);
 
 /// Returns the limits on motion blur and skew of images taken at cruise speed.
-flight::PictureBounds moving_bounds_of(const flight::FlightOptions& options);
+flight::ImageMotionBounds compute_motion_bounds(const flight::FlightOptions& options);
 
 }  // namespace skycap::missions::session

@@ -22,17 +22,17 @@ namespace skycap::missions::simulation {
 
 /// Takes scans in flight order. Without a vehicle, and for movements of less than half a pixel, the
 /// sensor is simulated at rest, and only its noise is random.
-class CarriedSensor {
+class MountedSensor {
  public:
   /// Throws all errors of the sensor.
-  CarriedSensor(const evaluation::SimulationOptions& options, std::uint64_t seed);
+  MountedSensor(const evaluation::SimulationOptions& options, std::uint64_t seed);
 
   geometry::Scan scan(const sim::Scene& scene, const session::ViewInFlight& view,
-                      std::uint64_t frame, unsigned threads, geometry::Scan recycled = {});
+                      std::uint64_t frame, unsigned threads, geometry::Scan buffer = {});
 
  private:
   /// Returns the motion of the sensor during a measurement.
-  sim::Carriage carriage(const session::ViewInFlight& view, std::uint64_t frame) const;
+  sim::PlatformMotion platform_motion(const session::ViewInFlight& view, std::uint64_t frame) const;
 
   sim::SurveySensor sensor_;
   std::uint64_t seed_;

@@ -18,10 +18,10 @@ namespace {
 
 using geometry::View;
 
-constexpr OmniscientConfig few{.candidates = 400, .samples = 2000, .wanted_coverage = {}};
+constexpr OmniscientConfig few{.candidates = 400, .samples = 2000, .target_coverage = {}};
 
 // Bytes of the whole program, from the peak memory of surveys of the shipped missions.
-constexpr double of_program = 5e7;
+constexpr double base_bytes = 5e7;
 constexpr double a_triangle = 150.0;
 constexpr double a_pixel = 50.0;
 constexpr double a_point = 60.0;
@@ -30,10 +30,10 @@ constexpr double packing = 0.7;  // Stored points per square of their spacing.
 
 /// Ratio between the numbers of views of a planner and of the oracle in the surveys of docs/.
 struct Share {
-  double least, most;
+  double min, max;
 };
 
-Share share_of(survey::PlannerName planner) {
+Share find_view_ratio(survey::PlannerName planner) {
   switch (planner) {
     case survey::PlannerName::skycap:
       return {1.1, 2.0};
@@ -44,40 +44,40 @@ Share share_of(survey::PlannerName planner) {
   }
 }
 
-double way_of(const std::vector<View>& views) {
-  double way = 0.0;
+double path_from_json(const std::vector<View>& views) {
+  double distance = 0.0;
   for (std::size_t i = 1; i < views.size(); ++i) {
-    way += (views[i].position - views[i - 1].position).norm();
+    distance += (views[i].position - views[i - 1].position).norm();
   }
-  return way;
+  return distance;
 }
 
 /// Returns the flight time for a number of views [min]. The path length grows with the square root
 /// of this number, as for tours.
-double minutes_of(const session::SurveyOptions& options, const std::vector<View>& known,
-                  double views) {
+double estimate_minutes(const session::SurveyOptions& options, const std::vector<View>& known,
+                        double views) {
   const flight::FlightOptions& flight = options.flight;
-  const bool is_flown = flight.is_flown();
-  const double speed = is_flown ? flight.cruise_speed : options.limits.speed;
+  const bool has_vehicle = flight.has_vehicle();
+  const double speed = has_vehicle ? flight.cruise_speed : options.limits.speed;
   const double stop =
-      is_flown ? flight.rest_before() + flight.rest_after() : options.limits.time_per_view;
+      has_vehicle ? flight.rest_before() + flight.rest_after() : options.limits.time_per_view;
   const double more = std::sqrt(views / static_cast<double>(known.size()));
-  return (way_of(known) * more / speed + views * stop) / seconds_per_minute;
+  return (path_from_json(known) * more / speed + views * stop) / seconds_per_minute;
 }
 
-double memory_of(const survey::PlannerOptions& planner, const evaluation::SurveyScene& scene,
-                 double views) {
+double estimate_memory(const survey::PlannerOptions& planner, const evaluation::SurveyScene& scene,
+                       double views) {
   const auto pixels = static_cast<double>(planner.camera.width) * planner.camera.height;
   const double spacing = planner.spacing;
   const double area = geometry::surface_area(scene.model());
   const double points = std::min(packing * area / (spacing * spacing), views * pixels);
-  return of_program + a_triangle * static_cast<double>(scene.model().triangles.size()) +
+  return base_bytes + a_triangle * static_cast<double>(scene.model().triangles.size()) +
          a_pixel * pixels + a_point * points;
 }
 
 /// Returns the time to measure and plan the first view [s].
-double time_of_a_view(const evaluation::SimulationOptions& options,
-                      const evaluation::SurveyScene& scene, const session::RunOptions& run) {
+double estimate_view_time(const evaluation::SimulationOptions& options,
+                          const evaluation::SurveyScene& scene, const session::RunOptions& run) {
   const auto planner = survey::make_planner(
       options.survey.planner,
       {.seed = run.seed, .threads = run.threads, .sphere = scene.view_sphere()});
@@ -95,21 +95,21 @@ Expectation expectation(const evaluation::SimulationOptions& options,
   const std::vector<View> known = known_cover(options, scene, run.seed, run.threads, few);
   const double limit = static_cast<double>(asked.limits.max_views);
   const auto count = static_cast<double>(known.size());
-  const bool is_volumetric = survey::title_of(asked.planner.name).metric.has_value();
-  const Share share = share_of(asked.planner.name);
-  const double least = is_volumetric ? limit : std::min(limit, std::round(share.least * count));
-  const double most = is_volumetric ? limit : std::min(limit, std::round(share.most * count));
+  const bool is_volumetric = survey::find_title(asked.planner.name).metric.has_value();
+  const Share share = find_view_ratio(asked.planner.name);
+  const double min = is_volumetric ? limit : std::min(limit, std::round(share.min * count));
+  const double max = is_volumetric ? limit : std::min(limit, std::round(share.max * count));
   const double minutes =
       asked.limits.max_time.value_or(std::numeric_limits<double>::max()) / seconds_per_minute;
-  const double time = time_of_a_view(options, scene, run);
+  const double time = estimate_view_time(options, scene, run);
   return {.known_views = known.size(),
-          .least_views = static_cast<std::size_t>(least),
-          .most_views = static_cast<std::size_t>(most),
-          .least_minutes = std::min(minutes, minutes_of(asked, known, least)),
-          .most_minutes = std::min(minutes, minutes_of(asked, known, most)),
-          .memory = memory_of(asked.planner, scene, most),
-          .least_time = time * least,
-          .most_time = time * most};
+          .min_views = static_cast<std::size_t>(min),
+          .max_views = static_cast<std::size_t>(max),
+          .min_minutes = std::min(minutes, estimate_minutes(asked, known, min)),
+          .max_minutes = std::min(minutes, estimate_minutes(asked, known, max)),
+          .memory = estimate_memory(asked.planner, scene, max),
+          .min_time = time * min,
+          .max_time = time * max};
 }
 
 }  // namespace skycap::missions::simulation

@@ -14,16 +14,16 @@ struct Expectation {
   std::size_t known_views = 0;
   /// Min number of views: `known_views` times the min ratio of the mission's planner in other
   /// surveys.
-  std::size_t least_views = 0;
+  std::size_t min_views = 0;
   /// Max number of views, from the max ratio. Both are within the mission's limits.
-  std::size_t most_views = 0;
-  double least_minutes = 0.0;  ///< Min flight time from speeds, paths and stops [min].
-  double most_minutes = 0.0;
+  std::size_t max_views = 0;
+  double min_minutes = 0.0;  ///< Min flight time from speeds, paths and stops [min].
+  double max_minutes = 0.0;
   /// Memory of the whole program from the numbers of triangles, pixels and points [bytes].
   double memory = 0.0;
-  /// Min computation time [s]: the time of the first view on this machine times `least_views`.
-  double least_time = 0.0;
-  double most_time = 0.0;  ///< Max computation time [s].
+  /// Min computation time [s]: the time of the first view on this machine times `min_views`.
+  double min_time = 0.0;
+  double max_time = 0.0;  ///< Max computation time [s].
 };
 
 /// Predicts the cost of a feasible mission. Takes a few seconds: it evaluates surface samples from

@@ -22,13 +22,13 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 // Far above the numbers of views on the largest sites, so that a wrong unit is likely.
-constexpr double most_views = 1e5;
-constexpr std::size_t places_asked_for = 2000;  // Number of surface samples tested for visibility.
-constexpr double little = 0.1;                  // Fraction of these samples that causes a warning.
+constexpr double max_views = 1e5;
+constexpr std::size_t samples_requested = 2000;  // Number of surface samples tested for visibility.
+constexpr double little = 0.1;                   // Fraction of these samples that causes a warning.
 constexpr double cut_off = 0.02;  // Fraction of the surface outside a box that causes a warning.
 
-std::string text_of(const Vector3d& place) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g})", place.x(), place.y(), place.z());
+std::string format_position(const Vector3d& position) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", position.x(), position.y(), position.z());
 }
 
 /// Reports all problems, even if one may be a consequence of another, because each has its own
@@ -51,7 +51,7 @@ class Inspection {
     check_distances();
     check_boxes();
     check_density();
-    check_places();
+    check_positions();
     return std::move(found_);
   }
 
@@ -69,7 +69,7 @@ class Inspection {
     const double footprint = distance_ * distance_ * camera_.width() * camera_.height() /
                              camera_.focal_length_px().prod();
     const double views = geometry::surface_area(scene_.model()) / footprint;
-    if (views > most_views) {
+    if (views > max_views) {
       problem(
           "the model is {:.4g} m long, but a view from the view distance ({:.4g} m) covers {:.3g} "
           "m^2: over {:.2g} views are required. If the model is in millimetres, set scene.scale: "
@@ -86,15 +86,15 @@ class Inspection {
   }
 
   void check_distances() {
-    const double stand_off = options_.survey.planner.limits.stand_off;
+    const double min_standoff = options_.survey.planner.limits.min_standoff;
     const flight::FlightOptions& flight = options_.survey.flight;
-    if (stand_off >= distance_) {
+    if (min_standoff >= distance_) {
       problem(
           "{} ({:.4g} m) must be smaller than the view distance ({:.4g} m); lower it or raise "
           "planner.view_distance",
-          flight.is_flown() && stand_off == flight.clearance ? "flight.clearance"
-                                                             : "limits.stand_off",
-          stand_off, distance_);
+          flight.has_vehicle() && min_standoff == flight.clearance ? "flight.clearance"
+                                                                   : "limits.stand_off",
+          min_standoff, distance_);
     }
     const geometry::CameraConfig& camera = camera_.config();
     if (camera.max_range <= distance_) {
@@ -122,7 +122,8 @@ class Inspection {
   }
 
   void check_boxes() {
-    const std::string reach = text_of(bounds_.min()) + " to " + text_of(bounds_.max());
+    const std::string reach =
+        format_position(bounds_.min()) + " to " + format_position(bounds_.max());
     if (const auto& box = options_.survey.planner.scene_box) {
       const double outside = share_outside(*box);
       if (outside >= 1.0) {
@@ -136,7 +137,7 @@ class Inspection {
       }
     }
     const flight::FlightOptions& flight = options_.survey.flight;
-    if (!flight.is_flown()) return;
+    if (!flight.has_vehicle()) return;
     const double outside = share_outside(flight.unknown_box);
     if (outside > cut_off) {
       problem(
@@ -170,9 +171,9 @@ class Inspection {
     }
   }
 
-  void check_places() {
+  void check_positions() {
     const auto& all = scene_.samples().points;
-    const std::size_t step = std::max<std::size_t>(1, all.size() / places_asked_for);
+    const std::size_t step = std::max<std::size_t>(1, all.size() / samples_requested);
     std::vector<Vector3f> some;
     for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
     const double share = evaluation::marked_share(
@@ -199,8 +200,8 @@ class Inspection {
       });
       if (!sees) {
         problem("the first scan contains no point of the scene; start from a view that sees it");
-      } else if (options_.survey.flight.is_flown()) {
-        const session::SurveyFlight way(options_.survey.flight, first, run_.threads);
+      } else if (options_.survey.flight.has_vehicle()) {
+        const session::SurveyFlight session_flight(options_.survey.flight, first, run_.threads);
       }
     } catch (const Error& error) {
       problem("{}", error.what());

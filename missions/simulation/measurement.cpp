@@ -8,7 +8,7 @@ namespace skycap::missions::simulation {
 namespace {
 
 /// Random stream of simulated re-flights, separate from that of surveys.
-constexpr std::uint64_t flown_again_stream = 0x666c6f776e206167;
+constexpr std::uint64_t reflight_stream = 0x666c6f776e206167;
 
 }  // namespace
 
@@ -21,22 +21,22 @@ Measurement::Measurement(const evaluation::SimulationOptions& options,
       cloud_(options.survey.planner.spacing),
       meter_(scene.samples().points, options.evaluation.registration_distance) {}
 
-std::vector<Eigen::Vector3f> Measurement::take(const geometry::View& view, std::size_t number) {
+std::vector<Eigen::Vector3f> Measurement::measure(const geometry::View& view, std::size_t number) {
   const geometry::Scan scan = sensor_.scan(scene_.scene(), view, number, threads_);
   std::vector<Eigen::Vector3f> stored = cloud_.store(scan.points, box_);
   meter_.add(stored);
   return stored;
 }
 
-CoveredAgain covered_when_flown_again(const evaluation::SimulationOptions& options,
-                                      const evaluation::SurveyScene& scene,
-                                      const std::vector<session::ViewInFlight>& views,
-                                      std::uint64_t seed, unsigned threads) {
-  CarriedSensor sensor(options, seed ^ flown_again_stream);
+CoveredAgain reflight_coverage(const evaluation::SimulationOptions& options,
+                               const evaluation::SurveyScene& scene,
+                               const std::vector<session::ViewInFlight>& views, std::uint64_t seed,
+                               unsigned threads) {
+  MountedSensor sensor(options, seed ^ reflight_stream);
   const double near = options.evaluation.registration_distance;
   evaluation::CoverageMeter stored(scene.samples().points, near),
       measured(scene.samples().points, near);
-  evaluation::ThinnedCloud cloud(options.survey.planner.spacing);
+  evaluation::DownsampledCloud cloud(options.survey.planner.spacing);
   const Eigen::AlignedBox3d box = options.scene_box();
   const bool keeps_all = options.sensor.scans_in_flight();
   geometry::Scan scan;

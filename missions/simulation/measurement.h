@@ -28,7 +28,7 @@ class Measurement {
   /// Takes frame `number` with the sensor at rest. Noise depends only on the frame, not on the
   /// order of views. Stores and returns the points that are at least the mission's spacing away
   /// from all stored points.
-  std::vector<Eigen::Vector3f> take(const geometry::View& view, std::size_t number);
+  std::vector<Eigen::Vector3f> measure(const geometry::View& view, std::size_t number);
 
   const evaluation::CoverageMeter& meter() const { return meter_; }
 
@@ -37,7 +37,7 @@ class Measurement {
   unsigned threads_;
   sim::SurveySensor sensor_;
   Eigen::AlignedBox3d box_;
-  evaluation::ThinnedCloud cloud_;
+  evaluation::DownsampledCloud cloud_;
   evaluation::CoverageMeter meter_;
 };
 
@@ -52,9 +52,9 @@ struct CoveredAgain {
 /// Computes the coverage of a simulated re-flight of `views`, starting with an empty cloud. The
 /// noise differs from that of the survey with this seed. For continuously measuring scanners,
 /// `views` are the scans.
-CoveredAgain covered_when_flown_again(const evaluation::SimulationOptions& options,
-                                      const evaluation::SurveyScene& scene,
-                                      const std::vector<session::ViewInFlight>& views,
-                                      std::uint64_t seed, unsigned threads);
+CoveredAgain reflight_coverage(const evaluation::SimulationOptions& options,
+                               const evaluation::SurveyScene& scene,
+                               const std::vector<session::ViewInFlight>& views, std::uint64_t seed,
+                               unsigned threads);
 
 }  // namespace skycap::missions::simulation

@@ -27,15 +27,15 @@ using geometry::View;
 constexpr std::uint64_t sample_seed = 2;
 
 /// Sample observed by a candidate, and the hazard of the observation.
-struct Look {
+struct Observation {
   std::uint32_t sample;
   float hazard;
 };
 
-survey::skycap::Noise true_noise(const sim::NoiseConfig& noise) {
+survey::surfel::Noise true_noise(const sim::NoiseConfig& noise) {
   return noise.direction == sim::NoiseDirection::isotropic
-             ? survey::skycap::Noise{.isotropic = noise.sigma, .along_ray = 0.0}
-             : survey::skycap::Noise{.isotropic = 0.0, .along_ray = noise.sigma};
+             ? survey::surfel::Noise{.isotropic = noise.sigma, .along_ray = 0.0}
+             : survey::surfel::Noise{.isotropic = 0.0, .along_ray = noise.sigma};
 }
 
 /// Evaluation of views with the ground-truth surface.
@@ -46,8 +46,9 @@ class Truth {
       : scene_(scene),
         admissible_(scene.admissible()),
         camera_(options.sensor.camera.camera),
-        least_cosine_(std::cos(options.sensor.camera.max_incidence)),
-        dose_(options.evaluation.registration_distance, true_noise(options.sensor.camera.noise)) {
+        min_cosine_(std::cos(options.sensor.camera.max_incidence)),
+        coverage_model_(options.evaluation.registration_distance,
+                        true_noise(options.sensor.camera.noise)) {
     const geometry::SurfaceSamples all =
         geometry::sample_surface(scene.model(), sample_count, sample_seed);
     const std::vector<std::uint8_t> is_visible =
@@ -76,14 +77,14 @@ class Truth {
     return views;
   }
 
-  std::vector<Look> looks(const View& view) const {
+  std::vector<Observation> observations(const View& view) const {
     const Eigen::Isometry3d camera_from_world = geometry::camera_pose(view).inverse();
-    std::vector<Look> looks;
+    std::vector<Observation> observations;
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const Vector3d point = points_[i].cast<double>(), normal = normals_[i].cast<double>();
       const Vector3d towards = view.position - point;
       const double distance = towards.norm(), cosine = normal.dot(towards) / distance;
-      if (cosine <= least_cosine_) continue;
+      if (cosine <= min_cosine_) continue;
       const Vector3d in_camera = camera_from_world * point;
       if (!camera_.project(in_camera)) continue;
       if (scene_.scene().is_blocked(view.position,
@@ -93,35 +94,39 @@ class Truth {
       const double depth = in_camera.z();
       const double density =
           camera_.focal_length_px().prod() * cosine * distance / (depth * depth * depth);
-      looks.push_back({i, dose_.hazard(static_cast<float>(density), static_cast<float>(cosine))});
+      observations.push_back(
+          {i, coverage_model_.hazard(static_cast<float>(density), static_cast<float>(cosine))});
     }
-    return looks;
+    return observations;
   }
 
  private:
   const evaluation::SurveyScene& scene_;
   evaluation::Admissible admissible_;
   geometry::Camera camera_;
-  double least_cosine_;
-  survey::skycap::DoseModel dose_;
+  double min_cosine_;
+  survey::surfel::CoverageModel coverage_model_;
   std::vector<Vector3f> points_, normals_;
 };
 
 /// Returns the expected number of newly covered samples, given the uncovered fractions after
 /// previous observations.
-double gain_of(const std::vector<Look>& looks, const std::vector<float>& uncovered) {
+double compute_gain(const std::vector<Observation>& observations,
+                    const std::vector<float>& uncovered) {
   double gain = 0.0;
-  for (const Look& look : looks) gain += uncovered[look.sample] * (1.0F - std::exp(-look.hazard));
+  for (const Observation& observation : observations)
+    gain += uncovered[observation.sample] * (1.0F - std::exp(-observation.hazard));
   return gain;
 }
 
-void cover(const std::vector<Look>& looks, std::vector<float>& uncovered) {
-  for (const Look& look : looks) uncovered[look.sample] *= std::exp(-look.hazard);
+void cover(const std::vector<Observation>& observations, std::vector<float>& uncovered) {
+  for (const Observation& observation : observations)
+    uncovered[observation.sample] *= std::exp(-observation.hazard);
 }
 
 /// Returns a short open tour from the first view through all others: nearest neighbour, then 2-opt.
 std::vector<std::size_t> short_tour(const std::vector<View>& views) {
-  const auto way = [&](std::size_t a, std::size_t b) {
+  const auto distance = [&](std::size_t a, std::size_t b) {
     return (views[a].position - views[b].position).norm();
   };
   std::vector<std::size_t> order(views.size());
@@ -129,17 +134,17 @@ std::vector<std::size_t> short_tour(const std::vector<View>& views) {
   for (std::size_t i = 0; i + 2 < order.size(); ++i) {
     const auto nearest =
         std::ranges::min_element(order.begin() + static_cast<std::ptrdiff_t>(i) + 1, order.end(),
-                                 {}, [&](std::size_t k) { return way(order[i], k); });
+                                 {}, [&](std::size_t k) { return distance(order[i], k); });
     std::swap(order[i + 1], *nearest);
   }
   for (bool is_better = true; is_better;) {
     is_better = false;
     for (std::size_t i = 1; i + 1 < order.size(); ++i) {
       for (std::size_t j = i + 1; j < order.size(); ++j) {
-        const double tail = j + 1 < order.size() ? way(order[j], order[j + 1]) : 0.0;
-        const double turned_tail = j + 1 < order.size() ? way(order[i], order[j + 1]) : 0.0;
-        const double change =
-            way(order[i - 1], order[j]) + turned_tail - way(order[i - 1], order[i]) - tail;
+        const double tail = j + 1 < order.size() ? distance(order[j], order[j + 1]) : 0.0;
+        const double turned_tail = j + 1 < order.size() ? distance(order[i], order[j + 1]) : 0.0;
+        const double change = distance(order[i - 1], order[j]) + turned_tail -
+                              distance(order[i - 1], order[i]) - tail;
         if (change >= -1e-9) continue;
         std::reverse(order.begin() + static_cast<std::ptrdiff_t>(i),
                      order.begin() + static_cast<std::ptrdiff_t>(j) + 1);
@@ -158,32 +163,33 @@ std::vector<View> greedy_cover(const evaluation::SimulationOptions& options,
   const Truth truth(options, scene, config.samples, threads);
   std::vector<View> candidates = truth.candidates(config.candidates, seed);
   candidates.push_back(scene.first_view(seed));
-  std::vector<std::vector<Look>> looks(candidates.size());
-  geometry::parallel_for(candidates.size(), threads,
-                         [&](std::size_t i) { looks[i] = truth.looks(candidates[i]); });
+  std::vector<std::vector<Observation>> observations(candidates.size());
+  geometry::parallel_for(candidates.size(), threads, [&](std::size_t i) {
+    observations[i] = truth.observations(candidates[i]);
+  });
 
-  const double least_gain = options.oracle.least_gain * static_cast<double>(truth.size());
+  const double min_gain = options.oracle.min_gain * static_cast<double>(truth.size());
   std::vector<float> uncovered(truth.size(), 1.0F);
   std::optional<Measurement> measured;
-  if (config.wanted_coverage) measured.emplace(options, scene, seed, threads);
+  if (config.target_coverage) measured.emplace(options, scene, seed, threads);
   std::vector<View> views;
   std::size_t next = candidates.size() - 1;
   reason = survey::StopReason::complete;
   while (true) {
-    if (measured) measured->take(candidates[next], views.size());
+    if (measured) measured->measure(candidates[next], views.size());
     views.push_back(candidates[next]);
-    cover(looks[next], uncovered);
-    if (measured && measured->meter().share() >= *config.wanted_coverage) break;
+    cover(observations[next], uncovered);
+    if (measured && measured->meter().share() >= *config.target_coverage) break;
     if (views.size() >= options.oracle.max_views) reason = survey::StopReason::view_limit;
     if (stop.stop_requested()) reason = survey::StopReason::interrupted;
     if (reason != survey::StopReason::complete) break;
 
     double best = 0.0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const double gain = gain_of(looks[i], uncovered);
+      const double gain = compute_gain(observations[i], uncovered);
       if (gain > best) best = gain, next = i;
     }
-    if (best <= 0.0 || (!config.wanted_coverage && best < least_gain)) break;
+    if (best <= 0.0 || (!config.target_coverage && best < min_gain)) break;
   }
   return views;
 }
@@ -213,20 +219,20 @@ session::SurveyRecord survey_omnisciently(const evaluation::SimulationOptions& o
   Measurement measured(options, scene, seed, threads);
   double distance = 0.0;
   for (const std::size_t i : short_tour(views)) {
-    session::JudgedView judged;
-    judged.surveyed.view = views[i];
+    session::EvaluatedView evaluated;
+    evaluated.surveyed.view = views[i];
     if (!record.views.empty()) {
       distance += (views[i].position - record.views.back().surveyed.view.position).norm();
     }
-    judged.surveyed.distance = distance;
-    for (const Vector3f& point : measured.take(views[i], i)) {
+    evaluated.surveyed.distance = distance;
+    for (const Vector3f& point : measured.measure(views[i], i)) {
       record.cloud.positions.push_back(point);
       record.cloud.views.push_back(static_cast<std::uint32_t>(record.views.size()));
-      ++judged.surveyed.step.points_new;
+      ++evaluated.surveyed.step.points_new;
     }
-    judged.surveyed.points = record.cloud.size();
-    judged.coverage = measured.meter().share();
-    record.views.push_back(std::move(judged));
+    evaluated.surveyed.points = record.cloud.size();
+    evaluated.coverage = measured.meter().share();
+    record.views.push_back(std::move(evaluated));
   }
   record.is_covered = measured.meter().is_covered();
   return record;

@@ -19,12 +19,12 @@ struct OmniscientConfig {
   std::size_t candidates = 1500;  ///< Number of candidate views, each aimed at a visible position.
   std::size_t samples = 8000;     ///< Number of surface samples for evaluating candidates.
   /// Fraction of the surface at which the selection ends. If empty, it ends when no view adds at
-  /// least `options.oracle.least_gain` of the visible surface.
-  std::optional<double> wanted_coverage;
+  /// least `options.oracle.min_gain` of the visible surface.
+  std::optional<double> target_coverage;
 };
 
 /// Returns the views selected by survey_omnisciently() in tour order. Nothing is measured unless
-/// `wanted_coverage` is set.
+/// `target_coverage` is set.
 std::vector<geometry::View> known_cover(const evaluation::SimulationOptions& options,
                                         const evaluation::SurveyScene& scene, std::uint64_t seed,
                                         unsigned threads, const OmniscientConfig& config = {});

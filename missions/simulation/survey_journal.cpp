@@ -17,12 +17,12 @@ namespace skycap::missions::simulation {
 namespace {
 
 using Eigen::Vector3d;
-using support::json_of;
-using support::vector_of;
+using support::to_json;
+using support::to_vector;
 using Json = nlohmann::ordered_json;
 
 /// Identifies the mesh by its samples, because the file of a model may change.
-std::string digest_of(const evaluation::SurveyScene& scene) {
+std::string compute_checksum(const evaluation::SurveyScene& scene) {
   return support::sha256(std::as_bytes(std::span<const Eigen::Vector3f>(scene.samples().points)));
 }
 
@@ -32,7 +32,7 @@ SurveyJournal::SurveyJournal(std::filesystem::path file, const support::Identity
                              const evaluation::SurveyScene& scene, bool resumes)
     : file_(std::move(file)),
       identity_(support::identity_text(
-          run, {{"format", support::journal_format}, {"surface", digest_of(scene)}})) {
+          run, {{"format", support::journal_format}, {"surface", compute_checksum(scene)}})) {
   if (!resumes || !std::filesystem::exists(file_)) return;
   log_.emplace(file_);
   if (!log_->records().empty()) read_known(log_->records());
@@ -50,9 +50,9 @@ void SurveyJournal::read_known(const std::vector<std::string>& records) {
   }
 }
 
-std::string SurveyJournal::text_of(const ViewRecord& record) {
-  return support::journal_line({{"position", json_of(record.view.position)},
-                                {"direction", json_of(record.view.direction)},
+std::string SurveyJournal::to_journal_line(const ViewRecord& record) {
+  return support::journal_line({{"position", to_json(record.view.position)},
+                                {"direction", to_json(record.view.direction)},
                                 {"returns", record.returns},
                                 {"points", record.points},
                                 {"next", session::reach_json(record.reach)}});
@@ -60,31 +60,32 @@ std::string SurveyJournal::text_of(const ViewRecord& record) {
 
 SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) const {
   const Json json = geometry::parse_json<Json>(text);
-  ViewRecord record{.view = {vector_of(json.at("position")), vector_of(json.at("direction"))},
+  ViewRecord record{.view = {to_vector(json.at("position")), to_vector(json.at("direction"))},
                     .returns = json.at("returns").get<std::size_t>(),
                     .points = json.at("points").get<std::size_t>(),
                     .reach = session::parse_reach(json.at("next"))};
-  const bool is_in_world = geometry::is_place(record.view.position) &&
-                           std::ranges::all_of(record.reach.way.points, [](const Vector3d& place) {
-                             return geometry::is_place(place);
-                           });
+  const bool is_in_world =
+      geometry::is_valid_position(record.view.position) &&
+      std::ranges::all_of(record.reach.path.points, [](const Vector3d& position) {
+        return geometry::is_valid_position(position);
+      });
   if (!is_in_world) {
     fail("line " + std::to_string(known_.size() + 2) + " contains a position outside the world");
   }
   return record;
 }
 
-void SurveyJournal::attach(survey::SurveyPorts& ports, session::SurveyFlight* flight) {
-  ports.sense = [this, sense = std::move(ports.sense)](const geometry::View& view,
-                                                       geometry::Scan recycled) {
+void SurveyJournal::attach(survey::SurveyCallbacks& callbacks, session::SurveyFlight* flight) {
+  callbacks.sense = [this, sense = std::move(callbacks.sense)](const geometry::View& view,
+                                                               geometry::Scan buffer) {
     begin_view(view);
-    return sense(view, std::move(recycled));
+    return sense(view, std::move(buffer));
   };
-  if (ports.can_reach) {
-    ports.can_reach = reach_.remembering(std::move(ports.can_reach), flight);
+  if (callbacks.can_reach) {
+    callbacks.can_reach = reach_.remembering(std::move(callbacks.can_reach), flight);
   }
-  ports.report = [this, report = std::move(ports.report)](const survey::SurveyedView& view,
-                                                          const geometry::Scan& scan) {
+  callbacks.report = [this, report = std::move(callbacks.report)](const survey::SurveyedView& view,
+                                                                  const geometry::Scan& scan) {
     end_view(view);
     if (report) report(view, scan);
   };
@@ -110,9 +111,9 @@ void SurveyJournal::end_view(const survey::SurveyedView& view) {
       log_.emplace(file_);
     }
     if (at_ == 0 && log_->records().empty()) log_->append(identity_);
-    log_->append(text_of(current_));
+    log_->append(to_journal_line(current_));
     known_.push_back(current_);
-  } else if (text_of(current_) != text_of(known_[at_])) {
+  } else if (to_journal_line(current_) != to_journal_line(known_[at_])) {
     fail("does not match: view " + std::to_string(at_) +
          " gave other points; start again without --resume");
   }

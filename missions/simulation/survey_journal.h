@@ -37,9 +37,9 @@ class SurveyJournal {
   std::size_t views() const { return known_.size(); }
 
   /// Modifies the ports so that the survey replays the recorded views and records all later ones.
-  /// `flight` may be null. `ports` and `flight` must outlive the survey. The ports then throw
+  /// `flight` may be null. `callbacks` and `flight` must outlive the survey. The ports then throw
   /// Error{bad_file} if the survey deviates from the file or the file cannot be written.
-  void attach(survey::SurveyPorts& ports, session::SurveyFlight* flight);
+  void attach(survey::SurveyCallbacks& callbacks, session::SurveyFlight* flight);
 
  private:
   /// View and its results.
@@ -50,7 +50,7 @@ class SurveyJournal {
     session::ReachRecord reach;  ///< Reachability of the views proposed after it.
   };
 
-  static std::string text_of(const ViewRecord& record);
+  static std::string to_journal_line(const ViewRecord& record);
   ViewRecord parse(const std::string& text) const;
   void read_known(const std::vector<std::string>& records);
   bool is_known() const { return at_ < known_.size(); }
@@ -64,7 +64,7 @@ class SurveyJournal {
   std::vector<ViewRecord> known_;
   std::size_t at_ = 0;  ///< Index of the current view.
   ViewRecord current_;
-  session::ReachMemory reach_;
+  session::ReachabilityCache reach_;
 };
 
 }  // namespace skycap::missions::simulation

@@ -22,7 +22,7 @@ class SurveyClock {
   explicit SurveyClock(const session::SurveyFlight* flight) : flight_(flight) {}
 
   /// Returns the en-route views of the next path.
-  std::vector<geometry::View> begin_way(const geometry::View& from, const geometry::View& to) {
+  std::vector<geometry::View> begin_leg(const geometry::View& from, const geometry::View& to) {
     frames_ = flight_->frames(from, to);
     next_frame_ = 0;
     std::vector<geometry::View> views;
@@ -31,7 +31,7 @@ class SurveyClock {
   }
 
   /// Returns the next en-route view.
-  session::ViewInFlight on_way() {
+  session::ViewInFlight en_route() {
     session::ViewInFlight frame = frames_.at(next_frame_++);
     frame.time += now_;
     return frame;
@@ -56,57 +56,58 @@ class SurveyClock {
 session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
                                  const evaluation::SurveyScene& scene, std::uint64_t seed,
                                  unsigned threads, std::stop_token stop,
-                                 const std::function<void(const session::JudgedView&)>& report,
+                                 const std::function<void(const session::EvaluatedView&)>& report,
                                  SurveyJournal* journal) {
-  CarriedSensor sensor(options, seed);
+  MountedSensor sensor(options, seed);
   const geometry::View first_view = scene.first_view(seed);
-  session::MissionPlanner guided(options.survey, first_view,
-                                 {.seed = seed, .threads = threads, .sphere = scene.view_sphere()});
+  session::ConstrainedPlanner guided(
+      options.survey, first_view,
+      {.seed = seed, .threads = threads, .sphere = scene.view_sphere()});
   evaluation::CoverageMeter meter(scene.samples().points, options.evaluation.registration_distance);
   session::SurveyRecord record;
   record.seed = seed;
   record.threads = geometry::thread_count(threads);
 
   std::uint64_t frame = 0;
-  std::size_t points_judged = 0;
-  survey::SurveyPorts ports = guided.ports();
+  std::size_t evaluated_points = 0;
+  survey::SurveyCallbacks callbacks = guided.callbacks();
   SurveyClock clock(guided.flight());
-  const auto sense = [&](const session::ViewInFlight& view, geometry::Scan recycled) {
+  const auto sense = [&](const session::ViewInFlight& view, geometry::Scan buffer) {
     record.scans.push_back({static_cast<std::uint32_t>(record.views.size()), view.view.position});
-    return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));
+    return sensor.scan(scene.scene(), view, frame++, threads, std::move(buffer));
   };
-  ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
-    return sense(clock.at(view), std::move(recycled));
+  callbacks.sense = [&](const geometry::View& view, geometry::Scan buffer) {
+    return sense(clock.at(view), std::move(buffer));
   };
-  ports.sense_on_way = [&](const geometry::View&, geometry::Scan recycled) {
-    return sense(clock.on_way(), std::move(recycled));
+  callbacks.sense_en_route = [&](const geometry::View&, geometry::Scan buffer) {
+    return sense(clock.en_route(), std::move(buffer));
   };
-  if (ports.views_on_way) {
-    ports.views_on_way = [&clock](const geometry::View& from, const geometry::View& to) {
-      return clock.begin_way(from, to);
+  if (callbacks.en_route_views) {
+    callbacks.en_route_views = [&clock](const geometry::View& from, const geometry::View& to) {
+      return clock.begin_leg(from, to);
     };
   }
   // With a vehicle, paths are verified in the measured space instead.
   if (guided.flight() == nullptr) {
-    ports.can_reach = [&scene](const Eigen::Vector3d&, const geometry::View& view) {
+    callbacks.can_reach = [&scene](const Eigen::Vector3d&, const geometry::View& view) {
       return scene.is_reachable(view.position);
     };
   }
-  ports.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {
+  callbacks.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {
     const std::span stored(guided.planner().cloud().positions);
-    meter.add(stored.subspan(points_judged));
-    points_judged = stored.size();
+    meter.add(stored.subspan(evaluated_points));
+    evaluated_points = stored.size();
     record.views.push_back({view, meter.share()});
     if (report) report(record.views.back());
   };
-  if (journal != nullptr) journal->attach(ports, guided.flight());
+  if (journal != nullptr) journal->attach(callbacks, guided.flight());
   record.stop_reason =
-      survey::run_survey(guided.planner(), first_view, guided.limits(), ports, std::move(stop))
+      survey::run_survey(guided.planner(), first_view, guided.limits(), callbacks, std::move(stop))
           .stop_reason;
   guided.finish(record);
   // Removes points measured after the last view if planning was interrupted.
-  record.cloud.positions.resize(points_judged);
-  record.cloud.views.resize(points_judged);
+  record.cloud.positions.resize(evaluated_points);
+  record.cloud.views.resize(evaluated_points);
   record.is_covered = meter.is_covered();
   return record;
 }

@@ -19,10 +19,10 @@ namespace skycap::missions::simulation {
 /// only positions for which scene.is_reachable() is true. `report` (optional) is called after each
 /// view. With a journal, the survey is recorded and resumes where the journal ends; the record is
 /// the same except for its times. Throws all errors of planner, sensor and session::SurveyFlight.
-session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
-                                 const evaluation::SurveyScene& scene, std::uint64_t seed,
-                                 unsigned threads, std::stop_token stop = {},
-                                 const std::function<void(const session::JudgedView&)>& report = {},
-                                 SurveyJournal* journal = nullptr);
+session::SurveyRecord run_survey(
+    const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
+    std::uint64_t seed, unsigned threads, std::stop_token stop = {},
+    const std::function<void(const session::EvaluatedView&)>& report = {},
+    SurveyJournal* journal = nullptr);
 
 }  // namespace skycap::missions::simulation

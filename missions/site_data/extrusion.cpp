@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 using Corners = std::vector<Vector3d>;
 
 /// Returns the signed area, positive for rings that are counter-clockwise from above.
-double area_of(std::span<const Vector3d> ring) {
+double compute_area(std::span<const Vector3d> ring) {
   double sum = 0.0;
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
     const Vector3d a = ring[i] - ring[0], b = ring[i + 1] - ring[0];
@@ -39,7 +39,7 @@ bool add_extruded(Object& object, std::span<const Vector3d> bottom, std::span<co
   for (std::size_t r = 0; r + 1 < begin.size(); ++r) {  // Holes have the opposite orientation.
     const auto from = static_cast<std::ptrdiff_t>(begin[r]),
                to = static_cast<std::ptrdiff_t>(begin[r + 1]);
-    const bool is_ccw = area_of(bottom.subspan(begin[r], begin[r + 1] - begin[r])) > 0.0;
+    const bool is_ccw = compute_area(bottom.subspan(begin[r], begin[r + 1] - begin[r])) > 0.0;
     if (is_ccw == (r == 0)) continue;
     std::reverse(floor.begin() + from, floor.begin() + to);
     std::reverse(roof.begin() + from, roof.begin() + to);

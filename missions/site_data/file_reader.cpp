@@ -26,31 +26,32 @@ namespace fs = std::filesystem;
 
 enum class Format { citygml, cityjson, map, raster, las, e57, scene, mesh, cloud };
 
-bool is_one_of(string_view text, std::initializer_list<string_view> wanted) {
-  return std::ranges::find(wanted, text) != wanted.end();
+bool is_one_of(string_view text, std::initializer_list<string_view> candidates) {
+  return std::ranges::find(candidates, text) != candidates.end();
 }
 
-bool begins_with_one_of(string_view text, std::initializer_list<string_view> wanted) {
-  return std::ranges::any_of(wanted, [&](string_view begin) { return text.starts_with(begin); });
+bool starts_with_any(string_view text, std::initializer_list<string_view> candidates) {
+  return std::ranges::any_of(candidates,
+                             [&](string_view begin) { return text.starts_with(begin); });
 }
 
 /// Returns the local name of the root element; empty if the text is not XML.
-string_view root_of(string_view text) {
+string_view find_root_element(string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == string_view::npos || text[first] != '<') return {};
-  std::size_t place = first;
-  while (place + 1 < text.size() && (text[place + 1] == '?' || text[place + 1] == '!')) {
-    const bool is_comment = text.substr(place).starts_with("<!--");
-    place = text.find(is_comment ? "-->" : ">", place);
-    if (place != string_view::npos) place = text.find('<', place);
-    if (place == string_view::npos) return {};
+  std::size_t offset = first;
+  while (offset + 1 < text.size() && (text[offset + 1] == '?' || text[offset + 1] == '!')) {
+    const bool is_comment = text.substr(offset).starts_with("<!--");
+    offset = text.find(is_comment ? "-->" : ">", offset);
+    if (offset != string_view::npos) offset = text.find('<', offset);
+    if (offset == string_view::npos) return {};
   }
-  const std::size_t end = std::min(text.find_first_of(" \t\r\n/>", place + 1), text.size());
-  string_view name = text.substr(place + 1, end - place - 1);
+  const std::size_t end = std::min(text.find_first_of(" \t\r\n/>", offset + 1), text.size());
+  string_view name = text.substr(offset + 1, end - offset - 1);
   return name.substr(name.rfind(':') + 1);
 }
 
-std::optional<Format> format_of_xml(string_view root, string_view text) {
+std::optional<Format> detect_xml_format(string_view root, string_view text) {
   if (root == "CityModel") return Format::citygml;
   if (root == "FeatureCollection" && text.find("citygml") != string_view::npos) {
     return Format::citygml;  // Response format of feature servers.
@@ -64,54 +65,53 @@ std::optional<Format> format_of_xml(string_view root, string_view text) {
 /// cloud.
 bool is_ascii_grid(string_view beginning) {
   const std::string text = geometry::lower_case(beginning.substr(0, 40));
-  return begins_with_one_of(text, {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter",
-                                   "yllcenter", "cellsize", "dx ", "dy "});
+  return starts_with_any(text, {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter",
+                                "yllcenter", "cellsize", "dx ", "dy "});
 }
 
 std::optional<Format> format_by_content(string_view beginning) {
   using namespace std::string_view_literals;
   if (beginning.starts_with("LASF")) return Format::las;
   if (beginning.starts_with("ASTM-E57")) return Format::e57;
-  if (begins_with_one_of(beginning, {"glTF", "Kaydara FBX", "; FBX"}) ||
+  if (starts_with_any(beginning, {"glTF", "Kaydara FBX", "; FBX"}) ||
       geometry::trimmed(beginning).starts_with("ISO-10303-21")) {
     return Format::scene;
   }
-  if (begins_with_one_of(beginning, {"SQLite format 3", "\0\0\x27\x0A"sv, "fgb\3fgb"})) {
+  if (starts_with_any(beginning, {"SQLite format 3", "\0\0\x27\x0A"sv, "fgb\3fgb"})) {
     return Format::map;
   }
-  if (begins_with_one_of(beginning,
-                         {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv, "\0\0\0\x0CjP"sv}) ||
+  if (starts_with_any(beginning, {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv, "\0\0\0\x0CjP"sv}) ||
       is_ascii_grid(beginning)) {
     return Format::raster;
   }
-  if (begins_with_one_of(beginning, {"ply\n", "ply\r"})) {
+  if (starts_with_any(beginning, {"ply\n", "ply\r"})) {
     const bool has_faces = beginning.find("element face") != string_view::npos ||
                            beginning.find("element tristrips") != string_view::npos;
     return has_faces ? Format::mesh : Format::cloud;
   }
-  if (begins_with_one_of(beginning, {"# .PCD", "VERSION"})) return Format::cloud;
-  if (begins_with_one_of(beginning, {"OFF", "DRACO"})) return Format::mesh;
-  return format_of_xml(root_of(beginning), beginning);
+  if (starts_with_any(beginning, {"# .PCD", "VERSION"})) return Format::cloud;
+  if (starts_with_any(beginning, {"OFF", "DRACO"})) return Format::mesh;
+  return detect_xml_format(find_root_element(beginning), beginning);
 }
 
-std::optional<Format> format_by_ending(const std::string& ending, Role role) {
-  if (is_one_of(ending, {".obj", ".off", ".stl", ".drc", ".ply"})) return Format::mesh;
-  if (is_one_of(ending, {".pcd", ".txt", ".asc", ".pts", ".csv"})) return Format::cloud;
-  if (is_one_of(ending, {".dae", ".fbx", ".3ds", ".ifc", ".gltf", ".glb"})) return Format::scene;
-  if (is_one_of(ending, {".dxf", ".pbf", ".shp", ".geojson", ".fgb", ".gpkg", ".kmz"})) {
+std::optional<Format> format_by_extension(const std::string& extension, Role role) {
+  if (is_one_of(extension, {".obj", ".off", ".stl", ".drc", ".ply"})) return Format::mesh;
+  if (is_one_of(extension, {".pcd", ".txt", ".asc", ".pts", ".csv"})) return Format::cloud;
+  if (is_one_of(extension, {".dae", ".fbx", ".3ds", ".ifc", ".gltf", ".glb"})) return Format::scene;
+  if (is_one_of(extension, {".dxf", ".pbf", ".shp", ".geojson", ".fgb", ".gpkg", ".kmz"})) {
     return Format::map;
   }
-  if (is_one_of(ending, {".tif", ".tiff", ".jp2"})) return Format::raster;
+  if (is_one_of(extension, {".tif", ".tiff", ".jp2"})) return Format::raster;
   // Terrain is commonly distributed as gridded lines of x y z.
-  if (ending == ".xyz") return role == Role::terrain ? Format::raster : Format::cloud;
+  if (extension == ".xyz") return role == Role::terrain ? Format::raster : Format::cloud;
   return std::nullopt;
 }
 
 /// Returns the position after the closing quote of the JSON string that starts at `quote`.
-std::size_t end_of_string(string_view text, std::size_t quote) {
-  std::size_t place = quote + 1;
-  while (place < text.size() && text[place] != '"') place += text[place] == '\\' ? 2 : 1;
-  return std::min(place + 1, text.size());
+std::size_t find_string_end(string_view text, std::size_t quote) {
+  std::size_t offset = quote + 1;
+  while (offset < text.size() && text[offset] != '"') offset += text[offset] == '\\' ? 2 : 1;
+  return std::min(offset + 1, text.size());
 }
 
 /// Type information in the outermost object of a JSON text.
@@ -120,7 +120,7 @@ struct JsonKind {
   bool has_asset = false;  ///< Has the key "asset", which glTF requires.
 };
 
-JsonKind kind_of_json(string_view text) {
+JsonKind detect_json_kind(string_view text) {
   JsonKind kind;
   int depth = 0;
   string_view key;  // Key of the next value.
@@ -130,7 +130,7 @@ JsonKind kind_of_json(string_view text) {
     if (depth == 0 && c == '}') break;
     if (c == ',' && depth == 1) key = {};
     if (c != '"') continue;
-    const std::size_t end = end_of_string(text, i);
+    const std::size_t end = find_string_end(text, i);
     const string_view quoted = text.substr(i + 1, end - i - 2);
     i = end - 1;
     if (depth != 1) continue;
@@ -144,14 +144,14 @@ JsonKind kind_of_json(string_view text) {
   return kind;
 }
 
-Format format_of_json(const std::string& ending, string_view text) {
-  const JsonKind kind = kind_of_json(text);
+Format detect_json_format(const std::string& extension, string_view text) {
+  const JsonKind kind = detect_json_kind(text);
   if (is_one_of(kind.type, {"CityJSON", "CityJSONFeature"})) return Format::cityjson;
-  const bool is_gltf = ending == ".gltf" || (kind.has_asset && kind.type.empty());
+  const bool is_gltf = extension == ".gltf" || (kind.has_asset && kind.type.empty());
   return is_gltf ? Format::scene : Format::map;
 }
 
-std::string beginning_of(const fs::path& file) {
+std::string read_head(const fs::path& file) {
   std::string bytes(1 << 16, '\0');
   std::ifstream stream = geometry::open_stream(file);
   if (!stream) fail_file(file, "cannot be opened");
@@ -174,25 +174,25 @@ Opened open_file(const fs::path& file, Role role) {
   std::error_code failure;
   if (!fs::is_regular_file(file, failure))
     fail_file(file, "does not exist, or is not a regular file");
-  const std::string beginning = beginning_of(file);
-  const bool is_read_piece_by_piece = begins_with_one_of(beginning, {"LASF", "ASTM-E57"});
-  if (!is_read_piece_by_piece && fs::file_size(file, failure) > most_bytes) {
+  const std::string beginning = read_head(file);
+  const bool is_streamed = starts_with_any(beginning, {"LASF", "ASTM-E57"});
+  if (!is_streamed && fs::file_size(file, failure) > max_bytes) {
     fail_file(file, "is larger than 2 GB");
   }
   if (beginning.empty()) fail_file(file, "is empty");
-  const std::string ending = geometry::ending_of(file);
+  const std::string extension = geometry::lower_extension(file);
   Opened opened{Format::mesh, {}};
   const bool is_compressed = beginning.starts_with("\x1F\x8B");
-  if (is_compressed) opened.bytes = geometry::read_file(file, most_bytes);
+  if (is_compressed) opened.bytes = geometry::read_file(file, max_bytes);
   const string_view bytes = is_compressed ? string_view(opened.bytes) : string_view(beginning);
   const std::string text = geometry::as_utf8(std::string(bytes.substr(0, 1 << 16)));
   std::optional<Format> format = format_by_content(text);
   if (!format && geometry::trimmed(text).starts_with('{')) {
-    if (!is_compressed) opened.bytes = geometry::read_file(file, most_bytes);
+    if (!is_compressed) opened.bytes = geometry::read_file(file, max_bytes);
     opened.bytes = geometry::as_utf8(std::move(opened.bytes));
-    format = format_of_json(ending, opened.bytes);
+    format = detect_json_format(extension, opened.bytes);
   }
-  if (!format) format = format_by_ending(ending, role);
+  if (!format) format = format_by_extension(extension, role);
   if (!format && text.starts_with("PK\3\4")) {
     fail_file(file, "is a zip archive; unpack it and use the file in it");
   }
@@ -205,10 +205,10 @@ Opened open_file(const fs::path& file, Role role) {
   opened.format = *format;
   const bool is_parsed_here = *format == Format::citygml || *format == Format::cityjson;
   if (is_parsed_here) {
-    const std::size_t most = *format == Format::citygml ? largest_citygml : largest_cityjson;
-    if (opened.bytes.empty()) opened.bytes = geometry::read_file(file, most);
-    if (opened.bytes.size() > most) {
-      fail_file(file, "is larger than " + std::to_string(most >> 20) + " MiB");
+    const std::size_t max = *format == Format::citygml ? largest_citygml : largest_cityjson;
+    if (opened.bytes.empty()) opened.bytes = geometry::read_file(file, max);
+    if (opened.bytes.size() > max) {
+      fail_file(file, "is larger than " + std::to_string(max >> 20) + " MiB");
     }
     opened.bytes = geometry::as_utf8(std::move(opened.bytes));
   }
@@ -220,7 +220,7 @@ Opened open_file(const fs::path& file, Role role) {
 
 FileContents mesh_contents(const fs::path& file) {
   FileContents contents;
-  contents.format = "mesh" + geometry::ending_of(file);
+  contents.format = "mesh" + geometry::lower_extension(file);
   contents.is_scene = true;
   FileObject& object = contents.objects.emplace_back();
   object.id = file.stem().string();
@@ -232,26 +232,26 @@ FileContents mesh_contents(const fs::path& file) {
 
 FileContents cloud_contents(const Source& source) {
   FileContents contents;
-  contents.format = "cloud" + geometry::ending_of(source.file);
+  contents.format = "cloud" + geometry::lower_extension(source.file);
   contents.is_scene = true;
   CellSet cells;
   const double unit = source.unit.value_or(1.0);
   const double cells_per_unit = unit / source.spacing.value_or(usual_spacing);
-  const auto take = [&](std::span<const Eigen::Vector3f> piece, double) {
-    for (const Eigen::Vector3f& point : piece) {
-      const Eigen::Vector3d place = point.cast<double>();
-      if (cells.add(place * cells_per_unit)) contents.points.push_back(place);
+  const auto callback = [&](std::span<const Eigen::Vector3f> chunk, double) {
+    for (const Eigen::Vector3f& point : chunk) {
+      const Eigen::Vector3d offset = point.cast<double>();
+      if (cells.add(offset * cells_per_unit)) contents.points.push_back(offset);
     }
   };
-  note_skipped(geometry::read_positions(source.file, take), contents);
+  note_skipped(geometry::read_positions(source.file, callback), contents);
   return contents;
 }
 
 FileContents map_contents(const Source& source) {
   FileContents contents = read_map(source.file, source.select.layer);
   if (contents.format == "DXF") {
-    take_dxf_unit(source.file, geometry::read_file(source.file, most_bytes),
-                  source.unit.has_value(), contents);
+    apply_dxf_unit(source.file, geometry::read_file(source.file, max_bytes),
+                   source.unit.has_value(), contents);
   }
   read_building_heights(contents, source.height_attribute);
   return contents;
@@ -259,27 +259,27 @@ FileContents map_contents(const Source& source) {
 
 FileContents scene_contents(const Source& source) {
   const fs::path& file = source.file;
-  const std::string ending = geometry::ending_of(file);
+  const std::string extension = geometry::lower_extension(file);
   const bool is_gltf =
-      ending == ".gltf" || ending == ".glb" || begins_with_one_of(beginning_of(file), {"glTF"});
+      extension == ".gltf" || extension == ".glb" || starts_with_any(read_head(file), {"glTF"});
   // Properties that Assimp ignores are checked before it reads the file.
   SceneFacts facts = is_gltf ? gltf_facts(file, gltf_json(file)) : SceneFacts{};
   FileContents contents = read_scene(file);
-  if (ending == ".ifc") {
-    facts = ifc_facts(file, geometry::read_file(file, most_bytes), source.unit.has_value());
+  if (extension == ".ifc") {
+    facts = ifc_facts(file, geometry::read_file(file, max_bytes), source.unit.has_value());
   }
   if (facts.unit) contents.unit = facts.unit;
   contents.notes.insert(contents.notes.end(), facts.notes.begin(), facts.notes.end());
-  contents.format = "scene" + ending;
+  contents.format = "scene" + extension;
   return contents;
 }
 
 FileContents parsed(Opened opened, const Source& source, const SiteFrame& site) {
   const fs::path& file = source.file;
-  const CloudThinning thinning{source.spacing.value_or(usual_spacing),
-                               [&](const FileContents& header) {
-                                 return SiteTransform(source, header, site).metres_per_unit();
-                               }};
+  const CloudDownsampling downsampling{
+      source.spacing.value_or(usual_spacing), [&](const FileContents& header) {
+        return SiteTransform(source, header, site).metres_per_unit();
+      }};
   switch (opened.format) {
     case Format::citygml:
       return parse_citygml(file, std::move(opened.bytes));
@@ -290,9 +290,9 @@ FileContents parsed(Opened opened, const Source& source, const SiteFrame& site) 
     case Format::raster:
       return read_raster(file);
     case Format::las:
-      return read_las(file, source.select.classes, thinning);
+      return read_las(file, source.select.classes, downsampling);
     case Format::e57:
-      return read_e57(file, thinning);
+      return read_e57(file, downsampling);
     case Format::scene:
       return scene_contents(source);
     case Format::mesh:
@@ -304,7 +304,7 @@ FileContents parsed(Opened opened, const Source& source, const SiteFrame& site) 
 }
 
 /// Returns true for formats with objects, not with points or raster nodes.
-bool holds_objects(Format format) {
+bool supports_objects(Format format) {
   return format == Format::citygml || format == Format::cityjson || format == Format::map ||
          format == Format::scene || format == Format::mesh;
 }
@@ -322,7 +322,7 @@ SharedContents read_contents(const Source& source, const SiteFrame& site) {
     return read_once->contents_;
   }
   Opened opened = open_file(source.file, source.role);
-  const bool keeps = read_once != nullptr && holds_objects(opened.format);
+  const bool keeps = read_once != nullptr && supports_objects(opened.format);
   // Free the old contents first because two files may exceed the memory.
   if (keeps) read_once->contents_.reset();
   auto contents = std::make_shared<FileContents>(parsed(std::move(opened), source, site));

@@ -27,21 +27,21 @@ struct HeightGrid {
 
 /// Returns the step for downsampling in each direction, such that at most two million nodes of a
 /// large grid remain.
-std::size_t step_of(const HeightGrid& grid);
+std::size_t compute_step(const HeightGrid& grid);
 
 /// Keeps every `step`-th node in each direction and the last one. Each node gets the maximum height
 /// of all nodes within `step` nodes, so that the surface is nowhere below that of `grid`.
-HeightGrid thinned(const HeightGrid& grid, std::size_t step);
+HeightGrid downsampled(const HeightGrid& grid, std::size_t step);
 
 /// Returns vertical boxes over all cells, each with the maximum height that touches it. Their lower
-/// ends are arbitrary. In large grids, a box covers step_of() cells in each direction.
-std::vector<Eigen::AlignedBox3d> columns_of(const HeightGrid& grid);
+/// ends are arbitrary. In large grids, a box covers compute_step() cells in each direction.
+std::vector<Eigen::AlignedBox3d> make_columns(const HeightGrid& grid);
 
 /// Returns two triangles for each square of four nodes with heights.
-std::vector<flight::Triangle> triangles_of(const HeightGrid& grid);
+std::vector<flight::Triangle> to_triangles(const HeightGrid& grid);
 
-/// Returns horizontal triangles for the parts of cells that triangles_of() does not cover: at the
+/// Returns horizontal triangles for the parts of cells that to_triangles() does not cover: at the
 /// border of the grid and next to nodes without heights.
-std::vector<flight::Triangle> rim_of(const HeightGrid& grid);
+std::vector<flight::Triangle> make_rim_triangles(const HeightGrid& grid);
 
 }  // namespace skycap::missions::site_data

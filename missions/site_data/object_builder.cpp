@@ -52,7 +52,7 @@ Object ObjectBuilder::build(const SelectedObject& selected) {
   return result;
 }
 
-ObjectBuilder::Rings ObjectBuilder::rings_of(const FileObject& object) const {
+ObjectBuilder::Rings ObjectBuilder::make_rings(const FileObject& object) const {
   Rings rings;
   for (const FilePolygon& polygon : select_polygons(object, source_.select.lod)) {
     rings.first_ring.push_back(rings.begin.size() - 1);
@@ -71,12 +71,12 @@ ObjectBuilder::Rings ObjectBuilder::rings_of(const FileObject& object) const {
 /// Returns false for polygons with their own heights, which are surfaces, unless they are placed on
 /// the terrain or have a height attribute.
 bool ObjectBuilder::is_extruded(const FileObject& object) const {
-  const bool is_put = source_.base_on_terrain || source_.height || object.height;
-  return contents_.is_outlines && !object.polygons.empty() && (!object.has_heights || is_put);
+  const bool is_placed = source_.base_on_terrain || source_.height || object.height;
+  return contents_.is_outlines && !object.polygons.empty() && (!object.has_heights || is_placed);
 }
 
 void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {
-  Rings rings = rings_of(object);
+  Rings rings = make_rings(object);
   transform_.to_site(rings.corners);
   for (std::size_t i = 0; i < rings.kinds.size(); ++i) {
     const auto begin =
@@ -88,7 +88,7 @@ void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {
 }
 
 /// Returns the height of an outline's solid above its base [m].
-double ObjectBuilder::height_of(const FileObject& object) const {
+double ObjectBuilder::compute_height(const FileObject& object) const {
   const std::string name = source_.file.string() + ": ";
   // Another height could be lower than the actual one.
   if (!object.height_problem.empty()) {
@@ -112,21 +112,21 @@ double ObjectBuilder::height_of(const FileObject& object) const {
 }
 
 void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
-  const double height = height_of(object);
-  const double least =
+  const double height = compute_height(object);
+  const double min =
       source_.min_height > 0.0 ? source_.min_height : object.min_height.value_or(0.0);
-  if (!(height > least)) {
+  if (!(height > min)) {
     throw Error(ErrorKind::bad_config, source_.file.string() + ": the height of " +
                                            one_line(object.id) + ", " + std::to_string(height) +
-                                           " m, must be above its base, " + std::to_string(least) +
+                                           " m, must be above its base, " + std::to_string(min) +
                                            " m");
   }
   has_extruded_ = true;
-  Rings bottom = rings_of(object), top = bottom;
+  Rings bottom = make_rings(object), top = bottom;
   if (source_.base_on_terrain) {
-    place_on_terrain(bottom, top, least, height);
+    place_on_terrain(bottom, top, min, height);
   } else {
-    place_on_base(object.has_heights, bottom, top, least, height);
+    place_on_base(object.has_heights, bottom, top, min, height);
   }
   add_columns(bottom, top, result);
 }
@@ -137,15 +137,15 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
 void ObjectBuilder::add_draped(const FileObject& object, Object& result) {
   constexpr double below_plane = 100.0;  // [m]
   has_extruded_ = true;
-  Rings top = rings_of(object);
+  Rings top = make_rings(object);
   transform_.to_site(top.corners);
   for (Vector3d& corner : top.corners) corner.z() += source_.height.value_or(0.0);
   double ground = ground_below(top.corners);
   if (!std::isfinite(ground)) {
-    double lowest = ground_z_;
-    for (const Vector3d& corner : top.corners) lowest = std::min(lowest, corner.z());
+    double min_height = ground_z_;
+    for (const Vector3d& corner : top.corners) min_height = std::min(min_height, corner.z());
     const bool is_obstacle = source_.role == Role::obstacle;
-    ground = lowest - (is_obstacle ? below_plane : 0.0);
+    ground = min_height - (is_obstacle ? below_plane : 0.0);
     if (notes_.empty()) {
       notes_.emplace_back(
           is_obstacle
@@ -161,12 +161,12 @@ void ObjectBuilder::add_draped(const FileObject& object, Object& result) {
 
 /// Returns the minimum ground height below the corners; infinite where it is unknown.
 double ObjectBuilder::ground_below(std::span<const Vector3d> corners) const {
-  double lowest = std::numeric_limits<double>::infinity();
+  double min_height = std::numeric_limits<double>::infinity();
   for (const Vector3d& corner : corners) {
     const std::optional<double> ground = terrain_ ? terrain_(corner.head<2>()) : std::nullopt;
-    if (ground) lowest = std::min(lowest, *ground);
+    if (ground) min_height = std::min(min_height, *ground);
   }
-  return lowest;
+  return min_height;
 }
 
 void ObjectBuilder::add_columns(const Rings& bottom, const Rings& top, Object& result) {
@@ -175,7 +175,7 @@ void ObjectBuilder::add_columns(const Rings& bottom, const Rings& top, Object& r
     const std::uint32_t shift = bottom.begin[first];
     std::vector<std::uint32_t> begin(bottom.begin.begin() + static_cast<std::ptrdiff_t>(first),
                                      bottom.begin.begin() + static_cast<std::ptrdiff_t>(end) + 1);
-    for (std::uint32_t& place : begin) place -= shift;
+    for (std::uint32_t& corner_index : begin) corner_index -= shift;
     const auto part = [&](const Rings& rings) {
       return std::span(rings.corners).subspan(shift, begin.back());
     };
@@ -183,8 +183,8 @@ void ObjectBuilder::add_columns(const Rings& bottom, const Rings& top, Object& r
   }
 }
 
-void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, double least,
-                                  double most) const {
+void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, double min,
+                                  double max) const {
   const double unit = transform_.metres_per_unit().z();
   double base = std::numeric_limits<double>::infinity();  // In the file's units.
   if (source_.base) {
@@ -196,13 +196,13 @@ void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, d
         ErrorKind::bad_config,
         source_.file.string() + ": outlines without a base; set base to a height or to terrain");
   }
-  for (Vector3d& corner : bottom.corners) corner.z() = base + least / unit;
-  for (Vector3d& corner : top.corners) corner.z() = base + most / unit;
+  for (Vector3d& corner : bottom.corners) corner.z() = base + min / unit;
+  for (Vector3d& corner : top.corners) corner.z() = base + max / unit;
   transform_.to_site(bottom.corners);
   transform_.to_site(top.corners);
 }
 
-void ObjectBuilder::place_on_terrain(Rings& bottom, Rings& top, double least, double most) const {
+void ObjectBuilder::place_on_terrain(Rings& bottom, Rings& top, double min, double max) const {
   if (!terrain_) {
     throw Error(ErrorKind::bad_config,
                 source_.file.string() + ": base: terrain requires prior data with role: terrain");
@@ -214,8 +214,8 @@ void ObjectBuilder::place_on_terrain(Rings& bottom, Rings& top, double least, do
                 source_.file.string() + ": an outline stands where the terrain is unknown");
   }
   top.corners = bottom.corners;
-  for (Vector3d& corner : bottom.corners) corner.z() = base + least;
-  for (Vector3d& corner : top.corners) corner.z() = base + most;
+  for (Vector3d& corner : bottom.corners) corner.z() = base + min;
+  for (Vector3d& corner : top.corners) corner.z() = base + max;
 }
 
 }  // namespace skycap::missions::site_data

@@ -31,16 +31,16 @@ class ObjectBuilder {
     std::vector<SurfaceKind> kinds;       ///< Surface kind of each polygon.
   };
 
-  Rings rings_of(const FileObject& object) const;
+  Rings make_rings(const FileObject& object) const;
   bool is_extruded(const FileObject& object) const;
   void add_surfaces(const FileObject& object, Object& result);
   void add_solids(const FileObject& object, Object& result);
   void add_draped(const FileObject& object, Object& result);
-  double height_of(const FileObject& object) const;
+  double compute_height(const FileObject& object) const;
   void add_columns(const Rings& bottom, const Rings& top, Object& result);
   double ground_below(std::span<const Eigen::Vector3d> corners) const;
-  void place_on_base(bool has_heights, Rings& bottom, Rings& top, double least, double most) const;
-  void place_on_terrain(Rings& bottom, Rings& top, double least, double most) const;
+  void place_on_base(bool has_heights, Rings& bottom, Rings& top, double min, double max) const;
+  void place_on_terrain(Rings& bottom, Rings& top, double min, double max) const;
 
   const Source& source_;
   const FileContents& contents_;

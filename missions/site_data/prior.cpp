@@ -44,10 +44,10 @@ class Region {
   }
 
   /// Returns true for all positions if there is no file. Rings within rings are holes.
-  bool contains(const Vector2d& place) const {
+  bool contains(const Vector2d& pose) const {
     bool is_inside = rings_.empty();
     for (const std::vector<Vector2d>& ring : rings_) {
-      if (geometry::contains(ring, place)) is_inside = !is_inside;
+      if (geometry::contains(ring, pose)) is_inside = !is_inside;
     }
     return is_inside;
   }
@@ -84,7 +84,7 @@ double add_objects(const Source& source, const SiteFrame& site, const FileConten
                           " objects without surfaces of that lod ignored");
   }
   if (builder.has_extruded()) prior.uncertainty = 1.0;
-  return builder.transform().stand_in_error();
+  return builder.transform().substitution_error();
 }
 
 void add_points(FileContents& contents, const SiteTransform& transform, const Region& region,
@@ -100,18 +100,18 @@ void add_points(FileContents& contents, const SiteTransform& transform, const Re
 void add_steps(const FileContents& contents, const SiteTransform& transform, HeightGrid& grid) {
   const std::size_t middle = contents.rows / 2 * contents.columns + contents.columns / 2;
   const Vector2d here = contents.nodes[middle].head<2>();
-  std::array<Vector3d, 3> places;
-  places.fill(Vector3d::Zero());
-  places[0].head<2>() = here;
-  places[1].head<2>() = here + contents.right;
-  places[2].head<2>() = here + contents.down;
-  transform.to_site(places);
-  grid.right = (places[1] - places[0]).head<2>().cast<float>();
-  grid.down = (places[2] - places[0]).head<2>().cast<float>();
+  std::array<Vector3d, 3> positions;
+  positions.fill(Vector3d::Zero());
+  positions[0].head<2>() = here;
+  positions[1].head<2>() = here + contents.right;
+  positions[2].head<2>() = here + contents.down;
+  transform.to_site(positions);
+  grid.right = (positions[1] - positions[0]).head<2>().cast<float>();
+  grid.down = (positions[2] - positions[0]).head<2>().cast<float>();
 }
 
 /// Range of ground heights on the Earth above any datum [m].
-constexpr double lowest_ground = -500.0, highest_ground = 9000.0;
+constexpr double min_ground_height = -500.0, max_ground_height = 9000.0;
 
 /// Removes impossible heights, which are undeclared nodata values.
 void drop_impossible_heights(const Source& source, const SiteTransform& transform,
@@ -122,7 +122,7 @@ void drop_impossible_heights(const Source& source, const SiteTransform& transfor
   for (Vector3d& node : contents.nodes) {
     if (!std::isfinite(node.z())) continue;
     const double height = node.z() * unit;
-    if (height >= lowest_ground && height <= highest_ground) {
+    if (height >= min_ground_height && height <= max_ground_height) {
       ++kept;
     } else {
       if (dropped++ == 0) first = height;
@@ -166,7 +166,7 @@ void add_grid(FileContents& contents, const SiteTransform& transform, const Regi
 
 /// Calls `visit` with every position of a prior.
 template <typename Visit>
-void visit_places(const Prior& prior, const Visit& visit) {
+void visit_positions(const Prior& prior, const Visit& visit) {
   for (const Object& object : prior.objects) {
     for (const Vector3d& vertex : object.mesh.vertices) visit(vertex);
   }
@@ -180,26 +180,27 @@ void visit_places(const Prior& prior, const Visit& visit) {
 /// preserves the order of heights that differ by at least one millimetre within a kilometre.
 void measure(const SiteFrame& site, Prior& prior) {
   constexpr double earth_radius = 6.371e6;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  Vector3d lowest = Vector3d::Zero(), highest = lowest;
-  visit_places(prior, [&](const Vector3d& place) {
-    prior.box.extend(place);
-    const double height = place.z() + place.head<2>().squaredNorm() / (2.0 * earth_radius);
-    if (height < least) lowest = place;
-    if (height > most) highest = place;
-    least = std::min(least, height);
-    most = std::max(most, height);
+  double min = std::numeric_limits<double>::infinity(), max = -min;
+  Vector3d min_point = Vector3d::Zero(), max_point = min_point;
+  visit_positions(prior, [&](const Vector3d& pose) {
+    prior.box.extend(pose);
+    const double height = pose.z() + pose.head<2>().squaredNorm() / (2.0 * earth_radius);
+    if (height < min) min_point = pose;
+    if (height > max) max_point = pose;
+    min = std::min(min, height);
+    max = std::max(max, height);
   });
   if (!site.origin || prior.box.isEmpty()) return;
   const flight::LocalFrame frame(*site.origin);
-  const flight::GeodeticPoint low = frame.to_geodetic(lowest), high = frame.to_geodetic(highest);
+  const flight::GeodeticPoint low = frame.to_geodetic(min_point),
+                              high = frame.to_geodetic(max_point);
   prior.ellipsoid_heights = {low.height, high.height};
   if (!site.undulation) return;
   prior.sea_level_heights = {low.height - *site.undulation, high.height - *site.undulation};
 }
 
 /// Warns of an extent that typically indicates a wrong unit or a missing reference system.
-void warn_of_size(Prior& prior) {
+void warn_about_size(Prior& prior) {
   constexpr double smallest = 1.0, largest = 5000.0;
   const double size = prior.box.sizes().maxCoeff();
   if (size < smallest) {
@@ -227,95 +228,95 @@ void note_flat_objects(const Source& source, Prior& prior) {
 
 /// Throws unless the file contains the data that its role requires.
 void require_use(const Source& source, const Prior& prior) {
-  const auto refuse = [&](const std::string& what) {
+  const auto reject = [&](const std::string& what) {
     throw Error(ErrorKind::bad_config, source.file.string() + ": " + what);
   };
   if (source.role == Role::target && prior.objects.empty()) {
-    refuse("contains no surfaces of objects; a target requires them. Use role: obstacle");
+    reject("contains no surfaces of objects; a target requires them. Use role: obstacle");
   }
   const auto is_surface = [](const Object& object) { return has_area(object.mesh); };
   if (source.role == Role::terrain && prior.points.empty() && prior.grid.nodes.empty() &&
       std::ranges::none_of(prior.objects, is_surface)) {
-    refuse("contains no surface; terrain requires one. Use role: obstacle");
+    reject("contains no surface; terrain requires one. Use role: obstacle");
   }
   if (source.role == Role::terrain && !prior.points.empty()) {
-    refuse(
+    reject(
         "is a point cloud; terrain must be a raster or a mesh. Rasterise it, or use role: "
         "obstacle");
   }
   if (source.role == Role::truth && !prior.points.empty()) {
-    refuse("is a point cloud; ground truth must be a raster or a mesh");
+    reject("is a point cloud; ground truth must be a raster or a mesh");
   }
 }
 
-Prior prior_of(const SharedContents& shared, const Source& source, const SiteFrame& site,
-               const TerrainHeight& terrain) {
+Prior make_prior(const SharedContents& shared, const Source& source, const SiteFrame& site,
+                 const TerrainHeight& terrain) {
   FileContents& contents = *shared;
-  refuse_unused(source, contents);
+  reject_unused(source, contents);
   Prior prior;
   prior.role = source.role;
   prior.uncertainty = 0.3;
   prior.format = contents.format;
   prior.notes = contents.notes;
   const Region region(source, site);
-  double stand_in_error = 0.0;
+  double substitution_error = 0.0;
   if (contents.points.empty() && contents.nodes.empty()) {
-    stand_in_error = add_objects(source, site, contents, region, terrain, prior);
+    substitution_error = add_objects(source, site, contents, region, terrain, prior);
   } else {
     const SiteTransform transform(source, contents, site);
     drop_impossible_heights(source, transform, contents, prior);
     add_points(contents, transform, region, prior);
     if (!contents.nodes.empty()) add_grid(contents, transform, region, prior);
-    stand_in_error = transform.stand_in_error();
+    substitution_error = transform.substitution_error();
     prior.crs = transform.crs();
     prior.notes.insert(prior.notes.end(), transform.notes().begin(), transform.notes().end());
   }
-  prior.uncertainty = source.uncertainty.value_or(prior.uncertainty) + stand_in_error;
+  prior.uncertainty = source.uncertainty.value_or(prior.uncertainty) + substitution_error;
   measure(site, prior);
   if (prior.box.isEmpty()) {
     fail_file(source.file, "contains neither surfaces nor points that match select");
   }
   note_flat_objects(source, prior);
   require_use(source, prior);
-  warn_of_size(prior);
+  warn_about_size(prior);
   return prior;
 }
 
 /// Returns all selected coordinates of a file.
-std::vector<Vector3d> places_of(const Source& source, const FileContents& contents) {
-  std::vector<Vector3d> places = contents.points;
-  places.insert(places.end(), contents.nodes.begin(), contents.nodes.end());
+std::vector<Vector3d> read_positions(const Source& source, const FileContents& contents) {
+  std::vector<Vector3d> positions = contents.points;
+  positions.insert(positions.end(), contents.nodes.begin(), contents.nodes.end());
   for (const SelectedObject& selected : select_objects(source, contents)) {
     for (const std::size_t member : selected.members) {
       const FileObject& object = contents.objects[member];
-      places.insert(places.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
+      positions.insert(positions.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
       for (const FilePolygon& polygon : object.polygons) {
         for (std::uint32_t r = polygon.first_ring; r < polygon.first_ring + polygon.rings; ++r) {
-          places.insert(places.end(), contents.corners.begin() + contents.ring_begin[r],
-                        contents.corners.begin() + contents.ring_begin[r + 1]);
+          positions.insert(positions.end(), contents.corners.begin() + contents.ring_begin[r],
+                           contents.corners.begin() + contents.ring_begin[r + 1]);
         }
       }
     }
   }
-  return places;
+  return positions;
 }
 
-flight::GeodeticPoint middle_of(const Source& source, const FileContents& contents) {
+flight::GeodeticPoint compute_centre(const Source& source, const FileContents& contents) {
   if (contents.crs.empty() && source.crs.empty()) {
     throw Error(ErrorKind::bad_config,
                 source.file.string() +
                     ": missing coordinate reference system; set crs, such as \"EPSG:25832+7837\"");
   }
   const SiteTransform transform(source, contents, {}, false);
-  std::vector<Vector3d> places = places_of(source, contents);
-  for (Vector3d& place : places) place.z() = 0.0;
-  transform.to_geodetic(places);
+  std::vector<Vector3d> positions = read_positions(source, contents);
+  for (Vector3d& pose : positions) pose.z() = 0.0;
+  transform.to_geodetic(positions);
   Eigen::AlignedBox2d box;  // Longitudes are within 180 degrees of the first.
   std::optional<double> first;
-  for (const Vector3d& place : places) {
-    if (!place.head<2>().allFinite()) continue;
-    if (!first) first = place.x();
-    box.extend(Vector2d(*first + std::remainder(place.x() - *first, 360.0), place.y()));
+  for (const Vector3d& pose : positions) {
+    if (!pose.head<2>().allFinite()) continue;
+    if (!first) first = pose.x();
+    box.extend(Vector2d(*first + std::remainder(pose.x() - *first, 360.0), pose.y()));
   }
   if (box.isEmpty()) fail_file(source.file, "contains nothing with a geographic position");
   return {box.center().y(), std::remainder(box.center().x(), 360.0), 0.0};
@@ -328,11 +329,11 @@ bool has_area(const geometry::Mesh& mesh) {
 }
 
 Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain) {
-  return prior_of(read_contents(source, site), source, site, terrain);
+  return make_prior(read_contents(source, site), source, site, terrain);
 }
 
-flight::GeodeticPoint middle_of(const Source& source) {
-  return middle_of(source, *read_contents(source, {}));
+flight::GeodeticPoint compute_centre(const Source& source) {
+  return compute_centre(source, *read_contents(source, {}));
 }
 
 Source completed(Source source, const Assumptions& assumed) {
@@ -348,9 +349,9 @@ Source completed(Source source, const Assumptions& assumed) {
   }
   const SiteTransform transform(source, contents, {}, false);
   // EGM96 may replace a geoid whose grid is not installed.
-  const bool may_stand_in =
+  const bool may_substitute =
       transform.has_vertical_datum() && assumed.vertical == HeightDatum::geoid;
-  if ((!transform.has_own_heights() || may_stand_in) && !contents.vertical) {
+  if ((!transform.has_own_heights() || may_substitute) && !contents.vertical) {
     source.vertical = assumed.vertical;
   }
   return source;
@@ -364,15 +365,15 @@ geometry::Mesh read_surfaces(const std::filesystem::path& file) {
   const SharedContents shared = read_contents(source, site);
   const FileContents& contents = *shared;
   if (contents.crs.empty()) {
-    source.place = Place{};
+    source.pose = SourcePose{};
   } else {
     // Substitutes are sufficient because only relative heights matter.
     source.vertical = HeightDatum::geoid;
-    site.origin = middle_of(source, contents);
+    site.origin = compute_centre(source, contents);
   }
   const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
   if (contents.is_outlines && is_flat) source.base = 0.0;
-  const Prior prior = prior_of(shared, source, site, {});
+  const Prior prior = make_prior(shared, source, site, {});
   geometry::Mesh mesh;
   for (const Object& object : prior.objects) geometry::append(mesh, object.mesh);
   if (mesh.triangles.empty()) fail_file(file, "contains no surfaces; expected a mesh");

@@ -46,7 +46,7 @@ using TerrainHeight = std::function<std::optional<double>(const Eigen::Vector2d&
 
 /// Min and max height [m].
 struct HeightRange {
-  double least = 0.0, most = 0.0;
+  double min = 0.0, max = 0.0;
 };
 
 /// Selected contents of a file.
@@ -87,7 +87,7 @@ Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeigh
 
 /// Returns the geodetic centre of the selected data, without height, to derive the position of a
 /// site. Throws all errors of read_prior(), and Error{bad_config} without a reference system.
-flight::GeodeticPoint middle_of(const Source& source);
+flight::GeodeticPoint compute_centre(const Source& source);
 
 /// Default assumptions about a file where it lacks information.
 struct Assumptions {

@@ -9,7 +9,7 @@ namespace skycap::missions::site_data {
 namespace {
 
 /// Describes the contents: "3 objects of 154 triangles, 20 points".
-std::string contents_of(const Prior& prior) {
+std::string describe_contents(const Prior& prior) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
   if (!prior.objects.empty()) {
@@ -26,12 +26,12 @@ std::string contents_of(const Prior& prior) {
 
 std::string heights_text(const char* above, const std::optional<HeightRange>& heights) {
   if (!heights) return "";
-  return fmt::format("; {} {:.2f} to {:.2f} m", above, heights->least, heights->most);
+  return fmt::format("; {} {:.2f} to {:.2f} m", above, heights->min, heights->max);
 }
 
-std::string text_of(const Source& source, const Prior& prior) {
+std::string format_priors(const Source& source, const Prior& prior) {
   std::string text = fmt::format("  prior     {}: {}, {}, {}\n", source.file.filename().string(),
-                                 name_of(source.role), prior.format, contents_of(prior));
+                                 to_string(source.role), prior.format, describe_contents(prior));
   constexpr const char* indent = "            ";
   if (!prior.box.isEmpty()) {
     const Eigen::Vector3d size = prior.box.sizes();
@@ -51,20 +51,20 @@ std::string text_of(const Source& source, const Prior& prior) {
 
 }  // namespace
 
-const char* name_of(Role role) {
+const char* to_string(Role role) {
   constexpr std::array names{"target", "obstacle", "terrain", "truth"};
   return names[static_cast<std::size_t>(role)];
 }
 
-const char* name_of(HeightDatum datum) {
+const char* to_string(HeightDatum datum) {
   constexpr std::array names{"ellipsoid", "geoid", "takeoff"};
   return names[static_cast<std::size_t>(datum)];
 }
 
-std::string text_of(const SitePriors& site) {
+std::string format_priors(const SitePriors& site) {
   std::string text;
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
-    text += text_of(site.sources[i], site.priors[i]);
+    text += format_priors(site.sources[i], site.priors[i]);
   }
   if (!site.ground_note.empty()) text += "  ground    " + site.ground_note + "\n";
   return text;

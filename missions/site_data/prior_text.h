@@ -8,11 +8,11 @@
 namespace skycap::missions::site_data {
 
 /// Returns the name as in mission files.
-const char* name_of(Role role);
-const char* name_of(HeightDatum datum);
+const char* to_string(Role role);
+const char* to_string(HeightDatum datum);
 
 /// Returns several lines per source: contents, extent and notes of the reader. Returns an empty
 /// string without sources.
-std::string text_of(const SitePriors& site);
+std::string format_priors(const SitePriors& site);
 
 }  // namespace skycap::missions::site_data

@@ -33,7 +33,7 @@ constexpr const char* surface = "EPSG:4326";      // WGS84 without heights.
 constexpr const char* egm96 = "EPSG:4326+5773";
 
 /// Maximum accuracy value of a substitute for the best operation [m].
-constexpr double farthest_stand_in = 5.0;
+constexpr double max_substitute_error = 5.0;
 
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorKind::bad_config, what); }
 
@@ -173,7 +173,7 @@ struct System {
 };
 
 /// Returns the unit of an axis in metres; 1 if the system has no such axis.
-double unit_of_axis(PJ_CONTEXT* context, const PJ* system, int axis) {
+double read_axis_unit(PJ_CONTEXT* context, const PJ* system, int axis) {
   const ObjectPtr axes(proj_crs_get_coordinate_system(context, system));
   double unit = 1.0;
   proj_cs_get_axis_info(context, axes.get(), axis, nullptr, nullptr, nullptr, &unit, nullptr,
@@ -187,7 +187,7 @@ ObjectPtr unbound(PJ_CONTEXT* context, ObjectPtr system) {
   return ObjectPtr(proj_get_source_crs(context, system.get()));
 }
 
-System system_of(PJ_CONTEXT* context, const std::string& crs) {
+System make_reference_system(PJ_CONTEXT* context, const std::string& crs) {
   const std::string quoted = "the coordinate reference system '" + crs.substr(0, 200) + "'";
   System system;
   system.whole.reset(proj_create(context, proj_name(crs).c_str()));
@@ -206,7 +206,7 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
         unbound(context, ObjectPtr(proj_crs_get_sub_crs(context, plain.get(), 1)));
     system.horizontal.reset(proj_crs_get_sub_crs(context, plain.get(), 0));
     system.has_own_heights = system.is_compound = true;
-    system.height_unit = unit_of_axis(context, vertical.get(), 0);
+    system.height_unit = read_axis_unit(context, vertical.get(), 0);
     plain = unbound(context, ObjectPtr(proj_clone(context, system.horizontal.get())));
   }
   const ObjectPtr axes(proj_crs_get_coordinate_system(context, plain.get()));
@@ -217,14 +217,14 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
   }
   if (!system.horizontal) {
     system.has_own_heights = proj_cs_get_axis_count(context, axes.get()) == 3;
-    if (system.has_own_heights) system.height_unit = unit_of_axis(context, plain.get(), 2);
+    if (system.has_own_heights) system.height_unit = read_axis_unit(context, plain.get(), 2);
     system.horizontal.reset(proj_crs_demote_to_2D(context, nullptr, system.whole.get()));
   }
-  if (!system.is_geographic) system.unit = unit_of_axis(context, plain.get(), 0);
+  if (!system.is_geographic) system.unit = read_axis_unit(context, plain.get(), 0);
   return system;
 }
 
-std::string stand_in(const char* standing, const std::string& what, const Operation& operation) {
+std::string substitute(const char* standing, const std::string& what, const Operation& operation) {
   return std::string(standing) + " is used instead of " + what +
          "; its accuracy by PROJ: " + stated(operation.accuracy);
 }
@@ -244,14 +244,14 @@ void add_stated_heights(Chain& chain, const OperationFinder& finder,
   }
   result.notes.push_back("heights above the geoid refer to EGM96; its accuracy by PROJ: " +
                          stated(operation.accuracy));
-  result.stand_in_error += std::max(0.0, operation.accuracy);
+  result.substitution_error += std::max(0.0, operation.accuracy);
   chain.height = std::move(operation.object);
 }
 
 /// Uses one operation for position and height in the system's own datum. Returns false if the best
 /// operation is not available and EGM96 may be used instead.
-bool takes_own_heights(Chain& chain, const OperationFinder& finder, const System& system,
-                       const ReferenceRequest& request, GeodeticTransform& result) {
+bool uses_native_heights(Chain& chain, const OperationFinder& finder, const System& system,
+                         const ReferenceRequest& request, GeodeticTransform& result) {
   Operation operation = finder.find(system.whole.get(), ellipsoidal);
   if (!operation.object || !operation.is_best) {
     if (request.vertical) return false;
@@ -267,7 +267,7 @@ bool takes_own_heights(Chain& chain, const OperationFinder& finder, const System
 void add_position(Chain& chain, const OperationFinder& finder, const System& system,
                   const ReferenceRequest& request, GeodeticTransform& result) {
   Operation operation = finder.find(system.horizontal.get(), surface);
-  const bool is_close = operation.accuracy >= 0.0 && operation.accuracy <= farthest_stand_in;
+  const bool is_close = operation.accuracy >= 0.0 && operation.accuracy <= max_substitute_error;
   if (!operation.object || !(operation.is_best || is_close || !request.near)) {
     fail("PROJ cannot transform " + result.name + " to WGS84 with full accuracy" +
          (operation.missing.empty() ? "" : ": missing " + operation.missing) +
@@ -276,8 +276,8 @@ void add_position(Chain& chain, const OperationFinder& finder, const System& sys
               : ""));
   }
   if (!operation.is_best) {
-    result.notes.push_back(stand_in("the next best operation", operation.missing, operation));
-    result.stand_in_error += std::max(0.0, operation.accuracy);
+    result.notes.push_back(substitute("the next best operation", operation.missing, operation));
+    result.substitution_error += std::max(0.0, operation.accuracy);
   }
   chain.position = std::move(operation.object);
 }
@@ -288,7 +288,7 @@ extern "C" void skycap_geodetic_transform(const ReferenceRequest& given,
                                           GeodeticTransform& result) {
   auto chain = std::make_shared<Chain>();
   chain->context = offline_context();
-  const System system = system_of(chain->context.get(), given.crs);
+  const System system = make_reference_system(chain->context.get(), given.crs);
   ReferenceRequest request = given;
   if (!system.has_own_heights && !request.vertical) request.vertical = given.vertical_if_silent;
   const OperationFinder finder(chain->context.get(), request.near);
@@ -307,7 +307,7 @@ extern "C" void skycap_geodetic_transform(const ReferenceRequest& given,
   if (request.needs_heights && !system.has_own_heights && !request.vertical) {
     fail(result.name + " has no vertical datum; set vertical: ellipsoid, geoid or takeoff");
   }
-  if (!wants_own || !takes_own_heights(*chain, finder, system, request, result)) {
+  if (!wants_own || !uses_native_heights(*chain, finder, system, request, result)) {
     add_position(*chain, finder, system, request, result);
     if (request.needs_heights) add_stated_heights(*chain, finder, request, result);
   }
@@ -323,9 +323,9 @@ extern "C" void skycap_egm96_undulation(double latitude_deg, double longitude_de
   ReferenceRequest request;
   request.vertical = HeightDatum::geoid;
   add_stated_heights(chain, finder, request, ignored);
-  Vector3d place(longitude_deg, latitude_deg, 0.0);
-  transform_all(chain.height.get(), {&place, 1}, true);
-  undulation = place.z();
+  Vector3d geodetic(longitude_deg, latitude_deg, 0.0);
+  transform_all(chain.height.get(), {&geodetic, 1}, true);
+  undulation = geodetic.z();
   if (!std::isfinite(undulation)) {
     throw Error(ErrorKind::bad_file, "PROJ's EGM96 grid has no height at latitude " +
                                          std::to_string(latitude_deg) + ", longitude " +

@@ -43,7 +43,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 template <typename Names>
-std::string_view number_of(const Names& names, std::string_view authority) {
+std::string_view authority_code(const Names& names, std::string_view authority) {
   for (const Name& name : names) {
     if (name.authority == authority) return name.epsg;
   }
@@ -60,11 +60,11 @@ struct AdvName {
 AdvName adv_name(std::string_view names) {
   AdvName result;
   const std::size_t star = names.find('*');
-  result.horizontal = number_of(horizontal_names, trimmed(names.substr(0, star)));
+  result.horizontal = authority_code(horizontal_names, trimmed(names.substr(0, star)));
   result.names_heights = star != std::string_view::npos;
   if (!result.names_heights) return result;
   const std::string_view rest = names.substr(star + 1);
-  result.vertical = number_of(vertical_names, trimmed(rest.substr(0, rest.find('*'))));
+  result.vertical = authority_code(vertical_names, trimmed(rest.substr(0, rest.find('*'))));
   return result;
 }
 

@@ -39,7 +39,7 @@ struct GeodeticTransform {
   double height_unit = 1.0;  ///< Unit of heights in metres; 1 without own heights.
   /// Substitute operations with their accuracies as stated by PROJ.
   std::vector<std::string> notes;
-  double stand_in_error = 0.0;  ///< Sum of the accuracies of the substitute operations [m].
+  double substitution_error = 0.0;  ///< Sum of the accuracies of the substitute operations [m].
   /// Replaces (x, y, z) by longitude and latitude in degrees and ellipsoidal height in metres.
   /// Points that cannot be transformed become infinite. Not thread-safe.
   std::function<void(std::span<Eigen::Vector3d>)> apply;

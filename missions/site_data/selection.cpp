@@ -31,13 +31,13 @@ bool matches(const Selection& select, const FileObject& object) {
   if (!select.ids.empty() && std::ranges::find(select.ids, object.id) == select.ids.end()) {
     return false;
   }
-  return std::ranges::all_of(select.attributes, [&](const auto& wanted) {
-    const auto found = object.attributes.find(wanted.first);
-    return found != object.attributes.end() && found->second == wanted.second;
+  return std::ranges::all_of(select.attributes, [&](const auto& required) {
+    const auto found = object.attributes.find(required.first);
+    return found != object.attributes.end() && found->second == required.second;
   });
 }
 
-[[noreturn]] void refuse(const Source& source, const std::string& what,
+[[noreturn]] void reject(const Source& source, const std::string& what,
                          const FileContents& contents) {
   std::string some;
   for (std::size_t i = 0; i < std::min<std::size_t>(5, contents.objects.size()); ++i) {
@@ -53,11 +53,11 @@ void require_all_met(const Source& source, const FileContents& contents,
   std::set<std::string> met;
   for (const auto& [index, object] : selected) met.insert(contents.objects[index].id);
   for (const std::string& id : source.select.ids) {
-    if (!met.contains(id)) refuse(source, "with id " + id, contents);
+    if (!met.contains(id)) reject(source, "with id " + id, contents);
   }
   if (selected.empty() && !source.select.attributes.empty()) {
     const auto& [key, value] = *source.select.attributes.begin();
-    refuse(source, "with " + key + " = " + value, contents);
+    reject(source, "with " + key + " = " + value, contents);
   }
 }
 
@@ -79,7 +79,7 @@ bool has_solids(const Source& source, const FileContents& contents) {
 
 struct KeyUse {
   const char* key;
-  bool is_given, is_used;
+  bool is_set, is_used;
   const char* purpose;
 };
 
@@ -119,13 +119,13 @@ std::vector<FilePolygon> select_polygons(const FileObject& object, std::optional
   return result;
 }
 
-void refuse_unused(const Source& source, const FileContents& contents) {
+void reject_unused(const Source& source, const FileContents& contents) {
   const Selection& select = source.select;
   const bool is_outlines = contents.is_outlines, has_objects = !contents.objects.empty();
   const bool is_based = source.base_on_terrain || source.base;
   const bool has_extruded = has_solids(source, contents);
   const bool has_uncertainty_in_use = source.role != Role::truth;
-  const bool stands_on_terrain = is_outlines && source.base_on_terrain;
+  const bool is_on_terrain = is_outlines && source.base_on_terrain;
   const std::array<KeyUse, 13> uses{{
       {"base", is_based, has_extruded, "outlines that are extruded"},
       {"height", source.height.has_value(), is_outlines, "polygons of maps"},
@@ -141,11 +141,11 @@ void refuse_unused(const Source& source, const FileContents& contents) {
       {"up_axis", source.is_y_up.has_value(), contents.is_scene, "scene models"},
       {"uncertainty", source.uncertainty.has_value(), has_uncertainty_in_use,
        "data other than ground truth"},
-      {"vertical", source.vertical.has_value(), !stands_on_terrain,
+      {"vertical", source.vertical.has_value(), !is_on_terrain,
        "heights, but these outlines stand on the terrain"},
   }};
   for (const KeyUse& use : uses) {
-    if (!use.is_given || use.is_used) continue;
+    if (!use.is_set || use.is_used) continue;
     throw Error(ErrorKind::bad_config, source.file.string() + ": " + use.key +
                                            " does not apply to this file; it applies to " +
                                            use.purpose + "; remove it");

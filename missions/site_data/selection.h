@@ -26,6 +26,6 @@ std::vector<FilePolygon> select_polygons(const FileObject& object, std::optional
 
 /// Throws Error{bad_config} naming the first key of the source that does not apply to the file, and
 /// the purpose of the key.
-void refuse_unused(const Source& source, const FileContents& contents);
+void reject_unused(const Source& source, const FileContents& contents);
 
 }  // namespace skycap::missions::site_data

@@ -14,26 +14,26 @@ namespace skycap::missions::site_data {
 namespace {
 
 template <typename Item>
-std::uint32_t crc_of(const std::vector<Item>& items) {
-  return geometry::crc32_of(
+std::uint32_t compute_crc(const std::vector<Item>& items) {
+  return geometry::compute_crc32(
       {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(Item)});
 }
 
 /// Computes the checksum of the data, so that the same data in another file or format is the same
 /// prior.
-std::string digest_of(const Prior& prior) {
-  std::vector<std::uint32_t> sums{crc_of(prior.points), crc_of(prior.grid.nodes)};
+std::string compute_checksum(const Prior& prior) {
+  std::vector<std::uint32_t> sums{compute_crc(prior.points), compute_crc(prior.grid.nodes)};
   for (const Object& object : prior.objects) {
-    sums.push_back(geometry::crc32_of(object.id));
-    sums.push_back(crc_of(object.mesh.vertices));
-    sums.push_back(crc_of(object.mesh.triangles));
+    sums.push_back(geometry::compute_crc32(object.id));
+    sums.push_back(compute_crc(object.mesh.vertices));
+    sums.push_back(compute_crc(object.mesh.triangles));
   }
-  return fmt::format("{:08x}", crc_of(sums));
+  return fmt::format("{:08x}", compute_crc(sums));
 }
 
 }  // namespace
 
-flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior) {
+flight::PriorObstacleConfig make_obstacle(const Source& source, const Prior& prior) {
   flight::PriorObstacleConfig obstacle;
   obstacle.name = "the prior " + source.file.filename().string();
   for (const Object& object : prior.objects) {
@@ -42,7 +42,7 @@ flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior
   obstacle.points = prior.points;
   // Downsampling keeps one point per cube of this size.
   obstacle.point_radius = std::numbers::sqrt3 * source.spacing.value_or(usual_spacing);
-  obstacle.columns = columns_of(prior.grid);
+  obstacle.columns = make_columns(prior.grid);
   obstacle.uncertainty = prior.uncertainty;
   obstacle.is_ground = source.role == Role::terrain;
   return obstacle;
@@ -54,18 +54,18 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
   const ReadOnce once;
   SitePriors result;
   result.priors.resize(sources.size());
-  result.digests.resize(sources.size());
+  result.checksums.resize(sources.size());
   TerrainHeight terrain_height;
-  std::vector<const Prior*> grounds;
+  std::vector<const Prior*> landing_surfaces;
   std::vector<flight::PriorObstacleConfig> ground_obstacles;
   const auto read = [&](std::size_t i) {
     const Role role = sources[i].role;
     if (reading) reading(i);
     try {
       result.priors[i] = read_prior(sources[i], site, terrain_height);
-      result.digests[i] = digest_of(result.priors[i]);
+      result.checksums[i] = compute_checksum(result.priors[i]);
       if (role != Role::obstacle && role != Role::terrain) return;
-      auto obstacle = obstacle_of(sources[i], result.priors[i]);
+      auto obstacle = make_obstacle(sources[i], result.priors[i]);
       result.obstacles.push_back(std::make_shared<const flight::PriorObstacle>(obstacle));
       if (role == Role::terrain) ground_obstacles.push_back(std::move(obstacle));
     } catch (const Error& error) {
@@ -75,19 +75,19 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
   for (std::size_t i = 0; i < sources.size(); ++i) {
     if (sources[i].role != Role::terrain) continue;
     read(i);
-    grounds.push_back(&result.priors[i]);
+    landing_surfaces.push_back(&result.priors[i]);
   }
-  if (!grounds.empty()) {
+  if (!landing_surfaces.empty()) {
     const auto unknown = std::make_shared<UnknownGround>(ground_obstacles, site.ground_z);
     result.ground_note = unknown->note();
     result.obstacles.push_back(std::make_shared<const flight::PriorObstacle>(unknown->obstacle()));
-    result.terrain = std::make_shared<const Terrain>(grounds);
-    result.ground = [unknown, terrain = result.terrain](const Eigen::Vector2d& place) {
-      const std::optional<double> known = terrain->height(place);
-      return known ? known : unknown->height(place);
+    result.terrain = std::make_shared<const Terrain>(landing_surfaces);
+    result.ground = [unknown, terrain = result.terrain](const Eigen::Vector2d& position) {
+      const std::optional<double> known = terrain->height(position);
+      return known ? known : unknown->height(position);
     };
-    terrain_height = [terrain = result.terrain](const Eigen::Vector2d& place) {
-      return terrain->height(place);
+    terrain_height = [terrain = result.terrain](const Eigen::Vector2d& position) {
+      return terrain->height(position);
     };
   }
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -97,8 +97,8 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
   return result;
 }
 
-geometry::Mesh surfaces_of(const SitePriors& site, Role role,
-                           const std::optional<Eigen::AlignedBox3d>& near) {
+geometry::Mesh make_surfaces(const SitePriors& site, Role role,
+                             const std::optional<Eigen::AlignedBox3d>& near) {
   geometry::Mesh mesh;
   const auto add_faces = [&](std::vector<flight::Triangle> faces) {
     if (near) {
@@ -108,7 +108,7 @@ geometry::Mesh surfaces_of(const SitePriors& site, Role role,
         return !near->intersects(box);
       });
     }
-    geometry::append(mesh, mesh_of(faces));
+    geometry::append(mesh, make_mesh(faces));
   };
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     if (site.sources[i].role != role) continue;
@@ -117,8 +117,8 @@ geometry::Mesh surfaces_of(const SitePriors& site, Role role,
       if (near && !near->intersects(geometry::bounding_box(object.mesh))) continue;
       geometry::append(mesh, object.mesh);
     }
-    add_faces(triangles_of(site.priors[i].grid));
-    add_faces(rim_of(site.priors[i].grid));
+    add_faces(to_triangles(site.priors[i].grid));
+    add_faces(make_rim_triangles(site.priors[i].grid));
   }
   return mesh;
 }

@@ -21,7 +21,7 @@ struct SitePriors {
   std::shared_ptr<const Terrain> terrain;  ///< Terrain; null without terrain files.
   TerrainHeight ground;     ///< Ground height everywhere [m], assumed where unknown; may be null.
   std::string ground_note;  ///< Description of the assumed ground outside the terrain.
-  std::vector<std::string> digests;  ///< Checksums of the contents of the sources, in order.
+  std::vector<std::string> checksums;  ///< Checksums of the contents of the sources, in order.
 };
 
 /// Reads all sources, terrain first. If reading a source throws, `failed` is called with its index
@@ -33,11 +33,11 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
 
 /// Returns an obstacle that contains all positions within the prior's uncertainty of its surfaces,
 /// points and height columns.
-flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior);
+flight::PriorObstacleConfig make_obstacle(const Source& source, const Prior& prior);
 
 /// Returns the surfaces of all objects and grids with the given role, or an empty mesh. `near`
 /// limits the result to objects and grid faces that intersect this box.
-geometry::Mesh surfaces_of(const SitePriors& site, Role role,
-                           const std::optional<Eigen::AlignedBox3d>& near = {});
+geometry::Mesh make_surfaces(const SitePriors& site, Role role,
+                             const std::optional<Eigen::AlignedBox3d>& near = {});
 
 }  // namespace skycap::missions::site_data

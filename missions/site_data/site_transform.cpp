@@ -20,7 +20,7 @@ std::string decimal(double value, int digits) {
   return text.data();
 }
 
-std::string place_text(double latitude_deg, double longitude_deg) {
+std::string position_text(double latitude_deg, double longitude_deg) {
   return "latitude " + decimal(latitude_deg, 6) + ", longitude " + decimal(longitude_deg, 6);
 }
 
@@ -35,8 +35,8 @@ Eigen::Matrix3d upright(const Source& source, const FileContents& contents) {
 /// Returns true if the coordinates may be longitude and latitude. All must be within the limits of
 /// degrees, and the file must be a map or a raster with cells smaller than a centimetre.
 bool may_be_degrees(const FileContents& contents) {
-  const auto is_geodetic = [](const Vector3d& place) {
-    return std::abs(place.x()) <= 180.0 && std::abs(place.y()) <= 90.0;
+  const auto is_geodetic = [](const Vector3d& pose) {
+    return std::abs(pose.x()) <= 180.0 && std::abs(pose.y()) <= 90.0;
   };
   constexpr double smallest_cell = 0.01;  // In metres or degrees.
   if (!contents.nodes.empty()) {
@@ -47,8 +47,8 @@ bool may_be_degrees(const FileContents& contents) {
          std::ranges::all_of(contents.corners, is_geodetic);
 }
 
-flight::GeodeticPoint geodetic_point(const Vector3d& place) {
-  return {place.y(), place.x(), place.z()};
+flight::GeodeticPoint geodetic_point(const Vector3d& pose) {
+  return {pose.y(), pose.x(), pose.z()};
 }
 
 }  // namespace
@@ -56,8 +56,8 @@ flight::GeodeticPoint geodetic_point(const Vector3d& place) {
 SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
                              const SiteFrame& site, bool needs_heights)
     : file_(source.file), needs_heights_(needs_heights), origin_(site.origin) {
-  if (source.place || (contents.crs.empty() && source.crs.empty())) {
-    if (!source.place && !contents.is_local_frame && may_be_degrees(contents)) {
+  if (source.pose || (contents.crs.empty() && source.crs.empty())) {
+    if (!source.pose && !contents.is_local_frame && may_be_degrees(contents)) {
       const Vector3d& some =
           contents.nodes.empty() ? contents.corners.front() : contents.nodes.front();
       throw Error(ErrorKind::bad_config,
@@ -65,8 +65,8 @@ SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
                       decimal(some.x(), 4) + ", " + decimal(some.y(), 4) +
                       ") may be degrees; set crs: EPSG:4326, or place if they are metres");
     }
-    prepare_place(source, contents);
-    if (!source.place && !contents.is_local_frame) {
+    prepare_pose(source, contents);
+    if (!source.pose && !contents.is_local_frame) {
       notes_.push_back("missing coordinate reference system: the mission frame is assumed");
     }
   } else {
@@ -82,7 +82,7 @@ void SiteTransform::require_unit(const Source& source, const FileContents& conte
                                          "'; set unit, its length in metres");
 }
 
-void SiteTransform::prepare_place(const Source& source, const FileContents& contents) {
+void SiteTransform::prepare_pose(const Source& source, const FileContents& contents) {
   require_unit(source, contents);
   if (!source.crs.empty()) {
     throw Error(ErrorKind::bad_config,
@@ -93,16 +93,16 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
                                            ": vertical requires a coordinate reference system; "
                                            "without one heights are z in the mission frame");
   }
-  const Place place = source.place.value_or(Place{});
+  const SourcePose pose = source.pose.value_or(SourcePose{});
   const double unit = source.unit.value_or(contents.unit.value_or(1.0));
-  const Eigen::AngleAxisd heading(-place.heading, Vector3d::UnitZ());
+  const Eigen::AngleAxisd heading(-pose.heading, Vector3d::UnitZ());
   // The conversion to Affine3d is required because a transform times a plain matrix would treat its
   // columns as points.
   const double up = source.unit ? unit : contents.height_unit.value_or(unit);
   const Eigen::Affine3d upright_metres(
       Eigen::Matrix3d(Vector3d(unit, unit, up).asDiagonal() * upright(source, contents)));
-  prepared_ = Eigen::Translation3d(place.position) * heading * Eigen::Translation3d(source.offset) *
-              upright_metres;
+  base_transform_ = Eigen::Translation3d(pose.position) * heading *
+                    Eigen::Translation3d(source.offset) * upright_metres;
   metres_per_unit_ = Vector3d(unit, unit, up);
   name_ = "the mission frame";
 }
@@ -158,7 +158,7 @@ void SiteTransform::prepare_units(const Source& source, const FileContents& cont
     notes_.push_back("heights are read in units of " + decimal(across, 6) +
                      " m, as the map; set unit to change it");
   }
-  prepared_ =
+  base_transform_ =
       Eigen::Translation3d(source.offset) *
       Eigen::Matrix3d(Vector3d(1.0, 1.0, up).asDiagonal() * upright(source, contents) * all);
   metres_per_unit_ = Vector3d(across, across, up * geodetic_->height_unit) * all;
@@ -171,16 +171,16 @@ void SiteTransform::prepare_units(const Source& source, const FileContents& cont
 }
 
 void SiteTransform::to_geodetic(std::span<Vector3d> coordinates) const {
-  for (Vector3d& coordinate : coordinates) coordinate = prepared_ * coordinate;
+  for (Vector3d& coordinate : coordinates) coordinate = base_transform_ * coordinate;
   geodetic_->apply(coordinates);
 }
 
 void SiteTransform::to_site(std::span<Vector3d> coordinates) const {
   if (!geodetic_) {
     for (Vector3d& coordinate : coordinates) {
-      const Vector3d place = prepared_ * coordinate;
-      if (!(place.norm() <= farthest_from_site)) refuse(coordinate, place);
-      coordinate = place;
+      const Vector3d pose = base_transform_ * coordinate;
+      if (!(pose.norm() <= farthest_from_site)) reject(coordinate, pose);
+      coordinate = pose;
     }
     return;
   }
@@ -197,15 +197,15 @@ void SiteTransform::to_site(std::span<Vector3d> coordinates) const {
     to_geodetic(batch);
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (!needs_heights_) batch[i].z() = origin_->height;
-      const Vector3d place =
+      const Vector3d pose =
           batch[i].allFinite() ? frame.to_local(geodetic_point(batch[i])) : batch[i];
-      if (!(place.norm() <= farthest_from_site)) refuse(some[i], batch[i]);
-      some[i] = place;
+      if (!(pose.norm() <= farthest_from_site)) reject(some[i], batch[i]);
+      some[i] = pose;
     }
   }
 }
 
-void SiteTransform::refuse(const Vector3d& coordinate, const Vector3d& place) const {
+void SiteTransform::reject(const Vector3d& coordinate, const Vector3d& pose) const {
   const std::string what = file_.string() + ": has " + decimal(coordinate.x(), 3) + " " +
                            decimal(coordinate.y(), 3) + " " + decimal(coordinate.z(), 3);
   if (!geodetic_) {
@@ -213,13 +213,13 @@ void SiteTransform::refuse(const Vector3d& coordinate, const Vector3d& place) co
                 what + ", more than 50 km from the site; check unit, offset and place");
   }
   std::string message = what + " in " + name_;
-  if (place.allFinite()) {
-    message += ", which is at " + place_text(place.y(), place.x()) +
+  if (pose.allFinite()) {
+    message += ", which is at " + position_text(pose.y(), pose.x()) +
                ", more than 50 km from the site at " +
-               place_text(origin_->latitude_deg, origin_->longitude_deg);
+               position_text(origin_->latitude_deg, origin_->longitude_deg);
   } else {
     message += ", which is not a position on the Earth; the site is at " +
-               place_text(origin_->latitude_deg, origin_->longitude_deg);
+               position_text(origin_->latitude_deg, origin_->longitude_deg);
   }
   std::array<Vector3d, 1> swapped = {Vector3d(coordinate.y(), coordinate.x(), coordinate.z())};
   to_geodetic(swapped);

@@ -44,20 +44,20 @@ class SiteTransform {
   bool has_vertical_datum() const { return geodetic_ && geodetic_->is_compound; }
   const std::vector<std::string>& notes() const { return notes_; }
   /// Returns the maximum error of substitute operations in the conversion to WGS84 [m].
-  double stand_in_error() const { return geodetic_ ? geodetic_->stand_in_error : 0.0; }
+  double substitution_error() const { return geodetic_ ? geodetic_->substitution_error : 0.0; }
 
  private:
-  void prepare_place(const Source& source, const FileContents& contents);
+  void prepare_pose(const Source& source, const FileContents& contents);
   void prepare_crs(const Source& source, const FileContents& contents, const SiteFrame& site);
   void require_unit(const Source& source, const FileContents& contents) const;
   void prepare_units(const Source& source, const FileContents& contents);
-  [[noreturn]] void refuse(const Eigen::Vector3d& coordinate, const Eigen::Vector3d& place) const;
+  [[noreturn]] void reject(const Eigen::Vector3d& coordinate, const Eigen::Vector3d& pose) const;
 
   std::filesystem::path file_;
   bool needs_heights_;
   /// Combined transformation by unit, up axis, offset and place.
-  Eigen::Affine3d prepared_ = Eigen::Affine3d::Identity();
-  /// Transformation to WGS84. If empty, prepared_ is the whole transformation.
+  Eigen::Affine3d base_transform_ = Eigen::Affine3d::Identity();
+  /// Transformation to WGS84. If empty, base_transform_ is the whole transformation.
   std::optional<GeodeticTransform> geodetic_;
   std::optional<flight::GeodeticPoint> origin_;
   std::string name_;

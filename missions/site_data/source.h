@@ -38,13 +38,13 @@ struct Selection {
 inline constexpr double usual_spacing = 0.25;
 
 /// Position of a file without a coordinate reference system in the site frame.
-struct Place {
+struct SourcePose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Position of the file's origin [m].
   double heading = 0.0;  ///< Heading of the file's y axis, clockwise from north [rad].
 };
 
 /// Prior data file with its settings. File coordinates are multiplied by `unit`, rotated upright by
-/// `up_axis`, and shifted by `offset`. Then `place` or the reference system converts them to the
+/// `up_axis`, and shifted by `offset`. Then `pose` or the reference system converts them to the
 /// site frame; without either, they are in that frame. For maps, `unit` applies only to heights.
 struct Source {
   std::filesystem::path file;  ///< Absolute path, or path relative to the working directory.
@@ -52,7 +52,7 @@ struct Source {
   Selection select;
   std::string crs;  ///< Reference system, in any form that PROJ supports (default: from the file).
   std::optional<HeightDatum> vertical;  ///< Vertical datum (default: that of the reference system).
-  std::optional<Place> place;           ///< Position in the site frame; conflicts with crs.
+  std::optional<SourcePose> pose;       ///< Position in the site frame; conflicts with crs.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   std::optional<double> unit;    ///< Length of the unit [m] (default: from the file, otherwise 1).
   std::optional<bool> is_y_up;   ///< The y axis points up (default: from the file, otherwise z).

@@ -25,7 +25,7 @@ Vector3d area_vector(const geometry::Mesh& mesh, std::size_t triangle) {
   return 0.5 * (q - p).cross(r - p);
 }
 
-SurfaceKind kind_of(const Object& object, std::size_t triangle) {
+SurfaceKind surface_kind(const Object& object, std::size_t triangle) {
   return triangle < object.surfaces.size() ? object.surfaces[triangle] : SurfaceKind::unknown;
 }
 
@@ -45,7 +45,7 @@ VisiblePart visible_part(const Object& object) {
     const bool is_low = std::ranges::all_of(
         corners, [&](auto vertex) { return object.mesh.vertices[vertex].z() < foot; });
     const bool is_foot = is_low && std::abs(normal.z()) >= level * normal.norm();
-    if (is_foot || normal.norm() == 0.0 || kind_of(object, t) == SurfaceKind::ground) continue;
+    if (is_foot || normal.norm() == 0.0 || surface_kind(object, t) == SurfaceKind::ground) continue;
     part.mesh.triangles.push_back(corners);
     part.triangles.push_back(t);
   }
@@ -54,19 +54,20 @@ VisiblePart visible_part(const Object& object) {
 
 }  // namespace
 
-SurfacePoints spread_over(const Object& object, std::size_t most, double spacing) {
+SurfacePoints spread_over(const Object& object, std::size_t max, double spacing) {
   SurfacePoints points;
   if (object.mesh.triangles.empty()) return points;
   const VisiblePart part = visible_part(object);
   if (part.mesh.triangles.empty()) return points;
   const double area = geometry::surface_area(part.mesh);
-  const double wanted = std::ceil(area / (spacing * spacing));
-  const auto count = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(most)));
+  const double target_count = std::ceil(area / (spacing * spacing));
+  const auto count =
+      static_cast<std::size_t>(std::clamp(target_count, 1.0, static_cast<double>(max)));
   constexpr std::uint64_t seed = 1;
   const geometry::SurfaceSamples samples = geometry::sample_surface(part.mesh, count, seed);
-  points.area_of_each = area / static_cast<double>(count);
+  points.area_per_point = area / static_cast<double>(count);
   flight::TriangleTree solid;
-  solid.triangles = flight::triangles_of(object.mesh);
+  solid.triangles = flight::to_triangles(object.mesh);
   solid.index();
   const flight::WindingNumber winding(solid.tree, solid.triangles);
   const auto is_inside = [&](const Vector3f& point) {
@@ -79,7 +80,7 @@ SurfacePoints spread_over(const Object& object, std::size_t most, double spacing
       continue;  // Solid on both sides.
     points.positions.push_back(position);
     points.normals.push_back(is_turned ? Vector3f(-normal) : normal);
-    points.kinds.push_back(kind_of(object, part.triangles[samples.triangles[i]]));
+    points.kinds.push_back(surface_kind(object, part.triangles[samples.triangles[i]]));
   }
   return points;
 }

@@ -15,13 +15,13 @@ struct SurfacePoints {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;  ///< Outward normals where the object is closed.
   std::vector<SurfaceKind> kinds;
-  double area_of_each = 0.0;
+  double area_per_point = 0.0;
 };
 
 /// Samples the object at random with uniform density: about one point per square of side `spacing`
-/// [m], at most `most` points. The result is deterministic. Excluded are surfaces that sensors
+/// [m], at most `max` points. The result is deterministic. Excluded are surfaces that sensors
 /// cannot observe: ground surfaces, horizontal surfaces at the foot of the object, and surfaces
 /// with solid on both sides.
-SurfacePoints spread_over(const Object& object, std::size_t most, double spacing);
+SurfacePoints spread_over(const Object& object, std::size_t max, double spacing);
 
 }  // namespace skycap::missions::site_data

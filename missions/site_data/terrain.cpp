@@ -16,7 +16,7 @@ constexpr double far = 2e4;
 
 }  // namespace
 
-geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles) {
+geometry::Mesh make_mesh(const std::vector<flight::Triangle>& triangles) {
   geometry::Mesh mesh;
   mesh.vertices.reserve(3 * triangles.size());
   for (const flight::Triangle& triangle : triangles) {
@@ -36,13 +36,13 @@ Terrain::Terrain(const std::vector<const Prior*>& priors) {
   auto& triangles = impl->surface.triangles;
   for (const Prior* prior : priors) {
     for (const Object& object : prior->objects) {
-      const auto more = flight::triangles_of(object.mesh);
+      const auto more = flight::to_triangles(object.mesh);
       triangles.insert(triangles.end(), more.begin(), more.end());
     }
-    const std::size_t step = step_of(prior->grid);
-    const HeightGrid coarse = step > 1 ? thinned(prior->grid, step) : HeightGrid{};
+    const std::size_t step = compute_step(prior->grid);
+    const HeightGrid coarse = step > 1 ? downsampled(prior->grid, step) : HeightGrid{};
     const HeightGrid& grid = step > 1 ? coarse : prior->grid;
-    for (const auto& more : {triangles_of(grid), rim_of(grid)}) {
+    for (const auto& more : {to_triangles(grid), make_rim_triangles(grid)}) {
       triangles.insert(triangles.end(), more.begin(), more.end());
     }
   }
@@ -52,19 +52,19 @@ Terrain::Terrain(const std::vector<const Prior*>& priors) {
 
 Terrain::~Terrain() = default;
 
-geometry::Mesh Terrain::surface() const { return mesh_of(impl_->surface.triangles); }
+geometry::Mesh Terrain::surface() const { return make_mesh(impl_->surface.triangles); }
 
-std::optional<double> Terrain::height(const Eigen::Vector2d& place) const {
-  const Segment plumb{{place.x(), place.y(), -far}, {place.x(), place.y(), far}};
-  std::optional<double> highest;
+std::optional<double> Terrain::height(const Eigen::Vector2d& position) const {
+  const Segment plumb{{position.x(), position.y(), -far}, {position.x(), position.y(), far}};
+  std::optional<double> max_height;
   double reach = 1e-6;
   const flight::TriangleTree& surface = impl_->surface;
   surface.tree.visit_near(plumb, reach, [&](std::uint32_t t) {
     const NearestPoints pair = nearest(plumb, surface.triangles[t]);
     if (pair.squared_distance > reach * reach) return;
-    highest = std::max(highest.value_or(-far), pair.on_other.z());
+    max_height = std::max(max_height.value_or(-far), pair.on_other.z());
   });
-  return highest;
+  return max_height;
 }
 
 }  // namespace skycap::missions::site_data

@@ -20,7 +20,7 @@ class Terrain {
 
   /// Returns the maximum ground height at a position, in large grids within a few cells of it.
   /// Returns an empty value where the terrain is unknown [m].
-  std::optional<double> height(const Eigen::Vector2d& place) const;
+  std::optional<double> height(const Eigen::Vector2d& position) const;
 
   /// Returns the whole terrain as a mesh.
   geometry::Mesh surface() const;
@@ -31,6 +31,6 @@ class Terrain {
 };
 
 /// Returns a mesh of the triangles without shared vertices.
-geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles);
+geometry::Mesh make_mesh(const std::vector<flight::Triangle>& triangles);
 
 }  // namespace skycap::missions::site_data

@@ -20,14 +20,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double finest = 0.25;  ///< Minimum spacing of the lattice [m].
-constexpr double most_cells = 2000.0;
+constexpr double max_cells = 2000.0;
 constexpr float none = -std::numeric_limits<float>::infinity();
 
 /// Tolerance for ground at a lattice point, so that rounding does not exclude points on borders
 /// [m].
 constexpr double near = 1e-6;
 
-AlignedBox2d extent_of(const std::vector<flight::PriorObstacleConfig>& terrain) {
+AlignedBox2d compute_extent(const std::vector<flight::PriorObstacleConfig>& terrain) {
   AlignedBox2d extent;
   for (const flight::PriorObstacleConfig& part : terrain) {
     for (const flight::NamedSurface& surface : part.surfaces) {
@@ -45,9 +45,9 @@ AlignedBox2d extent_of(const std::vector<flight::PriorObstacleConfig>& terrain) 
 class Lattice {
  public:
   explicit Lattice(const std::vector<flight::PriorObstacleConfig>& terrain)
-      : box_(extent_of(terrain)) {
+      : box_(compute_extent(terrain)) {
     const Vector2d size = box_.sizes();
-    const double cell = std::max(finest, size.maxCoeff() / most_cells);
+    const double cell = std::max(finest, size.maxCoeff() / max_cells);
     cells_ = {std::max(1, static_cast<int>(std::ceil(size.x() / cell))),
               std::max(1, static_cast<int>(std::ceil(size.y() / cell)))};
     step_ = {std::max(near, size.x() / cells_[0]), std::max(near, size.y() / cells_[1])};
@@ -139,12 +139,12 @@ class Gaps {
  public:
   explicit Gaps(const Lattice& lattice)
       : lattice_(lattice),
-        gap_of_(
+        gap_indices_(
             static_cast<std::size_t>(lattice.columns()) * static_cast<std::size_t>(lattice.rows()),
             known) {
     for (int row = 0; row < lattice.rows(); ++row) {
       for (int column = 0; column < lattice.columns(); ++column) {
-        if (has_gap(column, row)) gap_of_[index(column, row)] = unvisited;
+        if (has_gap(column, row)) gap_indices_[index(column, row)] = unvisited;
       }
     }
     for (int row = 0; row < lattice.rows(); ++row) {
@@ -154,12 +154,12 @@ class Gaps {
 
   struct Gap {
     bool is_surrounded = true;  ///< Enclosed by known ground.
-    float highest = none;       ///< Maximum height of the adjacent ground.
+    float max_height = none;    ///< Maximum height of the adjacent ground.
     std::size_t cells = 0;
   };
   /// Returns the gap of a cell, or null if its ground is known.
   const Gap* at(int column, int row) const {
-    const std::int32_t gap = gap_of_[index(column, row)];
+    const std::int32_t gap = gap_indices_[index(column, row)];
     return gap < 0 ? nullptr : &gaps_[static_cast<std::size_t>(gap)];
   }
   const std::vector<Gap>& all() const { return gaps_; }
@@ -176,15 +176,15 @@ class Gaps {
   }
 
   void visit(int column, int row) {
-    if (gap_of_[index(column, row)] != unvisited) return;
+    if (gap_indices_[index(column, row)] != unvisited) return;
     Gap gap;
     const auto number = static_cast<std::int32_t>(gaps_.size());
     std::vector<std::array<int, 2>> open;
     const auto enter = [&](int c, int r) {
       if (c < 0 || r < 0 || c >= lattice_.columns() || r >= lattice_.rows()) {
         gap.is_surrounded = false;
-      } else if (gap_of_[index(c, r)] == unvisited) {
-        gap_of_[index(c, r)] = number;
+      } else if (gap_indices_[index(c, r)] == unvisited) {
+        gap_indices_[index(c, r)] = number;
         open.push_back({c, r});
       }
     };
@@ -193,7 +193,8 @@ class Gaps {
       const auto [c, r] = open.back();
       open.pop_back();
       ++gap.cells;
-      for (const float height : lattice_.corners(c, r)) gap.highest = std::max(gap.highest, height);
+      for (const float height : lattice_.corners(c, r))
+        gap.max_height = std::max(gap.max_height, height);
       enter(c - 1, r);
       enter(c + 1, r);
       enter(c, r - 1);
@@ -203,7 +204,7 @@ class Gaps {
   }
 
   const Lattice& lattice_;
-  std::vector<std::int32_t> gap_of_;
+  std::vector<std::int32_t> gap_indices_;
   std::vector<Gap> gaps_;
 };
 
@@ -221,7 +222,7 @@ void add_gaps(const Lattice& lattice, const Gaps& gaps, double plane_z,
       int end = first + 1;
       while (end < lattice.columns() && gaps.at(end, row) == gap) ++end;
       if (gap != nullptr) {
-        const double top = gap->is_surrounded ? static_cast<double>(gap->highest) : plane_z;
+        const double top = gap->is_surrounded ? static_cast<double>(gap->max_height) : plane_z;
         columns.push_back(column_over(lattice.point(first, row), lattice.point(end, row + 1), top));
       }
       first = end;
@@ -239,7 +240,7 @@ void add_beyond(const AlignedBox2d& box, double top, std::vector<AlignedBox3d>& 
   columns.push_back(column_over({low.x(), high.y()}, {high.x(), far}, top));
 }
 
-std::string note_of(const Lattice& lattice, const Gaps& gaps, double plane_z) {
+std::string make_note(const Lattice& lattice, const Gaps& gaps, double plane_z) {
   std::size_t holes = 0, cells = 0;
   for (const Gaps::Gap& gap : gaps.all()) {
     if (!gap.is_surrounded) continue;
@@ -271,16 +272,16 @@ UnknownGround::UnknownGround(const std::vector<flight::PriorObstacleConfig>& ter
   }
   add_gaps(lattice, gaps, plane_z, obstacle_.columns);
   add_beyond(lattice.box(), plane_z, obstacle_.columns);
-  note_ = note_of(lattice, gaps, plane_z);
+  note_ = make_note(lattice, gaps, plane_z);
 }
 
-double UnknownGround::height(const Vector2d& place) const {
-  std::optional<double> highest;
+double UnknownGround::height(const Vector2d& position) const {
+  std::optional<double> max_height;
   for (const AlignedBox3d& column : obstacle_.columns) {
-    if (!AlignedBox2d(column.min().head<2>(), column.max().head<2>()).contains(place)) continue;
-    highest = std::max(highest.value_or(column.max().z()), column.max().z());
+    if (!AlignedBox2d(column.min().head<2>(), column.max().head<2>()).contains(position)) continue;
+    max_height = std::max(max_height.value_or(column.max().z()), column.max().z());
   }
-  return highest.value_or(plane_z_);
+  return max_height.value_or(plane_z_);
 }
 
 }  // namespace skycap::missions::site_data

@@ -20,7 +20,7 @@ class UnknownGround {
 
   /// Returns the assumed ground height at a position [m]. Where the ground is known, returns the
   /// height of the plane.
-  double height(const Eigen::Vector2d& place) const;
+  double height(const Eigen::Vector2d& position) const;
 
   /// Returns the assumed ground as an obstacle with the maximum uncertainty of the terrain.
   const flight::PriorObstacleConfig& obstacle() const { return obstacle_; }

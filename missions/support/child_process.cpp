@@ -17,11 +17,11 @@ namespace skycap::missions::support {
 namespace {
 
 template <typename Resource>
-void lower_limit(Resource resource, rlim_t most) {
+void lower_limit(Resource resource, rlim_t max) {
   rlimit limit{};
   if (::getrlimit(resource, &limit) != 0) return;
-  if (limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur <= most) return;
-  limit.rlim_cur = most;
+  if (limit.rlim_cur != RLIM_INFINITY && limit.rlim_cur <= max) return;
+  limit.rlim_cur = max;
   ::setrlimit(resource, &limit);
 }
 
@@ -31,7 +31,7 @@ void bound(unsigned seconds) {
   std::size_t pages = 0;
   if (!(std::ifstream("/proc/self/statm") >> pages)) return;
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  lower_limit(RLIMIT_AS, pages * page + most_child_memory);
+  lower_limit(RLIMIT_AS, pages * page + max_child_memory);
 }
 
 /// Resets the signal handlers inherited from the program, so that Ctrl-C ends the child. The child
@@ -71,15 +71,15 @@ void PipeWriter::put_bytes(const void* data, std::size_t size) {
   }
 }
 
-ChildProcess::ChildProcess(Reading reading, const std::function<void(PipeWriter&)>& work)
-    : reading_(std::move(reading)) {
+ChildProcess::ChildProcess(ReadContext context, const std::function<void(PipeWriter&)>& work)
+    : context_(std::move(context)) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) fail("cannot create a pipe");
   const pid_t parent = ::getpid();
   child_ = ::fork();
   if (child_ == 0) {
     ::close(ends[0]);
-    be_child(ends[1], parent, reading_.seconds, work);
+    be_child(ends[1], parent, context_.seconds, work);
   }
   ::close(ends[1]);
   file_ = ends[0];
@@ -104,7 +104,7 @@ int ChildProcess::wait() {
   return status;
 }
 
-void ChildProcess::take_bytes(void* data, std::size_t size) {
+void ChildProcess::read_bytes(void* data, std::size_t size) {
   char* at = static_cast<char*>(data);
   while (size > 0) {
     const ssize_t count = ::read(file_, at, size);
@@ -115,23 +115,23 @@ void ChildProcess::take_bytes(void* data, std::size_t size) {
   }
 }
 
-std::size_t ChildProcess::take_count(std::size_t item_size) {
-  const auto count = take<std::size_t>();
-  if (count > most_child_memory / item_size) fail("is damaged");
+std::size_t ChildProcess::read_count(std::size_t item_size) {
+  const auto count = read<std::size_t>();
+  if (count > max_child_memory / item_size) fail("is damaged");
   return count;
 }
 
 void ChildProcess::fail(const std::string& what) const {
-  throw Error(ErrorKind::bad_file, reading_.file + ": " + what);
+  throw Error(ErrorKind::bad_file, context_.file + ": " + what);
 }
 
 void ChildProcess::fail_by_end() {
   const int status = wait();
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
-    fail("timeout: " + reading_.library + " took more than " + std::to_string(reading_.seconds) +
+    fail("timeout: " + context_.library + " took more than " + std::to_string(context_.seconds) +
          " s, too long for an intact file of its size");
   }
-  fail("is damaged: " + reading_.library + " stopped while reading it");
+  fail("is damaged: " + context_.library + " stopped while reading it");
 }
 
 }  // namespace skycap::missions::support

@@ -14,7 +14,7 @@
 namespace skycap::missions::support {
 
 /// Memory limit of the child, in addition to the memory of this process [byte].
-inline constexpr std::size_t most_child_memory = std::size_t{2} << 30;
+inline constexpr std::size_t max_child_memory = std::size_t{2} << 30;
 
 /// Write end of the pipe in the child. Values are written in the machine's native representation.
 /// The child exits when the read end is closed.
@@ -43,7 +43,7 @@ class PipeWriter {
 /// Child process with the read end of its pipe.
 class ChildProcess {
  public:
-  struct Reading {
+  struct ReadContext {
     std::string file;     ///< file name at the start of messages
     std::string library;  ///< name of the parsing library in messages
     unsigned seconds = std::numeric_limits<unsigned>::max();  ///< limit of the processor time [s]
@@ -51,7 +51,7 @@ class ChildProcess {
 
   /// Runs `work` in a child process. It must not throw, and writes its results to the pipe. Its
   /// standard output is discarded. Throws Error{bad_file} if no pipe or process can be created.
-  ChildProcess(Reading reading, const std::function<void(PipeWriter&)>& work);
+  ChildProcess(ReadContext context, const std::function<void(PipeWriter&)>& work);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();
@@ -59,28 +59,28 @@ class ChildProcess {
   // Returns the next value written by the child. Throws Error{bad_file} if the child has ended
   // before writing it.
   template <typename Value>
-  Value take() {
+  Value read() {
     Value value;
-    take_bytes(&value, sizeof value);
+    read_bytes(&value, sizeof value);
     return value;
   }
   template <typename Values>
-  Values take_row() {
-    Values values(take_count(sizeof(typename Values::value_type)), typename Values::value_type{});
-    take_bytes(values.data(), values.size() * sizeof(typename Values::value_type));
+  Values read_row() {
+    Values values(read_count(sizeof(typename Values::value_type)), typename Values::value_type{});
+    read_bytes(values.data(), values.size() * sizeof(typename Values::value_type));
     return values;
   }
-  std::string take_text() { return take_row<std::string>(); }
+  std::string read_text() { return read_row<std::string>(); }
 
  private:
-  void take_bytes(void* data, std::size_t size);
-  std::size_t take_count(std::size_t item_size);
+  void read_bytes(void* data, std::size_t size);
+  std::size_t read_count(std::size_t item_size);
   /// Waits for the child and returns its status.
   int wait();
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail_by_end();
 
-  Reading reading_;
+  ReadContext context_;
   int file_ = -1;
   pid_t child_ = -1;
 };

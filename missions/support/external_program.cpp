@@ -20,7 +20,7 @@ void check(int error, const char* what) {
 }
 
 /// Returns the arguments for posix_spawn. They are valid as long as `command`.
-std::vector<char*> arguments_of(const std::vector<std::string>& command) {
+std::vector<char*> make_argv(const std::vector<std::string>& command) {
   std::vector<char*> arguments;
   arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -29,7 +29,7 @@ std::vector<char*> arguments_of(const std::vector<std::string>& command) {
 }
 
 /// Reads a program's output until it ends or the pipe is closed.
-std::string output_of(pid_t process, int pipe, const std::stop_token& stop) {
+std::string read_output(pid_t process, int pipe, const std::stop_token& stop) {
   // SIGTERM is repeated, because programs such as GNU parallel end only after the second signal.
   constexpr std::chrono::milliseconds interval(300);
   auto next_signal = std::chrono::steady_clock::now();
@@ -57,7 +57,7 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
   std::array<int, 2> ends{};  // read end and write end of the pipe
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
 
-  std::vector<char*> arguments = arguments_of(command);
+  std::vector<char*> arguments = make_argv(command);
   posix_spawn_file_actions_t actions;
   check(::posix_spawn_file_actions_init(&actions), "posix_spawn_file_actions_init");
   ::posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
@@ -76,7 +76,7 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
   }
 
   ProgramResult result;
-  result.output = output_of(process, ends[0], stop);
+  result.output = read_output(process, ends[0], stop);
   ::close(ends[0]);
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
@@ -86,7 +86,7 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
 }
 
 bool start_external_program(const std::vector<std::string>& command) {
-  std::vector<char*> arguments = arguments_of(command);
+  std::vector<char*> arguments = make_argv(command);
   posix_spawn_file_actions_t actions;
   check(::posix_spawn_file_actions_init(&actions), "posix_spawn_file_actions_init");
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);

@@ -21,10 +21,10 @@ std::string identity_text(const Identity& run, const Json& more) {
 
 namespace {
 
-void require_same_format(const std::string& file, const Json& found, const Json& wanted,
+void require_same_format(const std::string& file, const Json& found, const Json& expected,
                          const std::string& cure) {
   const Json none = nullptr;
-  if (found.value("format", none) == wanted.value("format", none)) return;
+  if (found.value("format", none) == expected.value("format", none)) return;
   const Json theirs = found.value("version", none);
   throw Error(ErrorKind::bad_file,
               file + ": was written by version " +
@@ -35,8 +35,8 @@ void require_same_format(const std::string& file, const Json& found, const Json&
 }  // namespace
 
 void require_same_survey(const std::string& file, const std::string& found,
-                         const std::string& wanted, const std::string& cure) {
-  const Json theirs = geometry::parse_json<Json>(found), ours = Json::parse(wanted);
+                         const std::string& expected, const std::string& cure) {
+  const Json theirs = geometry::parse_json<Json>(found), ours = Json::parse(expected);
   if (!theirs.is_object()) {
     throw Error(ErrorKind::bad_file, file + ": is not a journal");
   }

@@ -21,9 +21,9 @@ std::string journal_line(const nlohmann::ordered_json& json);
 /// contains further inputs, such as a checksum of the scene.
 std::string identity_text(const Identity& run, const nlohmann::ordered_json& more);
 
-/// Throws Error{bad_file} unless the first records `found` and `wanted` identify the same survey or
-/// scan and have the same format. The message begins with `file` and ends with `cure`.
+/// Throws Error{bad_file} unless the first records `found` and `expected` identify the same survey
+/// or scan and have the same format. The message begins with `file` and ends with `cure`.
 void require_same_survey(const std::string& file, const std::string& found,
-                         const std::string& wanted, const std::string& cure);
+                         const std::string& expected, const std::string& cure);
 
 }  // namespace skycap::missions::support

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the executable, or the library or Python module that contains this code.
-fs::path file_of_this_code() {
+fs::path find_module_file() {
   Dl_info info;
   const bool is_known = ::dladdr(reinterpret_cast<void*>(&module_symbol), &info) != 0;
   const fs::path file = is_known && info.dli_fname != nullptr ? info.dli_fname : "";
@@ -31,15 +31,15 @@ fs::path file_of_this_code() {
 
 /// Module folders relative to this file. They cover the build and installation folders of the
 /// program, of shared libraries, and of the Python module (lib/python3/dist-packages/skycap).
-constexpr std::array folders{SKYCAP_PLUGINS_OF_PROGRAM, ".", "skycap", "../..", "../../../skycap"};
+constexpr std::array folders{SKYCAP_PROGRAM_PLUGINS, ".", "skycap", "../..", "../../../skycap"};
 
 fs::path module_folder(const std::string& module) {
   const char* folder = std::getenv("SKYCAP_PLUGINS");  // NOLINT(concurrency-mt-unsafe): never set
   if (folder != nullptr && *folder != '\0') return folder;
-  const fs::path here = file_of_this_code().parent_path();
+  const fs::path here = find_module_file().parent_path();
   std::error_code ignored;
   const auto found = std::ranges::find_if(
-      folders, [&](const char* way) { return fs::exists(here / way / module, ignored); });
+      folders, [&](const char* prefix) { return fs::exists(here / prefix / module, ignored); });
   return found == folders.end() ? here : here / *found;
 }
 

@@ -21,7 +21,7 @@ struct ReconstructionConfig {
   std::size_t neighbours = 20;  ///< number of neighbours for normal estimation
   /// Minimum density of the cloud near the surface, as a fraction of its typical density. Surface
   /// below it is trimmed.
-  double least_density = 0.2;
+  double min_density = 0.2;
   unsigned threads = 0;  ///< zero: one per processor
 
   /// Throws Error{bad_config} with the name of the first field that is out of range.

@@ -55,7 +55,7 @@ void require_spread(const Cloud& cloud) {
               "all points are on one line; a surface requires points in a plane or in space");
 }
 
-Cloud::Ptr thinned(const Cloud::Ptr& cloud, double spacing) {
+Cloud::Ptr downsampled(const Cloud::Ptr& cloud, double spacing) {
   pcl::VoxelGrid<pcl::PointNormal> grid;
   const auto side = static_cast<float>(spacing);
   grid.setLeafSize(side, side, side);
@@ -104,10 +104,10 @@ void orient_normals(Cloud& cloud, const KdTree& tree, std::size_t neighbours) {
   std::vector<int> by_height(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) by_height[i] = static_cast<int>(i);
   std::ranges::stable_sort(by_height, [&](int a, int b) { return cloud[a].z > cloud[b].z; });
-  for (const int highest : by_height) {
-    if (is_oriented[highest] != 0) continue;
-    if (normal(highest).z() < 0.0F) normal(highest) *= -1.0F;
-    settle(highest);
+  for (const int top_point : by_height) {
+    if (is_oriented[top_point] != 0) continue;
+    if (normal(top_point).z() < 0.0F) normal(top_point) *= -1.0F;
+    settle(top_point);
     while (!steps.empty()) {
       const Step step = steps.top();
       steps.pop();
@@ -143,31 +143,32 @@ int octree_depth(const Cloud& cloud, double spacing, const ReconstructionConfig&
   return std::clamp(static_cast<int>(std::ceil(std::log2(std::max(1.0, cells)))), 5, 10);
 }
 
-/// Returns the number of cloud points within `radius` of each of `places`.
-std::vector<std::uint32_t> points_around(const Cloud& places, const KdTree& tree, double radius,
+/// Returns the number of cloud points within `radius` of each of `positions`.
+std::vector<std::uint32_t> points_around(const Cloud& positions, const KdTree& tree, double radius,
                                          unsigned threads) {
-  std::vector<std::uint32_t> counts(places.size());
+  std::vector<std::uint32_t> counts(positions.size());
   constexpr std::size_t batch = 1024;
-  geometry::parallel_for((places.size() + batch - 1) / batch, threads, [&](std::size_t part) {
+  geometry::parallel_for((positions.size() + batch - 1) / batch, threads, [&](std::size_t part) {
     std::vector<int> found;
     std::vector<float> squares;
-    const std::size_t end = std::min(places.size(), (part + 1) * batch);
+    const std::size_t end = std::min(positions.size(), (part + 1) * batch);
     for (std::size_t i = part * batch; i < end; ++i) {
-      counts[i] = static_cast<std::uint32_t>(tree.radiusSearch(places[i], radius, found, squares));
+      counts[i] =
+          static_cast<std::uint32_t>(tree.radiusSearch(positions[i], radius, found, squares));
     }
   });
   return counts;
 }
 
-/// Returns the triangles whose corners all have at least `least` cloud points around them.
+/// Returns the triangles whose corners all have at least `min` cloud points around them.
 geometry::Mesh dense_part(const Cloud& vertices, const std::vector<pcl::Vertices>& triangles,
-                          const std::vector<std::uint32_t>& around, double least) {
+                          const std::vector<std::uint32_t>& around, double min) {
   geometry::Mesh mesh;
   std::vector<std::int64_t> kept(vertices.size(), -1);
   for (const pcl::Vertices& triangle : triangles) {
     const auto& corners = triangle.vertices;
     if (corners.size() != 3 ||
-        std::ranges::any_of(corners, [&](auto corner) { return around[corner] < least; })) {
+        std::ranges::any_of(corners, [&](auto corner) { return around[corner] < min; })) {
       continue;
     }
     std::array<std::uint32_t, 3> indices{};
@@ -188,7 +189,7 @@ Reconstruction reconstructed(std::span<const Eigen::Vector3f> points,
                              std::span<const Eigen::Vector3f> normals,
                              const ReconstructionConfig& config) {
   Cloud::Ptr cloud = pcl_cloud(points, normals);
-  if (config.spacing > 0.0) cloud = thinned(cloud, config.spacing);
+  if (config.spacing > 0.0) cloud = downsampled(cloud, config.spacing);
   if (cloud->size() < 100) {
     throw Error(ErrorKind::bad_geometry, "too few points: " + std::to_string(cloud->size()) +
                                              "; a surface requires at least 100");
@@ -218,10 +219,10 @@ Reconstruction reconstructed(std::span<const Eigen::Vector3f> points,
   std::vector<std::uint32_t> usual = points_around(*cloud, tree, radius, config.threads);
   const auto middle = usual.begin() + static_cast<std::ptrdiff_t>(usual.size() / 2);
   std::nth_element(usual.begin(), middle, usual.end());
-  const double least = std::max(config.least_density > 0.0 ? 1.0 : 0.0,
-                                config.least_density * static_cast<double>(*middle));
+  const double min = std::max(config.min_density > 0.0 ? 1.0 : 0.0,
+                              config.min_density * static_cast<double>(*middle));
   result.mesh =
-      dense_part(vertices, triangles, points_around(vertices, tree, radius, config.threads), least);
+      dense_part(vertices, triangles, points_around(vertices, tree, radius, config.threads), min);
   result.trimmed_triangles = triangles.size() - result.mesh.triangles.size();
   if (result.mesh.triangles.empty()) {
     throw Error(ErrorKind::bad_geometry,

@@ -69,13 +69,13 @@ std::string sha256(std::span<const std::byte> bytes) {
   return sum.finish();
 }
 
-std::string sha256_of_file(const std::filesystem::path& file) {
+std::string compute_file_sha256(const std::filesystem::path& file) {
   std::ifstream stream = geometry::open_stream(file);
   Sha256 sum;
-  std::vector<char> piece(std::size_t{1} << 18);
-  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())),
+  std::vector<char> chunk(std::size_t{1} << 18);
+  while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())),
          stream.gcount() > 0) {
-    sum.add(std::as_bytes(std::span(piece).first(static_cast<std::size_t>(stream.gcount()))));
+    sum.add(std::as_bytes(std::span(chunk).first(static_cast<std::size_t>(stream.gcount()))));
   }
   if (!stream.eof()) throw Error(ErrorKind::bad_file, file.string() + ": cannot be read");
   return sum.finish();

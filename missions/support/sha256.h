@@ -10,6 +10,6 @@ namespace skycap::missions::support {
 std::string sha256(std::span<const std::byte> bytes);
 
 /// Returns the SHA-256 of a file. Throws Error{bad_file} if it cannot be read.
-std::string sha256_of_file(const std::filesystem::path& file);
+std::string compute_file_sha256(const std::filesystem::path& file);
 
 }  // namespace skycap::missions::support

@@ -61,17 +61,17 @@ int YamlSection::integer(const std::string& key, int fallback) {
   return static_cast<int>(value);
 }
 
-int YamlSection::integer(const std::string& key, int fallback, int least, int most) {
+int YamlSection::integer(const std::string& key, int fallback, int min, int max) {
   const int value = integer(key, fallback);
-  require_between(key, value, least, most);
+  require_between(key, value, min, max);
   return value;
 }
 
-void YamlSection::require_between(const std::string& key, double value, double least, double most,
+void YamlSection::require_between(const std::string& key, double value, double min, double max,
                                   const std::string& unit) {
-  if (value >= least && value <= most) return;
+  if (value >= min && value <= max) return;
   fail_at(key, fmt::format("is {:.10g}{}; it must be from {:.10g} to {:.10g}", value,
-                           unit.empty() ? "" : " " + unit, least, most));
+                           unit.empty() ? "" : " " + unit, min, max));
 }
 
 std::vector<double> YamlSection::numbers(const std::string& key) {

@@ -33,7 +33,7 @@ class YamlSection {
   double number(const std::string& key);
   double number(const std::string& key, double fallback);
   int integer(const std::string& key, int fallback);
-  int integer(const std::string& key, int fallback, int least, int most);
+  int integer(const std::string& key, int fallback, int min, int max);
   std::vector<double> numbers(const std::string& key);  ///< empty without the key
   std::string text(const std::string& key);
   std::string text(const std::string& key, const std::string& fallback);
@@ -56,7 +56,7 @@ class YamlSection {
   }
 
   /// Throws Error{bad_config} if a value, in `unit`, is out of range or NaN.
-  void require_between(const std::string& key, double value, double least, double most,
+  void require_between(const std::string& key, double value, double min, double max,
                        const std::string& unit = "");
 
   /// Throws Error{bad_config} if the section contains a key that was not read.

@@ -28,20 +28,20 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    refuse_anchor(mark, anchor);
+    reject_anchor(mark, anchor);
     add(node_at(mark, YamlNode::Kind::null));
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    fail(line_of(mark),
+    fail(line_number(mark),
          "aliases ('*name') are not supported in mission files; write the value out");
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
-    refuse_anchor(mark, anchor);
+    reject_anchor(mark, anchor);
     const bool is_quoted = tag == "!";  // tag that the parser assigns to quoted scalars
-    if (!is_quoted) refuse_tag(mark, tag);
+    if (!is_quoted) reject_tag(mark, tag);
     YamlNode node = node_at(mark, YamlNode::Kind::scalar);
     node.text = value;
     node.is_quoted = is_quoted;
@@ -72,31 +72,31 @@ class TreeBuilder final : public YAML::EventHandler {
     throw Error(ErrorKind::bad_config, name_ + ":" + std::to_string(line) + ": " + what);
   }
 
-  static int line_of(const YAML::Mark& mark) { return mark.line + 1; }
+  static int line_number(const YAML::Mark& mark) { return mark.line + 1; }
 
   static YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind) {
     YamlNode node;
     node.kind = kind;
-    node.line = line_of(mark);
+    node.line = line_number(mark);
     return node;
   }
 
-  void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
+  void reject_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
     if (anchor == YAML::NullAnchor) return;
-    fail(line_of(mark), "anchors ('&name') are not supported in mission files; remove it");
+    fail(line_number(mark), "anchors ('&name') are not supported in mission files; remove it");
   }
 
-  void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
+  void reject_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?") return;
-    fail(line_of(mark), "tags ('" + tag + "') are not supported in mission files; remove it");
+    fail(line_number(mark), "tags ('" + tag + "') are not supported in mission files; remove it");
   }
 
   void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
             YamlNode::Kind kind) {
-    refuse_anchor(mark, anchor);
-    refuse_tag(mark, tag);
+    reject_anchor(mark, anchor);
+    reject_tag(mark, tag);
     if (open_.size() == deepest_nesting) {
-      fail(line_of(mark),
+      fail(line_number(mark),
            "lists and maps are nested deeper than 16 levels; a mission file needs 3");
     }
     open_.push_back({node_at(mark, kind), false, {}});

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 using site_data::Source;
 using support::yaml_quoted;
 
-std::string vector_text(const Vector3d& place) {
-  return fmt::format("[{:g}, {:g}, {:g}]", place.x(), place.y(), place.z());
+std::string vector_text(const Vector3d& position) {
+  return fmt::format("[{:g}, {:g}, {:g}]", position.x(), position.y(), position.z());
 }
 
 /// Returns a quoted path relative to the mission's folder.
@@ -26,9 +26,9 @@ std::string path_text(const std::filesystem::path& file, const std::filesystem::
 
 std::string source_text(const Source& source, const std::filesystem::path& mission) {
   std::string text = fmt::format("{{file: {}, role: {}", path_text(source.file, mission),
-                                 site_data::name_of(source.role));
+                                 site_data::to_string(source.role));
   if (!source.crs.empty()) text += ", crs: " + yaml_quoted(source.crs);
-  if (source.vertical) text += std::string(", vertical: ") + site_data::name_of(*source.vertical);
+  if (source.vertical) text += std::string(", vertical: ") + site_data::to_string(*source.vertical);
   if (source.base_on_terrain) text += ", base: terrain";
   if (source.base) text += fmt::format(", base: {:g}", *source.base);
   if (source.height) text += fmt::format(", height: {:g}", *source.height);
@@ -40,7 +40,7 @@ std::string source_text(const Source& source, const std::filesystem::path& missi
   return text + "}";
 }
 
-const char* purpose_of(site_data::Role role) {
+const char* describe_purpose(site_data::Role role) {
   switch (role) {
     case site_data::Role::target:
       return "what is surveyed; its coverage is reported";
@@ -59,8 +59,8 @@ std::string prior_section(const MissionValues& values) {
       "# Prior data: known before the survey; uncertainty: METRES is the maximum error of the "
       "data.\nprior:\n";
   for (const Source& source : values.sources) {
-    text +=
-        fmt::format("  # {}\n  - {}\n", purpose_of(source.role), source_text(source, values.file));
+    text += fmt::format("  # {}\n  - {}\n", describe_purpose(source.role),
+                        source_text(source, values.file));
   }
   return text;
 }
@@ -98,7 +98,7 @@ std::string flight_section(const MissionValues& values) {
       "cranes.\n  unknown_box: {{min: {}, max: {}}}\n",
       vector_text(values.unknown.min()), vector_text(values.unknown.max()));
   std::string corners;
-  for (const Eigen::AlignedBox3d& box : values.unknown_beside) {
+  for (const Eigen::AlignedBox3d& box : values.extra_unknown_boxes) {
     corners += fmt::format("{}{}, {}", corners.empty() ? "" : ",\n    ", vector_text(box.min()),
                            vector_text(box.max()));
   }
@@ -148,7 +148,7 @@ std::string mission_text(const MissionValues& values) {
              "what the files contain.\nname: {}  # of the results\n# Simulation: {} the ground "
              "truth. Remove `scene` for a live survey.\nscene: {{model: prior, ground: "
              "true{}{}}}\n",
-             values.verb, yaml_quoted(name),
+             values.command, yaml_quoted(name),
              values.sees_neighbours ? "the target and its neighbours are" : "the target is",
              values.sees_neighbours ? ", neighbours: true" : "",
              values.ground == 0.0 ? "" : fmt::format(", position: [0, 0, {:g}]", values.ground)) +

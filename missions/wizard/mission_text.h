@@ -18,7 +18,7 @@ namespace skycap::missions::wizard {
 struct MissionValues {
   /// Path of the mission file; other files are written relative to its folder.
   std::filesystem::path file;
-  std::string verb = "skycap site";  ///< command that creates the proposal
+  std::string command = "skycap site";  ///< command that creates the proposal
   std::string vehicle;
   std::vector<site_data::Source> sources;
   flight::GeodeticPoint origin;
@@ -26,7 +26,7 @@ struct MissionValues {
   double ground = 0.0;           ///< z of the ground if the sources contain none [m]
   bool sees_neighbours = false;  ///< whether the dry run simulates measurements of other sources
   Eigen::AlignedBox3d unknown;   ///< box in which unobserved space is occupied
-  std::vector<Eigen::AlignedBox3d> unknown_beside{};  ///< further such boxes around neighbours
+  std::vector<Eigen::AlignedBox3d> extra_unknown_boxes{};  ///< further such boxes around neighbours
   Eigen::AlignedBox3d fence{};
   std::optional<Eigen::AlignedBox3d> scene{};  ///< box of the surface to survey; empty in a draft
   std::optional<Eigen::Vector3d> pad{};        ///< take-off point; empty in a draft

@@ -23,16 +23,17 @@ class PadSearch {
   /// known obstacles up to the height `top` (z) [m]. The nearest distance with enough space is
   /// selected, and there the position with the most space. Returns nullopt if no such position is
   /// within 100 m.
-  std::optional<Eigen::Vector3d> beside(const Eigen::AlignedBox3d& unknown, double top) const;
+  std::optional<Eigen::Vector3d> find_pad_beside(const Eigen::AlignedBox3d& unknown,
+                                                 double top) const;
 
   /// Returns the position on the ground below a map position, or nullopt if the terrain has no data
   /// there.
-  std::optional<Eigen::Vector3d> at(const Eigen::Vector2d& place) const;
+  std::optional<Eigen::Vector3d> at(const Eigen::Vector2d& position) const;
 
   /// Returns the clearance of the climb from a pad to `top` (z), up to `up_to` [m]. Returns 0 if
   /// the pad is invalid. The geofence is not considered, because it is extended around the pad
   /// later.
-  double room_over(const Eigen::Vector3d& pad, double top, double up_to) const;
+  double climb_clearance(const Eigen::Vector3d& pad, double top, double up_to) const;
 
  private:
   bool comes_near_unknown(const flight::Segment& climb) const;

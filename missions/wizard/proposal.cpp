@@ -18,12 +18,12 @@ using Eigen::Vector3d;
 
 /// Minimum margins of the unknown box around the target [m]. Maps have errors, and trees, wires and
 /// people near buildings are not in them.
-constexpr double unknown_beside = 5.0, unknown_above = 3.0;
+constexpr double unknown_margin = 5.0, unknown_above = 3.0;
 
 double rounded_up(double value, double unit) { return std::ceil(value / unit) * unit; }
 
 /// Returns the coverage distance [m], which increases with the size of the target.
-double registration_distance_of(const AlignedBox3d& target) {
+double compute_coverage_distance(const AlignedBox3d& target) {
   return std::clamp(rounded_up(target.sizes().maxCoeff() / 60.0, 0.05), 0.1, 1.0);
 }
 
@@ -33,25 +33,26 @@ AlignedBox3d rounded_out(const AlignedBox3d& box, double unit) {
 }
 
 AlignedBox3d unknown_box(const AlignedBox3d& target, double uncertainty, bool has_terrain) {
-  const double beside = std::max(unknown_beside, uncertainty);
+  const double find_pad_beside = std::max(unknown_margin, uncertainty);
   AlignedBox3d box = target;
-  box.min().array() -= beside;
-  box.max().array() += beside;
+  box.min().array() -= find_pad_beside;
+  box.max().array() += find_pad_beside;
   box.max().z() = target.max().z() + std::max(unknown_above, uncertainty);
   const double foot = std::round(100.0 * target.min().z()) / 100.0;
-  box.min().z() = has_terrain ? foot - beside : 0.0;
+  box.min().z() = has_terrain ? foot - find_pad_beside : 0.0;
   return rounded_out(box, 1.0);
 }
 
 /// Returns a geofence around a box and a pad.
 AlignedBox3d fence_around(const AlignedBox3d& unknown, const std::optional<Vector3d>& pad,
                           double view_distance) {
-  constexpr double spare = 10.0;
+  constexpr double margin = 10.0;
   AlignedBox3d fence = unknown;
-  fence.min().array() -= view_distance + spare;
-  fence.max().array() += view_distance + spare;
+  fence.min().array() -= view_distance + margin;
+  fence.max().array() += view_distance + margin;
   if (pad)
-    fence.extend(AlignedBox3d(*pad - Vector3d(spare, spare, 0), *pad + Vector3d(spare, spare, 0)));
+    fence.extend(
+        AlignedBox3d(*pad - Vector3d(margin, margin, 0), *pad + Vector3d(margin, margin, 0)));
   return rounded_out(fence, 1.0);
 }
 
@@ -61,7 +62,7 @@ MissionValues values_for(MissionValues values, const AlignedBox3d& target, doubl
                          bool has_terrain) {
   values.unknown = unknown_box(target, uncertainty, has_terrain);
   values.clearance = proposed_clearance;
-  values.registration_distance = registration_distance_of(target);
+  values.registration_distance = compute_coverage_distance(target);
   values.view_distance = std::round(std::clamp(target.sizes().maxCoeff(), 10.0, 25.0));
   values.fence = fence_around(values.unknown, std::nullopt, values.view_distance);
   return values;
@@ -73,24 +74,25 @@ MissionValues with_pad(MissionValues values, const Vector3d& pad) {
   return values;
 }
 
-double top_of_climbs(const MissionValues& values) {
+double compute_max_climb_altitude(const MissionValues& values) {
   return values.fence.max().z() - values.clearance;
 }
 
-std::string propose_mission(const Wishes& wishes, const std::filesystem::path& file) {
-  const std::vector<site_data::Source> files = files_of(wishes);
-  const Target target = find_target(files, wishes.target);
+std::string propose_mission(const SiteRequest& request, const std::filesystem::path& file) {
+  const std::vector<site_data::Source> files = collect_files(request);
+  const Target target = find_target(files, request.target);
   MissionValues values = values_for({.file = file,
-                                     .vehicle = wishes.vehicle,
-                                     .sources = sources_of(files, target.ids),
+                                     .vehicle = request.vehicle,
+                                     .sources = select_sources(files, target.ids),
                                      .origin = target.origin,
                                      .unknown = {}},
-                                    target.box, target.uncertainty, wishes.terrain.has_value());
+                                    target.box, target.uncertainty, request.terrain.has_value());
   const config::MissionSetup mission = config::parse_mission(mission_text(values), file.string());
   values.scene = rounded_out(mission.survey().planner.scene_box.value(), 0.1);
-  const auto pad = PadSearch(mission.flight()).beside(values.unknown, top_of_climbs(values));
+  const auto pad = PadSearch(mission.flight())
+                       .find_pad_beside(values.unknown, compute_max_climb_altitude(values));
   if (!pad) {
-    throw Error(ErrorKind::bad_config, wishes.map.string() +
+    throw Error(ErrorKind::bad_config, request.map.string() +
                                            ": no take-off point within 100 m of the target is "
                                            "free, level and even; exclude obstacles with select");
   }

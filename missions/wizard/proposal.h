@@ -16,7 +16,7 @@ namespace skycap::missions::wizard {
 /// geofence, unknown box, sensor and view distance. The scene is the target, for a dry run. Throws
 /// Error{bad_config} if the target is not found, if the files have no georeference, or if no pad is
 /// possible within 100 m of the target. Throws the errors of config::parse_mission().
-std::string propose_mission(const Wishes& wishes, const std::filesystem::path& file);
+std::string propose_mission(const SiteRequest& request, const std::filesystem::path& file);
 
 /// Clearance of a proposed mission [m].
 inline constexpr double proposed_clearance = 2.0;
@@ -31,6 +31,6 @@ MissionValues values_for(MissionValues values, const Eigen::AlignedBox3d& target
 MissionValues with_pad(MissionValues values, const Eigen::Vector3d& pad);
 
 /// Returns the z at which climbs from pads end [m], the clearance below the fence's ceiling.
-double top_of_climbs(const MissionValues& values);
+double compute_max_climb_altitude(const MissionValues& values);
 
 }  // namespace skycap::missions::wizard

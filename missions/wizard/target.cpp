@@ -22,22 +22,22 @@ using site_data::Source;
 /// Maximum distance between a click and the selected object [m].
 constexpr double near_click = 10.0;
 
-bool is_over(const geometry::Mesh& mesh, const Vector2d& place) {
+bool is_over(const geometry::Mesh& mesh, const Vector2d& position) {
   return std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
     std::array<Vector2d, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh.vertices[triangle[i]].template head<2>();
     return geometry::turn(corners[0], corners[1], corners[2]) != 0.0 &&
-           geometry::contains(corners, place);
+           geometry::contains(corners, position);
   });
 }
 
 /// Returns the horizontal distance [m] from a position to an object: zero above its surface,
 /// otherwise to its bounding box.
-double distance(const Object& object, const Vector2d& place) {
-  if (is_over(object.mesh, place)) return 0.0;
+double distance(const Object& object, const Vector2d& position) {
+  if (is_over(object.mesh, position)) return 0.0;
   const Eigen::AlignedBox3d box = geometry::bounding_box(object.mesh);
   const Eigen::AlignedBox2d base(box.min().head<2>().eval(), box.max().head<2>().eval());
-  return std::max(0.01, base.exteriorDistance(place));
+  return std::max(0.01, base.exteriorDistance(position));
 }
 
 std::string clicked(const std::vector<Source>& files, const Click& click) {
@@ -45,20 +45,20 @@ std::string clicked(const std::vector<Source>& files, const Click& click) {
   const std::vector<Object> objects =
       read_things(files, {}, {click.latitude_deg, click.longitude_deg, 0.0}).objects;
   const Object* nearest = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (const Object& object : objects) {
     const double here = distance(object, Vector2d::Zero());
-    if (here < least) nearest = &object;
-    least = std::min(least, here);
+    if (here < min) nearest = &object;
+    min = std::min(min, here);
   }
-  if (nearest == nullptr || least > near_click) {
+  if (nearest == nullptr || min > near_click) {
     throw Error(
         ErrorKind::bad_config,
         fmt::format("{}: contains nothing within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}",
                     file, near_click, click.latitude_deg, click.longitude_deg,
                     nearest == nullptr
                         ? ""
-                        : fmt::format("; the nearest, {}, is {:.0f} m away", nearest->id, least)));
+                        : fmt::format("; the nearest, {}, is {:.0f} m away", nearest->id, min)));
   }
   require_single(objects, nearest->id, file);
   return nearest->id;
@@ -73,9 +73,11 @@ std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pi
   source.select.attributes = pick.attributes;
   std::vector<std::string> ids;
   for (const Object& object :
-       site_data::read_prior(source, {.origin = site_data::middle_of(source)}, [](const Vector2d&) {
-         return std::optional(0.0);  // the terrain is not required here
-       }).objects) {
+       site_data::read_prior(source, {.origin = site_data::compute_centre(source)},
+                             [](const Vector2d&) {
+                               return std::optional(0.0);  // the terrain is not required here
+                             })
+           .objects) {
     ids.push_back(object.id);
   }
   if (ids.size() == 1 || !pick.ids.empty()) return ids;
@@ -93,30 +95,30 @@ double rounded(double value, double unit) { return std::round(value / unit) * un
 
 }  // namespace
 
-std::vector<Source> files_of(const Wishes& wishes) {
+std::vector<Source> collect_files(const SiteRequest& request) {
   const auto file = [&](const std::filesystem::path& path, Role role) {
     Source source;
     source.file = path;
     source.role = role;
     return source;
   };
-  const site_data::Assumptions assumed{wishes.reading.crs, wishes.reading.vertical,
-                                       wishes.terrain.has_value()};
-  Source map = file(wishes.map, Role::obstacle);
-  map.base = wishes.reading.base;
-  map.height = wishes.reading.height;
+  const site_data::Assumptions assumed{request.import_options.crs, request.import_options.vertical,
+                                       request.terrain.has_value()};
+  Source map = file(request.map, Role::obstacle);
+  map.base = request.import_options.base;
+  map.height = request.import_options.height;
   std::vector<Source> files{site_data::completed(map, assumed)};
-  for (const std::filesystem::path& path : wishes.obstacles) {
+  for (const std::filesystem::path& path : request.obstacles) {
     files.push_back(site_data::completed(file(path, Role::obstacle), assumed));
   }
-  if (wishes.terrain) {
-    files.push_back(site_data::completed(file(*wishes.terrain, Role::terrain), assumed));
+  if (request.terrain) {
+    files.push_back(site_data::completed(file(*request.terrain, Role::terrain), assumed));
   }
   return files;
 }
 
-std::vector<Source> sources_of(const std::vector<Source>& files,
-                               const std::vector<std::string>& target) {
+std::vector<Source> select_sources(const std::vector<Source>& files,
+                                   const std::vector<std::string>& target) {
   std::vector<Source> sources = files;
   sources.insert(sources.begin(), files[0]);
   sources[0].role = Role::target;
@@ -126,7 +128,7 @@ std::vector<Source> sources_of(const std::vector<Source>& files,
 
 site_data::Prior read_things(const std::vector<Source>& files, const site_data::Selection& select,
                              const flight::GeodeticPoint& origin) {
-  std::vector<Source> sources = sources_of(files, {});
+  std::vector<Source> sources = select_sources(files, {});
   sources[0].select = select;
   std::erase_if(sources, [](const Source& source) {
     return source.role != Role::target && source.role != Role::terrain;
@@ -147,7 +149,7 @@ void require_single(const std::vector<Object>& objects, const std::string& id,
 
 Target find_target(const std::vector<Source>& files, const Pick& pick) {
   Target target{.ids = picked(files, pick), .origin = {}, .box = {}};
-  target.origin = site_data::middle_of(sources_of(files, target.ids)[0]);
+  target.origin = site_data::compute_centre(select_sources(files, target.ids)[0]);
   constexpr double centimetre = 1e-7;  // one centimetre of latitude [degrees]
   target.origin.latitude_deg = rounded(target.origin.latitude_deg, centimetre);
   target.origin.longitude_deg = rounded(target.origin.longitude_deg, centimetre);

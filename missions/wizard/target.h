@@ -24,12 +24,12 @@ struct Target {
 /// Returns the input files, completed with the settings that they do not contain. The map is first,
 /// as an obstacle, followed by the other obstacles and the terrain. File paths are unchanged.
 /// Throws the errors of site_data::completed().
-std::vector<site_data::Source> files_of(const Wishes& wishes);
+std::vector<site_data::Source> collect_files(const SiteRequest& request);
 
 /// Returns the prior data of a mission: the target from the first of `files`, followed by all
 /// files.
-std::vector<site_data::Source> sources_of(const std::vector<site_data::Source>& files,
-                                          const std::vector<std::string>& target);
+std::vector<site_data::Source> select_sources(const std::vector<site_data::Source>& files,
+                                              const std::vector<std::string>& target);
 
 /// Reads the selected objects from the first of `files`, placed on the terrain, in a frame at
 /// `origin`. Throws the errors of site_data::read_prior().

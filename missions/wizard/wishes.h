@@ -32,16 +32,16 @@ struct Pick {
 };
 
 /// Interpretation of the files, as specified by the `prior` keys of the same names.
-struct Reading {
+struct ImportOptions {
   std::string crs;
   std::optional<site_data::HeightDatum> vertical;
   std::optional<double> base, height;  ///< base and height of extruded outlines [m]
 };
 
-struct Wishes {
+struct SiteRequest {
   std::filesystem::path map;  ///< file with the target and its neighbours
   Pick target;
-  Reading reading;
+  ImportOptions import_options;
   std::optional<std::filesystem::path> terrain;
   std::vector<std::filesystem::path> obstacles;  ///< further files with obstacles
   std::string vehicle = "generic";

@@ -44,10 +44,10 @@ Mesh storeys(double width, double depth, double foot, int count, const Facade& f
   double start = 0.0;
   for (const double length : {depth, width, depth, width}) {
     std::vector<Opening> openings;
-    const double room = length - 2.0 * margin;
-    const int windows = static_cast<int>(std::max(0.0, room) / facade.spacing);
+    const double available_length = length - 2.0 * margin;
+    const int windows = static_cast<int>(std::max(0.0, available_length) / facade.spacing);
     for (int i = 0; i < windows; ++i) {
-      const double centre = start + margin + room * (i + 0.5) / windows;
+      const double centre = start + margin + available_length * (i + 0.5) / windows;
       for (int storey = 0; storey < count; ++storey) {
         const double sill = foot + storey * facade.storey + 0.28 * facade.storey;
         openings.push_back(rectangular(centre, facade.window_width, sill,
@@ -144,8 +144,8 @@ Parts town_house(const Lot& lot, geometry::RandomNumbers& draw, const Fineness&)
   const double eaves = count * facade.storey, half = 0.5 * depth + 0.5;
   add_chimneys(0.7 * width, 0.0, eaves, eaves + slope * half, draw, parts);
   if (draw.integer(0, 1) == 0) {
-    const double room = is_hipped ? width - depth : width - 2.0;
-    add_dormers(std::max(0.0, room), half, eaves, slope, parts);
+    const double available_length = is_hipped ? width - depth : width - 2.0;
+    add_dormers(std::max(0.0, available_length), half, eaves, slope, parts);
   }
   if (draw.integer(0, 1) == 0) {  // Lower wing at the back.
     const double wing = std::min(lot.depth - depth, draw.between(8.0, 14.0));

@@ -17,14 +17,14 @@ namespace {
 
 using geometry::Mesh;
 
-std::vector<std::string_view> names_of_families() {
+std::vector<std::string_view> list_family_names() {
   std::vector<std::string_view> names;
   for (const models::Family& family : models::families()) names.push_back(family.name);
   return names;
 }
 
-std::vector<std::string_view> names_of_all() {
-  std::vector<std::string_view> names = names_of_families();
+std::vector<std::string_view> list_model_names() {
+  std::vector<std::string_view> names = list_family_names();
   names.insert(names.end(), {"city-block", "radcliffe-camera", "teapot"});
   std::ranges::sort(names);
   return names;
@@ -93,12 +93,12 @@ Mesh family_model(const models::Family& family, const ModelOptions& options) {
 }  // namespace
 
 std::span<const std::string_view> builtin_models() {
-  static const std::vector<std::string_view> names = names_of_all();
+  static const std::vector<std::string_view> names = list_model_names();
   return names;
 }
 
 std::span<const std::string_view> model_families() {
-  static const std::vector<std::string_view> names = names_of_families();
+  static const std::vector<std::string_view> names = list_family_names();
   return names;
 }
 

@@ -95,9 +95,9 @@ void add_arch_glazing(const Plan& plan, Parts& parts) {
     constexpr int rays = 6;
     for (int j = 1; j < rays; ++j) {
       const double angle = pi * j / rays;
-      const Vector2d way(std::cos(angle), std::sin(angle));
+      const Vector2d direction(std::cos(angle), std::sin(angle));
       const Vector2d centre(0.0, springing);
-      add(centre + 0.42 * way, centre + (radius + 0.02) * way, 0.035);
+      add(centre + 0.42 * direction, centre + (radius + 0.02) * direction, 0.035);
     }
     Polyline2 ring = Profile(plan.fineness, 0.46, springing - 0.02)
                          .arc_to(-0.46, springing - 0.02, pi)

@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 /// Returns x of a round wall's face at y = `half_width`, where a flat frame must still intersect
 /// it.
-double face_beside(double radius, double half_width) {
+double wall_face_x(double radius, double half_width) {
   return std::sqrt(radius * radius - half_width * half_width);
 }
 
@@ -29,11 +29,11 @@ void add_turned(const Parts& elements, double azimuth, Parts& parts) {
 /// thickest in the middle.
 Mesh swag(const Vector2d& from, const Vector2d& to, double sag, double thickness, double x,
           const Fineness& fineness) {
-  const int pieces = 4 * std::clamp(fineness.chords(0.5 * (to - from).norm(), pi), 2, 12);
+  const int subdivisions = 4 * std::clamp(fineness.chords(0.5 * (to - from).norm(), pi), 2, 12);
   const int chords = fineness.circle(thickness);
   std::vector<Polyline3> rings;
-  for (int i = 0; i <= pieces; ++i) {
-    const double share = static_cast<double>(i) / pieces, across = 2.0 * share - 1.0;
+  for (int i = 0; i <= subdivisions; ++i) {
+    const double share = static_cast<double>(i) / subdivisions, across = 2.0 * share - 1.0;
     const Vector2d chord = to - from;
     const Vector2d at = from + share * chord - Vector2d(0.0, sag * (1.0 - across * across));
     const Vector2d ahead = (chord + Vector2d(0.0, 4.0 * sag * across)).normalized();
@@ -85,7 +85,7 @@ void add_window_frames(const Plan& plan, Parts& parts) {
   window.sill = foot + t.window_sill;
   window.head = window.sill + t.window_height;
   window.face = t.wall_radius;
-  window.back = face_beside(t.wall_radius, window.half_width + 0.6) - 0.08;
+  window.back = wall_face_x(t.wall_radius, window.half_width + 0.6) - 0.08;
   window.band = 0.24;
   window.lug = 0.0;
 
@@ -130,7 +130,7 @@ void add_niche_frames(const Plan& plan, Parts& parts) {
   Frame frame;
   frame.half_width = 0.5 * t.niche_width;
   frame.face = t.wall_radius;
-  frame.back = face_beside(t.wall_radius, frame.half_width + 0.5) - 0.08;
+  frame.back = wall_face_x(t.wall_radius, frame.half_width + 0.5) - 0.08;
   frame.band = 0.18;
   frame.lug = 0.0;
   Parts bay;

@@ -146,7 +146,7 @@ Vector3d point_on(const Patch& patch, double u, double v) {
 /// same control points in a different order, so points are compared after rounding to 1e-9 units.
 class Welder {
  public:
-  std::uint32_t index_of(const Vector3d& point, Mesh& mesh) {
+  std::uint32_t find_or_add(const Vector3d& point, Mesh& mesh) {
     const std::array<std::int64_t, 3> key{std::llround(point.x() * 1e9),
                                           std::llround(point.y() * 1e9),
                                           std::llround(point.z() * 1e9)};
@@ -179,7 +179,7 @@ Mesh teapot(int cells) {
     for (std::size_t row = 0; row < side; ++row) {
       for (std::size_t column = 0; column < side; ++column) {
         const double u = static_cast<double>(row) / cells, v = static_cast<double>(column) / cells;
-        grid.push_back(welder.index_of(point_on(patch, u, v), mesh));
+        grid.push_back(welder.find_or_add(point_on(patch, u, v), mesh));
       }
     }
     // Rows x columns of the patches point inwards, so (a, b, d) has the opposite orientation.

@@ -1,7 +1,7 @@
 /// Operations on sixteen numbers at a time, and the same operations on one number. They use as many
 /// registers as the instruction set of the including source requires, and are internal to it. Every
 /// operation is exact or rounded according to IEEE 754, so all instruction sets give identical
-/// bits. Arguments of least() and greatest() must not be NaN.
+/// bits. Arguments of min() and max() must not be NaN.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ using PartMask [[gnu::vector_size(4 * part_lanes), gnu::may_alias]] = std::int32
 #if defined(__AVX512F__)
 
 inline Part every_lane(float value) { return _mm512_set1_ps(value); }
-inline Part least(Part a, Part b) { return _mm512_min_ps(a, b); }
-inline Part greatest(Part a, Part b) { return _mm512_max_ps(a, b); }
+inline Part min(Part a, Part b) { return _mm512_min_ps(a, b); }
+inline Part max(Part a, Part b) { return _mm512_max_ps(a, b); }
 inline PartMask is_less(Part a, Part b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 inline PartMask is_at_most(Part a, Part b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
 inline PartMask is_equal(Part a, Part b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
@@ -51,15 +51,15 @@ inline PartMask is_at_most(Part a, Part b) { return a <= b; }
 inline PartMask is_equal(Part a, Part b) { return a == b; }
 inline PartMask inverse(PartMask mask) { return ~mask; }
 inline PartMask part_mask(std::uint32_t bits) {
-  PartMask bit_of_lane;
-  for (int lane = 0; lane < part_lanes; ++lane) bit_of_lane[lane] = 1 << lane;
-  return (static_cast<std::int32_t>(bits) & bit_of_lane) == bit_of_lane;
+  PartMask lane_bits;
+  for (int lane = 0; lane < part_lanes; ++lane) lane_bits[lane] = 1 << lane;
+  return (static_cast<std::int32_t>(bits) & lane_bits) == lane_bits;
 }
 
 #if defined(__AVX2__)
 inline Part every_lane(float value) { return _mm256_set1_ps(value); }
-inline Part least(Part a, Part b) { return _mm256_min_ps(a, b); }
-inline Part greatest(Part a, Part b) { return _mm256_max_ps(a, b); }
+inline Part min(Part a, Part b) { return _mm256_min_ps(a, b); }
+inline Part max(Part a, Part b) { return _mm256_max_ps(a, b); }
 inline Part chosen(PartMask mask, Part a, Part b) { return _mm256_blendv_ps(b, a, (Part)mask); }
 inline std::uint32_t bits(PartMask mask) {
   return static_cast<std::uint32_t>(_mm256_movemask_ps((Part)mask));
@@ -70,14 +70,14 @@ inline Part chosen(PartMask mask, Part a, Part b) {
   return (Part)(((PartMask)a & mask) | ((PartMask)b & ~mask));
 }
 #if defined(__SSE2__)
-inline Part least(Part a, Part b) { return _mm_min_ps(a, b); }
-inline Part greatest(Part a, Part b) { return _mm_max_ps(a, b); }
+inline Part min(Part a, Part b) { return _mm_min_ps(a, b); }
+inline Part max(Part a, Part b) { return _mm_max_ps(a, b); }
 inline std::uint32_t bits(PartMask mask) {
   return static_cast<std::uint32_t>(_mm_movemask_ps((Part)mask));
 }
 #else
-inline Part least(Part a, Part b) { return chosen(a < b, a, b); }
-inline Part greatest(Part a, Part b) { return chosen(a > b, a, b); }
+inline Part min(Part a, Part b) { return chosen(a < b, a, b); }
+inline Part max(Part a, Part b) { return chosen(a > b, a, b); }
 inline std::uint32_t bits(PartMask mask) {
   const PartMask bit = mask & PartMask{1, 2, 4, 8};
   return static_cast<std::uint32_t>(bit[0] | bit[1] | bit[2] | bit[3]);
@@ -116,13 +116,13 @@ inline Floats operator/(const Floats& a, const Floats& b) {
 inline Floats operator-(const Floats& a) {
   return each_part<Floats>([&](int i) { return -a.part[i]; });
 }
-inline Floats least(const Floats& a, const Floats& b) {
-  return each_part<Floats>([&](int i) { return least(a.part[i], b.part[i]); });
+inline Floats min(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return min(a.part[i], b.part[i]); });
 }
-inline Floats greatest(const Floats& a, const Floats& b) {
-  return each_part<Floats>([&](int i) { return greatest(a.part[i], b.part[i]); });
+inline Floats max(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return max(a.part[i], b.part[i]); });
 }
-inline Floats magnitude(const Floats& a) { return greatest(a, -a); }
+inline Floats magnitude(const Floats& a) { return max(a, -a); }
 
 inline Mask is_less(const Floats& a, const Floats& b) {
   return each_part<Mask>([&](int i) { return is_less(a.part[i], b.part[i]); });
@@ -153,7 +153,7 @@ inline std::uint32_t bits(const Mask& mask) {
   for (int i = 0; i < part_count; ++i) all |= bits(mask.part[i]) << (i * part_lanes);
   return all;
 }
-inline Mask mask_of(std::uint32_t bits) {
+inline Mask make_mask(std::uint32_t bits) {
   return each_part<Mask>([&](int i) { return part_mask(bits >> (i * part_lanes)); });
 }
 inline bool any(const Mask& mask) {
@@ -172,21 +172,21 @@ inline void store(const Floats& values, float* lanes) {
   for (int i = 0; i < part_count; ++i) reinterpret_cast<Part*>(lanes)[i] = values.part[i];
 }
 
-inline float least_lane(const Floats& values) {
-  Part least_of_parts = values.part[0];
+inline float horizontal_min(const Floats& values) {
+  Part part_min = values.part[0];
 #pragma GCC unroll 4
-  for (int i = 1; i < part_count; ++i) least_of_parts = least(least_of_parts, values.part[i]);
+  for (int i = 1; i < part_count; ++i) part_min = min(part_min, values.part[i]);
 #if defined(__AVX512F__)
-  return _mm512_reduce_min_ps(least_of_parts);
+  return _mm512_reduce_min_ps(part_min);
 #else
-  float result = least_of_parts[0];
+  float result = part_min[0];
   for (int i = 1; i < part_lanes; ++i) {
-    result = least_of_parts[i] < result ? least_of_parts[i] : result;
+    result = part_min[i] < result ? part_min[i] : result;
   }
   return result;
 #endif
 }
-inline float greatest_lane(const Floats& values) { return -least_lane(-values); }
+inline float horizontal_max(const Floats& values) { return -horizontal_min(-values); }
 
 // Scalar mask and operations, for templates that accept vectors or scalars.
 struct Truth {
@@ -199,12 +199,12 @@ inline bool any(Truth truth) { return truth.holds; }
 inline Truth is_less(float a, float b) { return {a < b}; }
 inline Truth is_at_most(float a, float b) { return {a <= b}; }
 inline Truth is_equal(float a, float b) { return {a == b}; }
-inline float least(float a, float b) { return a < b ? a : b; }
-inline float greatest(float a, float b) { return a > b ? a : b; }
+inline float min(float a, float b) { return a < b ? a : b; }
+inline float max(float a, float b) { return a > b ? a : b; }
 inline float magnitude(float a) { return a < 0.0F ? -a : a; }
 inline float chosen(Truth truth, float a, float b) { return truth.holds ? a : b; }
-inline float least_lane(float value) { return value; }
-inline float greatest_lane(float value) { return value; }
+inline float horizontal_min(float value) { return value; }
+inline float horizontal_max(float value) { return value; }
 
 // Returns a vector with `value` in all lanes.
 template <typename Lanes>
@@ -219,7 +219,7 @@ inline float every<float>(float value) {
 }
 
 template <typename Lanes>
-using MaskOf = decltype(is_less(Lanes{}, Lanes{}));
+using LaneMask = decltype(is_less(Lanes{}, Lanes{}));
 
 }  // namespace
 }  // namespace skycap::sim

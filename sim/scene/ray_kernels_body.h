@@ -22,14 +22,14 @@ inline void for_each_bundle(const TreeRoot& tree, float padding, const Rays<Floa
   }
   while (lanes != 0) {
     const int first = __builtin_ctz(lanes);
-    std::uint32_t alike = lanes;
+    std::uint32_t coherent = lanes;
     bool is_backwards[3];
     for (int axis = 0; axis < 3; ++axis) {
       is_backwards[axis] = (backwards[axis] >> first & 1U) != 0;
-      alike &= is_backwards[axis] ? backwards[axis] : ~backwards[axis];
+      coherent &= is_backwards[axis] ? backwards[axis] : ~backwards[axis];
     }
-    lanes &= ~alike;
-    work(make_bundle(rays, mask_of(alike), is_backwards, tree.extent, padding));
+    lanes &= ~coherent;
+    work(make_bundle(rays, make_mask(coherent), is_backwards, tree.extent, padding));
   }
 }
 template <typename Work>
@@ -40,21 +40,21 @@ inline void for_each_bundle(const TreeRoot& tree, float padding, const Rays<floa
   work(make_bundle(rays, Truth{true}, is_backwards, tree.extent, padding));
 }
 
-inline std::uint32_t lanes_of(const Mask& mask) { return bits(mask); }
-inline Truth lanes_of(Truth truth) { return truth; }
+inline std::uint32_t to_lane_bits(const Mask& mask) { return bits(mask); }
+inline Truth to_lane_bits(Truth truth) { return truth; }
 
-template <Wish wish, typename Lanes, typename Set>
+template <HitQuery query, typename Lanes, typename Set>
 [[gnu::noinline]] void cast_at_triangles(const TreeRoot& tree, const SceneCopy* copy,
                                          const Rays<Lanes>& rays, Set lanes,
                                          Nearest<Lanes>& nearest) {
   for_each_bundle(tree, triangle_padding, rays, lanes, [&](const Bundle<Lanes>& bundle) {
-    const TriangleTest<Lanes, wish> test(rays, bundle.active, tree.extent, copy);
+    const TriangleTest<Lanes, query> test(rays, bundle.active, tree.extent, copy);
     Walk<Lanes>(bundle, nearest)(tree.ref, test);
   });
 }
 
 template <typename Lanes>
-inline Rays<Lanes> in_frame_of(const SceneCopy& copy, const Rays<Lanes>& rays) {
+inline Rays<Lanes> to_copy_frame(const SceneCopy& copy, const Rays<Lanes>& rays) {
   Rays<Lanes> local;
   for (int axis = 0; axis < 3; ++axis) {
     const float(&row)[4] = copy.local_from_scene[axis];
@@ -68,14 +68,15 @@ inline Rays<Lanes> in_frame_of(const SceneCopy& copy, const Rays<Lanes>& rays) {
   return local;
 }
 
-template <Wish wish, typename Lanes, typename Set>
+template <HitQuery query, typename Lanes, typename Set>
 void cast_at_copies(const RayTarget& target, const Rays<Lanes>& rays, Set lanes,
                     Nearest<Lanes>& nearest) {
-  const auto test = [&](TreeRef leaf, const MaskOf<Lanes>& active, Nearest<Lanes>& found) {
+  const auto test = [&](TreeRef leaf, const LaneMask<Lanes>& active, Nearest<Lanes>& found) {
     const auto* const numbers = reinterpret_cast<const std::uint32_t*>(leaf & ~tree_ref_entries);
     for (TreeRef i = 0; i < (leaf & tree_ref_entries); ++i) {
       const SceneCopy& copy = target.copies[numbers[i]];
-      cast_at_triangles<wish>(copy.part, &copy, in_frame_of(copy, rays), lanes_of(active), found);
+      cast_at_triangles<query>(copy.part, &copy, to_copy_frame(copy, rays), to_lane_bits(active),
+                               found);
     }
     return any(found.is_hit);
   };
@@ -84,38 +85,38 @@ void cast_at_copies(const RayTarget& target, const Rays<Lanes>& rays, Set lanes,
   });
 }
 
-template <Wish wish, typename Lanes, typename Set>
+template <HitQuery query, typename Lanes, typename Set>
 inline Nearest<Lanes> nearest_hits(const RayTarget& target, const Rays<Lanes>& rays, Set lanes,
                                    float reach) {
   const Lanes zero = every<Lanes>(0.0F);
   Nearest<Lanes> nearest = {every<Lanes>(reach), is_less(zero, zero), zero, {zero, zero, zero}};
   if (target.copies == nullptr) {
-    cast_at_triangles<wish>(target.tree, nullptr, rays, lanes, nearest);
+    cast_at_triangles<query>(target.tree, nullptr, rays, lanes, nearest);
   } else {
-    cast_at_copies<wish>(target, rays, lanes, nearest);
+    cast_at_copies<query>(target, rays, lanes, nearest);
   }
   return nearest;
 }
 
-template <Wish wish>
+template <HitQuery query>
 void cast_packet(const RayTarget& target, RayPacket& packet, std::uint32_t lanes, float reach) {
-  store_nearest<wish>(nearest_hits<wish>(target, rays_of(packet), lanes, reach), packet);
+  store_nearest<query>(nearest_hits<query>(target, make_rays(packet), lanes, reach), packet);
 }
 
-template <Wish wish>
+template <HitQuery query>
 void cast_tile(const RayTarget& target, RayPacket* packets, int count, float reach) {
-  constexpr int least_count = 4;  // Minimum number of packets for which joint casting is faster.
+  constexpr int min_count = 4;  // Minimum number of packets for which joint casting is faster.
   const bool is_tree =
       target.copies == nullptr && target.tree.ref != 0 && (target.tree.ref & tree_ref_entries) == 0;
-  if (is_tree && count >= least_count && cast_together<wish>(target.tree, packets, count, reach)) {
+  if (is_tree && count >= min_count && cast_together<query>(target.tree, packets, count, reach)) {
     return;
   }
   for (int i = 0; i < count; ++i) {
-    cast_packet<wish>(target, packets[i], RayPacket::all_lanes, reach);
+    cast_packet<query>(target, packets[i], RayPacket::all_lanes, reach);
   }
 }
 
-inline Rays<float> rays_of(const SingleRay& ray) {
+inline Rays<float> make_rays(const SingleRay& ray) {
   Rays<float> rays;
   for (int axis = 0; axis < 3; ++axis) {
     rays.origin[axis] = ray.origin[axis];
@@ -125,26 +126,26 @@ inline Rays<float> rays_of(const SingleRay& ray) {
 }
 
 void cast_single(const RayTarget& target, SingleRay& ray, float reach) {
-  const auto nearest = nearest_hits<Wish::surface>(target, rays_of(ray), Truth{true}, reach);
+  const auto nearest = nearest_hits<HitQuery::surface>(target, make_rays(ray), Truth{true}, reach);
   ray.distance = any(nearest.is_hit) ? nearest.distance : -1.0F;
   ray.triangle = __builtin_bit_cast(std::uint32_t, nearest.triangle);
   for (int axis = 0; axis < 3; ++axis) ray.normal[axis] = nearest.normal[axis];
 }
 
 bool is_blocked(const RayTarget& target, const SingleRay& ray, float reach) {
-  return any(nearest_hits<Wish::any>(target, rays_of(ray), Truth{true}, reach).is_hit);
+  return any(nearest_hits<HitQuery::any>(target, make_rays(ray), Truth{true}, reach).is_hit);
 }
 
 std::uint32_t blocked(const RayTarget& target, const RayPacket& packet, std::uint32_t lanes,
                       float reach) {
-  return bits(nearest_hits<Wish::any>(target, rays_of(packet), lanes, reach).is_hit);
+  return bits(nearest_hits<HitQuery::any>(target, make_rays(packet), lanes, reach).is_hit);
 }
 
 }  // namespace
 
-const RayKernels SKYCAP_KERNELS_NAME = {cast_packet<Wish::surface>,
-                                        cast_tile<Wish::surface>,
-                                        cast_tile<Wish::distance>,
+const RayKernels SKYCAP_KERNELS_NAME = {cast_packet<HitQuery::surface>,
+                                        cast_tile<HitQuery::surface>,
+                                        cast_tile<HitQuery::distance>,
                                         cast_single,
                                         is_blocked,
                                         blocked};

@@ -130,7 +130,7 @@ TreeRef build(RTCDevice device, RTCBVH tree, std::span<RTCBuildPrimitive> primit
   return root;
 }
 
-float extent_of(const AlignedBox3f& box) {
+float compute_extent(const AlignedBox3f& box) {
   return std::max(-box.min().minCoeff(), box.max().maxCoeff());
 }
 
@@ -139,7 +139,7 @@ float fill_boxes(const RoundedMesh& mesh, std::size_t first, std::span<RTCBuildP
   float extent = 0.0F;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const AlignedBox3f box = mesh.box(first + i);
-    const float reach = extent_of(box);
+    const float reach = compute_extent(box);
     if (!std::isfinite(reach)) {
       throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(first + i) +
                                                " has a coordinate that is beyond single precision");
@@ -193,7 +193,7 @@ RayTree::RayTree(RTCDevice device, std::span<const AlignedBox3f> boxes)
     : memory_(new_memory(device)) {
   std::vector<RTCBuildPrimitive> primitives;
   for (const AlignedBox3f& box : boxes) {
-    root_.extent = std::max(root_.extent, extent_of(box));
+    root_.extent = std::max(root_.extent, compute_extent(box));
     primitives.push_back(build_primitive(box, primitives.size()));
   }
   root_.ref = build(device, memory_.get(), primitives, create_numbers, nullptr);

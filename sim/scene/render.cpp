@@ -31,7 +31,7 @@ const Vector3d horizon(0.66, 0.76, 0.88);
 constexpr int rows_at_a_time = 25;  ///< About 0.1 s of work for large scenes.
 
 /// Seeded with the position of the sample, so that any thread may compute it.
-using Dice = geometry::ShortRandomNumbers;
+using Rng = geometry::ShortRandomNumbers;
 
 /// Returns a random unit vector around `normal` with cosine-weighted probability.
 Vector3d cosine_direction(const Vector3d& normal, double u, double v) {
@@ -78,7 +78,7 @@ std::vector<Eigen::Vector3f> corner_normals(const Mesh& mesh, double smoothing_a
       around[fill[v]++] = static_cast<std::uint32_t>(t);
     }
   }
-  const auto least_cosine = static_cast<float>(std::cos(smoothing_angle));
+  const auto min_cosine = static_cast<float>(std::cos(smoothing_angle));
   std::vector<Eigen::Vector3f> normals(3 * count);
   for (std::size_t t = 0; t < count; ++t) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -86,7 +86,7 @@ std::vector<Eigen::Vector3f> corner_normals(const Mesh& mesh, double smoothing_a
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (std::uint32_t i = first[v]; i < first[v + 1]; ++i) {
         const Eigen::Vector3f& area = areas[around[i]];
-        if (area.dot(areas[t]) >= least_cosine * area.norm() * areas[t].norm()) sum += area;
+        if (area.dot(areas[t]) >= min_cosine * area.norm() * areas[t].norm()) sum += area;
       }
       normals[3 * t + corner] = sum.normalized();
     }
@@ -112,7 +112,7 @@ class Renderer {
   void draw(const RenderView& view, int left, int top, Image& image,
             const std::function<void(int rows)>& report) {
     const Eigen::Isometry3d world_from_camera = camera_pose(view.view);
-    to_sun_ = sun_of(world_from_camera);
+    to_sun_ = compute_sun_direction(world_from_camera);
     const double slope = std::tan(0.5 * view.horizontal_fov) / (0.5 * options_.width);
     const auto draw_row = [&](std::size_t row) {
       for (int column = 0; column < options_.width; ++column) {
@@ -121,16 +121,16 @@ class Renderer {
                              (static_cast<double>(row) + dv - 0.5 * options_.height) * slope, 1.0);
           return Vector3d((world_from_camera.linear() * ray).normalized());
         };
-        Dice dice(row * static_cast<std::uint64_t>(options_.width) + column);
+        Rng rng(row * static_cast<std::uint64_t>(options_.width) + column);
         const int side = options_.samples_per_side;
         Vector3d sum = Vector3d::Zero();
         for (int i = 0; i < side * side; ++i) {
           const int row_in_pixel = i / side;
-          const double down = (row_in_pixel + dice.uniform()) / side,
-                       across = (i % side + dice.uniform()) / side;
+          const double down = (row_in_pixel + rng.uniform()) / side,
+                       across = (i % side + rng.uniform()) / side;
           const Vector3d direction = pixel(across, down);
           // Clipped before averaging, so that one bright sample does not dominate an edge.
-          sum += light_along(view.view.position, direction, dice).cwiseMin(2.5);
+          sum += light_along(view.view.position, direction, rng).cwiseMin(2.5);
         }
         image.at(left + column, top + static_cast<int>(row)) = display(sum / (side * side));
       }
@@ -144,7 +144,7 @@ class Renderer {
   }
 
  private:
-  Vector3d sun_of(const Eigen::Isometry3d& world_from_camera) const {
+  Vector3d compute_sun_direction(const Eigen::Isometry3d& world_from_camera) const {
     // The right axis of the image is level, so right x up is the forward direction on the ground.
     const Vector3d right = world_from_camera.linear().col(0), up = Vector3d::UnitZ();
     const Vector3d back = right.cross(up);
@@ -153,11 +153,11 @@ class Renderer {
     return std::cos(options_.sun_elevation) * on_ground + std::sin(options_.sun_elevation) * up;
   }
 
-  Vector3d light_along(const Vector3d& origin, const Vector3d& direction, Dice& dice) const {
+  Vector3d light_along(const Vector3d& origin, const Vector3d& direction, Rng& rng) const {
     const std::optional<Hit> hit = scene_.first_hit(origin, direction);
     if (options_.has_floor && direction.z() < -1e-6 && origin.z() > floor_) {
       const double distance = (floor_ - origin.z()) / direction.z();
-      if (!hit || distance < hit->distance) return floor_light(origin, direction, distance, dice);
+      if (!hit || distance < hit->distance) return floor_light(origin, direction, distance, rng);
     }
     if (!hit) return sky(direction);
     const Vector3d point = origin + hit->distance * direction;
@@ -167,18 +167,18 @@ class Renderer {
     if (smooth.dot(normal) < 0.0) smooth = -smooth;
     const Vector3d colour =
         options_.colours.empty() ? stone : options_.colours[hit->triangle].cast<double>();
-    return colour.cwiseProduct(incoming(point, normal, smooth, dice));
+    return colour.cwiseProduct(incoming(point, normal, smooth, rng));
   }
 
   Vector3d floor_light(const Vector3d& origin, const Vector3d& direction, double distance,
-                       Dice& dice) const {
+                       Rng& rng) const {
     const Vector3d point = origin + distance * direction;
     const Vector3d up = Vector3d::UnitZ();
     // The floor has no edge and fades into the haze of the horizon.
     const double away = (point - centre_).norm() / size_;
     const double haze = 1.0 - std::exp(-0.01 * away * away);
     if (haze > 0.99) return horizon;
-    return (1.0 - haze) * paving.cwiseProduct(incoming(point, up, up, dice)) + haze * horizon;
+    return (1.0 - haze) * paving.cwiseProduct(incoming(point, up, up, rng)) + haze * horizon;
   }
 
   Vector3d smooth_normal(std::uint32_t triangle, const Vector3d& point) const {
@@ -198,19 +198,19 @@ class Renderer {
   /// Returns the light that reaches a surface: direct sunlight unless blocked, light of the open
   /// sky, and some reflected light from the blocked part of the sky.
   Vector3d incoming(const Vector3d& point, const Vector3d& normal, const Vector3d& smooth,
-                    Dice& dice) const {
+                    Rng& rng) const {
     const Vector3d start = point + 2e-5 * size_ * normal;
     const double sine = smooth.dot(to_sun_);
     Vector3d light = Vector3d::Zero();
     if (sine > 0.0 && normal.dot(to_sun_) > 0.0) {
       // The sun is a disc of about one degree, for soft shadow edges.
-      const Vector3d wobble{dice.uniform() - 0.5, dice.uniform() - 0.5, dice.uniform() - 0.5};
+      const Vector3d wobble{rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform() - 0.5};
       const Vector3d to_sun = to_sun_ + 0.015 * wobble;
       if (!scene_.is_blocked(start, start + 2.0 * size_ * to_sun)) light += sine * sunlight;
     }
     for (int i = 0; i < options_.sky_rays; ++i) {
       // Strata in u separate the few rays.
-      const double u = (i + dice.uniform()) / options_.sky_rays, v = dice.uniform();
+      const double u = (i + rng.uniform()) / options_.sky_rays, v = rng.uniform();
       const Vector3d direction = cosine_direction(smooth, u, v);
       const bool is_open = direction.dot(normal) > 0.0 &&
                            (direction.z() > 0.0 || !options_.has_floor) &&
@@ -232,8 +232,8 @@ class Renderer {
 
 /// Returns the view along `direction` from the minimum distance at which all vertices are in the
 /// image.
-RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horizontal_fov,
-                       double aspect) {
+RenderView make_overview(const Mesh& mesh, const Vector3d& direction, double horizontal_fov,
+                         double aspect) {
   const Vector3d centre = bounding_box(mesh).center();
   const Eigen::Matrix3d camera_from_world =
       geometry::camera_pose({centre, direction.normalized()}).linear().transpose();
@@ -252,7 +252,7 @@ RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horiz
 }  // namespace
 
 void RenderOptions::validate() const {
-  const auto in_range = [](int value, int most) { return value >= 1 && value <= most; };
+  const auto in_range = [](int value, int max) { return value >= 1 && value <= max; };
   require(in_range(width, 16384), "width", width, "from 1 to 16384 pixels");
   require(in_range(height, 16384), "height", height, "from 1 to 16384 pixels");
   require(in_range(columns, 16), "columns", columns, "from 1 to 16");
@@ -265,9 +265,9 @@ void RenderOptions::validate() const {
 std::vector<RenderView> standard_views(const Mesh& mesh, double aspect) {
   geometry::validate(mesh);
   const double fov = 35.0 * geometry::radians_per_degree;
-  std::vector<RenderView> views{view_of_all(mesh, {0.0, -1.0, -0.04}, fov, aspect),
-                                view_of_all(mesh, {0.80, 0.60, -0.25}, fov, aspect),
-                                view_of_all(mesh, {0.62, 0.70, -0.85}, fov, aspect)};
+  std::vector<RenderView> views{make_overview(mesh, {0.0, -1.0, -0.04}, fov, aspect),
+                                make_overview(mesh, {0.80, 0.60, -0.25}, fov, aspect),
+                                make_overview(mesh, {0.62, 0.70, -0.85}, fov, aspect)};
   // Detail: the second view with a longer focal length, at a third of the height.
   RenderView detail = views[1];
   const Eigen::AlignedBox3d box = bounding_box(mesh);
@@ -291,8 +291,8 @@ Image render(const Mesh& mesh, std::span<const RenderView> views, const RenderOp
   image.pixels.resize(static_cast<std::size_t>(image.width) * image.height, Rgb{255, 255, 255});
   for (int i = 0; i < count; ++i) {
     const auto report = [&](int drawn) {
-      const double pictures = i + static_cast<double>(drawn) / options.height;
-      if (options.report) options.report(pictures / count);
+      const double finished_images = i + static_cast<double>(drawn) / options.height;
+      if (options.report) options.report(finished_images / count);
     };
     renderer.draw(views[i], i % columns * options.width, i / columns * options.height, image,
                   report);

@@ -39,7 +39,7 @@ Scene::Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, un
 Scene::Scene(std::span<const ScenePart> parts, unsigned threads) {
   if (parts.empty()) throw Error(ErrorKind::bad_geometry, "the scene has no meshes");
   for (const ScenePart& part : parts) require_valid(part, threads);
-  if (parts.size() == 1 && parts[0].places.empty()) {
+  if (parts.size() == 1 && parts[0].poses.empty()) {
     trees_ = grow_tree(parts[0].mesh, threads);
     reflectances_.assign(parts[0].reflectances.begin(), parts[0].reflectances.end());
     trees_->surfaces.assign(parts[0].surfaces.begin(), parts[0].surfaces.end());
@@ -88,13 +88,13 @@ bool Scene::is_blocked(const Vector3d& from, const Vector3d& to) const {
   return ray_kernels().is_blocked(trees_->target, ray, static_cast<float>(length));
 }
 
-std::uint32_t Scene::blocked(std::span<const Sight> sights) const {
-  static_assert(most_sights == RayPacket::width);
+std::uint32_t Scene::blocked(std::span<const SightLine> sight_lines) const {
+  static_assert(max_sight_lines == RayPacket::width);
   RayPacket packet = {};
-  std::array<float, most_sights> reach{};
+  std::array<float, max_sight_lines> reach{};
   std::uint32_t left = 0, blocked = 0;
-  for (std::size_t i = 0; i < sights.size(); ++i) {
-    const auto& [from, to] = sights[i];
+  for (std::size_t i = 0; i < sight_lines.size(); ++i) {
+    const auto& [from, to] = sight_lines[i];
     const double length = (to - from).norm();
     if (length == 0.0) continue;
     const SingleRay ray = make_ray(from - trees_->centre, (to - from) / length);
@@ -108,7 +108,7 @@ std::uint32_t Scene::blocked(std::span<const Sight> sights) const {
   while (left != 0) {  // A packet has a single reach.
     const float its_reach = reach[static_cast<std::size_t>(std::countr_zero(left))];
     std::uint32_t lanes = 0;
-    for (std::size_t i = 0; i < sights.size(); ++i) {
+    for (std::size_t i = 0; i < sight_lines.size(); ++i) {
       if (reach[i] == its_reach) lanes |= left & 1U << i;
     }
     blocked |= ray_kernels().blocked(trees_->target, packet, lanes, its_reach);

@@ -35,7 +35,7 @@ struct ScenePart {
   std::span<const float> reflectances;
   /// world_from_mesh of each copy: rotation and translation without scale. Empty: one copy at the
   /// identity.
-  std::span<const Eigen::Isometry3d> places;
+  std::span<const Eigen::Isometry3d> poses;
   /// Surface of each triangle. Empty: all matt.
   std::span<const Surface> surfaces = {};
 };
@@ -72,14 +72,14 @@ class Scene {
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   /// Line of sight between two points.
-  struct Sight {
+  struct SightLine {
     Eigen::Vector3d from, to;
   };
   /// Maximum number of sights for blocked().
-  static constexpr std::size_t most_sights = 16;
+  static constexpr std::size_t max_sight_lines = 16;
   /// Returns the results of is_blocked() as a bit mask; the lowest bit is the first sight. Fast for
   /// near-parallel sights of similar length.
-  std::uint32_t blocked(std::span<const Sight> sights) const;
+  std::uint32_t blocked(std::span<const SightLine> sight_lines) const;
 
   /// Returns the diffuse reflectance of a triangle, in [0, 1].
   float reflectance(std::uint32_t triangle) const {

@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::vector<Eigen::Isometry3d> places_of(const ScenePart& part) {
-  if (part.places.empty()) return {Eigen::Isometry3d::Identity()};
-  return {part.places.begin(), part.places.end()};
+std::vector<Eigen::Isometry3d> copy_poses(const ScenePart& part) {
+  if (part.poses.empty()) return {Eigen::Isometry3d::Identity()};
+  return {part.poses.begin(), part.poses.end()};
 }
 
 /// Embree device, which also stores its errors.
@@ -50,10 +50,10 @@ SceneCopy make_copy(const TreeRoot& part, const Eigen::Isometry3d& scene_from_lo
   return copy;
 }
 
-Eigen::AlignedBox3d moved(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& place) {
+Eigen::AlignedBox3d moved(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& pose) {
   Eigen::AlignedBox3d all;
   for (int corner = 0; corner < 8; ++corner) {
-    all.extend(place * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+    all.extend(pose * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
   }
   return all;
 }
@@ -75,7 +75,7 @@ Eigen::AlignedBox3d box_around(std::span<const ScenePart> parts) {
   Eigen::AlignedBox3d all;
   for (const ScenePart& part : parts) {
     const Eigen::AlignedBox3d box = geometry::bounding_box(part.mesh);
-    for (const Eigen::Isometry3d& place : places_of(part)) all.extend(moved(box, place));
+    for (const Eigen::Isometry3d& pose : copy_poses(part)) all.extend(moved(box, pose));
   }
   return all;
 }
@@ -128,8 +128,8 @@ void SceneBuilder::add(const ScenePart& part) {
   const std::size_t triangles = part.mesh.triangles.size();
   const RayTree& tree =
       trees.parts.emplace_back(growth_->device.handle, part.mesh, middle, growth_->threads);
-  for (const Eigen::Isometry3d& place : places_of(part)) {
-    const Eigen::Isometry3d scene_from_mesh = Eigen::Translation3d(-trees.centre) * place;
+  for (const Eigen::Isometry3d& pose : copy_poses(part)) {
+    const Eigen::Isometry3d scene_from_mesh = Eigen::Translation3d(-trees.centre) * pose;
     growth_->boxes.push_back(moved(box, scene_from_mesh).cast<float>());
     trees.copies.push_back(make_copy(tree.root(), scene_from_mesh * Eigen::Translation3d(middle),
                                      growth_->first_triangle));
@@ -143,11 +143,11 @@ void SceneBuilder::add(const ScenePart& part) {
 }
 
 Scene SceneBuilder::finish() {
-  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-  if (growth_->first_triangle > most) {
+  constexpr std::size_t max = std::numeric_limits<std::uint32_t>::max();
+  if (growth_->first_triangle > max) {
     throw Error(ErrorKind::bad_geometry,
                 "the scene's copies have " + std::to_string(growth_->first_triangle) +
-                    " triangles in all; " + std::to_string(most) + " is the maximum");
+                    " triangles in all; " + std::to_string(max) + " is the maximum");
   }
   Scene::Trees& trees = *growth_->trees;
   if (!trees.copies.empty()) {

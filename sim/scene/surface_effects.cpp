@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int most_mirrors = 8;
+constexpr int max_mirrors = 8;
 
 Vector3f mirrored(const Vector3f& direction, const Vector3f& normal) {
   return direction - 2.0F * direction.dot(normal) * normal;
@@ -31,17 +31,17 @@ class Ray {
 
   /// Continues from each mirror until a different surface is hit.
   void follow(const Scene::Trees& trees, float reach) {
-    float way = 0.0F;
+    float ray_length = 0.0F;
     while (ray_.distance >= 0.0F) {
       const Surface met = trees.surface(ray_.triangle);
       if (met == Surface::matt) {
-        ray_.distance += way;
+        ray_.distance += ray_length;
         return unmirror();
       }
-      way += ray_.distance;
-      if (met == Surface::glass || mirrors_ == most_mirrors || way >= reach) break;
+      ray_length += ray_.distance;
+      if (met == Surface::glass || mirrors_ == max_mirrors || ray_length >= reach) break;
       bounce();
-      ray_kernels().cast_single(trees.target, ray_, reach - way);
+      ray_kernels().cast_single(trees.target, ray_, reach - ray_length);
     }
     ray_.distance = -1.0F;
   }
@@ -57,9 +57,9 @@ class Ray {
     Eigen::Map<Vector3f> origin(ray_.origin), direction(ray_.direction);
     Vector3f normal = Vector3f(ray_.normal[0], ray_.normal[1], ray_.normal[2]).normalized();
     if (normal.dot(direction) > 0.0F) normal = -normal;
-    const Vector3f place = origin + ray_.distance * direction;
+    const Vector3f position = origin + ray_.distance * direction;
     // Displaced from the mirror by the rounding error of the position.
-    origin = place + 1e-5F * (1.0F + place.cwiseAbs().maxCoeff()) * normal;
+    origin = position + 1e-5F * (1.0F + position.cwiseAbs().maxCoeff()) * normal;
     direction = mirrored(direction, normal);
     normals_[mirrors_++] = normal;
   }
@@ -71,7 +71,7 @@ class Ray {
   }
 
   SingleRay ray_ = {};
-  std::array<Vector3f, most_mirrors> normals_;
+  std::array<Vector3f, max_mirrors> normals_;
   int mirrors_ = 0;
   int lane_;
 };

@@ -39,14 +39,14 @@ class Entries {
   bool add_below(const TreeNode& node, const BundleBounds& bounds, float reach) {
     alignas(64) float near[TreeNode::arity];
     std::uint32_t children = entered(box_distances<false>(node, bounds), reach, near);
-    if (count_ + __builtin_popcount(children) > most) return false;
+    if (count_ + __builtin_popcount(children) > limit) return false;
     for (; children != 0; children &= children - 1) {
       const int child = __builtin_ctz(children);
-      int place = count_++;
-      for (; place > 0 && entries_[place - 1].near > near[child]; --place) {
-        entries_[place] = entries_[place - 1];
+      int index = count_++;
+      for (; index > 0 && entries_[index - 1].near > near[child]; --index) {
+        entries_[index] = entries_[index - 1];
       }
-      entries_[place] = {&node, child, near[child]};
+      entries_[index] = {&node, child, near[child]};
     }
     return true;
   }
@@ -66,51 +66,51 @@ class Entries {
   }
 
  private:
-  static constexpr int most = 32;
-  Entry entries_[most];
+  static constexpr int limit = 32;
+  Entry entries_[limit];
   int count_ = 0;
 };
 
 // Computes the bounds of all rays. Returns false if the signs of their directions differ.
 inline bool bound(const RayPacket* packets, int count, float extent, BundleBounds& bounds) {
   struct Bounds {
-    float least, greatest;
+    float min, max;
   } origins[3], inverses[3];
   bool is_backwards[3];
   for (int axis = 0; axis < 3; ++axis) {
-    Floats least_origin = load(packets[0].origin[axis]), greatest_origin = least_origin;
-    Floats least_direction = load(packets[0].direction[axis]);
-    Floats greatest_direction = least_direction;
+    Floats min_origin = load(packets[0].origin[axis]), max_origin = min_origin;
+    Floats min_direction = load(packets[0].direction[axis]);
+    Floats max_direction = min_direction;
     for (int i = 1; i < count; ++i) {
       const Floats origin = load(packets[i].origin[axis]);
       const Floats direction = load(packets[i].direction[axis]);
-      least_origin = least(least_origin, origin);
-      greatest_origin = greatest(greatest_origin, origin);
-      least_direction = least(least_direction, direction);
-      greatest_direction = greatest(greatest_direction, direction);
+      min_origin = min(min_origin, origin);
+      max_origin = max(max_origin, origin);
+      min_direction = min(min_direction, direction);
+      max_direction = max(max_direction, direction);
     }
-    origins[axis] = {least_lane(least_origin), greatest_lane(greatest_origin)};
-    const float from = least_lane(least_direction), to = greatest_lane(greatest_direction);
+    origins[axis] = {horizontal_min(min_origin), horizontal_max(max_origin)};
+    const float from = horizontal_min(min_direction), to = horizontal_max(max_direction);
     is_backwards[axis] = from < 0.0F;
     if (is_backwards[axis] && to >= 0.0F) return false;
     // Division is monotone, so the bounds of the inverses are the inverses of the bounds.
     const float one = inverse_magnitude(from), other = inverse_magnitude(to);
-    inverses[axis] = {least(one, other), greatest(one, other)};
+    inverses[axis] = {min(one, other), max(one, other)};
   }
   bounds = make_bounds(origins, inverses, is_backwards, extent, triangle_padding);
   return true;
 }
 
-template <Wish wish>
+template <HitQuery query>
 void store_nearest(const Nearest<Floats>& nearest, RayPacket& packet) {
   store(chosen(nearest.is_hit, nearest.distance, every<Floats>(-1.0F)), packet.distance);
-  if constexpr (wish == Wish::surface) {
+  if constexpr (query == HitQuery::surface) {
     store(nearest.triangle, reinterpret_cast<float*>(packet.triangle));
     for (int axis = 0; axis < 3; ++axis) store(nearest.normal[axis], packet.normal[axis]);
   }
 }
 
-inline Rays<Floats> rays_of(const RayPacket& packet) {
+inline Rays<Floats> make_rays(const RayPacket& packet) {
   Rays<Floats> rays;
   for (int axis = 0; axis < 3; ++axis) {
     rays.origin[axis] = load(packet.origin[axis]);
@@ -125,40 +125,40 @@ inline Nearest<Floats> nothing_within(float reach) {
 }
 
 // Casts a packet from the given entries. Returns the distance of its farthest hit.
-template <Wish wish>
+template <HitQuery query>
 [[gnu::noinline]] float cast_from(const Entries& entries, const TreeRoot& tree,
                                   const BundleBounds& bounds, RayPacket& packet, float reach) {
-  const Rays<Floats> rays = rays_of(packet);
-  const Bundle<Floats> bundle = make_bundle(rays, mask_of(RayPacket::all_lanes), bounds);
-  const TriangleTest<Floats, wish> test(rays, bundle.active, tree.extent, nullptr);
+  const Rays<Floats> rays = make_rays(packet);
+  const Bundle<Floats> bundle = make_bundle(rays, make_mask(RayPacket::all_lanes), bounds);
+  const TriangleTest<Floats, query> test(rays, bundle.active, tree.extent, nullptr);
   Nearest<Floats> nearest = nothing_within(reach);
   Walk<Floats> walk(bundle, nearest);
-  float most = reach;
+  float limit = reach;
   for (const Entries::Entry& entry : entries) {
-    if (entry.near > most) break;
+    if (entry.near > limit) break;
     if (!walk.is_entered(*entry.node, entry.child)) continue;
     if (!entry.is_leaf()) {
       walk(entry.ref(), test);
     } else if (!test(entry.ref(), bundle.active, nearest)) {
       continue;
     }
-    most = walk.farthest();
+    limit = walk.farthest();
   }
-  store_nearest<wish>(nearest, packet);
-  return most;
+  store_nearest<query>(nearest, packet);
+  return limit;
 }
 
 // Casts all packets together. Returns false and changes nothing if they must be cast one by one.
-template <Wish wish>
+template <HitQuery query>
 bool cast_together(const TreeRoot& tree, RayPacket* packets, int count, float reach) {
   BundleBounds bounds;
   if (!bound(packets, count, tree.extent, bounds)) return false;
   Entries entries;
   entries.add_below(*reinterpret_cast<const TreeNode*>(tree.ref), bounds, reach);
   // Objects behind the hits of the first packet are usually hidden from the others, too.
-  const float expected = cast_from<wish>(entries, tree, bounds, packets[0], reach);
+  const float expected = cast_from<query>(entries, tree, bounds, packets[0], reach);
   entries.open_nearest(bounds, reach, expected);
-  for (int i = 1; i < count; ++i) cast_from<wish>(entries, tree, bounds, packets[i], reach);
+  for (int i = 1; i < count; ++i) cast_from<query>(entries, tree, bounds, packets[i], reach);
   return true;
 }
 

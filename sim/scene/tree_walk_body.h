@@ -18,7 +18,7 @@ namespace skycap::sim {
 namespace {
 
 // Padding of boxes in trees of triangles and of copies, relative to the largest coordinate; see
-// TriangleTest::least_area(). The box of a copy must also cover the padding of its own tree and the
+// TriangleTest::min_area(). The box of a copy must also cover the padding of its own tree and the
 // transformation to its frame.
 constexpr float triangle_padding = 0x1p-16F, copy_padding = 0x1p-13F;
 
@@ -27,13 +27,13 @@ constexpr float triangle_padding = 0x1p-16F, copy_padding = 0x1p-13F;
 struct BundleBounds {
   int nearer[3];  // Offset of the near bounds within a node's planes.
   float padding;
-  Floats origin[3], least_inverse[3], greatest_inverse[3];
+  Floats origin[3], min_inverse[3], max_inverse[3];
 };
 
 // Rays with directions of equal signs, prepared for box tests.
 template <typename Lanes>
 struct Bundle {
-  MaskOf<Lanes> active;
+  LaneMask<Lanes> active;
   Lanes origin_for_near[3];  // Mirrored and padded.
   Lanes origin_for_far[3];   // Mirrored, padded and negated.
   Lanes inverse[3];          // Inverse magnitude of the direction.
@@ -42,16 +42,16 @@ struct Bundle {
 
 template <typename Lanes>
 struct Interval {
-  float least, greatest;
-  Interval(const Lanes& values, const MaskOf<Lanes>& active)
-      : least(least_lane(chosen(active, values, every<Lanes>(infinity)))),
-        greatest(greatest_lane(chosen(active, values, every<Lanes>(-infinity)))) {}
+  float min, max;
+  Interval(const Lanes& values, const LaneMask<Lanes>& active)
+      : min(horizontal_min(chosen(active, values, every<Lanes>(infinity)))),
+        max(horizontal_max(chosen(active, values, every<Lanes>(-infinity)))) {}
 };
 
 template <typename Lanes>
 inline Lanes inverse_magnitude(const Lanes& direction) {
-  constexpr float least_direction = 1e-18F;  // Keeps the inverse and its products finite.
-  return every<Lanes>(1.0F) / greatest(magnitude(direction), every<Lanes>(least_direction));
+  constexpr float min_direction = 1e-18F;  // Keeps the inverse and its products finite.
+  return every<Lanes>(1.0F) / max(magnitude(direction), every<Lanes>(min_direction));
 }
 
 // Computes the bounds for rays whose origins and inverse directions lie in the given intervals.
@@ -62,19 +62,19 @@ template <typename Interval>
                                                        float padding_share) {
   float farthest = 0.0F;
   for (const Interval& origin : origins) {
-    farthest = greatest(farthest, greatest(origin.greatest, -origin.least));
+    farthest = max(farthest, max(origin.max, -origin.min));
   }
   BundleBounds bounds;
   bounds.padding = padding_share * (farthest + extent);
   for (int axis = 0; axis < 3; ++axis) {
     const bool mirrored = is_backwards[axis];
     bounds.nearer[axis] = mirrored ? TreeNode::arity : 0;
-    bounds.least_inverse[axis] = every<Floats>(inverses[axis].least);
-    bounds.greatest_inverse[axis] = every<Floats>(inverses[axis].greatest);
-    const float least_origin = mirrored ? -origins[axis].greatest : origins[axis].least;
-    const float greatest_origin = mirrored ? -origins[axis].least : origins[axis].greatest;
-    bounds.origin[axis] = chosen(mask_of(0xFF), every<Floats>(greatest_origin + bounds.padding),
-                                 every<Floats>(bounds.padding - least_origin));
+    bounds.min_inverse[axis] = every<Floats>(inverses[axis].min);
+    bounds.max_inverse[axis] = every<Floats>(inverses[axis].max);
+    const float min_origin = mirrored ? -origins[axis].max : origins[axis].min;
+    const float max_origin = mirrored ? -origins[axis].min : origins[axis].max;
+    bounds.origin[axis] = chosen(make_mask(0xFF), every<Floats>(max_origin + bounds.padding),
+                                 every<Floats>(bounds.padding - min_origin));
   }
   return bounds;
 }
@@ -82,7 +82,7 @@ template <typename Interval>
 // Returns a bundle with the given bounds, which may include further rays.
 template <typename Lanes>
 [[gnu::always_inline]] inline Bundle<Lanes> make_bundle(const Rays<Lanes>& rays,
-                                                        const MaskOf<Lanes>& active,
+                                                        const LaneMask<Lanes>& active,
                                                         const BundleBounds& bounds) {
   Bundle<Lanes> bundle;
   bundle.active = active;
@@ -98,7 +98,7 @@ template <typename Lanes>
 
 template <typename Lanes>
 [[gnu::always_inline]] inline Bundle<Lanes> make_bundle(const Rays<Lanes>& rays,
-                                                        const MaskOf<Lanes>& active,
+                                                        const LaneMask<Lanes>& active,
                                                         const bool (&is_backwards)[3], float extent,
                                                         float padding_share) {
   using All = Interval<Lanes>;
@@ -124,21 +124,23 @@ inline Floats near_and_far(const float* planes, int nearer) {
 #endif
 }
 
-// Returns a bit mask of the boxes that rays enter within `most`, and stores the entry distances in
-// `near`. The arguments are the entry distances and negated exit distances of eight boxes.
-inline std::uint32_t entered(const Floats& near_and_far, float most, float (&near)[8]) {
+// Returns a bit mask of the boxes that rays enter within `max_distance`, and stores the entry
+// distances in `near`. The arguments are the entry distances and negated exit distances of eight
+// boxes.
+inline std::uint32_t entered(const Floats& near_and_far, float max_distance, float (&near)[8]) {
 #if defined(__AVX512F__)
   const __m512 both = near_and_far.part[0];
   const __m256 enter = _mm256_max_ps(_mm512_castps512_ps256(both), _mm256_setzero_ps());
-  const __m256 leave = _mm256_min_ps(-_mm512_extractf32x8_ps(both, 1), _mm256_set1_ps(most));
+  const __m256 leave =
+      _mm256_min_ps(-_mm512_extractf32x8_ps(both, 1), _mm256_set1_ps(max_distance));
   _mm256_store_ps(near, enter);
   return _mm256_cmp_ps_mask(enter, leave, _CMP_LE_OQ);
 #else
   std::uint32_t boxes = 0;
 #pragma GCC unroll 2
   for (int i = 0; i < part_count / 2; ++i) {
-    const Part enter = greatest(near_and_far.part[i], every_lane(0.0F));
-    const Part leave = least(-near_and_far.part[i + part_count / 2], every_lane(most));
+    const Part enter = max(near_and_far.part[i], every_lane(0.0F));
+    const Part leave = min(-near_and_far.part[i + part_count / 2], every_lane(max_distance));
     reinterpret_cast<Part*>(near)[i] = enter;
     boxes |= bits(is_at_most(enter, leave)) << (i * part_lanes);
   }
@@ -154,10 +156,11 @@ template <bool is_one_ray>
   Floats all;
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
-    const Floats way = near_and_far(node.planes[axis], bounds.nearer[axis]) - bounds.origin[axis];
-    Floats distance = way * bounds.least_inverse[axis];
-    if constexpr (!is_one_ray) distance = least(distance, way * bounds.greatest_inverse[axis]);
-    all = axis == 0 ? distance : greatest(all, distance);
+    const Floats plane_distances =
+        near_and_far(node.planes[axis], bounds.nearer[axis]) - bounds.origin[axis];
+    Floats distance = plane_distances * bounds.min_inverse[axis];
+    if constexpr (!is_one_ray) distance = min(distance, plane_distances * bounds.max_inverse[axis]);
+    all = axis == 0 ? distance : max(all, distance);
   }
   return all;
 }
@@ -169,25 +172,25 @@ inline void prefetch(TreeRef ref) {
 
 // Stack of nodes to visit. The nearest child of the latest node is on top.
 struct ToVisit {
-  struct Place {
+  struct PendingNode {
     TreeRef ref;
     float near;
   };
-  Place places[TreeNode::arity * max_tree_depth];
-  Place* end = places;
+  PendingNode stack[TreeNode::arity * max_tree_depth];
+  PendingNode* end = stack;
 
   void push(TreeRef ref, float near) { *end++ = {ref, near}; }
   // Inserts an entry behind those from `first` on that are farther.
-  void insert(const Place* first, TreeRef ref, float near) {
-    Place* place = end++;
-    for (; place != first && place[-1].near < near; --place) *place = place[-1];
-    *place = {ref, near};
+  void insert(const PendingNode* first, TreeRef ref, float near) {
+    PendingNode* node = end++;
+    for (; node != first && node[-1].near < near; --node) *node = node[-1];
+    *node = {ref, near};
   }
-  // Returns the next entry, or 0 if all remaining ones are beyond `most`.
-  TreeRef pop(float most) {
-    while (end != places) {
+  // Returns the next entry, or 0 if all remaining ones are beyond `max_distance`.
+  TreeRef pop(float max_distance) {
+    while (end != stack) {
       --end;
-      if (end->near <= most) return end->ref;
+      if (end->near <= max_distance) return end->ref;
     }
     return 0;
   }
@@ -201,21 +204,21 @@ class Walk {
   // Traverses the tree. `test(leaf, active, nearest)` returns true if it has found a nearer hit.
   template <typename LeafTest>
   [[gnu::always_inline]] void operator()(TreeRef root, const LeafTest& test) {
-    float most = farthest();
+    float max_distance = farthest();
     for (TreeRef at = root; at != 0;) {
       if ((at & tree_ref_entries) == 0) {
-        at = enter(*reinterpret_cast<const TreeNode*>(at), most);
+        at = enter(*reinterpret_cast<const TreeNode*>(at), max_distance);
         if (at != 0) continue;
       } else if (test(at, bundle_.active, nearest_)) {
-        most = farthest();
+        max_distance = farthest();
       }
-      at = to_visit_.pop(most);
+      at = to_visit_.pop(max_distance);
     }
   }
 
   // Returns an upper bound on the distances of the current hits.
   float farthest() const {
-    return greatest_lane(chosen(bundle_.active, nearest_.distance, every<Lanes>(-infinity)));
+    return horizontal_max(chosen(bundle_.active, nearest_.distance, every<Lanes>(-infinity)));
   }
 
   // Returns true if one of the rays enters the child.
@@ -226,20 +229,20 @@ class Walk {
       const float* const near = node.planes[axis] + bundle_.bounds.nearer[axis] + child;
       const float* const far =
           node.planes[axis] + (bundle_.bounds.nearer[axis] ^ TreeNode::arity) + child;
-      enter = greatest(
-          enter, (every<Lanes>(*near) - bundle_.origin_for_near[axis]) * bundle_.inverse[axis]);
-      leave = greatest(leave,
-                       (every<Lanes>(*far) - bundle_.origin_for_far[axis]) * bundle_.inverse[axis]);
+      enter =
+          max(enter, (every<Lanes>(*near) - bundle_.origin_for_near[axis]) * bundle_.inverse[axis]);
+      leave =
+          max(leave, (every<Lanes>(*far) - bundle_.origin_for_far[axis]) * bundle_.inverse[axis]);
     }
     return any(is_at_most(enter, -leave) & bundle_.active);
   }
 
  private:
   // Returns the child to visit next and pushes the other children that rays enter.
-  [[gnu::always_inline]] TreeRef enter(const TreeNode& node, float most) {
+  [[gnu::always_inline]] TreeRef enter(const TreeNode& node, float max_distance) {
     alignas(64) float near[TreeNode::arity];
     std::uint32_t children =
-        entered(box_distances<__is_same(Lanes, float)>(node, bundle_.bounds), most, near);
+        entered(box_distances<__is_same(Lanes, float)>(node, bundle_.bounds), max_distance, near);
     if constexpr (__is_same(Lanes, float)) {
       if (children == 0) return 0;
       const auto* const first = to_visit_.end;

@@ -31,12 +31,12 @@ constexpr float infinity = __builtin_inff();
 template <typename Lanes>
 struct Nearest {
   Lanes distance;
-  MaskOf<Lanes> is_hit;
+  LaneMask<Lanes> is_hit;
   Lanes triangle;  // Bits of the triangle number.
   Lanes normal[3];
 };
 
-enum class Wish { distance, surface, any };
+enum class HitQuery { distance, surface, any };
 
 template <typename Number>
 struct Areas {
@@ -106,19 +106,19 @@ inline Truth is_smaller(std::uint32_t number, float other) {
   std::uint32_t smaller = 0;
   for (int i = 0; i < lane_count; ++i)
     smaller |= (any(is_smaller(number, other[i])) ? 1U : 0U) << i;
-  return mask_of(smaller);
+  return make_mask(smaller);
 }
 
 // Test of triangle leaves. Rays with different main axes traverse the tree together, but each is
 // tested along its own main axis.
-template <typename Lanes, Wish wish>
+template <typename Lanes, HitQuery query>
 class TriangleTest {
  public:
   // `extent` is that of the triangles' tree.
-  TriangleTest(const Rays<Lanes>& rays, const MaskOf<Lanes>& active, float extent,
+  TriangleTest(const Rays<Lanes>& rays, const LaneMask<Lanes>& active, float extent,
                const SceneCopy* copy)
       : origin_{rays.origin[0], rays.origin[1], rays.origin[2]},
-        least_area_factor_(0.0625F / extent),
+        min_area_factor_(0.0625F / extent),
         copy_(copy) {
     const auto& direction = rays.direction;
     const Lanes x = magnitude(direction[0]), y = magnitude(direction[1]),
@@ -136,7 +136,7 @@ class TriangleTest {
   }
 
   // Returns true if a ray hits one of the leaf's triangles.
-  bool operator()(TreeRef leaf, const MaskOf<Lanes>&, Nearest<Lanes>& nearest) const {
+  bool operator()(TreeRef leaf, const LaneMask<Lanes>&, Nearest<Lanes>& nearest) const {
     bool is_met = false;
     if (is_some_along_[0]) is_met |= test_all<0>(leaf, nearest);
     if (is_some_along_[1]) is_met |= test_all<1>(leaf, nearest);
@@ -160,20 +160,20 @@ class TriangleTest {
     const ShearedTriangle<Lanes> sheared = sheared_along<main>(triangle);
     const auto [u, v, w] = areas(sheared.x, sheared.y);
     // Positive: all areas have equal signs. Zero: equal signs except for zeros.
-    const Lanes agreement = greatest(least(u, least(v, w)), -greatest(u, greatest(v, w)));
+    const Lanes agreement = max(min(u, min(v, w)), -max(u, max(v, w)));
     const Lanes zero = every<Lanes>(0.0F);
     const auto inside = is_at_most(zero, agreement) & is_along_[main];
     if (!any(inside)) return false;
 
     const Lanes area = (u + v) + w;
-    const auto is_settled = is_less(zero, agreement) &
-                            is_less(every<Lanes>(least_area<main>(triangle)), magnitude(area));
+    const auto is_settled =
+        is_less(zero, agreement) & is_less(every<Lanes>(min_area<main>(triangle)), magnitude(area));
     Lanes distance = mean_depth(v, w, area, sheared.depth) * inverse_;
     if (__builtin_expect(any(inside & !is_settled), 0)) {
       distance = chosen(is_settled, distance, exact_distance(sheared, inverse_));
     }
     const auto met = inside & is_at_most(zero, distance) & is_at_most(distance, nearest.distance);
-    return any(met) && take(triangle, met, distance, nearest);
+    return any(met) && update_nearest(triangle, met, distance, nearest);
   }
 
   template <int main>
@@ -201,20 +201,19 @@ class TriangleTest {
   // adds 7 e R for the corners, 8 e R for mean depth and distance, and 6 e R for the box
   // arithmetic. The boxes are padded by 256 e R.
   template <int main>
-  float least_area(const LeafTriangle& triangle) const {
+  float min_area(const LeafTriangle& triangle) const {
     float size[3];
     for (int axis = 0; axis < 3; ++axis) {
       const auto& [a, b, c] = triangle.corners;
-      size[axis] =
-          greatest(a[axis], greatest(b[axis], c[axis])) - least(a[axis], least(b[axis], c[axis]));
+      size[axis] = max(a[axis], max(b[axis], c[axis])) - min(a[axis], min(b[axis], c[axis]));
     }
-    const float across = greatest(size[(main + 1) % 3], size[(main + 2) % 3]) + size[main];
-    return across * across * size[main] * least_area_factor_;
+    const float across = max(size[(main + 1) % 3], size[(main + 2) % 3]) + size[main];
+    return across * across * size[main] * min_area_factor_;
   }
 
-  [[gnu::always_inline]] bool take(const LeafTriangle& triangle, MaskOf<Lanes> met,
-                                   const Lanes& distance, Nearest<Lanes>& nearest) const {
-    if constexpr (wish == Wish::surface) {
+  [[gnu::always_inline]] bool update_nearest(const LeafTriangle& triangle, LaneMask<Lanes> met,
+                                             const Lanes& distance, Nearest<Lanes>& nearest) const {
+    if constexpr (query == HitQuery::surface) {
       const std::uint32_t number =
           copy_ == nullptr ? triangle.number : triangle.number + copy_->first_triangle;
       const auto is_tie = met & nearest.is_hit & is_equal(distance, nearest.distance);
@@ -231,7 +230,7 @@ class TriangleTest {
       }
     }
     nearest.distance =
-        chosen(met, wish == Wish::any ? every<Lanes>(-infinity) : distance, nearest.distance);
+        chosen(met, query == HitQuery::any ? every<Lanes>(-infinity) : distance, nearest.distance);
     nearest.is_hit = nearest.is_hit | met;
     return true;
   }
@@ -253,11 +252,11 @@ class TriangleTest {
   }
 
   Lanes origin_[3];
-  MaskOf<Lanes> is_along_[3];  // Active rays by main axis.
+  LaneMask<Lanes> is_along_[3];  // Active rays by main axis.
   bool is_some_along_[3];
   Lanes inverse_;   // Inverse of the direction along the main axis.
   Lanes shear_[3];  // Direction relative to its component along the main axis.
-  float least_area_factor_;
+  float min_area_factor_;
   const SceneCopy* copy_;  // Copy that contains the triangles, or null.
 };
 

@@ -19,7 +19,7 @@ void EchoRow::resize(std::size_t slots) {
   triangle.resize(slots);
 }
 
-void BlockEchoes::find_of_rays(Hits& hits, const Scene& scene, const LidarConfig& config) {
+void BlockEchoes::find_ray_echoes(Hits& hits, const Scene& scene, const LidarConfig& config) {
   const std::size_t slots = hits.range.size();
   const auto min_range = static_cast<float>(config.min_range);
   EchoRow& row = rows[0];
@@ -41,8 +41,8 @@ void BlockEchoes::find_of_rays(Hits& hits, const Scene& scene, const LidarConfig
   std::swap(row.triangle, hits.triangle);
 }
 
-void BlockEchoes::find_of_beams(const Hits& hits, std::span<const BeamSample> beam,
-                                const Scene& scene, const LidarConfig& config) {
+void BlockEchoes::find_beam_echoes(const Hits& hits, std::span<const BeamSample> beam,
+                                   const Scene& scene, const LidarConfig& config) {
   const std::size_t samples = beam.size(), slots = hits.range.size() / samples;
   const auto min_range = static_cast<float>(config.min_range);
   for (EchoRow& row : rows) row.resize(slots);

@@ -27,12 +27,12 @@ class BlockEchoes {
   std::vector<int> counts;    ///< Number of echoes per slot.
 
   /// Computes echoes for beams without width: each ray is one echo. Moves the arrays out of `hits`.
-  void find_of_rays(Hits& hits, const Scene& scene, const LidarConfig& config);
+  void find_ray_echoes(Hits& hits, const Scene& scene, const LidarConfig& config);
 
   /// Computes echoes for beams with width. The rays of a slot are consecutive, in the order of
   /// `beam`.
-  void find_of_beams(const Hits& hits, std::span<const BeamSample> beam, const Scene& scene,
-                     const LidarConfig& config);
+  void find_beam_echoes(const Hits& hits, std::span<const BeamSample> beam, const Scene& scene,
+                        const LidarConfig& config);
 
  private:
   std::vector<RayHit> beam_hits_;

@@ -35,16 +35,16 @@ struct Limits {
   float min_cosine;  // Minimum cosine of the angle of incidence. 0: no limit.
 };
 
-float min_cosine_of(double max_incidence) {
+float compute_min_cosine(double max_incidence) {
   return max_incidence < 0.5 * std::numbers::pi ? static_cast<float>(std::cos(max_incidence))
                                                 : 0.0F;
 }
 
 bool is_too_slanted(const RayPacket& packet, int lane, float min_cosine) {
-  const auto lane_of = [lane](const auto& vectors) {
+  const auto extract_lane = [lane](const auto& vectors) {
     return Vector3f(vectors[0][lane], vectors[1][lane], vectors[2][lane]);
   };
-  const Vector3f direction = lane_of(packet.direction), normal = lane_of(packet.normal);
+  const Vector3f direction = extract_lane(packet.direction), normal = extract_lane(packet.normal);
   return std::abs(direction.dot(normal)) < min_cosine * direction.norm() * normal.norm();
 }
 
@@ -115,40 +115,40 @@ void cast_moving_band(const Scene::Trees& trees, const RayTable& table,
   constexpr float one_surface = 1.02F;  // Maximum ratio of depths on one surface.
   const std::size_t size = static_cast<std::size_t>(table.stride) * band_rows;
   std::vector<float> one(size, no_return), sums(size, 0.0F), counts(size, 0.0F);
-  std::vector<float> least(size, std::numeric_limits<float>::infinity()), most(size, 0.0F);
+  std::vector<float> min(size, std::numeric_limits<float>::infinity()), max(size, 0.0F);
   for (const MovingRays& rays : instants) {
     cast_band(trees, table, rays, limits, first_row, one.data());
     for (std::size_t i = 0; i < size; ++i) {
       if (one[i] < 0.0F) continue;
       sums[i] += one[i];
       counts[i] += 1.0F;
-      least[i] = std::min(least[i], one[i]);
-      most[i] = std::max(most[i], one[i]);
+      min[i] = std::min(min[i], one[i]);
+      max[i] = std::max(max[i], one[i]);
     }
   }
   for (std::size_t i = 0; i < size; ++i) {
     const bool is_seen =
         counts[i] > 0.0F && 2.0F * counts[i] >= static_cast<float>(instants.size());
-    depths[i] = is_seen && most[i] <= one_surface * least[i] ? sums[i] / counts[i] : no_return;
+    depths[i] = is_seen && max[i] <= one_surface * min[i] ? sums[i] / counts[i] : no_return;
   }
 }
 
 // Assigns the position of each band in the scan. Bands are cast in any order but their points are
 // consecutive, so a band must wait until all previous ones are counted.
-class BandPlaces {
+class BandOffsets {
  public:
-  struct Place {
+  struct BandOffset {
     std::size_t band;
     std::size_t first_point;
   };
 
-  explicit BandPlaces(std::size_t bands) : returns_(bands) {}
+  explicit BandOffsets(std::size_t bands) : returns_(bands) {}
 
   /// Counts a band. Returns the bands whose position becomes known.
-  std::vector<Place> count(std::size_t band, std::size_t returns) {
+  std::vector<BandOffset> count(std::size_t band, std::size_t returns) {
     const std::lock_guard lock(mutex_);
     returns_[band] = returns;
-    std::vector<Place> known;
+    std::vector<BandOffset> known;
     for (; next_ < returns_.size() && returns_[next_]; ++next_) {
       known.push_back({next_, points_});
       points_ += *returns_[next_];
@@ -235,11 +235,11 @@ void emit_band(const RayTable& table, PinholeRow row, int first_row, const float
 
 // Returns the frame from `world_from_camera`. `cast` computes the depths of a band.
 template <typename Cast>
-Scan frame_of(const DepthCameraConfig& config, const RayTable& table,
-              const Eigen::Isometry3d& world_from_camera, std::uint64_t frame, unsigned threads,
-              Scan recycled, const Cast& cast) {
+Scan make_frame(const DepthCameraConfig& config, const RayTable& table,
+                const Eigen::Isometry3d& world_from_camera, std::uint64_t frame, unsigned threads,
+                Scan buffer, const Cast& cast) {
   const PinholeRow row = row_template(table, world_from_camera.translation(), config.noise, frame);
-  Scan scan = std::move(recycled);
+  Scan scan = std::move(buffer);
   scan.world_from_sensor = world_from_camera;
   const auto pixels = static_cast<std::size_t>(table.width) * table.height;
   scan.points.resize(pixels);
@@ -247,7 +247,7 @@ Scan frame_of(const DepthCameraConfig& config, const RayTable& table,
   const std::size_t band_size = static_cast<std::size_t>(table.stride) * band_rows;
   const std::size_t bands = (table.height + band_rows - 1) / band_rows;
   const auto depths = std::make_unique_for_overwrite<float[]>(bands * band_size);
-  BandPlaces places(bands);
+  BandOffsets offsets(bands);
   geometry::parallel_for(bands, threads, [&](std::size_t band) {
     const int first_row = static_cast<int>(band) * band_rows;
     float* const band_depths = depths.get() + band * band_size;
@@ -257,19 +257,19 @@ Scan frame_of(const DepthCameraConfig& config, const RayTable& table,
       add_stereo_errors(table, config.stereo, key, first_row, band_depths);
     }
     const std::size_t returns = count_returns(table, first_row, band_depths);
-    for (const auto& [known, first_point] : places.count(band, returns)) {
+    for (const auto& [known, first_point] : offsets.count(band, returns)) {
       emit_band(table, row, static_cast<int>(known) * band_rows, depths.get() + known * band_size,
                 first_point, scan);
     }
   });
-  scan.points.resize(places.points());
-  scan.pixels.resize(places.points());
+  scan.points.resize(offsets.points());
+  scan.pixels.resize(offsets.points());
   return scan;
 }
 
-Limits limits_of(const DepthCameraConfig& config) {
+Limits make_limits(const DepthCameraConfig& config) {
   return {static_cast<float>(config.camera.min_range), static_cast<float>(config.camera.max_range),
-          min_cosine_of(config.max_incidence)};
+          compute_min_cosine(config.max_incidence)};
 }
 
 }  // namespace
@@ -280,34 +280,34 @@ DepthCamera::DepthCamera(const DepthCameraConfig& config)
 }
 
 Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_camera,
-                       std::uint64_t frame, unsigned threads, Scan recycled) const {
+                       std::uint64_t frame, unsigned threads, Scan buffer) const {
   const Scene::Trees& trees = scene.trees();
   const RayTable table(camera_, world_from_camera, trees.centre);
-  return frame_of(config_, table, world_from_camera, frame, threads, std::move(recycled),
-                  [&, limits = limits_of(config_)](int first_row, float* depths) {
-                    cast_band(trees, table, table, limits, first_row, depths);
-                  });
+  return make_frame(config_, table, world_from_camera, frame, threads, std::move(buffer),
+                    [&, limits = make_limits(config_)](int first_row, float* depths) {
+                      cast_band(trees, table, table, limits, first_row, depths);
+                    });
 }
 
-Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& believed,
+Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& estimated,
                        const FrameMotion& motion, std::uint64_t frame, unsigned threads,
-                       Scan recycled) const {
+                       Scan buffer) const {
   const Scene::Trees& trees = scene.trees();
-  const RayTable table(camera_, believed, trees.centre);
+  const RayTable table(camera_, estimated, trees.centre);
   std::vector<MovingRays> instants;
   instants.reserve(static_cast<std::size_t>(motion.instants));
   for (int i = 0; i < motion.instants; ++i) {
     instants.emplace_back(camera_, motion, i, trees.centre);
   }
-  return frame_of(config_, table, believed, frame, threads, std::move(recycled),
-                  [&, limits = limits_of(config_)](int first_row, float* depths) {
-                    cast_moving_band(trees, table, instants, limits, first_row, depths);
-                  });
+  return make_frame(config_, table, estimated, frame, threads, std::move(buffer),
+                    [&, limits = make_limits(config_)](int first_row, float* depths) {
+                      cast_moving_band(trees, table, instants, limits, first_row, depths);
+                    });
 }
 
 Scan DepthCamera::scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,
-                       unsigned threads, Scan recycled) const {
-  return scan(scene, geometry::camera_pose(view), frame, threads, std::move(recycled));
+                       unsigned threads, Scan buffer) const {
+  return scan(scene, geometry::camera_pose(view), frame, threads, std::move(buffer));
 }
 
 }  // namespace skycap::sim

@@ -27,24 +27,23 @@ class DepthCamera {
   /// the noise together with the seed. The result does not depend on `threads` (0: all processors).
   /// Without noise, a point is on the pixel's ray to single precision.
   ///
-  /// `recycled` is an unused scan whose memory is reused. That saves 10% of the time for a frame of
+  /// `buffer` is an unused scan whose memory is reused. That saves 10% of the time for a frame of
   /// several megapixels.
   geometry::Scan scan(const Scene& scene, const Eigen::Isometry3d& world_from_camera,
-                      std::uint64_t frame, unsigned threads = 0,
-                      geometry::Scan recycled = {}) const;
+                      std::uint64_t frame, unsigned threads = 0, geometry::Scan buffer = {}) const;
 
   /// Returns the scan of a moving camera with one estimated pose. The rays of a row are cast from
   /// the camera pose during its exposure. Their depths are then assigned to the rays of the
   /// estimated pose, so pose errors and a rolling shutter displace the points. The depths of a
   /// pixel's instants are averaged if they belong to one surface (within 2%); otherwise the pixel
   /// has no return.
-  geometry::Scan scan(const Scene& scene, const Eigen::Isometry3d& believed,
+  geometry::Scan scan(const Scene& scene, const Eigen::Isometry3d& estimated,
                       const FrameMotion& motion, std::uint64_t frame, unsigned threads = 0,
-                      geometry::Scan recycled = {}) const;
+                      geometry::Scan buffer = {}) const;
 
   /// Returns the scan of a stationary camera at geometry::camera_pose(view).
   geometry::Scan scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,
-                      unsigned threads = 0, geometry::Scan recycled = {}) const;
+                      unsigned threads = 0, geometry::Scan buffer = {}) const;
 
  private:
   DepthCameraConfig config_;

@@ -31,10 +31,10 @@ Echo merge(std::span<const RayHit> hits, const Sensitivity& sensitivity) {
 
 // Keeps the echoes that the sensor reports, in the order of their ranges.
 void choose(std::vector<Echo>& echoes, const Beam& beam) {
-  const auto most = static_cast<std::size_t>(beam.max_returns);
-  if (echoes.size() <= most) return;
+  const auto max = static_cast<std::size_t>(beam.max_returns);
+  if (echoes.size() <= max) return;
   if (beam.choice == EchoChoice::first) {
-    echoes.resize(most);
+    echoes.resize(max);
     return;
   }
   if (beam.choice == EchoChoice::last) {
@@ -42,8 +42,8 @@ void choose(std::vector<Echo>& echoes, const Beam& beam) {
     return;
   }
   const auto is_weaker = [](const Echo& a, const Echo& b) { return a.power < b.power; };
-  const bool keeps_last = beam.choice == EchoChoice::strongest_and_last && most > 1;
-  while (echoes.size() > most) {
+  const bool keeps_last = beam.choice == EchoChoice::strongest_and_last && max > 1;
+  while (echoes.size() > max) {
     const auto end = keeps_last ? echoes.end() - 1 : echoes.end();
     echoes.erase(std::min_element(echoes.begin(), end, is_weaker));
   }
@@ -62,8 +62,8 @@ float received_power(const RayHit& hit, const Sensitivity& sensitivity) {
 }
 
 std::vector<Echo> form_echoes(std::span<RayHit> hits, const Sensitivity& sensitivity,
-                              const Beam& beam, std::vector<Echo> recycled) {
-  std::vector<Echo> echoes = std::move(recycled);
+                              const Beam& beam, std::vector<Echo> buffer) {
+  std::vector<Echo> echoes = std::move(buffer);
   echoes.clear();
   if (hits.empty()) return echoes;
   const auto by_range = [](const RayHit& a, const RayHit& b) { return a.range < b.range; };

@@ -31,9 +31,9 @@ struct Echo {
 float received_power(const RayHit& hit, const Sensitivity& sensitivity);
 
 /// Returns the reported echoes in ascending order of range. Hits closer to the next than half the
-/// pulse length, c tau / 2, form one echo. May sort `hits`. Reuses the memory of `recycled`.
+/// pulse length, c tau / 2, form one echo. May sort `hits`. Reuses the memory of `buffer`.
 std::vector<Echo> form_echoes(std::span<RayHit> hits, const Sensitivity& sensitivity,
-                              const Beam& beam, std::vector<Echo> recycled = {});
+                              const Beam& beam, std::vector<Echo> buffer = {});
 
 /// Returns the standard deviation of a measured range [m] (RangeErrors).
 float range_sigma(const RangeErrors& errors, float range, float cosine);

@@ -62,9 +62,9 @@ namespace {
 /// Buffers of a block of firings. Each thread keeps its own, so that a short scan does not start
 /// with memory allocation.
 struct BlockBuffers {
-  BlockPoses poses, believed;
-  Shots shots;
-  Rays shots_rays;     // True axes of the pulses.
+  BlockPoses poses, estimated;
+  Pulses pulses;
+  Rays pulse_rays;     // True axes of the pulses.
   Rays reported_rays;  // Axes as estimated by sensor and platform. Only used if they differ.
   Rays beam_rays;      // Rays of beams with width.
   Hits hits;
@@ -73,7 +73,7 @@ struct BlockBuffers {
   BlockEchoes echoes;
 };
 
-BlockBuffers& buffers_of_thread() {
+BlockBuffers& thread_buffers() {
   static thread_local BlockBuffers buffers;
   return buffers;
 }
@@ -90,28 +90,29 @@ class BlockMeasurement {
         flight_(flight),
         returns_(returns),
         origin_(scene.trees().centre),
-        has_own_belief_(&flight.flown != &flight.believed ||
-                        !flight.body_from_sensor.isApprox(flight.believed_body_from_sensor, 0.0)) {}
+        has_separate_estimate_(
+            &flight.ground_truth != &flight.estimated ||
+            !flight.body_from_sensor.isApprox(flight.estimated_body_from_sensor, 0.0)) {}
 
   void measure(std::uint64_t block, std::uint32_t first, std::uint32_t end) {
-    const double start = flight_.flown.start() +
+    const double start = flight_.ground_truth.start() +
                          static_cast<double>(block * firings_in_block) * config_.firing_period;
-    poses_ =
-        block_poses(flight_.flown, flight_.body_from_sensor, start, config_.firing_period, origin_);
-    if (has_own_belief_) {
-      believed_ = block_poses(flight_.believed, flight_.believed_body_from_sensor, start,
-                              config_.firing_period, origin_);
+    poses_ = block_poses(flight_.ground_truth, flight_.body_from_sensor, start,
+                         config_.firing_period, origin_);
+    if (has_separate_estimate_) {
+      estimated_ = block_poses(flight_.estimated, flight_.estimated_body_from_sensor, start,
+                               config_.firing_period, origin_);
     }
-    lidar_.pattern.aim(block, shots_);
+    lidar_.pattern.aim(block, pulses_);
     draw_noise(block);
-    place(poses_, shots_rays_);
+    compute_rays(poses_, pulse_rays_);
     cast(first, end);
     if (lidar_.beam.size() == 1) {
-      echoes_.find_of_rays(hits_, scene_, config_);
+      echoes_.find_ray_echoes(hits_, scene_, config_);
     } else {
-      echoes_.find_of_beams(hits_, lidar_.beam, scene_, config_);
+      echoes_.find_beam_echoes(hits_, lidar_.beam, scene_, config_);
     }
-    if (has_own_belief_) place(believed_, reported_rays_);
+    if (has_separate_estimate_) compute_rays(estimated_, reported_rays_);
     report(start);
   }
 
@@ -120,7 +121,7 @@ class BlockMeasurement {
 
  private:
   // Computes the rays of all pulses in the world frame.
-  void place(const BlockPoses& poses, Rays& rays) const {
+  void compute_rays(const BlockPoses& poses, Rays& rays) const {
     rays.resize(lidar_.pattern.slots());
     for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
       const FourPoses now(poses, firing), next(poses, firing + 1);
@@ -132,12 +133,12 @@ class BlockMeasurement {
         const FourPoses& at = share == 0.0F ? now : later;
         FourFloats vector[3], placed[3];
         for (int axis = 0; axis < 3; ++axis) {
-          std::memcpy(&vector[axis], &shots_.direction[axis][slot], sizeof vector[axis]);
+          std::memcpy(&vector[axis], &pulses_.direction[axis][slot], sizeof vector[axis]);
         }
         at.rotate(vector, placed);
         for (int axis = 0; axis < 3; ++axis) {
           put_four(&rays.direction[axis][slot], placed[axis]);
-          std::memcpy(&vector[axis], &shots_.origin[axis][slot], sizeof vector[axis]);
+          std::memcpy(&vector[axis], &pulses_.origin[axis][slot], sizeof vector[axis]);
         }
         at.rotate(vector, placed);
         at.shift(placed);
@@ -158,7 +159,7 @@ class BlockMeasurement {
     for (std::uint32_t four = 0; four < firings_in_block; four += 4) {
       for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
         for (std::uint32_t firing = four; firing < four + 4; ++firing, ++slot) {
-          const bool is_cast = shots_.is_shot[slot] != 0 && firing >= first && firing < end;
+          const bool is_cast = pulses_.is_emitted[slot] != 0 && firing >= first && firing < end;
           if (samples == 1) {
             hits_.active[slot] = is_cast ? -1 : 0;
             continue;
@@ -169,11 +170,11 @@ class BlockMeasurement {
       }
     }
     cast_rays(scene_.trees(), static_cast<float>(config_.max_range),
-              samples > 1 ? beam_rays_ : shots_rays_, hits_);
+              samples > 1 ? beam_rays_ : pulse_rays_, hits_);
   }
 
   void spread_beam(std::size_t firing, std::size_t slot) {
-    const Vector3f axis = shots_rays_.towards(slot);
+    const Vector3f axis = pulse_rays_.towards(slot);
     const AcrossBeam sides = across(axis, up(poses_, firing));
     const std::size_t samples = lidar_.beam.size(), first = slot * samples;
     const float* const along = lidar_.beam_along.data();
@@ -185,7 +186,7 @@ class BlockMeasurement {
         direction[ray] = along[ray] * axis[i] + aside[ray] * sides.horizontal[i] +
                          above[ray] * sides.vertical[i];
       }
-      std::fill_n(beam_rays_.origin[i].data() + first, samples, shots_rays_.origin[i][slot]);
+      std::fill_n(beam_rays_.origin[i].data() + first, samples, pulse_rays_.origin[i][slot]);
     }
   }
 
@@ -215,19 +216,19 @@ class BlockMeasurement {
     for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
       const std::size_t fours = config_.channels.size(), first = firing * fours;
       FourInts counts = {};
-      for (std::size_t four_of_slots = 0; four_of_slots < fours; ++four_of_slots) {
-        counts += load<FourInts>(echoes_.counts, first + 4 * four_of_slots);
+      for (std::size_t slot_group = 0; slot_group < fours; ++slot_group) {
+        counts += load<FourInts>(echoes_.counts, first + 4 * slot_group);
       }
       const std::size_t all = next_ + static_cast<std::size_t>(sum(counts));
       if (returns_.size() < all) returns_.resize(all);
-      std::size_t places[4];
+      std::size_t offsets[4];
       for (int lane = 0; lane < 4; ++lane) {
-        places[lane] = next_;
+        offsets[lane] = next_;
         next_ += static_cast<std::size_t>(counts[lane]);
       }
       const Destination to(returns_);
       for (std::size_t channel = 0; channel < fours; ++channel) {
-        report_four(firing, channel, start, places, to);
+        report_four(firing, channel, start, offsets, to);
       }
     }
   }
@@ -244,21 +245,21 @@ class BlockMeasurement {
           triangles(returns.triangles.data()),
           channels(returns.channels.data()),
           return_numbers(returns.return_numbers.data()),
-          returns_of_shots(returns.returns_of_shots.data()) {}
+          number_of_returns(returns.number_of_returns.data()) {}
 
     Vector3f *points, *true_points;
     double* times;
     float *intensities, *scan_angles;
     std::uint32_t* triangles;
     std::uint16_t* channels;
-    std::uint8_t *return_numbers, *returns_of_shots;
+    std::uint8_t *return_numbers, *number_of_returns;
   };
 
   void report_four(std::uint32_t firing, std::size_t channel, double start,
-                   std::size_t (&places)[4], const Destination to) const {
+                   std::size_t (&offsets)[4], const Destination to) const {
     const std::size_t slot = lidar_.pattern.slot(firing, channel);
     const FourInts counts = load<FourInts>(echoes_.counts, slot);
-    const Rays& rays = has_own_belief_ ? reported_rays_ : shots_rays_;
+    const Rays& rays = has_separate_estimate_ ? reported_rays_ : pulse_rays_;
     const bool is_misled = config_.errors.angle_sigma > 0.0;
     double times[4];
     for (int lane = 0; lane < 4; ++lane) {
@@ -273,28 +274,28 @@ class BlockMeasurement {
       const FourFloats measured = measured_range(number, channel, slot, range);
       FourFloats point[3], true_point[3];
       for (int axis = 0; axis < 3; ++axis) {
-        true_point[axis] = load<FourFloats>(shots_rays_.origin[axis], slot) +
-                           range * load<FourFloats>(shots_rays_.direction[axis], slot);
+        true_point[axis] = load<FourFloats>(pulse_rays_.origin[axis], slot) +
+                           range * load<FourFloats>(pulse_rays_.direction[axis], slot);
         point[axis] = load<FourFloats>(rays.origin[axis], slot) +
                       measured * load<FourFloats>(rays.direction[axis], slot);
       }
       for (int lane = 0; lane < 4; ++lane) {
         if (is_there[lane] == 0) continue;
-        const std::size_t i = places[lane] + number, at = slot + static_cast<std::size_t>(lane);
+        const std::size_t i = offsets[lane] + number, at = slot + static_cast<std::size_t>(lane);
         to.points[i] =
             is_misled ? misled(rays, at, firing + static_cast<std::size_t>(lane), measured[lane])
                       : Vector3f(point[0][lane], point[1][lane], point[2][lane]);
         to.true_points[i] = {true_point[0][lane], true_point[1][lane], true_point[2][lane]};
         to.times[i] = times[lane];
         to.intensities[i] = row.intensity[at];
-        to.scan_angles[i] = shots_.azimuth[at];
+        to.scan_angles[i] = pulses_.azimuth[at];
         to.triangles[i] = row.triangle[at];
         to.channels[i] = static_cast<std::uint16_t>(channel);
         to.return_numbers[i] = static_cast<std::uint8_t>(number + 1);
-        to.returns_of_shots[i] = static_cast<std::uint8_t>(counts[lane]);
+        to.number_of_returns[i] = static_cast<std::uint8_t>(counts[lane]);
       }
     }
-    for (int lane = 0; lane < 4; ++lane) places[lane] += static_cast<std::size_t>(counts[lane]);
+    for (int lane = 0; lane < 4; ++lane) offsets[lane] += static_cast<std::size_t>(counts[lane]);
   }
 
   FourFloats measured_range(std::size_t number, std::size_t channel, std::size_t slot,
@@ -320,7 +321,8 @@ class BlockMeasurement {
   Vector3f misled(const Rays& rays, std::size_t slot, std::size_t firing, float range) const {
     const auto sigma = static_cast<float>(config_.errors.angle_sigma);
     const Vector3f direction = rays.towards(slot);
-    const AcrossBeam sides = across(direction, up(has_own_belief_ ? believed_ : poses_, firing));
+    const AcrossBeam sides =
+        across(direction, up(has_separate_estimate_ ? estimated_ : poses_, firing));
     const Vector3f turned = direction + sigma * azimuth_noise_[slot] * sides.horizontal +
                             sigma * elevation_noise_[slot] * sides.vertical;
     return rays.from(slot) + range * turned.normalized();
@@ -339,13 +341,13 @@ class BlockMeasurement {
   const LidarFlight& flight_;
   LidarReturns& returns_;
   Vector3d origin_;
-  bool has_own_belief_;
+  bool has_separate_estimate_;
   bool has_range_noise_ = false;
 
-  BlockBuffers& buffers_ = buffers_of_thread();
-  BlockPoses &poses_ = buffers_.poses, &believed_ = buffers_.believed;
-  Shots& shots_ = buffers_.shots;
-  Rays &shots_rays_ = buffers_.shots_rays, &reported_rays_ = buffers_.reported_rays;
+  BlockBuffers& buffers_ = thread_buffers();
+  BlockPoses &poses_ = buffers_.poses, &estimated_ = buffers_.estimated;
+  Pulses& pulses_ = buffers_.pulses;
+  Rays &pulse_rays_ = buffers_.pulse_rays, &reported_rays_ = buffers_.reported_rays;
   Rays& beam_rays_ = buffers_.beam_rays;
   Hits& hits_ = buffers_.hits;
   std::vector<float>&azimuth_noise_ = buffers_.azimuth_noise,
@@ -371,8 +373,8 @@ std::uint64_t Lidar::firings(const Trajectory& trajectory) const {
 }
 
 LidarReturns Lidar::measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
-                            LidarReturns recycled) const {
-  LidarReturns returns = std::move(recycled);  // Every remaining entry is overwritten.
+                            LidarReturns buffer) const {
+  LidarReturns returns = std::move(buffer);  // Every remaining entry is overwritten.
   returns.origin = scene.trees().centre;
   BlockMeasurement measurement(*impl_, scene, flight, returns);
   const std::uint64_t end = firings.first + firings.count;

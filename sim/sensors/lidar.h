@@ -19,11 +19,11 @@ namespace skycap::sim {
 
 /// True and estimated motion of the sensor.
 struct LidarFlight {
-  const Trajectory& flown;
-  const Trajectory& believed;  ///< Estimated trajectory. May be the same object as `flown`.
+  const Trajectory& ground_truth;
+  const Trajectory& estimated;  ///< Estimated trajectory. May be the same object as `ground_truth`.
   Eigen::Isometry3d body_from_sensor = Eigen::Isometry3d::Identity();
   /// Calibrated mount, with errors of lever arm and boresight.
-  Eigen::Isometry3d believed_body_from_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d estimated_body_from_sensor = Eigen::Isometry3d::Identity();
 };
 
 /// Firings first, first + 1, ..., first + count - 1.
@@ -44,8 +44,8 @@ struct LidarReturns {
   /// Triangle of the scene's mesh that the strongest sub-ray hits.
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint16_t> channels;
-  std::vector<std::uint8_t> return_numbers;    ///< Counted from 1, by range.
-  std::vector<std::uint8_t> returns_of_shots;  ///< Total number of returns of the pulse.
+  std::vector<std::uint8_t> return_numbers;     ///< Counted from 1, by range.
+  std::vector<std::uint8_t> number_of_returns;  ///< Total number of returns of the pulse.
 
   std::size_t size() const { return points.size(); }
   void resize(std::size_t size) {
@@ -57,7 +57,7 @@ struct LidarReturns {
     triangles.resize(size);
     channels.resize(size);
     return_numbers.resize(size);
-    returns_of_shots.resize(size);
+    number_of_returns.resize(size);
   }
 };
 
@@ -77,9 +77,9 @@ class Lidar {
 
   /// Returns the measurements of a range of firings, computed on the calling thread. A pure
   /// function of the firings: splitting the range gives identical returns. Efficient for ranges in
-  /// multiples of 32 firings. Reuses the memory of `recycled`.
+  /// multiples of 32 firings. Reuses the memory of `buffer`.
   LidarReturns measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
-                       LidarReturns recycled = {}) const;
+                       LidarReturns buffer = {}) const;
 
   struct Impl;  ///< Defined in the source file, where helpers use it.
 

@@ -163,11 +163,11 @@ inline void cast_rays(const Scene::Trees& trees, float reach, const Rays& rays, 
     std::copy_n(packet.triangle, width, hits.triangle.data() + first);
     std::copy_n(packet.distance, width, hits.range.data() + first);
     for (int lane = 0; lane < width; lane += 4) {
-      const auto lanes_of = [&](const float* values) { return four<FourFloats>(values + lane); };
+      const auto load_lanes = [&](const float* values) { return four<FourFloats>(values + lane); };
       FourFloats along = {}, squared = {};
       for (int axis = 0; axis < 3; ++axis) {
-        const FourFloats normal = lanes_of(packet.normal[axis]);
-        along += lanes_of(packet.direction[axis]) * normal;
+        const FourFloats normal = load_lanes(packet.normal[axis]);
+        along += load_lanes(packet.direction[axis]) * normal;
         squared += normal * normal;
       }
       const FourFloats cosine = (along < 0.0F ? -along : along) / square_root(squared);

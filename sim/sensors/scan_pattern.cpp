@@ -60,7 +60,7 @@ ScanPattern::ScanPattern(const LidarConfig& config) : config_(config) {
                          {cosine * std::cos(channel.azimuth), cosine * std::sin(channel.azimuth),
                           std::sin(channel.elevation)}});
   }
-  std::vector<std::size_t>& by_elevation = channel_of_rank_;
+  std::vector<std::size_t>& by_elevation = rank_channels_;
   by_elevation.resize(config.channels.size());
   std::iota(by_elevation.begin(), by_elevation.end(), 0U);
   std::stable_sort(by_elevation.begin(), by_elevation.end(), [&](std::size_t a, std::size_t b) {
@@ -70,28 +70,28 @@ ScanPattern::ScanPattern(const LidarConfig& config) : config_(config) {
   for (std::size_t i = 0; i < by_elevation.size(); ++i) rank_[by_elevation[i]] = i;
 }
 
-void ScanPattern::aim(std::uint64_t block, Shots& shots) const {
+void ScanPattern::aim(std::uint64_t block, Pulses& pulses) const {
   for (int axis = 0; axis < 3; ++axis) {
-    shots.origin[axis].resize(slots());
-    shots.direction[axis].resize(slots());
+    pulses.origin[axis].resize(slots());
+    pulses.direction[axis].resize(slots());
   }
-  shots.azimuth.resize(slots());
-  shots.is_shot.resize(slots());
+  pulses.azimuth.resize(slots());
+  pulses.is_emitted.resize(slots());
   if (config_.prisms.empty()) {
     for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
-      aim_spinning(block * firings_in_block + firing, shots, slot(firing, channel_of_rank_[0]));
+      aim_spinning(block * firings_in_block + firing, pulses, slot(firing, rank_channels_[0]));
     }
     return;
   }
   for (std::uint32_t firing = 0; firing < firings_in_block; ++firing) {
     const double time =
         static_cast<double>(block * firings_in_block + firing) * config_.firing_period;
-    aim_rosette(time, firing, shots);
+    aim_rosette(time, firing, pulses);
   }
 }
 
 // Computes four firings together, whose slots of a channel are adjacent.
-void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t at) const {
+void ScanPattern::aim_spinning(std::uint64_t first_firing, Pulses& pulses, std::size_t at) const {
   FourFloats angle, cosine, sine;
   for (int i = 0; i < 4; ++i) {
     const double time = static_cast<double>(first_firing + i) * config_.firing_period;
@@ -106,12 +106,13 @@ void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::si
   const float half_view =
       config_.field_of_view >= turn ? full : static_cast<float>(0.5 * config_.field_of_view);
   // As local variables, the array pointers remain in registers.
-  float* const direction[3] = {shots.direction[0].data(), shots.direction[1].data(),
-                               shots.direction[2].data()};
-  float* const origin[3] = {shots.origin[0].data(), shots.origin[1].data(), shots.origin[2].data()};
-  float* const azimuths = shots.azimuth.data();
+  float* const direction[3] = {pulses.direction[0].data(), pulses.direction[1].data(),
+                               pulses.direction[2].data()};
+  float* const origin[3] = {pulses.origin[0].data(), pulses.origin[1].data(),
+                            pulses.origin[2].data()};
+  float* const azimuths = pulses.azimuth.data();
   const std::size_t first = at;
-  for (const std::size_t channel : channel_of_rank_) {
+  for (const std::size_t channel : rank_channels_) {
     const ChannelTable& table = channels_[channel];
     put_four(direction[0] + at,
              table.cos_elevation * (cosine * table.cos_azimuth - sine * table.sin_azimuth));
@@ -127,22 +128,23 @@ void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::si
     put_four(azimuths + at, azimuth);
     at += 4;
   }
-  std::uint8_t* const is_shot = shots.is_shot.data();
-  for (std::size_t i = first; i < at; ++i) is_shot[i] = std::abs(azimuths[i]) <= half_view ? 1 : 0;
+  std::uint8_t* const is_emitted = pulses.is_emitted.data();
+  for (std::size_t i = first; i < at; ++i)
+    is_emitted[i] = std::abs(azimuths[i]) <= half_view ? 1 : 0;
 }
 
-void ScanPattern::aim_rosette(double time, std::uint32_t firing, Shots& shots) const {
+void ScanPattern::aim_rosette(double time, std::uint32_t firing, Pulses& pulses) const {
   for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
     const ChannelTable& table = channels_[channel];
     const Vector3d direction = refract(config_.prisms, time + table.delay, table.beam);
     const std::size_t at = slot(firing, channel);
     for (int axis = 0; axis < 3; ++axis) {
-      shots.direction[axis][at] = static_cast<float>(direction[axis]);
-      shots.origin[axis][at] = axis == 2 ? table.height : 0.0F;
+      pulses.direction[axis][at] = static_cast<float>(direction[axis]);
+      pulses.origin[axis][at] = axis == 2 ? table.height : 0.0F;
     }
     const double azimuth = std::atan2(direction.y(), direction.x());
-    shots.azimuth[at] = static_cast<float>(azimuth);
-    shots.is_shot[at] = std::abs(azimuth) <= 0.5 * config_.field_of_view;
+    pulses.azimuth[at] = static_cast<float>(azimuth);
+    pulses.is_emitted[at] = std::abs(azimuth) <= 0.5 * config_.field_of_view;
   }
 }
 

@@ -12,11 +12,11 @@ namespace skycap::sim {
 
 /// Pulses of 32 consecutive firings. Slots are in the order of ray packets: four firings of a
 /// channel, then the same four of the channel next in elevation.
-struct Shots {
-  std::vector<float> origin[3];       ///< Sensor frame [m].
-  std::vector<float> direction[3];    ///< Unit vectors, sensor frame.
-  std::vector<float> azimuth;         ///< In (-pi, pi] [rad].
-  std::vector<std::uint8_t> is_shot;  ///< 0 outside the field of view.
+struct Pulses {
+  std::vector<float> origin[3];          ///< Sensor frame [m].
+  std::vector<float> direction[3];       ///< Unit vectors, sensor frame.
+  std::vector<float> azimuth;            ///< In (-pi, pi] [rad].
+  std::vector<std::uint8_t> is_emitted;  ///< 0 outside the field of view.
 };
 
 class ScanPattern {
@@ -34,7 +34,7 @@ class ScanPattern {
   }
 
   /// Computes the pulses of firings 32 * block to 32 * block + 31.
-  void aim(std::uint64_t block, Shots& shots) const;
+  void aim(std::uint64_t block, Pulses& pulses) const;
 
  private:
   struct ChannelTable {
@@ -47,13 +47,13 @@ class ScanPattern {
     Eigen::Vector3d beam;  // Direction before the prisms.
   };
 
-  void aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t first_slot) const;
-  void aim_rosette(double time, std::uint32_t firing, Shots& shots) const;
+  void aim_spinning(std::uint64_t first_firing, Pulses& pulses, std::size_t first_slot) const;
+  void aim_rosette(double time, std::uint32_t firing, Pulses& pulses) const;
 
   LidarConfig config_;
   std::vector<ChannelTable> channels_;
-  std::vector<std::size_t> rank_;             // Rank of each channel by elevation.
-  std::vector<std::size_t> channel_of_rank_;  // Inverse of `rank_`.
+  std::vector<std::size_t> rank_;           // Rank of each channel by elevation.
+  std::vector<std::size_t> rank_channels_;  // Inverse of `rank_`.
 };
 
 /// Returns the direction of a beam after the rotating prisms at `time` [s], as a unit vector.

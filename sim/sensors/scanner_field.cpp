@@ -16,8 +16,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// Returns the camera with the given angles of view and numbers of pixels.
-DepthCameraConfig image_of(const LidarConfig& lidar, double wide, int columns, double high,
-                           int rows) {
+DepthCameraConfig make_image(const LidarConfig& lidar, double wide, int columns, double high,
+                             int rows) {
   DepthCameraConfig config;
   config.camera = {.width = columns,
                    .height = rows,
@@ -37,7 +37,7 @@ DepthCameraConfig ray_camera(const LidarConfig& lidar, double wide, double colum
   const auto pixels = [](double angle, double step) {
     return std::max(1, static_cast<int>(std::lround(2.0 * std::tan(0.5 * angle) / step)));
   };
-  return image_of(lidar, wide, pixels(wide, columns_step), high, pixels(high, rows_step));
+  return make_image(lidar, wide, pixels(wide, columns_step), high, pixels(high, rows_step));
 }
 
 /// Field of view of a ring.
@@ -46,11 +46,12 @@ struct Field {
   double up, up_step;  ///< Angle across the rotation, and between neighbouring lasers [rad].
 };
 
-Field field_of(const LidarConfig& lidar) {
-  const auto [lowest, highest] = elevations(lidar);
-  const double step = (highest - lowest) / static_cast<double>(lidar.channels.size() - 1);
+Field make_field(const LidarConfig& lidar) {
+  const auto [min_elevation, max_elevation] = elevations(lidar);
+  const double step =
+      (max_elevation - min_elevation) / static_cast<double>(lidar.channels.size() - 1);
   return {std::min(lidar.field_of_view, 0.5 * std::numbers::pi), azimuth_step(lidar),
-          highest - lowest + step, step};
+          max_elevation - min_elevation + step, step};
 }
 
 /// Returns the directions of all pulses within a period, in the given optical frame.
@@ -59,14 +60,14 @@ std::vector<Vector3d> directions_in(const LidarConfig& lidar, double period,
   const ScanPattern pattern(lidar);
   const auto blocks = static_cast<std::uint64_t>(
       std::ceil(period / lidar.firing_period / ScanPattern::firings_in_block));
-  Shots shots;
+  Pulses pulses;
   std::vector<Vector3d> directions;
   for (std::uint64_t block = 0; block < blocks; ++block) {
-    pattern.aim(block, shots);
+    pattern.aim(block, pulses);
     for (std::size_t slot = 0; slot < pattern.slots(); ++slot) {
-      if (shots.is_shot[slot] == 0) continue;
-      const Vector3d direction(shots.direction[0][slot], shots.direction[1][slot],
-                               shots.direction[2][slot]);
+      if (pulses.is_emitted[slot] == 0) continue;
+      const Vector3d direction(pulses.direction[0][slot], pulses.direction[1][slot],
+                               pulses.direction[2][slot]);
       directions.emplace_back(optical_from_scanner * direction);
     }
   }
@@ -74,7 +75,7 @@ std::vector<Vector3d> directions_in(const LidarConfig& lidar, double period,
 }
 
 /// Returns azimuth and elevation around the x axis [rad] of the forward directions.
-std::vector<Vector2d> angles_of(const std::vector<Vector3d>& directions) {
+std::vector<Vector2d> compute_angles(const std::vector<Vector3d>& directions) {
   std::vector<Vector2d> angles;
   for (const Vector3d& d : directions) {
     if (d.z() <= 0.0) continue;
@@ -125,22 +126,22 @@ double filled_share(const std::vector<Vector2d>& angles, const Vector2d& half_sl
 
 }  // namespace
 
-ScannerKind kind_of(const LidarConfig& lidar) {
+ScannerKind find_scanner_kind(const LidarConfig& lidar) {
   if (!lidar.prisms.empty()) return ScannerKind::rosette;
   if (lidar.rotation_rate == 0.0) {
     throw Error(ErrorKind::bad_config,
                 "a survey requires a scanner that spins or has prisms, such as ouster_os1_128 or "
                 "livox_avia");
   }
-  const auto [lowest, highest] = elevations(lidar);
-  constexpr double least_spread = 0.01;
-  return highest - lowest < least_spread ? ScannerKind::line : ScannerKind::ring;
+  const auto [min_elevation, max_elevation] = elevations(lidar);
+  constexpr double min_spread = 0.01;
+  return max_elevation - min_elevation < min_spread ? ScannerKind::line : ScannerKind::ring;
 }
 
 Elevations elevations(const LidarConfig& lidar) {
-  const auto [lowest, highest] =
+  const auto [min_elevation, max_elevation] =
       std::ranges::minmax_element(lidar.channels, {}, &Channel::elevation);
-  return {lowest->elevation, highest->elevation};
+  return {min_elevation->elevation, max_elevation->elevation};
 }
 
 double azimuth_step(const LidarConfig& lidar) {
@@ -148,7 +149,7 @@ double azimuth_step(const LidarConfig& lidar) {
 }
 
 DepthCameraConfig forward_camera(const LidarConfig& lidar) {
-  switch (kind_of(lidar)) {
+  switch (find_scanner_kind(lidar)) {
     case ScannerKind::line:
       throw Error(ErrorKind::bad_config,
                   "a single-line LiDAR requires flight.vehicle; set it, or use a scanner with "
@@ -161,24 +162,26 @@ DepthCameraConfig forward_camera(const LidarConfig& lidar) {
     case ScannerKind::ring:
       break;
   }
-  const Field field = field_of(lidar);
+  const Field field = make_field(lidar);
   return ray_camera(lidar, field.around, field.around_step, field.up, field.up_step);
 }
 
 DepthCameraConfig side_camera(const LidarConfig& lidar, std::size_t turns) {
-  const Field field = field_of(lidar);
+  const Field field = make_field(lidar);
   // The centre of the image is perpendicular to the axis. The lasers may not be symmetric around
   // it. The width covers only angles with lasers on both sides.
-  const auto [lowest, highest] = elevations(lidar);
-  const double wide = 2.0 * std::max(std::min(-lowest, highest), field.up_step) + field.up_step;
+  const auto [min_elevation, max_elevation] = elevations(lidar);
+  const double wide =
+      2.0 * std::max(std::min(-min_elevation, max_elevation), field.up_step) + field.up_step;
   const double denser = std::sqrt(static_cast<double>(turns));  // In each direction.
   return ray_camera(lidar, wide, field.up_step / denser, field.around, field.around_step / denser);
 }
 
-DepthCameraConfig line_camera(const LidarConfig& lidar, double period, double way) {
+DepthCameraConfig line_camera(const LidarConfig& lidar, double period, double swept) {
   const double around = std::min(lidar.field_of_view, 0.5 * std::numbers::pi);
   const double lines = std::max(1.0, std::round(period * std::abs(lidar.rotation_rate)));
-  return ray_camera(lidar, 2.0 * std::atan(0.5 * way), way / lines, around, azimuth_step(lidar));
+  return ray_camera(lidar, 2.0 * std::atan(0.5 * swept), swept / lines, around,
+                    azimuth_step(lidar));
 }
 
 RosetteField rosette_field(const LidarConfig& lidar, double period,
@@ -194,7 +197,7 @@ RosetteField rosette_field(const LidarConfig& lidar, double period,
     field.rays += (slopes.array() <= field.half_slopes.array()).all() ? 1 : 0;
   }
   constexpr double finest = 0.003, coarsest = 0.2, step = 1.15, enough = 0.995;
-  const std::vector<Vector2d> angles = angles_of(directions);
+  const std::vector<Vector2d> angles = compute_angles(directions);
   field.gap = finest;
   while (field.gap < coarsest && filled_share(angles, field.half_slopes, field.gap) < enough) {
     field.gap *= step;
@@ -207,8 +210,8 @@ DepthCameraConfig rosette_camera(const LidarConfig& lidar, const RosetteField& f
   const auto pixels = [&](double half_slope) {
     return std::max(1, static_cast<int>(std::lround(2.0 * half_slope / pixel)));
   };
-  return image_of(lidar, 2.0 * std::atan(field.half_slopes.x()), pixels(field.half_slopes.x()),
-                  2.0 * std::atan(field.half_slopes.y()), pixels(field.half_slopes.y()));
+  return make_image(lidar, 2.0 * std::atan(field.half_slopes.x()), pixels(field.half_slopes.x()),
+                    2.0 * std::atan(field.half_slopes.y()), pixels(field.half_slopes.y()));
 }
 
 double ray_spacing(const LidarConfig& lidar) {

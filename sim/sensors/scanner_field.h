@@ -18,11 +18,11 @@ enum class ScannerKind {
 
 /// Returns the kind of a scanner. Throws Error{bad_config} if the scanner neither rotates nor has
 /// prisms.
-ScannerKind kind_of(const LidarConfig& lidar);
+ScannerKind find_scanner_kind(const LidarConfig& lidar);
 
 /// Elevation range of a rotating scanner's lasers [rad].
 struct Elevations {
-  double lowest, highest;
+  double min_elevation, max_elevation;
 };
 Elevations elevations(const LidarConfig& lidar);
 
@@ -34,7 +34,8 @@ inline constexpr double rosette_period = 0.5;
 
 /// Returns the pinhole camera that approximates a scanner that stops at views. It covers the
 /// forward quarter revolution of a ring, or a rosette within rosette_period, with one pixel per
-/// ray. Throws the same errors as kind_of(), and Error{bad_config} for a single-line scanner.
+/// ray. Throws the same errors as find_scanner_kind(), and Error{bad_config} for a single-line
+/// scanner.
 DepthCameraConfig forward_camera(const LidarConfig& lidar);
 
 /// Returns the pinhole camera for the sideways quarter revolution of a ring with a level axis. Its
@@ -45,9 +46,9 @@ DepthCameraConfig side_camera(const LidarConfig& lidar, std::size_t turns = 1);
 /// Returns the pinhole camera that approximates a single-line scanner flown along its axis. The
 /// width covers the distance flown in `period` [s] at the view distance, with one column per line.
 /// The height covers a quarter revolution. Consecutive images then contain the correct number of
-/// rays for surfaces at any distance. `way` is the distance flown in the period, divided by the
+/// rays for surfaces at any distance. `swept` is the distance flown in the period, divided by the
 /// view distance.
-DepthCameraConfig line_camera(const LidarConfig& lidar, double period, double way);
+DepthCameraConfig line_camera(const LidarConfig& lidar, double period, double swept);
 
 /// Coverage of a rosette within some time.
 struct RosetteField {

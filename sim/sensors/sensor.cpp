@@ -19,14 +19,14 @@ constexpr double largest_angle = 100.0;    // Maximum angle [rad].
 constexpr double shortest_period = 1e-9;   // Minimum time between firings [s].
 constexpr double longest_period = 3600.0;  // Maximum time between firings [s].
 
-void require_between(double value, double least, double most, const std::string& field) {
+void require_between(double value, double min, double max, const std::string& field) {
   std::ostringstream rule;
-  rule << "between " << least << " and " << most;
-  require(value >= least && value <= most, field, value, rule.str());
+  rule << "between " << min << " and " << max;
+  require(value >= min && value <= max, field, value, rule.str());
 }
 
-void require_within(double value, double most, const std::string& field) {
-  require_between(value, -most, most, field);
+void require_within(double value, double max, const std::string& field) {
+  require_between(value, -max, max, field);
 }
 
 void validate_channel(const Channel& channel, std::size_t number, double firing_period) {

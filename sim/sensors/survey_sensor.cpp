@@ -20,8 +20,8 @@ using geometry::View;
 /// Returns the optical frame in the scanner's frame (x forward, y left, z up). The optical axis is
 /// at azimuth zero, in the middle of the lasers.
 Eigen::Isometry3d scanner_from_optical(const LidarConfig& lidar) {
-  const auto [lowest, highest] = elevations(lidar);
-  const double middle = 0.5 * (lowest + highest);
+  const auto [min_elevation, max_elevation] = elevations(lidar);
+  const double middle = 0.5 * (min_elevation + max_elevation);
   const Vector3d forward(std::cos(middle), 0.0, std::sin(middle)), right(0.0, -1.0, 0.0);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() << right, forward.cross(right), forward;
@@ -43,8 +43,8 @@ void append(const std::vector<LidarReturns>& returns, std::vector<Eigen::Vector3
 /// Adds one revolution per scanner pose (world_from_scanner). `first_turn` is the number of the
 /// first one.
 void append_turns(const Lidar& lidar, const Scene& scene,
-                  const std::vector<Eigen::Isometry3d>& poses, const Carriage& carriage,
-                  std::uint64_t first_turn, unsigned threads,
+                  const std::vector<Eigen::Isometry3d>& poses,
+                  const PlatformMotion& platform_motion, std::uint64_t first_turn, unsigned threads,
                   std::vector<Eigen::Vector3f>& points) {
   const std::uint64_t firings = firings_in_turn(lidar.config());
   constexpr std::uint64_t firings_in_task = 128;
@@ -53,17 +53,17 @@ void append_turns(const Lidar& lidar, const Scene& scene,
     return Trajectory(
         {{.position = pose.translation(), .attitude = Eigen::Quaterniond(pose.linear())}});
   };
-  std::vector<Trajectory> flown, believed;
+  std::vector<Trajectory> ground_truth, estimated;
   for (const Eigen::Isometry3d& pose : poses) {
-    flown.push_back(standing(carriage.true_pose(pose)));
-    believed.push_back(standing(pose));
+    ground_truth.push_back(standing(platform_motion.true_pose(pose)));
+    estimated.push_back(standing(pose));
   }
   std::vector<LidarReturns> returns(tasks * poses.size());
   geometry::parallel_for(returns.size(), threads, [&](std::size_t task) {
     const std::size_t turn = task / tasks;
     const std::uint64_t first = task % tasks * firings_in_task;
     returns[task] = lidar.measure(
-        scene, {flown[turn], believed[turn]},
+        scene, {ground_truth[turn], estimated[turn]},
         {(first_turn + turn) * firings + first, std::min(firings_in_task, firings - first)});
   });
   append(returns, points);
@@ -80,8 +80,8 @@ Eigen::Isometry3d world_from_body(const View& nose) {
 
 /// Returns the body trajectory between two nose views during [`begin`, `end`] [s]. Time starts with
 /// firing zero, and the body is stationary before and after.
-Trajectory way_of(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double begin,
-                  double end) {
+Trajectory make_trajectory(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double begin,
+                           double end) {
   const auto stamped = [](double time, const Eigen::Isometry3d& pose) {
     return StampedPose{time, pose.translation(), Eigen::Quaterniond(pose.linear())};
   };
@@ -92,7 +92,7 @@ Trajectory way_of(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, do
 
 }  // namespace
 
-std::size_t turns_of(const SurveySensorOptions& sensor) {
+std::size_t count_revolutions(const SurveySensorOptions& sensor) {
   if (!sensor.mount || !sensor.is_moving()) return 1;
   const double turns = sensor.frame_period * std::abs(sensor.scanner->rotation_rate);
   return static_cast<std::size_t>(std::max(1L, std::lround(turns)));
@@ -100,10 +100,10 @@ std::size_t turns_of(const SurveySensorOptions& sensor) {
 
 geometry::ScannerMount scanner_mount(const LidarConfig& lidar,
                                      const Eigen::Isometry3d& body_from_scanner) {
-  if (kind_of(lidar) == ScannerKind::rosette) {
-    const Vector3d look = body_from_scanner.linear().col(0);
-    return {body_from_scanner, std::atan2(look.y(), look.x()),
-            std::asin(std::clamp(look.z(), -1.0, 1.0))};
+  if (find_scanner_kind(lidar) == ScannerKind::rosette) {
+    const Vector3d boresight = body_from_scanner.linear().col(0);
+    return {body_from_scanner, std::atan2(boresight.y(), boresight.x()),
+            std::asin(std::clamp(boresight.z(), -1.0, 1.0))};
   }
   const Vector3d axis = body_from_scanner.linear().col(2);
   return {body_from_scanner, std::atan2(axis.y(), axis.x()) + 0.5 * std::numbers::pi, 0.0};
@@ -113,31 +113,32 @@ DepthCameraConfig planning_camera(const SurveySensorOptions& sensor,
                                   const std::optional<RosetteField>& rosette) {
   const LidarConfig& lidar = sensor.scanner.value();
   if (!sensor.mount) return forward_camera(lidar);
-  switch (kind_of(lidar)) {
+  switch (find_scanner_kind(lidar)) {
     case ScannerKind::ring:
-      return side_camera(lidar, turns_of(sensor));
+      return side_camera(lidar, count_revolutions(sensor));
     case ScannerKind::line:
       return line_camera(lidar, sensor.frame_period,
-                         static_cast<double>(turns_of(sensor)) * azimuth_step(lidar));
+                         static_cast<double>(count_revolutions(sensor)) * azimuth_step(lidar));
     case ScannerKind::rosette:
       break;
   }
   return rosette_camera(lidar, rosette.value());
 }
 
-std::optional<RosetteField> flown_rosette(const SurveySensorOptions& sensor) {
-  if (!sensor.mount || kind_of(sensor.scanner.value()) != ScannerKind::rosette) return std::nullopt;
+std::optional<RosetteField> compute_rosette_field(const SurveySensorOptions& sensor) {
+  if (!sensor.mount || find_scanner_kind(sensor.scanner.value()) != ScannerKind::rosette)
+    return std::nullopt;
   const geometry::ScannerMount& mount = *sensor.mount;
-  const View look = geometry::scanner_view(mount, {Vector3d::Zero(), Vector3d::UnitX()});
+  const View boresight = geometry::scanner_view(mount, {Vector3d::Zero(), Vector3d::UnitX()});
   return rosette_field(
       sensor.scanner.value(), sensor.is_moving() ? sensor.frame_period : rosette_period,
-      geometry::camera_pose(look).linear().transpose() * mount.body_from_scanner.linear());
+      geometry::camera_pose(boresight).linear().transpose() * mount.body_from_scanner.linear());
 }
 
-Eigen::Isometry3d Carriage::true_pose(const Eigen::Isometry3d& believed) const {
-  if (is_exact()) return believed;
-  Eigen::Isometry3d pose(geometry::rotation_of(turn) * believed.linear());
-  pose.translation() = believed.translation() + shift;
+Eigen::Isometry3d PlatformMotion::true_pose(const Eigen::Isometry3d& estimated) const {
+  if (is_exact()) return estimated;
+  Eigen::Isometry3d pose(geometry::make_rotation(turn) * estimated.linear());
+  pose.translation() = estimated.translation() + shift;
   return pose;
 }
 
@@ -154,10 +155,10 @@ SurveySensor::SurveySensor(const SurveySensorOptions& config, std::uint64_t seed
       }()),
       shutter_(config.shutter) {
   if (!config.scanner) return;
-  kind_ = kind_of(*config.scanner);
+  kind_ = find_scanner_kind(*config.scanner);
   if (!config.mount) return;
   mount_ = config.mount;
-  turns_ = turns_of(config);
+  turns_ = count_revolutions(config);
   if (config.is_moving()) period_ = config.frame_period;
 }
 
@@ -176,20 +177,20 @@ std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
       return sum - std::floor(sum);
     };
     Eigen::Isometry3d pose = world_from_scanner;
-    pose.translation() += spread_of_turns * (share(first_ratio) - 0.5) * pose.linear().col(2);
+    pose.translation() += revolution_spread * (share(first_ratio) - 0.5) * pose.linear().col(2);
     pose.rotate(Eigen::AngleAxisd(share(second_ratio) * azimuth_step(lidar), Vector3d::UnitZ()));
     poses.push_back(pose);
   }
   return poses;
 }
 
-void SurveySensor::measure_way(const Lidar& lidar, const Scene& scene, const View& view,
-                               const Carriage& carriage, std::uint64_t frame, unsigned threads,
-                               std::vector<Eigen::Vector3f>& points) const {
+void SurveySensor::measure_en_route(const Lidar& lidar, const Scene& scene, const View& view,
+                                    const PlatformMotion& platform_motion, std::uint64_t frame,
+                                    unsigned threads, std::vector<Eigen::Vector3f>& points) const {
   // Maximum duration of a stretch in periods, so that scans do not share firings.
-  constexpr double most_periods = 2.0;
+  constexpr double max_periods = 2.0;
   const double firing = lidar.config().firing_period;
-  const auto apart = static_cast<std::uint64_t>(std::ceil(most_periods * period_ / firing));
+  const auto apart = static_cast<std::uint64_t>(std::ceil(max_periods * period_ / firing));
   Eigen::Isometry3d from =
       geometry::camera_pose(view) * scanner_from_optical(lidar.config()).inverse();
   if (mount_) from = world_from_body(geometry::nose_view(*mount_, view));
@@ -197,21 +198,22 @@ void SurveySensor::measure_way(const Lidar& lidar, const Scene& scene, const Vie
   // At rest, one revolution of a line contains all measurable points.
   double duration =
       kind_ == ScannerKind::line ? 1.0 / std::abs(lidar.config().rotation_rate) : period_;
-  if (carriage.stretch) {
-    from = world_from_body(carriage.stretch->from);
-    to = world_from_body(carriage.stretch->to);
-    duration = carriage.stretch->duration;
+  if (platform_motion.stretch) {
+    from = world_from_body(platform_motion.stretch->from);
+    to = world_from_body(platform_motion.stretch->to);
+    duration = platform_motion.stretch->duration;
   }
   const auto count = std::clamp<std::uint64_t>(
       static_cast<std::uint64_t>(std::llround(duration / firing)), 1, apart);
   const double begin = static_cast<double>(frame * apart) * firing;
   const double end = begin + static_cast<double>(count) * firing;
-  const Trajectory believed = way_of(from, to, begin, end);
-  const Trajectory flown = way_of(carriage.true_pose(from), carriage.true_pose(to), begin, end);
+  const Trajectory estimated = make_trajectory(from, to, begin, end);
+  const Trajectory ground_truth =
+      make_trajectory(platform_motion.true_pose(from), platform_motion.true_pose(to), begin, end);
   const Eigen::Isometry3d body_from_scanner =
       mount_ ? mount_->body_from_scanner : Eigen::Isometry3d::Identity();
-  const LidarFlight flight{flown, carriage.is_exact() ? flown : believed, body_from_scanner,
-                           body_from_scanner};
+  const LidarFlight flight{ground_truth, platform_motion.is_exact() ? ground_truth : estimated,
+                           body_from_scanner, body_from_scanner};
   constexpr std::uint64_t firings_in_task = 4096;
   std::vector<LidarReturns> returns((count + firings_in_task - 1) / firings_in_task);
   geometry::parallel_for(returns.size(), threads, [&](std::size_t task) {
@@ -223,15 +225,15 @@ void SurveySensor::measure_way(const Lidar& lidar, const Scene& scene, const Vie
 }
 
 geometry::Scan SurveySensor::scan(const Scene& scene, const View& view, std::uint64_t frame,
-                                  unsigned threads, geometry::Scan recycled) const {
-  return scan(scene, view, {}, frame, threads, std::move(recycled));
+                                  unsigned threads, geometry::Scan buffer) const {
+  return scan(scene, view, {}, frame, threads, std::move(buffer));
 }
 
-geometry::Scan SurveySensor::scan(const Scene& scene, const View& view, const Carriage& carriage,
-                                  std::uint64_t frame, unsigned threads,
-                                  geometry::Scan recycled) const {
+geometry::Scan SurveySensor::scan(const Scene& scene, const View& view,
+                                  const PlatformMotion& platform_motion, std::uint64_t frame,
+                                  unsigned threads, geometry::Scan buffer) const {
   if (const auto* lidar = std::get_if<Lidar>(&sensor_)) {
-    geometry::Scan scan = std::move(recycled);
+    geometry::Scan scan = std::move(buffer);
     // A sensor fixed to the vehicle looks in the direction of its mount, regardless of the
     // requested view.
     const bool is_fixed = mount_ && kind_ == ScannerKind::rosette;
@@ -240,26 +242,27 @@ geometry::Scan SurveySensor::scan(const Scene& scene, const View& view, const Ca
     scan.points.clear();
     scan.pixels.clear();
     if (kind_ == ScannerKind::ring) {
-      append_turns(*lidar, scene, turns(view), carriage, frame * turns_, threads, scan.points);
+      append_turns(*lidar, scene, turns(view), platform_motion, frame * turns_, threads,
+                   scan.points);
     } else {
-      measure_way(*lidar, scene, view, carriage, frame, threads, scan.points);
+      measure_en_route(*lidar, scene, view, platform_motion, frame, threads, scan.points);
     }
     return scan;
   }
   const auto& camera = std::get<DepthCamera>(sensor_);
-  const Eigen::Isometry3d believed = geometry::camera_pose(view);
-  if (carriage.instants == 0 && carriage.is_exact()) {
-    return camera.scan(scene, believed, frame, threads, std::move(recycled));
+  const Eigen::Isometry3d estimated = geometry::camera_pose(view);
+  if (platform_motion.instants == 0 && platform_motion.is_exact()) {
+    return camera.scan(scene, estimated, frame, threads, std::move(buffer));
   }
-  FrameMotion motion{.world_from_camera = carriage.true_pose(believed)};
-  if (carriage.instants > 0) {
-    motion.velocity = carriage.velocity;
-    motion.turn_rate = carriage.turn_rate;
+  FrameMotion motion{.world_from_camera = platform_motion.true_pose(estimated)};
+  if (platform_motion.instants > 0) {
+    motion.velocity = platform_motion.velocity;
+    motion.turn_rate = platform_motion.turn_rate;
     motion.exposure = shutter_.exposure;
     motion.readout = shutter_.readout;
-    motion.instants = carriage.instants;
+    motion.instants = platform_motion.instants;
   }
-  return camera.scan(scene, believed, motion, frame, threads, std::move(recycled));
+  return camera.scan(scene, estimated, motion, frame, threads, std::move(buffer));
 }
 
 namespace {
@@ -268,7 +271,7 @@ namespace {
 double points_abeam(const SurveySensorOptions& sensor, double distance) {
   const LidarConfig& lidar = *sensor.scanner;
   const double swath = 2.0 * distance * std::tan(0.5 * sensor.camera.camera.horizontal_fov);
-  switch (kind_of(lidar)) {
+  switch (find_scanner_kind(lidar)) {
     case ScannerKind::ring: {
       const geometry::Camera camera(side_camera(lidar).camera);
       const double rays = camera.focal_length_px().prod() / (distance * distance);  // Per m^2.
@@ -289,7 +292,7 @@ double points_abeam(const SurveySensorOptions& sensor, double distance) {
 double scanning_speed(const SurveySensorOptions& sensor, double distance, double spacing,
                       double fastest) {
   // Lines are even and do not overlap, so most of their points are stored.
-  const bool is_even = kind_of(*sensor.scanner) == ScannerKind::line;
+  const bool is_even = find_scanner_kind(*sensor.scanner) == ScannerKind::line;
   const double apart = (is_even ? 1.0 : 0.5) * spacing;
   return std::min(points_abeam(sensor, distance) * apart * apart, 0.5 * fastest);
 }

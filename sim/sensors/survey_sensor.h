@@ -34,7 +34,7 @@ namespace skycap::sim {
 
 /// Length along the axis over which the revolutions of one scan are distributed, centred at the
 /// scan position [m].
-inline constexpr double spread_of_turns = 0.25;
+inline constexpr double revolution_spread = 0.25;
 
 /// Capture mode of a survey.
 enum class Capture {
@@ -63,15 +63,15 @@ struct SurveySensorOptions {
 };
 
 /// Returns the number of revolutions per scan: one, or in flight all revolutions between two scans.
-std::size_t turns_of(const SurveySensorOptions& sensor);
+std::size_t count_revolutions(const SurveySensorOptions& sensor);
 
 /// Returns the field of one scan of a mounted rosette scanner, in the frame of its planning camera.
 /// Returns std::nullopt for other scanners. Takes tenths of a second.
-std::optional<RosetteField> flown_rosette(const SurveySensorOptions& sensor);
+std::optional<RosetteField> compute_rosette_field(const SurveySensorOptions& sensor);
 
 /// Returns the camera that approximates the mounted or hand-held scanner for view selection.
-/// `rosette` is flown_rosette(sensor). For a single-line scanner, the pixel density is that of its
-/// rays until the speed is known. Throws the same errors as forward_camera().
+/// `rosette` is compute_rosette_field(sensor). For a single-line scanner, the pixel density is that
+/// of its rays until the speed is known. Throws the same errors as forward_camera().
 DepthCameraConfig planning_camera(const SurveySensorOptions& sensor,
                                   const std::optional<RosetteField>& rosette);
 
@@ -91,7 +91,7 @@ geometry::ScannerMount scanner_mount(const LidarConfig& lidar,
                                      const Eigen::Isometry3d& body_from_scanner);
 
 /// True motion of a sensor relative to its estimated view.
-struct Carriage {
+struct PlatformMotion {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< Position error [m].
   /// Small rotation angles around the world axes [rad].
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
@@ -107,7 +107,7 @@ struct Carriage {
   bool is_exact() const { return turn.isZero(0.0) && shift.isZero(0.0); }
 
   /// Returns the true pose for an estimated pose.
-  Eigen::Isometry3d true_pose(const Eigen::Isometry3d& believed) const;
+  Eigen::Isometry3d true_pose(const Eigen::Isometry3d& estimated) const;
 };
 
 /// Immutable and thread-safe.
@@ -118,21 +118,22 @@ class SurveySensor {
 
   /// Returns the scan from `view` in its optical frame (geometry::camera_pose()). Seed and `frame`
   /// determine the noise. The result does not depend on `threads` (0: all processors). Reuses the
-  /// memory of `recycled`.
+  /// memory of `buffer`.
   geometry::Scan scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,
-                      unsigned threads, geometry::Scan recycled = {}) const;
+                      unsigned threads, geometry::Scan buffer = {}) const;
 
   /// Returns the scan of a sensor with the given motion. Points are relative to the estimated pose.
   /// The velocity of a scanner is ignored, because its revolutions are measured from approximately
   /// one position.
-  geometry::Scan scan(const Scene& scene, const geometry::View& view, const Carriage& carriage,
-                      std::uint64_t frame, unsigned threads, geometry::Scan recycled = {}) const;
+  geometry::Scan scan(const Scene& scene, const geometry::View& view,
+                      const PlatformMotion& platform_motion, std::uint64_t frame, unsigned threads,
+                      geometry::Scan buffer = {}) const;
 
  private:
   std::vector<Eigen::Isometry3d> turns(const geometry::View& view) const;
-  void measure_way(const Lidar& lidar, const Scene& scene, const geometry::View& view,
-                   const Carriage& carriage, std::uint64_t frame, unsigned threads,
-                   std::vector<Eigen::Vector3f>& points) const;
+  void measure_en_route(const Lidar& lidar, const Scene& scene, const geometry::View& view,
+                        const PlatformMotion& platform_motion, std::uint64_t frame,
+                        unsigned threads, std::vector<Eigen::Vector3f>& points) const;
 
   std::variant<DepthCamera, Lidar> sensor_;
   geometry::Shutter shutter_;

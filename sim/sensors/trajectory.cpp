@@ -29,7 +29,7 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
     StampedPose& pose = poses_[i];
     require_pose(std::isfinite(pose.time) && pose.attitude.coeffs().allFinite(), i,
                  "has a value that is not a finite number");
-    geometry::require_place(pose.position, "trajectory pose " + std::to_string(i));
+    geometry::require_valid_position(pose.position, "trajectory pose " + std::to_string(i));
     require_pose(pose.attitude.norm() > 1e-6, i, "has an attitude of length zero");
     require_pose(i == 0 || pose.time > poses_[i - 1].time, i,
                  "is not later than the one before it");
@@ -50,12 +50,12 @@ Eigen::Isometry3d Trajectory::pose(double time) const {
   return Eigen::Translation3d(at.position) * at.attitude;
 }
 
-Trajectory believed_trajectory(const Trajectory& flown, const NavigationErrors& errors) {
+Trajectory estimated_trajectory(const Trajectory& ground_truth, const NavigationErrors& errors) {
   NavigationProcess process(errors);
-  std::vector<StampedPose> poses(flown.poses().begin(), flown.poses().end());
+  std::vector<StampedPose> poses(ground_truth.poses().begin(), ground_truth.poses().end());
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::array<double, 6> error =
-        process.next(i == 0 ? 0.0 : flown.poses()[i].time - flown.poses()[i - 1].time);
+    const std::array<double, 6> error = process.next(
+        i == 0 ? 0.0 : ground_truth.poses()[i].time - ground_truth.poses()[i - 1].time);
     for (int axis = 0; axis < 3; ++axis) {
       poses[i].position[axis] += error[axis];
       poses[i].attitude *= Quaterniond(Eigen::AngleAxisd(error[3 + axis], Vector3d::Unit(axis)));

@@ -38,9 +38,9 @@ class Trajectory {
   std::vector<StampedPose> poses_;
 };
 
-/// Returns the trajectory that the navigation of a platform on trajectory `flown` estimates, at the
-/// same times. Position errors are in world axes, attitude errors are small rotations around body
-/// axes.
-Trajectory believed_trajectory(const Trajectory& flown, const NavigationErrors& errors);
+/// Returns the trajectory that the navigation of a platform on trajectory `ground_truth` estimates,
+/// at the same times. Position errors are in world axes, attitude errors are small rotations around
+/// body axes.
+Trajectory estimated_trajectory(const Trajectory& ground_truth, const NavigationErrors& errors);
 
 }  // namespace skycap::sim

@@ -44,7 +44,7 @@ static_assert([] {
   return true;
 }());
 
-constexpr const PlannerTitle& title_of(PlannerName name) {
+constexpr const PlannerTitle& find_title(PlannerName name) {
   return planner_titles[static_cast<std::size_t>(name)];
 }
 

@@ -33,10 +33,10 @@ struct Maker {
     return limited(std::make_unique<see::SeePlanner>(config, camera), options.limits);
   }
 
-  std::unique_ptr<Planner> operator()(skycap::SkycapConfig config) const {
+  std::unique_ptr<Planner> operator()(surfel::SurfelConfig config) const {
     config.threads = run.threads;
     if (options.prior_surface) config.prior = options.prior_surface();
-    return std::make_unique<skycap::SkycapPlanner>(config, camera);  // supports limits itself
+    return std::make_unique<surfel::SurfelPlanner>(config, camera);  // supports limits itself
   }
 
   std::unique_ptr<Planner> operator()(VolumetricConfig config) const {

@@ -42,10 +42,10 @@ struct PlannerOptions {
 
   /// Settings of the planner `name`. Complete except for seed, threads and prior surface, and for
   /// the sphere of a volumetric planner if the mission does not set it.
-  std::variant<see::SeeConfig, skycap::SkycapConfig, volumetric::VolumetricConfig> method;
+  std::variant<see::SeeConfig, surfel::SurfelConfig, volumetric::VolumetricConfig> method;
 
   /// Returns the prior surface of the targets. Called on demand; may be empty.
-  std::function<std::shared_ptr<const skycap::PriorSurface>()> prior_surface;
+  std::function<std::shared_ptr<const surfel::PriorSurface>()> prior_surface;
 
   /// Throws Error{bad_config} "FIELD is ...; it must be ..." for the first setting that the planner
   /// does not accept. A missing sphere is accepted.

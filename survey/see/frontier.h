@@ -21,8 +21,9 @@ struct Frontier {
   geometry::SurfaceFrame frame;
   geometry::View view;
   double clear_offset = 0.0;  ///< zeta: start of the occlusion test; see OcclusionTest [m]
-  std::optional<std::size_t> offset_of_scan;  ///< number of scans when `clear_offset` was computed
-  bool was_put_off =
+  std::optional<std::size_t>
+      offset_scan_count;  ///< number of scans when `clear_offset` was computed
+  bool was_deferred =
       false;  ///< deferred before; the view is on the line from which the point was measured
 };
 
@@ -31,8 +32,8 @@ using FrontierMap = std::map<std::uint32_t, Frontier>;
 
 /// Constraints on view positions.
 struct ViewPlacement {
-  double distance = 2.0;               ///< d: distance from the frontier [m]
-  std::optional<double> least_height;  ///< minimum z of the sensor [m]
+  double distance = 2.0;             ///< d: distance from the frontier [m]
+  std::optional<double> min_height;  ///< minimum z of the sensor [m]
 };
 
 /// Returns the view of `frontier` from the distance `placement.distance` in the direction of the
@@ -44,6 +45,6 @@ geometry::View place_view(const Eigen::Vector3d& frontier, const Eigen::Vector3d
 /// Returns the view of `frontier` on the line from which it was measured, which was free at that
 /// time. The distance is `placement.distance`, increased as needed for the minimum height. It never
 /// exceeds the distance of the measurement.
-geometry::View look_again(const Frontier& frontier, const ViewPlacement& placement);
+geometry::View reobserve_view(const Frontier& frontier, const ViewPlacement& placement);
 
 }  // namespace skycap::survey::see

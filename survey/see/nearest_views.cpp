@@ -12,24 +12,24 @@ using Eigen::Vector3d;
 
 /// Cube of the octree.
 struct Cube {
-  Vector3d lowest;
+  Vector3d min_corner;
   double edge;
 
-  bool holds(const Vector3d& point) const {
-    return (point.array() >= lowest.array()).all() &&
-           (point.array() < (lowest.array() + edge)).all();
+  bool contains(const Vector3d& point) const {
+    return (point.array() >= min_corner.array()).all() &&
+           (point.array() < (min_corner.array() + edge)).all();
   }
   Cube child(int octant) const {
     const double half = 0.5 * edge;
-    return {lowest + half * Vector3d(octant & 1, (octant >> 1) & 1, (octant >> 2) & 1), half};
+    return {min_corner + half * Vector3d(octant & 1, (octant >> 1) & 1, (octant >> 2) & 1), half};
   }
-  int octant_of(const Vector3d& point) const {
-    const Vector3d middle = lowest + 0.5 * edge * Vector3d::Ones();
+  int find_octant(const Vector3d& point) const {
+    const Vector3d middle = min_corner + 0.5 * edge * Vector3d::Ones();
     return (point.x() >= middle.x() ? 1 : 0) | (point.y() >= middle.y() ? 2 : 0) |
            (point.z() >= middle.z() ? 4 : 0);
   }
-  double squared_distance_of_centre(const Vector3d& point) const {
-    return (lowest + 0.5 * edge * Vector3d::Ones() - point).squaredNorm();
+  double squared_distance_to_centre(const Vector3d& point) const {
+    return (min_corner + 0.5 * edge * Vector3d::Ones() - point).squaredNorm();
   }
 };
 
@@ -38,9 +38,9 @@ struct Cube {
 Cube grow_root(std::span<const Vector3d> positions, double leaf_size) {
   Cube root{positions[0] - 0.5 * leaf_size * Vector3d::Ones(), leaf_size};
   for (const Vector3d& position : positions) {
-    while (!root.holds(position)) {
+    while (!root.contains(position)) {
       for (int axis = 0; axis < 3; ++axis) {
-        if (position[axis] < root.lowest[axis]) root.lowest[axis] -= root.edge;
+        if (position[axis] < root.min_corner[axis]) root.min_corner[axis] -= root.edge;
       }
       root.edge *= 2.0;
     }
@@ -96,12 +96,12 @@ std::size_t approximately_nearest_view(std::span<const Vector3d> positions, cons
   while (cube.edge > 1.5 * leaf_size) {
     std::vector<std::size_t> children[8];
     for (const std::size_t index : inside)
-      children[cube.octant_of(positions[index])].push_back(index);
+      children[cube.find_octant(positions[index])].push_back(index);
     int nearest_child = -1;
     double nearest_distance = std::numeric_limits<double>::infinity();
     for (int octant = 0; octant < 8; ++octant) {
       if (children[octant].empty()) continue;
-      const double distance = cube.child(octant).squared_distance_of_centre(query);
+      const double distance = cube.child(octant).squared_distance_to_centre(query);
       if (distance >= nearest_distance) continue;
       nearest_distance = distance;
       nearest_child = octant;

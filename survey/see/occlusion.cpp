@@ -42,10 +42,10 @@ bool OcclusionTest::is_occluded(const Vector3d& frontier, double offset,
 }
 
 std::vector<Vector3d> directions_to_near(const geometry::PointGrid& points,
-                                         const Eigen::Vector3f& place, double radius,
+                                         const Eigen::Vector3f& position, double radius,
                                          const Vector3d& from) {
   std::vector<geometry::Neighbour> near;
-  points.find_within(place, radius, near);
+  points.find_within(position, radius, near);
   std::vector<Vector3d> directions;
   directions.reserve(near.size());
   for (const geometry::Neighbour& neighbour : near) {

@@ -40,10 +40,10 @@ class OcclusionTest {
   OcclusionConfig config_;
 };
 
-/// Returns the unit vectors from `from` to all points within `radius` of `place`, except for points
-/// at `from`.
+/// Returns the unit vectors from `from` to all points within `radius` of `position`, except for
+/// points at `from`.
 std::vector<Eigen::Vector3d> directions_to_near(const geometry::PointGrid& points,
-                                                const Eigen::Vector3f& place, double radius,
+                                                const Eigen::Vector3f& position, double radius,
                                                 const Eigen::Vector3d& from);
 
 }  // namespace skycap::survey::see

@@ -19,8 +19,8 @@ enum class ScanCentroid {
 
 /// Line from a frontier along which the clear offset (zeta) is determined.
 enum class OffsetLine {
-  sight_line,  ///< towards the sensor that first measured the point (paper §III-A)
-  normal,      ///< along the surface normal (released code)
+  line_of_sight,  ///< towards the sensor that first measured the point (paper §III-A)
+  normal,         ///< along the surface normal (released code)
 };
 
 /// End of the occlusion test. Never behind the sensor.
@@ -37,10 +37,10 @@ enum class NearestSearch {
 
 /// Treatment of a frontier that is occluded even from the clearest direction.
 enum class StillOccluded {
-  give_up,  ///< outlier until a new point is measured nearby (paper)
-  put_off,  ///< deferred, and finally viewed on the line from which it was measured (extension of
-            ///< Skycap)
-  keep,     ///< the view is used unchanged
+  discard,   ///< outlier until a new point is measured nearby (paper)
+  deferred,  ///< deferred, and finally viewed on the line from which it was measured (extension of
+             ///< Skycap)
+  keep,      ///< the view is used unchanged
 };
 
 /// Adjustment of a view that did not resolve its frontier.

@@ -31,7 +31,7 @@ struct SeePlanner::Impl {
       : config(see_config),
         camera(sensor),
         placement{config.view_distance.value_or(geometry::view_distance(camera, config.density)),
-                  config.least_height},
+                  config.min_height},
         map({.radius = config.resolution_radius,
              .core_threshold = config.effective_core_threshold(),
              .spacing = config.effective_spacing(),
@@ -41,7 +41,7 @@ struct SeePlanner::Impl {
                   {.radius = config.occlusion_radius.value_or(config.resolution_radius),
                    .search_distance = config.occlusion_search_distance,
                    .end = config.march_end}),
-        put_off(config.frontier_spacing) {}
+        deferred(config.frontier_spacing) {}
 
   std::optional<View> update(const ScanSpan& scan);
   void insert(std::span<const Vector3f> points, const geometry::ImagePixels& image);
@@ -56,8 +56,8 @@ struct SeePlanner::Impl {
   double clear_offset(Frontier& frontier);
   std::optional<View> select();
   std::size_t nearest_proposal() const;
-  void give_up(std::uint32_t point);
-  void give_up_cluster(std::uint32_t point);
+  void discard(std::uint32_t point);
+  void discard_cluster(std::uint32_t point);
   void set_aside(std::uint32_t point);
   void list_proposals();
 
@@ -68,14 +68,14 @@ struct SeePlanner::Impl {
   geometry::DensityMap map;
   geometry::SpacedPoints occluders;  // S: sparse subset of the cloud for the cap optimiser
   OcclusionTest occlusion;
-  std::vector<View> scans;                // view of each scan
-  std::uint32_t first_new = 0;            // first point of the last scan
-  std::optional<SeenThrough> free_space;  // lines of sight of the last scan, if configured
+  std::vector<View> scans;                  // view of each scan
+  std::uint32_t first_new = 0;              // first point of the last scan
+  std::optional<FreeSpaceTest> free_space;  // lines of sight of the last scan, if configured
 
   std::set<std::uint32_t>
-      waiting;              // frontiers without a proposal, because another one is too close
-  FrontierMap frontiers;    // frontiers with a proposal
-  PutOffFrontiers put_off;  // deferred frontiers that no proposal sees
+      waiting;                 // frontiers without a proposal, because another one is too close
+  FrontierMap frontiers;       // frontiers with a proposal
+  DeferredFrontiers deferred;  // deferred frontiers that no proposal sees
   std::map<std::uint32_t, AttemptRecord> attempts;
   VisibilityGraph graph;
   std::optional<std::uint32_t> target;  // frontier of the last proposed view
@@ -100,7 +100,7 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
     points = cropped;
     image = {};
   }
-  scans.push_back(geometry::view_of(scan.world_from_sensor));
+  scans.push_back(geometry::to_view(scan.world_from_sensor));
   insert(points, image);
   stopwatch.lap("insert");
   classify();
@@ -116,7 +116,7 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   stopwatch.lap("graph");
   std::optional<View> view = select();
   stopwatch.lap("select");
-  step.frontiers = frontiers.size() + waiting.size() + put_off.size();
+  step.frontiers = frontiers.size() + waiting.size() + deferred.size();
   return view;
 }
 
@@ -138,7 +138,7 @@ void SeePlanner::Impl::classify() {
   const geometry::DensityUpdate update = map.relabel(config.threads);
   for (const std::uint32_t point : update.lost_frontiers) {
     frontiers.erase(point);
-    put_off.forget(point);
+    deferred.forget(point);
     waiting.erase(point);
   }
   waiting.insert(update.new_frontiers.begin(), update.new_frontiers.end());
@@ -151,17 +151,17 @@ void SeePlanner::Impl::classify() {
 void SeePlanner::Impl::propose_for_new_frontiers() {
   const auto& positions = map.cloud().positions;
   const bool spaced = config.frontier_spacing > 0.0;
-  geometry::PointGrid taken(spaced ? config.frontier_spacing : 1.0);
+  geometry::PointGrid occupied(spaced ? config.frontier_spacing : 1.0);
   if (spaced) {
-    for (const auto& [point, frontier] : frontiers) taken.insert(positions[point]);
+    for (const auto& [point, frontier] : frontiers) occupied.insert(positions[point]);
   }
   for (auto next = waiting.begin(); next != waiting.end();) {
     const std::uint32_t point = *next;
-    if (spaced && taken.any_within(positions[point], config.frontier_spacing)) {
+    if (spaced && occupied.any_within(positions[point], config.frontier_spacing)) {
       ++next;
       continue;
     }
-    if (spaced) taken.insert(positions[point]);
+    if (spaced) occupied.insert(positions[point]);
     next = waiting.erase(next);
     const View& observer = scans[map.cloud().views[point]];
     Frontier frontier{.position = positions[point].cast<double>(),
@@ -203,10 +203,10 @@ void SeePlanner::Impl::adjust_target(std::span<const Vector3f> points) {
   const auto accepted = std::span(map.cloud().positions).subspan(first_new);
   const auto seen = config.adjustment_centroid == ScanCentroid::whole_scan ? points : accepted;
   const bool adjusted =
-      !seen.empty() && !found->second.was_put_off && record.views < config.max_attempts &&
+      !seen.empty() && !found->second.was_deferred && record.views < config.max_attempts &&
       adjust_view(found->second, record, centroid(seen), placement, config.adjustment);
   if (adjusted) return;
-  give_up_cluster(*target);
+  discard_cluster(*target);
   if (frontiers.empty()) propose_for_new_frontiers();
 }
 
@@ -221,13 +221,13 @@ void SeePlanner::Impl::avoid_occlusions() {
          nearest_views(proposal_positions, scans.back().position, config.visibility_update_limit)) {
       if (checked.insert(proposal_points[i]).second) unchecked.push_back(proposal_points[i]);
     }
-    std::vector<std::uint8_t> is_of_use(unchecked.size());
+    std::vector<std::uint8_t> is_useful(unchecked.size());
     geometry::parallel_for(unchecked.size(), config.threads, [&](std::size_t i) {
       if (stop.stop_requested()) throw Interrupted();
-      is_of_use[i] = avoid_occlusion(unchecked[i], frontiers.at(unchecked[i])) ? 1 : 0;
+      is_useful[i] = avoid_occlusion(unchecked[i], frontiers.at(unchecked[i])) ? 1 : 0;
     });
     for (std::size_t i = 0; i < unchecked.size(); ++i) {
-      if (is_of_use[i] != 0) continue;
+      if (is_useful[i] != 0) continue;
       set_aside(unchecked[i]);
       dropped = true;
     }
@@ -238,7 +238,7 @@ void SeePlanner::Impl::avoid_occlusions() {
 
 /// Moves an occluded view to the clearest direction. Returns false if it is still occluded there.
 bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) {
-  if (frontier.was_put_off) return true;
+  if (frontier.was_deferred) return true;
   const double offset = clear_offset(frontier);
   if (!occlusion.is_occluded(frontier.position, offset, frontier.view.position)) return true;
 
@@ -256,10 +256,10 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
 
 /// Returns zeta of a frontier, which depends only on the frontier and the cloud.
 double SeePlanner::Impl::clear_offset(Frontier& frontier) {
-  if (frontier.offset_of_scan != scans.size()) {
-    frontier.offset_of_scan = scans.size();
+  if (frontier.offset_scan_count != scans.size()) {
+    frontier.offset_scan_count = scans.size();
     const Vector3d line = frontier.observed_from - frontier.position;
-    const Vector3d direction = config.offset_line == OffsetLine::sight_line
+    const Vector3d direction = config.offset_line == OffsetLine::line_of_sight
                                    ? Vector3d(line.normalized())
                                    : frontier.frame.normal;
     frontier.clear_offset = occlusion.clear_offset(frontier.position, direction, line.norm());
@@ -329,25 +329,25 @@ std::size_t SeePlanner::Impl::nearest_proposal() const {
   return nearest_view(proposal_positions, sensor, scans.front().position, config.first_view_weight);
 }
 
-void SeePlanner::Impl::give_up(std::uint32_t point) {
-  map.give_up(point);
+void SeePlanner::Impl::discard(std::uint32_t point) {
+  map.discard(point);
   frontiers.erase(point);
 }
 
 /// Discards a frontier. If views are deferred, also discards the frontiers that it represents,
 /// because they had the same views.
-void SeePlanner::Impl::give_up_cluster(std::uint32_t point) {
-  give_up(point);
-  if (config.still_occluded != StillOccluded::put_off) return;
+void SeePlanner::Impl::discard_cluster(std::uint32_t point) {
+  discard(point);
+  if (config.still_occluded != StillOccluded::deferred) return;
   const auto& positions = map.cloud().positions;
-  std::vector<std::uint32_t> around = put_off.forget_around(positions[point].cast<double>());
+  std::vector<std::uint32_t> around = deferred.forget_around(positions[point].cast<double>());
   for (const std::uint32_t other : waiting) {
     const bool is_near = (positions[other] - positions[point]).norm() < config.frontier_spacing;
     if (is_near) around.push_back(other);
   }
   for (const std::uint32_t other : around) {
     waiting.erase(other);
-    map.give_up(other);
+    map.discard(other);
   }
 }
 
@@ -355,14 +355,14 @@ void SeePlanner::Impl::give_up_cluster(std::uint32_t point) {
 void SeePlanner::Impl::set_aside(std::uint32_t point) {
   const auto found = frontiers.find(point);
   const bool may_come_back =
-      config.still_occluded == StillOccluded::put_off && !found->second.was_put_off;
-  if (!may_come_back) return give_up_cluster(point);
-  put_off.add(frontiers.extract(found));
+      config.still_occluded == StillOccluded::deferred && !found->second.was_deferred;
+  if (!may_come_back) return discard_cluster(point);
+  deferred.add(frontiers.extract(found));
 }
 
 // Lists the proposals. If there are none, resumes the deferred frontiers.
 void SeePlanner::Impl::list_proposals() {
-  if (frontiers.empty()) put_off.take_up_again(placement, frontiers);
+  if (frontiers.empty()) deferred.requeue(placement, frontiers);
   proposal_points.clear();
   proposal_positions.clear();
   for (const auto& [point, frontier] : frontiers) {
@@ -381,7 +381,7 @@ std::optional<View> SeePlanner::next_view(const ScanSpan& scan) { return impl_->
 
 void SeePlanner::stop_on(const std::stop_token& stop) { impl_->stop = stop; }
 
-std::optional<View> SeePlanner::next_view_instead() {
+std::optional<View> SeePlanner::next_alternative_view() {
   if (impl_->target && impl_->frontiers.contains(*impl_->target)) {
     impl_->set_aside(*impl_->target);
     impl_->propose_for_new_frontiers();
@@ -392,7 +392,7 @@ std::optional<View> SeePlanner::next_view_instead() {
 }
 
 const geometry::PointCloud& SeePlanner::cloud() const { return impl_->map.cloud(); }
-geometry::PointCloud SeePlanner::release_cloud() { return impl_->map.release_cloud(); }
+geometry::PointCloud SeePlanner::take_cloud() { return impl_->map.take_cloud(); }
 const PlanningStep& SeePlanner::last_step() const { return impl_->step; }
 double SeePlanner::view_distance() const { return impl_->placement.distance; }
 

@@ -25,10 +25,10 @@ class SeePlanner final : public Planner {
   ~SeePlanner() override;
 
   std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
-  std::optional<geometry::View> next_view_instead() override;
+  std::optional<geometry::View> next_alternative_view() override;
   void stop_on(const std::stop_token& stop) override;
   const geometry::PointCloud& cloud() const override;
-  geometry::PointCloud release_cloud() override;
+  geometry::PointCloud take_cloud() override;
   const PlanningStep& last_step() const override;
 
   /// Returns d, the distance between a frontier and its proposed view [m].

@@ -32,7 +32,7 @@ struct SeeConfig {
       frame_neighbours;  ///< points for a frontier's frame, including the point itself; default: k
   bool free_space_normals = false;  ///< flip normals that point into the measured surface
 
-  OffsetLine offset_line = OffsetLine::sight_line;
+  OffsetLine offset_line = OffsetLine::line_of_sight;
   std::optional<double>
       occlusion_radius;  ///< radius of the ball and step of the occlusion test [m]; default: r
   MarchEnd march_end = MarchEnd::search_distance;
@@ -41,7 +41,7 @@ struct SeeConfig {
   geometry::CapConfig cap;     ///< search for the clear view (§III-B)
   ObservingDirection observing_direction = ObservingDirection::ray;
   double occluder_spacing = 0.01;  ///< spacing of the sparse cloud for the cap search [m]
-  StillOccluded still_occluded = StillOccluded::give_up;
+  StillOccluded still_occluded = StillOccluded::discard;
 
   bool visibility_graph = true;     ///< weight views by the number of visible frontiers (SEE++)
   bool facing_test = false;         ///< an edge requires a frontier normal that faces the view
@@ -58,7 +58,7 @@ struct SeeConfig {
   unsigned threads =
       1;  ///< threads for inserting scans; zero: all processors; does not affect results
 
-  std::optional<double> least_height;  ///< minimum z of proposed views [m]
+  std::optional<double> min_height;  ///< minimum z of proposed views [m]
 
   /// Throws Error{bad_config} that names the first field outside its interval. Also throws if
   /// density and radius admit no frontier (k < 4, see docs/explanation/see.md).

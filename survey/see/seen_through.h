@@ -14,9 +14,9 @@
 namespace skycap::survey::see {
 
 /// Points of a scan, indexed by their direction from the sensor.
-class SeenThrough {
+class FreeSpaceTest {
  public:
-  SeenThrough(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& sensor)
+  FreeSpaceTest(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& sensor)
       : sensor_(sensor), directions_(chord) {
     for (const Eigen::Vector3f& point : points) {
       const Eigen::Vector3d ray = point.cast<double>() - sensor;
@@ -24,23 +24,23 @@ class SeenThrough {
       ranges_.push_back(ray.norm());
     }
   }
-  /// Returns whether all measurements in the direction of `place` are behind it. Returns false
+  /// Returns whether all measurements in the direction of `position` are behind it. Returns false
   /// without measurements in that direction.
-  bool is_free(const Eigen::Vector3d& place) const {
-    const Eigen::Vector3d ray = place - sensor_;
+  bool is_free(const Eigen::Vector3d& position) const {
+    const Eigen::Vector3d ray = position - sensor_;
     const auto near = directions_.within(ray.normalized().cast<float>(), chord);
     return !near.empty() && std::all_of(near.begin(), near.end(), [&](std::uint32_t index) {
       return ranges_[index] > ray.norm();
     });
   }
-  /// Returns whether the side of a surface at `place` opposite to `normal` is free. Tests both
+  /// Returns whether the side of a surface at `position` opposite to `normal` is free. Tests both
   /// sides, the front side first, every `step` up to `limit`, until one is found to be free.
-  bool is_free_behind(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double step,
+  bool is_free_behind(const Eigen::Vector3d& position, const Eigen::Vector3d& normal, double step,
                       double limit) const {
     double along = step;
     while (along <= limit) {
-      if (is_free(place + along * normal)) return false;
-      if (is_free(place - along * normal)) return true;
+      if (is_free(position + along * normal)) return false;
+      if (is_free(position - along * normal)) return true;
       along += step;
     }
     return false;

@@ -34,20 +34,20 @@ std::size_t select_by_coverage(const VisibilityGraph& graph,
                                const std::vector<std::uint32_t>& vertices,
                                const std::vector<Eigen::Vector3d>& positions, std::size_t nearest,
                                const Eigen::Vector3d& sensor) {
-  constexpr double least_way =
+  constexpr double min_distance =
       1e-3;  // minimum path length; avoids division by zero at the sensor position
-  const std::size_t degree_of_nearest = graph.out_degree(vertices[nearest]);
+  const std::size_t nearest_degree = graph.out_degree(vertices[nearest]);
   std::size_t best = nearest;
-  double best_ratio = -1.0, best_way = 0.0;
+  double best_ratio = -1.0, best_distance = 0.0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const std::size_t degree = graph.out_degree(vertices[i]);
-    if (degree <= degree_of_nearest || !graph.has_edge(vertices[i], vertices[nearest])) continue;
-    const double way = (positions[i] - sensor).norm();
-    const double ratio = static_cast<double>(degree) / std::max(way, least_way);
-    if (ratio > best_ratio || (ratio == best_ratio && way < best_way)) {
+    if (degree <= nearest_degree || !graph.has_edge(vertices[i], vertices[nearest])) continue;
+    const double distance = (positions[i] - sensor).norm();
+    const double ratio = static_cast<double>(degree) / std::max(distance, min_distance);
+    if (ratio > best_ratio || (ratio == best_ratio && distance < best_distance)) {
       best = i;
       best_ratio = ratio;
-      best_way = way;
+      best_distance = distance;
     }
   }
   return best;

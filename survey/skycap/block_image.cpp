@@ -8,7 +8,7 @@
 
 #include "geometry/parallel.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 using Eigen::Matrix3d;
@@ -60,13 +60,13 @@ class Reducer {
   Reducer(BlockImage& image, const BlockSettings& settings)
       : image_(image), settings_(settings), moments_(image.blocks.size()) {}
 
-  /// `returns_of(row)` provides the returns of a row of blocks. It is called from several threads;
+  /// `row_returns(row)` provides the returns of a row of blocks. It is called from several threads;
   /// each thread finishes a row before it requests the next one.
-  template <typename ReturnsOf>
-  void reduce(ReturnsOf returns_of) {
+  template <typename RowReturns>
+  void reduce(RowReturns row_returns) {
     const std::size_t rows = static_cast<std::size_t>(image_.projection.rows);
     geometry::parallel_for(rows, settings_.threads,
-                           [&](std::size_t row) { gather_row(returns_of(row), row); });
+                           [&](std::size_t row) { gather_row(row_returns(row), row); });
     geometry::parallel_for(rows, settings_.threads, [&](std::size_t row) { fit_row(row); });
   }
 
@@ -77,20 +77,20 @@ class Reducer {
     std::vector<float> farthest(columns, 0.0F);
     for (std::size_t i = 0; i < returns.size();) {
       const std::uint32_t number = returns[i].block;
-      float nearest = image_.blocks[number].least_depth, deepest = farthest[number - first];
+      float nearest = image_.blocks[number].min_depth, deepest = farthest[number - first];
       for (; i < returns.size() && returns[i].block == number; ++i) {
         nearest = std::min(nearest, returns[i].point.z());
         deepest = std::max(deepest, returns[i].point.z());
       }
-      image_.blocks[number].least_depth = nearest;
+      image_.blocks[number].min_depth = nearest;
       farthest[number - first] = deepest;
     }
     for (std::size_t i = 0; i < returns.size();) {
       const std::uint32_t number = returns[i].block;
       Block& block = image_.blocks[number];
       const float farthest_depth = farthest[number - first];
-      block.is_edge = farthest_depth - block.least_depth > settings_.jump;
-      const float behind = block.is_edge ? 0.5F * (block.least_depth + farthest_depth)
+      block.is_edge = farthest_depth - block.min_depth > settings_.jump;
+      const float behind = block.is_edge ? 0.5F * (block.min_depth + farthest_depth)
                                          : std::numeric_limits<float>::infinity();
       // Consecutive returns of a block are summed in registers.
       Moments moments = moments_[number];
@@ -172,7 +172,7 @@ Eigen::Vector2f half_slopes(const geometry::Camera& camera) {
 }
 
 /// Marks the blocks completely within these slopes around the optical axis.
-void mark_shots(BlockImage& image, const Eigen::Vector2f& half_slopes) {
+void mark_scanned(BlockImage& image, const Eigen::Vector2f& half_slopes) {
   const BlockProjection& p = image.projection;
   const auto is_within = [&](int number, int axis) {
     const float first =
@@ -181,7 +181,7 @@ void mark_shots(BlockImage& image, const Eigen::Vector2f& half_slopes) {
     return std::max(std::abs(first), std::abs(last)) <= half_slopes[axis] * (1.0F + 1e-5F);
   };
   for (std::size_t i = 0; i < image.blocks.size(); ++i) {
-    image.blocks[i].is_shot_at = is_within(static_cast<int>(i) % p.columns, 0) &&
+    image.blocks[i].is_scanned = is_within(static_cast<int>(i) % p.columns, 0) &&
                                  is_within(static_cast<int>(i) / p.columns, 1);
   }
 }
@@ -199,19 +199,19 @@ float BlockImage::ray_density(const Block& block, const Eigen::Vector3f& point,
          (depth * depth * cos_off_axis);
 }
 
-Scale scale_of(double extent, double pixel, std::optional<double> surfel) {
+Scale make_scale(double extent, double pixel, std::optional<double> surfel) {
   // Target number of surfels across the scene, and limits of the surfel size in pixels. The lower
   // limit is the size of a block; up to the upper limit, the relief that matters for a view is
   // resolved.
-  constexpr double surfels_across = 150.0, least_pixels = 4.0, most_pixels = 25.0;
+  constexpr double surfels_across = 150.0, min_pixels = 4.0, max_pixels = 25.0;
   // A block is slightly smaller than a surfel, so that no surfel falls between blocks. It has a
   // minimum width in pixels, below which the noise cannot be estimated.
   constexpr double blocks_to_surfel = 0.8;
-  constexpr int least_block_px = 4;
+  constexpr int min_block_px = 4;
   constexpr double jump_slope = 4.0;  // depth difference of a slope of 76 degrees over a block
-  const double h = surfel.value_or(
-      std::clamp(extent / surfels_across, least_pixels * pixel, most_pixels * pixel));
-  const int block_px = std::max(least_block_px, static_cast<int>(blocks_to_surfel * h / pixel));
+  const double h =
+      surfel.value_or(std::clamp(extent / surfels_across, min_pixels * pixel, max_pixels * pixel));
+  const int block_px = std::max(min_block_px, static_cast<int>(blocks_to_surfel * h / pixel));
   return {h, block_px, jump_slope * block_px * pixel};
 }
 
@@ -304,7 +304,7 @@ std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
           returns.begin()));
     }
     image.blocks.resize(face_size);
-    mark_shots(image, face == front_face ? half_slopes(camera) : Eigen::Vector2f::Zero());
+    mark_scanned(image, face == front_face ? half_slopes(camera) : Eigen::Vector2f::Zero());
     Reducer(image, settings).reduce([&](std::size_t row) {
       return std::span<const Return>(returns).subspan(starts[row], starts[row + 1] - starts[row]);
     });
@@ -324,4 +324,4 @@ std::vector<BlockImage> make_block_images(const geometry::ScanSpan& scan,
   return make_cube_images(scan, camera, face, settings);
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

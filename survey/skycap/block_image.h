@@ -22,7 +22,7 @@
 #include "geometry/place/camera.h"
 #include "geometry/points/scan.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Projection of a point onto a grid of blocks.
 struct BlockHit {
@@ -39,7 +39,7 @@ struct BlockProjection {
   Eigen::Vector2f principal_point = Eigen::Vector2f::Zero();        ///< [blocks]
 
   /// Returns the row-major number of a block.
-  std::size_t number_of(int row, int column) const {
+  std::size_t block_index(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(column);
   }
@@ -67,14 +67,14 @@ struct Block {
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< world frame [m]
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit vector towards the sensor
   float depth = 0.0F;                                ///< mean depth
-  float least_depth = std::numeric_limits<float>::infinity();
+  float min_depth = std::numeric_limits<float>::infinity();
   float depth_deviation = 0.0F;  ///< standard deviation of the depths
   /// Reliability of the normal, from 0 to 1. High for frontal views of the interior of a surface
   /// without edges.
   float quality = 0.0F;
   float residual = 0.0F;  ///< standard deviation across the surface [m]; 0 if unknown
   /// Whether rays are known to cover the whole block, so that a missing return is a miss.
-  bool is_shot_at = true;
+  bool is_scanned = true;
 };
 
 struct BlockImage {
@@ -94,14 +94,14 @@ struct BlockSettings {
 
 /// Resolution of the scene model.
 struct Scale {
-  double surfel;      ///< h: distance between surfels [m]
-  int block_px;       ///< B: block width [px]
-  double least_jump;  ///< minimum J, independent of the noise [m]
+  double surfel;    ///< h: distance between surfels [m]
+  int block_px;     ///< B: block width [px]
+  double min_jump;  ///< minimum J, independent of the noise [m]
 };
 
 /// Derives the resolution from the extent of the scene [m] and the pixel spacing at the view
 /// distance [m]. `surfel` is the user's value of h, if any.
-Scale scale_of(double extent, double pixel, std::optional<double> surfel);
+Scale make_scale(double extent, double pixel, std::optional<double> surfel);
 
 /// Converts an organised scan to a block image.
 BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Camera& camera,
@@ -121,4 +121,4 @@ std::vector<BlockImage> make_block_images(const geometry::ScanSpan& scan,
                                           const geometry::Camera& camera,
                                           const BlockSettings& settings);
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -12,7 +12,7 @@
 #include "survey/planner.h"
 #include "survey/skycap/view_batch.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 using Eigen::Vector3d;
@@ -27,9 +27,9 @@ constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
 constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
 constexpr int refined = 3;  // number of candidates refined per round
 constexpr int turned_directions = 6;
-constexpr std::size_t pool_size = 40;   // number of candidates for the batch
-constexpr std::size_t most_frames = 3;  // maximum number of frames that represent a path
-constexpr std::size_t most_line_frames =
+constexpr std::size_t pool_size = 40;  // number of candidates for the batch
+constexpr std::size_t max_frames = 3;  // maximum number of frames that represent a path
+constexpr std::size_t max_line_frames =
     16;  // maximum for sensors that measure lines, whose frames are narrow
 
 struct Candidate {
@@ -76,24 +76,24 @@ std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count
   return sorted;
 }
 
-ChoiceMemory::Key key_of(const View& view) {
+ViewGainCache::Key make_key(const View& view) {
   return {view.position.x(),  view.position.y(),  view.position.z(),
           view.direction.x(), view.direction.y(), view.direction.z()};
 }
 
-class Chooser {
+class ViewSelector {
  public:
-  Chooser(const GainField& field, const ViewLimits& limits, const Admission& admits,
-          const View& present, double most_way, const ChooserSettings& settings,
-          ChoiceMemory& memory)
+  ViewSelector(const GainField& field, const ViewLimits& limits, const Admission& admits,
+               const View& present, double max_path_length, const ViewSelectorSettings& settings,
+               ViewGainCache& cache)
       : field_(field),
         limits_(limits),
         admits_(admits),
         present_(present),
         position_(present.position),
-        most_way_(most_way),
+        max_path_length_(max_path_length),
         settings_(settings),
-        memory_(memory) {}
+        cache_(cache) {}
 
   std::optional<Choice> choose() {
     propose_candidates();
@@ -106,31 +106,32 @@ class Chooser {
 
     double best_gain = 0.0;
     for (const Candidate& c : candidates_) {
-      best_gain = std::max(best_gain, c.gain.area - (1.0 - settings_.unseen_yield) * c.gain.unseen);
+      best_gain =
+          std::max(best_gain, c.gain.area - (1.0 - settings_.prediction_yield) * c.gain.predicted);
     }
     const std::vector<std::size_t> pool = diverse_pool();
     std::vector<BatchView> views = seen_from(pool);
-    if (settings_.counts_ways) best_gain = best_on_ways(views);
-    const std::size_t first = first_of_batch(views);
+    if (settings_.counts_en_route) best_gain = best_en_route(views);
+    const std::size_t first = find_first_batch_stop(views);
     Choice choice{candidates_[pool[first]].view, candidates_[pool[first]].gain.area,
-                  views[first].sights, best_gain,
+                  views[first].visible_targets, best_gain,
                   std::vector<float>(field_.targets().size(), 0.0F)};
     for (const BatchView& view : views) {
-      for (const Sight& sight : view.sights) {
-        float& chance = choice.chances[sight.target];
-        chance = std::max(chance, sight.clearness);
+      for (const VisibleTarget& visible_target : view.visible_targets) {
+        float& chance = choice.chances[visible_target.target];
+        chance = std::max(chance, visible_target.line_of_sight_probability);
       }
     }
     for (std::size_t i = 0; i < pool.size(); ++i) {
-      memory_.pool.emplace(key_of(candidates_[pool[i]].view), std::move(views[i].sights));
+      cache_.pool.emplace(make_key(candidates_[pool[i]].view), std::move(views[i].visible_targets));
     }
     return choice;
   }
 
  private:
   void add_candidate(const Vector3d& target, const Vector3d& towards_view, double distance) {
-    const auto view = limits_.view_of_target(target, towards_view, distance);
-    if (!view || (view->position - position_).norm() > most_way_ || !admits_(*view)) return;
+    const auto view = limits_.make_target_view(target, towards_view, distance);
+    if (!view || (view->position - position_).norm() > max_path_length_ || !admits_(*view)) return;
     candidates_.push_back({*view, {}});
   }
 
@@ -165,8 +166,8 @@ class Chooser {
   void evaluate(std::size_t first) {
     std::vector<Candidate*> unknown;
     for (std::size_t i = first; i < candidates_.size(); ++i) {
-      const auto known = memory_.gains.find(key_of(candidates_[i].view));
-      if (known == memory_.gains.end()) {
+      const auto known = cache_.gains.find(make_key(candidates_[i].view));
+      if (known == cache_.gains.end()) {
         unknown.push_back(&candidates_[i]);
       } else {
         candidates_[i].gain = known->second;
@@ -178,16 +179,16 @@ class Chooser {
     });
     if (settings_.stop.stop_requested()) throw Interrupted();
     for (const Candidate* asked : unknown) {
-      memory_.gains.emplace(key_of(asked->view), asked->gain);
+      cache_.gains.emplace(make_key(asked->view), asked->gain);
     }
   }
 
   /// Returns the weight of predicted gains relative to known surface. It is at most 1, because
   /// predictions that lead to larger surfaces are no reason to defer known surface.
-  double guess_weight() const { return std::min(1.0, settings_.unseen_yield); }
+  double prediction_weight() const { return std::min(1.0, settings_.prediction_yield); }
 
   double score(const Candidate& c) const {
-    const double gain = c.gain.area - (1.0 - guess_weight()) * c.gain.unseen;
+    const double gain = c.gain.area - (1.0 - prediction_weight()) * c.gain.predicted;
     return gain / (settings_.view_price + (c.view.position - position_).norm());
   }
 
@@ -248,33 +249,35 @@ class Chooser {
 
   /// Returns the sights of the views in the pool. Reuses cached sights of the last selection.
   std::vector<BatchView> seen_from(const std::vector<std::size_t>& pool) {
-    std::map<ChoiceMemory::Key, std::vector<Sight>> known = std::exchange(memory_.pool, {});
+    std::map<ViewGainCache::Key, std::vector<VisibleTarget>> known = std::exchange(cache_.pool, {});
     std::vector<BatchView> views(pool.size());
     geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
       const View& view = candidates_[pool[i]].view;
-      const auto remembered = known.find(key_of(view));
-      views[i] = {view.position, remembered == known.end() ? sights_on_way_to(view)
+      const auto remembered = known.find(make_key(view));
+      views[i] = {view.position, remembered == known.end() ? visible_targets_en_route(view)
                                                            : std::move(remembered->second)};
     });
     return views;
   }
 
-  std::vector<Sight> sights_on_way_to(const View& view) const {
+  std::vector<VisibleTarget> visible_targets_en_route(const View& view) const {
     if (!settings_.sees_lines) {
-      return sights_with_way(field_, present_, view, settings_.frame_spacing);
+      return visible_with_leg(field_, present_, view, settings_.frame_spacing);
     }
-    return sights_of_lines(field_, present_, view, settings_.frame_spacing,
-                           settings_.view_distance);
+    return visible_along_lines(field_, present_, view, settings_.frame_spacing,
+                               settings_.view_distance);
   }
 
   /// Returns the maximum gain of a view with its path, as defined in Choice.
-  double best_on_ways(const std::vector<BatchView>& views) const {
+  double best_en_route(const std::vector<BatchView>& views) const {
     double best = 0.0;
     for (const BatchView& view : views) {
       double gain = 0.0;
-      for (const Sight& sight : view.sights) {
-        const double chance = field_.is_patch(sight.target) ? settings_.unseen_yield : 1.0;
-        gain += chance * field_.targets()[sight.target].weight * sight.covered_share;
+      for (const VisibleTarget& visible_target : view.visible_targets) {
+        const double chance =
+            field_.is_patch(visible_target.target) ? settings_.prediction_yield : 1.0;
+        gain +=
+            chance * field_.targets()[visible_target.target].weight * visible_target.covered_share;
       }
       best = std::max(best, gain);
     }
@@ -282,11 +285,11 @@ class Chooser {
   }
 
   /// Returns the index in `views` of the first stop of a batch.
-  std::size_t first_of_batch(const std::vector<BatchView>& views) const {
+  std::size_t find_first_batch_stop(const std::vector<BatchView>& views) const {
     std::vector<float> weights;
-    const auto guess = static_cast<float>(guess_weight());
+    const auto prediction = static_cast<float>(prediction_weight());
     for (std::size_t t = 0; t < field_.targets().size(); ++t) {
-      weights.push_back(field_.targets()[t].weight * (field_.is_patch(t) ? guess : 1.0F));
+      weights.push_back(field_.targets()[t].weight * (field_.is_patch(t) ? prediction : 1.0F));
     }
     const BatchSettings batch{.size = static_cast<std::size_t>(settings_.batch),
                               .view_price = settings_.view_price};
@@ -300,9 +303,9 @@ class Chooser {
   const Admission& admits_;
   const View present_;
   const Vector3d position_;
-  const double most_way_;
-  const ChooserSettings& settings_;
-  ChoiceMemory& memory_;
+  const double max_path_length_;
+  const ViewSelectorSettings& settings_;
+  ViewGainCache& cache_;
   std::vector<Candidate> candidates_;
 };
 
@@ -331,73 +334,78 @@ std::vector<View> views_between(const View& from, const View& to, std::size_t co
 namespace {
 
 /// Combined sights of several observations.
-class JointSights {
+class JointVisibility {
  public:
-  explicit JointSights(std::size_t targets)
-      : uncovered_(targets, 1.0F), clearness_(targets, 0.0F) {}
+  explicit JointVisibility(std::size_t targets)
+      : uncovered_(targets, 1.0F), line_of_sight_probability_(targets, 0.0F) {}
 
-  void add(const std::vector<Sight>& seen, float times) {
-    for (const Sight& sight : seen) {
-      uncovered_[sight.target] *= std::pow(1.0F - sight.covered_share, times);
-      clearness_[sight.target] = std::max(clearness_[sight.target], sight.clearness);
+  void add(const std::vector<VisibleTarget>& seen, float times) {
+    for (const VisibleTarget& visible_target : seen) {
+      uncovered_[visible_target.target] *= std::pow(1.0F - visible_target.covered_share, times);
+      line_of_sight_probability_[visible_target.target] =
+          std::max(line_of_sight_probability_[visible_target.target],
+                   visible_target.line_of_sight_probability);
     }
   }
 
-  std::vector<Sight> all() const {
-    std::vector<Sight> sights;
+  std::vector<VisibleTarget> all() const {
+    std::vector<VisibleTarget> visible_targets;
     for (std::uint32_t t = 0; t < uncovered_.size(); ++t) {
-      if (clearness_[t] == 0.0F)
+      if (line_of_sight_probability_[t] == 0.0F)
         continue;  // unknown space that hides the target from one view may hide it from all
-      sights.push_back({t, std::min(1.0F - uncovered_[t], clearness_[t]), clearness_[t]});
+      visible_targets.push_back({t, std::min(1.0F - uncovered_[t], line_of_sight_probability_[t]),
+                                 line_of_sight_probability_[t]});
     }
-    return sights;
+    return visible_targets;
   }
 
  private:
-  std::vector<float> uncovered_, clearness_;
+  std::vector<float> uncovered_, line_of_sight_probability_;
 };
 
 }  // namespace
 
-std::vector<Sight> sights_with_way(const GainField& field, const View& from, const View& to,
-                                   double frame_spacing) {
-  std::vector<Sight> sights = field.sights(to);
-  if (!(frame_spacing > 0.0)) return sights;
+std::vector<VisibleTarget> visible_with_leg(const GainField& field, const View& from,
+                                            const View& to, double frame_spacing) {
+  std::vector<VisibleTarget> visible_targets = field.visible_targets(to);
+  if (!(frame_spacing > 0.0)) return visible_targets;
   const double frames = (to.position - from.position).norm() / frame_spacing;
-  const auto looked_at = static_cast<std::size_t>(std::min<double>(most_frames, frames));
-  if (looked_at == 0) return sights;
+  const auto looked_at = static_cast<std::size_t>(std::min<double>(max_frames, frames));
+  if (looked_at == 0) return visible_targets;
   const auto standing_for = static_cast<float>(frames / static_cast<double>(looked_at));
-  JointSights joint(field.targets().size());
-  joint.add(sights, 1.0F);
+  JointVisibility joint(field.targets().size());
+  joint.add(visible_targets, 1.0F);
   for (const View& frame : views_between(from, to, looked_at)) {
-    joint.add(field.sights(frame), standing_for);
+    joint.add(field.visible_targets(frame), standing_for);
   }
   return joint.all();
 }
 
-std::vector<Sight> sights_of_lines(const GainField& field, const View& from, const View& to,
-                                   double frame_spacing, double view_distance) {
-  const Vector3d way = to.position - from.position;
+std::vector<VisibleTarget> visible_along_lines(const GainField& field, const View& from,
+                                               const View& to, double frame_spacing,
+                                               double view_distance) {
+  const Vector3d displacement = to.position - from.position;
   const auto looked_at = static_cast<std::size_t>(
-      std::min<double>(most_line_frames, std::ceil(way.norm() / frame_spacing)));
+      std::min<double>(max_line_frames, std::ceil(displacement.norm() / frame_spacing)));
   const double turn = std::remainder(std::atan2(to.direction.y(), to.direction.x()) -
                                          std::atan2(from.direction.y(), from.direction.x()),
                                      2.0 * std::numbers::pi);
-  JointSights joint(field.targets().size());
+  JointVisibility joint(field.targets().size());
   for (const View& frame : views_between(from, to, looked_at)) {
     // The nose is to the right of the lines, so that a left rotation moves them backwards.
     const Vector3d nose = Vector3d(frame.direction.y(), -frame.direction.x(), 0.0).normalized();
-    const double swept = std::abs(way.dot(nose) - view_distance * turn);
-    joint.add(field.sights(frame),
+    const double swept = std::abs(displacement.dot(nose) - view_distance * turn);
+    joint.add(field.visible_targets(frame),
               static_cast<float>(swept / frame_spacing / static_cast<double>(looked_at)));
   }
   return joint.all();
 }
 
 std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
-                                  const Admission& admits, const View& present, double most_way,
-                                  const ChooserSettings& settings, ChoiceMemory& memory) {
-  return Chooser(field, limits, admits, present, most_way, settings, memory).choose();
+                                  const Admission& admits, const View& present,
+                                  double max_path_length, const ViewSelectorSettings& settings,
+                                  ViewGainCache& cache) {
+  return ViewSelector(field, limits, admits, present, max_path_length, settings, cache).choose();
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

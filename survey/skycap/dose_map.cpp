@@ -8,13 +8,13 @@
 #include "geometry/parallel.h"
 #include "geometry/place/pose.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 using Eigen::Vector3f;
 
 // Lengths are in units of the spacing h, areas in units of its square.
-constexpr float least_distance = 0.9F;     // minimum distance between surfels
+constexpr float min_distance = 0.9F;       // minimum distance between surfels
 constexpr float packed_area = 1.16F;       // area per surfel for random packing at that distance
 constexpr float largest_area = 3.5F;       // maximum initial area of an oblique block
 constexpr float neighbour_reach = 2.5F;    // maximum distance of a surfel that continues another
@@ -28,7 +28,7 @@ constexpr float territory_reach =
 constexpr float face_depth = 0.55F;  // distance behind a surfel at which another face is searched
 constexpr float face_reach = 2.2F;   // search radius of another face
 constexpr float other_face = 0.3F;   // maximum cosine between different faces
-constexpr int most_merges = 8;
+constexpr int max_merges = 8;
 constexpr float opposite_sides = -0.3F;  // maximum cosine between both sides of a thin object
 
 constexpr int direction_count = 6;
@@ -72,19 +72,20 @@ Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
   return open_directions(surfels, i)[static_cast<std::size_t>(k)];
 }
 
-DoseMap::DoseMap(float spacing, unsigned threads)
+SurfelMap::SurfelMap(float spacing, unsigned threads)
     : spacing_(spacing), threads_(threads), grid_(neighbour_reach * spacing) {}
 
-void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
-                  const std::optional<Eigen::AlignedBox3f>& region,
-                  const IsMeasured& was_measured) {
-  add_looks(image, dose, jump);
-  add_surfels(image, dose, region, was_measured);
+void SurfelMap::add(const BlockImage& image, const CoverageModel& coverage_model, float jump,
+                    const std::optional<Eigen::AlignedBox3f>& region,
+                    const IsMeasured& was_measured) {
+  add_observations(image, coverage_model, jump);
+  add_surfels(image, coverage_model, region, was_measured);
   // Rays come from all directions, so each axis gets a third of the variance along the ray.
-  blur_hazards(std::hypot(dose.noise().isotropic, dose.noise().along_ray / std::sqrt(3.0)));
+  blur_hazards(std::hypot(coverage_model.noise().isotropic,
+                          coverage_model.noise().along_ray / std::sqrt(3.0)));
 }
 
-void DoseMap::blur_hazards(double sigma) {
+void SurfelMap::blur_hazards(double sigma) {
   surfels_.blurred_hazards = surfels_.hazards;
   if (!(sigma > 0.0)) return;
   const float scale = static_cast<float>(-0.5 / (sigma * sigma));
@@ -99,11 +100,12 @@ void DoseMap::blur_hazards(double sigma) {
   for (std::size_t i = 0; i < surfels_.size(); ++i) surfels_.blurred_hazards[i] /= weights[i];
 }
 
-void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float jump) {
+void SurfelMap::add_observations(const BlockImage& image, const CoverageModel& coverage_model,
+                                 float jump) {
   const BlockProjection& projection = image.projection;
-  const float across =
-      std::max(off_plane_tolerance * spacing_, 2.0F * static_cast<float>(dose.noise().across(1.0)));
-  const auto add_look = [&](std::size_t i) {
+  const float across = std::max(off_plane_tolerance * spacing_,
+                                2.0F * static_cast<float>(coverage_model.noise().across(1.0)));
+  const auto add_observation = [&](std::size_t i) {
     const auto hit = projection.project(surfels_.positions[i]);
     if (!hit) return;
     const Block& block = image.blocks[hit->block];
@@ -118,13 +120,13 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
     const Vector3f towards_sensor =
         (projection.sensor_position - surfels_.positions[i]).normalized();
     const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
-    surfels_.hazards[i] +=
-        dose.hazard(image.ray_density(block, surfels_.positions[i], cos_incidence), cos_incidence);
+    surfels_.hazards[i] += coverage_model.hazard(
+        image.ray_density(block, surfels_.positions[i], cos_incidence), cos_incidence);
     if (is_better) {
       surfels_.positions[i] += off_plane * block.normal;
       surfels_.normals[i] = block.normal;
       surfels_.merges[i] = 1;
-    } else if (surfels_.merges[i] < most_merges) {
+    } else if (surfels_.merges[i] < max_merges) {
       const float share = 1.0F / static_cast<float>(++surfels_.merges[i]);
       surfels_.positions[i] += share * off_plane * block.normal;
       if (agreement > 0.5F) {
@@ -137,19 +139,19 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
   constexpr std::size_t some = 1024;  // surfels per part
   geometry::parallel_for((surfels_.size() + some - 1) / some, threads_, [&](std::size_t part) {
     const std::size_t end = std::min(surfels_.size(), (part + 1) * some);
-    for (std::size_t i = part * some; i < end; ++i) add_look(i);
+    for (std::size_t i = part * some; i < end; ++i) add_observation(i);
   });
 }
 
-void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
-                          const std::optional<Eigen::AlignedBox3f>& region,
-                          const IsMeasured& was_measured) {
+void SurfelMap::add_surfels(const BlockImage& image, const CoverageModel& coverage_model,
+                            const std::optional<Eigen::AlignedBox3f>& region,
+                            const IsMeasured& was_measured) {
   std::uint32_t full = 0;
   for (const Block& block : image.blocks) full = std::max(full, block.returns);
   for (const Block& block : image.blocks) {
     if (block.returns == 0 || 6 * block.returns < full) continue;
     if (region && !region->contains(block.mean)) continue;
-    if (is_taken(block)) continue;
+    if (is_occupied(block)) continue;
 
     const Vector3f towards_sensor = (image.projection.sensor_position - block.mean).normalized();
     const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
@@ -160,7 +162,7 @@ void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
     surfels_.normals.push_back(block.normal);
     const float area = std::clamp(footprint, packed_area * square, largest_area * square);
     surfels_.areas.push_back(was_measured && was_measured(block.mean) ? 0.0F : area);
-    surfels_.hazards.push_back(dose.hazard(density, cos_incidence));
+    surfels_.hazards.push_back(coverage_model.hazard(density, cos_incidence));
     surfels_.trusts.push_back(1.0F);
     surfels_.qualities.push_back(block.quality);
     surfels_.merges.push_back(1);
@@ -172,15 +174,15 @@ void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
   }
 }
 
-bool DoseMap::is_taken(const Block& block) {
+bool SurfelMap::is_occupied(const Block& block) {
   found_.clear();
-  grid_.find_within(block.mean, least_distance * spacing_, found_);
+  grid_.find_within(block.mean, min_distance * spacing_, found_);
   return std::any_of(found_.begin(), found_.end(), [&](const geometry::Neighbour& neighbour) {
     return surfels_.normals[neighbour.index].dot(block.normal) > opposite_sides;
   });
 }
 
-void DoseMap::close_directions(std::size_t added) {
+void SurfelMap::close_directions(std::size_t added) {
   const Vector3f position = surfels_.positions[added];
   const auto close = [&](std::size_t i, const Vector3f& towards) {
     const std::array<Vector3f, direction_count> directions = open_directions(surfels_, i);
@@ -210,13 +212,13 @@ void DoseMap::close_directions(std::size_t added) {
   }
 }
 
-bool DoseMap::has_surfel_near(const Vector3f& point, float radius) const {
+bool SurfelMap::has_surfel_near(const Vector3f& point, float radius) const {
   std::vector<geometry::Neighbour> found;
   grid_.find_within(point, radius, found);
   return !found.empty();
 }
 
-bool DoseMap::has_other_face_near(std::size_t i) const {
+bool SurfelMap::has_other_face_near(std::size_t i) const {
   const Vector3f& normal = surfels_.normals[i];
   std::vector<geometry::Neighbour> found;
   grid_.find_within(surfels_.positions[i] - face_depth * spacing_ * normal, face_reach * spacing_,
@@ -226,7 +228,7 @@ bool DoseMap::has_other_face_near(std::size_t i) const {
   });
 }
 
-double DoseMap::area_near(const Vector3f& point, float radius, std::size_t first) const {
+double SurfelMap::area_near(const Vector3f& point, float radius, std::size_t first) const {
   std::vector<geometry::Neighbour> found;
   grid_.find_within(point, radius, found);
   double sum = 0.0;
@@ -236,7 +238,7 @@ double DoseMap::area_near(const Vector3f& point, float radius, std::size_t first
   return sum;
 }
 
-double DoseMap::new_territory(std::size_t first) const {
+double SurfelMap::new_territory(std::size_t first) const {
   double sum = 0.0;
   std::vector<geometry::Neighbour> found;
   for (std::size_t i = first; i < surfels_.size(); ++i) {
@@ -250,13 +252,13 @@ double DoseMap::new_territory(std::size_t first) const {
   return sum;
 }
 
-double DoseMap::area() const {
+double SurfelMap::area() const {
   double sum = 0.0;
   for (const float area : surfels_.areas) sum += area;
   return sum;
 }
 
-double DoseMap::covered_area() const {
+double SurfelMap::covered_area() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < surfels_.size(); ++i) {
     sum += surfels_.areas[i] * surfels_.covered_share(i);
@@ -264,4 +266,4 @@ double DoseMap::covered_area() const {
   return sum;
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -17,7 +17,7 @@
 #include "survey/skycap/block_image.h"
 #include "survey/skycap/dose_model.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Surfels as a structure of arrays. Surfel indices never change.
 struct Surfels {
@@ -49,16 +49,16 @@ Eigen::Vector3f open_direction(const Surfels& surfels, std::size_t i, int k);
 /// Returns whether earlier scans have measured a position.
 using IsMeasured = std::function<bool(const Eigen::Vector3f&)>;
 
-class DoseMap {
+class SurfelMap {
  public:
   /// `spacing` (h) is the approximate distance between surfels [m].
-  explicit DoseMap(float spacing, unsigned threads = 1);
+  explicit SurfelMap(float spacing, unsigned threads = 1);
 
   /// Adds the blocks of a scan. First adds observations to existing surfels, then creates surfels
   /// in uncovered places. `jump` is J of BlockSettings. Blocks outside `region`, if given, create
   /// no surfels. New surfels at positions for which `was_measured` returns true have no area. They
   /// only refine the shape, because surface between existing surfels is not new surface.
-  void add(const BlockImage& image, const DoseModel& dose, float jump,
+  void add(const BlockImage& image, const CoverageModel& coverage_model, float jump,
            const std::optional<Eigen::AlignedBox3f>& region, const IsMeasured& was_measured = {});
 
   const Surfels& surfels() const { return surfels_; }
@@ -84,13 +84,13 @@ class DoseMap {
   double covered_area() const;
 
  private:
-  void add_looks(const BlockImage& image, const DoseModel& dose, float jump);
-  void add_surfels(const BlockImage& image, const DoseModel& dose,
+  void add_observations(const BlockImage& image, const CoverageModel& coverage_model, float jump);
+  void add_surfels(const BlockImage& image, const CoverageModel& coverage_model,
                    const std::optional<Eigen::AlignedBox3f>& region,
                    const IsMeasured& was_measured);
   void close_directions(std::size_t added);
   void blur_hazards(double sigma);
-  bool is_taken(const Block& block);
+  bool is_occupied(const Block& block);
 
   float spacing_;
   unsigned threads_;
@@ -105,4 +105,4 @@ class DoseMap {
   std::vector<geometry::Neighbour> found_;  // scratch array
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

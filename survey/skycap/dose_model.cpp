@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 /// Returns the probability that a point is inside a ball. The point is displaced by isotropic noise
@@ -63,10 +63,10 @@ class RayTable {
     // The integrand is the product of two bell curves with these widths. With at least one node per
     // width of the product, the rule is nearly exact. Without isotropic noise, the border of the
     // ball is sharp.
-    constexpr int least_nodes = 7, most_nodes = 41;
+    constexpr int min_nodes = 7, max_nodes = 41;
     const double ratio = noise.along_ray / std::max(noise.isotropic, 1e-9 * noise.along_ray);
-    const int nodes = static_cast<int>(std::clamp(std::ceil(6.0 * std::hypot(1.0, ratio)),
-                                                  double{least_nodes}, double{most_nodes}));
+    const int nodes = static_cast<int>(
+        std::clamp(std::ceil(6.0 * std::hypot(1.0, ratio)), double{min_nodes}, double{max_nodes}));
     double total = 0.0;
     for (int i = 0; i < nodes; ++i) {
       const double z = 3.0 * (2.0 * (i + 0.5) / nodes - 1.0);
@@ -137,10 +137,10 @@ double uncovered_share(const RayTable& ray, double spacing, double cosine, bool 
 double mean_uncovered_share(const RayTable& ray, double spacing, double cosine, bool even,
                             double deviation) {
   if (deviation <= 0.0) return uncovered_share(ray, spacing, cosine, even, 0.0);
-  constexpr int least_nodes = 6,
-                most_nodes = 40;  // four nodes within the reach of the ball, if possible
+  constexpr int min_nodes = 6,
+                max_nodes = 40;  // four nodes within the reach of the ball, if possible
   const int nodes = static_cast<int>(std::clamp(std::ceil(12.0 * deviation / ray.reach_across()),
-                                                double{least_nodes}, double{most_nodes}));
+                                                double{min_nodes}, double{max_nodes}));
   double share = 0.0, total = 0.0;
   for (int i = 0; i < nodes; ++i) {
     const double z = 3.0 * (i + 0.5) / nodes, weight = std::exp(-0.5 * z * z);
@@ -156,10 +156,10 @@ double Noise::across(double cos_incidence) const {
   return std::hypot(isotropic, along_ray * cos_incidence);
 }
 
-double Noise::across_of_look(double cos_incidence, double z) const {
+double Noise::lateral_error(double cos_incidence, double z) const {
   // A rotation moves points perpendicular to the ray.
   const double sine = std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
-  return std::hypot(place, angle * z * sine);
+  return std::hypot(position, angle * z * sine);
 }
 
 Noise Noise::at(double z) const {
@@ -167,18 +167,18 @@ Noise Noise::at(double z) const {
   const double factor = std::sqrt(1.0 - growing + growing * std::pow(z / depth, 4));
   return {.isotropic = factor * isotropic,
           .along_ray = factor * along_ray,
-          .place = place,
+          .position = position,
           .angle = angle};
 }
 
-bool Noise::is_like(const Noise& other, double tolerance) const {
+bool Noise::is_similar(const Noise& other, double tolerance) const {
   const double change =
       std::abs(other.isotropic - isotropic) + std::abs(other.along_ray - along_ray);
   const double growth = std::abs(other.growing - growing);
   return change <= tolerance * across(1.0) && growth <= tolerance;
 }
 
-DoseModel::DoseModel(double coverage_radius, const Noise& noise, double ray_spacing)
+CoverageModel::CoverageModel(double coverage_radius, const Noise& noise, double ray_spacing)
     : coverage_radius_(coverage_radius), noise_(noise) {
   const RayTable constant(coverage_radius, noise);
   for (int c = 0; c < incidence_count; ++c) {
@@ -192,15 +192,15 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise, double ray_spac
       const double spacing = coverage_radius * std::sqrt(cosine / rays);
       const Noise here = noise.at(spacing / ray_spacing);
       const bool even = here.isotropic > 0.6 * spacing / cosine;
-      const double displaced = noise.across_of_look(cosine, spacing / ray_spacing);
+      const double displaced = noise.lateral_error(cosine, spacing / ray_spacing);
       const double uncovered =
           mean_uncovered_share(noise.growing > 0.0 ? RayTable(coverage_radius, here) : constant,
                                spacing, cosine, even, displaced);
       const double hazard =
-          -std::log(std::max(uncovered, std::exp(-static_cast<double>(most_hazard))));
+          -std::log(std::max(uncovered, std::exp(-static_cast<double>(max_hazard))));
       hazard_per_ray_[c][d] = static_cast<float>(hazard / rays);
     }
   }
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Standard deviations of a measured point from the ground truth.
 struct Noise {
@@ -30,20 +30,20 @@ struct Noise {
   double depth = 1.0;  ///< depth at which the deviations are valid if they grow [m]
   /// Pose errors, which are common to all points of an observation: position along each axis [m]
   /// and small rotation about each axis [rad].
-  double place = 0.0, angle = 0.0;
+  double position = 0.0, angle = 0.0;
 
   /// Returns the standard deviation of the points of one observation across a surface with this
   /// cosine of the angle of incidence [m].
   double across(double cos_incidence) const;
   /// Returns the standard deviation of a whole observation, including pose errors, at depth `z`
   /// [m].
-  double across_of_look(double cos_incidence, double z) const;
+  double lateral_error(double cos_incidence, double z) const;
   /// Returns the noise at depth `z` [m] as a model that does not grow with range.
   Noise at(double z) const;
   /// Returns whether both noise models give the same hazards: the deviations differ by at most
   /// `tolerance` times the noise at normal incidence, and the growing fractions by at most
   /// `tolerance`.
-  bool is_like(const Noise& other, double tolerance) const;
+  bool is_similar(const Noise& other, double tolerance) const;
 };
 
 /// Covered fraction of one observation for a given coverage radius and noise. Immutable.
@@ -56,14 +56,14 @@ struct Noise {
 ///
 /// The model is tabulated at construction and interpolated. Construction takes up to 0.1 s, or 0.5
 /// s with pose errors.
-class DoseModel {
+class CoverageModel {
  public:
   /// `ray_spacing` is the distance between neighbouring rays at a depth of 1 m. It relates a ray
   /// spacing to a depth. It is needed only for noise that grows or contains angles.
-  DoseModel(double coverage_radius, const Noise& noise, double ray_spacing = 1.0);
+  CoverageModel(double coverage_radius, const Noise& noise, double ray_spacing = 1.0);
 
   /// Returns -ln(1 - covered fraction) of an observation with `ray_density` rays per m^2 of surface
-  /// (not of the plane perpendicular to the rays). The result is at most `most_hazard` (99.9%
+  /// (not of the plane perpendicular to the rays). The result is at most `max_hazard` (99.9%
   /// covered).
   float hazard(float ray_density, float cos_incidence) const {
     const float rays = ray_density * static_cast<float>(coverage_radius_ * coverage_radius_);
@@ -83,13 +83,13 @@ class DoseModel {
     const auto& high = hazard_per_ray_[c + 1];
     const float per_ray = (1.0F - u) * ((1.0F - t) * low[d] + t * low[d + 1]) +
                           u * ((1.0F - t) * high[d] + t * high[d + 1]);
-    return std::min(per_ray * rays, most_hazard);
+    return std::min(per_ray * rays, max_hazard);
   }
 
   double coverage_radius() const { return coverage_radius_; }
   const Noise& noise() const { return noise_; }
 
-  static constexpr float most_hazard = 7.0F;
+  static constexpr float max_hazard = 7.0F;
 
  private:
   static constexpr int density_count = 15;    // rays per r_d^2, from 2^-3 to 2^4, two per octave
@@ -102,4 +102,4 @@ class DoseModel {
   std::array<std::array<float, density_count>, incidence_count> hazard_per_ray_;
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

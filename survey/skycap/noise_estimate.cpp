@@ -5,19 +5,18 @@
 #include <utility>
 #include <vector>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
-constexpr std::size_t least_blocks = 40;  // minimum for a reliable quartile
-constexpr double least_cosine =
+constexpr std::size_t min_blocks = 40;  // minimum for a reliable quartile
+constexpr double min_cosine =
     0.5;  // beyond 60 degrees, low ray density makes the window too coarse
 
 /// Minimum growth. Smaller growth is caused by curvature and chance.
-constexpr double least_growth =
-    2.5;                           // ratio of the variances at the farthest and the nearest depths
-constexpr double worst_fit = 0.6;  // relative error of a variance; relief exceeds it
-constexpr double farther = 2.0;    // factor for depths beyond the typical depth
-constexpr int least_span = 2;      // minimum difference of half octaves
+constexpr double min_growth = 2.5;  // ratio of the variances at the farthest and the nearest depths
+constexpr double worst_fit = 0.6;   // relative error of a variance; relief exceeds it
+constexpr double farther = 2.0;     // factor for depths beyond the typical depth
+constexpr int min_span = 2;         // minimum difference of half octaves
 
 /// Returns n for depths in [2^(n/2), 2^((n+1)/2)). Exact, so that the result does not depend on the
 /// platform.
@@ -27,7 +26,7 @@ int half_octave(float depth) {
   return 2 * (exponent - 1) + (mantissa < 0.70710678F ? 0 : 1);
 }
 
-double cosine_of(const BlockImage& image, const Block& block) {
+double compute_cosine(const BlockImage& image, const Block& block) {
   return (image.projection.sensor_position - block.mean).normalized().dot(block.normal);
 }
 
@@ -47,17 +46,16 @@ void NoiseEstimate::add(const BlockImage& image) {
   std::array<std::vector<float>, range_count> residuals;
   for (const Block& block : image.blocks) {
     if (block.residual <= 0.0F) continue;
-    const double cosine = cosine_of(image, block);
-    if (cosine < least_cosine) continue;
-    const int range =
-        static_cast<int>((cosine - least_cosine) / (1.0 - least_cosine) * range_count);
+    const double cosine = compute_cosine(image, block);
+    if (cosine < min_cosine) continue;
+    const int range = static_cast<int>((cosine - min_cosine) / (1.0 - min_cosine) * range_count);
     residuals[std::min(range, range_count - 1)].push_back(block.residual);
   }
   for (int i = 0; i < range_count; ++i) {
     std::vector<float>& values = residuals[i];
-    if (values.size() < least_blocks) continue;
+    if (values.size() < min_blocks) continue;
     const double variance = squared(low_quartile(values));
-    least_variance_[i] = std::min(least_variance_[i].value_or(variance), variance);
+    min_variance_[i] = std::min(min_variance_[i].value_or(variance), variance);
   }
   add_by_depth(image);
 }
@@ -68,17 +66,17 @@ void NoiseEstimate::add_by_depth(const BlockImage& image) {
   std::map<int, std::vector<std::pair<float, float>>> residuals;
   for (const Block& block : image.blocks) {
     if (block.residual <= 0.0F || !(block.depth > 0.0F)) continue;
-    const double cosine = cosine_of(image, block);
-    if (cosine < least_cosine) continue;
+    const double cosine = compute_cosine(image, block);
+    if (cosine < min_cosine) continue;
     const auto along_ray = static_cast<float>(block.residual / cosine);
     residuals[half_octave(block.depth)].emplace_back(along_ray, block.depth);
   }
   for (auto& [number, values] : residuals) {
-    if (values.size() < least_blocks) continue;
+    if (values.size() < min_blocks) continue;
     const auto [residual, depth] = low_quartile(values);
     const VarianceAt found{squared(residual), depth};
-    VarianceAt& least = by_depth_.emplace(number, found).first->second;
-    if (found.variance < least.variance) least = found;
+    VarianceAt& min = by_depth_.emplace(number, found).first->second;
+    if (found.variance < min.variance) min = found;
   }
 }
 
@@ -87,7 +85,7 @@ void NoiseEstimate::let_grow(Noise& noise, double depth) const {
   if (by_depth_.empty()) return;
   const auto& [nearest, near] = *by_depth_.begin();
   const auto& [farthest, far] = *by_depth_.rbegin();
-  if (farthest - nearest < least_span || far.variance < least_growth * near.variance) return;
+  if (farthest - nearest < min_span || far.variance < min_growth * near.variance) return;
   double aa = 0.0, ab = 0.0, bb = 0.0, a1 = 0.0, b1 = 0.0;
   for (const auto& [number, at] : by_depth_) {
     const double one = 1.0 / at.variance, fourth = std::pow(at.depth, 4) / at.variance;
@@ -99,7 +97,7 @@ void NoiseEstimate::let_grow(Noise& noise, double depth) const {
   if (a < 0.0) a = 0.0, b = b1 / bb;
   if (!(b > 0.0)) return;
   const auto fitted = [&](const VarianceAt& at) { return a + b * std::pow(at.depth, 4); };
-  if (fitted(far) < least_growth * fitted(near)) return;
+  if (fitted(far) < min_growth * fitted(near)) return;
   for (const auto& [number, at] : by_depth_) {
     if (std::abs(fitted(at) / at.variance - 1.0) > worst_fit) return;
   }
@@ -118,9 +116,9 @@ std::optional<Noise> NoiseEstimate::constant_noise() const {
   // Least-squares fit of variance = a + b c^2 through the centres of the ranges.
   double n = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
   for (int i = 0; i < range_count; ++i) {
-    if (!least_variance_[i]) continue;
-    const double cosine = least_cosine + (1.0 - least_cosine) * (i + 0.5) / range_count;
-    const double x = cosine * cosine, y = *least_variance_[i];
+    if (!min_variance_[i]) continue;
+    const double cosine = min_cosine + (1.0 - min_cosine) * (i + 0.5) / range_count;
+    const double x = cosine * cosine, y = *min_variance_[i];
     n += 1.0;
     sum_x += x;
     sum_y += y;
@@ -140,4 +138,4 @@ std::optional<Noise> NoiseEstimate::constant_noise() const {
   return Noise{.isotropic = std::sqrt(isotropic), .along_ray = std::sqrt(along_ray)};
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

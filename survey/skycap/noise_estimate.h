@@ -8,7 +8,7 @@
 #include "survey/skycap/block_image.h"
 #include "survey/skycap/dose_model.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// The residual of each block (block_image.h) is the noise across the surface plus curvature.
 /// Smooth surfaces show only noise, so the estimate is the lower quartile over the blocks of a
@@ -39,8 +39,8 @@ class NoiseEstimate {
   std::optional<Noise> constant_noise() const;
   void let_grow(Noise& noise, double depth) const;
 
-  std::array<std::optional<double>, range_count> least_variance_;
+  std::array<std::optional<double>, range_count> min_variance_;
   std::map<int, VarianceAt> by_depth_;  ///< minimum variance and its depth, by half octave of depth
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -4,17 +4,17 @@
 #include <cmath>
 #include <unordered_map>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 using Eigen::Vector3f;
 
 /// Surfaces whose normals have a smaller cosine are different, such as the two sides of a wall.
-constexpr float least_facing = -0.3F;
+constexpr float min_facing = -0.3F;
 
 /// Returns a key of the cube that contains the point and of the main direction (one of six) of its
 /// normal.
-std::uint64_t cell_of(const Vector3f& position, const Vector3f& normal, float edge) {
+std::uint64_t make_cell_key(const Vector3f& position, const Vector3f& normal, float edge) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   std::uint64_t cell = static_cast<std::uint64_t>(2 * axis + (normal[axis] < 0.0F ? 1 : 0));
@@ -36,7 +36,7 @@ std::vector<PriorPatch> gathered(const PriorSurface& surface, float edge) {
   std::unordered_map<std::uint64_t, std::size_t> index;
   std::vector<Gathered> cells;  // in order of their first points
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const std::uint64_t name = cell_of(surface.positions[i], surface.normals[i], edge);
+    const std::uint64_t name = make_cell_key(surface.positions[i], surface.normals[i], edge);
     const auto [entry, is_new] = index.try_emplace(name, cells.size());
     if (is_new) cells.emplace_back();
     Gathered& cell = cells[entry->second];
@@ -58,7 +58,7 @@ std::vector<PriorPatch> gathered(const PriorSurface& surface, float edge) {
 
 }  // namespace
 
-PriorGuesses::PriorGuesses(const PriorSurface& surface, float spacing)
+PriorPredictions::PriorPredictions(const PriorSurface& surface, float spacing)
     : patches_(gathered(surface, spacing)),
       states_(patches_.size(), State::open),
       grid_(spacing),
@@ -70,7 +70,7 @@ PriorGuesses::PriorGuesses(const PriorSurface& surface, float spacing)
   }
 }
 
-void PriorGuesses::update(const DoseMap& map, const SpaceMemory& space) {
+void PriorPredictions::update(const SurfelMap& map, const FreeSpaceHistory& space) {
   const Surfels& surfels = map.surfels();
   for (; surfels_asked_ < surfels.size(); ++surfels_asked_) {
     found_.clear();
@@ -79,7 +79,7 @@ void PriorGuesses::update(const DoseMap& map, const SpaceMemory& space) {
       const PriorPatch& patch = patches_[near.index];
       const float within = spacing_ + patch.uncertainty;
       const float cosine = surfels.normals[surfels_asked_].dot(patch.normal);
-      if (near.squared_distance > within * within || cosine < least_facing) continue;
+      if (near.squared_distance > within * within || cosine < min_facing) continue;
       states_[near.index] = State::found;
     }
   }
@@ -92,7 +92,7 @@ void PriorGuesses::update(const DoseMap& map, const SpaceMemory& space) {
   images_asked_ = space.image_count();
 }
 
-std::vector<Vector3f> PriorGuesses::standing() const {
+std::vector<Vector3f> PriorPredictions::standing() const {
   std::vector<Vector3f> positions;
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     if (states_[i] != State::refuted) positions.push_back(patches_[i].position);
@@ -100,11 +100,11 @@ std::vector<Vector3f> PriorGuesses::standing() const {
   return positions;
 }
 
-bool PriorGuesses::is_open_near(const Vector3f& point, float radius) const {
+bool PriorPredictions::is_open_near(const Vector3f& point, float radius) const {
   std::vector<geometry::Neighbour> found;
   grid_.find_within(point, radius, found);
   return std::ranges::any_of(
       found, [&](const geometry::Neighbour& near) { return states_[near.index] == State::open; });
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

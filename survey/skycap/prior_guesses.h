@@ -16,7 +16,7 @@
 #include "survey/skycap/prior_surface.h"
 #include "survey/skycap/space_memory.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 struct PriorPatch {
   Eigen::Vector3f position;
@@ -25,16 +25,16 @@ struct PriorPatch {
   float uncertainty;
 };
 
-class PriorGuesses {
+class PriorPredictions {
  public:
   enum class State : std::uint8_t { open, found, refuted };
 
   /// Creates one patch for all points of similar orientation in a cube with the edge length
   /// `spacing` [m].
-  PriorGuesses(const PriorSurface& surface, float spacing);
+  PriorPredictions(const PriorSurface& surface, float spacing);
 
   /// Closes patches according to the measurements since the last call.
-  void update(const DoseMap& map, const SpaceMemory& space);
+  void update(const SurfelMap& map, const FreeSpaceHistory& space);
 
   const std::vector<PriorPatch>& patches() const { return patches_; }
   /// Returns the positions of the patches that no scan has seen through. They occlude surface
@@ -54,4 +54,4 @@ class PriorGuesses {
   std::vector<geometry::Neighbour> found_;  // scratch array
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Points distributed over a surface. Structure of arrays of equal length.
 struct PriorSurface {
@@ -17,4 +17,4 @@ struct PriorSurface {
   std::size_t size() const { return positions.size(); }
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

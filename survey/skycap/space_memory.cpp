@@ -4,17 +4,17 @@
 #include <cmath>
 #include <limits>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Minimum cosine of incidence at which a ray reliably returns.
-constexpr float least_struck_cosine = 0.3F;
+constexpr float min_hit_cosine = 0.3F;
 /// Glass is detected if at least this fraction and this number of the visible points are on rays
 /// without a return. Without glass, thin bars and noise cause at most a thousandth.
 constexpr double glassy_share = 0.004;
-constexpr std::size_t least_missed = 30;
+constexpr std::size_t min_missed = 30;
 
 /// Returns whether no neighbouring block has a return. A grazed surface that absorbs the rays is
 /// then unlikely, because some neighbours would hit it less obliquely.
@@ -22,14 +22,14 @@ bool is_amid_misses(const BlockImage& image, int row, int column) {
   const BlockProjection& p = image.projection;
   for (int r = std::max(0, row - 1); r <= std::min(p.rows - 1, row + 1); ++r) {
     for (int c = std::max(0, column - 1); c <= std::min(p.columns - 1, column + 1); ++c) {
-      if (image.blocks[p.number_of(r, c)].returns > 0) return false;
+      if (image.blocks[p.block_index(r, c)].returns > 0) return false;
     }
   }
   return true;
 }
 
 /// Returns the point on the optical axis at the mean depth of the returns.
-Eigen::Vector3f middle_of(const BlockImage& image) {
+Eigen::Vector3f compute_centre(const BlockImage& image) {
   float sum = 0.0F, count = 0.0F;
   for (const Block& block : image.blocks) {
     if (block.returns == 0) continue;
@@ -43,32 +43,32 @@ Eigen::Vector3f middle_of(const BlockImage& image) {
 
 }  // namespace
 
-std::size_t SpaceMemory::DepthImage::bytes() const { return 3 * least.size() * sizeof(float); }
+std::size_t FreeSpaceHistory::DepthImage::bytes() const { return 3 * min.size() * sizeof(float); }
 
 /// Updates the most similar newer image. Images are similar if they show the same place from the
 /// same position.
-void SpaceMemory::DepthImage::compare(const DepthImage& newer) {
+void FreeSpaceHistory::DepthImage::compare(const DepthImage& newer) {
   const float difference = (projection.sensor_position - newer.projection.sensor_position).norm() +
                            (middle - newer.middle).norm();
   if (!(difference < unlikeness)) return;
   unlikeness = difference;
-  twin = newer.number;
+  closest_newer = newer.number;
 }
 
-void SpaceMemory::forget_one() {
-  const auto least = std::ranges::min_element(images_, {}, &DepthImage::unlikeness);
-  const std::size_t gone = least->number;
-  bytes_ -= least->bytes();
-  images_.erase(least);
+void FreeSpaceHistory::forget_one() {
+  const auto min = std::ranges::min_element(images_, {}, &DepthImage::unlikeness);
+  const std::size_t gone = min->number;
+  bytes_ -= min->bytes();
+  images_.erase(min);
   for (std::size_t i = 0; i + 1 < images_.size(); ++i) {
     DepthImage& image = images_[i];
-    if (image.number > gone || image.twin != gone) continue;
+    if (image.number > gone || image.closest_newer != gone) continue;
     image.unlikeness = infinity;
     for (std::size_t j = i + 1; j < images_.size(); ++j) image.compare(images_[j]);
   }
 }
 
-void SpaceMemory::add(const BlockImage& image, float noise) {
+void FreeSpaceHistory::add(const BlockImage& image, float noise) {
   const std::size_t count = image.blocks.size();
   DepthImage depth{image.projection,
                    std::vector<float>(count, -infinity),
@@ -76,13 +76,13 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
                    std::vector<float>(count, -infinity),
                    count_++,
                    0.0F,
-                   middle_of(image)};
+                   compute_centre(image)};
   for (std::size_t i = 0; i < count; ++i) {
     const Block& block = image.blocks[i];
     if (block.returns == 0) {
       const int row = static_cast<int>(i) / image.projection.columns;
       const int column = static_cast<int>(i) % image.projection.columns;
-      if (misses_are_empty_ && block.is_shot_at && is_amid_misses(image, row, column)) {
+      if (misses_are_empty_ && block.is_scanned && is_amid_misses(image, row, column)) {
         depth.empty_before[i] = infinity;
       }
       continue;
@@ -93,50 +93,51 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
         3.0F * std::max(0.0F, block.depth_deviation * block.depth_deviation - noise * noise));
     depth.empty_before[i] = block.depth - relief - tolerance_;
     depth.measured_until[i] = block.depth + relief + tolerance_;
-    depth.least[i] = block.least_depth;
+    depth.min[i] = block.min_depth;
   }
   for (DepthImage& older : images_) older.compare(depth);
   bytes_ += depth.bytes();
   images_.push_back(std::move(depth));
-  while (bytes_ > most_bytes_ && images_.size() > 1) forget_one();
+  while (bytes_ > max_bytes_ && images_.size() > 1) forget_one();
 }
 
-void SpaceMemory::compare_misses(std::span<const Eigen::Vector3f> points,
-                                 std::span<const Eigen::Vector3f> normals) {
-  if (!misses_are_empty_ || misses_lie_) return;
+void FreeSpaceHistory::compare_misses(std::span<const Eigen::Vector3f> points,
+                                      std::span<const Eigen::Vector3f> normals) {
+  if (!misses_are_empty_ || has_false_misses_) return;
   for (const DepthImage& image : images_) {
     const std::size_t first = image.number < compared_images_ ? compared_points_ : 0;
     count_misses(image, points.subspan(first), normals.subspan(first));
   }
   compared_images_ = count_;
   compared_points_ = points.size();
-  misses_lie_ =
-      points_missed_ >= least_missed &&
-      static_cast<double>(points_missed_) > glassy_share * static_cast<double>(points_in_sight_);
+  has_false_misses_ =
+      points_missed_ >= min_missed &&
+      static_cast<double>(points_missed_) > glassy_share * static_cast<double>(visible_points_);
 }
 
-void SpaceMemory::count_misses(const DepthImage& image, std::span<const Eigen::Vector3f> points,
-                               std::span<const Eigen::Vector3f> normals) {
+void FreeSpaceHistory::count_misses(const DepthImage& image,
+                                    std::span<const Eigen::Vector3f> points,
+                                    std::span<const Eigen::Vector3f> normals) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto hit = image.projection.project(points[i]);
     if (!hit || hit->depth > image.farthest) continue;
     const Eigen::Vector3f ray = (points[i] - image.projection.sensor_position).normalized();
-    if (std::abs(ray.dot(normals[i])) < least_struck_cosine) continue;
-    ++points_in_sight_;
+    if (std::abs(ray.dot(normals[i])) < min_hit_cosine) continue;
+    ++visible_points_;
     if (image.empty_before[hit->block] == infinity) ++points_missed_;
   }
 }
 
-template <typename Believes>
-SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first,
-                              Believes believes_miss) const {
+template <typename IsMissTrusted>
+SpaceState FreeSpaceHistory::query(const Eigen::Vector3f& point, std::size_t first,
+                                   IsMissTrusted is_miss_trusted) const {
   SpaceState state = SpaceState::outside;
   for (std::size_t i = images_.size(); i-- > 0 && images_[i].number >= first;) {
     const DepthImage& image = images_[i];
     const auto hit = image.projection.project(point);
     if (!hit) continue;
     const float empty_before = image.empty_before[hit->block];
-    if (hit->depth < empty_before && (empty_before < infinity || believes_miss(image))) {
+    if (hit->depth < empty_before && (empty_before < infinity || is_miss_trusted(image))) {
       return SpaceState::empty;
     }
     if (hit->depth <= image.measured_until[hit->block]) {
@@ -148,26 +149,26 @@ SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first,
   return state;
 }
 
-SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first) const {
+SpaceState FreeSpaceHistory::query(const Eigen::Vector3f& point, std::size_t first) const {
   return query(point, first, [](const DepthImage& /*image*/) { return true; });
 }
 
-SpaceState SpaceMemory::query_surface(const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
-                                      std::size_t first) const {
-  if (!misses_lie_) return query(point, first);
+SpaceState FreeSpaceHistory::query_surface(const Eigen::Vector3f& point,
+                                           const Eigen::Vector3f& normal, std::size_t first) const {
+  if (!has_false_misses_) return query(point, first);
   return query(point, first, [&](const DepthImage& image) {
     const Eigen::Vector3f towards_sensor = (image.projection.sensor_position - point).normalized();
-    return towards_sensor.dot(normal) >= least_struck_cosine;
+    return towards_sensor.dot(normal) >= min_hit_cosine;
   });
 }
 
-bool SpaceMemory::is_proven_empty(const Eigen::Vector3f& centre, float radius) const {
+bool FreeSpaceHistory::is_verified_empty(const Eigen::Vector3f& centre, float radius) const {
   return std::any_of(images_.rbegin(), images_.rend(),
-                     [&](const DepthImage& image) { return proves_empty(image, centre, radius); });
+                     [&](const DepthImage& image) { return shows_empty(image, centre, radius); });
 }
 
-bool SpaceMemory::proves_empty(const DepthImage& image, const Eigen::Vector3f& centre,
-                               float radius) {
+bool FreeSpaceHistory::shows_empty(const DepthImage& image, const Eigen::Vector3f& centre,
+                                   float radius) {
   const BlockProjection& p = image.projection;
   const Eigen::Vector3f in_sensor = p.sensor_from_world * (centre - p.sensor_position);
   const float nearest = in_sensor.z() - radius, farthest = in_sensor.z() + radius;
@@ -184,10 +185,10 @@ bool SpaceMemory::proves_empty(const DepthImage& image, const Eigen::Vector3f& c
   if (columns[0] < 0 || rows[0] < 0 || columns[1] >= p.columns || rows[1] >= p.rows) return false;
   for (int row = rows[0]; row <= rows[1]; ++row) {
     for (int column = columns[0]; column <= columns[1]; ++column) {
-      if (image.least[p.number_of(row, column)] < farthest) return false;
+      if (image.min[p.block_index(row, column)] < farthest) return false;
     }
   }
   return true;
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 using Eigen::Vector3f;
@@ -50,9 +50,9 @@ void visit_tiles(const ScanSpan& scan, const geometry::Camera& camera, std::size
 SpacedCloud::SpacedCloud(double spacing, double pixel)
     : points_(spacing, 2.0 * std::max(spacing, pixel)) {}
 
-bool SpacedCloud::has_near(const Vector3f& place, double radius, std::size_t count) const {
+bool SpacedCloud::has_near(const Vector3f& position, double radius, std::size_t count) const {
   std::vector<geometry::Neighbour> found;
-  points_.grid().find_within(place, radius, found);
+  points_.grid().find_within(position, radius, found);
   return std::ranges::any_of(
       found, [&](const geometry::Neighbour& neighbour) { return neighbour.index < count; });
 }
@@ -79,4 +79,4 @@ std::size_t SpacedCloud::insert(const ScanSpan& scan, const geometry::Camera& ca
   return cloud_.size() - before;
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -14,7 +14,7 @@
 #include "geometry/points/scan.h"
 #include "geometry/points/spaced_points.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 class SpacedCloud {
  public:
@@ -29,16 +29,16 @@ class SpacedCloud {
                      const std::optional<Eigen::AlignedBox3f>& region, std::uint32_t view,
                      unsigned threads);
 
-  /// Returns whether one of the first `count` points is within `radius` of `place`.
-  bool has_near(const Eigen::Vector3f& place, double radius, std::size_t count) const;
+  /// Returns whether one of the first `count` points is within `radius` of `position`.
+  bool has_near(const Eigen::Vector3f& position, double radius, std::size_t count) const;
 
   const geometry::PointCloud& cloud() const { return cloud_; }
   /// Moves the cloud out. No other member function may be called afterwards.
-  geometry::PointCloud release_cloud() { return std::move(cloud_); }
+  geometry::PointCloud take_cloud() { return std::move(cloud_); }
 
  private:
   geometry::SpacedPoints points_;
   geometry::PointCloud cloud_;
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

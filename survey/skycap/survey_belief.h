@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 enum class MissingReason {
   none,             ///< covered according to the estimate
@@ -16,7 +16,7 @@ enum class MissingReason {
 };
 
 /// Patch of the estimated surface.
-struct BelievedPatch {
+struct EstimatedPatch {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;
   float area;           ///< area [m^2]; for a predicted patch multiplied by its probability
@@ -24,7 +24,7 @@ struct BelievedPatch {
   MissingReason reason;
 };
 
-struct SurveyBelief {
+struct SurveyEstimate {
   double area = 0.0;      ///< measured and predicted area [m^2]
   double coverage = 0.0;  ///< expected covered fraction of the area
   double seen_too_thinly = 0.0, never_seen = 0.0,
@@ -34,27 +34,27 @@ struct SurveyBelief {
   /// with range: its value at the view distance, and the growing fraction of its variance
   /// (Noise::growing).
   double noise = 0.0, growing_noise = 0.0;
-  std::vector<BelievedPatch> patches;
+  std::vector<EstimatedPatch> patches;
 };
 
 /// Computes the area and the missing fractions from the patches.
-inline void add_up(SurveyBelief& belief) {
-  for (const BelievedPatch& patch : belief.patches) belief.area += patch.area;
-  for (const BelievedPatch& patch : belief.patches) {
-    const double missing = patch.area * (1.0 - patch.covered_share) / belief.area;
+inline void add_up(SurveyEstimate& estimate) {
+  for (const EstimatedPatch& patch : estimate.patches) estimate.area += patch.area;
+  for (const EstimatedPatch& patch : estimate.patches) {
+    const double missing = patch.area * (1.0 - patch.covered_share) / estimate.area;
     switch (patch.reason) {
       case MissingReason::none:  // the residual that even well-covered surface lacks
       case MissingReason::seen_too_thinly:
-        belief.seen_too_thinly += missing;
+        estimate.seen_too_thinly += missing;
         break;
       case MissingReason::never_seen:
-        belief.never_seen += missing;
+        estimate.never_seen += missing;
         break;
       case MissingReason::unreachable:
-        belief.unreachable += missing;
+        estimate.unreachable += missing;
         break;
     }
   }
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -35,57 +35,57 @@
 #include "survey/skycap/prior_guesses.h"
 #include "survey/skycap/space_memory.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Kinds of continuation. `back` is the other side of a thin object; `beyond` is a straight
 /// continuation outside all images.
 enum class Continuation : std::uint8_t { straight, convex, concave, back, beyond };
 inline constexpr int continuations = 5;
 
-/// UnseenPatch::kind of patches from the prior surface.
+/// PredictedPatch::kind of patches from the prior surface.
 inline constexpr std::uint8_t prior_kind = 25;
 
-struct UnseenPatch {
+struct PredictedPatch {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;  ///< unit vector
   float edge;              ///< edge length of the patch, a square [m]
   float weight;            ///< area times the probability that the surface exists [m^2]
   std::uint8_t kind;       ///< 5 * step + continuation, or prior_kind
   std::uint64_t
-      place;  ///< identifier of the hypothesis, computed from position, orientation and step
+      key;  ///< identifier of the hypothesis, computed from position, orientation and step
 };
 
-struct UnseenSurfaceSettings {
+struct PredictedSurfaceSettings {
   int steps = 3;             ///< patches per chain, at most 5
   bool learns_rates = true;  ///< if false, the rates keep their initial values
-  float memory = 0.85F;      ///< fraction of the evidence on rates kept from scan to scan
+  float retention = 0.85F;   ///< fraction of the evidence on rates kept from scan to scan
   unsigned threads = 1;      ///< zero: all processors
 };
 
-class UnseenSurface {
+class PredictedSurface {
  public:
-  explicit UnseenSurface(const UnseenSurfaceSettings& settings);
+  explicit PredictedSurface(const PredictedSurfaceSettings& settings);
 
   /// Sets the prior surface, used from the next prediction on.
-  void expect(PriorGuesses prior) { prior_.emplace(std::move(prior)); }
+  void expect(PriorPredictions prior) { prior_.emplace(std::move(prior)); }
 
   /// Recomputes the patches from the surfels and the free-space memory.
-  void predict(const DoseMap& map, const SpaceMemory& space,
+  void predict(const SurfelMap& map, const FreeSpaceHistory& space,
                const std::optional<Eigen::AlignedBox3f>& region);
 
   /// Patch that a scan should have shown if it exists, with its line-of-sight confidence.
   struct Expected {
     std::uint32_t patch;
-    float clearness;
+    float line_of_sight_probability;
   };
 
   /// Updates the hit rates after a scan that should have shown the patches `expected`. The map and
   /// the free-space memory must already contain the scan, with its surfels from index `first_new`
   /// on. Must be called before predict().
-  void grade(std::span<const Expected> expected, const DoseMap& map, const SpaceMemory& space,
-             std::size_t first_new);
+  void grade(std::span<const Expected> expected, const SurfelMap& map,
+             const FreeSpaceHistory& space, std::size_t first_new);
 
-  const std::vector<UnseenPatch>& patches() const { return patches_; }
+  const std::vector<PredictedPatch>& patches() const { return patches_; }
 
   /// Returns the positions of prior patches, which occlude each other.
   std::vector<Eigen::Vector3f> prior_occluders() const {
@@ -117,27 +117,28 @@ class UnseenSurface {
   };
   /// Emits the chains of one surfel, independent of other surfels and of failed places. May be
   /// called concurrently for different surfels.
-  void emit_chains(const DoseMap& map, const SpaceMemory& space, std::size_t surfel,
+  void emit_chains(const SurfelMap& map, const FreeSpaceHistory& space, std::size_t surfel,
                    const std::optional<Eigen::AlignedBox3f>& region,
-                   std::vector<UnseenPatch>& guesses);
-  void emit_chain(const DoseMap& map, const SpaceMemory& space, std::size_t surfel, int direction,
-                  Continuation continuation, const std::optional<Eigen::AlignedBox3f>& region,
-                  std::vector<UnseenPatch>& guesses);
+                   std::vector<PredictedPatch>& predictions);
+  void emit_chain(const SurfelMap& map, const FreeSpaceHistory& space, std::size_t surfel,
+                  int direction, Continuation continuation,
+                  const std::optional<Eigen::AlignedBox3f>& region,
+                  std::vector<PredictedPatch>& predictions);
   void emit_prior(const std::optional<Eigen::AlignedBox3f>& region);
   /// Returns whether the prior surface, if it is reliable, has an open patch at this position.
-  bool is_told_by_prior(const UnseenPatch& patch) const;
+  bool is_predicted_by_prior(const PredictedPatch& patch) const;
   /// Returns the found fraction of a predicted patch in a scan whose surfels start at `first_new`,
   /// or nullopt if the scan shows no surface there.
-  std::optional<double> found_share(const UnseenPatch& patch, const DoseMap& map,
+  std::optional<double> found_share(const PredictedPatch& patch, const SurfelMap& map,
                                     std::size_t first_new) const;
 
-  UnseenSurfaceSettings settings_;
-  std::array<Rate, prior_kind + 1> rates_;  ///< by UnseenPatch::kind
-  std::optional<PriorGuesses> prior_;
-  std::vector<UnseenPatch> patches_;
+  PredictedSurfaceSettings settings_;
+  std::array<Rate, prior_kind + 1> rates_;  ///< by PredictedPatch::kind
+  std::optional<PriorPredictions> prior_;
+  std::vector<PredictedPatch> patches_;
   std::vector<AskedChains> asked_;                   ///< by surfel
-  bool misses_lied_ = false;                         ///< misses_lie() at the last prediction
-  std::unordered_set<std::uint64_t> seen_places_;    ///< places of the current prediction
+  bool had_false_misses_ = false;                    ///< has_false_misses() at the last prediction
+  std::unordered_set<std::uint64_t> seen_patches_;   ///< places of the current prediction
   std::unordered_map<std::uint64_t, float> trusts_;  ///< weights of places with failed predictions
 };
 
@@ -149,32 +150,33 @@ class UnseenSurface {
 /// nine per face of a cube. Each is sampled at the centres of pieces that double in length, when a
 /// view first needs it. Known space stays known, so that later only unknown pieces are queried
 /// again, in new images.
-class Clearness {
+class LineOfSightModel {
  public:
   /// `scale` is the unknown length with a confidence of 37% [m].
-  explicit Clearness(float scale);
+  explicit LineOfSightModel(float scale);
 
   /// Selects the patches and the free-space memory for subsequent queries. Both must outlive the
   /// queries.
-  void update(std::span<const UnseenPatch> patches, const SpaceMemory& space, unsigned threads = 1);
+  void update(std::span<const PredictedPatch> patches, const FreeSpaceHistory& space,
+              unsigned threads = 1);
 
   /// Returns the confidence in (0, 1] of patch `i` for a sensor at `sensor`. It is 1 without
   /// images, and for prior patches, whose occluders are known from the prior surface. Thread-safe.
   float of(std::size_t i, const Eigen::Vector3f& sensor) const;
 
  private:
-  static constexpr int pieces = 5, ways_to_a_face = 3;
-  static constexpr std::size_t ways = 6UL * ways_to_a_face * ways_to_a_face;
-  static constexpr std::uint32_t all_unknown = (1U << pieces) - 1U;
+  static constexpr int sections = 5, directions_per_edge = 3;
+  static constexpr std::size_t direction_count = 6UL * directions_per_edge * directions_per_edge;
+  static constexpr std::uint32_t all_unknown = (1U << sections) - 1U;
 
-  static std::size_t way_towards(const Eigen::Vector3f& offset);
+  static std::size_t direction_index(const Eigen::Vector3f& offset);
 
-  std::array<float, pieces> middles_;  ///< distances of the piece centres from the patch [m]
+  std::array<float, sections> middles_;  ///< distances of the piece centres from the patch [m]
   std::array<float, all_unknown + 1> probabilities_;  ///< by bit mask of the unknown pieces
-  std::array<Eigen::Vector3f, ways> directions_;
+  std::array<Eigen::Vector3f, direction_count> directions_;
 
-  std::span<const UnseenPatch> patches_;
-  const SpaceMemory* space_ = nullptr;
+  std::span<const PredictedPatch> patches_;
+  const FreeSpaceHistory* space_ = nullptr;
   /// Cache by path and patch: bit mask of unknown pieces in the low bits, number of queried images
   /// above them. A sensor sees neighbouring patches along the same path.
   mutable std::vector<std::uint32_t> asked_;
@@ -186,19 +188,21 @@ class Clearness {
 };
 
 /// Yield of predictions: found area relative to predicted area over the last scans.
-class GuessYield {
+class PredictionYield {
  public:
-  /// Updates the yield after a scan with `promised` m^2 of predicted surface. The scan covered
+  /// Updates the yield after a scan with `predicted_sum` m^2 of predicted surface. The scan covered
   /// `beyond_known` m^2 more than predicted for known surface and `new_territory` m^2 without known
-  /// surface nearby. The former may be relief or noise and counts up to `promised` only.
-  void learn(double promised, double beyond_known, double new_territory) {
-    if (promised <= 0.0) return;
-    const double found = std::max(
-        {0.0, std::min(beyond_known, promised), std::min(new_territory, most_at_once * promised)});
-    const double kept = promised_ > 0.0 ? std::min(memory, most_past * promised / promised_) : 0.0;
-    promised_ = kept * promised_ + promised;
+  /// surface nearby. The former may be relief or noise and counts up to `predicted_sum` only.
+  void learn(double predicted_sum, double beyond_known, double new_territory) {
+    if (predicted_sum <= 0.0) return;
+    const double found = std::max({0.0, std::min(beyond_known, predicted_sum),
+                                   std::min(new_territory, max_growth * predicted_sum)});
+    const double kept = predicted_sum_ > 0.0
+                            ? std::min(retention, max_history * predicted_sum / predicted_sum_)
+                            : 0.0;
+    predicted_sum_ = kept * predicted_sum_ + predicted_sum;
     found_ = kept * found_ + found;
-    value_ = std::clamp(found_ / promised_, least, most);
+    value_ = std::clamp(found_ / predicted_sum_, min, max);
   }
 
   /// Returns the found area per predicted area, or 1 before the first scan. The value exceeds 1 if
@@ -207,16 +211,16 @@ class GuessYield {
 
  private:
   /// Fraction of the earlier evidence that is kept at each scan.
-  static constexpr double memory = 0.6;
+  static constexpr double retention = 0.6;
   /// Maximum weight of earlier predictions relative to the latest one. Large finds at the beginning
   /// of a survey do not predict the small gains at its end.
-  static constexpr double most_past = 2.0;
+  static constexpr double max_history = 2.0;
   /// Limits of the value, so that one or two scans without finds do not end a survey and one large
   /// find does not prolong it.
-  static constexpr double least = 0.15, most = 6.0, most_at_once = 10.0;
+  static constexpr double min = 0.15, max = 6.0, max_growth = 10.0;
 
-  double promised_ = 0.0, found_ = 0.0;  ///< exponentially weighted sums over the scans [m^2]
+  double predicted_sum_ = 0.0, found_ = 0.0;  ///< exponentially weighted sums over the scans [m^2]
   double value_ = 1.0;
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

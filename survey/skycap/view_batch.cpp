@@ -4,14 +4,15 @@
 #include <limits>
 #include <numeric>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 using Eigen::Vector3d;
 
 std::vector<Stop> pick_batch(std::span<const BatchView> views, std::vector<float> weights,
                              const Vector3d& position, const BatchSettings& settings) {
-  std::vector<double> way(views.size());
-  for (std::size_t i = 0; i < views.size(); ++i) way[i] = (views[i].position - position).norm();
+  std::vector<double> path_length(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i)
+    path_length[i] = (views[i].position - position).norm();
 
   std::vector<Stop> batch;
   while (batch.size() < settings.size) {
@@ -19,8 +20,9 @@ std::vector<Stop> pick_batch(std::span<const BatchView> views, std::vector<float
     double best_score = 0.0, best_gain = 0.0;
     for (std::size_t i = 0; i < views.size(); ++i) {
       double gain = 0.0;
-      for (const Sight& s : views[i].sights) gain += weights[s.target] * s.covered_share;
-      const double value = gain / (settings.view_price + way[i]);
+      for (const VisibleTarget& s : views[i].visible_targets)
+        gain += weights[s.target] * s.covered_share;
+      const double value = gain / (settings.view_price + path_length[i]);
       if (value > best_score) {
         best = i;
         best_score = value;
@@ -28,11 +30,12 @@ std::vector<Stop> pick_batch(std::span<const BatchView> views, std::vector<float
       }
     }
     if (!(best_score > 0.0)) break;
-    if (!batch.empty() && best_gain < settings.least_share * batch.front().gain) break;
+    if (!batch.empty() && best_gain < settings.min_fraction * batch.front().gain) break;
     batch.push_back({best, best_gain});
-    for (const Sight& s : views[best].sights) weights[s.target] *= 1.0F - s.covered_share;
+    for (const VisibleTarget& s : views[best].visible_targets)
+      weights[s.target] *= 1.0F - s.covered_share;
     for (std::size_t i = 0; i < views.size(); ++i) {
-      way[i] = std::min(way[i], (views[i].position - views[best].position).norm());
+      path_length[i] = std::min(path_length[i], (views[i].position - views[best].position).norm());
     }
   }
   return batch;
@@ -64,4 +67,4 @@ std::size_t first_stop(std::span<const BatchView> views, std::span<const Stop> b
   return best_first;
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

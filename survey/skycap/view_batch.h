@@ -9,18 +9,18 @@
 
 #include "survey/skycap/view_gain.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Candidate view of a batch: position and targets in sight.
 struct BatchView {
   Eigen::Vector3d position;
-  std::vector<Sight> sights;
+  std::vector<VisibleTarget> visible_targets;
 };
 
 struct BatchSettings {
   std::size_t size = 5;     ///< maximum number of views; above 6 there are too many tours
   double view_price = 4.0;  ///< fixed cost of a view, in metres of path
-  double least_share =
+  double min_fraction =
       0.5;  ///< minimum gain of further views, as a fraction of the first view's gain
   double impatience = 0.15;  ///< weight of early gain relative to tour length
 };
@@ -42,4 +42,4 @@ std::vector<Stop> pick_batch(std::span<const BatchView> views, std::vector<float
 std::size_t first_stop(std::span<const BatchView> views, std::span<const Stop> batch,
                        const Eigen::Vector3d& position, double impatience);
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -7,18 +7,18 @@
 
 #include "survey/skycap/raster/depth_raster.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 using Eigen::Vector3f;
 
 // An observation that yields less than a quarter of a substantial predicted gain halves the trust
 // in its surfel.
-constexpr float least_promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
+constexpr float min_promise = 0.2F, kept_prediction = 0.25F, broken_trust = 0.5F;
 
 /// Surfels with a smaller missing area, relative to the maximum, are not targets. Their sum is far
 /// below all stop rules.
-constexpr float least_weight_share = 2e-3F;
+constexpr float min_weight_fraction = 2e-3F;
 constexpr float raster_spacing = 1.0F;  // pixel size at the view distance, in units of h
 
 constexpr std::size_t chunk =
@@ -31,7 +31,7 @@ struct Workspace {
   std::array<float, chunk> depths, cosines, densities, slopes;
 };
 
-PointArrays arrays_of(const std::array<std::vector<float>, 3>& points, std::size_t first) {
+PointArrays to_arrays(const std::array<std::vector<float>, 3>& points, std::size_t first) {
   return {points[0].data() + first, points[1].data() + first, points[2].data() + first};
 }
 
@@ -41,14 +41,14 @@ void append(std::array<std::vector<float>, 3>& points, const Vector3f& point) {
 
 }  // namespace
 
-GainField::GainField(const DoseMap& map, const geometry::Camera& camera, const DoseModel& dose,
-                     const GainSettings& settings)
-    : dose_(dose),
+GainField::GainField(const SurfelMap& map, const geometry::Camera& camera,
+                     const CoverageModel& coverage_model, const GainSettings& settings)
+    : coverage_model_(coverage_model),
       spacing_(map.spacing()),
-      least_cosine_(std::cos(settings.max_incidence)),
+      min_cosine_(std::cos(settings.max_incidence)),
       focal_length_px_(camera.focal_length_px().cast<float>()),
-      least_range_(std::max(1e-6F, static_cast<float>(camera.config().min_range))),
-      most_range_(static_cast<float>(camera.config().max_range)) {
+      min_range_(std::max(1e-6F, static_cast<float>(camera.config().min_range))),
+      max_range_(static_cast<float>(camera.config().max_range)) {
   half_slope_ = {0.5F * static_cast<float>(camera.width()) / focal_length_px_.x(),
                  0.5F * static_cast<float>(camera.height()) / focal_length_px_.y()};
   raster_focal_length_px_ =
@@ -60,23 +60,23 @@ GainField::GainField(const DoseMap& map, const geometry::Camera& camera, const D
   for (const Vector3f& position : map.surfels().positions) append(occluders_, position);
 }
 
-GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
-                     const geometry::Camera& camera, const DoseModel& dose,
+GainField::GainField(const SurfelMap& map, std::span<const PredictedPatch> patches,
+                     const geometry::Camera& camera, const CoverageModel& coverage_model,
                      const GainSettings& settings, std::span<const Vector3f> prior_occluders,
-                     const Clearness* clearness)
-    : GainField(map, camera, dose, settings) {
-  clearness_ = clearness;
+                     const LineOfSightModel* line_of_sight_probability)
+    : GainField(map, camera, coverage_model, settings) {
+  line_of_sight_model_ = line_of_sight_probability;
   const Surfels& surfels = map.surfels();
-  const float least_weight = least_weight_share * spacing_ * spacing_;
+  const float min_weight = min_weight_fraction * spacing_ * spacing_;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     const float weight = surfels.deficit(i) * surfels.trusts[i];
-    if (weight < least_weight) continue;
+    if (weight < min_weight) continue;
     targets_.push_back({surfels.positions[i], surfels.normals[i], weight});
     sources_.push_back(static_cast<std::uint32_t>(i));
   }
   surfel_targets_ = targets_.size();
   // Patches of the same kind are consecutive.
-  const auto is_prior_patch = [](const UnseenPatch& patch) { return patch.kind == prior_kind; };
+  const auto is_prior_patch = [](const PredictedPatch& patch) { return patch.kind == prior_kind; };
   const auto priors = std::ranges::find_if(patches, is_prior_patch);
   first_prior_ = surfel_targets_ + static_cast<std::size_t>(priors - patches.begin());
   end_prior_ =
@@ -89,12 +89,12 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
   index_targets();
 }
 
-GainField GainField::of_known_surface(const DoseMap& map, const geometry::Camera& camera,
-                                      const DoseModel& dose, const GainSettings& settings,
-                                      std::size_t most_targets) {
-  GainField field(map, camera, dose, settings);
+GainField GainField::from_known_surface(const SurfelMap& map, const geometry::Camera& camera,
+                                        const CoverageModel& coverage_model,
+                                        const GainSettings& settings, std::size_t max_targets) {
+  GainField field(map, camera, coverage_model, settings);
   const Surfels& surfels = map.surfels();
-  const std::size_t stride = (surfels.size() + most_targets - 1) / most_targets;
+  const std::size_t stride = (surfels.size() + max_targets - 1) / max_targets;
   for (std::size_t first = 0; first < surfels.size(); first += stride) {
     const std::size_t end = std::min(first + stride, surfels.size()), middle = (first + end) / 2;
     float weight = 0.0F;
@@ -130,9 +130,9 @@ RasterView GainField::raster_view(const geometry::View& view) const {
                     .outside = static_cast<std::uint32_t>((raster_width_ + 2 + row_margin) *
                                                           (raster_height_ + 2)),
                     .half_slope = {half_slope_.x(), half_slope_.y()},
-                    .least_range = least_range_,
-                    .most_range = most_range_,
-                    .least_cosine = least_cosine_};
+                    .min_range = min_range_,
+                    .max_range = max_range_,
+                    .min_cosine = min_cosine_};
   const Vector3f position = view.position.cast<float>();
   for (int axis = 0; axis < 3; ++axis) {
     raster.position[axis] = position[axis];
@@ -144,13 +144,13 @@ RasterView GainField::raster_view(const geometry::View& view) const {
 }
 
 template <typename Visit>
-void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
+void GainField::for_each_visible_target(const geometry::View& view, Visit visit) const {
   static thread_local Workspace work;
   const RasterView raster = raster_view(view);
   const Vector3f sensor = view.position.cast<float>();
-  work.raster.draw(raster, occluders_[0].size(), arrays_of(occluders_, 0), spacing_);
+  work.raster.draw(raster, occluders_[0].size(), to_arrays(occluders_, 0), spacing_);
   if (first_prior_ < end_prior_) {
-    work.prior_raster.draw(raster, prior_occluders_[0].size(), arrays_of(prior_occluders_, 0),
+    work.prior_raster.draw(raster, prior_occluders_[0].size(), to_arrays(prior_occluders_, 0),
                            spacing_);
   }
 
@@ -158,10 +158,10 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
                                work.cosines.data(), work.densities.data(), work.slopes.data()};
   for (std::size_t first = 0; first < targets_.size(); first += chunk) {
     const std::size_t count = std::min(chunk, targets_.size() - first);
-    project_targets(raster, focal_length_px_.prod(), count, arrays_of(positions_, first),
-                    arrays_of(normals_, first), projected);
+    project_targets(raster, focal_length_px_.prod(), count, to_arrays(positions_, first),
+                    to_arrays(normals_, first), projected);
     // Index lists instead of unpredictable branches.
-    std::size_t in_view = 0, in_sight = 0;
+    std::size_t in_view = 0, visible_count = 0;
     for (std::size_t i = 0; i < count; ++i) {
       work.numbers[in_view] = static_cast<std::uint32_t>(i);
       in_view += work.in_view[i];
@@ -171,18 +171,18 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
       // A slanted surface occludes itself by its depth difference over a square.
       const float own_tolerance = spacing_ * (1.5F + 2.0F * work.slopes[i]);
       const float tolerance = first + i < surfel_targets_ ? own_tolerance : spacing_;
-      work.numbers[in_sight] = i;
-      in_sight += work.depths[i] > work.raster.depth(work.pixels[i]) + tolerance ? 0 : 1;
+      work.numbers[visible_count] = i;
+      visible_count += work.depths[i] > work.raster.depth(work.pixels[i]) + tolerance ? 0 : 1;
     }
-    for (std::size_t k = 0; k < in_sight; ++k) {
+    for (std::size_t k = 0; k < visible_count; ++k) {
       const std::size_t i = work.numbers[k];
       if (is_prior(first + i)) {
         const float own_tolerance = spacing_ * (1.5F + 2.0F * work.slopes[i]);
         if (work.depths[i] > work.prior_raster.depth(work.pixels[i]) + own_tolerance) continue;
       }
-      const bool is_sure = clearness_ == nullptr || !is_patch(first + i);
-      visit(first + i, dose_.hazard(work.densities[i], work.cosines[i]),
-            is_sure ? 1.0F : clearness_->of(source(first + i), sensor));
+      const bool is_sure = line_of_sight_model_ == nullptr || !is_patch(first + i);
+      visit(first + i, coverage_model_.hazard(work.densities[i], work.cosines[i]),
+            is_sure ? 1.0F : line_of_sight_model_->of(source(first + i), sensor));
     }
   }
 }
@@ -190,84 +190,90 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
 Gain GainField::gain(const geometry::View& view) const {
   Gain gain;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for_each_sight(view, [&](std::size_t t, float hazard, float clearness) {
-    const double area = targets_[t].weight * clearness * (1.0F - std::exp(-hazard));
+  for_each_visible_target(view, [&](std::size_t t, float hazard, float line_of_sight_probability) {
+    const double area = targets_[t].weight * line_of_sight_probability * (1.0F - std::exp(-hazard));
     gain.area += area;
-    if (is_patch(t)) gain.unseen += area;
+    if (is_patch(t)) gain.predicted += area;
     moment += area * targets_[t].position.cast<double>();
   });
   if (gain.area > 0.0) gain.centroid = (moment / gain.area).cast<float>();
   return gain;
 }
 
-std::vector<Sight> GainField::sights(const geometry::View& view) const {
-  std::vector<Sight> sights;
-  for_each_sight(view, [&](std::size_t t, float hazard, float clearness) {
-    sights.push_back(
-        {static_cast<std::uint32_t>(t), clearness * (1.0F - std::exp(-hazard)), clearness});
+std::vector<VisibleTarget> GainField::visible_targets(const geometry::View& view) const {
+  std::vector<VisibleTarget> visible_targets;
+  for_each_visible_target(view, [&](std::size_t t, float hazard, float line_of_sight_probability) {
+    visible_targets.push_back({static_cast<std::uint32_t>(t),
+                               line_of_sight_probability * (1.0F - std::exp(-hazard)),
+                               line_of_sight_probability});
   });
-  return sights;
+  return visible_targets;
 }
 
-std::vector<Look> GainField::looks(const geometry::View& view) const {
-  std::vector<Look> looks;
-  for_each_sight(view, [&](std::size_t t, float hazard, float /*clearness*/) {
-    looks.push_back({static_cast<std::uint32_t>(t), hazard});
+std::vector<Observation> GainField::observations(const geometry::View& view) const {
+  std::vector<Observation> observations;
+  for_each_visible_target(view, [&](std::size_t t, float hazard, float /*clearness*/) {
+    observations.push_back({static_cast<std::uint32_t>(t), hazard});
   });
-  return looks;
+  return observations;
 }
 
-Promise promise_of(const GainField& field, const DoseMap& map, std::vector<Sight> sights) {
-  Promise promise{std::move(sights), map.surfels().hazards};
-  for (const Sight& sight : promise.sights) {
-    const double area = field.targets()[sight.target].weight * sight.covered_share;
-    (field.is_patch(sight.target) ? promise.guessed : promise.seen) += area;
+GainPrediction compute_prediction(const GainField& field, const SurfelMap& map,
+                                  std::vector<VisibleTarget> visible_targets) {
+  GainPrediction gain_prediction{std::move(visible_targets), map.surfels().hazards};
+  for (const VisibleTarget& visible_target : gain_prediction.visible_targets) {
+    const double area =
+        field.targets()[visible_target.target].weight * visible_target.covered_share;
+    (field.is_patch(visible_target.target) ? gain_prediction.predicted : gain_prediction.seen) +=
+        area;
   }
-  return promise;
+  return gain_prediction;
 }
 
-void grade(const Promise& promise, const GainField& field, DoseMap& map, UnseenSurface& unseen,
-           const SpaceMemory& space) {
-  std::vector<UnseenSurface::Expected> patches;
-  for (const Sight& sight : promise.sights) {
-    const std::uint32_t source = field.source(sight.target);
-    if (field.is_patch(sight.target)) {
-      patches.push_back({source, sight.clearness});
+void grade(const GainPrediction& gain_prediction, const GainField& field, SurfelMap& map,
+           PredictedSurface& predicted, const FreeSpaceHistory& space) {
+  std::vector<PredictedSurface::Expected> patches;
+  for (const VisibleTarget& visible_target : gain_prediction.visible_targets) {
+    const std::uint32_t source = field.source(visible_target.target);
+    if (field.is_patch(visible_target.target)) {
+      patches.push_back({source, visible_target.line_of_sight_probability});
       continue;
     }
-    const float promised = -std::log(std::max(1.0F - sight.covered_share, 1e-3F));
-    const float given = map.surfels().hazards[source] - promise.hazards[source];
-    if (promised > least_promise && given < kept_promise * promised) {
+    const float predicted_sum = -std::log(std::max(1.0F - visible_target.covered_share, 1e-3F));
+    const float gained = map.surfels().hazards[source] - gain_prediction.hazards[source];
+    if (predicted_sum > min_promise && gained < kept_prediction * predicted_sum) {
       map.lower_trust(source, broken_trust);
     }
   }
-  unseen.grade(patches, map, space, promise.surfels());
+  predicted.grade(patches, map, space, gain_prediction.surfels());
 }
 
-std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
-                                            std::span<const UnseenPatch> patches,
-                                            std::span<const float> chances, float guess_yield) {
+std::vector<EstimatedPatch> estimated_patches(const SurfelMap& map, const GainField& field,
+                                              std::span<const PredictedPatch> patches,
+                                              std::span<const float> chances,
+                                              float prediction_yield) {
   constexpr float well_covered = 0.5F;  // more likely covered than not, and therefore not missing
   const Surfels& surfels = map.surfels();
-  std::vector<BelievedPatch> believed;
+  std::vector<EstimatedPatch> estimated;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
-    believed.push_back({surfels.positions[i], surfels.normals[i], surfels.areas[i],
-                        surfels.covered_share(i), MissingReason::none});
+    estimated.push_back({surfels.positions[i], surfels.normals[i], surfels.areas[i],
+                         surfels.covered_share(i), MissingReason::none});
   }
   for (std::size_t t = 0; t < field.targets().size(); ++t) {
     const std::uint32_t source = field.source(t);
     if (!field.is_patch(t)) {
-      BelievedPatch& patch = believed[source];
+      EstimatedPatch& patch = estimated[source];
       if (patch.covered_share >= well_covered) continue;
       patch.reason =
           chances[t] > 0.0F ? MissingReason::seen_too_thinly : MissingReason::unreachable;
     } else if (chances[t] > 0.0F) {
-      const UnseenPatch& patch = patches[source];
-      believed.push_back({patch.position, patch.normal, guess_yield * chances[t] * patch.weight,
-                          0.0F, MissingReason::never_seen});
+      const PredictedPatch& patch = patches[source];
+      estimated.push_back({patch.position, patch.normal,
+                           prediction_yield * chances[t] * patch.weight, 0.0F,
+                           MissingReason::never_seen});
     }
   }
-  return believed;
+  return estimated;
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -11,11 +11,11 @@ constexpr double free_below = 0.2;
 constexpr double occupied_above = 0.8;
 constexpr double stops_rays_from = 0.5;
 
-float log_odds_of(double probability) {
+float to_log_odds(double probability) {
   return static_cast<float>(std::log(probability / (1.0 - probability)));
 }
 
-VoxelState state_of(float log_odds) {
+VoxelState compute_state(float log_odds) {
   const double p = 1.0 - 1.0 / (1.0 + std::exp(double{log_odds}));
   VoxelState state;
   state.occupancy = p;
@@ -30,11 +30,11 @@ VoxelState state_of(float log_odds) {
 }  // namespace
 
 OccupancyStates::OccupancyStates(const OccupancyModel& model, std::size_t capacity)
-    : hit_(log_odds_of(model.hit)),
-      miss_(log_odds_of(model.miss)),
-      lowest_(log_odds_of(model.lowest)),
-      highest_(log_odds_of(model.highest)),
-      capacity_(std::clamp<std::size_t>(capacity, first_measured + 2, most_states)),
+    : hit_(to_log_odds(model.hit)),
+      miss_(to_log_odds(model.miss)),
+      clamping_min_(to_log_odds(model.clamping_min)),
+      clamping_max_(to_log_odds(model.clamping_max)),
+      capacity_(std::clamp<std::size_t>(capacity, first_measured + 2, max_states)),
       states_(first_measured) {
   for (Code depth = 1; depth <= deepest_shadow; ++depth) {
     states_[depth].shadow_depth = depth;
@@ -43,17 +43,17 @@ OccupancyStates::OccupancyStates(const OccupancyModel& model, std::size_t capaci
 }
 
 OccupancyStates::Code OccupancyStates::successor(Code code, float change, Code Value::*known) {
-  if (!is_measured(code)) return code_of(std::clamp(change, lowest_, highest_));
+  if (!is_measured(code)) return find_code(std::clamp(change, clamping_min_, clamping_max_));
   const std::size_t number = code - first_measured;
   if (values_[number].*known == untouched) {
-    const float next = std::clamp(values_[number].log_odds + change, lowest_, highest_);
-    const Code next_code = code_of(next);  // may reallocate values_
+    const float next = std::clamp(values_[number].log_odds + change, clamping_min_, clamping_max_);
+    const Code next_code = find_code(next);  // may reallocate values_
     values_[number].*known = next_code;
   }
   return values_[number].*known;
 }
 
-OccupancyStates::Code OccupancyStates::code_of(float log_odds) {
+OccupancyStates::Code OccupancyStates::find_code(float log_odds) {
   if (const auto found = codes_.find(log_odds); found != codes_.end()) return found->second;
   if (states_.size() == capacity_) {
     const auto distance = [&](const Value& value) { return std::abs(value.log_odds - log_odds); };
@@ -61,7 +61,7 @@ OccupancyStates::Code OccupancyStates::code_of(float log_odds) {
     return static_cast<Code>(first_measured + (nearest - values_.begin()));
   }
   const auto code = static_cast<Code>(states_.size());
-  states_.push_back(state_of(log_odds));
+  states_.push_back(compute_state(log_odds));
   values_.push_back({log_odds});
   codes_.emplace(log_odds, code);
   return code;

@@ -16,10 +16,10 @@ namespace skycap::survey::volumetric {
 
 /// Sensor model, as probabilities in (0, 1). Defaults: those of Delmerico et al. (2017).
 struct OccupancyModel {
-  double hit = 0.7;       ///< occupancy after one hit in an untouched voxel
-  double miss = 0.4;      ///< occupancy after one ray through an untouched voxel
-  double lowest = 0.12;   ///< minimum occupancy
-  double highest = 0.97;  ///< maximum occupancy
+  double hit = 0.7;            ///< occupancy after one hit in an untouched voxel
+  double miss = 0.4;           ///< occupancy after one ray through an untouched voxel
+  double clamping_min = 0.12;  ///< minimum occupancy
+  double clamping_max = 0.97;  ///< maximum occupancy
 };
 
 /// State of a voxel by the thresholds of the information gains.
@@ -47,11 +47,11 @@ class OccupancyStates {
   using Code = std::uint16_t;
   static constexpr Code untouched = 0;
   static constexpr Code deepest_shadow = 4095;
-  static constexpr std::size_t most_states = std::size_t{1} << 16;
+  static constexpr std::size_t max_states = std::size_t{1} << 16;
 
   /// Assigns codes to up to `capacity` states. Beyond that, a new value is replaced by the nearest
   /// existing one.
-  explicit OccupancyStates(const OccupancyModel& model, std::size_t capacity = most_states);
+  explicit OccupancyStates(const OccupancyModel& model, std::size_t capacity = max_states);
 
   /// Returns the code of a voxel after one more hit, or after one more ray through it. An
   /// unmeasured voxel starts with log-odds of zero.
@@ -75,9 +75,9 @@ class OccupancyStates {
     Code after_miss = untouched;
   };
   Code successor(Code code, float change, Code Value::*known);
-  Code code_of(float log_odds);
+  Code find_code(float log_odds);
 
-  float hit_, miss_, lowest_, highest_;
+  float hit_, miss_, clamping_min_, clamping_max_;
   std::size_t capacity_;
   std::vector<VoxelState> states_;  // by code
   std::vector<Value> values_;       // values of the measured states

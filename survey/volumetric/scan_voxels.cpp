@@ -51,11 +51,11 @@ SKYCAP_FOR_AVX2 void pass_four_with_avx2(FourWalks& walks, std::int64_t steps, M
 }
 
 /// Returns the end of the shadow of a point.
-Vector3f end_of_shadow(const Vector3f& origin, const Vector3f& point, double length) {
-  const Vector3f way = point - origin;
-  const float distance = way.norm();
+Vector3f compute_shadow_end(const Vector3f& origin, const Vector3f& point, double length) {
+  const Vector3f ray = point - origin;
+  const float distance = ray.norm();
   if (distance == 0.0F) return point;
-  return point + way * (static_cast<float>(length) / distance);
+  return point + ray * (static_cast<float>(length) / distance);
 }
 
 /// State of one ray.
@@ -94,7 +94,7 @@ void finish(const Walk& walk, const VoxelLine::Steps& steps, Visit visit) {
     visit(*mark);
     advance();
   }
-  for (; step < steps.most; ++step) {
+  for (; step < steps.max; ++step) {
     if (step > 0 && std::min({x, y, z}) > steps.limit) break;
     visit(*mark);
     advance();
@@ -118,7 +118,7 @@ ScanVoxels::ScanVoxels(const Vector3f& origin, std::span<const Vector3f> returns
   };
   for (const Vector3f& point : returns) {
     extend(point);
-    extend(end_of_shadow(origin, point, shadow_length));
+    extend(compute_shadow_end(origin, point, shadow_length));
   }
   for (const Vector3f& end : empty_ends) extend(end);
   // Due to rounding, a ray may pass its end by one voxel per axis.
@@ -130,7 +130,7 @@ ScanVoxels::ScanVoxels(const Vector3f& origin, std::span<const Vector3f> returns
     voxels *= static_cast<double>(width);
     if (axis < 2) strides_[axis + 1] = strides_[axis] * width;
   }
-  if (voxels > most_voxels) {
+  if (voxels > max_voxels) {
     std::ostringstream message;
     message << "a scan spans " << voxels << " voxels of " << resolution
             << " m; choose a larger planner.resolution_radius, or a smaller sensor.max_range";
@@ -143,13 +143,14 @@ ScanVoxels::ScanVoxels(const Vector3f& origin, std::span<const Vector3f> returns
   mark_passed(origin, returns);
   mark_passed(origin, empty_ends);
   for (const Vector3f& point : returns) {
-    marks_[static_cast<std::size_t>(number_of(voxel_at(point, 1.0 / resolution)))] = hit;
+    marks_[static_cast<std::size_t>(linear_index(voxel_at(point, 1.0 / resolution)))] = hit;
   }
 }
 
 void ScanVoxels::mark_shadow(const Vector3f& origin, const Vector3f& point, double length) {
-  const auto steps = VoxelLine(point, end_of_shadow(origin, point, length), resolution_).steps();
-  Mark* const first = marks_.data() + number_of(voxel_at(point, 1.0 / resolution_));
+  const auto steps =
+      VoxelLine(point, compute_shadow_end(origin, point, length), resolution_).steps();
+  Mark* const first = marks_.data() + linear_index(voxel_at(point, 1.0 / resolution_));
   Mark depth = 0;
   finish(Walk(steps, strides_, first), steps, [&](Mark& mark) {
     // Zero (no mark) underflows to the maximum value.
@@ -161,7 +162,7 @@ void ScanVoxels::mark_shadow(const Vector3f& origin, const Vector3f& point, doub
 void ScanVoxels::mark_passed(const Vector3f& origin, std::span<const Vector3f> ends) {
   const auto pass = [](Mark& mark) { mark = passed; };
   const auto pass_four = has_avx2() ? pass_four_with_avx2 : pass_four_anywhere;
-  const std::int64_t start = number_of(voxel_at(origin, 1.0 / resolution_));
+  const std::int64_t start = linear_index(voxel_at(origin, 1.0 / resolution_));
   std::size_t next = 0;
   for (; next + lane_count <= ends.size(); next += lane_count) {
     std::array<VoxelLine::Steps, lane_count> steps;

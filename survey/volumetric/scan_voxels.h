@@ -24,11 +24,11 @@ class ScanVoxels {
 
   /// Marks the voxels of rays from `origin` in the world frame. The voxels of `returns` are hit,
   /// those before `returns` and `empty_ends` are passed. Shadows extend `shadow_length` [m] behind
-  /// returns, less than 30,000 voxels. Throws if the scan spans more than most_voxels.
+  /// returns, less than 30,000 voxels. Throws if the scan spans more than max_voxels.
   ScanVoxels(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> returns,
              std::span<const Eigen::Vector3f> empty_ends, double resolution, double shadow_length);
 
-  static constexpr double most_voxels = 0x1p32;  // 8 GiB of marks
+  static constexpr double max_voxels = 0x1p32;  // 8 GiB of marks
 
   /// Calls f(voxel, mark) for all marked voxels in a fixed order.
   template <typename F>
@@ -56,7 +56,7 @@ class ScanVoxels {
  private:
   static constexpr std::int64_t marks_in_word = sizeof(std::uint64_t) / sizeof(Mark);
 
-  std::int64_t number_of(const VoxelIndex& voxel) const {
+  std::int64_t linear_index(const VoxelIndex& voxel) const {
     return (voxel[0] - low_[0]) + (voxel[1] - low_[1]) * strides_[1] +
            (voxel[2] - low_[2]) * strides_[2];
   }

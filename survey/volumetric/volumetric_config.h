@@ -72,8 +72,8 @@ struct VolumetricSettings {
   RayPattern rays;
   std::optional<double> ray_depth;  ///< length of rays [m]; default: the radius of the sphere
   std::optional<double>
-      shadow_length;     ///< s: length of the shadows behind measurements [m]; default: 18 voxels
-  bool thinned = false;  ///< insert only kept points into the map instead of whole scans
+      shadow_length;  ///< s: length of the shadows behind measurements [m]; default: 18 voxels
+  bool downsampled = false;       ///< insert only kept points into the map instead of whole scans
   bool carve_no_returns = false;  ///< treat no-return pixels as free up to ray_depth
 };
 
@@ -85,8 +85,8 @@ struct VolumetricConfig {
   std::size_t candidates = 312;
   Eigen::Vector3d sphere_centre = Eigen::Vector3d::Zero();
   double sphere_radius = 1.0;
-  std::optional<double> least_height;  ///< minimum z of the candidates [m]
-  std::uint64_t seed = 1;              ///< seed of the candidates
+  std::optional<double> min_height;  ///< minimum z of the candidates [m]
+  std::uint64_t seed = 1;            ///< seed of the candidates
   VolumetricSettings settings;
   unsigned threads = 1;  ///< threads for evaluation; zero: all processors; does not affect results
 

@@ -48,7 +48,7 @@ class Visibility {
 /// rays that hit nothing occupied are not counted.
 class RearSideVoxelGain {
  public:
-  static constexpr Hears hears = Hears::last_left_out;
+  static constexpr RayEvents ray_events = RayEvents::last_skipped;
   static constexpr bool only_surfaces = true;
   explicit RearSideVoxelGain(const GainSettings&, double) {}
 
@@ -70,7 +70,7 @@ class RearSideVoxelGain {
 
 class RearSideEntropyGain {
  public:
-  static constexpr Hears hears = Hears::every_voxel;
+  static constexpr RayEvents ray_events = RayEvents::every_voxel;
   static constexpr bool only_surfaces = true;
   explicit RearSideEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
 
@@ -109,7 +109,7 @@ class RearSideEntropyGain {
 template <bool only_uncertain>
 class VisibleEntropyGain {
  public:
-  static constexpr Hears hears = Hears::every_voxel;
+  static constexpr RayEvents ray_events = RayEvents::every_voxel;
   static constexpr bool only_surfaces = false;
   explicit VisibleEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
 
@@ -136,8 +136,8 @@ class VisibleEntropyGain {
   /// Returns whether to continue the ray. The rest is at most ln 2 times a geometric series with
   /// factors of up to 0.88. The ray ends when it cannot change the sum.
   bool go_on() {
-    constexpr double most_left = prior_entropy / (1.0 - 0.88);
-    if (visibility_.weight() * most_left > 1e-17 * ray_) return true;
+    constexpr double max_remaining = prior_entropy / (1.0 - 0.88);
+    if (visibility_.weight() * max_remaining > 1e-17 * ray_) return true;
     total_ += ray_;
     return false;
   }
@@ -153,28 +153,27 @@ class VisibleEntropyGain {
 
 class ProximityCountGain {
  public:
-  static constexpr Hears hears = Hears::only_its_end;
+  static constexpr RayEvents ray_events = RayEvents::only_its_end;
   static constexpr bool only_surfaces = false;
-  explicit ProximityCountGain(const GainSettings&, double shadow_ceiling)
-      : shadow_ceiling_(shadow_ceiling) {}
+  explicit ProximityCountGain(const GainSettings&, double max_shadow) : max_shadow_(max_shadow) {}
 
   void begin_ray() {}
   bool may_miss(bool has_shadows) const { return !has_shadows; }
   bool pass(const VoxelState& state) {
-    if (state.kind == VoxelKind::shadowed) total_ += shadow_ceiling_ - state.shadow_depth;
+    if (state.kind == VoxelKind::shadowed) total_ += max_shadow_ - state.shadow_depth;
     return true;
   }
   void finish(const VoxelState& state) { pass(state); }
   double total() const { return total_; }
 
  private:
-  double shadow_ceiling_;
+  double max_shadow_;
   double total_ = 0.0;
 };
 
 class AreaFactorGain {
  public:
-  static constexpr Hears hears = Hears::last_left_out;
+  static constexpr RayEvents ray_events = RayEvents::last_skipped;
   static constexpr bool only_surfaces = false;
   explicit AreaFactorGain(const GainSettings& settings, double) : share_(settings.area_share) {}
 
@@ -219,7 +218,7 @@ class AreaFactorGain {
 
 class AverageEntropyGain {
  public:
-  static constexpr Hears hears = Hears::every_voxel;
+  static constexpr RayEvents ray_events = RayEvents::every_voxel;
   static constexpr bool only_surfaces = true;
   explicit AverageEntropyGain(const GainSettings&, double) {}
 
@@ -250,7 +249,7 @@ class AverageEntropyGain {
 /// Fast test whether a ray ends on an occupied voxel.
 class OccupiedEnd {
  public:
-  static constexpr Hears hears = Hears::only_its_end;
+  static constexpr RayEvents ray_events = RayEvents::only_its_end;
   bool may_miss(bool) const { return true; }
   bool pass(const VoxelState&) { return true; }
   void finish(const VoxelState& state) { is_met_ = state.kind == VoxelKind::occupied; }
@@ -275,9 +274,9 @@ double far_end(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vec
 }
 
 template <typename Gain>
-double gain_of(const VolumetricMap& map, const geometry::View& view,
-               const std::vector<Vector3d>& directions, double depth,
-               const GainSettings& settings) {
+double compute_gain(const VolumetricMap& map, const geometry::View& view,
+                    const std::vector<Vector3d>& directions, double depth,
+                    const GainSettings& settings) {
   const Eigen::Matrix3d world_from_camera = geometry::camera_pose(view).linear();
   const Vector3f origin = view.position.cast<float>();
   Eigen::AlignedBox3d surface = map.surface_box();
@@ -285,7 +284,7 @@ double gain_of(const VolumetricMap& map, const geometry::View& view,
     surface.min().array() -= map.resolution();
     surface.max().array() += map.resolution();
   }
-  Gain gain(settings, map.shadow_ceiling());
+  Gain gain(settings, map.max_shadow());
   for (const Vector3d& in_camera : directions) {
     const Vector3d direction = world_from_camera * in_camera;
     const Vector3f end = (view.position + depth * direction).cast<float>();
@@ -295,7 +294,7 @@ double gain_of(const VolumetricMap& map, const geometry::View& view,
       if (reach < 0.0) continue;
     }
     if (Gain::only_surfaces &&
-        Gain::hears == Hears::every_voxel) {  // the fast test avoids useless slow rays
+        Gain::ray_events == RayEvents::every_voxel) {  // the fast test avoids useless slow rays
       OccupiedEnd surface_end;
       map.follow(origin, end, reach, surface_end);
       if (!surface_end.is_met()) continue;
@@ -315,8 +314,8 @@ std::vector<Vector3d> ray_directions(const geometry::Camera& camera, const RayPa
     const auto count = static_cast<int>(extent * pattern.rays_per_pixel + rounding) + 1;
     std::vector<double> chosen;
     for (int i = 0; i < count; ++i) {
-      const double place = pattern.window_begin * size + i / pattern.rays_per_pixel;
-      chosen.push_back(std::trunc(place + rounding));
+      const double pixel_position = pattern.window_begin * size + i / pattern.rays_per_pixel;
+      chosen.push_back(std::trunc(pixel_position + rounding));
     }
     return chosen;
   };
@@ -329,9 +328,9 @@ std::vector<Vector3d> ray_directions(const geometry::Camera& camera, const RayPa
   return directions;
 }
 
-double area_reward(double x, double wanted) {
+double area_reward(double x, double target_area) {
   // Position between the nearer end of [0, 1] and the target fraction.
-  const double r = x <= wanted ? x / wanted : (1.0 - x) / (1.0 - wanted);
+  const double r = x <= target_area ? x / target_area : (1.0 - x) / (1.0 - target_area);
   return r * r * (3.0 - 2.0 * r);
 }
 
@@ -339,7 +338,7 @@ double information_gain(VolumetricMetric metric, const VolumetricMap& map,
                         const geometry::View& view, const std::vector<Vector3d>& directions,
                         double depth, const GainSettings& settings) {
   const auto gain = [&]<typename Gain>() {
-    return gain_of<Gain>(map, view, directions, depth, settings);
+    return compute_gain<Gain>(map, view, directions, depth, settings);
   };
   switch (metric) {
     case VolumetricMetric::rear_side_voxel:

@@ -31,6 +31,6 @@ double information_gain(VolumetricMetric metric, const VolumetricMap& map,
 
 /// Returns the reward of AF for a fraction x in [0, 1]. It consists of two cubics: from 0 at 0 to 1
 /// at the target fraction, and to 0 at 1, with zero slope at all three.
-double area_reward(double x, double wanted);
+double area_reward(double x, double target_area);
 
 }  // namespace skycap::survey::volumetric

@@ -23,9 +23,9 @@ void VolumetricMap::insert(const Vector3f& origin, std::span<const Vector3f> ret
   voxels.for_each([&](const VoxelIndex& voxel, ScanVoxels::Mark mark) {
     const VoxelIndex index = coarser(voxel, block_shift);
     if (!block || block->index != index) block = &block_at(index);
-    const std::uint32_t brick = place_of(coarser(voxel, brick_shift));
+    const std::uint32_t brick = index_in_parent(coarser(voxel, brick_shift));
     const std::uint64_t bit = std::uint64_t{1} << brick;
-    Code& code = block->codes[brick][place_of(voxel)];
+    Code& code = block->codes[brick][index_in_parent(voxel)];
     if (ScanVoxels::is_shadow(mark)) {
       const bool is_less_deep = code != OccupancyStates::untouched && code <= mark;
       if (OccupancyStates::is_measured(code) || is_less_deep) return;
@@ -70,13 +70,13 @@ VolumetricMap::Block& VolumetricMap::block_at(const VoxelIndex& index) {
   if (Block* const block = find(index)) return *block;
   Block& block = blocks_.emplace_back();
   block.index = index;
-  index_.insert(key_of(index), &block);
+  index_.insert(make_key(index), &block);
   return block;
 }
 
-VolumetricMap::Code VolumetricMap::code_of(const VoxelIndex& voxel) const {
+VolumetricMap::Code VolumetricMap::find_code(const VoxelIndex& voxel) const {
   const Block* const block = find(coarser(voxel, block_shift));
-  return block ? block->codes[place_of(coarser(voxel, brick_shift))][place_of(voxel)]
+  return block ? block->codes[index_in_parent(coarser(voxel, brick_shift))][index_in_parent(voxel)]
                : OccupancyStates::untouched;
 }
 

@@ -28,10 +28,10 @@
 namespace skycap::survey::volumetric {
 
 /// Events of VolumetricMap::follow() that a ray receives.
-enum class Hears {
-  every_voxel,    ///< every passed voxel, and the one at which the ray stops
-  last_left_out,  ///< all relevant voxels and, before each of them, the last skipped voxel
-  only_its_end,   ///< all relevant voxels and the end of the ray
+enum class RayEvents {
+  every_voxel,   ///< every passed voxel, and the one at which the ray stops
+  last_skipped,  ///< all relevant voxels and, before each of them, the last skipped voxel
+  only_its_end,  ///< all relevant voxels and the end of the ray
 };
 
 class VolumetricMap {
@@ -53,7 +53,7 @@ class VolumetricMap {
   }
 
   /// Returns 2 s / res for shadows of length s. Shadow depths are subtracted from it.
-  double shadow_ceiling() const { return 2.0 * shadow_length_ / resolution_; }
+  double max_shadow() const { return 2.0 * shadow_length_ / resolution_; }
 
   /// Returns the bounding box of all voxels that stop rays; empty without such voxels.
   const Eigen::AlignedBox3d& surface_box() const { return surface_box_; }
@@ -61,7 +61,7 @@ class VolumetricMap {
   /// Returns the allocated memory [bytes].
   std::size_t memory() const;
 
-  /// Follows the ray from `origin` to `end` and reports events according to `ray.hears`.
+  /// Follows the ray from `origin` to `end` and reports events according to `ray.ray_events`.
   /// `pass_untouched(count)` reports voxels of missing bricks, and `pass(state)` reports a single
   /// voxel. The ray ends if either returns false.
   ///
@@ -85,21 +85,21 @@ class VolumetricMap {
     std::uint64_t changed = 0;   // used while a scan is inserted
     std::array<std::array<Code, voxels_in_brick>, bricks_in_block> codes{};
   };
-  static std::uint64_t key_of(
+  static std::uint64_t make_key(
       const VoxelIndex& block) {  // 21 bits per axis, and a carry of the sum
     constexpr std::uint64_t lower_bits = ~std::uint64_t{0} >> 1;
     return lower_bits & static_cast<std::uint64_t>(block[0] + (std::int64_t{block[1]} << 21) +
                                                    (std::int64_t{block[2]} << 42));
   }
   Block* find(const VoxelIndex& block) const {
-    Block* const* const found = index_.find(key_of(block));
+    Block* const* const found = index_.find(make_key(block));
     return found == nullptr ? nullptr : *found;
   }
   Block& block_at(const VoxelIndex& index);  // creates the block if it does not exist
   void summarise(Block& block, std::uint32_t brick);
-  Code code_of(const VoxelIndex& voxel) const;
+  Code find_code(const VoxelIndex& voxel) const;
   Code code_at(const Eigen::Vector3f& point) const {
-    return code_of(voxel_at(point, 1.0 / resolution_));
+    return find_code(voxel_at(point, 1.0 / resolution_));
   }
 
   double resolution_;
@@ -111,12 +111,12 @@ class VolumetricMap {
 };
 
 /// Skipped cells of a walk, and the report about them before the next event of the ray.
-template <typename Ray, typename StateOf>
-class UntoldStretch {
+template <typename Ray, typename StateLookup>
+class UnreportedRun {
  public:
-  /// `state_of(voxel)` returns the state of a voxel of the map.
-  UntoldStretch(const VoxelLine& line, Ray& ray, StateOf state_of)
-      : line_(line), ray_(ray), state_of_(state_of) {}
+  /// `lookup_state(voxel)` returns the state of a voxel of the map.
+  UnreportedRun(const VoxelLine& line, Ray& ray, StateLookup lookup_state)
+      : line_(line), ray_(ray), lookup_state_(lookup_state) {}
 
   template <typename Walk>
   void pass_over(const Walk& walk) {
@@ -124,13 +124,13 @@ class UntoldStretch {
   }
 
   /// Reports the skipped cells before `entered`. Returns false if the ray ends.
-  bool tell_before(const Crossing& entered) {
+  bool report_before(const Crossing& entered) {
     const std::optional<Crossing> since = std::exchange(since_, std::nullopt);
-    if constexpr (Ray::hears == Hears::every_voxel) {
+    if constexpr (Ray::ray_events == RayEvents::every_voxel) {
       return !since || ray_.pass_untouched(static_cast<std::size_t>(line_.voxels_before(entered) -
                                                                     line_.voxels_before(*since)));
-    } else if constexpr (Ray::hears == Hears::last_left_out) {
-      return !since || ray_.pass(state_of_(line_.voxel_before(entered)));
+    } else if constexpr (Ray::ray_events == RayEvents::last_skipped) {
+      return !since || ray_.pass(lookup_state_(line_.voxel_before(entered)));
     }
     return true;
   }
@@ -138,7 +138,7 @@ class UntoldStretch {
  private:
   const VoxelLine& line_;
   Ray& ray_;
-  StateOf state_of_;
+  StateLookup lookup_state_;
   std::optional<Crossing> since_;  // crossing into the first skipped cell
 };
 
@@ -155,15 +155,15 @@ void VolumetricMap::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f&
 
   const VoxelState* const states = states_.table();
   const auto is_quiet = [&](bool exists, std::uint64_t surfaces, std::uint64_t shadows) {
-    if constexpr (Ray::hears == Hears::every_voxel)
+    if constexpr (Ray::ray_events == RayEvents::every_voxel)
       return !exists;
     else
       return !exists || (surfaces == 0 && ray.may_miss(shadows != 0));
   };
-  const auto state_of = [&](const VoxelIndex& voxel) -> const VoxelState& {
-    return states[code_of(voxel)];
+  const auto lookup_state = [&](const VoxelIndex& voxel) -> const VoxelState& {
+    return states[find_code(voxel)];
   };
-  UntoldStretch untold(line, ray, state_of);
+  UnreportedRun unreported(line, ray, lookup_state);
 
   const Block* block = nullptr;
   const auto pass_block = [&](const auto& blocks) {
@@ -171,22 +171,22 @@ void VolumetricMap::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f&
     const bool is_passed =
         blocks.may_be_skipped() &&
         is_quiet(block != nullptr, block ? block->surfaces : 0, block ? block->shadows : 0);
-    if (is_passed) untold.pass_over(blocks);
+    if (is_passed) unreported.pass_over(blocks);
     return is_passed;
   };
   for_each_brick(line, pass_block, [&](const auto& bricks) {
-    const std::uint32_t brick = place_of(bricks.cell());
+    const std::uint32_t brick = index_in_parent(bricks.cell());
     const std::uint64_t bit = std::uint64_t{1} << brick;
     const bool is_known = block && (block->known & bit) != 0;
     if (bricks.may_be_skipped() && is_quiet(is_known, is_known ? block->surfaces & bit : 0,
                                             is_known ? block->shadows & bit : 0)) {
-      untold.pass_over(bricks);
+      unreported.pass_over(bricks);
       return true;
     }
-    if (!untold.tell_before(bricks.entered())) return false;
+    if (!unreported.report_before(bricks.entered())) return false;
     VoxelWalk walk(line, bricks.entered());
     while (!walk.is_over()) {
-      const VoxelState& state = states[block ? block->codes[brick][walk.place()] : Code{}];
+      const VoxelState& state = states[block ? block->codes[brick][walk.child_index()] : Code{}];
       if (state.stops_rays) {
         ray.finish(state);
         return false;

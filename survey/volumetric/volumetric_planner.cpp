@@ -24,8 +24,8 @@ using geometry::ScanSpan;
 using geometry::View;
 
 /// Returns the ends of the rays of no-return pixels, at the distance `depth` from the sensor.
-std::vector<Vector3f> ends_of_no_returns(const ScanSpan& scan, const geometry::Camera& camera,
-                                         double depth) {
+std::vector<Vector3f> compute_no_return_ends(const ScanSpan& scan, const geometry::Camera& camera,
+                                             double depth) {
   std::vector<Vector3f> ends;
   const auto width = static_cast<std::uint32_t>(camera.width());
   const std::uint32_t pixels = width * static_cast<std::uint32_t>(camera.height());
@@ -44,31 +44,31 @@ std::vector<Vector3f> ends_of_no_returns(const ScanSpan& scan, const geometry::C
 }  // namespace
 
 std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double radius,
-                               const std::optional<double>& least_height, std::uint64_t seed) {
+                               const std::optional<double>& min_height, std::uint64_t seed) {
   geometry::RandomNumbers random(seed);
   std::normal_distribution<double> normal;
   std::vector<View> views;
   views.reserve(count);
-  const std::size_t most_attempts = 1000 * count;
+  const std::size_t max_attempts = 1000 * count;
   for (std::size_t attempt = 0; views.size() < count; ++attempt) {
-    if (attempt == most_attempts) {
+    if (attempt == max_attempts) {
       std::ostringstream message;
       message << "the candidates' sphere reaches up to " << centre.z() + radius
               << " m, of which less than a thousandth is above the minimum height of "
-              << least_height.value_or(0.0) << " m; lower limits.ground_clearance";
+              << min_height.value_or(0.0) << " m; lower limits.ground_clearance";
       throw Error(ErrorKind::bad_config, message.str());
     }
     const double x = normal(random), y = normal(random), z = normal(random);
     const Vector3d direction(x, y, z);
     if (direction.norm() < 1e-3) continue;
     const Vector3d position = centre + radius * direction.normalized();
-    if (least_height && position.z() < *least_height) continue;
+    if (min_height && position.z() < *min_height) continue;
     views.push_back(geometry::look_at(position, centre));
   }
   return views;
 }
 
-std::size_t most_useful(std::span<const double> gains, std::span<const double> distances,
+std::size_t select_best(std::span<const double> gains, std::span<const double> distances,
                         double cost_weight, TieRule ties) {
   const double all_gains = std::accumulate(gains.begin(), gains.end(), 0.0);
   const double all_distances = std::accumulate(distances.begin(), distances.end(), 0.0);
@@ -97,14 +97,14 @@ struct VolumetricPlanner::Impl {
         map(config.resolution, config.shadow_length()),
         kept(config.spacing, std::max(2.0 * config.spacing, 1e-6)) {
     for (const View& view : sphere_views(config.candidates, config.sphere_centre,
-                                         config.sphere_radius, config.least_height, config.seed)) {
+                                         config.sphere_radius, config.min_height, config.seed)) {
       candidates.push_back({view});
     }
   }
 
   void insert(const ScanSpan& scan);
   void score();
-  std::optional<View> take_best();
+  std::optional<View> pop_best();
 
   VolumetricConfig config;
   geometry::Camera camera;
@@ -126,7 +126,7 @@ VolumetricPlanner::~VolumetricPlanner() = default;
 
 void VolumetricPlanner::stop_on(const std::stop_token& stop) { impl_->stop = stop; }
 const geometry::PointCloud& VolumetricPlanner::cloud() const { return impl_->cloud; }
-geometry::PointCloud VolumetricPlanner::release_cloud() { return std::move(impl_->cloud); }
+geometry::PointCloud VolumetricPlanner::take_cloud() { return std::move(impl_->cloud); }
 const PlanningStep& VolumetricPlanner::last_step() const { return impl_->step; }
 const VolumetricMap& VolumetricPlanner::map() const { return impl_->map; }
 
@@ -142,10 +142,10 @@ std::optional<View> VolumetricPlanner::next_view(const ScanSpan& scan) {
   }
   impl_->score();
   stopwatch.lap("score");
-  return impl_->take_best();
+  return impl_->pop_best();
 }
 
-std::optional<View> VolumetricPlanner::next_view_instead() { return impl_->take_best(); }
+std::optional<View> VolumetricPlanner::next_alternative_view() { return impl_->pop_best(); }
 
 void VolumetricPlanner::Impl::insert(const ScanSpan& scan) {
   position = scan.sensor_position();
@@ -158,13 +158,13 @@ void VolumetricPlanner::Impl::insert(const ScanSpan& scan) {
       cloud.views.push_back(scans);
       ++step.points_new;
     }
-    if (is_new || !config.settings.thinned) measured.push_back(point);
+    if (is_new || !config.settings.downsampled) measured.push_back(point);
   }
   ++scans;
 
   std::vector<Vector3f> empty_ends;
   if (config.settings.carve_no_returns && !scan.pixels.empty()) {
-    empty_ends = ends_of_no_returns(scan, camera, config.ray_depth());
+    empty_ends = compute_no_return_ends(scan, camera, config.ray_depth());
   }
   map.insert(position.cast<float>(), measured, empty_ends);
 }
@@ -177,7 +177,7 @@ void VolumetricPlanner::Impl::score() {
   });
 }
 
-std::optional<View> VolumetricPlanner::Impl::take_best() {
+std::optional<View> VolumetricPlanner::Impl::pop_best() {
   if (candidates.empty()) return std::nullopt;
   std::vector<double> gains, distances;
   for (const Candidate& candidate : candidates) {
@@ -185,7 +185,7 @@ std::optional<View> VolumetricPlanner::Impl::take_best() {
     distances.push_back((candidate.view.position - position).norm());
   }
   const std::size_t best =
-      most_useful(gains, distances, config.settings.cost_weight, config.settings.ties);
+      select_best(gains, distances, config.settings.cost_weight, config.settings.ties);
   const View view = candidates[best].view;
   candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(best));
   return view;

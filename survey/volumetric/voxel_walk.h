@@ -40,7 +40,7 @@ inline VoxelIndex coarser(const VoxelIndex& cell, int shift) {
 }
 
 /// Returns the index (below 64) of a voxel in its brick, or of a brick in its block.
-inline std::uint32_t place_of(const VoxelIndex& cell) {
+inline std::uint32_t index_in_parent(const VoxelIndex& cell) {
   return (static_cast<std::uint32_t>(cell[0]) & 3U) |
          (static_cast<std::uint32_t>(cell[1]) & 3U) << 2 |
          (static_cast<std::uint32_t>(cell[2]) & 3U) << 4;
@@ -78,7 +78,7 @@ class VoxelLine {
     std::array<std::int64_t, 3> border{};   ///< distance of the first border on each axis
     std::array<std::int64_t, 3> spacing{};  ///< distance between borders
     std::array<std::int32_t, 3> sense{};    ///< 1 or -1: step of the voxel index
-    std::int64_t most = 0;                  ///< number of passed voxels
+    std::int64_t max = 0;                   ///< number of passed voxels
     std::int64_t surely_passed = 0;         ///< number of voxels passed independent of `limit`
     std::int64_t limit =
         0;  ///< voxels other than the first that are left beyond this distance are not passed
@@ -187,7 +187,7 @@ class VoxelWalk {
   bool left_brick() const { return (local_ & guards) != 0; }
 
   /// Returns the index of the current voxel in its brick.
-  std::uint32_t place() const {
+  std::uint32_t child_index() const {
     return (local_ & 0x3U) | (local_ >> 1 & 0xcU) | (local_ >> 2 & 0x30U);
   }
 
@@ -220,13 +220,13 @@ class VoxelWalk {
   bool is_over_;
 };
 
-/// Visits the bricks that intersect a segment in order. `passes_over(blocks)` returns whether to
+/// Visits the bricks that intersect a segment in order. `skip(blocks)` returns whether to
 /// skip the current block of the walk, which requires may_be_skipped(). `visit(bricks)` returns
 /// false to end the traversal.
-template <typename PassesOver, typename Visit>
-void for_each_brick(const VoxelLine& line, PassesOver passes_over, Visit visit) {
+template <typename Skip, typename Visit>
+void for_each_brick(const VoxelLine& line, Skip skip, Visit visit) {
   for (CellWalk<block_shift> blocks(line);; blocks.cross()) {
-    if (passes_over(blocks)) continue;
+    if (skip(blocks)) continue;
     for (CellWalk<brick_shift> bricks(line, blocks.entered());; bricks.cross()) {
       if (!visit(bricks)) return;
       if (bricks.leaving() == blocks.leaving()) break;
@@ -246,8 +246,8 @@ inline VoxelLine::VoxelLine(const Eigen::Vector3f& origin, const Eigen::Vector3f
   }
   if (steps_ == 0) return;
 
-  const Eigen::Vector3f way = end - origin;
-  const float squares = way.x() * way.x() + way.y() * way.y() + way.z() * way.z();
+  const Eigen::Vector3f ray = end - origin;
+  const float squares = ray.x() * ray.x() + ray.y() * ray.y() + ray.z() * ray.z();
   const auto length = static_cast<float>(std::sqrt(double{squares}));
   // The segment has 44 bits; all borders far beyond its end have the same distance.
   constexpr double units_in_segment = 0x1p44, beyond = 0x1p56;
@@ -261,7 +261,7 @@ inline VoxelLine::VoxelLine(const Eigen::Vector3f& origin, const Eigen::Vector3f
   // first.
   std::int64_t arrives = 0, overshoots = std::numeric_limits<std::int64_t>::max();
   for (int axis = 0; axis < 3; ++axis) {
-    const float direction = way[axis] / length;
+    const float direction = ray[axis] / length;
     sense_[axis] = direction > 0.0F ? 1 : -1;
     border_[axis] = spacing_[axis] = static_cast<std::int64_t>(beyond);
     if (direction != 0.0F) {

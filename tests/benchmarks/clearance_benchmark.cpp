@@ -29,19 +29,19 @@ int main(int argc, char** argv) {
   obstacles.mesh_is_solid = false;
   const KnownSpace shell(obstacles);
 
-  std::size_t ours = 0, theirs = 0, solid_proven = 0, yes = 0;
-  const auto prove_all = [&](const KnownSpace& space, std::size_t& proven) {
-    proven = 0;
-    for (const Segment& leg : legs) proven += prove(space, leg, clearance).is_proven ? 1 : 0;
+  std::size_t ours = 0, theirs = 0, solid_verified = 0, yes = 0;
+  const auto verify_all = [&](const KnownSpace& space, std::size_t& verified) {
+    verified = 0;
+    for (const Segment& leg : legs) verified += verify(space, leg, clearance).is_verified ? 1 : 0;
   };
   const auto [certificate, bisection] = skycap::benchmarks::interleaved_medians(
-      3, [&] { prove_all(shell, ours); },
+      3, [&] { verify_all(shell, ours); },
       [&] {
         theirs = 0;
-        for (const Segment& leg : legs) theirs += oracle.judge(leg, clearance) == Verdict::clear;
+        for (const Segment& leg : legs) theirs += oracle.classify(leg, clearance) == Verdict::clear;
       });
   const auto [with_inside_test, yes_or_no] = skycap::benchmarks::interleaved_medians(
-      3, [&] { prove_all(solid, solid_proven); },
+      3, [&] { verify_all(solid, solid_verified); },
       [&] {
         for (const Segment& leg : legs) yes += solid.continues_free(leg, clearance) ? 1 : 0;
       });
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   std::printf("CGAL bisection, yes or no:  %6.2f us a leg, %zu proven\n", bisection * per_leg,
               theirs);
   std::printf("prove, with inside test:    %6.2f us a leg, %zu proven\n",
-              with_inside_test * per_leg, solid_proven);
+              with_inside_test * per_leg, solid_verified);
   std::printf("continues_free, yes or no:  %6.2f us a leg, %.1f times as fast as CGAL bisection\n",
               yes_or_no * per_leg, bisection / yes_or_no);
   return ours == theirs && yes > 0 ? 0 : 1;

@@ -178,7 +178,7 @@ void run(std::size_t triangles, unsigned threads, int rounds) {
               1e3 * against_fresh.second, against_fresh.first / against_fresh.second);
   std::printf("  casting alone %5.1f ms, bare packets %7.1f ms: %.3f, so the whole frame %.3f\n",
               1e3 * casting.first, 1e3 * casting.second, casting.first / casting.second,
-              benchmarks::cost_of_own_casting(against_bare, casting));
+              benchmarks::compute_own_casting_cost(against_bare, casting));
   std::printf("  whole frame %7.1f ms, single rays  %7.1f ms: %.2f times faster\n",
               1e3 * against_single.first, 1e3 * against_single.second,
               against_single.second / against_single.first);

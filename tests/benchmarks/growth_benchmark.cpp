@@ -43,7 +43,7 @@ constexpr int rounds = 3;
 double processor_seconds() { return seconds_on(CLOCK_PROCESS_CPUTIME_ID); }
 
 template <typename Work>
-double seconds_of(Work work) {
+double measure_seconds(Work work) {
   std::vector<double> times;
   for (int round = 0; round < rounds; ++round) {
     const double start = processor_seconds();
@@ -115,26 +115,26 @@ std::vector<Vector3f> tower(std::size_t count) {
   return points;
 }
 
-void grow_points(std::size_t most) {
+void grow_points(std::size_t max) {
   Curve in_rows("keep returns at a spacing, in rows", "returns");
   Curve shuffled("keep returns at a spacing, shuffled", "returns");
   constexpr std::size_t queries = 100'000;
   Curve balls("find the neighbours within 0.15 m", "points", queries);
-  for (std::size_t count = 10'000; count <= most; count *= 10) {
+  for (std::size_t count = 10'000; count <= max; count *= 10) {
     std::vector<Vector3f> returns = tower(count);
     std::optional<geometry::SpacedPoints> kept;
     const auto keep_all = [&] {
       kept.emplace(spacing);
       for (const Vector3f& point : returns) kept->keep(point);
     };
-    in_rows.add(count, seconds_of(keep_all));
+    in_rows.add(count, measure_seconds(keep_all));
     std::shuffle(returns.begin(), returns.end(), std::mt19937_64(2));
-    shuffled.add(count, seconds_of(keep_all));
+    shuffled.add(count, measure_seconds(keep_all));
 
     geometry::PointGrid grid(radius);
     for (std::uint32_t i = 0; i < kept->grid().size(); ++i) grid.insert(kept->grid().point(i));
     std::vector<geometry::Neighbour> found;
-    balls.add(grid.size(), seconds_of([&] {
+    balls.add(grid.size(), measure_seconds([&] {
                 for (std::size_t i = 0; i < queries; ++i) {
                   found.clear();
                   grid.find_within(returns[i % returns.size()], radius, found);
@@ -146,24 +146,24 @@ void grow_points(std::size_t most) {
   balls.print();
 }
 
-void grow_triangles(std::size_t most) {
+void grow_triangles(std::size_t max) {
   Curve scene("make a scene ready for rays", "triangles");
   Curve frame("frame of 848 x 480 pixels, all of which return", "triangles", 848 * 480);
   Curve ready("make a mesh ready for distances", "triangles");
   constexpr std::size_t asked = 1'000'000;
   Curve distances("distances of points 1 cm from it, in rows", "triangles", asked);
-  for (std::size_t count = 10'000; count <= most; count *= 10) {
+  for (std::size_t count = 10'000; count <= max; count *= 10) {
     const geometry::Mesh mesh = benchmarks::planet(count);
     const std::size_t triangles = mesh.triangles.size();
     std::optional<sim::Scene> made;
-    scene.add(triangles, seconds_of([&] { made.emplace(mesh, 1); }));
+    scene.add(triangles, measure_seconds([&] { made.emplace(mesh, 1); }));
     const sim::DepthCamera camera(sim::d435());
     const geometry::View view = geometry::look_at({26.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
-    frame.add(triangles, seconds_of([&] { camera.scan(*made, view, 0, 1); }));
+    frame.add(triangles, measure_seconds([&] { camera.scan(*made, view, 0, 1); }));
     made.reset();
 
     std::optional<geometry::MeshDistance> distance;
-    ready.add(triangles, seconds_of([&] { distance.emplace(mesh); }));
+    ready.add(triangles, measure_seconds([&] { distance.emplace(mesh); }));
     std::vector<Vector3f> points(asked);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double polar = 0.5 + 2.0 * std::floor(static_cast<double>(i) / 1e3) / 1e3;
@@ -173,7 +173,7 @@ void grow_triangles(std::size_t most) {
       points[i] = ((20.01 + benchmarks::hill(up)) * up).cast<float>();
     }
     std::vector<double> found(points.size());
-    distances.add(triangles, seconds_of([&] { distance->distances(points, found); }));
+    distances.add(triangles, measure_seconds([&] { distance->distances(points, found); }));
   }
   scene.print();
   frame.print();
@@ -188,10 +188,10 @@ const geometry::Camera small_camera(geometry::CameraConfig{.width = 212, .height
 /// sphere so large that it fills the image has no frontiers: nothing is sparse where images end.
 constexpr std::size_t half_a_disc = 18;
 
-void grow_views(double most_area) {
+void grow_views(double max_area) {
   Curve planning("plan a survey by SEE++", "views");
   Curve kept("the same survey, by the points that it keeps", "points");
-  for (double area = 1.0; area <= most_area; area *= 2.0) {
+  for (double area = 1.0; area <= max_area; area *= 2.0) {
     const tests::Sphere sphere{.radius = 0.5 * std::sqrt(area)};
     survey::see::SeePlanner planner({.density = 146'000.0 / 16,
                                      .resolution_radius = 0.017 * std::cbrt(16.0),

@@ -71,19 +71,19 @@ sim::Rays all_rays(const sim::LidarConfig& config, const sim::Trajectory& trajec
   const std::vector<sim::BeamSample> beam = sim::beam_samples(config.beam.rings);
   sim::Rays rays;
   rays.resize(blocks * pattern.slots() * beam.size());
-  sim::Shots shots;
+  sim::Pulses pulses;
   std::size_t next = 0;
   for (std::uint64_t block = 0; block < blocks; ++block) {
-    pattern.aim(block, shots);
+    pattern.aim(block, pulses);
     for (std::size_t slot = 0; slot < pattern.slots(); ++slot) {
       const std::size_t firing = slot / 4 / config.channels.size() * 4 + slot % 4;
       const Eigen::Isometry3d pose =
           trajectory.pose(static_cast<double>(block * 32 + firing) * config.firing_period);
       const Eigen::Vector3f from = (pose.translation() - centre).cast<float>();
       const Eigen::Vector3f axis =
-          pose.linear().cast<float>() * Eigen::Vector3f(shots.direction[0][slot],
-                                                        shots.direction[1][slot],
-                                                        shots.direction[2][slot]);
+          pose.linear().cast<float>() * Eigen::Vector3f(pulses.direction[0][slot],
+                                                        pulses.direction[1][slot],
+                                                        pulses.direction[2][slot]);
       const auto [horizontal, vertical] = sim::across(axis, pose.linear().col(2).cast<float>());
       for (const sim::BeamSample& sample : beam) {
         const Eigen::Vector3f aside = static_cast<float>(0.5 * config.beam.divergence_horizontal) *
@@ -129,7 +129,7 @@ class BareLoop {
   std::size_t rays() const { return ranges_.size(); }
   /// By Embree.
   void operator()() {
-    in_pieces([&](std::size_t begin, std::size_t end) {
+    in_chunks([&](std::size_t begin, std::size_t end) {
       mesh_.with_packet_width([&]<int width>() {
         cast_packets<width>(mesh_, rays_, begin, end, reach_, ranges_.data());
       });
@@ -137,7 +137,7 @@ class BareLoop {
   }
   /// By our own kernels, with the normals and triangles that returns are made of.
   void cast_own() {
-    in_pieces([&](std::size_t begin, std::size_t end) {
+    in_chunks([&](std::size_t begin, std::size_t end) {
       constexpr int width = sim::RayPacket::width;
       sim::RayPacket packet;
       for (std::size_t first = begin; first < end; first += width) {
@@ -153,10 +153,10 @@ class BareLoop {
 
  private:
   template <typename Cast>
-  void in_pieces(const Cast& cast) const {
-    constexpr std::size_t pieces = 16;
-    const std::size_t size = ranges_.size() / pieces;
-    geometry::parallel_for(pieces, threads_,
+  void in_chunks(const Cast& cast) const {
+    constexpr std::size_t chunks = 16;
+    const std::size_t size = ranges_.size() / chunks;
+    geometry::parallel_for(chunks, threads_,
                            [&](std::size_t i) { cast(i * size, (i + 1) * size); });
   }
 
@@ -173,14 +173,15 @@ void compare(const geometry::Mesh& mesh, unsigned threads, int rounds) {
   const sim::LidarConfig config = spinner(64, 1024);
   const sim::Trajectory trajectory = flight(0.1);
   const sim::Lidar lidar(config);
-  const sim::LidarFlight flown{trajectory, trajectory};
-  constexpr std::uint64_t blocks = 32, blocks_in_piece = 2;
+  const sim::LidarFlight lidar_flight{trajectory, trajectory};
+  constexpr std::uint64_t blocks = 32, blocks_per_chunk = 2;
   BareLoop bare(mesh, scene, config, trajectory, blocks, threads);
-  std::vector<sim::LidarReturns> pieces(blocks / blocks_in_piece);
+  std::vector<sim::LidarReturns> chunks(blocks / blocks_per_chunk);
   const auto whole = [&] {
-    geometry::parallel_for(pieces.size(), threads, [&](std::size_t i) {
-      pieces[i] = lidar.measure(scene, flown, {i * 32 * blocks_in_piece, 32 * blocks_in_piece},
-                                std::move(pieces[i]));
+    geometry::parallel_for(chunks.size(), threads, [&](std::size_t i) {
+      chunks[i] =
+          lidar.measure(scene, lidar_flight, {i * 32 * blocks_per_chunk, 32 * blocks_per_chunk},
+                        std::move(chunks[i]));
     });
   };
   const auto medians = benchmarks::interleaved_medians(rounds, whole, [&] { bare(); });
@@ -245,17 +246,17 @@ void fly_into_file(const Ground& ground, sim::LidarConfig config, const Eigen::V
       rounds, [&] { bare.cast_own(); }, [&] { bare(); });
   std::filesystem::remove(path);
   const auto channels = static_cast<double>(config.channels.size());
-  const double shots = channels * static_cast<double>(result.progress.firings);
+  const double pulses = channels * static_cast<double>(result.progress.firings);
   const double samples = 1 + 3 * rings * (rings + 1);
-  const double bare_shots = static_cast<double>(bare.rays()) / samples;
-  const benchmarks::Medians in_file{medians.first / shots, medians.second / bare_shots};
+  const double bare_pulses = static_cast<double>(bare.rays()) / samples;
+  const benchmarks::Medians in_file{medians.first / pulses, medians.second / bare_pulses};
   std::printf(
       "          %2.0f rays a shot, into LAS: %5.2f M shots/s, %4.2f points a shot; bare packets "
       "%5.2f M shots/s: %.3f; casting alone %.3f, so the whole %.3f; %4.0f MB/s, the disk alone "
       "%4.0f MB/s\n",
-      samples, 1e-6 * shots / medians.first, static_cast<double>(result.progress.points) / shots,
-      1e-6 * bare_shots / medians.second, in_file.first / in_file.second,
-      casting.first / casting.second, benchmarks::cost_of_own_casting(in_file, casting),
+      samples, 1e-6 * pulses / medians.first, static_cast<double>(result.progress.points) / pulses,
+      1e-6 * bare_pulses / medians.second, in_file.first / in_file.second,
+      casting.first / casting.second, benchmarks::compute_own_casting_cost(in_file, casting),
       1e-6 * static_cast<double>(bytes) / medians.first, raw_write_speed(path, bytes));
 }
 

@@ -44,7 +44,7 @@ struct Options {
   int circles = 0;  ///< scans until the end, without a vehicle
 };
 
-std::string mission_of(const Options& options) {
+std::string make_mission(const Options& options) {
   const std::string vehicle =
       "flight: {vehicle: m350_rtk, clearance: 2.0,\n"
       "         unknown_box: {min: [-6, -5, 0], max: [6, 5, 11]}}\n";
@@ -60,7 +60,7 @@ std::string mission_of(const Options& options) {
       options.density, options.circles > 0 ? "" : vehicle);
 }
 
-geometry::Camera camera_of(const Options& options) {
+geometry::Camera make_camera(const Options& options) {
   constexpr double degree = M_PI / 180.0;
   geometry::CameraConfig config;
   config.width = options.width;
@@ -71,7 +71,7 @@ geometry::Camera camera_of(const Options& options) {
 }
 
 /// Along the optical axis, to the box or the ground; infinite where there is neither.
-double depth_of(const Vector3d& sensor, const Vector3d& ray) {
+double compute_depth(const Vector3d& sensor, const Vector3d& ray) {
   const Vector3d low(-5.0, -4.0, 0.0), high(5.0, 4.0, 10.0);
   const Vector3d a = (low - sensor).cwiseQuotient(ray), b = (high - sensor).cwiseQuotient(ray);
   const double enters = a.cwiseMin(b).maxCoeff(), leaves = a.cwiseMax(b).minCoeff();
@@ -87,7 +87,7 @@ std::vector<std::uint16_t> measure(const geometry::Camera& camera, const Eigen::
   for (int row = 0; row < camera.height(); ++row) {
     for (int column = 0; column < camera.width(); ++column) {
       const Vector3d ray = pose.linear() * camera.ray({column, row});
-      const double depth = depth_of(pose.translation(), ray) + noise(random);
+      const double depth = compute_depth(pose.translation(), ray) + noise(random);
       image.push_back(depth < farthest ? static_cast<std::uint16_t>(depth / unit) : 0);
     }
   }
@@ -141,7 +141,7 @@ class Server {
   clockid_t clock_ = 0;
 };
 
-Eigen::Isometry3d pose_of(const nlohmann::json& view) {
+Eigen::Isometry3d make_pose(const nlohmann::json& view) {
   const auto p = view.at("position").get<std::vector<double>>();
   const auto q = view.at("quaternion_xyzw").get<std::vector<double>>();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -150,7 +150,7 @@ Eigen::Isometry3d pose_of(const nlohmann::json& view) {
   return pose;
 }
 
-skycap_live::Pose rows_of(const Eigen::Isometry3d& pose) {
+skycap_live::Pose to_rows(const Eigen::Isometry3d& pose) {
   skycap_live::Pose rows{};
   for (int i = 0; i < 12; ++i) rows[static_cast<std::size_t>(i)] = pose(i / 4, i % 4);
   return rows;
@@ -159,8 +159,8 @@ skycap_live::Pose rows_of(const Eigen::Isometry3d& pose) {
 /// On a circle round the box, each time at another place and height.
 Eigen::Isometry3d place_on_circle(int number) {
   const double angle = 2.4 * number;
-  const Vector3d place(18.0 * std::cos(angle), 18.0 * std::sin(angle), 4.0 + number % 8);
-  return geometry::camera_pose(geometry::look_at(place, {0.0, 0.0, 5.0}));
+  const Vector3d position(18.0 * std::cos(angle), 18.0 * std::sin(angle), 4.0 + number % 8);
+  return geometry::camera_pose(geometry::look_at(position, {0.0, 0.0, 5.0}));
 }
 
 struct Times {
@@ -174,22 +174,22 @@ struct Times {
 
 void survey(const Options& options) {
   const testing_support::TemporaryFolder folder;
-  folder.file("m.yaml", mission_of(options));
+  folder.file("m.yaml", make_mission(options));
   const Server server(options, folder.path());
   skycap_live::Survey client(server.address());
-  const geometry::Camera camera = camera_of(options);
+  const geometry::Camera camera = make_camera(options);
   std::mt19937 random(1);
   Times times;
   nlohmann::json answer = nlohmann::json::parse(client.next());
   int scans = 0;
   while (!answer.at("view").is_null() || scans < options.circles) {
     const nlohmann::json& view = answer.at("view");
-    const Eigen::Isometry3d pose = view.is_null() ? place_on_circle(scans) : pose_of(view);
+    const Eigen::Isometry3d pose = view.is_null() ? place_on_circle(scans) : make_pose(view);
     const std::vector<std::uint16_t> image = measure(camera, pose, random);
     client.next();  // the page of the scan before is written
     const double processor = server.processor_time(), wall = seconds_on(CLOCK_MONOTONIC);
     const std::string text =
-        client.add_depth(image, options.width, options.height, unit, rows_of(pose));
+        client.add_depth(image, options.width, options.height, unit, to_rows(pose));
     times.wall.push_back(seconds_on(CLOCK_MONOTONIC) - wall);
     times.processor.push_back(server.processor_time() - processor);
     answer = nlohmann::json::parse(text);

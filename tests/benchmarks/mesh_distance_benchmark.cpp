@@ -74,7 +74,7 @@ double embree_distance(const benchmarks::EmbreeMesh& embree, const geometry::Mes
 }
 
 /// A frame from above the town, at about a metre's spacing of pixels in the distance.
-std::vector<Eigen::Vector3f> frame_of(const geometry::Mesh& mesh) {
+std::vector<Eigen::Vector3f> make_frame(const geometry::Mesh& mesh) {
   sim::DepthCameraConfig config = sim::high_resolution();
   config.camera.width = 800;
   config.camera.height = 600;
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
   const auto triangles = static_cast<std::size_t>(argc > 1 ? std::atol(argv[1]) : 500000);
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 3;
   geometry::Mesh mesh = benchmarks::town(triangles);
-  std::vector<Eigen::Vector3f> points = frame_of(mesh);
+  std::vector<Eigen::Vector3f> points = make_frame(mesh);
 
   const auto seconds = [](const auto& work) {
     const auto start = std::chrono::steady_clock::now();

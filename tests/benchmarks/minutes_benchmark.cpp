@@ -41,9 +41,9 @@ session::SurveyRecord all_knowing(const evaluation::SimulationOptions& options,
                                   const evaluation::SurveyScene& scene,
                                   const session::SurveyRecord& record, unsigned threads) {
   const sim::SurveySensor sensor(options.sensor, record.seed + 1'000'000);
-  std::vector<geometry::View> views = package::views_of(record);
-  session::MissionPlanner knowing(options.survey, views.front(),
-                                  {record.seed, threads, scene.view_sphere()});
+  std::vector<geometry::View> views = package::collect_views(record);
+  session::ConstrainedPlanner knowing(options.survey, views.front(),
+                                      {record.seed, threads, scene.view_sphere()});
   for (const geometry::View& view :
        simulation::known_cover(options, scene, record.seed, threads, {.candidates = 3000})) {
     views.push_back(view);
@@ -56,34 +56,36 @@ session::SurveyRecord all_knowing(const evaluation::SimulationOptions& options,
     } else {
       knowing.planner().pass(scan);
     }
-    knowing.flight()->take_in(scan);
+    knowing.flight()->add_scan(scan);
   }
-  session::SurveyRecord told;
-  knowing.finish(told);
+  session::SurveyRecord reported;
+  knowing.finish(reported);
   session::SurveyRecord all = record;
-  all.surface = told.surface;
-  all.flown->measured = told.flown->measured;
-  all.flown->grounds = told.flown->grounds;
+  all.surface = reported.surface;
+  all.flight_record->measured = reported.flight_record->measured;
+  all.flight_record->landing_surfaces = reported.flight_record->landing_surfaces;
   return all;
 }
 
-package::AnewMission choose(const evaluation::SimulationOptions& options,
-                            const session::RunOptions& run, const session::SurveyRecord& record,
-                            const package::CoverageFigures& coverage) {
-  const session::FlownSurvey& flown = *record.flown;
-  std::vector<package::Way> ways;
-  for (const session::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
-  flight::Route present = package::plan_flight(options.survey.flight, *flown.measured, flown.pad,
-                                               package::views_of(record), ways, flown.grounds);
-  return package::anew_mission(options.survey, package::choice_options(options.sensor, run), record,
-                               coverage, std::move(present), {});
+package::ReplannedMission choose(const evaluation::SimulationOptions& options,
+                                 const session::RunOptions& run,
+                                 const session::SurveyRecord& record,
+                                 const package::CoverageFigures& coverage) {
+  const session::FlightRecord& flight_record = *record.flight_record;
+  std::vector<package::Polyline> paths;
+  for (const session::ExecutedLeg& leg : flight_record.legs) paths.push_back(leg.points);
+  flight::Route present =
+      package::plan_flight(options.survey.flight, *flight_record.measured, flight_record.pad,
+                           package::collect_views(record), paths, flight_record.landing_surfaces);
+  return package::replan_mission(options.survey, package::choice_options(options.sensor, run),
+                                 record, coverage, std::move(present), {});
 }
 
-void print(const char* who, const package::AnewMission& mission) {
-  const package::MissionFigures& figures = mission.choice.anew;
+void print(const char* who, const package::ReplannedMission& mission) {
+  const package::MissionFigures& figures = mission.choice.replanned;
   std::printf("  %-16s %6.1f s %6.1f m %4zu views %4zu pieces, promised %.2f %%, %.2f %% covered\n",
-              who, figures.duration, figures.length, figures.views, figures.pieces,
-              100.0 * figures.promised, 100.0 * mission.again->visible.value_or(0.0));
+              who, figures.duration, figures.length, figures.views, figures.segments,
+              100.0 * figures.predicted_coverage, 100.0 * mission.again->visible.value_or(0.0));
 }
 
 void compare(const std::filesystem::path& file, const std::vector<config::KeyOverride>& overrides,
@@ -97,8 +99,8 @@ void compare(const std::filesystem::path& file, const std::vector<config::KeyOve
     const session::SurveyRecord record = simulation::run_survey(options, scene, seed, threads);
     const package::CoverageFigures coverage =
         package::coverage_figures(options, record, scene, threads, {});
-    const package::AnewMission from_survey = choose(options, mission.run, record, coverage);
-    const package::AnewMission from_truth =
+    const package::ReplannedMission from_survey = choose(options, mission.run, record, coverage);
+    const package::ReplannedMission from_truth =
         choose(options, mission.run, all_knowing(options, scene, record, threads), coverage);
     std::printf("seed %llu: %zu views, %.2f %% of the visible\n",
                 static_cast<unsigned long long>(seed), record.views.size(),
@@ -106,8 +108,8 @@ void compare(const std::filesystem::path& file, const std::vector<config::KeyOve
     print("from the survey", from_survey);
     print("knowing all", from_truth);
     std::fflush(stdout);
-    ours += from_survey.choice.anew.duration;
-    knowing += from_truth.choice.anew.duration;
+    ours += from_survey.choice.replanned.duration;
+    knowing += from_truth.choice.replanned.duration;
   }
   std::printf("all seeds: %.2f times the seconds of who knows all\n", ours / knowing);
 }
@@ -132,7 +134,7 @@ int main(int argc, char** argv) {
     }
   }
   const testing_support::TemporaryFolder folder;
-  if (mission.empty()) mission = folder.file("teapot.yaml", tests::flown_mission());
+  if (mission.empty()) mission = folder.file("teapot.yaml", tests::flight_mission());
   try {
     compare(mission, overrides, seeds);
   } catch (const Error& error) {

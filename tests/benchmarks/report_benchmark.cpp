@@ -34,14 +34,14 @@ limits: {max_views: 12}
 )";
 
 /// One of the three views that are nearest to a place.
-std::uint32_t view_near(const Eigen::Vector3f& place, const std::vector<geometry::View>& views,
+std::uint32_t view_near(const Eigen::Vector3f& position, const std::vector<geometry::View>& views,
                         std::mt19937_64& random) {
   std::vector<std::uint32_t> order(views.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   const auto near = std::min<std::size_t>(3, order.size());
   std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(near), {},
                             [&](std::uint32_t view) {
-                              return (views[view].position.cast<float>() - place).squaredNorm();
+                              return (views[view].position.cast<float>() - position).squaredNorm();
                             });
   return order[random() % near];
 }

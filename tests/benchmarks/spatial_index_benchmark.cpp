@@ -50,10 +50,10 @@ std::vector<Vector3f> shell(std::size_t count) {
 
 /// The same points row by row of 3 cm, each row from its one end to the other.
 std::vector<Vector3f> in_rows(std::vector<Vector3f> points) {
-  const auto place = [](const Vector3f& p) {
+  const auto sample_at = [](const Vector3f& p) {
     return std::pair(std::floor(p.z() / 0.03F), std::atan2(p.y(), p.x()));
   };
-  std::ranges::sort(points, {}, place);
+  std::ranges::sort(points, {}, sample_at);
   return points;
 }
 

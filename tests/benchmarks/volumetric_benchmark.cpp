@@ -46,7 +46,7 @@ constexpr Gain gains[] = {
     {"AE", VolumetricMetric::average_entropy}};
 
 void run(const std::string& name, const std::string& mission_text, double resolution,
-         std::size_t clouds, std::size_t twin_candidates) {
+         std::size_t clouds, std::size_t reference_candidates) {
   const missions::config::MissionSetup mission =
       missions::config::parse_mission(mission_text, name);
   const missions::evaluation::SurveyScene scene(mission.simulation, std::filesystem::current_path(),
@@ -61,21 +61,22 @@ void run(const std::string& name, const std::string& mission_text, double resolu
   const double shadow = 18.0 * resolution;
   survey::volumetric::VolumetricMap map(resolution, shadow);
   tests::ShadowTree tree(resolution, shadow);
-  double insert = 0.0, twin_insert = 0.0;
+  double insert = 0.0, reference_insert = 0.0;
   std::size_t returns = 0;
   for (std::size_t i = 0; i <= clouds; ++i) {
     const geometry::Scan scan = camera.scan(scene.scene(), views[i], i, 1);
     const Eigen::Vector3f origin = scan.sensor_position().cast<float>();
     insert = timed([&] { map.insert(origin, scan.points); });
-    if (twin_candidates > 0) twin_insert = timed([&] { tree.insert(origin, scan.points); });
+    if (reference_candidates > 0)
+      reference_insert = timed([&] { tree.insert(origin, scan.points); });
     returns = scan.points.size();
   }
   std::printf("%s: %zu clouds, the last of %zu points; %zu candidates of %zu rays; map %.0f MiB\n",
               name.c_str(), clouds + 1, returns, candidates, directions.size(),
               static_cast<double>(map.memory()) / (1 << 20));
   std::printf("  insert one cloud %8.3f s", insert);
-  if (twin_candidates > 0)
-    std::printf(", OctoMap %8.3f s, %.1f times", twin_insert, twin_insert / insert);
+  if (reference_candidates > 0)
+    std::printf(", OctoMap %8.3f s, %.1f times", reference_insert, reference_insert / insert);
   std::printf("\n  gain      ours [s]  OctoMap [s]   times  largest relative difference\n");
   for (const Gain& gain : gains) {
     double sum = 0.0, difference = 0.0;
@@ -85,17 +86,19 @@ void run(const std::string& name, const std::string& mission_text, double resolu
       }
     });
     double theirs = 0.0;
-    for (std::size_t i = 0; i < twin_candidates; ++i) {
+    for (std::size_t i = 0; i < reference_candidates; ++i) {
       const geometry::View& view = views[clouds + 1 + i];
-      double twin = 0.0;
-      theirs += timed([&] { twin = tree.gain(gain.metric, view, directions, radius, true); });
+      double reference = 0.0;
+      theirs += timed([&] { reference = tree.gain(gain.metric, view, directions, radius, true); });
       const double own = information_gain(gain.metric, map, view, directions, radius);
-      twin = tree.gain(gain.metric, view, directions, radius, false);
-      if (twin != 0.0) difference = std::max(difference, std::abs(own - twin) / std::abs(twin));
+      reference = tree.gain(gain.metric, view, directions, radius, false);
+      if (reference != 0.0)
+        difference = std::max(difference, std::abs(own - reference) / std::abs(reference));
     }
     std::printf("  %-4s %10.3f", gain.name, insert + ours);
-    if (twin_candidates > 0) {
-      const double all = twin_insert + theirs * candidates / static_cast<double>(twin_candidates);
+    if (reference_candidates > 0) {
+      const double all =
+          reference_insert + theirs * candidates / static_cast<double>(reference_candidates);
       std::printf(" %12.2f %7.1f  %.1e", all, all / (insert + ours), difference);
     }
     std::printf("   (sum %.6g)\n", sum);
@@ -106,8 +109,8 @@ void run(const std::string& name, const std::string& mission_text, double resolu
 
 int main(int argc, char** argv) {
   const std::string which = argc > 1 ? argv[1] : "object";
-  const auto number = [&](int place, std::size_t fallback) {
-    return argc > place ? static_cast<std::size_t>(std::atol(argv[place])) : fallback;
+  const auto number = [&](int argument, std::size_t fallback) {
+    return argc > argument ? static_cast<std::size_t>(std::atol(argv[argument])) : fallback;
   };
   const std::string common =
       "evaluation: {coverage_distance: 0.05, samples: 20000, attainable_views: 0}\n";

@@ -24,10 +24,10 @@ using namespace skycap;
 using namespace skycap::missions;
 
 flight::Route plan(const package::PackagedSurvey& survey, bool has_returns) {
-  std::vector<flight::Station> stations;
+  std::vector<flight::CapturePoint> capture_points;
   for (std::uint32_t i = 0; i < survey.views.size(); ++i) {
-    stations.push_back({survey.views[i], survey.flight.rest_before(), 1, i,
-                        survey.flight.rest_after(), survey.ways[i]});
+    capture_points.push_back({survey.views[i], survey.flight.rest_before(), 1, i,
+                              survey.flight.rest_after(), survey.paths[i]});
   }
   flight::Obstacles rules = survey.flight.rules();
   const flight::KnownSpace known(rules);
@@ -35,35 +35,37 @@ flight::Route plan(const package::PackagedSurvey& survey, bool has_returns) {
   const flight::JointSpace space({&survey.measured, &known});
   flight::RouteOptions options = survey.flight.route(survey.pad);
   if (!has_returns) options.returns.reset();
-  return plan_route(std::move(stations), survey.flight.flown(), space, &pad_space, options);
+  return plan_route(std::move(capture_points), survey.flight.required_vehicle(), space, &pad_space,
+                    options);
 }
 
 /// Only what both visit can be compared: views without a way home are left out by the one alone.
-void keep_views_of(const flight::Route& route, package::PackagedSurvey& survey) {
+void keep_route_views(const flight::Route& route, package::PackagedSurvey& survey) {
   std::vector<bool> is_kept(survey.views.size(), false);
-  for (const flight::Station& station : route.stations) is_kept[station.view_index] = true;
+  for (const flight::CapturePoint& capture_point : route.capture_points)
+    is_kept[capture_point.view_index] = true;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < survey.views.size(); ++i) {
     if (!is_kept[i]) continue;
     survey.views[kept] = survey.views[i];
-    survey.ways[kept++].clear();  // it led from a view that may be left out
+    survey.paths[kept++].clear();  // it led from a view that may be left out
   }
   survey.views.resize(kept);
-  survey.ways.resize(kept);
+  survey.paths.resize(kept);
 }
 
 void measure(const std::filesystem::path& folder, int rounds) {
   package::PackagedSurvey survey = package::read_package(folder, {});
   const std::size_t all = survey.views.size();
-  keep_views_of(plan(survey, true), survey);
+  keep_route_views(plan(survey, true), survey);
   const flight::Route with = plan(survey, true), without = plan(survey, false);
   const auto [time, bare_time] = benchmarks::interleaved_medians(
       rounds, [&] { plan(survey, true); }, [&] { plan(survey, false); });
   std::printf(
       "%s: %zu of %zu views, %zu and %zu flown to; length %.1f m, %+.2f %%; time %.1f s, "
       "%+.2f %%; planned in %.2f s, %.2f times %.2f s\n",
-      folder.string().c_str(), survey.views.size(), all, with.stations.size(),
-      without.stations.size(), with.length, 100.0 * (with.length / without.length - 1.0),
+      folder.string().c_str(), survey.views.size(), all, with.capture_points.size(),
+      without.capture_points.size(), with.length, 100.0 * (with.length / without.length - 1.0),
       with.duration, 100.0 * (with.duration / without.duration - 1.0), time, time / bare_time,
       bare_time);
 }
@@ -90,7 +92,7 @@ int main(int argc, char** argv) {
   const testing_support::TemporaryFolder folder;
   if (packages.empty()) {
     packages.push_back(folder.path() / "teapot");
-    survey_teapot(folder.file("teapot.yaml", tests::flown_mission()), packages.front());
+    survey_teapot(folder.file("teapot.yaml", tests::flight_mission()), packages.front());
   }
   for (const std::filesystem::path& package : packages) measure(package, rounds);
   return 0;

@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 TEST(FaultPoints, PlanLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
-  const Verb verb = [&](const std::string& seed, const fs::path& out) {
+  const Command command = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"plan",   mission, "--quiet", "--resume",
                                     "--seed", seed,    "--out",   out};
   };
-  try_faults(verb, {"full", "kill"}, all);
-  try_faults(verb, {"memory"}, 60);
+  try_faults(command, {"full", "kill"}, all);
+  try_faults(command, {"memory"}, 60);
 }
 
 /// On a full disk the new survey may stand without its route: the exit code says so.
@@ -43,25 +43,26 @@ TEST(FaultPoints, PlanWithAFlightLeavesAWholeResult) {
 
 TEST(FaultPoints, ExportLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
-  const std::string mission = folder.file("m.yaml", flown), package = folder.path() / "package";
+  const std::string mission = folder.file("m.yaml", flight_mission_text),
+                    package = folder.path() / "package";
   ASSERT_EQ(run({"plan", mission, "--quiet", "--out", package}, {}), 0);
-  const Verb verb = [&](const std::string& seed, const fs::path& out) {
+  const Command command = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"export", package, "--format",
                                     "plan",   "--set", "flight.cruise_speed=" + seed,
                                     "--out",  out};
   };
-  try_faults(verb, {"full", "kill", "memory"}, 25);
+  try_faults(command, {"full", "kill", "memory"}, 25);
 }
 
 TEST(FaultPoints, ScanLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
-  const Verb verb = [&](const std::string& seed, const fs::path& out) {
+  const Command command = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"scan",   mission, "--quiet",  "--resume", "--threads", "1",
                                     "--seed", seed,    "--format", "ply",      "--out",     out};
   };
-  try_faults(verb, {"full", "kill"}, all);
-  try_faults(verb, {"memory"}, 40);
+  try_faults(command, {"full", "kill"}, all);
+  try_faults(command, {"memory"}, 40);
 }
 
 TEST(FaultPoints, TrialsLeaveAWholeResult) {
@@ -78,11 +79,11 @@ TEST(FaultPoints, TrialsLeaveAWholeResult) {
 TEST(FaultPoints, BenchmarkLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
-  const Verb verb = [&](const std::string& seed, const fs::path& out) {
+  const Command command = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"benchmark", mission,   "--planners", "see++", "--trials",
                                     seed,        "--quiet", "--out",      out};
   };
-  try_faults(verb, {"full", "kill"}, 15);
+  try_faults(command, {"full", "kill"}, 15);
 }
 
 /// On a full disk its tables may be of the items that found room: the exit code says so, and the
@@ -120,7 +121,7 @@ TEST(FaultPoints, ModelsAreWhole) {
 TEST(FaultPoints, PagesAreWhole) {
   const Surveys surveys;
   // Not named .html, so that all of it is compared.
-  const Verb report = [&](const std::string& seed, const fs::path& out) {
+  const Command report = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"report", surveys[seed], "--out", out / "page"};
   };
   try_faults(report, {"full", "kill"}, all);
@@ -129,7 +130,7 @@ TEST(FaultPoints, PagesAreWhole) {
 
 TEST(FaultPoints, MeshesOfCloudsAreWhole) {
   const Surveys surveys;
-  const Verb reconstruct = [&](const std::string& seed, const fs::path& out) {
+  const Command reconstruct = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{
         "reconstruct", surveys[seed] / "cloud.ply", "--depth", "4", "--threads", "1", "--out",
         out / "m.ply"};
@@ -139,7 +140,7 @@ TEST(FaultPoints, MeshesOfCloudsAreWhole) {
 
 TEST(FaultPoints, FlyTestLeavesAWholeResult) {
   const Surveys surveys;
-  const Verb fly_test = [&](const std::string& seed, const fs::path& out) {
+  const Command fly_test = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"fly-test", surveys["1"], "--flights", "2",  "--returns",
                                     "2",        "--quiet",    "--seed",    seed, "--threads",
                                     "1",        "--out",      out};
@@ -212,7 +213,7 @@ TEST(FaultPoints, VehiclesOfLogsAreWhole) {
   const testing_support::TemporaryFolder folder;
   const std::string logs[] = {folder.file("1.csv", flight_log(300.0)),
                               folder.file("2.csv", flight_log(320.0))};
-  const Verb calibrate = [&](const std::string& seed, const fs::path& out) {
+  const Command calibrate = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"calibrate", logs[seed == "1" ? 0 : 1],
                                     "--vehicle", "generic_ardupilot",
                                     "--out",     out / "v.yaml"};

@@ -21,17 +21,17 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string repeatable_part(const fs::path& file) {
-  const std::string bytes = geometry::read_file(file), ending = file.extension();
-  if (ending == ".md") return bytes.substr(0, bytes.find('\n'));
-  if (ending == ".html") return bytes.substr(bytes.size() - 12);  // whole: it has its end
-  if (ending != ".json" && ending != ".csv") return bytes;
+  const std::string bytes = geometry::read_file(file), extension = file.extension();
+  if (extension == ".md") return bytes.substr(0, bytes.find('\n'));
+  if (extension == ".html") return bytes.substr(bytes.size() - 12);  // whole: it has its end
+  if (extension != ".json" && extension != ".csv") return bytes;
   std::istringstream lines(bytes);
   std::string kept;
   for (std::string line; std::getline(lines, line);) {
-    const bool tells =
+    const bool is_run_specific =
         line.find("seed\"") != std::string::npos || line.find("\"complete\"") != std::string::npos;
-    if (ending == ".csv") kept += line.substr(0, line.rfind(',')) + "\n";
-    if (ending == ".json" && tells) kept += line + "\n";
+    if (extension == ".csv") kept += line.substr(0, line.rfind(',')) + "\n";
+    if (extension == ".json" && is_run_specific) kept += line + "\n";
   }
   return kept;
 }
@@ -57,7 +57,7 @@ int changed(const Trial& trial, const fs::path& out, const Fault& fault) {
 }
 
 /// The number of steps of a kind that a run without a fault takes.
-long steps_of(const Trial& trial, const std::string& kind, const fs::path& scratch) {
+long count_steps(const Trial& trial, const std::string& kind, const fs::path& scratch) {
   const fs::path count = scratch / "count";
   EXPECT_EQ(changed(trial, scratch / "out", {kind, 0, count}), 0);
   const long steps = std::stol(geometry::read_file(count));
@@ -71,7 +71,7 @@ void expect_repeatable(const Trial& trial, const fs::path& out, const Content& f
   if (trial.can_be_repeated || found != after) {
     EXPECT_EQ(trial.change(out, {}), 0);
   }
-  EXPECT_TRUE(content_of(out) == after) << "run again after it died";
+  EXPECT_TRUE(read_content(out) == after) << "run again after it died";
   for (const char* journal : journals) EXPECT_FALSE(fs::exists(out / journal)) << journal;
 }
 
@@ -79,7 +79,7 @@ void try_fault(const Trial& trial, const Fault& fault, const fs::path& out, cons
                const Content& after) {
   const int exit_code = changed(trial, out, fault);
   { const geometry::OutputFolder next(out); }  // whoever comes next
-  const Content found = content_of(out);
+  const Content found = read_content(out);
   const bool is_other = trial.may_also_be && exit_code != 0 && trial.may_also_be(found, after);
   EXPECT_TRUE(found == before || found == after || is_other) << "neither old nor new";
   EXPECT_TRUE(exit_code != 0 || found == after) << "exit 0";
@@ -105,7 +105,7 @@ void try_points(const std::string& kind, long steps, long sample,
 
 }  // namespace
 
-Content content_of(const fs::path& folder) {
+Content read_content(const fs::path& folder) {
   Content content;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
@@ -134,14 +134,14 @@ pid_t start(const std::vector<std::string>& arguments, const Fault& fault, int o
   ::_exit(127);
 }
 
-int exit_code_of(pid_t program) {
+int wait_for_exit_code(pid_t program) {
   int status = 0;
   ::waitpid(program, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 int run(const std::vector<std::string>& arguments, const Fault& fault) {
-  return exit_code_of(start(arguments, fault));
+  return wait_for_exit_code(start(arguments, fault));
 }
 
 bool is_survey_without_route(const Content& found, const Content& after) {
@@ -153,23 +153,23 @@ bool is_survey_without_route(const Content& found, const Content& after) {
 void try_faults(const Trial& trial, const std::vector<std::string>& kinds, long sample) {
   const testing_support::TemporaryFolder scratch;
   const fs::path out = scratch.path() / "out";
-  const Content before = content_of(trial.old_folder);
+  const Content before = read_content(trial.old_folder);
   ASSERT_EQ(changed(trial, out, {}), 0);
-  const Content after = content_of(out);
+  const Content after = read_content(out);
   ASSERT_NE(before, after);
   for (const std::string& kind : kinds) {
-    try_points(kind, steps_of(trial, kind, scratch.path()), sample,
+    try_points(kind, count_steps(trial, kind, scratch.path()), sample,
                [&](const Fault& fault) { try_fault(trial, fault, out, before, after); });
   }
 }
 
-void try_faults(const Verb& verb, const std::vector<std::string>& kinds, long sample) {
+void try_faults(const Command& command, const std::vector<std::string>& kinds, long sample) {
   const testing_support::TemporaryFolder scratch;
   const fs::path old_folder = scratch.path() / "old";
   fs::create_directories(old_folder);
-  ASSERT_EQ(run(verb("1", old_folder), {}), 0);
+  ASSERT_EQ(run(command("1", old_folder), {}), 0);
   const Change change = [&](const fs::path& out, const Fault& fault) {
-    return run(verb("2", out), fault);
+    return run(command("2", out), fault);
   };
   try_faults({.old_folder = old_folder, .change = change, .may_also_be = {}}, kinds, sample);
 }
@@ -178,13 +178,13 @@ void try_going_on(const Trial& trial, long sample) {
   const testing_support::TemporaryFolder scratch;
   const fs::path out = scratch.path() / "out";
   ASSERT_EQ(changed(trial, out, {}), 0);
-  const Content after = content_of(out);
+  const Content after = read_content(out);
   for (const char* kind : {"full", "kill"}) {
-    try_points(kind, steps_of(trial, kind, scratch.path()), sample, [&](const Fault& fault) {
+    try_points(kind, count_steps(trial, kind, scratch.path()), sample, [&](const Fault& fault) {
       const int exit_code = changed(trial, out, fault);
-      EXPECT_TRUE(exit_code != 0 || content_of(out) == after) << "exit 0";
+      EXPECT_TRUE(exit_code != 0 || read_content(out) == after) << "exit 0";
       EXPECT_EQ(trial.change(out, {}), 0);
-      EXPECT_TRUE(content_of(out) == after) << "run again";
+      EXPECT_TRUE(read_content(out) == after) << "run again";
     });
   }
 }
@@ -198,7 +198,7 @@ const char* const quick =
     "limits: {max_views: 3}\n"
     "scan: {orbit: {radius: 2, circles: 1, speed: 100}}\n";
 
-const char* const flown =
+const char* const flight_mission_text =
     "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
     "sensor: {width: 80, height: 60, max_range: 60, horizontal_fov_deg: 70, vertical_fov_deg: 55}\n"
     "planner: {name: skycap, density: 20, resolution_radius: 1.0, occluder_spacing: 0.6,\n"
@@ -210,7 +210,7 @@ const char* const flown =
     "flight: {vehicle: generic, unknown_box: {min: [-12, -12, 0], max: [12, 12, 12]},\n"
     "         takeoff: [25, 25, 0]}\n";
 
-Surveys::Surveys() : mission_(folder_.file("m.yaml", flown)) {
+Surveys::Surveys() : mission_(folder_.file("m.yaml", flight_mission_text)) {
   for (const char* seed : {"1", "2"}) {
     EXPECT_EQ(run({"plan", mission_, "--quiet", "--no-report", "--seed", seed, "--out",
                    folder_.path() / seed},

@@ -22,7 +22,7 @@ namespace skycap::faults {
 /// unfinished survey is gone on with is no part of it.
 using Content = std::map<std::string, std::string>;
 
-Content content_of(const std::filesystem::path& folder);
+Content read_content(const std::filesystem::path& folder);
 
 struct Fault {
   std::string kind;  ///< FAULT_KIND
@@ -34,7 +34,7 @@ struct Fault {
 pid_t start(const std::vector<std::string>& arguments, const Fault& fault, int output = -1);
 
 /// Its exit code, or 128 and the signal that ended it.
-int exit_code_of(pid_t program);
+int wait_for_exit_code(pid_t program);
 
 int run(const std::vector<std::string>& arguments, const Fault& fault);
 
@@ -61,10 +61,10 @@ bool is_survey_without_route(const Content& found, const Content& after);
 void try_faults(const Trial& trial, const std::vector<std::string>& kinds, long sample);
 
 /// A verb whose result depends on the seed: 1 gives the old one, 2 the new one.
-using Verb =
+using Command =
     std::function<std::vector<std::string>(const std::string& seed, const std::filesystem::path&)>;
 
-void try_faults(const Verb& verb, const std::vector<std::string>& kinds, long sample);
+void try_faults(const Command& command, const std::vector<std::string>& kinds, long sample);
 
 /// The same, on the disk, for what may stop half-way: run again, whatever happened, it goes on to
 /// where it would have been.
@@ -75,7 +75,7 @@ inline constexpr long all = 1'000'000;
 /// Missions whose surveys take half a second: a teapot of a metre,
 extern const char* const quick;
 /// and a house of 20 m that is flown round, with a route in every format.
-extern const char* const flown;
+extern const char* const flight_mission_text;
 
 /// A survey with a flight, planned once with each seed: what verbs read.
 class Surveys {

@@ -28,7 +28,7 @@ namespace {
 
 enum class Kind { none, full, kill, memory, start };
 
-Kind kind_of(const char* name) {
+Kind parse_fault_kind(const char* name) {
   if (name == nullptr) return Kind::none;
   if (std::strcmp(name, "full") == 0) return Kind::full;
   if (std::strcmp(name, "kill") == 0) return Kind::kill;
@@ -39,11 +39,11 @@ Kind kind_of(const char* name) {
 
 /// Set once this library is loaded; what happens before is not counted.
 Kind kind = Kind::none;
-long wanted = 0;
+long fault_step = 0;
 std::atomic<long> steps{0};
 
 /// Counts a step; true if it is the one.
-bool is_hit() { return ++steps == wanted; }
+bool is_hit() { return ++steps == fault_step; }
 
 /// A step on the disk: true if it is to fail.
 bool fails(bool needs_space = true) {
@@ -69,8 +69,8 @@ class Switch {
     const char* count = std::getenv("FAULT_COUNT");
     if (count != nullptr) std::snprintf(count_, sizeof(count_), "%s", count);
     ::unsetenv("FAULT_COUNT");  // the program's children have other numbers
-    wanted = at == nullptr ? 0 : std::atol(at);
-    kind = kind_of(std::getenv("FAULT_KIND"));
+    fault_step = at == nullptr ? 0 : std::atol(at);
+    kind = parse_fault_kind(std::getenv("FAULT_KIND"));
   }
   ~Switch() {
     kind = Kind::none;

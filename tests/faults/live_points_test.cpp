@@ -27,8 +27,8 @@ class LiveFaultPoints : public testing::Test {
  protected:
   LiveFaultPoints() { EXPECT_EQ(run(next("1", begun_), {}), 0); }
 
-  std::vector<std::string> verb(const std::string& name, const fs::path& folder,
-                                const std::vector<std::string>& more = {}) const {
+  std::vector<std::string> command(const std::string& name, const fs::path& folder,
+                                   const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words{
         name,    surveys_.mission(),     "--survey", folder, "--no-report",
         "--set", "live.pose_check=false"};
@@ -37,9 +37,9 @@ class LiveFaultPoints : public testing::Test {
   }
 
   std::vector<std::string> next(const std::string& seed, const fs::path& folder) const {
-    return verb("next", folder,
-                {"--quiet", "--world", "--id", seed, "--scan", surveys_[seed] / "cloud.ply",
-                 "--pose", "0 -30 12 -0.7071068 0 0 0.7071068"});
+    return command("next", folder,
+                   {"--quiet", "--world", "--id", seed, "--scan", surveys_[seed] / "cloud.ply",
+                    "--pose", "0 -30 12 -0.7071068 0 0 0.7071068"});
   }
 
   const Surveys surveys_;
@@ -56,7 +56,7 @@ TEST_F(LiveFaultPoints, NextGoesOnWithTheScanThatFailed) {
 
 TEST_F(LiveFaultPoints, FinishLeavesAWholeResult) {
   const auto finish = [&](const fs::path& out, const Fault& fault) {
-    return run(verb("finish", out), fault);
+    return run(command("finish", out), fault);
   };
   ASSERT_EQ(finish(begun_, {}), 0);
   ASSERT_EQ(run(next("2", begun_), {}), 0);
@@ -65,7 +65,7 @@ TEST_F(LiveFaultPoints, FinishLeavesAWholeResult) {
 }
 
 /// What is written to `pipe` up to the end of a line, or of the program.
-std::string line_of(int pipe) {
+std::string read_line(int pipe) {
   std::string line;
   for (char c = 0; ::read(pipe, &c, 1) == 1 && c != '\n';) line += c;
   return line;
@@ -74,10 +74,10 @@ std::string line_of(int pipe) {
 constexpr skycap_live::Pose pose{1, 0, 0, 0, 0, 0, 1, -30, 0, -1, 0, 12};
 
 /// Of a cloud in the world, as the sensor sees them.
-std::vector<float> points_of(const fs::path& cloud) {
+std::vector<float> read_points(const fs::path& cloud) {
   std::vector<float> numbers;
-  geometry::read_positions(cloud, [&](std::span<const Eigen::Vector3f> piece, double) {
-    for (const Eigen::Vector3f& point : piece) {
+  geometry::read_positions(cloud, [&](std::span<const Eigen::Vector3f> chunk, double) {
+    for (const Eigen::Vector3f& point : chunk) {
       numbers.insert(numbers.end(), {point.x(), 12.0F - point.z(), point.y() + 30.0F});
     }
   });
@@ -86,22 +86,22 @@ std::vector<float> points_of(const fs::path& cloud) {
 
 /// The server, to which a client sends a scan; then it finishes the survey.
 TEST_F(LiveFaultPoints, ServeGoesOnWithTheScanThatFailed) {
-  const std::vector<float> points = points_of(surveys_["2"] / "cloud.ply");
+  const std::vector<float> points = read_points(surveys_["2"] / "cloud.ply");
   const auto serve = [&](const fs::path& out, const Fault& fault) {
     std::array<int, 2> pipe{};
     EXPECT_EQ(::pipe(pipe.data()), 0);
     const pid_t server = start(
-        verb("serve", out, {"--quiet", "--socket", scratch_.path() / "socket"}), fault, pipe[1]);
+        command("serve", out, {"--quiet", "--socket", scratch_.path() / "socket"}), fault, pipe[1]);
     ::close(pipe[1]);
     try {
-      skycap_live::Survey client(line_of(pipe[0]));
+      skycap_live::Survey client(read_line(pipe[0]));
       client.add_cloud(points, pose);
       client.finish();
     } catch (const std::exception&) {  // it died, or says that it could not
       ::kill(server, SIGTERM);
     }
     ::close(pipe[0]);
-    return exit_code_of(server);
+    return wait_for_exit_code(server);
   };
   try_going_on({.old_folder = begun_, .change = serve, .may_also_be = {}}, 12);
 }

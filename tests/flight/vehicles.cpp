@@ -12,7 +12,7 @@ constexpr double degree = geometry::radians_per_degree;
 
 MissionMode ardupilot_mode() {
   MissionMode mode;
-  mode.law = LegLaw::s_curve;
+  mode.leg_profile = LegProfile::s_curve;
   mode.max_ascent = 2.5, mode.max_descent = 1.5;
   mode.acceleration = 2.5, mode.vertical_acceleration = 1.0;
   mode.jerk = 1.0, mode.jerk_rise = 0.3;
@@ -25,7 +25,7 @@ MissionMode ardupilot_mode() {
 
 MissionMode dji_mode() {
   MissionMode mode;
-  mode.law = LegLaw::s_curve;
+  mode.leg_profile = LegProfile::s_curve;
   mode.max_ascent = 6.0, mode.max_descent = 5.0;
   mode.acceleration = 3.0, mode.vertical_acceleration = 3.0, mode.jerk = 6.0;
   mode.yaw_rate = 100 * degree, mode.yaw_acceleration = 2.0;
@@ -39,13 +39,13 @@ std::vector<Vehicle> test_vehicles() {
 
   Vehicle ardupilot;
   ardupilot.name = "generic_ardupilot";
-  ardupilot.dialect = Dialect::ardupilot;
+  ardupilot.autopilot = AutopilotType::ardupilot;
   ardupilot.mode = ardupilot_mode();
   ardupilot.max_waypoints = 700;
 
   Vehicle m350;
   m350.name = "m350_rtk";
-  m350.dialect = Dialect::dji;
+  m350.autopilot = AutopilotType::dji;
   m350.wpml = {89, 0, 42, "1.0.6"};
   m350.mode = dji_mode();
   m350.radius = 0.72, m350.max_speed = 15.0, m350.max_wind = 12.0;

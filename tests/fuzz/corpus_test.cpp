@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> corpus_of(const Reader& reader) {
+std::vector<fs::path> find_corpus_files(const Reader& reader) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(fs::path(FUZZ_CORPUS) / reader.name)) {
     files.push_back(entry.path());
@@ -29,7 +29,7 @@ std::vector<fs::path> corpus_of(const Reader& reader) {
 }
 
 /// The bytes as they are, but those of gzip, which read_file() would decompress.
-std::string bytes_of(const fs::path& path) {
+std::string read_bytes(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -40,21 +40,21 @@ std::uint32_t number_in_environment(const char* name, std::uint32_t otherwise) {
 }
 
 void change_bytes(std::string& bytes, std::mt19937& random) {
-  constexpr std::string_view telling = "\xff\x7f\x80 -9e[{<:,.0\n";
+  constexpr std::string_view structural_bytes = "\xff\x7f\x80 -9e[{<:,.0\n";
   for (int i = 0; i < 3; ++i) {
     bytes[random() % bytes.size()] =
-        i == 0 ? static_cast<char>(random()) : telling[random() % telling.size()];
+        i == 0 ? static_cast<char>(random()) : structural_bytes[random() % structural_bytes.size()];
   }
 }
 
 /// A piece is cut out, or stands a second time elsewhere.
-void move_piece(std::string& bytes, std::mt19937& random) {
+void move_chunk(std::string& bytes, std::mt19937& random) {
   const std::size_t begin = random() % bytes.size();
-  const std::string piece = bytes.substr(begin, 1 + random() % 64);
+  const std::string chunk = bytes.substr(begin, 1 + random() % 64);
   if (random() % 2 == 0) {
-    bytes.erase(begin, piece.size());
+    bytes.erase(begin, chunk.size());
   } else {
-    bytes.insert(random() % bytes.size(), piece);
+    bytes.insert(random() % bytes.size(), chunk);
   }
 }
 
@@ -91,14 +91,14 @@ class Corpus : public testing::TestWithParam<Reader> {
 };
 
 TEST_P(Corpus, FilesAreReadOrRefused) {
-  const std::vector<fs::path> files = corpus_of(GetParam());
+  const std::vector<fs::path> files = find_corpus_files(GetParam());
   ASSERT_FALSE(files.empty());
-  for (const fs::path& path : files) expect_held(bytes_of(path), path.filename());
+  for (const fs::path& path : files) expect_held(read_bytes(path), path.filename());
 }
 
 TEST_P(Corpus, FilesThatAreCutShortAreReadOrRefused) {
-  for (const fs::path& path : corpus_of(GetParam())) {
-    const std::string bytes = bytes_of(path);
+  for (const fs::path& path : find_corpus_files(GetParam())) {
+    const std::string bytes = read_bytes(path);
     for (std::size_t part = 0; part < 12; ++part) {
       expect_held(bytes.substr(0, bytes.size() * part / 12), path.filename());
     }
@@ -108,11 +108,11 @@ TEST_P(Corpus, FilesThatAreCutShortAreReadOrRefused) {
 TEST_P(Corpus, FilesWithChangedBytesAreReadOrRefused) {
   std::mt19937 random(number_in_environment("CORPUS_SEED", 1));
   const std::uint32_t changes = number_in_environment("CORPUS_CHANGES", 200);
-  for (const fs::path& path : corpus_of(GetParam())) {
+  for (const fs::path& path : find_corpus_files(GetParam())) {
     for (std::uint32_t change = 0; change < changes; ++change) {
-      std::string bytes = bytes_of(path);
+      std::string bytes = read_bytes(path);
       if (bytes.empty()) continue;
-      for (const auto& make : {change_bytes, move_piece, make_extreme}) {
+      for (const auto& make : {change_bytes, move_chunk, make_extreme}) {
         if (random() % 2 == 0 && !bytes.empty()) make(bytes, random);
       }
       expect_held(bytes, path.filename().string() + ", change " + std::to_string(change));

@@ -80,13 +80,13 @@ int run_mavlink(const std::uint8_t* bytes, std::size_t size) {
 int run_wire(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("", [&] {
     online::FrameReader reader;
-    const std::string text = text_of(bytes, size);
+    const std::string text = bytes_to_string(bytes, size);
     for (std::size_t at = 0; at < size; at += 61) {
       reader.feed(std::string_view(text).substr(at, 61));
       while (const auto message = reader.next()) {
         require(message->header.is_object(), "a header that is no object");
         online::FrameReader again;
-        again.feed(online::frame_of(*message));
+        again.feed(online::encode_frame(*message));
         require(again.next()->payload == message->payload, "a message changes on its way");
       }
     }
@@ -116,7 +116,7 @@ int run_session(const std::uint8_t* bytes, std::size_t size) {
   online::LiveSurvey survey(setup.survey(), setup.live, setup.identity(), fresh_folder(), {}, 1);
   online::Session session(setup.name, setup.flight(), setup.live, survey,
                           [] { return std::string("done"); });
-  const std::string text = text_of(bytes + 1, size - 1);
+  const std::string text = bytes_to_string(bytes + 1, size - 1);
   for (std::size_t at = 0, messages = 0; at < text.size() && messages < 6; ++messages) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string header = text.substr(at, end - at);
@@ -131,7 +131,7 @@ int run_session(const std::uint8_t* bytes, std::size_t size) {
     }
     const online::Message answer = session.answer(message);
     require(answer.header.contains("type"), "an answer of no type");
-    online::frame_of(answer);
+    online::encode_frame(answer);
     session.settle();
   }
   return 0;
@@ -139,16 +139,16 @@ int run_session(const std::uint8_t* bytes, std::size_t size) {
 
 /// Poses, lenses and how well poses are known, as people and messages write them.
 int run_pose(const std::uint8_t* bytes, std::size_t size) {
-  const std::string text = text_of(bytes, size);
+  const std::string text = bytes_to_string(bytes, size);
   run_reader("pose.txt", [&] {
     const Eigen::Isometry3d pose = online::parse_pose_text(text, "pose.txt");
-    require(geometry::is_place(pose.translation()), "a pose out of the world");
+    require(geometry::is_valid_position(pose.translation()), "a pose out of the world");
     const Eigen::Matrix3d turn = pose.linear();
     require((turn * turn.transpose()).isIdentity(1e-6), "a pose that stretches");
   });
   run_reader("lens", [&] {
-    const online::Lens lens = online::parse_lens(text, "lens");
-    const auto ray = lens.ray({3.0, 5.0});
+    const online::CameraIntrinsics intrinsics = online::parse_intrinsics(text, "lens");
+    const auto ray = intrinsics.ray({3.0, 5.0});
     require(!ray || ray->allFinite(), "a ray of no number");
   });
   run_reader("sigma", [&] { online::parse_pose_sigma(text, "sigma"); });
@@ -163,16 +163,16 @@ int run_pose(const std::uint8_t* bytes, std::size_t size) {
 int run_live_journal(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("live.journal", [&] {
     std::vector<std::string> records(1);
-    for (const char c : text_of(bytes, size)) {
+    for (const char c : bytes_to_string(bytes, size)) {
       if (c == '\n') {
         records.emplace_back();
       } else {
         records.back() += c;
       }
     }
-    for (const online::LiveEvent& event : online::events_of(records, "live.journal")) {
+    for (const online::LiveEvent& event : online::parse_events(records, "live.journal")) {
       if (!event.scan) continue;
-      require(geometry::is_place(event.scan->world_from_sensor.translation()),
+      require(geometry::is_valid_position(event.scan->world_from_sensor.translation()),
               "a scan out of the world");
       const auto file = std::filesystem::path(event.scan->file).lexically_normal();
       require(file.is_relative() && *file.begin() != "..", "a scan out of the folder");
@@ -183,7 +183,7 @@ int run_live_journal(const std::uint8_t* bytes, std::size_t size) {
 /// A scan as a live survey keeps it.
 int run_kept_scan(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("scan.ply", [&] {
-    const geometry::Scan scan = online::parse_kept_scan("scan.ply", text_of(bytes, size));
+    const geometry::Scan scan = online::parse_kept_scan("scan.ply", bytes_to_string(bytes, size));
     require(scan.pixels.empty() || scan.pixels.size() == scan.points.size(), "pixels of no point");
   });
 }

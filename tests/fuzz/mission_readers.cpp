@@ -27,7 +27,7 @@ namespace config = missions::config;
 /// Numbers that got through are in their keys' ranges, up to the rounding of degrees.
 void require_in_range(const config::Key& key, double value) {
   const double slack = 1e-12 * std::abs(value);
-  require(value >= key.range.least - slack && value <= key.range.most + slack,
+  require(value >= key.range.min - slack && value <= key.range.max + slack,
           key.path + " is " + std::to_string(value));
 }
 
@@ -44,30 +44,31 @@ void require_sane(const config::MissionSetup& setup) {
 
 int run_mission(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("m.yaml", [&] {
-    require_sane(missions::config::parse_mission(text_of(bytes, size), "m.yaml"));
+    require_sane(missions::config::parse_mission(bytes_to_string(bytes, size), "m.yaml"));
   });
 }
 
 int run_sensor(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("s.yaml", [&] {
-    const auto sensor = missions::config::read_sensor(text_of(bytes, size), "s.yaml");
+    const auto sensor = missions::config::read_sensor(bytes_to_string(bytes, size), "s.yaml");
     std::visit([](const auto& config) { config.validate(); }, sensor.sensor);
   });
 }
 
 int run_vehicle(const std::uint8_t* bytes, std::size_t size) {
-  return run_reader(
-      "v.yaml", [&] { missions::config::read_vehicle(text_of(bytes, size), "v.yaml").validate(); });
+  return run_reader("v.yaml", [&] {
+    missions::config::read_vehicle(bytes_to_string(bytes, size), "v.yaml").validate();
+  });
 }
 
 int run_summary(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("summary.json", [&] {
-    const auto path = file_with("summary.json", text_of(bytes, size));
+    const auto path = file_with("summary.json", bytes_to_string(bytes, size));
     const auto summary = missions::package::read_package_summary(path.parent_path(), {});
     require_sane(summary.mission);
-    require(!summary.pad || geometry::is_place(*summary.pad), "a pad out of the world");
+    require(!summary.pad || geometry::is_valid_position(*summary.pad), "a pad out of the world");
     for (const geometry::View& view : summary.views) {
-      require(geometry::is_place(view.position), "a view out of the world");
+      require(geometry::is_valid_position(view.position), "a view out of the world");
       require(view.direction.allFinite() && view.direction.norm() > 0.0, "a view of nothing");
     }
   });
@@ -77,8 +78,8 @@ int run_summary(const std::uint8_t* bytes, std::size_t size) {
 int run_campaign(const std::uint8_t* bytes, std::size_t size) {
   namespace batch = missions::batch;
   return run_reader("c.yaml", [&] {
-    const batch::Manifest manifest(batch::parse_campaign(text_of(bytes, size), "c.yaml"));
-    require(manifest.size() > 0 && manifest.size() <= batch::most_items, "items without bound");
+    const batch::Manifest manifest(batch::parse_campaign(bytes_to_string(bytes, size), "c.yaml"));
+    require(manifest.size() > 0 && manifest.size() <= batch::max_items, "items without bound");
     for (const std::size_t number : {std::size_t{0}, manifest.size() - 1}) {
       const batch::ManifestLine line = manifest.line(number);
       for (const auto& part : line.folder()) {
@@ -90,26 +91,26 @@ int run_campaign(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-bool is_on_earth(const missions::wizard::Click& place) {
-  return std::abs(place.latitude_deg) <= 90.0 && std::abs(place.longitude_deg) <= 180.0;
+bool is_on_earth(const missions::wizard::Click& position) {
+  return std::abs(position.latitude_deg) <= 90.0 && std::abs(position.longitude_deg) <= 180.0;
 }
 
 /// Results go to a folder of the district's name, and places are on the Earth.
 int run_district(const std::uint8_t* bytes, std::size_t size) {
   namespace batch = missions::batch;
   return run_reader("d.yaml", [&] {
-    const auto given = batch::parse_district(text_of(bytes, size), "d.yaml");
+    const auto given = batch::parse_district(bytes_to_string(bytes, size), "d.yaml");
     require(missions::batch::is_plain(given.name), "no name of a folder: " + given.name);
-    require(missions::batch::find_contestant(given.planner) != nullptr,
-            "no planner: " + given.planner);
+    require(missions::batch::find_method(given.planner) != nullptr, "no planner: " + given.planner);
     require(given.merge_distance >= 0.0 && given.merge_distance <= 100.0,
             "merge_distance is out of its range");
     const batch::TargetChoice& targets = given.targets;
     require(targets.within.empty() || targets.within.size() == 2, "a box without two corners");
     require(targets.distance >= 0.0 && targets.distance <= 50'000.0,
             "distance is out of its range");
-    for (const auto& places : {given.pads, targets.within}) {
-      for (const auto& place : places) require(is_on_earth(place), "a place off the Earth");
+    for (const auto& positions : {given.pads, targets.within}) {
+      for (const auto& position : positions)
+        require(is_on_earth(position), "a place off the Earth");
     }
     require(!targets.near || is_on_earth(*targets.near), "a place off the Earth");
     for (const config::KeyOverride& change : given.set) {
@@ -119,20 +120,20 @@ int run_district(const std::uint8_t* bytes, std::size_t size) {
 }
 
 /// What is made of it is read as the same.
-int run_prepared(const std::uint8_t* bytes, std::size_t size) {
+int run_district_plan(const std::uint8_t* bytes, std::size_t size) {
   namespace batch = missions::batch;
-  return run_reader(batch::prepared_name, [&] {
-    const auto path = file_with(batch::prepared_name, text_of(bytes, size));
-    const std::string text = batch::prepared_json(batch::read_prepared(path));
-    const auto again = file_with(batch::prepared_name, text);
-    require(batch::prepared_json(batch::read_prepared(again)) == text,
+  return run_reader(batch::district_plan_name, [&] {
+    const auto path = file_with(batch::district_plan_name, bytes_to_string(bytes, size));
+    const std::string text = batch::district_plan_json(batch::read_district_plan(path));
+    const auto again = file_with(batch::district_plan_name, text);
+    require(batch::district_plan_json(batch::read_district_plan(again)) == text,
             "it is another when it is read again");
   });
 }
 
 /// A trial that is damaged counts as not run: there is nothing to refuse.
 int run_trial(const std::uint8_t* bytes, std::size_t size) {
-  const auto path = file_with("trial.json", text_of(bytes, size));
+  const auto path = file_with("trial.json", bytes_to_string(bytes, size));
   missions::batch::finished_trial(path, "");
   return 0;
 }
@@ -144,7 +145,7 @@ int run_journal(const std::uint8_t* bytes, std::size_t size) {
   for (const auto& path : {outside / "kept", folder / ".part-1-a", folder / "a"}) {
     std::ofstream(path) << "kept";
   }
-  std::ofstream(folder / ".commit", std::ios::binary) << text_of(bytes, size);
+  std::ofstream(folder / ".commit", std::ios::binary) << bytes_to_string(bytes, size);
   run_reader(folder.string(), [&] { geometry::finish_commit(folder); });
   require(geometry::read_file(outside / "kept") == "kept", "a journal changes other folders");
   std::size_t count = 0;
@@ -156,7 +157,7 @@ int run_journal(const std::uint8_t* bytes, std::size_t size) {
 constexpr Reader readers[] = {
     {"mission", run_mission},   {"sensor", run_sensor},     {"vehicle", run_vehicle},
     {"summary", run_summary},   {"trial", run_trial},       {"journal", run_journal},
-    {"campaign", run_campaign}, {"district", run_district}, {"prepared", run_prepared}};
+    {"campaign", run_campaign}, {"district", run_district}, {"prepared", run_district_plan}};
 
 }  // namespace
 

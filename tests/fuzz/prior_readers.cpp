@@ -31,7 +31,7 @@ void require_sane(const site_data::Prior& known) {
     for (const auto& triangle : object.mesh.triangles) {
       for (const std::uint32_t v : triangle) {
         require(v < object.mesh.vertices.size(), "a triangle of vertices that do not exist");
-        require(geometry::is_place(object.mesh.vertices[v]), "a corner out of the world");
+        require(geometry::is_valid_position(object.mesh.vertices[v]), "a corner out of the world");
       }
     }
   }
@@ -40,11 +40,11 @@ void require_sane(const site_data::Prior& known) {
 /// As parsed, and as a prior at a place of its own.
 template <typename Parse>
 int run(const char* name, const std::uint8_t* bytes, std::size_t size, Parse parse) {
-  run_reader(name, [&] { require_sane(parse(text_of(bytes, size))); });
+  run_reader(name, [&] { require_sane(parse(bytes_to_string(bytes, size))); });
   return run_reader(name, [&] {
     site_data::Source source;
-    source.file = file_with(name, text_of(bytes, size));
-    source.place = site_data::Place{};
+    source.file = file_with(name, bytes_to_string(bytes, size));
+    source.pose = site_data::SourcePose{};
     require_sane(site_data::read_prior(source, {}));
   });
 }
@@ -64,12 +64,12 @@ int run_cityjson(const std::uint8_t* bytes, std::size_t size) {
 int run_scan(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     site_data::Source source;
-    source.file = file_with(name, text_of(bytes, size));
-    source.place = site_data::Place{};
+    source.file = file_with(name, bytes_to_string(bytes, size));
+    source.pose = site_data::SourcePose{};
     const site_data::Prior known = site_data::read_prior(source, {});
     require(!known.box.isEmpty(), "a prior of nothing");
     for (const Eigen::Vector3f& point : known.points) {
-      require(geometry::is_place(point.cast<double>()), "a point out of the world");
+      require(geometry::is_valid_position(point.cast<double>()), "a point out of the world");
     }
   });
 }
@@ -80,7 +80,7 @@ constexpr Reader readers[] = {
     {"prior_las", [](const std::uint8_t* b, std::size_t n) { return run_scan("site.las", b, n); }},
     {"prior_e57",
      [](const std::uint8_t* b, std::size_t n) {
-       const std::string sealed = sealed_e57(text_of(b, n));
+       const std::string sealed = sealed_e57(bytes_to_string(b, n));
        return run_scan("site.e57", reinterpret_cast<const std::uint8_t*>(sealed.data()),
                        sealed.size());
      }},

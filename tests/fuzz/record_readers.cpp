@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 /// A journal: what is read of it, and what a writer makes of it.
 int run_records(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("x.journal", [&] {
-    const fs::path file = file_with("x.journal", text_of(bytes, size));
+    const fs::path file = file_with("x.journal", bytes_to_string(bytes, size));
     const geometry::RecordedLines lines = geometry::read_records(file);
     require(lines.whole_bytes + lines.torn_bytes == size, "bytes that nobody has counted");
     geometry::RecordLog(file).append("one more");
@@ -69,7 +69,7 @@ int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
     {
       geometry::RecordLog log(journal);
       log.append(identity);
-      std::istringstream text(text_of(bytes, size));
+      std::istringstream text(bytes_to_string(bytes, size));
       for (std::string line; std::getline(text, line); ++lines) log.append(line);
     }
     const simulation::SurveyJournal known(journal, setup.identity(), scene, true);
@@ -83,17 +83,17 @@ int run_checkpoint(const std::uint8_t* bytes, std::size_t size) {
     using Json = nlohmann::ordered_json;
     Json json;
     try {
-      json = geometry::parse_json<Json>(text_of(bytes, size));
+      json = geometry::parse_json<Json>(bytes_to_string(bytes, size));
     } catch (const Json::exception&) {
       return;
     }
-    missions::scan::json_of(missions::scan::parse_laser_checkpoint(json, 1, "scan.journal"));
+    missions::scan::to_json(missions::scan::parse_laser_checkpoint(json, 1, "scan.journal"));
   });
 }
 
 /// The two lists of a TUM sequence, behind each other, between them a line "%".
 int run_sequence(const std::uint8_t* bytes, std::size_t size) {
-  const std::string text = text_of(bytes, size);
+  const std::string text = bytes_to_string(bytes, size);
   const std::size_t middle = std::min(text.find("%\n"), size);
   const fs::path folder = fresh_folder();
   std::ofstream(folder / "depth.txt", std::ios::binary) << text.substr(0, middle);
@@ -103,7 +103,8 @@ int run_sequence(const std::uint8_t* bytes, std::size_t size) {
     const auto sequence = missions::online::read_sequence(folder, 1000);
     require(!sequence.frames.empty(), "a sequence of nothing");
     for (const auto& frame : sequence.frames) {
-      require(geometry::is_place(frame.world_from_sensor.translation()), "a frame of no place");
+      require(geometry::is_valid_position(frame.world_from_sensor.translation()),
+              "a frame of no place");
     }
   });
 }
@@ -113,26 +114,28 @@ int run_sequence(const std::uint8_t* bytes, std::size_t size) {
 int run_rawlog(const std::uint8_t* bytes, std::size_t size) {
   namespace online = missions::online;
   return run_reader("x.rawlog", [&] {
-    const fs::path file = file_with("x.rawlog", text_of(bytes, size));
+    const fs::path file = file_with("x.rawlog", bytes_to_string(bytes, size));
     online::RawlogSequence sequence(file, {}, [](const std::string&) {});
     require(!sequence.pose_source().empty(), "poses from nowhere");
     while (const auto frame = sequence.next()) {
-      require(geometry::is_place(frame->world_from_sensor.translation()), "a frame of no place");
-      const auto found = online::scan_of(*frame, {.is_scanner = true}, {});
-      require(found.scan.points.size() <= geometry::most_depth_pixels, "a scan of too many points");
+      require(geometry::is_valid_position(frame->world_from_sensor.translation()),
+              "a frame of no place");
+      const auto found = online::make_scan(*frame, {.is_scanner = true}, {});
+      require(found.scan.points.size() <= geometry::max_depth_pixels, "a scan of too many points");
     }
   });
 }
 
 /// A depth image, the checksums of its chunks made right.
 int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
-  std::string text = text_of(bytes, size);
+  std::string text = bytes_to_string(bytes, size);
   for (std::size_t at = 8; at + 12 <= text.size();) {
     const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[at + i]); };
     const std::size_t length = (std::size_t{byte(0)} << 24) | (std::size_t{byte(1)} << 16) |
                                (std::size_t{byte(2)} << 8) | byte(3);
     if (length > text.size() - at - 12) break;
-    const std::uint32_t crc = geometry::crc32_of(std::string_view(text).substr(at + 4, length + 4));
+    const std::uint32_t crc =
+        geometry::compute_crc32(std::string_view(text).substr(at + 4, length + 4));
     for (std::size_t i = 0; i < 4; ++i) {
       text[at + 8 + length + i] = static_cast<char>(crc >> (24 - 8 * i));
     }
@@ -150,16 +153,16 @@ int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
 int run_timetable(const std::uint8_t* bytes, std::size_t size) {
   const std::string vehicle = "vehicle: generic";
   static const missions::config::MissionSetup setup = missions::config::parse_mission(
-      tests::flown_mission().replace(tests::flown_mission().find(vehicle), vehicle.size(),
-                                     "vehicles: [generic, generic_ardupilot], separation: 6, "
-                                     "timing_tolerance: 2"),
+      tests::flight_mission().replace(tests::flight_mission().find(vehicle), vehicle.size(),
+                                      "vehicles: [generic, generic_ardupilot], separation: 6, "
+                                      "timing_tolerance: 2"),
       "m.yaml");
   return run_reader("timetable.csv", [&] {
     const auto rows = missions::package::read_timetable(
-        file_with("timetable.csv", text_of(bytes, size)), setup.flight());
+        file_with("timetable.csv", bytes_to_string(bytes, size)), setup.flight());
     for (const auto& row : rows) {
       require(row.vehicle < 2, "a vehicle that the mission does not have");
-      require(geometry::is_place(row.pad), "a pad out of the world");
+      require(geometry::is_valid_position(row.pad), "a pad out of the world");
       require(row.landing >= row.start, "a sortie that lands before it takes off");
       require(fs::path(row.file).filename() == row.file, "a file out of the folder");
     }
@@ -170,7 +173,7 @@ int run_timetable(const std::uint8_t* bytes, std::size_t size) {
 int run_page(const char* name, const std::uint8_t* bytes, std::size_t size) {
   namespace report = missions::report;
   const fs::path folder = fresh_folder();
-  std::ofstream(folder / name, std::ios::binary) << text_of(bytes, size);
+  std::ofstream(folder / name, std::ios::binary) << bytes_to_string(bytes, size);
   return run_reader(name, [&] {
     for (const report::MadePage& page : report::made_pages(folder, 100, {})) {
       require(page.text && page.text->ends_with("</html>\n"), "a page that has no end");

@@ -76,7 +76,7 @@ int run_cloud(const std::uint8_t* bytes, std::size_t size) {
   cloud.data._buffer = data.data();
   cloud.data._length = static_cast<std::uint32_t>(data.size());
   return run_reader("", [&] {
-    const std::vector<float> xyz = ros2::scan_of(cloud, axes).xyz;
+    const std::vector<float> xyz = ros2::make_scan(cloud, axes).xyz;
     require(xyz.size() % 3 == 0 && 4 * xyz.size() <= data.size(), "points that were not sent");
     require(are_finite(xyz), "a point that is none");
   });
@@ -123,10 +123,13 @@ int run_image(const std::uint8_t* bytes, std::size_t size) {
   image.data._buffer = data.data();
   image.data._length = static_cast<std::uint32_t>(data.size());
   return run_reader("", [&] {
-    const ros2::CameraLens lens = ros2::lens_of(info, is_rectified);
-    require(lens.lens.size() == 4 || lens.lens.size() == 9, "a lens of other numbers");
-    require(are_finite(lens.lens) && lens.lens[0] > 0.0 && lens.lens[1] > 0.0, "no lens");
-    const ros2::SensorScan scan = ros2::scan_of(image, lens);
+    const ros2::CameraIntrinsics intrinsics = ros2::to_intrinsics(info, is_rectified);
+    require(intrinsics.intrinsics.size() == 4 || intrinsics.intrinsics.size() == 9,
+            "a lens of other numbers");
+    require(are_finite(intrinsics.intrinsics) && intrinsics.intrinsics[0] > 0.0 &&
+                intrinsics.intrinsics[1] > 0.0,
+            "no lens");
+    const ros2::SensorScan scan = ros2::make_scan(image, intrinsics);
     if (const auto* depth = std::get_if<ros2::DepthScan>(&scan)) require_sane(*depth);
   });
 }
@@ -174,8 +177,8 @@ int run_transforms(const std::uint8_t* bytes, std::size_t size) {
         tree.add(transform, is_static);
       } catch (const Error&) {  // passed over, as the bridge does
       }
-      const std::string target = ros2::text_of(front.choice(names));
-      const std::string source = ros2::text_of(front.choice(names));
+      const std::string target = ros2::printable_text(front.choice(names));
+      const std::string source = ros2::printable_text(front.choice(names));
       const ros2::PoseMatch match = tree.at(target, source, front.take<std::int32_t>() * 1000LL);
       if (match.state != ros2::PoseMatch::State::known) continue;
       require(std::abs(match.pose.turn.norm() - 1.0) < 1e-9, "a chain that stretches");

@@ -19,16 +19,16 @@ const flight::Site site{{51.753458, -1.254022, 111.5}, 46.7};
 /// The places of a route, what a vehicle does with it, and how high it returns.
 int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
-    const auto path = file_with(name, text_of(bytes, size));
-    for (const Eigen::Vector3d& place : flight::read_route(path, site, {0, 0, 0})) {
-      require(geometry::is_place(place), "a place out of the world");
+    const auto path = file_with(name, bytes_to_string(bytes, size));
+    for (const Eigen::Vector3d& position : flight::read_route(path, site, {0, 0, 0})) {
+      require(geometry::is_valid_position(position), "a place out of the world");
     }
     const auto height = flight::read_return_height(path);
     require(!height || std::isfinite(*height), "a height of return that is no number");
     flight::FlightFacts facts{.site = site};
     facts.vehicle = missions::config::find_vehicle("generic");
-    for (const flight::FlownPiece& piece : flight::interpret_file(path, facts).pieces) {
-      require(piece.to.allFinite(), "a stretch to nowhere");
+    for (const flight::InterpretedSegment& segment : flight::interpret_file(path, facts).segments) {
+      require(segment.to.allFinite(), "a stretch to nowhere");
     }
   });
 }
@@ -36,10 +36,10 @@ int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
 /// Also what a simulated scan makes of it.
 int run_scan_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
-    const auto path = file_with(name, text_of(bytes, size));
-    const auto route = missions::scan::read_scan_route(path, {}, missions::scan::Carrier::gimbal);
-    for (const sim::StampedPose& pose : route.carrier.poses()) {
-      require(geometry::is_place(pose.position), "a pose out of the world");
+    const auto path = file_with(name, bytes_to_string(bytes, size));
+    const auto route = missions::scan::read_scan_route(path, {}, missions::scan::Platform::gimbal);
+    for (const sim::StampedPose& pose : route.platform.poses()) {
+      require(geometry::is_valid_position(pose.position), "a pose out of the world");
       require(std::isfinite(pose.time), "a pose at no time");
       require(std::abs(pose.attitude.norm() - 1.0) < 1e-6, "an attitude that is no rotation");
     }
@@ -54,14 +54,14 @@ int run_trajectory(const char* name, const std::uint8_t* bytes, std::size_t size
 
 int run_parameters(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("", [&] {
-    const auto parameters = flight::read_parameters(text_of(bytes, size));
+    const auto parameters = flight::read_parameters(bytes_to_string(bytes, size));
     for (const flight::Parameter& parameter : parameters) {
       require(std::isfinite(parameter.value), "a parameter that is no number");
     }
-    for (const auto dialect : {flight::Dialect::ardupilot, flight::Dialect::px4}) {
-      const auto height = flight::return_height(parameters, dialect);
+    for (const auto autopilot : {flight::AutopilotType::ardupilot, flight::AutopilotType::px4}) {
+      const auto height = flight::return_height(parameters, autopilot);
       require(!height || std::isfinite(*height), "a height of return that is no number");
-      flight::return_problems(parameters, dialect);
+      flight::return_problems(parameters, autopilot);
     }
   });
 }
@@ -69,7 +69,7 @@ int run_parameters(const std::uint8_t* bytes, std::size_t size) {
 int run_log(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     double last = -std::numeric_limits<double>::infinity();
-    const auto log = flight::read_flight_log(file_with(name, text_of(bytes, size)));
+    const auto log = flight::read_flight_log(file_with(name, bytes_to_string(bytes, size)));
     for (const flight::LogSample& sample : log.samples) {
       require(sample.time >= last, "a log that goes back in time");
       require(sample.velocity.allFinite() && std::isfinite(sample.power), "a sample of no number");

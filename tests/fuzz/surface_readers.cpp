@@ -15,7 +15,7 @@ void require_sane(const geometry::Mesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) {
       require(v < mesh.vertices.size(), "a triangle of vertices that do not exist");
-      require(geometry::is_place(mesh.vertices[v], geometry::farthest_vertex),
+      require(geometry::is_valid_position(mesh.vertices[v], geometry::farthest_vertex),
               "a corner out of the world");
     }
   }
@@ -23,7 +23,7 @@ void require_sane(const geometry::Mesh& mesh) {
 
 int run_mesh(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
-    const auto path = file_with(name, text_of(bytes, size));
+    const auto path = file_with(name, bytes_to_string(bytes, size));
     require_sane(geometry::read_mesh(path));
     for (const auto& part : geometry::read_mesh_by_material(path)) require_sane(part.mesh);
   });
@@ -31,20 +31,21 @@ int run_mesh(const char* name, const std::uint8_t* bytes, std::size_t size) {
 
 int run_cloud(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
-    const auto cloud = geometry::read_cloud(file_with(name, text_of(bytes, size)));
+    const auto cloud = geometry::read_cloud(file_with(name, bytes_to_string(bytes, size)));
     const std::size_t count = cloud.positions.size();
     require(count > 0, "a cloud without points");
     require(cloud.normals.empty() || cloud.normals.size() == count, "points without normals");
     require(cloud.views.empty() || cloud.views.size() == count, "points without views");
     require(cloud.colours.empty() || cloud.colours.size() == count, "points without colours");
     for (const Eigen::Vector3f& position : cloud.positions) {
-      require(geometry::is_place(position.cast<double>(), 16384.0), "a point out of the world");
+      require(geometry::is_valid_position(position.cast<double>(), 16384.0),
+              "a point out of the world");
     }
   });
 }
 
 int run_e57(const std::uint8_t* bytes, std::size_t size) {
-  const std::string sealed = sealed_e57(text_of(bytes, size));
+  const std::string sealed = sealed_e57(bytes_to_string(bytes, size));
   return run_cloud("cloud.e57", reinterpret_cast<const std::uint8_t*>(sealed.data()),
                    sealed.size());
 }
@@ -52,16 +53,16 @@ int run_e57(const std::uint8_t* bytes, std::size_t size) {
 /// What is read and written again is read as the same.
 int run_free_space(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("free_space.bin", [&] {
-    std::istringstream stream(text_of(bytes, size));
+    std::istringstream stream(bytes_to_string(bytes, size));
     const auto space = flight::MeasuredSpace::read(stream, "free_space.bin");
     std::stringstream first, second;
     space.write(first);
     flight::MeasuredSpace::read(first, "written").write(second);
     require(first.str() == second.str(), "free space changes when it is written and read");
     const Eigen::AlignedBox3d extent = space.extent();
-    require(
-        extent.isEmpty() || (geometry::is_place(extent.min()) && geometry::is_place(extent.max())),
-        "free space out of the world");
+    require(extent.isEmpty() || (geometry::is_valid_position(extent.min()) &&
+                                 geometry::is_valid_position(extent.max())),
+            "free space out of the world");
     space.closest({{0, 0, 0}, {1, 1, 1}}, 2.0);
   });
 }

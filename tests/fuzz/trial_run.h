@@ -17,7 +17,7 @@ inline void require(bool holds, const std::string& what) {
   if (!holds) throw std::logic_error(what);
 }
 
-inline std::string text_of(const std::uint8_t* bytes, std::size_t size) {
+inline std::string bytes_to_string(const std::uint8_t* bytes, std::size_t size) {
   return {reinterpret_cast<const char*>(bytes), size};
 }
 

@@ -10,7 +10,7 @@
 namespace skycap {
 namespace {
 
-std::string complaint(double value) {
+std::string error_message(double value) {
   try {
     require(false, "sensor.width", value, "above 0");
   } catch (const Error& error) {
@@ -21,10 +21,10 @@ std::string complaint(double value) {
 }
 
 TEST(Requirement, NamesFieldValueAndRule) {
-  EXPECT_EQ(complaint(-0.25), "sensor.width is -0.25; it must be above 0");
-  EXPECT_EQ(complaint(1234567.0), "sensor.width is 1.23457e+06; it must be above 0");
-  EXPECT_EQ(complaint(NAN), "sensor.width is nan; it must be above 0");
-  EXPECT_EQ(complaint(-1.234567e-300), "sensor.width is -1.23457e-300; it must be above 0");
+  EXPECT_EQ(error_message(-0.25), "sensor.width is -0.25; it must be above 0");
+  EXPECT_EQ(error_message(1234567.0), "sensor.width is 1.23457e+06; it must be above 0");
+  EXPECT_EQ(error_message(NAN), "sensor.width is nan; it must be above 0");
+  EXPECT_EQ(error_message(-1.234567e-300), "sensor.width is -1.23457e-300; it must be above 0");
 }
 
 TEST(Requirement, IsSilentWhenItHolds) { EXPECT_NO_THROW(require(true, "x", 0.0, "zero")); }

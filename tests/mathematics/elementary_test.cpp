@@ -47,15 +47,15 @@ double error_in_ulp(double computed, const Exact& exact) {
   return std::abs(mpfr_get_d(difference.value, MPFR_RNDN)) / ulp;
 }
 
-using OfOne = double (*)(double);
-using ExactOfOne = int (*)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);
+using UnaryFunction = double (*)(double);
+using ExactUnaryFunction = int (*)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);
 
 struct Function {
   const char* name;
-  OfOne computed;
-  ExactOfOne exact;
-  double least, greatest;  // magnitudes of arguments, spread evenly over exponents
-  double bound;            // ulp
+  UnaryFunction computed;
+  ExactUnaryFunction exact;
+  double min, max;  // magnitudes of arguments, spread evenly over exponents
+  double bound;     // ulp
 };
 // NOLINTNEXTLINE(readability-identifier-naming): gtest looks for it
 void PrintTo(const Function& function, std::ostream* out) { *out << function.name; }
@@ -66,10 +66,10 @@ class Elementary : public testing::TestWithParam<Function> {};
 TEST_P(Elementary, IsNearTheTrueValue) {
   const Function& function = GetParam();
   std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> log_range(std::log2(function.least),
-                                                   std::log2(function.greatest));
-  std::uniform_real_distribution<double> plain(-std::min(function.greatest, 12.0),
-                                               std::min(function.greatest, 12.0));
+  std::uniform_real_distribution<double> log_range(std::log2(function.min),
+                                                   std::log2(function.max));
+  std::uniform_real_distribution<double> plain(-std::min(function.max, 12.0),
+                                               std::min(function.max, 12.0));
   Exact exact;
   double worst = 0.0, worst_at = 0.0;
   constexpr int count = 60'000;
@@ -152,7 +152,7 @@ TEST(Elementary, AnglesNextToMultiplesOfAQuarterTurnAreReducedWell) {
   for (int e = -30; e < 1024; ++e) angles.push_back(std::ldexp(1.5707963267948966, e));
   Exact exact;
   for (const double angle : angles) {
-    const auto error = [&](OfOne computed, ExactOfOne of) {
+    const auto error = [&](UnaryFunction computed, ExactUnaryFunction of) {
       mpfr_set_d(exact.value, angle, MPFR_RNDN);
       of(exact.value, exact.value, MPFR_RNDN);
       return error_in_ulp(computed(angle), exact);
@@ -283,8 +283,9 @@ TEST(Elementary, SpecialValuesAreThoseOfTheStandard) {
     EXPECT_TRUE(is_same(each.computed, each.expected))
         << each.what << " is " << each.computed << ", not " << each.expected;
   }
-  for (const OfOne function : {exp,  exp2, expm1, log,  log2, log10, sin,   cos,   tan,   asin,
-                               acos, atan, sinh,  cosh, tanh, asinh, acosh, atanh, log1p, erf}) {
+  for (const UnaryFunction function :
+       {exp,  exp2, expm1, log,  log2, log10, sin,   cos,   tan,   asin,
+        acos, atan, sinh,  cosh, tanh, asinh, acosh, atanh, log1p, erf}) {
     EXPECT_TRUE(std::isnan(function(nan)));
   }
   EXPECT_TRUE(std::isnan(pow(nan, 2.0)) && std::isnan(pow(2.0, nan)));
@@ -295,8 +296,8 @@ TEST(Elementary, SpecialValuesAreThoseOfTheStandard) {
 TEST(Elementary, AreWhatEveryNameInCMeans) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> argument(0.1, 0.9);
-  const auto expect_same = [&](const char* name, OfOne ours) {
-    const auto loaded = reinterpret_cast<OfOne>(::dlsym(RTLD_DEFAULT, name));
+  const auto expect_same = [&](const char* name, UnaryFunction ours) {
+    const auto loaded = reinterpret_cast<UnaryFunction>(::dlsym(RTLD_DEFAULT, name));
     ASSERT_NE(loaded, nullptr) << name;
     EXPECT_NE(reinterpret_cast<void*>(loaded), ::dlsym(RTLD_NEXT, name)) << name;
     for (int i = 0; i < 1000; ++i) {
@@ -304,7 +305,7 @@ TEST(Elementary, AreWhatEveryNameInCMeans) {
       ASSERT_TRUE(is_same(loaded(x), ours(x))) << name << " of " << x;
     }
   };
-  const auto expect_same_in_single = [&](const char* name, OfOne ours) {
+  const auto expect_same_in_single = [&](const char* name, UnaryFunction ours) {
     const auto loaded = reinterpret_cast<float (*)(float)>(::dlsym(RTLD_DEFAULT, name));
     ASSERT_NE(loaded, nullptr) << name;
     for (int i = 0; i < 1000; ++i) {
@@ -312,19 +313,20 @@ TEST(Elementary, AreWhatEveryNameInCMeans) {
       ASSERT_EQ(loaded(x), static_cast<float>(ours(x))) << name << " of " << x;
     }
   };
-  for (const auto& [name, ours] : std::vector<std::pair<const char*, OfOne>>{{"expf", exp},
-                                                                             {"exp2f", exp2},
-                                                                             {"expm1f", expm1},
-                                                                             {"logf", log},
-                                                                             {"log2f", log2},
-                                                                             {"log10f", log10},
-                                                                             {"log1pf", log1p},
-                                                                             {"sinf", sin},
-                                                                             {"cosf", cos},
-                                                                             {"tanf", tan},
-                                                                             {"asinf", asin},
-                                                                             {"acosf", acos},
-                                                                             {"atanf", atan}}) {
+  for (const auto& [name, ours] :
+       std::vector<std::pair<const char*, UnaryFunction>>{{"expf", exp},
+                                                          {"exp2f", exp2},
+                                                          {"expm1f", expm1},
+                                                          {"logf", log},
+                                                          {"log2f", log2},
+                                                          {"log10f", log10},
+                                                          {"log1pf", log1p},
+                                                          {"sinf", sin},
+                                                          {"cosf", cos},
+                                                          {"tanf", tan},
+                                                          {"asinf", asin},
+                                                          {"acosf", acos},
+                                                          {"atanf", atan}}) {
     expect_same_in_single(name, ours);
   }
   expect_same("exp", exp);

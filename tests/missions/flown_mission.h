@@ -8,8 +8,8 @@ namespace skycap::tests {
 /// A mission round a scene, whose surface and unknown space are in a box from `south_west` to
 /// `north_east_top`. The pad is so far away that DJI's vehicles, too, climb before they return from
 /// behind it.
-inline std::string flown_mission_round(const std::string& scene, const std::string& south_west,
-                                       const std::string& north_east_top) {
+inline std::string flight_mission_around(const std::string& scene, const std::string& south_west,
+                                         const std::string& north_east_top) {
   return "scene: " + scene +
          "\n"
          "sensor: {width: 160, height: 120, max_range: 100, noise: {sigma: 0.02}}\n"
@@ -36,9 +36,9 @@ inline std::string flown_mission_round(const std::string& scene, const std::stri
 
 /// A teapot of 20 m, which takes a second to survey. Its spout and handle are what nobody sees from
 /// the first view.
-inline std::string flown_mission(const std::string& more = "") {
-  return flown_mission_round("{model: 'builtin:teapot', longest_side: 20.0, ground: true}",
-                             "-14, -11", "14, 11, 13") +
+inline std::string flight_mission(const std::string& more = "") {
+  return flight_mission_around("{model: 'builtin:teapot', longest_side: 20.0, ground: true}",
+                               "-14, -11", "14, 11, 13") +
          more;
 }
 

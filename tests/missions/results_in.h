@@ -18,7 +18,7 @@ inline std::map<std::string, std::string> results_in(const std::filesystem::path
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
     if (std::ranges::find(varying, name) != varying.end()) continue;
-    results[name] = entry.is_directory() ? "folder" : content_of(entry.path());
+    results[name] = entry.is_directory() ? "folder" : read_content(entry.path());
   }
   return results;
 }

@@ -41,7 +41,7 @@ class TestFolder {
   testing_support::TemporaryFolder folder_;
 };
 
-inline std::string content_of(const std::filesystem::path& file) {
+inline std::string read_content(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream content;
   content << stream.rdbuf();

@@ -42,10 +42,10 @@ inline geometry::Mesh sphere(const Eigen::Vector3d& centre, double radius, int s
   for (int split = 0; split < splits; ++split) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [place, is_new] =
+      const auto [entry, is_new] =
           middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
       if (is_new) mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]).normalized());
-      return place->second;
+      return entry->second;
     };
     std::vector<std::array<std::uint32_t, 3>> finer;
     for (const auto& [a, b, c] : mesh.triangles) {

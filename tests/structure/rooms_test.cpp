@@ -23,12 +23,12 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// The rows, each with all that it may use; "geometry" and its rooms are open to every room.
-Rooms house() {
+Modules architecture() {
   const std::vector<std::string> geometry = {
       "geometry",          "geometry/place", "geometry/points", "geometry/directions",
       "geometry/surfaces", "geometry/io",    "geometry/io/las", "geometry/io/e57",
       "geometry/io/text"};
-  Rooms rooms = {
+  Modules modules = {
       {"geometry", {}},
       {"geometry/place", {"geometry"}},
       {"geometry/points", {"geometry", "geometry/place"}},
@@ -41,9 +41,9 @@ Rooms house() {
         "geometry/io/text"}},
       {"geometry/io/las", {"geometry", "geometry/io"}},
   };
-  const auto add = [&](const std::string& room, std::vector<std::string> others) {
+  const auto add = [&](const std::string& module_name, std::vector<std::string> others) {
     others.insert(others.end(), geometry.begin(), geometry.end());
-    rooms[room] = std::move(others);
+    modules[module_name] = std::move(others);
   };
   add("sim/scene", {});
   add("sim/models/masonry", {"sim/scene"});
@@ -79,9 +79,9 @@ Rooms house() {
       {"flight/space", "flight/motion", "flight/autopilot", "flight/paths", "flight/way_home",
        "flight/route", "flight/export", "flight/interpreter", "flight/fly_test", "flight/fleet"});
 
-  std::map<std::string, std::vector<std::string>> rooms_of;  // of each library below missions/
-  for (const auto& [room, others] : rooms) {
-    rooms_of[room.substr(0, room.find('/'))].push_back(room);
+  std::map<std::string, std::vector<std::string>> modules_in;  // of each library below missions/
+  for (const auto& [module_name, others] : modules) {
+    modules_in[module_name.substr(0, module_name.find('/'))].push_back(module_name);
   }
   // A library of missions/ by its folders, each of which may use those before it; the libraries
   // outside of missions/ that it uses besides geometry; and those of missions/ below it.
@@ -90,18 +90,18 @@ Rooms house() {
                                const std::vector<std::string>& inside) {
     std::vector<std::string> all{"missions"};  // version.h alone
     for (const std::string& library : outside) {
-      all.insert(all.end(), rooms_of[library].begin(), rooms_of[library].end());
+      all.insert(all.end(), modules_in[library].begin(), modules_in[library].end());
     }
     for (const std::string& library : inside) {
-      const auto& own = rooms_of["missions/" + library];
+      const auto& own = modules_in["missions/" + library];
       all.insert(all.end(), own.begin(), own.end());
     }
     const std::string name = folders.front().substr(0, folders.front().find('/'));
     for (const std::string& folder : folders) {
-      const std::string room = "missions/" + folder;
-      add(room, all);
-      all.push_back(room);
-      rooms_of["missions/" + name].push_back(room);
+      const std::string module_name = "missions/" + folder;
+      add(module_name, all);
+      all.push_back(module_name);
+      modules_in["missions/" + name].push_back(module_name);
     }
   };
   add_library({"support"}, {"geometry"}, {});
@@ -138,7 +138,7 @@ Rooms house() {
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/api"});
-  return rooms;
+  return modules;
 }
 
 std::vector<SourceFile> product() {
@@ -152,13 +152,13 @@ std::vector<SourceFile> all_sources() {
                                           "missions", "python", "library", "clients", "tests"});
 }
 
-TEST(Rooms, AreEnteredInOneDirectionOnly) {
-  EXPECT_THAT(forbidden_includes(product(), house()), IsEmpty());
-  EXPECT_THAT(circular_rooms(house()), IsEmpty());
+TEST(Modules, AreEnteredInOneDirectionOnly) {
+  EXPECT_THAT(forbidden_includes(product(), architecture()), IsEmpty());
+  EXPECT_THAT(circular_modules(architecture()), IsEmpty());
   EXPECT_THAT(circular_headers(product()), IsEmpty());
 }
 
-TEST(Rooms, KeepHeavyHeadersInSources) {
+TEST(Modules, KeepHeavyHeadersInSources) {
   EXPECT_THAT(heavy_headers(product(), {"CGAL/", "pcl/", "mrpt/", "ompl/", "embree3/", "gdal",
                                         "ogr", "cpl_", "ceres/", "nlopt"}),
               IsEmpty());
@@ -169,7 +169,7 @@ TEST(Sources, DrawInAStatedOrder) {
 }
 
 /// A mesh is the truth; points measured of it are not.
-TEST(Rooms, HideTheTruthFromPlanners) {
+TEST(Modules, HideTheTruthFromPlanners) {
   for (const SourceFile& source : testing_support::not_empty(product())) {
     if (!source.path.starts_with("survey/")) continue;
     EXPECT_THAT(source.own, testing::Not(testing::Contains(HasSubstr("surfaces/mesh"))))
@@ -188,7 +188,7 @@ class PlantedFault : public testing::Test {
   std::vector<SourceFile> sources() const { return read_sources(folder_.path(), {"house"}); }
   std::filesystem::path root() const { return folder_.path(); }
 
-  const Rooms rooms_ = {{"house/lower", {}}, {"house/upper", {"house/lower"}}};
+  const Modules modules_ = {{"house/lower", {}}, {"house/upper", {"house/lower"}}};
 
  private:
   testing_support::TemporaryFolder folder_;
@@ -197,22 +197,22 @@ class PlantedFault : public testing::Test {
 TEST_F(PlantedFault, AnIncludeAgainstTheDirectionIsFound) {
   write("house/upper/roof.h", "#include \"house/lower/floor.h\"\n");
   write("house/lower/floor.h", "");
-  EXPECT_THAT(forbidden_includes(sources(), rooms_), IsEmpty());
+  EXPECT_THAT(forbidden_includes(sources(), modules_), IsEmpty());
   write("house/lower/floor.cpp", "#include \"house/upper/roof.h\"\n");
-  EXPECT_THAT(forbidden_includes(sources(), rooms_),
+  EXPECT_THAT(forbidden_includes(sources(), modules_),
               ElementsAre("house/lower/floor.cpp: house/lower may not use house/upper/roof.h"));
 }
 
 TEST_F(PlantedFault, AFileWithoutARoomIsFound) {
   write("house/shed/tool.h", "");
-  EXPECT_THAT(forbidden_includes(sources(), rooms_), ElementsAre(HasSubstr("in no room")));
+  EXPECT_THAT(forbidden_includes(sources(), modules_), ElementsAre(HasSubstr("in no room")));
 }
 
 TEST_F(PlantedFault, CirclesAreFound) {
   write("house/lower/egg.h", "#include \"house/lower/hen.h\"\n");
   write("house/lower/hen.h", "#include \"house/lower/egg.h\"\n");
   EXPECT_THAT(circular_headers(sources()), ElementsAre("house/lower/egg.h", "house/lower/hen.h"));
-  EXPECT_THAT(circular_rooms({{"a", {"b"}}, {"b", {"c"}}, {"c", {"a"}}}),
+  EXPECT_THAT(circular_modules({{"a", {"b"}}, {"b", {"c"}}, {"c", {"a"}}}),
               ElementsAre("a", "b", "c"));
 }
 

@@ -11,18 +11,18 @@
 namespace skycap::structure {
 namespace {
 
-std::string text_of(const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::size_t line_at(const std::string& text, std::size_t place) {
-  return 1 + static_cast<std::size_t>(
-                 std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
+std::size_t line_at(const std::string& text, std::size_t offset) {
+  return 1 + static_cast<std::size_t>(std::count(
+                 text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
 }
 
 /// Where a comment or quoted text that begins at `i` ends; `i` if none does.
-std::size_t end_of_words(const std::string& text, std::size_t i) {
+std::size_t find_words_end(const std::string& text, std::size_t i) {
   const auto after = [&](std::string_view mark, std::size_t from) {
     const std::size_t found = text.find(mark, from);
     return found == std::string::npos ? text.size() : found + mark.size();
@@ -83,10 +83,10 @@ bool draws(const std::string& argument) {
 
 }  // namespace
 
-std::string code_of(const std::string& text) {
+std::string strip_comments(const std::string& text) {
   std::string code = text;
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t end = end_of_words(text, i);
+    const std::size_t end = find_words_end(text, i);
     for (std::size_t k = i; k < end; ++k) {
       if (code[k] != '\n') code[k] = ' ';
     }
@@ -99,7 +99,7 @@ std::vector<std::string> unordered_draws(const std::filesystem::path& root,
                                          const std::vector<SourceFile>& sources) {
   std::vector<std::string> found;
   for (const SourceFile& source : sources) {
-    const std::string code = code_of(text_of(root / source.path));
+    const std::string code = strip_comments(read_text(root / source.path));
     for (const Arguments& list : argument_lists(code)) {
       if (std::ranges::count_if(list.texts, draws) < 2) continue;
       found.push_back(source.path + ":" + std::to_string(line_at(code, list.begin)));

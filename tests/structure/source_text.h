@@ -10,7 +10,7 @@
 namespace skycap::structure {
 
 /// The text with spaces for comments, directives and what stands in quotes; lines stay.
-std::string code_of(const std::string& text);
+std::string strip_comments(const std::string& text);
 
 /// One line for each call whose arguments hold two draws of random numbers: compilers take
 /// arguments of a call in any order, those within braces from left to right.

@@ -72,17 +72,18 @@ std::vector<SourceFile> read_sources(const fs::path& root,
 }
 
 std::vector<std::string> forbidden_includes(const std::vector<SourceFile>& sources,
-                                            const Rooms& rooms) {
+                                            const Modules& modules) {
   std::vector<std::string> forbidden;
   for (const SourceFile& source : sources) {
-    const auto row = rooms.find(source.room());
-    if (row == rooms.end()) {
+    const auto row = modules.find(source.module_name());
+    if (row == modules.end()) {
       forbidden.push_back(source.path + " stands in no room of the table");
       continue;
     }
     for (const std::string& include : source.own) {
-      const std::string room = fs::path(include).parent_path().string();
-      if (room != row->first && std::ranges::find(row->second, room) == row->second.end()) {
+      const std::string module_name = fs::path(include).parent_path().string();
+      if (module_name != row->first &&
+          std::ranges::find(row->second, module_name) == row->second.end()) {
         forbidden.push_back(source.path + ": " + row->first + " may not use " + include);
       }
     }
@@ -90,7 +91,9 @@ std::vector<std::string> forbidden_includes(const std::vector<SourceFile>& sourc
   return forbidden;
 }
 
-std::vector<std::string> circular_rooms(const Rooms& rooms) { return nodes_on_circles(rooms); }
+std::vector<std::string> circular_modules(const Modules& modules) {
+  return nodes_on_circles(modules);
+}
 
 std::vector<std::string> circular_headers(const std::vector<SourceFile>& sources) {
   Graph graph;

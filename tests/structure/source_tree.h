@@ -16,7 +16,7 @@ struct SourceFile {
 
   bool is_header() const { return path.ends_with(".h"); }
   /// The folder it stands in, such as "flight/route".
-  std::string room() const { return std::filesystem::path(path).parent_path().string(); }
+  std::string module_name() const { return std::filesystem::path(path).parent_path().string(); }
 };
 
 /// All .h and .cpp files below `folders` of `root`, by path.
@@ -24,14 +24,15 @@ std::vector<SourceFile> read_sources(const std::filesystem::path& root,
                                      const std::vector<std::string>& folders);
 
 /// Which rooms a room may include beside itself.
-using Rooms = std::map<std::string, std::vector<std::string>>;
+using Modules = std::map<std::string, std::vector<std::string>>;
 
-/// One line for each include that `rooms` does not allow, and for each file in no room.
+/// One line for each include that `modules` does not allow, and for each file in no room.
 std::vector<std::string> forbidden_includes(const std::vector<SourceFile>& sources,
-                                            const Rooms& rooms);
+                                            const Modules& modules);
 
-/// Rooms that can be reached from themselves by the rows of `rooms`: none, if all ways go one way.
-std::vector<std::string> circular_rooms(const Rooms& rooms);
+/// Rooms that can be reached from themselves by the rows of `modules`: none, if all ways go one
+/// way.
+std::vector<std::string> circular_modules(const Modules& modules);
 
 /// Headers that include themselves by way of others.
 std::vector<std::string> circular_headers(const std::vector<SourceFile>& sources);

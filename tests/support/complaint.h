@@ -9,7 +9,7 @@ namespace skycap::testing_support {
 
 /// The message of the Error that the action throws; empty if it throws none.
 template <typename Action>
-std::string complaint_of(const Action& action) {
+std::string thrown_message(const Action& action) {
   try {
     action();
   } catch (const Error& error) {

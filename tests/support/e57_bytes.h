@@ -37,7 +37,7 @@ inline std::string e57_pages(std::string content) {
 }
 
 /// Without the checksums.
-inline std::string e57_content_of(std::string_view pages) {
+inline std::string extract_e57_content(std::string_view pages) {
   std::string content;
   for (std::size_t begin = 0; begin < pages.size(); begin += e57_page) {
     content += pages.substr(begin, e57_content);
@@ -71,7 +71,7 @@ struct E57Stream {
   }
 };
 
-inline unsigned bits_of_interval(std::int64_t minimum, std::int64_t maximum) {
+inline unsigned count_interval_bits(std::int64_t minimum, std::int64_t maximum) {
   unsigned bits = 0;
   auto span = static_cast<std::uint64_t>(maximum) - static_cast<std::uint64_t>(minimum);
   for (; span != 0; span >>= 1) ++bits;
@@ -87,7 +87,7 @@ inline E57Stream e57_integers(const std::string& name, std::int64_t minimum, std
                    {}};
   for (const std::int64_t value : values) {
     stream.add(static_cast<std::uint64_t>(value) - static_cast<std::uint64_t>(minimum),
-               bits_of_interval(minimum, maximum));
+               count_interval_bits(minimum, maximum));
   }
   return stream;
 }
@@ -121,7 +121,7 @@ struct E57Scan {
 };
 
 /// Header of records and packets, from a logical place of the file on.
-inline std::string e57_section(const E57Scan& scan, std::uint64_t place) {
+inline std::string e57_section(const E57Scan& scan, std::uint64_t section_begin) {
   std::string packets;
   std::vector<std::string> columns;
   for (const E57Stream& stream : scan.streams) columns.push_back(stream.bytes());
@@ -146,7 +146,7 @@ inline std::string e57_section(const E57Scan& scan, std::uint64_t place) {
   }
   std::string section("\x01\0\0\0\0\0\0\0", 8);
   append_little_endian(section, std::uint64_t{32 + packets.size()});
-  append_little_endian(section, e57_physical(place + 32));
+  append_little_endian(section, e57_physical(section_begin + 32));
   append_little_endian(section, std::uint64_t{0});
   return section + packets;
 }
@@ -171,7 +171,7 @@ inline std::string e57_with_xml(std::string content, const std::string& xml) {
   return e57_pages(content);
 }
 
-inline std::string e57_of(const std::vector<E57Scan>& scans, const std::string& more = "") {
+inline std::string make_e57(const std::vector<E57Scan>& scans, const std::string& more = "") {
   std::string content(48, '\0');
   std::string xml =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" "
@@ -191,8 +191,8 @@ inline std::string e57_of(const std::vector<E57Scan>& scans, const std::string& 
 }
 
 /// One scan of doubles.
-inline std::string e57_of_points(const std::vector<std::array<double, 3>>& points,
-                                 const std::string& more = "") {
+inline std::string make_e57_from_points(const std::vector<std::array<double, 3>>& points,
+                                        const std::string& more = "") {
   E57Scan scan;
   const char* const names[] = {"cartesianX", "cartesianY", "cartesianZ"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -201,7 +201,7 @@ inline std::string e57_of_points(const std::vector<std::array<double, 3>>& point
     scan.streams.push_back(e57_doubles(names[axis], values));
   }
   scan.records = points.size();
-  return e57_of({scan}, more);
+  return make_e57({scan}, more);
 }
 
 }  // namespace skycap::testing_support

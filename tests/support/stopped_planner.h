@@ -10,14 +10,13 @@
 namespace skycap::tests {
 
 /// `scan` is the planner's first, and leaves something to look at.
-inline void expect_to_stop_in_the_middle_of_a_view(survey::Planner& planner,
-                                                   const geometry::Scan& scan) {
+inline void expect_stop_while_planning(survey::Planner& planner, const geometry::Scan& scan) {
   std::stop_source stop;
   planner.stop_on(stop.get_token());
   ASSERT_TRUE(planner.next_view(scan));
   stop.request_stop();
   EXPECT_THROW(planner.next_view(scan), survey::Interrupted);
-  EXPECT_GT(planner.release_cloud().size(), 0U);
+  EXPECT_GT(planner.take_cloud().size(), 0U);
 }
 
 }  // namespace skycap::tests

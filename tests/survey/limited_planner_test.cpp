@@ -32,18 +32,18 @@ class ListPlanner final : public Planner {
     step_ = {.points_new = scan.points.size()};
     return next();
   }
-  std::optional<View> next_view_instead() override {
+  std::optional<View> next_alternative_view() override {
     step_ = {};
     return next();
   }
   void pass(const geometry::ScanSpan& scan) override { passed_ += scan.points.size(); }
-  void keep_to(PlaceCheck may_be_at) override { may_be_at_ = std::move(may_be_at); }
+  void keep_to(PositionCheck may_be_at) override { may_be_at_ = std::move(may_be_at); }
   const geometry::PointCloud& cloud() const override { return cloud_; }
-  geometry::PointCloud release_cloud() override { return std::move(cloud_); }
+  geometry::PointCloud take_cloud() override { return std::move(cloud_); }
   const PlanningStep& last_step() const override { return step_; }
 
   std::size_t passed() const { return passed_; }
-  bool may_be_at(const Eigen::Vector3d& place) const { return may_be_at_(place); }
+  bool may_be_at(const Eigen::Vector3d& position) const { return may_be_at_(position); }
 
  private:
   std::optional<View> next() {
@@ -53,13 +53,13 @@ class ListPlanner final : public Planner {
 
   std::vector<View> views_;
   std::size_t proposed_ = 0, passed_ = 0;
-  PlaceCheck may_be_at_;
+  PositionCheck may_be_at_;
   geometry::PointCloud cloud_;
   PlanningStep step_;
 };
 
 /// Heights are limited in all tests but those of the stand-off.
-const ViewLimits two_to_four{.least_height = 2.0, .most_height = 4.0};
+const ViewLimits two_to_four{.min_height = 2.0, .max_height = 4.0};
 
 std::unique_ptr<ListPlanner> planner_at_heights(const std::vector<double>& heights) {
   std::vector<View> views;
@@ -69,11 +69,11 @@ std::unique_ptr<ListPlanner> planner_at_heights(const std::vector<double>& heigh
   return std::make_unique<ListPlanner>(std::move(views));
 }
 
-Scan scan_of(const std::vector<Vector3f>& points) {
+Scan make_scan(const std::vector<Vector3f>& points) {
   return {.world_from_sensor = geometry::camera_pose(view_at(0, 3)), .points = points};
 }
 
-const Scan scan = scan_of({{0, 0, 0}, {0, 0, 1}});
+const Scan scan = make_scan({{0, 0, 0}, {0, 0, 1}});
 
 TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimits) {
   LimitedPlanner planner(planner_at_heights({1, 3, 5, 9, 2, 4, 6}), two_to_four);
@@ -88,17 +88,17 @@ TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimits) {
 TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimitsInPlaceOfOthers) {
   LimitedPlanner planner(planner_at_heights({3, 5, 1, 2, 6}), two_to_four);
   EXPECT_EQ(planner.next_view(scan)->position.z(), 3.0);
-  EXPECT_EQ(planner.next_view_instead()->position.z(), 2.0);
-  EXPECT_FALSE(planner.next_view_instead());
+  EXPECT_EQ(planner.next_alternative_view()->position.z(), 2.0);
+  EXPECT_FALSE(planner.next_alternative_view());
 }
 
 // What a scan shows counts from the scan on; what was measured before counts as well.
 TEST(LimitedPlanner, KeepsTheStandOffFromAllThatWasMeasured) {
   auto list = std::make_unique<ListPlanner>(std::vector<View>{
       view_at(2.9, 0), view_at(3.1, 0), view_at(3.1, 0), view_at(-0.9, 0), view_at(-1.1, 0)});
-  LimitedPlanner planner(std::move(list), {.stand_off = 1.0});
-  EXPECT_EQ(planner.next_view(scan_of({{2, 0, 0}}))->position.x(), 3.1);
-  EXPECT_EQ(planner.next_view(scan_of({{4, 0, 0}, {0, 0, 0}}))->position.x(), -1.1);
+  LimitedPlanner planner(std::move(list), {.min_standoff = 1.0});
+  EXPECT_EQ(planner.next_view(make_scan({{2, 0, 0}}))->position.x(), 3.1);
+  EXPECT_EQ(planner.next_view(make_scan({{4, 0, 0}, {0, 0, 0}}))->position.x(), -1.1);
   EXPECT_FALSE(planner.allows(view_at(2.9, 0)));
   EXPECT_TRUE(planner.allows(view_at(-1.1, 0)));
 }
@@ -106,7 +106,7 @@ TEST(LimitedPlanner, KeepsTheStandOffFromAllThatWasMeasured) {
 TEST(LimitedPlanner, SaysThatThereIsNowhereToGoWhenAllViewsAreRefused) {
   LimitedPlanner planner(planner_at_heights({1, 5, 3}), two_to_four);
   ASSERT_TRUE(planner.next_view(scan));
-  EXPECT_FALSE(planner.next_view_instead());
+  EXPECT_FALSE(planner.next_alternative_view());
   EXPECT_EQ(planner.stop_reason(), StopReason::nowhere_to_go);
   // Nothing was wanted any more, so that nothing was refused either.
   EXPECT_FALSE(planner.next_view(scan));
@@ -117,8 +117,8 @@ TEST(LimitedPlanner, EndsASurveyForWhatItsLimitsRefuse) {
   const auto sense = [](const View& view, const Scan&) {
     return Scan{.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}}};
   };
-  LimitedPlanner refused(planner_at_heights({3, 5, 1}), two_to_four);
-  const SurveyResult result = run_survey(refused, view_at(0, 3), {}, {.sense = sense});
+  LimitedPlanner rejected(planner_at_heights({3, 5, 1}), two_to_four);
+  const SurveyResult result = run_survey(rejected, view_at(0, 3), {}, {.sense = sense});
   EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);
   EXPECT_EQ(result.views.size(), 2U);
   LimitedPlanner done(planner_at_heights({5, 3}), two_to_four);
@@ -132,9 +132,9 @@ TEST(LimitedPlanner, LeavesOutWhatItsLimitsRefuseOfAnOpening) {
     return Scan{.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}}};
   };
   LimitedPlanner planner(planner_at_heights({}), two_to_four);
-  const SurveyResult result =
-      run_survey(planner, view_at(0, 3), {},
-                 {.opening = {view_at(1, 5), view_at(2, 4), view_at(3, 1)}, .sense = sense});
+  const SurveyResult result = run_survey(
+      planner, view_at(0, 3), {},
+      {.initial_pattern = {view_at(1, 5), view_at(2, 4), view_at(3, 1)}, .sense = sense});
   ASSERT_EQ(result.views.size(), 2U);
   EXPECT_LT((result.views[1].view.position - view_at(2, 4).position).norm(), 1e-12);
 }
@@ -144,7 +144,7 @@ TEST(LimitedPlanner, KeepsTheStepOfTheScan) {
   LimitedPlanner planner(planner_at_heights({1, 5, 3, 2}), two_to_four);
   ASSERT_TRUE(planner.next_view(scan));
   EXPECT_EQ(planner.last_step().points_new, 2U);
-  ASSERT_TRUE(planner.next_view_instead());
+  ASSERT_TRUE(planner.next_alternative_view());
   EXPECT_EQ(planner.last_step().points_new, 2U);
 }
 
@@ -164,10 +164,10 @@ TEST(LimitedPlanner, HandsOnWhatThePlannerIsTold) {
   planner.pass(scan);
   EXPECT_EQ(inside.passed(), 2U);
   EXPECT_EQ(planner.cloud().size(), 2U);
-  planner.keep_to([](const Eigen::Vector3d& place) { return place.x() > 0.0; });
+  planner.keep_to([](const Eigen::Vector3d& position) { return position.x() > 0.0; });
   EXPECT_TRUE(inside.may_be_at({1, 0, 0}));
   EXPECT_FALSE(inside.may_be_at({-1, 0, 0}));
-  EXPECT_EQ(planner.release_cloud().size(), 2U);
+  EXPECT_EQ(planner.take_cloud().size(), 2U);
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ class WalkingPlanner final : public Planner {
     cloud_.positions.insert(cloud_.positions.end(), scan.points.begin(), scan.points.end());
     return walk_on();
   }
-  std::optional<View> next_view_instead() override { return walk_on(); }
+  std::optional<View> next_alternative_view() override { return walk_on(); }
   const geometry::PointCloud& cloud() const override { return cloud_; }
-  geometry::PointCloud release_cloud() override { return std::move(cloud_); }
+  geometry::PointCloud take_cloud() override { return std::move(cloud_); }
   const PlanningStep& last_step() const override { return step_; }
 
  private:
@@ -48,7 +48,7 @@ Scan sense(const View& view, const Scan& = {}) {
   return {.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}, {1, 1, 1}}};
 }
 
-std::vector<double> places(const SurveyResult& result) {
+std::vector<double> positions(const SurveyResult& result) {
   std::vector<double> x;
   for (const SurveyedView& view : result.views) x.push_back(view.view.position.x());
   return x;
@@ -58,7 +58,7 @@ TEST(SurveyLoop, GoesOnUntilThePlannerIsDone) {
   WalkingPlanner planner(3);
   const SurveyResult result = run_survey(planner, start, {}, {.sense = sense});
   EXPECT_EQ(result.stop_reason, StopReason::complete);
-  EXPECT_THAT(places(result), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(positions(result), ElementsAre(0, 1, 2, 3));
   EXPECT_EQ(result.views.back().points, 8U);
   EXPECT_EQ(result.views.back().returns, 2U);
 }
@@ -79,17 +79,17 @@ TEST(SurveyLoop, StopsAtItsLimits) {
   WalkingPlanner second(100);
   const SurveyResult result = run_survey(second, start, {.max_distance = 2.5}, {.sense = sense});
   EXPECT_EQ(result.stop_reason, StopReason::distance_limit);
-  EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
+  EXPECT_THAT(positions(result), ElementsAre(0, 1, 2));
 }
 
 TEST(SurveyLoop, AsksForAnotherViewWhenOneCannotBeReached) {
   WalkingPlanner planner(4);
-  const auto odd_places_only = [](const Vector3d&, const View& to) {
+  const auto odd_positions_only = [](const Vector3d&, const View& to) {
     return static_cast<int>(to.position.x()) % 2 == 1;
   };
   const SurveyResult result =
-      run_survey(planner, start, {}, {.sense = sense, .can_reach = odd_places_only});
-  EXPECT_THAT(places(result), ElementsAre(0, 1, 3));
+      run_survey(planner, start, {}, {.sense = sense, .can_reach = odd_positions_only});
+  EXPECT_THAT(positions(result), ElementsAre(0, 1, 3));
   EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);  // 4 was wanted, and refused
 }
 
@@ -98,12 +98,13 @@ TEST(SurveyLoop, TakesTheOpeningBeforeThePlannersViews) {
   WalkingPlanner planner(4);
   const auto view_at = [](double x) { return View{{x, 0, 0}, {1, 0, 0}}; };
   const auto not_at_eleven = [](const Vector3d&, const View& to) { return to.position.x() != 11; };
-  const SurveyResult result = run_survey(planner, start, {},
-                                         {.opening = {view_at(10), view_at(11), view_at(12)},
-                                          .sense = sense,
-                                          .can_reach = not_at_eleven});
+  const SurveyResult result =
+      run_survey(planner, start, {},
+                 {.initial_pattern = {view_at(10), view_at(11), view_at(12)},
+                  .sense = sense,
+                  .can_reach = not_at_eleven});
   // The planner was asked after each scan of the opening, and proposed 1 and 2 in vain.
-  EXPECT_THAT(places(result), ElementsAre(0, 10, 12, 3, 4));
+  EXPECT_THAT(positions(result), ElementsAre(0, 10, 12, 3, 4));
   EXPECT_EQ(result.stop_reason, StopReason::complete);
 }
 
@@ -115,12 +116,12 @@ class SlowPlanner final : public Planner {
     step_.times = {{"think", 0.001}};
     return walk_on();
   }
-  std::optional<View> next_view_instead() override {
+  std::optional<View> next_alternative_view() override {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return walk_on();
   }
   const geometry::PointCloud& cloud() const override { return cloud_; }
-  geometry::PointCloud release_cloud() override { return std::move(cloud_); }
+  geometry::PointCloud take_cloud() override { return std::move(cloud_); }
   const PlanningStep& last_step() const override { return step_; }
 
  private:
@@ -136,9 +137,9 @@ class SlowPlanner final : public Planner {
 TEST(SurveyLoop, SplitsThePlanningTimeWithoutRemainder) {
   const auto far_only = [](const Vector3d&, const View& to) { return to.position.x() >= 3; };
   SlowPlanner planner;
-  SurveySteps steps(planner, {}, {.can_reach = far_only});
-  ASSERT_TRUE(steps.take_in(sense(start)));
-  ASSERT_TRUE(steps.refuse());
+  SurveyStepper steps(planner, {}, {.can_reach = far_only});
+  ASSERT_TRUE(steps.add_scan(sense(start)));
+  ASSERT_TRUE(steps.reject());
   const SurveyedView& taken = steps.views().back();
   double sum = 0.0;
   std::vector<std::string> parts;
@@ -164,7 +165,7 @@ TEST(SurveyLoop, StopsBetweenViewsWhenAsked) {
                                               }},
                                          stop.get_token());
   EXPECT_EQ(result.stop_reason, StopReason::interrupted);
-  EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
+  EXPECT_THAT(positions(result), ElementsAre(0, 1, 2));
 }
 
 /// Is told to stop while it plans from its third scan.
@@ -176,10 +177,10 @@ class StoppedPlanner final : public Planner {
     if (stop_.stop_requested()) throw Interrupted();
     return next;
   }
-  std::optional<View> next_view_instead() override { return walking_.next_view_instead(); }
+  std::optional<View> next_alternative_view() override { return walking_.next_alternative_view(); }
   void stop_on(const std::stop_token& stop) override { stop_ = stop; }
   const geometry::PointCloud& cloud() const override { return walking_.cloud(); }
-  geometry::PointCloud release_cloud() override { return walking_.release_cloud(); }
+  geometry::PointCloud take_cloud() override { return walking_.take_cloud(); }
   const PlanningStep& last_step() const override { return walking_.last_step(); }
 
   std::stop_source source;
@@ -195,14 +196,14 @@ TEST(SurveyLoop, StopsWhileThePlannerLooksForAView) {
   const SurveyResult result =
       run_survey(planner, start, {}, {.sense = sense}, planner.source.get_token());
   EXPECT_EQ(result.stop_reason, StopReason::interrupted);
-  EXPECT_THAT(places(result), ElementsAre(0, 1));
+  EXPECT_THAT(positions(result), ElementsAre(0, 1));
 }
 
 // Once there is a view to come back with, other views are not asked for to the end.
 TEST(SurveyLoop, StopsWhileViewsAreRefused) {
   WalkingPlanner planner(1'000'000'000);
   std::stop_source source;
-  std::stop_token told;
+  std::stop_token reported;
   const auto near_only = [&](const Vector3d&, const View& to) {
     if (to.position.x() == 100.0) source.request_stop();
     return to.position.x() < 3.0;
@@ -211,11 +212,11 @@ TEST(SurveyLoop, StopsWhileViewsAreRefused) {
       run_survey(planner, start, {},
                  {.sense = sense,
                   .can_reach = near_only,
-                  .stop_on = [&](std::stop_token stop) { told = std::move(stop); }},
+                  .stop_on = [&](std::stop_token stop) { reported = std::move(stop); }},
                  source.get_token());
   EXPECT_EQ(result.stop_reason, StopReason::interrupted);
-  EXPECT_THAT(places(result), ElementsAre(0, 1));
-  EXPECT_TRUE(told.stop_requested());
+  EXPECT_THAT(positions(result), ElementsAre(0, 1));
+  EXPECT_TRUE(reported.stop_requested());
 }
 
 TEST(SurveyLoop, StopsWhenTheTimeIsUp) {
@@ -224,21 +225,21 @@ TEST(SurveyLoop, StopsWhenTheTimeIsUp) {
   const SurveyResult result = run_survey(
       planner, start, {.max_time = 5.5, .speed = 1.0, .time_per_view = 1.0}, {.sense = sense});
   EXPECT_EQ(result.stop_reason, StopReason::time_limit);
-  EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
+  EXPECT_THAT(positions(result), ElementsAre(0, 1, 2));
 }
 
 TEST(SurveyLoop, HandsEachScanBackForItsMemory) {
   WalkingPlanner planner(2);
-  std::vector<const void*> taken, given_back;
-  const auto recycling = [&](const View& view, Scan recycled) {
-    given_back.push_back(recycled.points.empty() ? nullptr : recycled.points.data());
-    recycled.world_from_sensor = geometry::camera_pose(view);
-    recycled.points.resize(2, Eigen::Vector3f::Zero());
-    taken.push_back(recycled.points.data());
-    return recycled;
+  std::vector<const void*> taken, returned;
+  const auto reusing_buffer = [&](const View& view, Scan buffer) {
+    returned.push_back(buffer.points.empty() ? nullptr : buffer.points.data());
+    buffer.world_from_sensor = geometry::camera_pose(view);
+    buffer.points.resize(2, Eigen::Vector3f::Zero());
+    taken.push_back(buffer.points.data());
+    return buffer;
   };
-  run_survey(planner, start, {}, {.sense = recycling});
-  EXPECT_THAT(given_back, ElementsAre(nullptr, taken[0], taken[1]));
+  run_survey(planner, start, {}, {.sense = reusing_buffer});
+  EXPECT_THAT(returned, ElementsAre(nullptr, taken[0], taken[1]));
 }
 
 // A real drone stops where the wind lets it; the pose it reports is what counts.

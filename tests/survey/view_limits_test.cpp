@@ -24,10 +24,10 @@ TEST(ViewLimits, WithoutLimitsEveryViewIsAllowed) {
 
 TEST(ViewLimits, HeightPitchFenceAndNoFlyVolumesEachForbid) {
   ViewLimits limits;
-  limits.least_height = 2.0;
-  limits.most_height = 50.0;
-  limits.least_pitch = -90 * degree;
-  limits.most_pitch = 30 * degree;
+  limits.min_height = 2.0;
+  limits.max_height = 50.0;
+  limits.min_pitch = -90 * degree;
+  limits.max_pitch = 30 * degree;
   limits.geofence = {{-100, -100}, {100, -100}, {100, 100}, {-100, 100}};
   limits.no_fly = {{"", {{10, 10}, {20, 10}, {20, 20}, {10, 20}}, 0, 30}};
   limits.validate();
@@ -46,10 +46,10 @@ TEST(ViewLimits, HeightPitchFenceAndNoFlyVolumesEachForbid) {
 // Property: whatever is returned is allowed, at the distance asked for, looking at the target.
 TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
   ViewLimits limits;
-  limits.least_height = 2.0;
-  limits.most_height = 30.0;
-  limits.least_pitch = -80 * degree;
-  limits.most_pitch = 20 * degree;
+  limits.min_height = 2.0;
+  limits.max_height = 30.0;
+  limits.min_pitch = -80 * degree;
+  limits.max_pitch = 20 * degree;
   std::mt19937_64 generator(3);
   std::normal_distribution<double> normal;
   int found = 0;
@@ -57,7 +57,7 @@ TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
     const Vector3d target{normal(generator), normal(generator), 5.0 + 10.0 * normal(generator)};
     const Vector3d towards =
         Vector3d{normal(generator), normal(generator), normal(generator)}.normalized();
-    const auto view = limits.view_of_target(target, towards, 20.0);
+    const auto view = limits.make_target_view(target, towards, 20.0);
     if (!view) continue;
     ++found;
     EXPECT_TRUE(limits.allow(*view));
@@ -69,19 +69,19 @@ TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
 
 TEST(ViewLimits, ALowViewIsRaisedAtItsAzimuthAndAFreeOneIsKept) {
   ViewLimits limits;
-  limits.least_height = 2.0;
-  const auto raised = limits.view_of_target({0, 0, 1}, Vector3d(1, 1, -1).normalized(), 10.0);
+  limits.min_height = 2.0;
+  const auto raised = limits.make_target_view({0, 0, 1}, Vector3d(1, 1, -1).normalized(), 10.0);
   ASSERT_TRUE(raised);
   EXPECT_NEAR(raised->position.z(), 2.0, 1e-4);  // the margin is a millionth of the distance
   EXPECT_NEAR(raised->position.x(), raised->position.y(), 1e-9);
   EXPECT_GT(raised->position.x(), 0.0);
-  const auto kept = limits.view_of_target({0, 0, 1}, Vector3d(0, 0, 1), 10.0);
+  const auto kept = limits.make_target_view({0, 0, 1}, Vector3d(0, 0, 1), 10.0);
   ASSERT_TRUE(kept);
   EXPECT_TRUE(kept->position.isApprox(Vector3d(0, 0, 11)));
 }
 
-TEST(ViewLimits, SaysWhichFieldIsWrong) {
-  const auto message_of = [](const ViewLimits& limits) -> std::string {
+TEST(ViewLimits, ReportsTheInvalidField) {
+  const auto validation_error = [](const ViewLimits& limits) -> std::string {
     try {
       limits.validate();
     } catch (const Error& error) {
@@ -90,11 +90,12 @@ TEST(ViewLimits, SaysWhichFieldIsWrong) {
     }
     return "accepted";
   };
-  EXPECT_THAT(message_of({.stand_off = -1.0}), HasSubstr("stand_off"));
-  EXPECT_THAT(message_of({.least_height = 3.0, .most_height = 2.0}), HasSubstr("least_height"));
-  EXPECT_THAT(message_of({.geofence = {{0, 0}, {1, 0}}}), HasSubstr("geofence"));
-  EXPECT_THAT(message_of({.no_fly = {{"", {{0, 0}, {1, 0}, {1, 1}}, 1, 0}}}), HasSubstr("no_fly"));
-  EXPECT_THAT(message_of({.least_pitch = 1.0, .most_pitch = 0.0}), HasSubstr("pitch"));
+  EXPECT_THAT(validation_error({.min_standoff = -1.0}), HasSubstr("stand_off"));
+  EXPECT_THAT(validation_error({.min_height = 3.0, .max_height = 2.0}), HasSubstr("least_height"));
+  EXPECT_THAT(validation_error({.geofence = {{0, 0}, {1, 0}}}), HasSubstr("geofence"));
+  EXPECT_THAT(validation_error({.no_fly = {{"", {{0, 0}, {1, 0}, {1, 1}}, 1, 0}}}),
+              HasSubstr("no_fly"));
+  EXPECT_THAT(validation_error({.min_pitch = 1.0, .max_pitch = 0.0}), HasSubstr("pitch"));
 }
 
 }  // namespace

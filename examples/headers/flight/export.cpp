@@ -7,7 +7,7 @@
 const Example export_example("flight/export", [] {
   const skycap::flight::FlightPlan plan = tower_plan(tower_space());
   const auto geojson = skycap::flight::format_named("geojson");
-  const auto places = places_of(write(plan, geojson), geojson, plan.site, plan.pad);
-  return !places.empty() &&
-         (places.front() - plan.waypoints.front().position).norm() < skycap::flight::rounding_bound;
+  const auto positions = read_positions(write(plan, geojson), geojson, plan.site, plan.pad);
+  return !positions.empty() && (positions.front() - plan.waypoints.front().position).norm() <
+                                   skycap::flight::rounding_bound;
 });

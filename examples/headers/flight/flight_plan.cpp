@@ -11,7 +11,7 @@ const Example flight_plan_example("flight/flight_plan", [] {
   const skycap::flight::Route route = tower_route(space);
   const skycap::flight::Site site{.origin = {51.7534, -1.2540, 110.0}, .geoid_undulation = 47.0};
   const skycap::flight::FlightPlan plan = flight_plan(route, 0, "tower", site);
-  const auto shots =
-      std::ranges::count_if(plan.waypoints, [](const auto& w) { return w.shots > 0; });
-  return shots == 2 && flight_time(plan) > route.length / plan.vehicle.max_speed;
+  const auto captures =
+      std::ranges::count_if(plan.waypoints, [](const auto& w) { return w.captures > 0; });
+  return captures == 2 && flight_time(plan) > route.length / plan.vehicle.max_speed;
 });

@@ -8,7 +8,7 @@
 const Example geodesy_example("flight/geodesy", [] {
   const skycap::flight::LocalFrame frame(
       {.latitude_deg = 51.7534, .longitude_deg = -1.2540, .height = 110.0});
-  const auto place = frame.to_geodetic({100.0, 0.0, 20.0});  // 100 m east, 20 m up
-  return place.longitude_deg > -1.2540 && std::abs(place.height - 130.0) < 0.01 &&
-         frame.to_local(place).isApprox(Eigen::Vector3d(100.0, 0.0, 20.0), 1e-8);
+  const auto geodetic = frame.to_geodetic({100.0, 0.0, 20.0});  // 100 m east, 20 m up
+  return geodetic.longitude_deg > -1.2540 && std::abs(geodetic.height - 130.0) < 0.01 &&
+         frame.to_local(geodetic).isApprox(Eigen::Vector3d(100.0, 0.0, 20.0), 1e-8);
 });

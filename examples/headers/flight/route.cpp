@@ -7,6 +7,6 @@
 const Example route_example("flight/route", [] {
   const skycap::flight::Route route = tower_route(tower_space());
   const double straight = 30.0;  // through the tower
-  return route.stations.size() == 2 && route.legs[0].length > straight &&
+  return route.capture_points.size() == 2 && route.legs[0].length > straight &&
          route.min_clearance >= route.clearance;
 });

@@ -11,8 +11,8 @@ const Example laser_scan_example("missions/laser_scan", [] {
       "orbit.yaml");
   skycap::missions::library::LaserScan scan(mission, {.sensor = "velodyne_vlp16"});
   std::size_t returns = 0;
-  for (auto piece = scan.next(); !piece.empty(); piece = scan.next()) {
-    for (const auto& part : piece) returns += part.size();
+  for (auto chunk = scan.next(); !chunk.empty(); chunk = scan.next()) {
+    for (const auto& part : chunk) returns += part.size();
   }
   return returns > 1000;
 });

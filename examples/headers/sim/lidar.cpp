@@ -14,7 +14,7 @@ const Example lidar_example("sim/lidar", [] {
   const skycap::sim::Trajectory still(
       {{.time = 0, .position = {0, 0, 10}}, {.time = 0.1, .position = {0, 0, 10}}});
   const auto returns =
-      lidar.measure(scene, {.flown = still, .believed = still}, {0, lidar.firings(still)});
+      lidar.measure(scene, {.ground_truth = still, .estimated = still}, {0, lidar.firings(still)});
   const Eigen::Vector3d first = returns.origin + returns.points.front().cast<double>();
   return returns.size() == lidar.firings(still) &&
          std::abs((first - Eigen::Vector3d(0, 0, 10)).norm() - 10 / std::sin(0.5)) < 1e-4;

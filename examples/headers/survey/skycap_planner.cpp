@@ -8,11 +8,11 @@
 const Example skycap_planner_example("survey/skycap_planner", [] {
   const skycap::sim::Scene scene(skycap::sim::builtin_model("teapot"));
   const skycap::sim::DepthCamera camera(skycap::sim::d435());
-  skycap::survey::skycap::SkycapPlanner planner({.coverage_radius = 0.05}, camera.camera());
+  skycap::survey::surfel::SurfelPlanner planner({.coverage_radius = 0.05}, camera.camera());
   auto view = skycap::geometry::look_at({6, 0, 3}, {0, 0, 1});
   const double none = planner.predicted_coverage();
   for (std::uint64_t frame = 0; frame < 3; ++frame) {
     view = planner.next_view(camera.scan(scene, view, frame)).value();
   }
-  return planner.predicted_coverage() > none && planner.belief().area > 0.0;
+  return planner.predicted_coverage() > none && planner.estimate().area > 0.0;
 });

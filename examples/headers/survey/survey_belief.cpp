@@ -5,14 +5,14 @@
 #include "example.h"
 
 // A wall of 3 m^2, half of it missing, and 1 m^2 behind it that nobody has seen.
-const Example survey_belief_example("survey/survey_belief", [] {
-  using skycap::survey::skycap::MissingReason;
-  skycap::survey::skycap::SurveyBelief belief;
-  belief.patches = {
+const Example survey_estimate_example("survey/survey_belief", [] {
+  using skycap::survey::surfel::MissingReason;
+  skycap::survey::surfel::SurveyEstimate estimate;
+  estimate.patches = {
       {{0, 0, 0}, {1, 0, 0}, 3.0F, 0.5F, MissingReason::seen_too_thinly},
       {{0, 5, 0}, {1, 0, 0}, 1.0F, 0.0F, MissingReason::never_seen},
   };
-  add_up(belief);
-  return belief.area == 4.0 && std::abs(belief.seen_too_thinly - 0.375) < 1e-12 &&
-         belief.never_seen == 0.25;
+  add_up(estimate);
+  return estimate.area == 4.0 && std::abs(estimate.seen_too_thinly - 0.375) < 1e-12 &&
+         estimate.never_seen == 0.25;
 });

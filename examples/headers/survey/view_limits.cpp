@@ -5,7 +5,7 @@
 // Inside of a fence and high enough; too low; outside.
 const Example view_limits_example("survey/view_limits", [] {
   skycap::survey::ViewLimits limits;
-  limits.least_height = 2.0;
+  limits.min_height = 2.0;
   limits.geofence = {{-30, -30}, {30, -30}, {30, 30}, {-30, 30}};
   limits.validate();
   return limits.allow(skycap::geometry::look_at({20, 0, 5}, {0, 0, 5})) &&

@@ -15,7 +15,7 @@ namespace {
 
 using std::string_view;
 
-constexpr std::size_t most_fields = 1000;  // maximum per record; typical files have about 20
+constexpr std::size_t max_fields = 1000;  // maximum per record; typical files have about 20
 
 /// Returns a part of a file's text on one line in quotes, for messages.
 std::string in_quotes(string_view text) {
@@ -35,7 +35,7 @@ string_view trimmed(string_view text) {
 
 /// Parses a number. Empty text is zero, as required by the standard.
 template <typename Number>
-Number number_of(string_view text, const std::string& what) {
+Number parse_number(string_view text, const std::string& what) {
   text = trimmed(text);
   if (text.empty()) return Number{};
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -43,14 +43,14 @@ Number number_of(string_view text, const std::string& what) {
   const char* const end = text.data() + text.size();
   const auto [stop, failure] = std::from_chars(text.data(), end, number);
   if (failure != std::errc() || stop != end) {
-    refuse("has the " + what + " " + in_quotes(text) + ", which is not a valid number");
+    throw_bad_file("has the " + what + " " + in_quotes(text) + ", which is not a valid number");
   }
   return number;
 }
 
 double finite_number(string_view text, const std::string& what) {
-  const auto number = number_of<double>(text, what);
-  if (!std::isfinite(number)) refuse("has a " + what + " that is not finite");
+  const auto number = parse_number<double>(text, what);
+  if (!std::isfinite(number)) throw_bad_file("has a " + what + " that is not finite");
   return number;
 }
 
@@ -58,7 +58,8 @@ template <typename Number>
 Number attribute_or(const pugi::xml_node& node, const char* name, Number otherwise) {
   const pugi::xml_attribute attribute = node.attribute(name);
   if (!attribute) return otherwise;
-  return number_of<Number>(attribute.value(), std::string(name) + " of " + in_quotes(node.name()));
+  return parse_number<Number>(attribute.value(),
+                              std::string(name) + " of " + in_quotes(node.name()));
 }
 
 /// Returns the number in a child of an element, or zero if it does not exist.
@@ -67,7 +68,7 @@ double child_number(const pugi::xml_node& node, const char* name) {
   return finite_number(child.text().get(), std::string(name) + " of a " + node.name());
 }
 
-Coding coding_of(const pugi::xml_node& node) {
+Coding read_coding(const pugi::xml_node& node) {
   const string_view type = node.attribute("type").value();
   if (type == "Integer") return Coding::integer;
   if (type == "ScaledInteger") return Coding::scaled_integer;
@@ -77,23 +78,24 @@ Coding coding_of(const pugi::xml_node& node) {
   if (type == "Float" && (precision.empty() || precision == "double")) {
     return Coding::double_precision;
   }
-  refuse("has records with a field " + in_quotes(node.name()) + " of type " + in_quotes(type) +
-         "; it must be Integer, ScaledInteger, Float (single or double) or String");
+  throw_bad_file("has records with a field " + in_quotes(node.name()) + " of type " +
+                 in_quotes(type) +
+                 "; it must be Integer, ScaledInteger, Float (single or double) or String");
 }
 
 Field parse_field(const pugi::xml_node& node) {
-  Field field{node.name(), coding_of(node)};
+  Field field{node.name(), read_coding(node)};
   if (field.coding != Coding::integer && field.coding != Coding::scaled_integer) return field;
   field.minimum = attribute_or(node, "minimum", field.minimum);
   field.maximum = attribute_or(node, "maximum", field.maximum);
   if (field.minimum > field.maximum) {
-    refuse("has a field " + in_quotes(field.name) + " whose minimum is above its maximum");
+    throw_bad_file("has a field " + in_quotes(field.name) + " whose minimum is above its maximum");
   }
   if (field.coding == Coding::integer) return field;
   field.scale = attribute_or(node, "scale", field.scale);
   field.offset = attribute_or(node, "offset", field.offset);
   if (!std::isfinite(field.scale) || !std::isfinite(field.offset)) {
-    refuse("has a field " + in_quotes(field.name) + " whose scale or offset is not finite");
+    throw_bad_file("has a field " + in_quotes(field.name) + " whose scale or offset is not finite");
   }
   return field;
 }
@@ -113,8 +115,9 @@ Eigen::Isometry3d parse_pose(const pugi::xml_node& pose) {
                                   child_number(rotation, "y"), child_number(rotation, "z"));
     constexpr double tolerance = 0.01;  // tolerance of rounded quaternions
     if (std::abs(turn.norm() - 1.0) > tolerance) {
-      refuse("has a scan whose rotation is a quaternion of length " + std::to_string(turn.norm()) +
-             "; it must be 1: save the scan again with a valid pose, or without one");
+      throw_bad_file("has a scan whose rotation is a quaternion of length " +
+                     std::to_string(turn.norm()) +
+                     "; it must be 1: save the scan again with a valid pose, or without one");
     }
     file_from_scan.linear() = turn.normalized().toRotationMatrix();
   }
@@ -142,8 +145,8 @@ ScanDescription parse_scan(const pugi::xml_node& node, const pugi::xml_node& poi
   for (const pugi::xml_node field : points.child("prototype").children()) {
     if (field.type() != pugi::node_element) continue;
     scan.fields.push_back(parse_field(field));
-    if (scan.fields.size() > most_fields) {
-      refuse("has records of more than " + std::to_string(most_fields) + " fields");
+    if (scan.fields.size() > max_fields) {
+      throw_bad_file("has records of more than " + std::to_string(max_fields) + " fields");
     }
   }
   const pugi::xml_node limits = node.child("colorLimits");
@@ -190,11 +193,11 @@ Description parse_description(std::string xml) {
   const pugi::xml_parse_result result = document.load_buffer_inplace(
       xml.data(), xml.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result) {
-    refuse("has XML that is damaged at its byte " + std::to_string(result.offset) + ": " +
-           result.description());
+    throw_bad_file("has XML that is damaged at its byte " + std::to_string(result.offset) + ": " +
+                   result.description());
   }
   const pugi::xml_node root = document.child("e57Root");
-  if (!root) refuse("has XML without the element e57Root");
+  if (!root) throw_bad_file("has XML without the element e57Root");
   Description description;
   description.reference_system = trimmed(root.child("coordinateMetadata").text().get());
   for (const pugi::xml_node node : root.child("data3D").children()) {

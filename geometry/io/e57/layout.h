@@ -16,13 +16,13 @@ inline constexpr std::size_t signature = 0, major = 8, minor = 12, file_size = 1
 /// Offsets in the header of a compressed vector section. Section offsets are physical.
 namespace section {
 inline constexpr std::size_t kind = 0, length = 8, data = 16, index = 24, size = 32;
-inline constexpr char of_records = 1;
+inline constexpr char compressed_vector = 1;
 }  // namespace section
 
 /// Offsets in a data packet. The stream lengths of two bytes each are followed by the streams. The
-/// packet size is a multiple of `least_size`.
+/// packet size is a multiple of `min_size`.
 namespace packet {
-inline constexpr std::size_t kind = 0, size_less_one = 2, streams = 4, lengths = 6, least_size = 4,
+inline constexpr std::size_t kind = 0, size_less_one = 2, streams = 4, lengths = 6, min_size = 4,
                              largest_size = 65536;
 inline constexpr std::uint8_t data = 1, empty = 2;  // packet types; 0 is an index packet
 }  // namespace packet

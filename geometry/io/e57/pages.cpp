@@ -21,32 +21,32 @@ std::uint32_t stored_checksum(std::string_view page) {
 
 }  // namespace
 
-void refuse(const std::string& sentence) { throw Error(ErrorKind::bad_file, sentence); }
+void throw_bad_file(const std::string& sentence) { throw Error(ErrorKind::bad_file, sentence); }
 
 FileHeader parse_file_header(std::string_view beginning, std::uint64_t file_size) {
   if (!beginning.starts_with("ASTM-E57") || beginning.size() < header::size) {
-    refuse("is not an E57 file: it does not begin with an E57 header");
+    throw_bad_file("is not an E57 file: it does not begin with an E57 header");
   }
   const auto major = value_at<std::uint32_t>(beginning.data(), header::major);
-  if (major != 1) refuse("is E57 of version " + std::to_string(major) + "; it must be 1");
-  const auto field = [&](std::size_t place) {
-    return value_at<std::uint64_t>(beginning.data(), place);
+  if (major != 1) throw_bad_file("is E57 of version " + std::to_string(major) + "; it must be 1");
+  const auto field = [&](std::size_t offset) {
+    return value_at<std::uint64_t>(beginning.data(), offset);
   };
   const FileHeader found{field(header::file_size), field(header::description),
                          field(header::description_size), field(header::page_size)};
-  constexpr std::uint64_t least_page = 128, largest_page = 1 << 20;
-  if (!std::has_single_bit(found.page_size) || found.page_size < least_page ||
+  constexpr std::uint64_t min_page = 128, largest_page = 1 << 20;
+  if (!std::has_single_bit(found.page_size) || found.page_size < min_page ||
       found.page_size > largest_page) {
-    refuse("has pages of " + std::to_string(found.page_size) +
-           " bytes; they must have 1024, or another power of two from 128 to 1048576");
+    throw_bad_file("has pages of " + std::to_string(found.page_size) +
+                   " bytes; they must have 1024, or another power of two from 128 to 1048576");
   }
   if (found.file_size > file_size) {
-    refuse("ends after " + std::to_string(file_size) + " of its " +
-           std::to_string(found.file_size) + " bytes");
+    throw_bad_file("ends after " + std::to_string(file_size) + " of its " +
+                   std::to_string(found.file_size) + " bytes");
   }
   if (found.file_size == 0 || found.file_size % found.page_size != 0) {
-    refuse("says to have " + std::to_string(found.file_size) +
-           " bytes; it must have whole pages of " + std::to_string(found.page_size));
+    throw_bad_file("says to have " + std::to_string(found.file_size) +
+                   " bytes; it must have whole pages of " + std::to_string(found.page_size));
   }
   return found;
 }
@@ -60,41 +60,41 @@ Pages::Pages(ReadBytes read, const FileHeader& header)
 std::uint64_t Pages::logical(std::uint64_t physical, const std::string& what) const {
   const std::uint64_t page = physical / page_size_, in_page = physical % page_size_;
   if (physical >= file_size_ || in_page >= content_) {
-    refuse("says that " + what + " is at byte " + std::to_string(physical) + ", which is " +
-           (physical >= file_size_ ? "after its end" : "in a checksum"));
+    throw_bad_file("says that " + what + " is at byte " + std::to_string(physical) + ", which is " +
+                   (physical >= file_size_ ? "after its end" : "in a checksum"));
   }
   return page * content_ + in_page;
 }
 
-std::string Pages::bytes(std::uint64_t place, std::uint64_t count) {
+std::string Pages::bytes(std::uint64_t offset, std::uint64_t count) {
   std::string result;
   result.reserve(count);
   while (result.size() < count) {
-    const std::uint64_t next = place + result.size();
+    const std::uint64_t next = offset + result.size();
     if (next < window_begin_ || next >= window_begin_ + window_.size()) read_window(next);
     result.append(window_, next - window_begin_, count - result.size());
   }
   return result;
 }
 
-void Pages::read_window(std::uint64_t place) {
+void Pages::read_window(std::uint64_t offset) {
   constexpr std::uint64_t usual_window = 1 << 16;
-  const std::uint64_t first = place / content_ * page_size_;
+  const std::uint64_t first = offset / content_ * page_size_;
   const std::uint64_t size =
       std::min(std::max(usual_window, page_size_), file_size_ - std::min(first, file_size_));
   window_.clear();
-  window_begin_ = place / content_ * content_;
+  window_begin_ = offset / content_ * content_;
   const std::string read = read_(first, size);
   const std::string_view pages = read;
   if (pages.empty() || pages.size() < size) {
-    refuse("cannot be read at byte " + std::to_string(first));
+    throw_bad_file("cannot be read at byte " + std::to_string(first));
   }
   for (std::uint64_t begin = 0; begin < size; begin += page_size_) {
     const std::string_view page = pages.substr(begin, page_size_);
     if (crc32c(page.substr(0, content_)) != stored_checksum(page)) {
       window_.clear();
-      refuse("is damaged: its page at byte " + std::to_string(first + begin) +
-             " has a wrong checksum");
+      throw_bad_file("is damaged: its page at byte " + std::to_string(first + begin) +
+                     " has a wrong checksum");
     }
     window_ += page.substr(0, content_);
   }

@@ -15,11 +15,11 @@ inline constexpr std::size_t page_size = 1024;  ///< page size of written files 
 inline constexpr std::size_t checksum_size = 4;
 inline constexpr std::size_t page_content = page_size - checksum_size;
 
-/// Returns `count` bytes from offset `place`, or fewer at the end of the file.
-using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
+/// Returns `count` bytes from offset `offset`, or fewer at the end of the file.
+using ReadBytes = std::function<std::string(std::uint64_t offset, std::uint64_t count)>;
 
 /// Throws Error{bad_file}. Callers that know the file name prepend it to the message.
-[[noreturn]] void refuse(const std::string& sentence);
+[[noreturn]] void throw_bad_file(const std::string& sentence);
 
 /// File header, which contains no checksum.
 struct FileHeader {
@@ -45,12 +45,12 @@ class Pages {
   /// file or inside a checksum; `what` names the object at the offset in the message.
   std::uint64_t logical(std::uint64_t physical, const std::string& what) const;
 
-  /// Returns exactly `count` bytes from logical offset `place`; the range must lie within the file.
-  /// Throws Error{bad_file} if a page does not match its checksum.
-  std::string bytes(std::uint64_t place, std::uint64_t count);
+  /// Returns exactly `count` bytes from logical offset `offset`; the range must lie within the
+  /// file. Throws Error{bad_file} if a page does not match its checksum.
+  std::string bytes(std::uint64_t offset, std::uint64_t count);
 
  private:
-  void read_window(std::uint64_t place);
+  void read_window(std::uint64_t offset);
 
   ReadBytes read_;
   std::uint64_t file_size_, page_size_, content_;

@@ -17,15 +17,15 @@ class RecordStream {
   /// exceed the file size. The messages do not contain the file name.
   RecordStream(Pages& pages, const ScanDescription& scan, std::span<const std::size_t> fields);
 
-  /// Reads up to `most` records. values()[i] contains the values of the i-th requested field.
+  /// Reads up to `max` records. values()[i] contains the values of the i-th requested field.
   /// Returns the number of records read, which is zero only at the end of the scan.
-  std::size_t next(std::size_t most);
+  std::size_t next(std::size_t max);
 
   std::span<const std::vector<double>> values() const { return values_; }
 
  private:
   void read_packet();
-  void take_streams(std::string_view packet, std::uint64_t place);
+  void read_streams(std::string_view packet, std::uint64_t offset);
 
   Pages* pages_;
   const ScanDescription* scan_;

@@ -14,7 +14,7 @@ namespace {
 
 using std::string_view;
 
-std::string text_of(double number) {
+std::string format_number(double number) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
   return {text.data(), end};
@@ -47,11 +47,11 @@ std::string element(string_view name, string_view type, string_view content) {
 }
 
 std::string element(const std::string& name, double number) {
-  return element(name, "Float", text_of(number));
+  return element(name, "Float", format_number(number));
 }
 
 /// Returns a GUID of 16 bytes derived from a text with two FNV-1a hashes.
-std::string identifier_of(string_view text) {
+std::string make_guid(string_view text) {
   std::array<std::uint8_t, 16> bytes{};
   constexpr std::uint64_t beginning = 0xCBF29CE484222325, prime = 0x100000001B3;
   for (std::size_t half = 0; half < 2; ++half) {
@@ -87,7 +87,8 @@ std::string field_text(const Field& field) {
             std::to_string(field.maximum);
   }
   if (field.coding == Coding::scaled_integer) {
-    text += "\" scale=\"" + text_of(field.scale) + "\" offset=\"" + text_of(field.offset);
+    text +=
+        "\" scale=\"" + format_number(field.scale) + "\" offset=\"" + format_number(field.offset);
   }
   return text + "\"/>\n";
 }
@@ -126,7 +127,7 @@ std::string limits_text(const WrittenScan& scan) {
 
 /// Returns the physical offset of the section header of the records, which ends the beginning of
 /// the file.
-std::uint64_t section_place(std::uint64_t pages) {
+std::uint64_t section_offset(std::uint64_t pages) {
   return (pages - 1) * page_size + page_content - section::size;
 }
 
@@ -135,15 +136,15 @@ std::string scan_text(const WrittenScan& scan, std::uint64_t pages) {
   for (const Field& field : scan.fields) prototype += field_text(field);
   std::string text = "\n" + limits_text(scan);
   if (!scan.sensor.empty()) text += element("sensorModel", "String", escaped(scan.sensor));
-  text += "<points type=\"CompressedVector\" fileOffset=\"" + std::to_string(section_place(pages)) +
-          "\" recordCount=\"" + std::to_string(scan.records) + "\">\n" +
-          element("prototype", "Structure", prototype) +
+  text += "<points type=\"CompressedVector\" fileOffset=\"" +
+          std::to_string(section_offset(pages)) + "\" recordCount=\"" +
+          std::to_string(scan.records) + "\">\n" + element("prototype", "Structure", prototype) +
           "<codecs type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n</points>\n";
-  const std::string identifier = identifier_of(text + std::to_string(scan.checksum));
+  const std::string identifier = make_guid(text + std::to_string(scan.checksum));
   return element("vectorChild", "Structure", "\n" + element("guid", "String", identifier) + text);
 }
 
-std::string description_of(const WrittenScan& scan, std::uint64_t pages) {
+std::string make_description(const WrittenScan& scan, std::uint64_t pages) {
   std::string text = element("formatName", "String", "ASTM E57 3D Imaging Data File");
   text += element("versionMajor", "Integer", "1") + element("versionMinor", "Integer", "0") +
           element("e57LibraryVersion", "String", "Skycap");
@@ -158,52 +159,52 @@ std::string description_of(const WrittenScan& scan, std::uint64_t pages) {
   if (has_field(scan, "nor:normalX")) {
     root += " xmlns:nor=\"http://www.libe57.org/E57_NOR_surface_normals.txt\"";
   }
-  return root + ">\n" + element("guid", "String", identifier_of(text)) + text + "</e57Root>\n";
+  return root + ">\n" + element("guid", "String", make_guid(text)) + text + "</e57Root>\n";
 }
 
 /// Computed for the longest numbers that the description can contain.
-std::uint64_t pages_of_beginning(WrittenScan scan) {
+std::uint64_t count_head_pages(WrittenScan scan) {
   constexpr double long_number = -2.2250738585072014e-308;
   scan.bounds = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(long_number));
   scan.records = std::numeric_limits<std::uint64_t>::max();
   constexpr std::uint64_t many_pages = std::uint64_t{1} << 40;
-  const std::size_t size = header::size + description_of(scan, many_pages).size() + section::size;
+  const std::size_t size = header::size + make_description(scan, many_pages).size() + section::size;
   return (size + page_content - 1) / page_content;
 }
 
 }  // namespace
 
-std::string beginning_of(const WrittenScan& scan) {
-  const std::uint64_t pages = pages_of_beginning(scan);
-  const std::string xml = description_of(scan, pages);
+std::string make_file_head(const WrittenScan& scan) {
+  const std::uint64_t pages = count_head_pages(scan);
+  const std::string xml = make_description(scan, pages);
   std::string content(pages * page_content, '\0');
   char* const bytes = content.data();
   content.replace(0, 8, "ASTM-E57");
   put_value(bytes, header::major, std::uint32_t{1});
-  const std::uint64_t record_pages = (scan.size_of_packets + page_content - 1) / page_content;
+  const std::uint64_t record_pages = (scan.packets_size + page_content - 1) / page_content;
   put_value(bytes, header::file_size, (pages + record_pages) * page_size);
   put_value(bytes, header::description, std::uint64_t{header::size});
   put_value(bytes, header::description_size, std::uint64_t{xml.size()});
   put_value(bytes, header::page_size, std::uint64_t{page_size});
   content.replace(header::size, xml.size(), xml);
   char* const head = bytes + content.size() - section::size;
-  head[section::kind] = section::of_records;
-  put_value(head, section::length, std::uint64_t{section::size + scan.size_of_packets});
+  head[section::kind] = section::compressed_vector;
+  put_value(head, section::length, std::uint64_t{section::size + scan.packets_size});
   // Without records, there is no packet to refer to.
-  put_value(head, section::data, scan.records > 0 ? pages * page_size : section_place(pages));
+  put_value(head, section::data, scan.records > 0 ? pages * page_size : section_offset(pages));
   return sealed(content);
 }
 
-std::string packets_of(std::span<const Field> fields, std::span<const std::string> values) {
+std::string make_packets(std::span<const Field> fields, std::span<const std::string> values) {
   assert(fields.size() == values.size() && !fields.empty());
   std::size_t record_size = 0;  // [bytes]
   for (const Field& field : fields) record_size += field.bits() / 8;
   const std::size_t head = packet::lengths + 2 * fields.size();
-  const std::size_t most = (packet::largest_size - packet::least_size - head) / record_size;
+  const std::size_t max = (packet::largest_size - packet::min_size - head) / record_size;
   const std::size_t count = values[0].size() / (fields[0].bits() / 8);
   std::string content;
-  for (std::size_t begin = 0; begin < count; begin += most) {
-    const std::size_t records = std::min(most, count - begin);
+  for (std::size_t begin = 0; begin < count; begin += max) {
+    const std::size_t records = std::min(max, count - begin);
     std::string data(head, '\0');
     data[packet::kind] = packet::data;
     put_value(data.data(), packet::streams, static_cast<std::uint16_t>(fields.size()));
@@ -212,7 +213,7 @@ std::string packets_of(std::span<const Field> fields, std::span<const std::strin
       put_value(data.data(), packet::lengths + 2 * i, static_cast<std::uint16_t>(records * size));
       data.append(values[i], begin * size, records * size);
     }
-    data.resize((data.size() + packet::least_size - 1) / packet::least_size * packet::least_size);
+    data.resize((data.size() + packet::min_size - 1) / packet::min_size * packet::min_size);
     put_value(data.data(), packet::size_less_one, static_cast<std::uint16_t>(data.size() - 1));
     content += data;
   }

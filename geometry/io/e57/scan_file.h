@@ -20,17 +20,17 @@ struct WrittenScan {
   std::string reference_system;  ///< WKT; omitted if empty
   std::vector<Field> fields;     ///< numbers with a size of whole bytes
   std::uint64_t records = 0;
-  Eigen::AlignedBox3d bounds;         ///< bounding box of the coordinates; omitted if empty
-  std::uint64_t checksum = 0;         ///< any value that depends on all records
-  std::uint64_t size_of_packets = 0;  ///< without page checksums [bytes]
+  Eigen::AlignedBox3d bounds;      ///< bounding box of the coordinates; omitted if empty
+  std::uint64_t checksum = 0;      ///< any value that depends on all records
+  std::uint64_t packets_size = 0;  ///< without page checksums [bytes]
 };
 
 /// Returns the file header, the description and the header of the records as whole pages. Their
 /// number depends only on `sensor`, `reference_system` and `fields`.
-std::string beginning_of(const WrittenScan& scan);
+std::string make_file_head(const WrittenScan& scan);
 
 /// Returns the packets of records. `values` contains the stored values of each field. Empty packets
 /// are never written, because some readers do not support them.
-std::string packets_of(std::span<const Field> fields, std::span<const std::string> values);
+std::string make_packets(std::span<const Field> fields, std::span<const std::string> values);
 
 }  // namespace skycap::geometry::e57

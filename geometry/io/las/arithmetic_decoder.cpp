@@ -6,12 +6,12 @@
 namespace skycap::geometry::las {
 namespace {
 
-constexpr std::uint32_t most_counted =
+constexpr std::uint32_t max_count =
     1 << 15;  // maximum number of counted symbols, after which all counts are halved
-constexpr std::uint32_t most_counted_bits = 1 << 13;
+constexpr std::uint32_t max_count_bits = 1 << 13;
 
-[[noreturn]] void refuse_value() {
-  refuse("has compressed points that are damaged: their bytes decode to nothing");
+[[noreturn]] void reject_value() {
+  throw_bad_file("has compressed points that are damaged: their bytes decode to nothing");
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void SymbolModel::begin() {
 
 void SymbolModel::update() {
   total_ += cycle_;
-  if (total_ > most_counted) {
+  if (total_ > max_count) {
     total_ = 0;
     for (std::uint16_t& count : counts_) {
       count = static_cast<std::uint16_t>((count + 1) / 2);
@@ -67,7 +67,7 @@ void SymbolModel::fill_table() {
 
 void BitModel::update() {
   total_ += cycle_;
-  if (total_ > most_counted_bits) {
+  if (total_ > max_count_bits) {
     total_ = (total_ + 1) / 2;
     zeros_ = (zeros_ + 1) / 2;
     if (zeros_ == total_) ++total_;
@@ -79,7 +79,7 @@ void BitModel::update() {
 
 ArithmeticDecoder::ArithmeticDecoder(ByteWindow bytes) : bytes_(std::move(bytes)) {
   for (int i = 0; i < 4; ++i) value_ = value_ << 8 | bytes_.next();
-  if (value_ >= length_) refuse_value();
+  if (value_ >= length_) reject_value();
 }
 
 std::uint32_t ArithmeticDecoder::bits(std::uint32_t count) {
@@ -91,7 +91,7 @@ std::uint32_t ArithmeticDecoder::bits(std::uint32_t count) {
 std::uint32_t ArithmeticDecoder::few_bits(std::uint32_t count) {
   const std::uint32_t unit = length_ >> count;
   const std::uint32_t value = value_ / unit;
-  if (value >> count != 0) refuse_value();
+  if (value >> count != 0) reject_value();
   narrow(value * unit, unit);
   return value;
 }

@@ -69,10 +69,10 @@ class ArithmeticDecoder {
 };
 
 inline void ArithmeticDecoder::narrow(std::uint32_t low, std::uint32_t length) {
-  constexpr std::uint32_t least_length = 1 << 24;
+  constexpr std::uint32_t min_length = 1 << 24;
   value_ -= low;
   length_ = length;
-  while (length_ < least_length) {
+  while (length_ < min_length) {
     value_ = value_ << 8 | bytes_.next();
     length_ <<= 8;
   }

@@ -6,7 +6,7 @@
 
 namespace skycap::geometry::las {
 
-void refuse(const std::string& sentence) { throw Error(ErrorKind::bad_file, sentence); }
+void throw_bad_file(const std::string& sentence) { throw Error(ErrorKind::bad_file, sentence); }
 
 void ByteWindow::take(char* bytes, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<char>(next());
@@ -14,22 +14,22 @@ void ByteWindow::take(char* bytes, std::size_t count) {
 
 ByteWindow ByteWindow::part(std::uint64_t begin, std::uint64_t count) const {
   if (begin > end_ || count > end_ - begin) {
-    refuse("has compressed points that are damaged: the part at byte " + std::to_string(begin) +
-           " does not end within its chunk");
+    throw_bad_file("has compressed points that are damaged: the part at byte " +
+                   std::to_string(begin) + " does not end within its chunk");
   }
   return {*read_, begin, begin + count};
 }
 
-void ByteWindow::read_piece() {
-  constexpr std::uint64_t longest_piece = 1 << 16;
-  piece_.clear();
+void ByteWindow::read_chunk() {
+  constexpr std::uint64_t max_chunk_bytes = 1 << 16;
+  chunk_.clear();
   position_ = 0;
-  if (unread_ < end_) piece_ = (*read_)(unread_, std::min(longest_piece, end_ - unread_));
-  if (piece_.empty()) {
-    refuse("has compressed points that are damaged: their bytes end at byte " +
-           std::to_string(unread_) + ", within a point");
+  if (unread_ < end_) chunk_ = (*read_)(unread_, std::min(max_chunk_bytes, end_ - unread_));
+  if (chunk_.empty()) {
+    throw_bad_file("has compressed points that are damaged: their bytes end at byte " +
+                   std::to_string(unread_) + ", within a point");
   }
-  unread_ += piece_.size();
+  unread_ += chunk_.size();
 }
 
 }  // namespace skycap::geometry::las

@@ -9,11 +9,11 @@
 
 namespace skycap::geometry::las {
 
-/// Returns `count` bytes from offset `place`, or fewer at the end of the file.
-using ReadBytes = std::function<std::string(std::uint64_t place, std::uint64_t count)>;
+/// Returns `count` bytes from offset `offset`, or fewer at the end of the file.
+using ReadBytes = std::function<std::string(std::uint64_t offset, std::uint64_t count)>;
 
 /// Throws Error{bad_file}. Callers that know the file name prepend it to the message.
-[[noreturn]] void refuse(const std::string& sentence);
+[[noreturn]] void throw_bad_file(const std::string& sentence);
 
 class ByteWindow {
  public:
@@ -25,8 +25,8 @@ class ByteWindow {
 
   /// Reads the next byte. Throws Error{bad_file} at the end.
   std::uint8_t next() {
-    if (position_ == piece_.size()) read_piece();
-    return static_cast<std::uint8_t>(piece_[position_++]);
+    if (position_ == chunk_.size()) read_chunk();
+    return static_cast<std::uint8_t>(chunk_[position_++]);
   }
 
   /// Reads exactly `count` bytes. Throws Error{bad_file} if there are fewer.
@@ -40,17 +40,17 @@ class ByteWindow {
   }
 
   /// Returns the file offset of the next byte.
-  std::uint64_t place() const { return unread_ - (piece_.size() - position_); }
+  std::uint64_t offset() const { return unread_ - (chunk_.size() - position_); }
 
   /// Returns a window of `count` bytes at file offset `begin`. Throws Error{bad_file} if it exceeds
   /// the end of this window.
   ByteWindow part(std::uint64_t begin, std::uint64_t count) const;
 
  private:
-  void read_piece();
+  void read_chunk();
 
   const ReadBytes* read_ = nullptr;
-  std::string piece_;
+  std::string chunk_;
   std::size_t position_ = 0;
   std::uint64_t unread_ = 0, end_ = 0;
 };

@@ -18,7 +18,7 @@ constexpr Item point14{10, 30}, colour14{11, 6}, infrared14{12, 8};
 constexpr std::uint16_t bytes10 = 0, bytes14 = 14;
 
 /// Returns the items of a point format. Additional bytes of a point are user data.
-std::vector<Item> items_of(int format, std::size_t point_size) {
+std::vector<Item> standard_items(int format, std::size_t point_size) {
   std::vector<Item> items = {format >= 6 ? point14 : point10};
   if (format == 1 || format == 3) items.push_back(time11);
   if (format == 2 || format == 3) items.push_back(colour12);
@@ -33,75 +33,76 @@ std::vector<Item> items_of(int format, std::size_t point_size) {
 }
 
 // Byte offsets in the record and in its items.
-constexpr std::size_t compressor_place = 0, coder_place = 2, chunk_size_place = 12,
-                      item_count_place = 32, items_place = 34, item_size = 6;
+constexpr std::size_t compressor_offset = 0, coder_offset = 2, chunk_size_offset = 12,
+                      item_count_offset = 32, items_offset = 34, item_size = 6;
 
 constexpr std::string_view damaged = "has a record of its compression that is damaged: ";
 
 }  // namespace
 
 Compression parse_compression(std::string_view record, int format, std::size_t point_size) {
-  const auto number = [&](std::size_t place) {
-    return value_at<std::uint16_t>(record.data(), place);
+  const auto number = [&](std::size_t offset) {
+    return value_at<std::uint16_t>(record.data(), offset);
   };
-  if (record.size() < items_place ||
-      record.size() < items_place + item_size * number(item_count_place)) {
-    refuse(std::string(damaged) + "it ends too early");
+  if (record.size() < items_offset ||
+      record.size() < items_offset + item_size * number(item_count_offset)) {
+    throw_bad_file(std::string(damaged) + "it ends too early");
   }
   const bool is_layered = format >= 6;
-  const int compressor = number(compressor_place), wanted = is_layered ? 3 : 2;
-  if (compressor != wanted || number(coder_place) != 0) {
-    refuse("is compressed by method " + std::to_string(compressor) + " of LAZ; points of format " +
-           std::to_string(format) + " can be read if compressed by method " +
-           std::to_string(wanted) + ": compress it again, for example with laszip");
+  const int compressor = number(compressor_offset), expected = is_layered ? 3 : 2;
+  if (compressor != expected || number(coder_offset) != 0) {
+    throw_bad_file("is compressed by method " + std::to_string(compressor) +
+                   " of LAZ; points of format " + std::to_string(format) +
+                   " can be read if compressed by method " + std::to_string(expected) +
+                   ": compress it again, for example with laszip");
   }
   std::vector<Item> items;
   int version = is_layered ? 3 : 2;
-  for (std::size_t i = 0; i < number(item_count_place); ++i) {
-    const std::size_t place = items_place + item_size * i;
-    items.push_back({number(place), number(place + 2)});
-    const int found = number(place + 4);
+  for (std::size_t i = 0; i < number(item_count_offset); ++i) {
+    const std::size_t offset = items_offset + item_size * i;
+    items.push_back({number(offset), number(offset + 2)});
+    const int found = number(offset + 4);
     if (is_layered && i == 0 && found == 4) version = 4;
     if (found == version) continue;
-    refuse("is compressed by version " + std::to_string(found) +
-           " of LAZ's items; points of format " + std::to_string(format) +
-           " can be read in version " + (is_layered ? "3 or 4" : "2") +
-           ", all alike: compress it again, for example with laszip");
+    throw_bad_file("is compressed by version " + std::to_string(found) +
+                   " of LAZ's items; points of format " + std::to_string(format) +
+                   " can be read in version " + (is_layered ? "3 or 4" : "2") +
+                   ", all alike: compress it again, for example with laszip");
   }
-  if (items != items_of(format, point_size)) {
-    refuse(std::string(damaged) + "LAZ items do not match point format " + std::to_string(format) +
-           " and " + std::to_string(point_size) + " bytes");
+  if (items != standard_items(format, point_size)) {
+    throw_bad_file(std::string(damaged) + "LAZ items do not match point format " +
+                   std::to_string(format) + " and " + std::to_string(point_size) + " bytes");
   }
-  const auto chunk_size = value_at<std::uint32_t>(record.data(), chunk_size_place);
-  if (chunk_size == 0) refuse(std::string(damaged) + "its chunks have no points");
+  const auto chunk_size = value_at<std::uint32_t>(record.data(), chunk_size_offset);
+  if (chunk_size == 0) throw_bad_file(std::string(damaged) + "its chunks have no points");
   return {.version = version, .chunk_size = chunk_size};
 }
 
 ChunkTable::ChunkTable(const ReadBytes& read, std::uint64_t file_size, std::uint64_t first_point,
                        const Compression& compression)
     : compression_(compression) {
-  const auto place_at = [&](std::uint64_t place) {
-    return ByteWindow(read, place, file_size).value<std::uint64_t>();
+  const auto offset_at = [&](std::uint64_t offset) {
+    return ByteWindow(read, offset, file_size).value<std::uint64_t>();
   };
   begin_ = first_point + sizeof(std::uint64_t);
-  end_ = place_at(first_point);
+  end_ = offset_at(first_point);
   // Writers without random access store the offset at the end of the file.
   constexpr std::uint64_t elsewhere = ~std::uint64_t{0};
-  if (end_ == elsewhere) end_ = place_at(file_size - sizeof(std::uint64_t));
+  if (end_ == elsewhere) end_ = offset_at(file_size - sizeof(std::uint64_t));
   if (end_ < begin_ || end_ > file_size) {
-    refuse("has no table of its compressed chunks: byte " + std::to_string(end_) +
-           ", where it says that one is, is not behind its points");
+    throw_bad_file("has no table of its compressed chunks: byte " + std::to_string(end_) +
+                   ", where it says that one is, is not behind its points");
   }
   ByteWindow table(read, end_, file_size);
   if (table.value<std::uint32_t>() != 0) {
-    refuse("has a table of compressed chunks that is damaged: its version is not 0");
+    throw_bad_file("has a table of compressed chunks that is damaged: its version is not 0");
   }
   unread_ = table.value<std::uint32_t>();
   if (unread_ > 0) decoder_ = ArithmeticDecoder(std::move(table));
 }
 
 ChunkTable::Chunk ChunkTable::next() {
-  if (unread_ == 0) refuse("has fewer chunks of compressed points than points ask for");
+  if (unread_ == 0) throw_bad_file("has fewer chunks of compressed points than points ask for");
   --unread_;
   if (compression_.has_various_chunks()) {
     last_points_ = numbers_.read(decoder_, last_points_, 0);
@@ -110,9 +111,9 @@ ChunkTable::Chunk ChunkTable::next() {
   }
   last_size_ = numbers_.read(decoder_, last_size_, 1);
   if (last_size_ > end_ - begin_) {
-    refuse("has a table of compressed chunks that is damaged: a chunk of " +
-           std::to_string(last_size_) + " bytes at byte " + std::to_string(begin_) +
-           " does not end before the table");
+    throw_bad_file("has a table of compressed chunks that is damaged: a chunk of " +
+                   std::to_string(last_size_) + " bytes at byte " + std::to_string(begin_) +
+                   " does not end before the table");
   }
   begin_ += last_size_;
   return {.begin = begin_ - last_size_, .end = begin_, .points = last_points_};

@@ -8,7 +8,7 @@ namespace {
 
 /// Returns the upper 8 of 16 bits. If all numbers of a file are below 256, they are 8-bit values,
 /// which violates the specification.
-std::vector<std::array<std::uint8_t, 3>> bytes_of(
+std::vector<std::array<std::uint8_t, 3>> to_bytes(
     const std::vector<std::array<std::uint16_t, 3>>& colours) {
   const bool has_bytes = std::ranges::all_of(
       colours, [](const auto& colour) { return std::ranges::max(colour) <= 255; });
@@ -36,21 +36,22 @@ AttributedCloud read_las_cloud(const std::filesystem::path& path) {
     add_positions(path, cloud.positions.size(), points.positions, cloud.positions);
     colours.insert(colours.end(), points.colours.begin(), points.colours.end());
   }
-  cloud.colours = bytes_of(colours);
+  cloud.colours = to_bytes(colours);
   return cloud;
 }
 
-std::size_t read_las_positions(const std::filesystem::path& path, const TakePositions& take) {
+std::size_t read_las_positions(const std::filesystem::path& path,
+                               const PositionsCallback& callback) {
   LasReader reader(path);
   LasPoints points;
-  std::vector<Eigen::Vector3f> piece;
+  std::vector<Eigen::Vector3f> chunk;
   std::size_t count = 0;
   const auto all = static_cast<double>(reader.header().points);
-  for (double read = 1.0; reader.next(points, piece_size); ++read) {
-    piece.clear();
-    add_positions(path, count, points.positions, piece);
+  for (double read = 1.0; reader.next(points, points_per_chunk); ++read) {
+    chunk.clear();
+    add_positions(path, count, points.positions, chunk);
     count += points.positions.size();
-    if (!piece.empty()) take(piece, std::min(1.0, read * piece_size / all));
+    if (!chunk.empty()) callback(chunk, std::min(1.0, read * points_per_chunk / all));
   }
   if (count == 0) fail_without_points(path, 0);
   return 0;

@@ -39,7 +39,7 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
   if (beginning.size() < size) fail_cloud(path, "ends within the header");
 }
 
-LasHeader fields_of(std::string_view beginning) {
+LasHeader parse_header_fields(std::string_view beginning) {
   const char* const bytes = beginning.data();
   LasHeader header;
   header.minor = value_at<std::uint8_t>(bytes, las::header::minor);
@@ -70,12 +70,12 @@ LasHeader fields_of(std::string_view beginning) {
 LasHeader parse_header(const std::filesystem::path& path, std::string_view beginning,
                        std::uint64_t file_size) {
   require_readable(path, beginning);
-  const LasHeader header = fields_of(beginning);
-  const std::uint16_t least_size = las::point_size(header.format);
-  if (header.point_size < least_size) {
+  const LasHeader header = parse_header_fields(beginning);
+  const std::uint16_t min_size = las::point_size(header.format);
+  if (header.point_size < min_size) {
     fail_cloud(path, "has points of " + std::to_string(header.point_size) +
                          " bytes; those of format " + std::to_string(header.format) + " have " +
-                         std::to_string(least_size) + " or more");
+                         std::to_string(min_size) + " or more");
   }
   if (!header.scale.allFinite() || !(header.scale.array() > 0.0).all() ||
       !header.offset.allFinite()) {
@@ -85,15 +85,16 @@ LasHeader parse_header(const std::filesystem::path& path, std::string_view begin
   if (header.first_point < header_end) {
     fail_cloud(path, "says that its points begin within its header");
   }
-  const std::uint64_t room = file_size < header.first_point ? 0 : file_size - header.first_point;
-  if (!header.is_compressed && room / header.point_size < header.points) {
-    fail_cloud(path, "ends after " + std::to_string(room / header.point_size) + " of its " +
-                         std::to_string(header.points) + " points");
+  const std::uint64_t available_bytes =
+      file_size < header.first_point ? 0 : file_size - header.first_point;
+  if (!header.is_compressed && available_bytes / header.point_size < header.points) {
+    fail_cloud(path, "ends after " + std::to_string(available_bytes / header.point_size) +
+                         " of its " + std::to_string(header.points) + " points");
   }
   return header;
 }
 
-int class_of(const LasHeader& header, const char* point) {
+int read_class(const LasHeader& header, const char* point) {
   if (header.format >= 6) return value_at<std::uint8_t>(point, las::point::classification);
   return value_at<std::uint8_t>(point, las::old_point::classification) & las::old_point::classes;
 }
@@ -104,8 +105,8 @@ bool is_withheld(const LasHeader& header, const char* point) {
   return (flags & (header.format >= 6 ? las::point::withheld : las::old_point::withheld)) != 0;
 }
 
-std::size_t colour_place(const LasHeader& header) {
-  return las::colour_places[static_cast<std::size_t>(header.format)];
+std::size_t colour_offset(const LasHeader& header) {
+  return las::colour_offsets[static_cast<std::size_t>(header.format)];
 }
 
 void add_point(const LasHeader& header, const char* point, LasPoints& points) {
@@ -115,21 +116,21 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
         value_at<std::int32_t>(point, las::point::position + 4UL * axis) * header.scale[axis] +
         header.offset[axis];
   }
-  points.classes.push_back(static_cast<std::uint8_t>(class_of(header, point)));
+  points.classes.push_back(static_cast<std::uint8_t>(read_class(header, point)));
   if (!header.has_colours()) return;
   auto& colour = points.colours.emplace_back();
   for (std::size_t channel = 0; channel < 3; ++channel) {
-    colour[channel] = value_at<std::uint16_t>(point, colour_place(header) + 2 * channel);
+    colour[channel] = value_at<std::uint16_t>(point, colour_offset(header) + 2 * channel);
   }
 }
 
-std::string_view text_of(std::string_view bytes) { return bytes.substr(0, bytes.find('\0')); }
+std::string_view trim_at_null(std::string_view bytes) { return bytes.substr(0, bytes.find('\0')); }
 
-std::string_view user_of(std::string_view record) {
-  return text_of(record.substr(las::record::user, las::record::user_size));
+std::string_view read_user_id(std::string_view record) {
+  return trim_at_null(record.substr(las::record::user, las::record::user_size));
 }
 
-int id_of(std::string_view record) {
+int read_record_id(std::string_view record) {
   return value_at<std::uint16_t>(record.data(), las::record::id);
 }
 
@@ -139,9 +140,9 @@ void read_geo_keys(std::string_view directory, LasReferenceSystem& system) {
   constexpr int user_defined = 32767;
   for (std::size_t i = 8; i + 8 <= directory.size(); i += 8) {
     const int key = value_at<std::uint16_t>(directory.data(), i),
-              place = value_at<std::uint16_t>(directory.data(), i + 2),
+              offset = value_at<std::uint16_t>(directory.data(), i + 2),
               value = value_at<std::uint16_t>(directory.data(), i + 6);
-    if (place != 0) continue;
+    if (offset != 0) continue;
     if (value == user_defined) {
       if (key == projected || key == geographic) system.is_user_defined = true;
       continue;
@@ -155,7 +156,7 @@ void read_geo_keys(std::string_view directory, LasReferenceSystem& system) {
 
 }  // namespace
 
-bool LasHeader::has_colours() const { return colour_place(*this) != 0; }
+bool LasHeader::has_colours() const { return colour_offset(*this) != 0; }
 
 LasReader::LasReader(std::filesystem::path path)
     : file_(std::make_unique<SeekableFile>(std::move(path))),
@@ -163,46 +164,48 @@ LasReader::LasReader(std::filesystem::path path)
   if (header_.is_compressed) open_compressed();
 }
 
-std::string LasReader::bytes(std::uint64_t place, std::uint64_t count) {
-  return file_->with_name([&] { return file_->bytes(place, count); });
+std::string LasReader::bytes(std::uint64_t offset, std::uint64_t count) {
+  return file_->with_name([&] { return file_->bytes(offset, count); });
 }
 
-void LasReader::visit_records(const TakeRecord& take) {
-  std::uint64_t place = header_.header_size;
-  for (std::uint32_t i = 0; i < header_.records && place < header_.first_point; ++i) {
-    const std::string head = bytes(place, las::record::end);
+void LasReader::visit_records(const RecordCallback& callback) {
+  std::uint64_t offset = header_.header_size;
+  for (std::uint32_t i = 0; i < header_.records && offset < header_.first_point; ++i) {
+    const std::string head = bytes(offset, las::record::end);
     if (head.size() < las::record::end) return;
     const auto length = value_at<std::uint16_t>(head.data(), las::record::length);
-    const std::string content = bytes(place + las::record::end, length);
-    if (!take(user_of(head), id_of(head), content)) return;
-    place += las::record::end + length;
+    const std::string content = bytes(offset + las::record::end, length);
+    if (!callback(read_user_id(head), read_record_id(head), content)) return;
+    offset += las::record::end + length;
   }
 }
 
-void LasReader::visit_extended_records(const TakeRecord& take) {
+void LasReader::visit_extended_records(const RecordCallback& callback) {
   constexpr std::uint64_t longest = 1 << 20;  // maximum bytes read per record
-  constexpr std::uint32_t most_records = 1000;
-  std::uint64_t place = header_.first_extended_record;
-  for (std::uint32_t i = 0; i < std::min(header_.extended_records, most_records); ++i) {
-    const std::string head = bytes(place, las::record::extended_end);
+  constexpr std::uint32_t max_records = 1000;
+  std::uint64_t offset = header_.first_extended_record;
+  for (std::uint32_t i = 0; i < std::min(header_.extended_records, max_records); ++i) {
+    const std::string head = bytes(offset, las::record::extended_end);
     if (head.size() < las::record::extended_end) return;
     const auto length = value_at<std::uint64_t>(head.data(), las::record::length);
-    const std::string content = bytes(place + las::record::extended_end, std::min(length, longest));
-    if (!take(user_of(head), id_of(head), content) || length > file_->size()) return;
-    place += las::record::extended_end + length;
+    const std::string content =
+        bytes(offset + las::record::extended_end, std::min(length, longest));
+    if (!callback(read_user_id(head), read_record_id(head), content) || length > file_->size())
+      return;
+    offset += las::record::extended_end + length;
   }
 }
 
 LasReferenceSystem LasReader::reference_system() {
   LasReferenceSystem system;
-  const auto take = [&](std::string_view user, int id, std::string_view content) {
+  const auto callback = [&](std::string_view user, int id, std::string_view content) {
     if (user != las::record::projection && user != "liblas") return true;
-    if (id == las::record::wkt && system.wkt.empty()) system.wkt = text_of(content);
+    if (id == las::record::wkt && system.wkt.empty()) system.wkt = trim_at_null(content);
     if (id == las::record::geo_keys) read_geo_keys(content, system);
     return true;
   };
-  visit_records(take);
-  visit_extended_records(take);
+  visit_records(callback);
+  visit_extended_records(callback);
   return system;
 }
 
@@ -220,19 +223,19 @@ std::string LasReader::compression_record() {
 void LasReader::open_compressed() {
   const std::string record = compression_record();
   const las::StoredPoints points{header_.format, header_.point_size, header_.first_point};
-  const auto read = [file = file_.get()](std::uint64_t place, std::uint64_t count) {
-    return file->bytes(place, count);
+  const auto read = [file = file_.get()](std::uint64_t offset, std::uint64_t count) {
+    return file->bytes(offset, count);
   };
   compressed_ = file_->with_name(
       [&] { return std::make_unique<las::PointStream>(read, file_->size(), points, record); });
   record_.resize(header_.point_size);
 }
 
-bool LasReader::next(LasPoints& points, std::size_t most) {
+bool LasReader::next(LasPoints& points, std::size_t max) {
   points.positions.clear();
   points.classes.clear();
   points.colours.clear();
-  const std::uint64_t count = std::min<std::uint64_t>(most, header_.points - points_read_);
+  const std::uint64_t count = std::min<std::uint64_t>(max, header_.points - points_read_);
   if (compressed_ != nullptr) {
     decompress(points, count);
   } else {

@@ -59,10 +59,10 @@ class LasReader {
 
   const LasHeader& header() const { return header_; }
 
-  /// Replaces `points` with the next points, from at most `most` records. Withheld points are
+  /// Replaces `points` with the next points, from at most `max` records. Withheld points are
   /// ignored, so that the result may be empty. Returns false at the end of the file. Throws
   /// Error{bad_file} if the file cannot be read or its compressed data is damaged.
-  bool next(LasPoints& points, std::size_t most = 1 << 16);
+  bool next(LasPoints& points, std::size_t max = 1 << 16);
 
   /// Reads the reference system from the records before and after the points. The first WKT takes
   /// precedence. Throws Error{bad_file} if the file cannot be read.
@@ -70,11 +70,12 @@ class LasReader {
 
  private:
   /// Receives the user ID, record ID and content of a record. Returns whether to continue.
-  using TakeRecord = std::function<bool(std::string_view user, int id, std::string_view content)>;
+  using RecordCallback =
+      std::function<bool(std::string_view user, int id, std::string_view content)>;
 
-  std::string bytes(std::uint64_t place, std::uint64_t count);
-  void visit_records(const TakeRecord& take);
-  void visit_extended_records(const TakeRecord& take);
+  std::string bytes(std::uint64_t offset, std::uint64_t count);
+  void visit_records(const RecordCallback& callback);
+  void visit_extended_records(const RecordCallback& callback);
   std::string compression_record();
   void open_compressed();
   void decompress(LasPoints& points, std::uint64_t count);

@@ -6,14 +6,14 @@ namespace skycap::geometry::las {
 
 // All other bytes stay zero: the legacy counts, which are unused for point formats 6 and above, and
 // the missing waveforms and extended records.
-std::vector<std::uint8_t> header_of(const WrittenFile& file) {
+std::vector<std::uint8_t> make_header(const WrittenFile& file) {
   const std::size_t wkt_size = file.crs_wkt.size() + 1;  // including the terminating zero
   constexpr std::size_t first_record = header::end, wkt = first_record + record::end;
   constexpr std::uint16_t adjusted_time = 1, is_wkt = 1 << 4;
   std::vector<std::uint8_t> bytes(wkt + wkt_size);
-  const auto put = [&](std::size_t place, auto value) { put_value(bytes.data(), place, value); };
-  const auto put_text = [&](std::size_t place, std::string_view text) {
-    std::ranges::copy(text, bytes.begin() + static_cast<std::ptrdiff_t>(place));
+  const auto put = [&](std::size_t offset, auto value) { put_value(bytes.data(), offset, value); };
+  const auto put_text = [&](std::size_t offset, std::string_view text) {
+    std::ranges::copy(text, bytes.begin() + static_cast<std::ptrdiff_t>(offset));
   };
   put_text(header::signature, "LASF");
   put(header::encoding, static_cast<std::uint16_t>(adjusted_time | is_wkt));

@@ -27,7 +27,7 @@ struct WrittenFile {
 
 /// Returns the public header block and the record of the reference system. The length does not
 /// depend on the points. The creation date is zero, so that equal input gives equal bytes.
-std::vector<std::uint8_t> header_of(const WrittenFile& file);
+std::vector<std::uint8_t> make_header(const WrittenFile& file);
 
 struct WrittenPoint {
   std::array<std::int32_t, 3> position = {};  ///< multiples of the scale from the offset

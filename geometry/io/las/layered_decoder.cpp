@@ -24,13 +24,13 @@ enum Layer : std::size_t { steps = 0, heights = 1, classes = 2, flags = 3, colou
 /// All decoded fields of a point except its colour.
 struct Point14 {
   std::int32_t x = 0, y = 0, z = 0;
-  std::uint8_t number_of_returns = 0, return_number = 0;  // 4 bits each
+  std::uint8_t num_returns = 0, return_number = 0;  // 4 bits each
   std::uint8_t classification = 0;
   std::uint8_t flags = 0;  // 4 classification flags, scan direction, edge of flight line
   bool has_new_time = false;
 
   bool is_first() const { return return_number == 1; }
-  bool is_last() const { return return_number >= number_of_returns; }
+  bool is_last() const { return return_number >= num_returns; }
 };
 
 using Models = std::vector<SymbolModel>;
@@ -41,8 +41,8 @@ struct Channel {
   Point14 last;
   Models changed = Models(8, SymbolModel(128));  // by the kind and time of the last return
   SymbolModel channel_step{3}, return_step{13};
-  Models numbers_of_returns = Models(16, SymbolModel(16));  // by that of the last point
-  Models return_numbers = numbers_of_returns;               // by that of the last point
+  Models num_returns_models = Models(16, SymbolModel(16));  // by that of the last point
+  Models return_numbers = num_returns_models;               // by that of the last point
   Models classes = Models(64, SymbolModel(256));            // by that of the last point
   Models flags = Models(64, SymbolModel(64));               // by that of the last point
   PositionDecoder position;
@@ -56,7 +56,7 @@ void Channel::begin(const Point14& first) {
   is_used = true;
   last = first;
   last.has_new_time = false;
-  for (Models* models : {&changed, &numbers_of_returns, &return_numbers, &classes, &flags}) {
+  for (Models* models : {&changed, &num_returns_models, &return_numbers, &classes, &flags}) {
     for (SymbolModel& model : *models) model.reset();
   }
   channel_step.reset();
@@ -124,8 +124,8 @@ void Point14Decoder::read_returns(ArithmeticDecoder& decoder, std::uint32_t chan
   Point14& point = channel.last;
   const std::uint8_t last = point.return_number;
   if ((changed & 4) != 0) {
-    point.number_of_returns = static_cast<std::uint8_t>(
-        decoder.symbol(channel.numbers_of_returns[point.number_of_returns]));
+    point.num_returns =
+        static_cast<std::uint8_t>(decoder.symbol(channel.num_returns_models[point.num_returns]));
   }
   std::uint32_t number = last;
   if ((changed & 3) == 1) number = last + 1U;
@@ -140,16 +140,15 @@ void Point14Decoder::read_returns(ArithmeticDecoder& decoder, std::uint32_t chan
 void Point14Decoder::read_position(Layers& layers) {
   Channel& channel = channels_[channel_];
   Point14& point = channel.last;
-  const std::size_t context = 2U * return_contexts[point.number_of_returns][point.return_number] +
-                              (point.has_new_time ? 1 : 0);
-  const bool is_single = point.number_of_returns == 1;
+  const std::size_t context =
+      2U * return_contexts[point.num_returns][point.return_number] + (point.has_new_time ? 1 : 0);
+  const bool is_single = point.num_returns == 1;
   const auto step = channel.position.read_step(*layers[Layer::steps], channel.x_steps[context],
                                                channel.y_steps[context], is_single);
   point.x = wrapped_sum(point.x, step.x);
   point.y = wrapped_sum(point.y, step.y);
   if (!layers[Layer::heights]) return;
-  std::int32_t& height =
-      channel.heights[return_level(point.number_of_returns, point.return_number)];
+  std::int32_t& height = channel.heights[return_level(point.num_returns, point.return_number)];
   point.z = height = channel.position.read_height(*layers[Layer::heights], height, is_single);
 }
 
@@ -241,7 +240,7 @@ Point14 decoded_part(const char* bytes) {
   const auto returns = value_at<std::uint8_t>(bytes, point::returns);
   const auto flag_bits = value_at<std::uint8_t>(bytes, point::flags);
   point.return_number = returns & 15;
-  point.number_of_returns = returns >> 4;
+  point.num_returns = returns >> 4;
   point.classification = value_at<std::uint8_t>(bytes, point::classification);
   point.flags = static_cast<std::uint8_t>((flag_bits & 15) | (flag_bits >> 6) << 4);
   return point;
@@ -252,7 +251,7 @@ void put_decoded_part(const Point14& point, std::size_t channel, char* bytes) {
   put_value(bytes, 4, point.y);
   put_value(bytes, 8, point.z);
   put_value(bytes, point::returns,
-            static_cast<std::uint8_t>(point.number_of_returns << 4 | point.return_number));
+            static_cast<std::uint8_t>(point.num_returns << 4 | point.return_number));
   put_value(bytes, point::flags,
             static_cast<std::uint8_t>((point.flags & 15) | channel << 4 | (point.flags >> 4) << 6));
   put_value(bytes, point::classification, point.classification);
@@ -274,7 +273,7 @@ void LayeredDecoder::find_layers(ByteWindow& chunk) {
   chunk.value<std::uint32_t>();
   std::vector<std::uint32_t> sizes(layers_in_file_);
   for (std::uint32_t& size : sizes) size = chunk.value<std::uint32_t>();
-  std::uint64_t begin = chunk.place();
+  std::uint64_t begin = chunk.offset();
   for (std::size_t layer = 0; layer < sizes.size(); ++layer) {
     if (layer < compressed_.size()) {
       is_there_[layer] = sizes[layer] != 0;
@@ -297,8 +296,8 @@ void LayeredDecoder::next(char* point) {
   }
   put_decoded_part(points_.read(layers_), points_.channel(), point);
   if (!has_colour_) return;
-  const bool is_told = version_ > 3 || points_.channel_is_new();
-  const std::size_t channel = is_told ? points_.channel() : 0;
+  const bool is_channel_stored = version_ > 3 || points_.channel_is_new();
+  const std::size_t channel = is_channel_stored ? points_.channel() : 0;
   put_value(point, point::colour, colours_.read(layers_[colours], channel, version_));
 }
 

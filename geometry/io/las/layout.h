@@ -51,7 +51,7 @@ constexpr std::uint16_t point_size(int format) {
 }
 
 /// Offset of the 16-bit colours for each point format, or zero if the format has no colours.
-inline constexpr std::array<std::uint8_t, 11> colour_places = {0, 0,  20, 28, 0, 28,
-                                                               0, 30, 30, 0,  30};
+inline constexpr std::array<std::uint8_t, 11> colour_offsets = {0, 0,  20, 28, 0, 28,
+                                                                0, 30, 30, 0,  30};
 
 }  // namespace skycap::geometry::las

@@ -33,11 +33,9 @@ class Point10Decoder {
  private:
   void read_attributes(ArithmeticDecoder& decoder, std::uint32_t changed);
   void read_position(ArithmeticDecoder& decoder);
-  std::size_t number_of_returns() const { return last_.returns >> 3 & 7; }
+  std::size_t num_returns() const { return last_.returns >> 3 & 7; }
   std::size_t return_number() const { return last_.returns & 7; }
-  std::size_t return_context() const {
-    return old_return_contexts[number_of_returns()][return_number()];
-  }
+  std::size_t return_context() const { return old_return_contexts[num_returns()][return_number()]; }
 
   Point10 last_;
   SymbolModel changed_{64};
@@ -102,11 +100,11 @@ void Point10Decoder::read_attributes(ArithmeticDecoder& decoder, std::uint32_t c
 
 void Point10Decoder::read_position(ArithmeticDecoder& decoder) {
   const std::size_t context = return_context();
-  const bool is_single = number_of_returns() == 1;
+  const bool is_single = num_returns() == 1;
   const auto step = position_.read_step(decoder, x_steps_[context], y_steps_[context], is_single);
   last_.x = wrapped_sum(last_.x, step.x);
   last_.y = wrapped_sum(last_.y, step.y);
-  std::int32_t& height = heights_[return_level(number_of_returns(), return_number())];
+  std::int32_t& height = heights_[return_level(num_returns(), return_number())];
   last_.z = height = position_.read_height(decoder, height, is_single);
 }
 
@@ -116,14 +114,14 @@ class PointwiseDecoder : public ChunkDecoder {
       : has_time_(format == 1 || format == 3),
         has_colour_(format == 2 || format == 3),
         last_(point_size),
-        extra_(point_size - extra_place()) {}
+        extra_(point_size - extra_offset()) {}
 
   void begin(ByteWindow chunk, char* point) override;
   void next(char* point) override;
 
  private:
-  std::size_t colour_place() const { return sizeof(Point10) + (has_time_ ? 8 : 0); }
-  std::size_t extra_place() const { return colour_place() + (has_colour_ ? 6 : 0); }
+  std::size_t colour_offset() const { return sizeof(Point10) + (has_time_ ? 8 : 0); }
+  std::size_t extra_offset() const { return colour_offset() + (has_colour_ ? 6 : 0); }
 
   bool has_time_, has_colour_;
   std::vector<char> last_;
@@ -151,11 +149,11 @@ void PointwiseDecoder::next(char* point) {
   put_value(last_.data(), 0, points_.read(*decoder_));
   if (has_time_) put_value(last_.data(), sizeof(Point10), times_.read(*decoder_));
   if (has_colour_) {
-    const auto colour = value_at<Colour>(last_.data(), colour_place());
-    put_value(last_.data(), colour_place(), colours_.read(*decoder_, colour));
+    const auto colour = value_at<Colour>(last_.data(), colour_offset());
+    put_value(last_.data(), colour_offset(), colours_.read(*decoder_, colour));
   }
   for (std::size_t i = 0; i < extra_.size(); ++i) {
-    char& byte = last_[extra_place() + i];
+    char& byte = last_[extra_offset() + i];
     byte = static_cast<char>(static_cast<std::uint8_t>(byte) + decoder_->symbol(extra_[i]));
   }
   std::memcpy(point, last_.data(), last_.size());

@@ -43,9 +43,9 @@ inline constexpr std::array<ReturnRow, 16> return_contexts = {{
 }};
 
 /// Returns the number of returns of the pulse below this return, at most 7.
-constexpr std::size_t return_level(std::size_t number_of_returns, std::size_t return_number) {
-  const std::size_t level = number_of_returns > return_number ? number_of_returns - return_number
-                                                              : return_number - number_of_returns;
+constexpr std::size_t return_level(std::size_t num_returns, std::size_t return_number) {
+  const std::size_t level =
+      num_returns > return_number ? num_returns - return_number : return_number - num_returns;
   return std::min<std::size_t>(level, 7);
 }
 

@@ -8,7 +8,7 @@ constexpr int largest_multiple = 500, smallest_multiple = -10;
 constexpr int unchanged = largest_multiple - smallest_multiple + 1, new_sequence = unchanged + 1;
 
 /// Returns the model for correcting a step that is `multiple` times the last step.
-std::size_t context_of(int multiple) {
+std::size_t find_context(int multiple) {
   if (multiple == 0) return 7;
   if (multiple == 1) return 1;
   if (multiple == largest_multiple) return 4;
@@ -36,7 +36,7 @@ std::uint64_t TimeDecoder::read(ArithmeticDecoder& decoder) {
       return sequences_[current_].time;
     }
   }
-  refuse("has compressed points that are damaged: a time belongs to no sequence");
+  throw_bad_file("has compressed points that are damaged: a time belongs to no sequence");
 }
 
 bool TimeDecoder::read_first_step(ArithmeticDecoder& decoder) {
@@ -70,7 +70,7 @@ void TimeDecoder::follow(ArithmeticDecoder& decoder, int multiple) {
   const auto predicted =
       static_cast<std::uint32_t>(multiple) * static_cast<std::uint32_t>(sequence.step);
   const std::int32_t step =
-      steps_.read_signed(decoder, static_cast<std::int32_t>(predicted), context_of(multiple));
+      steps_.read_signed(decoder, static_cast<std::int32_t>(predicted), find_context(multiple));
   const bool is_extreme =
       multiple == 0 || multiple == largest_multiple || multiple == smallest_multiple;
   if (multiple == 1) {

@@ -36,7 +36,7 @@ void append_utf8(std::string& text, std::uint32_t code) {
 bool is_high_half(std::uint32_t unit) { return unit >= 0xD800U && unit < 0xDC00U; }
 bool is_low_half(std::uint32_t unit) { return unit >= 0xDC00U && unit < 0xE000U; }
 
-std::string utf8_of_utf16(string_view bytes, bool is_big_endian) {
+std::string utf16_to_utf8(string_view bytes, bool is_big_endian) {
   const auto unit_at = [&](std::size_t i) -> std::uint32_t {
     const auto first = static_cast<std::uint8_t>(bytes[i]),
                second = static_cast<std::uint8_t>(bytes[i + 1]);
@@ -94,11 +94,11 @@ std::string as_utf8(std::string bytes) {
   const auto is = [&](std::size_t i, int value) {
     return i < bytes.size() && static_cast<std::uint8_t>(bytes[i]) == value;
   };
-  if (is(0, 0xFF) && is(1, 0xFE)) return utf8_of_utf16(string_view(bytes).substr(2), false);
-  if (is(0, 0xFE) && is(1, 0xFF)) return utf8_of_utf16(string_view(bytes).substr(2), true);
+  if (is(0, 0xFF) && is(1, 0xFE)) return utf16_to_utf8(string_view(bytes).substr(2), false);
+  if (is(0, 0xFE) && is(1, 0xFF)) return utf16_to_utf8(string_view(bytes).substr(2), true);
   const auto is_ascii = [&](std::size_t i) { return i < bytes.size() && bytes[i] >= '\t'; };
-  if (is_ascii(0) && is(1, 0) && is_ascii(2) && is(3, 0)) return utf8_of_utf16(bytes, false);
-  if (is(0, 0) && is_ascii(1) && is(2, 0) && is_ascii(3)) return utf8_of_utf16(bytes, true);
+  if (is_ascii(0) && is(1, 0) && is_ascii(2) && is(3, 0)) return utf16_to_utf8(bytes, false);
+  if (is(0, 0) && is_ascii(1) && is(2, 0) && is_ascii(3)) return utf16_to_utf8(bytes, true);
   return bytes;
 }
 

@@ -44,7 +44,7 @@ PlyType parse_type(const TextScanner& scanner, std::optional<std::string_view> w
                "double, or int8 ... float64");
 }
 
-std::size_t size_of(PlyType type) {
+std::size_t compute_size(PlyType type) {
   switch (type) {
     case PlyType::int8:
     case PlyType::uint8:
@@ -118,7 +118,7 @@ PlyProperty parse_property(TextScanner& scanner) {
   return property;
 }
 
-std::string_view name_of(PlyType type) {
+std::string_view to_string(PlyType type) {
   return std::ranges::find(type_names, type, [](const auto& row) { return row.second; })->first;
 }
 
@@ -137,21 +137,21 @@ std::string ply_header(std::span<const PlyElement> elements, std::string_view co
     text += "element " + element.name + " " + std::to_string(element.count) + "\n";
     for (const PlyProperty& property : element.properties) {
       text += "property ";
-      if (property.count_type) text.append("list ").append(name_of(*property.count_type)) += ' ';
-      text.append(name_of(property.type)).append(" ").append(property.name) += '\n';
+      if (property.count_type) text.append("list ").append(to_string(*property.count_type)) += ' ';
+      text.append(to_string(property.type)).append(" ").append(property.name) += '\n';
     }
   }
   return text + "end_header\n";
 }
 
 std::string growing_ply_header(const PlyElement& element) {
-  constexpr std::size_t most_digits = 20;  // digits of a 64-bit number
+  constexpr std::size_t max_digits = 20;  // digits of a 64-bit number
   const std::size_t digits = std::to_string(element.count).size();
-  return ply_header({&element, 1}, "written by Skycap" + std::string(most_digits - digits, ' '));
+  return ply_header({&element, 1}, "written by Skycap" + std::string(max_digits - digits, ' '));
 }
 
 // Column of each property of an element, or -1, and index of the list property.
-struct PlyReader::Wanted {
+struct PlyReader::PropertyIndices {
   std::vector<int> column;
   std::size_t list;
   std::size_t smallest_row;  // [bytes]
@@ -230,24 +230,25 @@ void PlyReader::read_header() {
   if (has_bare_returns && bytes_.substr(end, at_ - end).ends_with("\r\n")) --at_;
 }
 
-PlyReader::Wanted PlyReader::wanted_of(const PlyElement& element,
-                                       std::span<const std::string_view> scalars,
-                                       std::span<const std::string_view> lists) const {
-  Wanted wanted{std::vector<int>(element.properties.size(), -1), element.properties.size(), 0};
+PlyReader::PropertyIndices PlyReader::find_property_indices(
+    const PlyElement& element, std::span<const std::string_view> scalars,
+    std::span<const std::string_view> lists) const {
+  PropertyIndices property_indices{std::vector<int>(element.properties.size(), -1),
+                                   element.properties.size(), 0};
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const PlyProperty& property = element.properties[p];
-    wanted.smallest_row +=
-        format_ == Format::ascii ? 2 : size_of(property.count_type.value_or(property.type));
+    property_indices.smallest_row +=
+        format_ == Format::ascii ? 2 : compute_size(property.count_type.value_or(property.type));
     const auto names = property.count_type ? lists : scalars;
     const auto name = std::find(names.begin(), names.end(), property.name);
     if (name == names.end()) continue;
     if (!property.count_type) {
-      wanted.column[p] = static_cast<int>(name - names.begin());
-    } else if (wanted.list == element.properties.size()) {
-      wanted.list = p;
+      property_indices.column[p] = static_cast<int>(name - names.begin());
+    } else if (property_indices.list == element.properties.size()) {
+      property_indices.list = p;
     }
   }
-  return wanted;
+  return property_indices;
 }
 
 PlyTable PlyReader::read_element(std::span<const std::string_view> scalars) {
@@ -255,10 +256,10 @@ PlyTable PlyReader::read_element(std::span<const std::string_view> scalars) {
 }
 
 PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
-                              std::span<const std::string_view> lists, std::uint64_t most_rows) {
+                              std::span<const std::string_view> lists, std::uint64_t max_rows) {
   const PlyElement& element = elements_.at(next_element_);
   const std::uint64_t left = element.count - next_row_;
-  const Rows rows{element, next_row_, next_row_ + std::min(left, most_rows)};
+  const Rows rows{element, next_row_, next_row_ + std::min(left, max_rows)};
   PlyTable table;
   table.columns.resize(scalars.size());
   if (element.properties.empty() || element.count == 0) {
@@ -266,21 +267,22 @@ PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
     pass_rows(table.rows);
     return table;
   }
-  const Wanted wanted = wanted_of(element, scalars, lists);
+  const PropertyIndices property_indices = find_property_indices(element, scalars, lists);
 
   // The last ASCII row needs no line end, hence the 1.
-  if (left > (bytes_.size() - at_ + 1) / std::max<std::size_t>(wanted.smallest_row, 1)) {
+  if (left > (bytes_.size() - at_ + 1) / std::max<std::size_t>(property_indices.smallest_row, 1)) {
     fail("the header declares " + std::to_string(element.count) + " of element '" + element.name +
          "', but the file is too short; it may be truncated");
   }
-  for (const int column : wanted.column) {
+  for (const int column : property_indices.column) {
     if (column >= 0) table.columns[static_cast<std::size_t>(column)].reserve(rows.end - rows.begin);
   }
-  if (wanted.list < element.properties.size()) {
+  if (property_indices.list < element.properties.size()) {
     table.list_begin.reserve(rows.end - rows.begin + 1);
     table.list_begin.push_back(0);
   }
-  format_ == Format::ascii ? read_ascii(rows, wanted, table) : read_binary(rows, wanted, table);
+  format_ == Format::ascii ? read_ascii(rows, property_indices, table)
+                           : read_binary(rows, property_indices, table);
   pass_rows(table.rows);
   return table;
 }
@@ -303,45 +305,47 @@ void PlyReader::require_short(const Rows& rows, const PlyTable& table, std::uint
        std::to_string(values) + " values; the maximum is 1e6");
 }
 
-std::int64_t PlyReader::index_of(const Rows& rows, double value) const {
-  constexpr double most = 1e15;  // integers are exact up to this value
-  if (std::abs(value) <= most && value == std::floor(value)) {
+std::int64_t PlyReader::parse_index(const Rows& rows, double value) const {
+  constexpr double max = 1e15;  // integers are exact up to this value
+  if (std::abs(value) <= max && value == std::floor(value)) {
     return static_cast<std::int64_t>(value);
   }
   fail(rows.element.name + " has a list with " + std::to_string(value) +
        "; its values must be integers");
 }
 
-void PlyReader::read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table) {
+void PlyReader::read_scalars(const Rows& rows, const PropertyIndices& property_indices,
+                             PlyTable& table) {
   const PlyElement& element = rows.element;
   std::size_t row_size = 0;
-  for (const PlyProperty& property : element.properties) row_size += size_of(property.type);
+  for (const PlyProperty& property : element.properties) row_size += compute_size(property.type);
   const std::size_t whole_rows = (bytes_.size() - at_) / row_size;
   if (whole_rows < element.count - rows.begin) fail_within(element, rows.begin + whole_rows);
   const bool swap = format_ == Format::big_endian;
   const char* first = bytes_.data() + at_;
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const PlyType type = element.properties[p].type;
-    if (wanted.column[p] >= 0) {
-      auto& column = table.columns[static_cast<std::size_t>(wanted.column[p])];
+    if (property_indices.column[p] >= 0) {
+      auto& column = table.columns[static_cast<std::size_t>(property_indices.column[p])];
       with_type(type, [&]<typename Value>(std::type_identity<Value>) {
         for (std::size_t row = 0; row < rows.end - rows.begin; ++row) {
           column.push_back(load<Value>(first + row * row_size, swap));
         }
       });
     }
-    first += size_of(type);
+    first += compute_size(type);
   }
   table.rows = rows.end - rows.begin;
   at_ += table.rows * row_size;
 }
 
-void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& table) {
+void PlyReader::read_binary(const Rows& rows, const PropertyIndices& property_indices,
+                            PlyTable& table) {
   const PlyElement& element = rows.element;
   const bool has_lists = std::ranges::any_of(element.properties, [](const PlyProperty& property) {
     return property.count_type.has_value();
   });
-  if (!has_lists) return read_scalars(rows, wanted, table);
+  if (!has_lists) return read_scalars(rows, property_indices, table);
   const bool swap = format_ == Format::big_endian;
   for (std::uint64_t row = rows.begin; row < rows.end && !is_full(table); ++row, ++table.rows) {
     const auto take = [&](std::size_t size) {
@@ -354,31 +358,32 @@ void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& ta
     };
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const auto& [name, type, count_type] = element.properties[p];
-      const std::size_t size = size_of(type);
+      const std::size_t size = compute_size(type);
       if (!count_type) {
         const char* value = take(size);
-        if (wanted.column[p] < 0) continue;
-        table.columns[static_cast<std::size_t>(wanted.column[p])].push_back(
+        if (property_indices.column[p] < 0) continue;
+        table.columns[static_cast<std::size_t>(property_indices.column[p])].push_back(
             load(type, value, swap));
         continue;
       }
-      const double count = load(*count_type, take(size_of(*count_type)), swap);
+      const double count = load(*count_type, take(compute_size(*count_type)), swap);
       if (count < 0.0) {
         fail(element.name + " " + std::to_string(row) + " has a list of negative length");
       }
       const auto values = static_cast<std::size_t>(count);
       const char* start = take(values * size);
-      if (p != wanted.list) continue;
+      if (p != property_indices.list) continue;
       require_short(rows, table, values);
       for (std::size_t i = 0; i < values; ++i) {
-        table.list_values.push_back(index_of(rows, load(type, start + i * size, swap)));
+        table.list_values.push_back(parse_index(rows, load(type, start + i * size, swap)));
       }
       table.list_begin.push_back(table.list_values.size());
     }
   }
 }
 
-void PlyReader::read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& table) {
+void PlyReader::read_ascii(const Rows& rows, const PropertyIndices& property_indices,
+                           PlyTable& table) {
   const PlyElement& element = rows.element;
   TextScanner scanner(name_, bytes_.substr(at_), line_);
   for (std::uint64_t row = rows.begin; row < rows.end && !is_full(table); ++row, ++table.rows) {
@@ -386,25 +391,25 @@ void PlyReader::read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& tab
       const PlyProperty& property = element.properties[p];
       if (!property.count_type) {
         const auto word = scanner.word();
-        if (wanted.column[p] < 0 && word) continue;
+        if (property_indices.column[p] < 0 && word) continue;
         const auto value = scanner.number<double>(word, "a number (" + property.name + ")");
-        if (wanted.column[p] >= 0) {
-          table.columns[static_cast<std::size_t>(wanted.column[p])].push_back(value);
+        if (property_indices.column[p] >= 0) {
+          table.columns[static_cast<std::size_t>(property_indices.column[p])].push_back(value);
         }
         continue;
       }
       const auto count = scanner.number<std::uint32_t>(scanner.word(), "the length of a list");
-      if (p == wanted.list) require_short(rows, table, count);
+      if (p == property_indices.list) require_short(rows, table, count);
       for (std::uint32_t i = 0; i < count; ++i) {
         const auto word = scanner.word();
-        if (p != wanted.list && word) continue;
+        if (p != property_indices.list && word) continue;
         // Some programs write indices as real numbers.
         const auto value = is_integer(property.type)
                                ? scanner.number<std::int64_t>(word, "an index")
-                               : index_of(rows, scanner.number<double>(word, "an index"));
-        if (p == wanted.list) table.list_values.push_back(value);
+                               : parse_index(rows, scanner.number<double>(word, "an index"));
+        if (p == property_indices.list) table.list_values.push_back(value);
       }
-      if (p == wanted.list) table.list_begin.push_back(table.list_values.size());
+      if (p == property_indices.list) table.list_begin.push_back(table.list_values.size());
     }
   }
   at_ = bytes_.size() - scanner.remaining();

@@ -64,25 +64,26 @@ class PlyReader {
   /// multiple of the file size.
   PlyTable read_element(std::span<const std::string_view> scalars);
 
-  /// Reads up to `most_rows` further rows of the current element, because numbers take several
+  /// Reads up to `max_rows` further rows of the current element, because numbers take several
   /// times the memory of the file. Reads the first list property with one of the names `lists`.
   /// Stops early after the row with which the lists reach `longest_ply_list` values. After its last
   /// row, the element is complete.
   PlyTable read_rows(std::span<const std::string_view> scalars,
-                     std::span<const std::string_view> lists, std::uint64_t most_rows);
+                     std::span<const std::string_view> lists, std::uint64_t max_rows);
 
  private:
-  struct Wanted;
+  struct PropertyIndices;
   struct Rows;
   void read_header();
-  Wanted wanted_of(const PlyElement& element, std::span<const std::string_view> scalars,
-                   std::span<const std::string_view> lists) const;
+  PropertyIndices find_property_indices(const PlyElement& element,
+                                        std::span<const std::string_view> scalars,
+                                        std::span<const std::string_view> lists) const;
   void pass_rows(std::uint64_t count);
-  void read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table);
+  void read_scalars(const Rows& rows, const PropertyIndices& property_indices, PlyTable& table);
   void require_short(const Rows& rows, const PlyTable& table, std::uint64_t values) const;
-  std::int64_t index_of(const Rows& rows, double value) const;
-  void read_binary(const Rows& rows, const Wanted& wanted, PlyTable& table);
-  void read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& table);
+  std::int64_t parse_index(const Rows& rows, double value) const;
+  void read_binary(const Rows& rows, const PropertyIndices& property_indices, PlyTable& table);
+  void read_ascii(const Rows& rows, const PropertyIndices& property_indices, PlyTable& table);
   [[noreturn]] void fail_within(const PlyElement& element, std::uint64_t row) const;
   [[noreturn]] void fail(const std::string& what) const;
 

@@ -45,7 +45,7 @@ class TextScanner {
   }
 
   /// Returns the rest of this line without surrounding blanks.
-  std::string_view rest_of_line() {
+  std::string_view remaining_line() {
     const std::size_t begin = at_;
     at_ = end_of_line();
     return trimmed(text_.substr(begin, at_ - begin));
@@ -76,11 +76,11 @@ class TextScanner {
           std::from_chars(digits.data(), digits.data() + digits.size(), value);
       if (error == std::errc() && end == digits.data() + digits.size()) return value;
     }
-    fail_of(*word, what);
+    fail_on_word(*word, what);
   }
 
   /// Throws an Error about an unexpected word.
-  [[noreturn]] void fail_of(std::string_view word, std::string_view what) const {
+  [[noreturn]] void fail_on_word(std::string_view word, std::string_view what) const {
     const std::string quoted = "'" + std::string(word.substr(0, 40)) + "'";
     if (has_decimal_comma(word)) {
       fail(quoted + " has a comma for the decimal point; write numbers with points");

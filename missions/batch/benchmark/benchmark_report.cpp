@@ -49,7 +49,7 @@ Json curves_json(const std::vector<Trial>& trials) {
   return {{"views", curve_json(trials, CurveAxis::views)},
           {"planning_time_s", curve_json(trials, CurveAxis::planning_time)},
           {"distance_m", curve_json(trials, CurveAxis::distance)},
-          {"flown_s", curve_json(trials, CurveAxis::flown_time)}};
+          {"flown_s", curve_json(trials, CurveAxis::flight_time)}};
 }
 
 /// Returns a list of trials: {"seed", "stop_reason", "views", "coverage", "distance_m",
@@ -58,11 +58,11 @@ Json each_trial_json(const std::vector<Trial>& trials) {
   Json list = Json::array();
   for (const Trial& trial : trials) {
     list.push_back({{"seed", trial.seed},
-                    {"stop_reason", session::name_of(trial.stop_reason)},
+                    {"stop_reason", session::to_string(trial.stop_reason)},
                     {"views", trial.views},
                     {"coverage", trial.coverage.all},
                     {"distance_m", trial.distance},
-                    {"flown_s", trial.is_flown() ? Json(*trial.flown_time()) : Json()},
+                    {"flown_s", trial.has_vehicle() ? Json(*trial.flight_time()) : Json()},
                     {"planning_time_s", trial.planning_time}});
   }
   return list;
@@ -92,15 +92,15 @@ constexpr std::array trial_figures{
 
 /// Returns the reference result given in the mission, or else the SEE++ paper's result for the
 /// model.
-std::optional<double> reference_of(const config::MissionSetup& mission, const Figure& figure) {
+std::optional<double> find_reference(const config::MissionSetup& mission, const Figure& figure) {
   if (figure.reference == nullptr) return std::nullopt;
   if (const auto& given = mission.reference.*figure.reference) return given;
   const auto paper =
-      paper_result(mission.name, survey::title_of(mission.survey().planner.name).word);
+      paper_result(mission.name, survey::find_title(mission.survey().planner.name).word);
   return paper ? std::optional((*paper).*figure.in_table_1) : std::nullopt;
 }
 
-Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
+Statistic compute_statistic(const std::vector<Trial>& trials, const Figure& figure) {
   std::vector<double> numbers;
   numbers.reserve(trials.size());
   for (const Trial& trial : trials) numbers.push_back(figure.of(trial));
@@ -124,9 +124,9 @@ std::vector<double> mean_curve(const std::vector<Trial>& trials,
   return means;
 }
 
-Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+Json to_json(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
 
-std::string csv_of(const std::optional<double>& number) {
+std::string to_csv(const std::optional<double>& number) {
   return number ? support::exact_text(*number) : std::string();
 }
 
@@ -164,9 +164,9 @@ std::string formatted(const char* format, double number) {
   return fmt::format(fmt::runtime(format), number);
 }
 
-std::string title_of(const std::string& planner) {
-  const Contestant* contestant = find_contestant(planner);
-  return contestant ? contestant->title : planner;
+std::string find_title(const std::string& planner) {
+  const Method* method = find_method(planner);
+  return method ? method->title : planner;
 }
 
 template <typename Member>
@@ -178,8 +178,8 @@ std::vector<std::string> distinct(const std::vector<BenchmarkCell>& cells, Membe
   return values;
 }
 
-const BenchmarkCell* cell_of(const std::vector<BenchmarkCell>& cells, const std::string& mission,
-                             const std::string& planner) {
+const BenchmarkCell* find_cell(const std::vector<BenchmarkCell>& cells, const std::string& mission,
+                               const std::string& planner) {
   const auto found = std::ranges::find_if(cells, [&](const BenchmarkCell& cell) {
     return cell.mission == mission && cell.planner == planner;
   });
@@ -195,29 +195,29 @@ struct Mark {
 };
 
 /// Returns the coverage of the paper's SEE++, and of SEE++ and SEE in this benchmark.
-std::vector<Mark> marks_of(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+std::vector<Mark> make_marks(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
   std::vector<Mark> marks;
   if (const auto paper = paper_result(mission, "see++")) {
     marks.push_back({"paper", "the paper's SEE++", paper->coverage, {}});
   }
   for (const char* planner : {"see++", "see"}) {
-    const BenchmarkCell* cell = cell_of(cells, mission, planner);
+    const BenchmarkCell* cell = find_cell(cells, mission, planner);
     if (!cell || cell->trials.empty()) continue;
-    const CellFigures whole = figures_of(*cell);
-    marks.push_back({planner, title_of(planner) + " here", whole.coverage.mean, whole});
+    const CellFigures whole = compute_figures(*cell);
+    marks.push_back({planner, find_title(planner) + " here", whole.coverage.mean, whole});
   }
   return marks;
 }
 
-Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells) {
+Json to_json(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells) {
   Json json{{"mission", cell.mission},
             {"planner", cell.planner},
-            {"title", title_of(cell.planner)},
+            {"title", find_title(cell.planner)},
             {"trials", cell.trials.size()}};
   if (cell.trials.empty()) return json;
   json["trials_complete"] =
       std::ranges::count(cell.trials, survey::StopReason::complete, &Trial::stop_reason);
-  const CellFigures figures = figures_of(cell);
+  const CellFigures figures = compute_figures(cell);
   const auto paper = paper_result(cell.mission, cell.planner);
   for (const Column& column : columns(Times::shown)) {
     const Statistic& ours = figures.*column.ours;
@@ -228,8 +228,9 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
   }
   if (figures.coverage_visible)
     json["coverage_visible"] = statistic_json(*figures.coverage_visible);
-  if (figures.flown_time) json["flown_s"] = statistic_json(*figures.flown_time);
-  json["attainable_coverage"] = figures.ceiling ? Json(*figures.ceiling) : Json();
+  if (figures.flight_time) json["flown_s"] = statistic_json(*figures.flight_time);
+  json["attainable_coverage"] =
+      figures.attainable_coverage ? Json(*figures.attainable_coverage) : Json();
   const ViewFigures per_view = view_figures(cell.trials);
   json["frontiers_per_view"] = statistic_json(per_view.frontiers);
   json["coverage_per_view"] = statistic_json(per_view.coverage);
@@ -238,7 +239,7 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
                      {"share_by_views", targets.share_by_views},
                      {"distance_bin_m", target_distance_bin},
                      {"share_by_distance", targets.share_by_distance}};
-  for (const Mark& mark : marks_of(cells, cell.mission)) {
+  for (const Mark& mark : make_marks(cells, cell.mission)) {
     const auto reach = reach_figures(cell.trials, mark.coverage);
     Json& to = json["until_coverage_of"][mark.key];
     to["coverage"] = mark.coverage;
@@ -275,14 +276,15 @@ std::string table_1(const std::vector<BenchmarkCell>& cells, Times times) {
   }
   std::string text = row(head) + rule(head.size());
   for (const std::string& planner : distinct(cells, &BenchmarkCell::planner)) {
-    std::vector<std::string> line{title_of(planner)};
+    std::vector<std::string> line{find_title(planner)};
     for (const std::string& mission : missions) {
-      const BenchmarkCell* cell = cell_of(cells, mission, planner);
+      const BenchmarkCell* cell = find_cell(cells, mission, planner);
       const auto paper = paper_result(mission, planner);
       for (const Column& column : columns(times)) {
         std::string entry = "-";
         if (cell && !cell->trials.empty()) {
-          entry = formatted(column.format, (figures_of(*cell).*column.ours).mean / column.unit);
+          entry =
+              formatted(column.format, (compute_figures(*cell).*column.ours).mean / column.unit);
         }
         if (paper) {
           entry += " (" + formatted(column.format, (*paper).*column.papers / column.unit) + ")";
@@ -323,19 +325,20 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
   std::string text = row(head) + rule(head.size());
   for (const BenchmarkCell& cell : cells) {
     if (cell.mission != mission || cell.trials.empty()) continue;
-    const CellFigures figures = figures_of(cell);
+    const CellFigures figures = compute_figures(cell);
     const auto paper = paper_result(mission, cell.planner);
-    std::vector<std::string> line{title_of(cell.planner), std::to_string(cell.trials.size())};
+    std::vector<std::string> line{find_title(cell.planner), std::to_string(cell.trials.size())};
     for (const Column& column : columns(times)) {
       line.push_back(with_certainty(column, figures.*column.ours, paper));
     }
     line.push_back(figures.coverage_visible
                        ? formatted("{:.1f}", 100.0 * figures.coverage_visible->mean)
                        : "-");
-    line.push_back(figures.ceiling
-                       ? formatted("{:.1f}", 100.0 * figures.coverage.mean / *figures.ceiling)
-                       : "-");
-    line.push_back(figures.flown_time ? with_spread(*figures.flown_time) : "-");
+    line.push_back(
+        figures.attainable_coverage
+            ? formatted("{:.1f}", 100.0 * figures.coverage.mean / *figures.attainable_coverage)
+            : "-");
+    line.push_back(figures.flight_time ? with_spread(*figures.flight_time) : "-");
     text += row(line);
   }
   return text;
@@ -346,7 +349,7 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
 std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::string& mission,
                         Times times) {
   std::string text;
-  for (const Mark& mark : marks_of(cells, mission)) {
+  for (const Mark& mark : make_marks(cells, mission)) {
     const auto entry = [&](const Column& column, const Statistic& ours) {
       std::string number = formatted(column.format, ours.mean / column.unit);
       const double whole = mark.whole ? ((*mark.whole).*column.ours).mean : 0.0;
@@ -357,7 +360,7 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
       if (cell.mission != mission || cell.planner == mark.key) continue;
       const auto reach = reach_figures(cell.trials, mark.coverage);
       std::vector<std::string> line{
-          mark.title + ", " + formatted("{:.1f}", 100.0 * mark.coverage), title_of(cell.planner),
+          mark.title + ", " + formatted("{:.1f}", 100.0 * mark.coverage), find_title(cell.planner),
           std::to_string(reach ? reach->reached : 0) + " of " + std::to_string(cell.trials.size())};
       for (const Column& column : columns(times)) {
         if (column.ours == &CellFigures::coverage) continue;
@@ -398,7 +401,7 @@ std::string table_2(const std::vector<BenchmarkCell>& cells) {
     if (trials.empty()) continue;
     const ViewFigures figures = view_figures(trials);
     const auto paper = paper_view_result(planner);
-    text += row({title_of(planner), formatted("{:.2f}", figures.frontiers.mean),
+    text += row({find_title(planner), formatted("{:.2f}", figures.frontiers.mean),
                  formatted("{:.2f}", paper->frontiers),
                  formatted("{:.2f}", 100.0 * figures.coverage.mean),
                  formatted("{:.2f}", 100.0 * paper->coverage)});
@@ -414,7 +417,7 @@ std::string figure_6(const std::vector<BenchmarkCell>& cells) {
   for (const char* planner : {"see", "see++"}) {
     const TargetFigures figures = target_figures(standard_trials(cells, planner));
     if (figures.targets == 0) continue;
-    text += row({title_of(planner), std::to_string(figures.targets),
+    text += row({find_title(planner), std::to_string(figures.targets),
                  formatted("{:.1f}", 100.0 * figures.share_by_views.front()),
                  formatted("{:.1f}", 100.0 * figures.share_by_distance[bin])});
   }
@@ -431,11 +434,11 @@ std::string trials_csv(const std::vector<Trial>& trials, Times times) {
       "flown_s";
   csv += has_times ? ",planning_time_s\n" : "\n";
   for (const Trial& trial : trials) {
-    csv += std::to_string(trial.seed) + "," + session::name_of(trial.stop_reason) + "," +
+    csv += std::to_string(trial.seed) + "," + session::to_string(trial.stop_reason) + "," +
            std::to_string(trial.views) + "," + support::exact_text(trial.coverage.all) + "," +
-           csv_of(trial.coverage.visible) + "," + csv_of(trial.coverage.ceiling) + "," +
+           to_csv(trial.coverage.visible) + "," + to_csv(trial.coverage.attainable_coverage) + "," +
            support::exact_text(trial.distance) + "," + std::to_string(trial.points) + "," +
-           csv_of(trial.flown_length) + "," + csv_of(trial.flown_time());
+           to_csv(trial.flight_length) + "," + to_csv(trial.flight_time());
     csv += has_times ? "," + support::exact_text(trial.planning_time) + "\n" : "\n";
   }
   return csv;
@@ -444,8 +447,8 @@ std::string trials_csv(const std::vector<Trial>& trials, Times times) {
 std::string trials_json(const config::MissionSetup& mission, const std::vector<Trial>& trials,
                         std::size_t requested, unsigned threads) {
   Json json{{"mission", mission.name},
-            {"planner", survey::title_of(mission.survey().planner.name).word},
-            {"title", survey::title_of(mission.survey().planner.name).title},
+            {"planner", survey::find_title(mission.survey().planner.name).word},
+            {"title", survey::find_title(mission.survey().planner.name).title},
             {"preset", mission.text("planner.preset")},
             {"first_seed", mission.run.seed},
             {"threads", geometry::thread_count(threads)},
@@ -454,17 +457,18 @@ std::string trials_json(const config::MissionSetup& mission, const std::vector<T
             {"trials_requested", requested},
             {"trials", trials.size()},
             {"trials_complete", completed(trials)},
-            {"attainable_coverage", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
+            {"attainable_coverage",
+             trials.empty() ? Json() : to_json(trials[0].coverage.attainable_coverage)}};
   if (trials.empty()) return support::json_text(json);
   for (const Figure& figure : trial_figures) {
-    json[figure.name] = statistic_json(statistic_of(trials, figure));
-    if (const auto reference = reference_of(mission, figure)) {
+    json[figure.name] = statistic_json(compute_statistic(trials, figure));
+    if (const auto reference = find_reference(mission, figure)) {
       json[figure.name]["paper"] = *reference;
     }
   }
-  if (std::ranges::all_of(trials, &Trial::is_flown)) {
+  if (std::ranges::all_of(trials, &Trial::has_vehicle)) {
     json["flown_s"] = statistic_json(
-        statistic_of(trials, {"", [](const Trial& t) { return *t.flown_time(); }, {}, {}}));
+        compute_statistic(trials, {"", [](const Trial& t) { return *t.flight_time(); }, {}, {}}));
   }
   json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
                              {"distance_m", mean_curve(trials, &Trial::distance_after)}};
@@ -479,8 +483,8 @@ std::string trials_table(const config::MissionSetup& mission, const std::vector<
       fmt::format("{}: {} trials, {} complete\n{:<18} {:>12} {:>10} {:>10} {:>12}\n", mission.name,
                   trials.size(), completed(trials), "", "mean", "+- (95 %)", "sd", "paper");
   for (const Figure& figure : trial_figures) {
-    const Statistic statistic = statistic_of(trials, figure);
-    const auto reference = reference_of(mission, figure);
+    const Statistic statistic = compute_statistic(trials, figure);
+    const auto reference = find_reference(mission, figure);
     table += fmt::format("{:<18} {:12.4g} {:10.2g} {:10.2g} {:>12}\n", figure.name, statistic.mean,
                          statistic.half_width_95, statistic.deviation,
                          reference ? fmt::format("{:.4g}", *reference) : "-");
@@ -490,7 +494,7 @@ std::string trials_table(const config::MissionSetup& mission, const std::vector<
 
 std::string results_json(const std::vector<BenchmarkCell>& cells) {
   Json json{{"version", version}, {"results", Json::array()}};
-  for (const BenchmarkCell& cell : cells) json["results"].push_back(json_of(cell, cells));
+  for (const BenchmarkCell& cell : cells) json["results"].push_back(to_json(cell, cells));
   return support::json_text(json);
 }
 
@@ -504,7 +508,7 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times) {
   csv += ",coverage_visible,attainable_coverage\n";
   for (const BenchmarkCell& cell : cells) {
     if (cell.trials.empty()) continue;
-    const CellFigures figures = figures_of(cell);
+    const CellFigures figures = compute_figures(cell);
     const auto paper = paper_result(cell.mission, cell.planner);
     csv += cell.mission + "," + cell.planner + "," + std::to_string(cell.trials.size());
     for (const Column& column : columns(times)) {
@@ -517,7 +521,9 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times) {
     }
     csv +=
         "," + (figures.coverage_visible ? support::exact_text(figures.coverage_visible->mean) : "");
-    csv += "," + (figures.ceiling ? support::exact_text(*figures.ceiling) : "") + "\n";
+    csv += "," +
+           (figures.attainable_coverage ? support::exact_text(*figures.attainable_coverage) : "") +
+           "\n";
   }
   return csv;
 }
@@ -526,9 +532,9 @@ std::string all_trials_csv(const std::vector<BenchmarkCell>& cells, Times times)
   std::string csv;
   for (const BenchmarkCell& cell : cells) {
     const std::string lines = trials_csv(cell.trials, times);
-    const std::size_t end_of_head = lines.find('\n') + 1;
-    if (csv.empty()) csv = "mission,planner," + lines.substr(0, end_of_head);
-    for (std::size_t begin = end_of_head; begin < lines.size();) {
+    const std::size_t header_end = lines.find('\n') + 1;
+    if (csv.empty()) csv = "mission,planner," + lines.substr(0, header_end);
+    for (std::size_t begin = header_end; begin < lines.size();) {
       const std::size_t end = lines.find('\n', begin) + 1;
       csv += cell.mission + "," + cell.planner + "," + lines.substr(begin, end - begin);
       begin = end;

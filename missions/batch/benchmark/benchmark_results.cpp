@@ -17,14 +17,14 @@ Statistic over(const std::vector<Trial>& trials, Figure figure) {
 double ratio(double a, std::size_t b) { return b > 0 ? a / static_cast<double>(b) : 0.0; }
 
 /// Returns a trial's position on the axis after a view.
-double place(const Trial& trial, CurveAxis axis, std::size_t view) {
+double curve_position(const Trial& trial, CurveAxis axis, std::size_t view) {
   switch (axis) {
     case CurveAxis::views:
       return static_cast<double>(view + 1);
     case CurveAxis::planning_time:
       return trial.planning_time_after[view];
-    case CurveAxis::flown_time:
-      return trial.flown_time_after[view];
+    case CurveAxis::flight_time:
+      return trial.flight_time_after[view];
     case CurveAxis::distance:
       break;
   }
@@ -35,19 +35,19 @@ double place(const Trial& trial, CurveAxis axis, std::size_t view) {
 double coverage_at(const Trial& trial, CurveAxis axis, double x) {
   double coverage = 0.0;
   for (std::size_t view = 0; view < trial.coverage_after.size(); ++view) {
-    if (place(trial, axis, view) > x) break;
+    if (curve_position(trial, axis, view) > x) break;
     coverage = trial.coverage_after[view];
   }
   return coverage;
 }
 
 /// Returns the sampling positions of the curve, up to the end of the longest trial.
-std::vector<double> places(const std::vector<Trial>& trials, CurveAxis axis, std::size_t count) {
+std::vector<double> positions(const std::vector<Trial>& trials, CurveAxis axis, std::size_t count) {
   double first = INFINITY, last = 0.0;
   for (const Trial& trial : trials) {
     if (trial.coverage_after.empty()) continue;
-    first = std::min(first, place(trial, axis, 0));
-    last = std::max(last, place(trial, axis, trial.coverage_after.size() - 1));
+    first = std::min(first, curve_position(trial, axis, 0));
+    last = std::max(last, curve_position(trial, axis, trial.coverage_after.size() - 1));
   }
   std::vector<double> xs;
   if (!std::isfinite(first)) return xs;
@@ -63,21 +63,21 @@ std::vector<double> places(const std::vector<Trial>& trials, CurveAxis axis, std
 
 }  // namespace
 
-CellFigures figures_of(const BenchmarkCell& cell) {
+CellFigures compute_figures(const BenchmarkCell& cell) {
   const std::vector<Trial>& trials = cell.trials;
   CellFigures figures{
       .views = over(trials, [](const Trial& t) { return static_cast<double>(t.views); }),
       .coverage = over(trials, [](const Trial& t) { return t.coverage.all; }),
       .coverage_visible = {},
-      .ceiling = trials.front().coverage.ceiling,
+      .attainable_coverage = trials.front().coverage.attainable_coverage,
       .planning_time = over(trials, [](const Trial& t) { return t.planning_time; }),
       .distance = over(trials, [](const Trial& t) { return t.distance; })};
   const auto has_visible = [](const Trial& t) { return t.coverage.visible.has_value(); };
   if (std::ranges::all_of(trials, has_visible)) {
     figures.coverage_visible = over(trials, [](const Trial& t) { return *t.coverage.visible; });
   }
-  if (std::ranges::all_of(trials, &Trial::is_flown)) {
-    figures.flown_time = over(trials, [](const Trial& t) { return *t.flown_time(); });
+  if (std::ranges::all_of(trials, &Trial::has_vehicle)) {
+    figures.flight_time = over(trials, [](const Trial& t) { return *t.flight_time(); });
   }
   return figures;
 }
@@ -108,9 +108,9 @@ std::optional<ReachFigures> reach_figures(const std::vector<Trial>& trials, doub
 std::vector<CurvePoint> coverage_curve(const std::vector<Trial>& trials, CurveAxis axis,
                                        std::size_t count) {
   std::vector<CurvePoint> curve;
-  const bool is_of_flights = axis == CurveAxis::flown_time;
-  if (is_of_flights && !std::ranges::all_of(trials, &Trial::is_flown)) return curve;
-  for (const double x : places(trials, axis, count)) {
+  const bool is_time_axis = axis == CurveAxis::flight_time;
+  if (is_time_axis && !std::ranges::all_of(trials, &Trial::has_vehicle)) return curve;
+  for (const double x : positions(trials, axis, count)) {
     const Statistic coverage =
         over(trials, [&](const Trial& trial) { return coverage_at(trial, axis, x); });
     curve.push_back({x, coverage.mean, coverage.deviation});

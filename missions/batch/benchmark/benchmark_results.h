@@ -23,14 +23,14 @@ struct CellFigures {
   Statistic coverage;  ///< fraction of the surface
   /// Fraction of the surface visible from admissible views.
   std::optional<Statistic> coverage_visible;
-  std::optional<double> ceiling;  ///< attainable coverage, as a fraction of the surface
-  Statistic planning_time;        ///< [s]
+  std::optional<double> attainable_coverage;  ///< attainable coverage, as a fraction of the surface
+  Statistic planning_time;                    ///< [s]
   Statistic distance;
-  std::optional<Statistic> flown_time;  ///< flight time of a vehicle [s]
+  std::optional<Statistic> flight_time;  ///< flight time of a vehicle [s]
 };
 
 /// Computes the figures of a cell, which must contain at least one trial.
-CellFigures figures_of(const BenchmarkCell& cell);
+CellFigures compute_figures(const BenchmarkCell& cell);
 
 /// Figures of Table 2 of the paper.
 struct ViewFigures {
@@ -50,7 +50,7 @@ struct ReachFigures {
 std::optional<ReachFigures> reach_figures(const std::vector<Trial>& trials, double coverage);
 
 /// Quantity on the x axis of coverage curves.
-enum class CurveAxis { views, planning_time, distance, flown_time };
+enum class CurveAxis { views, planning_time, distance, flight_time };
 
 struct CurvePoint {
   double x = 0.0;

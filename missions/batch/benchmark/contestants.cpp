@@ -13,7 +13,7 @@ namespace skycap::missions::batch {
 namespace {
 
 /// Creates a contestant for a planner supported by planner.name.
-Contestant contestant_of(const survey::PlannerTitle& planner) {
+Method make_method(const survey::PlannerTitle& planner) {
   return {
       .name = std::string(planner.word),
       .title = std::string(planner.title),
@@ -26,7 +26,7 @@ Contestant contestant_of(const survey::PlannerTitle& planner) {
 }
 
 /// Returns the oracle, a reference planner with access to the scene.
-Contestant oracle() {
+Method oracle() {
   const auto survey = [](const evaluation::SimulationOptions& options,
                          const evaluation::SurveyScene& scene, std::uint64_t seed,
                          std::stop_token stop) {
@@ -37,42 +37,41 @@ Contestant oracle() {
 
 }  // namespace
 
-const std::vector<Contestant>& contestants() {
-  static const std::vector<Contestant> all = [] {
-    std::vector<Contestant> list;
+const std::vector<Method>& methods() {
+  static const std::vector<Method> all = [] {
+    std::vector<Method> list;
     for (const survey::PlannerTitle& planner : survey::planner_titles) {
-      list.push_back(contestant_of(planner));
+      list.push_back(make_method(planner));
     }
     // std::ranges::stable_partition does not compile with clang 14.
-    std::stable_partition(list.begin(), list.end(), std::mem_fn(&Contestant::is_in_all));
+    std::stable_partition(list.begin(), list.end(), std::mem_fn(&Method::is_in_all));
     list.push_back(oracle());
     return list;
   }();
   return all;
 }
 
-std::vector<const Contestant*> contestants_named(const std::vector<std::string>& names) {
-  std::vector<const Contestant*> chosen;
+std::vector<const Method*> methods_by_name(const std::vector<std::string>& names) {
+  std::vector<const Method*> chosen;
   std::string known;
   const bool has_all = std::ranges::find(names, "all") != names.end();
-  for (const Contestant& contestant : contestants()) {
-    known += (known.empty() ? "" : ", ") + contestant.name;
+  for (const Method& method : methods()) {
+    known += (known.empty() ? "" : ", ") + method.name;
     const bool is_named =
-        std::ranges::find(names, contestant.name, config::current_planner) != names.end();
-    if (is_named || (has_all && contestant.is_in_all)) chosen.push_back(&contestant);
+        std::ranges::find(names, method.name, config::current_planner) != names.end();
+    if (is_named || (has_all && method.is_in_all)) chosen.push_back(&method);
   }
   for (const std::string& name : names) {
-    if (name == "all" || find_contestant(name)) continue;
+    if (name == "all" || find_method(name)) continue;
     throw Error(ErrorKind::bad_usage,
                 "unknown planner '" + name + "'; expected all or some of " + known);
   }
   return chosen;
 }
 
-const Contestant* find_contestant(std::string_view name) {
-  const auto found =
-      std::ranges::find(contestants(), config::current_planner(name), &Contestant::name);
-  return found == contestants().end() ? nullptr : &*found;
+const Method* find_method(std::string_view name) {
+  const auto found = std::ranges::find(methods(), config::current_planner(name), &Method::name);
+  return found == methods().end() ? nullptr : &*found;
 }
 
 }  // namespace skycap::missions::batch

@@ -1,4 +1,4 @@
-/// Planners that a benchmark can compare. Add new planners to contestants().
+/// Planners that a benchmark can compare. Add new planners to methods().
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace skycap::missions::batch {
 
-struct Contestant {
+struct Method {
   std::string name;   ///< name on the command line; equal to planner.name if that key supports it
   std::string title;  ///< title in tables
   bool is_in_all = true;  ///< whether `--planners all` includes it
@@ -30,13 +30,13 @@ struct Contestant {
 
 /// Returns the contestants in the order of the paper's tables, followed by planners not in the
 /// paper.
-const std::vector<Contestant>& contestants();
+const std::vector<Method>& methods();
 
-/// Returns the contestants with the given names, in the order of contestants(). "all" selects those
+/// Returns the contestants with the given names, in the order of methods(). "all" selects those
 /// with is_in_all. Throws Error{bad_usage} with a list of known names if a name is unknown.
-std::vector<const Contestant*> contestants_named(const std::vector<std::string>& names);
+std::vector<const Method*> methods_by_name(const std::vector<std::string>& names);
 
 /// Returns the contestant with the given name, or null.
-const Contestant* find_contestant(std::string_view name);
+const Method* find_method(std::string_view name);
 
 }  // namespace skycap::missions::batch

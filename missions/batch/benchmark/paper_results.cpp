@@ -13,11 +13,11 @@ constexpr std::array<std::string_view, 4> models{"teapot", "bunny", "dragon", "r
 
 struct Row {
   survey::PlannerName planner;
-  std::array<PaperResult, 4> of_model;
+  std::array<PaperResult, 4> by_model;
 };
 
 // Coverage in percent, as in the paper.
-constexpr std::array<Row, 9> rows_of_table_1{{
+constexpr std::array<Row, 9> table_1_rows{{
     {survey::PlannerName::see_plus_plus,
      {{{22.3, 97.1, 20.1, 29.7},
        {31.5, 99.4, 46.0, 40.9},
@@ -69,10 +69,10 @@ constexpr std::array<Row, 9> rows_of_table_1{{
 
 std::optional<PaperResult> paper_result(std::string_view mission, std::string_view planner) {
   const auto model = std::ranges::find(models, mission);
-  const auto row = std::ranges::find(rows_of_table_1, survey::planner_called(planner),
+  const auto row = std::ranges::find(table_1_rows, survey::planner_called(planner),
                                      [](const Row& entry) { return std::optional(entry.planner); });
-  if (model == models.end() || row == rows_of_table_1.end()) return std::nullopt;
-  PaperResult result = row->of_model[static_cast<std::size_t>(model - models.begin())];
+  if (model == models.end() || row == table_1_rows.end()) return std::nullopt;
+  PaperResult result = row->by_model[static_cast<std::size_t>(model - models.begin())];
   result.coverage /= 100.0;
   return result;
 }

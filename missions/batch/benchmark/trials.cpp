@@ -26,17 +26,17 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::vector<ObservedTarget> observed_targets(const std::vector<session::JudgedView>& views) {
+std::vector<ObservedTarget> observed_targets(const std::vector<session::EvaluatedView>& views) {
   std::vector<ObservedTarget> observed;
   ObservedTarget current;
   double distance_before = 0.0;
-  for (const session::JudgedView& view : views) {
-    const double way = view.surveyed.distance - distance_before;
+  for (const session::EvaluatedView& view : views) {
+    const double flown = view.surveyed.distance - distance_before;
     distance_before = view.surveyed.distance;
     const std::optional<bool>& is_resolved = view.surveyed.step.target_resolved;
     if (!is_resolved) continue;  // the first view has no target
     ++current.views;
-    current.distance += way;
+    current.distance += flown;
     if (!*is_resolved) continue;
     observed.push_back(current);
     current = {};
@@ -68,21 +68,22 @@ SceneTruth scene_truth(const evaluation::SurveyScene& scene, unsigned threads,
                        const std::stop_token& stop) {
   SceneTruth truth{scene.visible(threads, stop), {}};
   if (const auto marks = scene.attainable(truth.is_visible, threads, stop)) {
-    truth.ceiling = evaluation::marked_share(*marks);
+    truth.attainable_coverage = evaluation::marked_share(*marks);
   }
   return truth;
 }
 
-Trial trial_of(const session::SurveyRecord& record, const SceneTruth& truth) {
+Trial make_trial(const session::SurveyRecord& record, const SceneTruth& truth) {
   Trial trial;
   trial.seed = record.seed;
   trial.stop_reason = record.stop_reason;
   trial.coverage = {record.coverage(),
-                    evaluation::covered_share(record.is_covered, truth.is_visible), truth.ceiling};
+                    evaluation::covered_share(record.is_covered, truth.is_visible),
+                    truth.attainable_coverage};
   trial.views = record.views.size();
   trial.points = record.cloud.size();
   trial.distance = record.distance();
-  for (const session::JudgedView& view : record.views) {
+  for (const session::EvaluatedView& view : record.views) {
     trial.planning_time += view.surveyed.planning_processor_time;
     trial.coverage_after.push_back(view.coverage);
     trial.distance_after.push_back(view.surveyed.distance);
@@ -90,30 +91,30 @@ Trial trial_of(const session::SurveyRecord& record, const SceneTruth& truth) {
     trial.frontiers_resolved += view.surveyed.step.frontiers_resolved;
   }
   trial.targets = observed_targets(record.views);
-  if (record.flown) {
-    trial.flown_length = record.flown->length();
-    trial.flown_time_after = record.flown->times;
+  if (record.flight_record) {
+    trial.flight_length = record.flight_record->length();
+    trial.flight_time_after = record.flight_record->times;
   }
   return trial;
 }
 
 std::string trial_json(const Trial& trial) {
   Json json{{"seed", trial.seed},
-            {"stop_reason", session::name_of(trial.stop_reason)},
+            {"stop_reason", session::to_string(trial.stop_reason)},
             {"coverage", trial.coverage.all},
             {"coverage_visible", optional_json(trial.coverage.visible)},
-            {"attainable_coverage", optional_json(trial.coverage.ceiling)},
+            {"attainable_coverage", optional_json(trial.coverage.attainable_coverage)},
             {"views", trial.views},
             {"points", trial.points},
             {"planning_time_s", trial.planning_time},
             {"distance_m", trial.distance},
-            {"flown_m", optional_json(trial.flown_length)},
-            {"flown_s", optional_json(trial.flown_time())},
+            {"flown_m", optional_json(trial.flight_length)},
+            {"flown_s", optional_json(trial.flight_time())},
             {"frontiers_resolved", trial.frontiers_resolved},
             {"coverage_after", trial.coverage_after},
             {"distance_after_m", trial.distance_after},
             {"planning_time_after_s", trial.planning_time_after},
-            {"flown_after_s", trial.flown_time_after},
+            {"flown_after_s", trial.flight_time_after},
             {"targets", Json::array()}};
   for (const ObservedTarget& target : trial.targets) {
     json["targets"].push_back({target.views, target.distance});
@@ -135,12 +136,12 @@ Trial parse_trial(const std::string& text) {
     trial.points = json.at("points").get<std::size_t>();
     trial.planning_time = json.at("planning_time_s").get<double>();
     trial.distance = json.at("distance_m").get<double>();
-    trial.flown_length = optional_number(json.at("flown_m"));
+    trial.flight_length = optional_number(json.at("flown_m"));
     trial.frontiers_resolved = json.at("frontiers_resolved").get<std::size_t>();
     trial.coverage_after = json.at("coverage_after").get<std::vector<double>>();
     trial.distance_after = json.at("distance_after_m").get<std::vector<double>>();
     trial.planning_time_after = json.at("planning_time_after_s").get<std::vector<double>>();
-    trial.flown_time_after = json.at("flown_after_s").get<std::vector<double>>();
+    trial.flight_time_after = json.at("flown_after_s").get<std::vector<double>>();
     for (const Json& target : json.at("targets")) {
       trial.targets.push_back({target.at(0).get<std::size_t>(), target.at(1).get<double>()});
     }
@@ -150,16 +151,16 @@ Trial parse_trial(const std::string& text) {
   }
 }
 
-std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& contestant,
+std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& method,
                               const fs::path& folder) {
-  std::string inputs = std::string(version) + "\n" + contestant;
+  std::string inputs = std::string(version) + "\n" + method;
   for (const auto& [key, value] : mission.settings) {
     inputs.append("\n").append(key).append(" ").append(value);
   }
-  for (const fs::path& file : scene::files_of(mission.scene(), mission.lidar, folder)) {
+  for (const fs::path& file : scene::collect_files(mission.scene(), mission.lidar, folder)) {
     std::error_code ignored;  // missing files are reported when the scene is loaded
     const bool is_there = fs::is_regular_file(file, ignored);
-    inputs.append("\n").append(is_there ? support::sha256_of_file(file) : "-");
+    inputs.append("\n").append(is_there ? support::compute_file_sha256(file) : "-");
   }
   return support::sha256(std::as_bytes(std::span(inputs)));
 }

@@ -19,8 +19,8 @@ namespace skycap::missions::batch {
 
 /// Ground truth for the coverage of a scene, shared by all its surveys.
 struct SceneTruth {
-  std::vector<std::uint8_t> is_visible;  ///< visibility of each surface sample of the scene
-  std::optional<double> ceiling;         ///< attainable coverage
+  std::vector<std::uint8_t> is_visible;       ///< visibility of each surface sample of the scene
+  std::optional<double> attainable_coverage;  ///< attainable coverage
 };
 
 /// Computes the ground truth of a scene, which takes seconds to minutes. The result is invalid once
@@ -48,32 +48,32 @@ struct Trial {
   std::vector<double> distance_after;
   std::vector<double> planning_time_after;
   /// Flight time after each view [s]; empty without a vehicle.
-  std::vector<double> flown_time_after;
+  std::vector<double> flight_time_after;
   /// Flight length from the pad to the last view [m], with a vehicle.
-  std::optional<double> flown_length;
+  std::optional<double> flight_length;
   std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
   std::vector<ObservedTarget> targets;  ///< observed targets in chronological order
 
-  bool is_flown() const { return !flown_time_after.empty(); }
-  /// Returns the vehicle's flight time from the pad to the last view [s], see session::FlownSurvey.
-  /// Returns nullopt without a vehicle.
-  std::optional<double> flown_time() const {
-    return is_flown() ? std::optional(flown_time_after.back()) : std::nullopt;
+  bool has_vehicle() const { return !flight_time_after.empty(); }
+  /// Returns the vehicle's flight time from the pad to the last view [s], see
+  /// session::FlightRecord. Returns nullopt without a vehicle.
+  std::optional<double> flight_time() const {
+    return has_vehicle() ? std::optional(flight_time_after.back()) : std::nullopt;
   }
 };
 
 /// Computes the results of a completed survey.
-Trial trial_of(const session::SurveyRecord& record, const SceneTruth& truth);
+Trial make_trial(const session::SurveyRecord& record, const SceneTruth& truth);
 
 /// Convert a trial to JSON and back without loss. parse_trial() throws Error{bad_file} if the
 /// string is not a trial.
 std::string trial_json(const Trial& trial);
 Trial parse_trial(const std::string& json);
 
-/// Returns a fingerprint of all inputs of a trial except its seed: version, planner (`contestant`),
+/// Returns a fingerprint of all inputs of a trial except its seed: version, planner (`method`),
 /// settings, and contents of the files they name. `folder` is the base of relative paths. Throws
 /// Error{bad_file} if a file cannot be read.
-std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& contestant,
+std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& method,
                               const std::filesystem::path& folder);
 
 /// Host, duration and memory of a run. These depend on the machine and are not part of the trial.

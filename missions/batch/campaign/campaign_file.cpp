@@ -24,7 +24,7 @@ using support::YamlSection;
 
 // [byte]; sufficient for 100,000 missions.
 constexpr std::size_t largest_file = std::size_t{16} << 20;
-constexpr int most_of_a_list = 100'000;
+constexpr int max_list_size = 100'000;
 
 /// Description of valid names, for messages.
 const std::string plain_names = "use at most 100 bytes without / \\ , \" | and no leading dot";
@@ -49,7 +49,7 @@ class CampaignReader {
     campaign_.name = read_name(root_, file_);
     read_missions();
     read_planners();
-    campaign_.seeds = static_cast<std::size_t>(root_.integer("seeds", 10, 1, most_of_a_list));
+    campaign_.seeds = static_cast<std::size_t>(root_.integer("seeds", 10, 1, max_list_size));
     campaign_.first_seed =
         static_cast<std::uint64_t>(root_.integer("first_seed", 1, 0, 1'000'000'000));
     read_variants();
@@ -68,14 +68,14 @@ class CampaignReader {
     if (campaign_.missions.empty()) {
       root_.fail_at("missions", "is missing or empty; list mission files");
     }
-    std::map<std::string, std::string> path_of;
+    std::map<std::string, std::string> paths_by_title;
     for (const std::string& path : campaign_.missions) {
       const std::string title = mission_title(path);
       if (!is_plain(title)) {
         root_.fail_at("missions",
                       path + " has a name that cannot be used in tables; " + plain_names);
       }
-      const auto [known, is_new] = path_of.emplace(title, path);
+      const auto [known, is_new] = paths_by_title.emplace(title, path);
       if (is_new) continue;
       root_.fail_at("missions", known->second + " and " + path +
                                     " have the same name; use files with different names");
@@ -84,8 +84,8 @@ class CampaignReader {
 
   void read_planners() {
     try {
-      for (const auto* contestant : contestants_named(root_.texts("planners"))) {
-        campaign_.planners.push_back(contestant->name);
+      for (const auto* method : methods_by_name(root_.texts("planners"))) {
+        campaign_.planners.push_back(method->name);
       }
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_usage) throw;  // already includes the location
@@ -94,7 +94,8 @@ class CampaignReader {
   }
 
   void read_variants() {
-    const std::vector<config::KeyOverride> of_all = changes_in(root_.entries("set"), "set.");
+    const std::vector<config::KeyOverride> common_overrides =
+        changes_in(root_.entries("set"), "set.");
     std::vector<Variant> variants;
     for (const support::YamlEntry& entry : root_.entries("variants")) {
       const std::string key = "variants." + entry.key;
@@ -104,13 +105,13 @@ class CampaignReader {
       if (entry.value.kind == YamlNode::Kind::list || entry.value.kind == YamlNode::Kind::scalar) {
         fail(file_, entry.line, key, "must be a map of mission keys");
       }
-      Variant variant{entry.key, of_all};
+      Variant variant{entry.key, common_overrides};
       for (auto& change : changes_in(entry.value.entries, key + ".")) {
         variant.changes.push_back(std::move(change));
       }
       variants.push_back(std::move(variant));
     }
-    if (variants.empty()) variants.push_back({"", of_all});
+    if (variants.empty()) variants.push_back({"", common_overrides});
     campaign_.variants = std::move(variants);
   }
 
@@ -127,9 +128,9 @@ class CampaignReader {
                          static_cast<double>(campaign_.variants.size()) *
                          static_cast<double>(std::max<std::size_t>(1, campaign_.planners.size())) *
                          static_cast<double>(campaign_.seeds);
-    if (items <= static_cast<double>(most_items)) return;
+    if (items <= static_cast<double>(max_items)) return;
     root_.fail_at("missions", "together with variants, planners and seeds more than " +
-                                  std::to_string(most_items) + " runs; use fewer");
+                                  std::to_string(max_items) + " runs; use fewer");
   }
 
   YamlSection root_;
@@ -148,8 +149,8 @@ void add_changes(const std::vector<support::YamlEntry>& entries, const std::stri
                  std::vector<config::KeyOverride>& changes) {
   for (const support::YamlEntry& entry : entries) {
     const std::string key = section + entry.key;
-    if (following.holds(key)) {
-      fail(file, entry.line, path + key, "follows from " + following.instead);
+    if (following.contains(key)) {
+      fail(file, entry.line, path + key, "follows from " + following.alternative);
     }
     if (config::find_key(key) != nullptr) {
       changes.push_back(
@@ -189,7 +190,7 @@ std::string read_name(YamlSection& root, const std::string& file) {
   return name;
 }
 
-bool FollowingKeys::holds(const std::string& key) const {
+bool FollowingKeys::contains(const std::string& key) const {
   return std::ranges::any_of(keys, [&](const std::string& own) {
     return own == key || (own.ends_with('.') && key.starts_with(own));
   });
@@ -227,9 +228,9 @@ std::size_t Manifest::entries() const {
 }
 
 ManifestEntry Manifest::entry(std::size_t index) const {
-  const std::size_t of_mission = file_.variants.size() * planners();
-  const std::string& mission = file_.missions[index / of_mission];
-  const Variant& variant = file_.variants[index % of_mission / planners()];
+  const std::size_t entries_per_mission = file_.variants.size() * planners();
+  const std::string& mission = file_.missions[index / entries_per_mission];
+  const Variant& variant = file_.variants[index % entries_per_mission / planners()];
   const std::string title = mission_title(mission);
   return {.mission = mission,
           .title = variant.name.empty() ? title : title + "/" + variant.name,
@@ -241,8 +242,8 @@ ManifestLine Manifest::line(std::size_t number) const {
   return {number, entry(number % entries()), file_.first_seed + number / entries()};
 }
 
-std::vector<std::size_t> Manifest::numbers_of_entry(std::size_t index,
-                                                    const ItemRange& range) const {
+std::vector<std::size_t> Manifest::entry_run_numbers(std::size_t index,
+                                                     const ItemRange& range) const {
   std::vector<std::size_t> numbers;
   for (std::size_t round = range.first / entries(); round * entries() < range.end; ++round) {
     const std::size_t number = round * entries() + index;

@@ -31,7 +31,7 @@ struct CampaignFile {
   std::string name;
   std::filesystem::path folder;       ///< base folder of mission paths
   std::vector<std::string> missions;  ///< mission paths as in the file
-  /// Names of batch::contestants(); empty: the planner of each mission.
+  /// Names of batch::methods(); empty: the planner of each mission.
   std::vector<std::string> planners = {};
   std::size_t seeds = 10;
   std::uint64_t first_seed = 1;
@@ -40,7 +40,7 @@ struct CampaignFile {
 };
 
 /// Maximum number of items in a campaign.
-inline constexpr std::size_t most_items = 1'000'000;
+inline constexpr std::size_t max_items = 1'000'000;
 
 /// Reads a campaign file without reading its missions. Throws Error{bad_file} if it cannot be read.
 /// Throws Error{bad_config} with "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
@@ -61,9 +61,9 @@ std::string read_name(support::YamlSection& root, const std::string& file);
 /// Mission keys that are set by a batch file and cannot be changed, and the suggested alternative.
 struct FollowingKeys {
   std::vector<std::string> keys;  ///< key paths; a trailing dot denotes a whole section
-  std::string instead;            ///< suggestion in messages, "the campaign; give ..."
+  std::string alternative;        ///< suggestion in messages, "the campaign; give ..."
 
-  bool holds(const std::string& key) const;
+  bool contains(const std::string& key) const;
 };
 
 /// Reads changes to mission keys from `entries` of `file`. Keys may be full paths or nested as in a
@@ -121,7 +121,7 @@ class Manifest {
   ManifestEntry entry(std::size_t index) const;
   ManifestLine line(std::size_t number) const;
   /// Returns the numbers within a range that belong to an entry, in ascending order.
-  std::vector<std::size_t> numbers_of_entry(std::size_t index, const ItemRange& range) const;
+  std::vector<std::size_t> entry_run_numbers(std::size_t index, const ItemRange& range) const;
 
   /// Returns manifest.jsonl, with one line per item.
   std::string text() const;

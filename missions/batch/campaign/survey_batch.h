@@ -26,7 +26,7 @@ namespace skycap::missions::batch {
 struct Setup {
   std::filesystem::path file;  ///< mission file
   std::string title;           ///< title in tables; setups with the same title share a scene
-  const Contestant* contestant = nullptr;
+  const Method* method = nullptr;
   config::MissionSetup mission;
   std::string kind;         ///< kind of survey; surveys of one kind have similar durations
   std::string fingerprint;  ///< trial_fingerprint() of this setup
@@ -42,25 +42,24 @@ struct Setup {
 /// Creates a setup for a mission that is already read, with the mission's planner.
 Setup own_setup(const std::filesystem::path& file, const config::MissionSetup& mission);
 
-/// Reads a mission for a contestant, or for the mission's planner if `contestant` is null. `origin`
+/// Reads a mission for a contestant, or for the mission's planner if `method` is null. `origin`
 /// is the option named in messages about the planner. Throws the errors of config::read_mission().
-Setup read_setup(const std::filesystem::path& file, const Contestant* contestant,
-                 const std::string& origin, std::vector<config::KeyOverride> overrides,
-                 const config::Report& report = {});
+Setup read_setup(const std::filesystem::path& file, const Method* method, const std::string& origin,
+                 std::vector<config::KeyOverride> overrides, const config::Report& report = {});
 
 /// Storage form of an item's result.
-enum class ItemForm {
+enum class ItemOutput {
   file,     ///< a record file, in a folder that no other program writes to
   folder,   ///< a record file in its own folder, locked by one program at a time
   package,  ///< a record file and the mission package in the same folder
 };
 
 /// Survey to be run.
-struct Item {
+struct BatchItem {
   std::shared_ptr<const Setup> setup;
   std::uint64_t seed = 0;
   std::filesystem::path record;  ///< record file of the result, see finished_trial()
-  ItemForm form = ItemForm::file;
+  ItemOutput form = ItemOutput::file;
   std::size_t number = 0;  ///< index in a manifest
 };
 
@@ -70,10 +69,10 @@ using Records = std::vector<std::optional<TrialRecord>>;
 /// Callbacks of a runner. They are called from any thread, but never concurrently.
 struct RunEvents {
   /// Called for each pending item before any item is run.
-  std::function<void(const Item&)> unfinished;
+  std::function<void(const BatchItem&)> unfinished;
   std::function<void(const Setup&)> preparing;  ///< called before the scene is loaded
   /// Called after an item was run and its record written.
-  std::function<void(const Item&, const TrialRecord&)> done;
+  std::function<void(const BatchItem&, const TrialRecord&)> done;
   /// Called when the mission package is staged, so that further files can be staged with it.
   std::function<void(geometry::OutputFolder&)> packaged;
   /// Called for each failure; other items continue. Without this callback, the run stops and the
@@ -82,19 +81,19 @@ struct RunEvents {
 };
 
 /// Returns the records of completed items.
-Records finished_items(const std::vector<Item>& items);
+Records finished_items(const std::vector<BatchItem>& items);
 
 /// Runs the pending items, each survey in one thread, and returns all records. Up to `threads`
 /// surveys run concurrently; zero selects the number of processors. Items that failed or were
 /// stopped have no record. A scene is released after its last item. Throws Error as described in
 /// RunEvents.
-Records run_items(const std::vector<Item>& items, unsigned threads, const std::stop_token& stop,
-                  const RunEvents& events);
+Records run_items(const std::vector<BatchItem>& items, unsigned threads,
+                  const std::stop_token& stop, const RunEvents& events);
 
 /// Callbacks of for_each_batch().
 struct BatchEvents {
   /// Receives items adjacent in mission, variant, planner and seed, in this order.
-  std::function<void(const std::vector<Item>&)> work;
+  std::function<void(const std::vector<BatchItem>&)> work;
   /// Called if a mission cannot be read; `items` is the number of affected items in the range.
   std::function<void(const Error&, std::size_t items)> failed;
   config::Report reading{};  ///< progress of reading a mission

@@ -25,21 +25,21 @@ constexpr std::array engines{
     Engine{"slurm", "SLURM_ARRAY_TASK_ID", 0}, Engine{"mpi", "OMPI_COMM_WORLD_RANK", 0},
     Engine{"kubernetes", "JOB_COMPLETION_INDEX", 0}, Engine{"parallel", "PARALLEL_SEQ", 1}};
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::bad_usage, what); }
+[[noreturn]] void reject(const std::string& what) { throw Error(ErrorKind::bad_usage, what); }
 
 std::size_t number_in(const std::string& text, std::size_t first, const std::string& origin) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || number < first ||
-      number - first >= most_items) {
-    refuse(origin + " is '" + text + "'; it must be an integer of at least " +
+      number - first >= max_items) {
+    reject(origin + " is '" + text + "'; it must be an integer of at least " +
            std::to_string(first));
   }
   return number - first;
 }
 
 /// Returns the task number from the scheduler's variable, or nullopt if it is not set.
-std::optional<std::size_t> task_of(const Engine& engine, const Environment& environment) {
+std::optional<std::size_t> find_task(const Engine& engine, const Environment& environment) {
   const auto value = environment(engine.variable);
   if (!value) return std::nullopt;
   return number_in(*value, engine.first, engine.variable);
@@ -52,16 +52,16 @@ std::size_t the_only_task(const Environment& environment) {
     known += (known.empty() ? "" : ", ") + std::string(engine.variable);
     if (!environment(engine.variable)) continue;
     if (found) {
-      refuse("--index auto: " + std::string(found->variable) + " and " + engine.variable +
+      reject("--index auto: " + std::string(found->variable) + " and " + engine.variable +
              " are both set; use --index " + found->name + " or --index " + engine.name);
     }
     found = &engine;
   }
-  if (!found) refuse("--index auto: none of " + known + " is set; use --index N");
-  return *task_of(*found, environment);
+  if (!found) reject("--index auto: none of " + known + " is set; use --index N");
+  return *find_task(*found, environment);
 }
 
-constexpr std::size_t most_array_tasks = 1000;
+constexpr std::size_t max_array_tasks = 1000;
 
 std::size_t quotient_up(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
 
@@ -176,12 +176,12 @@ std::size_t task_index(const std::string& index, const Environment& environment)
   const auto engine =
       std::ranges::find_if(engines, [&](const Engine& known) { return index == known.name; });
   if (engine == engines.end()) return number_in(index, 0, "--index");
-  if (const auto task = task_of(*engine, environment)) return *task;
-  refuse("--index " + index + ": " + engine->variable +
+  if (const auto task = find_task(*engine, environment)) return *task;
+  reject("--index " + index + ": " + engine->variable +
          " is not set; this is not a task of that scheduler");
 }
 
-ItemRange items_of_task(std::size_t task, std::size_t chunk, std::size_t items) {
+ItemRange items_in_task(std::size_t task, std::size_t chunk, std::size_t items) {
   const std::size_t first = task < items ? std::min(items, task * chunk) : items;
   return {first, std::min(items, first + chunk)};
 }
@@ -194,7 +194,7 @@ EngineName engine_named(const std::string& name) {
 TaskSplit split(EngineName engine, const JobRequest& request) {
   std::size_t chunk = request.chunk;
   if (chunk == 0 && engine == EngineName::slurm) {
-    chunk = quotient_up(request.items, most_array_tasks);
+    chunk = quotient_up(request.items, max_array_tasks);
   }
   if (chunk == 0 && engine == EngineName::mpi) chunk = quotient_up(request.items, request.jobs);
   chunk = std::max<std::size_t>(1, chunk);
@@ -231,10 +231,10 @@ Submission submit(EngineName engine, const JobRequest& request, geometry::Output
   const EngineJob job = engine_job(engine, request);
   for (const auto& [name, text] : job.files) folder.write(name, text);
   folder.commit();
-  const std::string said = started(job.command, stop, warn);
+  const std::string job_output = started(job.command, stop, warn);
   Submission submission{.is_queued = engine == EngineName::slurm, .tasks = split(engine, request)};
   if (!submission.is_queued) return submission;
-  submission.job = said.substr(0, said.find_first_of(";\n"));  // JOB or JOB;CLUSTER
+  submission.job = job_output.substr(0, job_output.find_first_of(";\n"));  // JOB or JOB;CLUSTER
   submission.is_accepted = !submission.job.empty() &&
                            !started(slurm_collection(request, submission.job), stop, warn).empty();
   return submission;

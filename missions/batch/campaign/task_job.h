@@ -37,7 +37,7 @@ std::size_t task_index(const std::string& index, const Environment& environment)
 
 /// Returns the items of a task with `chunk` items per task. The range is empty for tasks beyond the
 /// last item.
-ItemRange items_of_task(std::size_t task, std::size_t chunk, std::size_t items);
+ItemRange items_in_task(std::size_t task, std::size_t chunk, std::size_t items);
 
 enum class EngineName { slurm, parallel, mpi };
 

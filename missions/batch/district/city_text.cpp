@@ -17,20 +17,20 @@ const char* const surface_types[] = {"WallSurface", "RoofSurface", "GroundSurfac
                                      "OuterFloorSurface"};
 
 /// Returns the index of a kind's surface type, or null if the kind is unknown.
-Json surface_of(SurfaceKind kind) {
+Json make_surface(SurfaceKind kind) {
   if (kind == SurfaceKind::unknown) return nullptr;
   return static_cast<int>(kind) - 1;
 }
 
-Json semantics_of(const site_data::Object& object) {
+Json make_semantics(const site_data::Object& object) {
   Json surfaces = Json::array(), values = Json::array();
   for (const char* type : surface_types) surfaces.push_back({{"type", type}});
-  for (const SurfaceKind kind : object.surfaces) values.push_back(surface_of(kind));
+  for (const SurfaceKind kind : object.surfaces) values.push_back(make_surface(kind));
   return {{"surfaces", surfaces}, {"values", values}};
 }
 
 /// Returns the geometry of an object. `first` is the index of its first vertex in the file.
-Json geometry_of(const site_data::Object& object, std::size_t first) {
+Json make_geometry(const site_data::Object& object, std::size_t first) {
   Json boundaries = Json::array();
   for (const auto& [a, b, c] : object.mesh.triangles) {
     boundaries.push_back(Json::array({Json::array({first + a, first + b, first + c})}));
@@ -38,7 +38,7 @@ Json geometry_of(const site_data::Object& object, std::size_t first) {
   return {{"type", "MultiSurface"},
           {"lod", "2"},
           {"boundaries", boundaries},
-          {"semantics", semantics_of(object)}};
+          {"semantics", make_semantics(object)}};
 }
 
 }  // namespace
@@ -52,8 +52,8 @@ std::string city_text(std::span<const site_data::Object* const> objects) {
       {"vertices", Json::array()}};
   std::size_t vertices = 0;
   for (const site_data::Object* object : objects) {
-    city["CityObjects"][object->id] = {{"type", "Building"},
-                                       {"geometry", Json::array({geometry_of(*object, vertices)})}};
+    city["CityObjects"][object->id] = {
+        {"type", "Building"}, {"geometry", Json::array({make_geometry(*object, vertices)})}};
     for (const Eigen::Vector3d& vertex : object->mesh.vertices) {
       Json corner = Json::array();
       for (int axis = 0; axis < 3; ++axis) {

@@ -34,10 +34,10 @@ class DistrictReader {
     if (auto targets = root_.section("targets")) read_targets(*targets);
     district_.merge_distance = bounded("merge_distance", 0.5, 0.0, 100.0);
     district_.pads = clicks(root_, "pads");
-    std::string& vehicle = district_.wishes.vehicle;
+    std::string& vehicle = district_.request.vehicle;
     vehicle = root_.text("vehicle", "generic");
     // The value is a preset name, or a path if it ends in .yaml.
-    if (fs::path(vehicle).extension() == ".yaml") vehicle = path_of(vehicle).string();
+    if (fs::path(vehicle).extension() == ".yaml") vehicle = resolve_path(vehicle).string();
     read_planner();
     const int seed = root_.integer("seed", 1);
     if (seed < 0) root_.fail_at("seed", fmt::format("is {}; it must be 0 or more", seed));
@@ -48,23 +48,25 @@ class DistrictReader {
   }
 
  private:
-  fs::path path_of(const std::string& path) const { return fs::path(file_).parent_path() / path; }
+  fs::path resolve_path(const std::string& path) const {
+    return fs::path(file_).parent_path() / path;
+  }
 
   void read_files() {
-    wizard::Wishes& wishes = district_.wishes;
-    wishes.map = path_of(root_.text("map"));
-    wizard::Reading& reading = wishes.reading;
-    reading.crs = root_.text("crs", "");
+    wizard::SiteRequest& request = district_.request;
+    request.map = resolve_path(root_.text("map"));
+    wizard::ImportOptions& import_options = request.import_options;
+    import_options.crs = root_.text("crs", "");
     if (root_.has("vertical")) {
-      reading.vertical = root_.choice<site_data::HeightDatum>(
+      import_options.vertical = root_.choice<site_data::HeightDatum>(
           "vertical", {{"ellipsoid", site_data::HeightDatum::ellipsoid},
                        {"geoid", site_data::HeightDatum::geoid}});
     }
-    if (root_.has("base")) reading.base = bounded("base", 0.0, -1e4, 1e4);
-    if (root_.has("height")) reading.height = bounded("height", 0.0, 0.01, 1e4);
-    if (root_.has("terrain")) wishes.terrain = path_of(root_.text("terrain"));
+    if (root_.has("base")) import_options.base = bounded("base", 0.0, -1e4, 1e4);
+    if (root_.has("height")) import_options.height = bounded("height", 0.0, 0.01, 1e4);
+    if (root_.has("terrain")) request.terrain = resolve_path(root_.text("terrain"));
     for (const std::string& path : root_.texts("obstacles")) {
-      wishes.obstacles.push_back(path_of(path));
+      request.obstacles.push_back(resolve_path(path));
     }
   }
 
@@ -96,9 +98,9 @@ class DistrictReader {
 
   void read_planner() {
     district_.planner = root_.text("planner", "skycap");
-    if (find_contestant(district_.planner) != nullptr) return;
+    if (find_method(district_.planner) != nullptr) return;
     std::string known;
-    for (const Contestant& one : contestants()) {
+    for (const Method& one : methods()) {
       known += (known.empty() ? "" : ", ") + one.name;
     }
     root_.fail_at("planner", "is " + district_.planner + "; it must be one of " + known);
@@ -114,9 +116,9 @@ class DistrictReader {
     district_.set = key_changes(root_.entries("set"), "set.", file_, following);
   }
 
-  double bounded(const std::string& key, double fallback, double least, double most) {
+  double bounded(const std::string& key, double fallback, double min, double max) {
     const double number = root_.number(key, fallback);
-    root_.require_between(key, number, least, most, "m");
+    root_.require_between(key, number, min, max, "m");
     return number;
   }
 

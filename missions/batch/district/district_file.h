@@ -25,13 +25,13 @@ struct TargetChoice {
 
 struct DistrictFile {
   std::string name;
-  std::filesystem::path file;  ///< path of the district file
-  wizard::Wishes wishes;       ///< input files, their interpretation, and the vehicle; no target
+  std::filesystem::path file;   ///< path of the district file
+  wizard::SiteRequest request;  ///< input files, their interpretation, and the vehicle; no target
   TargetChoice targets;
   /// Targets closer to each other than this are surveyed together [m].
   double merge_distance = 0.5;
   std::vector<wizard::Click> pads;  ///< take-off points; empty: proposed automatically
-  std::string planner = "skycap";   ///< name of one of batch::contestants()
+  std::string planner = "skycap";   ///< name of one of batch::methods()
   std::uint64_t seed = 1;
   std::vector<config::KeyOverride> set;  ///< overrides for the missions of all targets
 };

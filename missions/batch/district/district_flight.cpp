@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
-using flight::Station;
+using flight::CapturePoint;
 
 /// Returns the area-weighted mean coverage of the target's objects.
 double coverage_in(const nlohmann::json& targets) {
@@ -44,39 +44,45 @@ std::size_t bytes_in(const fs::path& folder) {
 }
 
 /// Maximum number of pads from which a waypoint is tried.
-constexpr std::size_t most_pads_tried = 3;
+constexpr std::size_t max_pads_tried = 3;
 
 /// Returns a path from above a pad to a position: straight, or over all obstacles in between and
 /// then shortened. Empty if neither is free. This takes little time, whereas a path search through
 /// a town takes a second.
-package::Way way_over(const flight::FreeSpace& space, const Vector3d& home, const Vector3d& place,
-                      double level, const flight::RouteOptions& options) {
+package::Polyline path_over(const flight::FreeSpace& space, const Vector3d& home,
+                            const Vector3d& pad_position, double level,
+                            const flight::RouteOptions& options) {
   const double clearance = options.clearance.total();
-  if (space.is_free({home, place}, clearance)) return {home, place};
-  package::Way way{home, {home.x(), home.y(), level}, {place.x(), place.y(), level}, place};
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    if (!space.is_free({way[i - 1], way[i]}, clearance)) return {};
+  if (space.is_free({home, pad_position}, clearance)) return {home, pad_position};
+  package::Polyline approach_path{
+      home, {home.x(), home.y(), level}, {pad_position.x(), pad_position.y(), level}, pad_position};
+  for (std::size_t i = 1; i < approach_path.size(); ++i) {
+    if (!space.is_free({approach_path[i - 1], approach_path[i]}, clearance)) return {};
   }
-  return flight::pull_tight(space, clearance, std::move(way), options.path.worthwhile_saving);
+  return flight::pull_tight(space, clearance, std::move(approach_path),
+                            options.path.worthwhile_saving);
 }
 
 class FlightPlanner {
  public:
-  FlightPlanner(const DistrictFile& district, const Prepared& prepared,
-                std::span<const SurveyedTarget> targets, const fs::path& out, const Tell& tell,
-                const std::stop_token& stop)
-      : prepared_(prepared), targets_(targets), tell_(tell), stop_(stop) {
-    for (std::size_t pad = 0; pad < prepared.pads.size(); ++pad) {
+  FlightPlanner(const DistrictFile& district, const DistrictPlan& district_plan,
+                std::span<const SurveyedTarget> targets, const fs::path& out,
+                const ReportProgress& report_progress, const std::stop_token& stop)
+      : district_plan_(district_plan),
+        targets_(targets),
+        report_progress_(report_progress),
+        stop_(stop) {
+    for (std::size_t pad = 0; pad < district_plan.pads.size(); ++pad) {
       const fs::path file = out / flights_folder / (pad_name(pad) + ".yaml");
       const config::MissionSetup mission = config::read_mission(file, district.set);
       names_.push_back(mission.name);
-      flights_.push_back(package::in_given_order(mission.flight()));
+      flights_.push_back(package::with_fixed_order(mission.flight()));
     }
   }
 
   DistrictFlight plan(geometry::OutputFolder& folder) {
     if (flights_.empty()) return {};
-    take_surveys();
+    load_surveys();
     if (!choose_pads()) return {};
     routes_.resize(flights_.size());
     std::vector<bool> is_changed(flights_.size(), true);
@@ -84,7 +90,7 @@ class FlightPlanner {
       for (std::size_t pad = 0; pad < flights_.size(); ++pad) {
         if (is_changed[pad]) plan_pad(pad);
       }
-      is_changed = move_refused();
+      is_changed = move_rejected();
     }
     if (stop_.stop_requested()) return {};
     finish(folder);
@@ -93,11 +99,11 @@ class FlightPlanner {
 
  private:
   /// Reads the views and free spaces of all targets. Targets without a survey have no free space.
-  void take_surveys() {
+  void load_surveys() {
     std::vector<flight::MeasuredSpace> spaces;
     for (std::size_t t = 0; t < targets_.size() && !stop_.stop_requested(); ++t) {
       const SurveyedTarget& target = targets_[t];
-      tell_(fmt::format("merging survey {} of {}", t + 1, targets_.size()));
+      report_progress_(fmt::format("merging survey {} of {}", t + 1, targets_.size()));
       if (!target.figures) {
         flight::FlightOptions unmeasured = flights_.front();
         unmeasured.unknown_box = target.target.unknown;
@@ -106,13 +112,15 @@ class FlightPlanner {
       }
       package::PackagedSurvey input = package::read_package(target.figures->folder, {});
       spaces.push_back(std::move(input.measured));
-      grounds_.insert(grounds_.end(), input.grounds.begin(), input.grounds.end());
-      const std::vector<package::Way> ways(input.views.size());
-      for (Station& station : package::stations_of(flights_.front(), input.views, ways)) {
-        flight_.stations.push_back({t, station.view_index, ""});
-        of_target_.push_back(static_cast<std::uint32_t>(t));
-        station.view_index = static_cast<std::uint32_t>(stations_.size());
-        stations_.push_back(std::move(station));
+      landing_surfaces_.insert(landing_surfaces_.end(), input.landing_surfaces.begin(),
+                               input.landing_surfaces.end());
+      const std::vector<package::Polyline> paths(input.views.size());
+      for (CapturePoint& capture_point :
+           package::make_capture_points(flights_.front(), input.views, paths)) {
+        flight_.capture_points.push_back({t, capture_point.view_index, ""});
+        target_indices_.push_back(static_cast<std::uint32_t>(t));
+        capture_point.view_index = static_cast<std::uint32_t>(capture_points_.size());
+        capture_points_.push_back(std::move(capture_point));
       }
     }
     measured_ = std::make_unique<flight::MeasuredUnion>(std::move(spaces));
@@ -120,90 +128,93 @@ class FlightPlanner {
 
   /// Assigns an order and pads to all waypoints. Returns whether there are any waypoints.
   bool choose_pads() {
-    tell_(fmt::format("ordering {} views", stations_.size()));
-    const flight::RouteOptions options = flights_.front().route(prepared_.pads[0]);
-    const flight::Motion motion(flights_.front().flown(), options.conditions);
+    report_progress_(fmt::format("ordering {} views", capture_points_.size()));
+    const flight::RouteOptions options = flights_.front().route(district_plan_.pads[0]);
+    const flight::Motion motion(flights_.front().required_vehicle(), options.conditions);
     const flight::PadSorties sorties = flight::sorties_from_pads(
-        stations_, of_target_, prepared_.pads, options.takeoff_climb, motion);
-    for (const std::uint32_t i : sorties.out_of_reach) {
-      flight_.stations[i].why_not =
+        capture_points_, target_indices_, district_plan_.pads, options.takeoff_climb, motion);
+    for (const std::uint32_t i : sorties.unreachable) {
+      flight_.capture_points[i].skip_reason =
           "the flight there and back needs more than one battery, from every take-off point";
     }
     order_ = sorties.order;
     flight_.order_length = sorties.length;
-    pad_of_.resize(stations_.size(), flights_.size());
-    tried_.resize(stations_.size());
+    pad_indices_.resize(capture_points_.size(), flights_.size());
+    tried_.resize(capture_points_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      pad_of_[order_[i]] = sorties.pads[i];
+      pad_indices_[order_[i]] = sorties.pads[i];
       tried_[order_[i]] = {sorties.pads[i]};
     }
     return !order_.empty();
   }
 
   void plan_pad(std::size_t pad) {
-    std::vector<Station> own;
+    std::vector<CapturePoint> own;
     for (const std::uint32_t i : order_) {
-      if (pad_of_[i] == pad) own.push_back(stations_[i]);
+      if (pad_indices_[i] == pad) own.push_back(capture_points_[i]);
     }
     routes_[pad].reset();
-    for (const Station& station : own) flight_.stations[station.view_index].why_not.clear();
+    for (const CapturePoint& capture_point : own)
+      flight_.capture_points[capture_point.view_index].skip_reason.clear();
     if (own.empty()) return;
-    tell_(fmt::format("verifying legs from take-off point {} of {} to {} views", pad + 1,
-                      flights_.size(), own.size()));
-    take_ways(pad, own);
+    report_progress_(fmt::format("verifying legs from take-off point {} of {} to {} views", pad + 1,
+                                 flights_.size(), own.size()));
+    plan_paths(pad, own);
     try {
-      routes_[pad] = package::plan_flight(flights_[pad], *measured_, prepared_.pads[pad], own,
-                                          grounds_, stop_);
+      routes_[pad] = package::plan_flight(flights_[pad], *measured_, district_plan_.pads[pad], own,
+                                          landing_surfaces_, stop_);
     } catch (const Interrupted&) {
       return;
     } catch (const Error& error) {
-      for (const Station& station : own) {
-        flight_.stations[station.view_index].why_not = error.what();
+      for (const CapturePoint& capture_point : own) {
+        flight_.capture_points[capture_point.view_index].skip_reason = error.what();
       }
       return;
     }
     for (const flight::Unreached& missed : routes_[pad]->unreached) {
-      flight_.stations[missed.station.view_index].why_not = missed.reason;
+      flight_.capture_points[missed.capture_point.view_index].skip_reason = missed.reason;
     }
   }
 
   /// Proposes a path from above the pad to each waypoint.
-  void take_ways(std::size_t pad, std::vector<Station>& stations) const {
+  void plan_paths(std::size_t pad, std::vector<CapturePoint>& capture_points) const {
     const flight::FlightOptions& flight = flights_[pad];
-    const Vector3d& place = prepared_.pads[pad];
+    const Vector3d& pad_position = district_plan_.pads[pad];
     const flight::KnownSpace known(flight.rules());
     const flight::JointSpace space({measured_.get(), &known});
-    const flight::RouteOptions options = flight.route(place);
-    const Vector3d home = place + options.takeoff_climb * Vector3d::UnitZ();
-    const double level = flight.highest_return(place.z(), place.z());
-    for (Station& station : stations) {
+    const flight::RouteOptions options = flight.route(pad_position);
+    const Vector3d home = pad_position + options.takeoff_climb * Vector3d::UnitZ();
+    const double level = flight.max_return_altitude(pad_position.z(), pad_position.z());
+    for (CapturePoint& capture_point : capture_points) {
       if (stop_.stop_requested()) return;
-      station.way = way_over(space, home, station.view.position, level, options);
+      capture_point.approach_path =
+          path_over(space, home, capture_point.view.position, level, options);
     }
   }
 
   /// Reassigns unreachable waypoints to the nearest pad that has not been tried. Returns which pads
   /// have new waypoints.
-  std::vector<bool> move_refused() {
+  std::vector<bool> move_rejected() {
     std::vector<bool> is_changed(flights_.size(), false);
     for (const std::uint32_t i : order_) {
-      if (flight_.stations[i].why_not.empty() || tried_[i].size() >= most_pads_tried) continue;
+      if (flight_.capture_points[i].skip_reason.empty() || tried_[i].size() >= max_pads_tried)
+        continue;
       const std::optional<std::size_t> next = nearest_untried(i);
       if (!next) continue;
       is_changed[*next] = true;
-      pad_of_[i] = *next;
+      pad_indices_[i] = *next;
       tried_[i].push_back(*next);
     }
     return is_changed;
   }
 
-  std::optional<std::size_t> nearest_untried(std::uint32_t station) const {
+  std::optional<std::size_t> nearest_untried(std::uint32_t capture_point) const {
     std::optional<std::size_t> nearest;
     const auto distance = [&](std::size_t pad) {
-      return (stations_[station].view.position - prepared_.pads[pad]).norm();
+      return (capture_points_[capture_point].view.position - district_plan_.pads[pad]).norm();
     };
-    for (std::size_t pad = 0; pad < prepared_.pads.size(); ++pad) {
-      if (std::ranges::count(tried_[station], pad) > 0) continue;
+    for (std::size_t pad = 0; pad < district_plan_.pads.size(); ++pad) {
+      if (std::ranges::count(tried_[capture_point], pad) > 0) continue;
       if (!nearest || distance(pad) < distance(*nearest)) nearest = pad;
     }
     return nearest;
@@ -212,28 +223,29 @@ class FlightPlanner {
   void finish(geometry::OutputFolder& folder) {
     for (std::size_t pad = 0; pad < routes_.size(); ++pad) {
       if (!routes_[pad] || routes_[pad]->sorties.empty()) continue;
-      tell_(fmt::format("writing {} sorties from take-off point {}", routes_[pad]->sorties.size(),
-                        pad + 1));
+      report_progress_(fmt::format("writing {} sorties from take-off point {}",
+                                   routes_[pad]->sorties.size(), pad + 1));
       PadFlight own{pad, *std::move(routes_[pad])};
-      own.files = package::stage_flight(names_[pad], flights_[pad], own.route, *measured_,
-                                        package::package_formats(flights_[pad].flown().dialect),
-                                        folder, pad_name(pad));
+      own.files = package::stage_flight(
+          names_[pad], flights_[pad], own.route, *measured_,
+          package::package_formats(flights_[pad].required_vehicle().autopilot), folder,
+          pad_name(pad));
       for (const std::string& note : own.files.notes) flight_.notes.push_back(note);
       flight_.pads.push_back(std::move(own));
     }
   }
 
-  const Prepared& prepared_;
+  const DistrictPlan& district_plan_;
   std::span<const SurveyedTarget> targets_;
-  const Tell& tell_;
+  const ReportProgress& report_progress_;
   const std::stop_token& stop_;
   std::vector<std::string> names_;              ///< mission names by pad
   std::vector<flight::FlightOptions> flights_;  ///< flight options by pad
   std::unique_ptr<const flight::MeasuredUnion> measured_;
-  std::vector<flight::PadGround> grounds_;
-  std::vector<Station> stations_;
-  std::vector<std::uint32_t> of_target_, order_;
-  std::vector<std::size_t> pad_of_;              ///< assigned pad by waypoint
+  std::vector<flight::LandingSurface> landing_surfaces_;
+  std::vector<CapturePoint> capture_points_;
+  std::vector<std::uint32_t> target_indices_, order_;
+  std::vector<std::size_t> pad_indices_;         ///< assigned pad by waypoint
   std::vector<std::vector<std::size_t>> tried_;  ///< pads tried by waypoint
   std::vector<std::optional<flight::Route>> routes_;
   DistrictFlight flight_;
@@ -241,7 +253,7 @@ class FlightPlanner {
 
 }  // namespace
 
-SurveyFigures figures_of(const fs::path& folder, const TrialRecord& record) {
+SurveyFigures compute_figures(const fs::path& folder, const TrialRecord& record) {
   geometry::finish_commit(folder);
   const fs::path file = folder / package::summary_name;
   try {
@@ -287,12 +299,13 @@ double DistrictFlight::length() const {
   return sum;
 }
 
-DistrictFlight plan_district(const DistrictFile& district, const Prepared& prepared,
+DistrictFlight plan_district(const DistrictFile& district, const DistrictPlan& district_plan,
                              std::span<const SurveyedTarget> targets, const fs::path& out,
-                             const Tell& tell, const std::stop_token& stop) {
+                             const ReportProgress& report_progress, const std::stop_token& stop) {
   geometry::OutputFolder folder(out / flights_folder);
   folder.replace([](std::string_view name) { return !name.ends_with(".yaml"); });
-  DistrictFlight flight = FlightPlanner(district, prepared, targets, out, tell, stop).plan(folder);
+  DistrictFlight flight =
+      FlightPlanner(district, district_plan, targets, out, report_progress, stop).plan(folder);
   if (!stop.stop_requested()) folder.commit();
   return flight;
 }

@@ -38,14 +38,14 @@ struct SurveyFigures {
 };
 
 struct SurveyedTarget {
-  PreparedTarget target;
+  DistrictTarget target;
   std::optional<SurveyFigures> figures;  ///< results, if the survey is completed
-  std::string why_none;                  ///< reason for missing results
+  std::string failure_reason;            ///< reason for missing results
 };
 
 /// Reads the results of the package in `folder`, run as described by `record`. Throws
 /// Error{bad_file}.
-SurveyFigures figures_of(const std::filesystem::path& folder, const TrialRecord& record);
+SurveyFigures compute_figures(const std::filesystem::path& folder, const TrialRecord& record);
 
 /// Flight from one pad.
 struct PadFlight {
@@ -55,16 +55,17 @@ struct PadFlight {
 };
 
 /// View of a target.
-struct DistrictStation {
+struct DistrictCapturePoint {
   std::size_t target = 0;
   std::uint32_t view = 0;
-  std::string why_not;  ///< reason why it is not visited; empty if it is visited
+  std::string skip_reason;  ///< reason why it is not visited; empty if it is visited
 };
 
 struct DistrictFlight {
-  std::vector<PadFlight> pads;            ///< only pads with a flight
-  std::vector<DistrictStation> stations;  ///< views of all targets, in the order of the targets
-  double order_length = 0.0;              ///< length of straight lines in the chosen order [m]
+  std::vector<PadFlight> pads;  ///< only pads with a flight
+  std::vector<DistrictCapturePoint>
+      capture_points;         ///< views of all targets, in the order of the targets
+  double order_length = 0.0;  ///< length of straight lines in the chosen order [m]
   std::vector<std::string> notes;
 
   std::size_t sorties() const;
@@ -77,9 +78,9 @@ struct DistrictFlight {
 /// survey. All objects of the input files are obstacles, as in the missions of the pads. A waypoint
 /// that cannot be reached from its best pad is tried from the next two pads. Every leg is verified
 /// as in plan_route(). Planning ends without a flight once `stop` is requested.
-DistrictFlight plan_district(const DistrictFile& district, const Prepared& prepared,
+DistrictFlight plan_district(const DistrictFile& district, const DistrictPlan& district_plan,
                              std::span<const SurveyedTarget> targets,
-                             const std::filesystem::path& out, const Tell& tell,
-                             const std::stop_token& stop);
+                             const std::filesystem::path& out,
+                             const ReportProgress& report_progress, const std::stop_token& stop);
 
 }  // namespace skycap::missions::batch

@@ -17,36 +17,36 @@
 namespace skycap::missions::batch {
 namespace {
 
-using support::json_of;
+using support::to_json;
 using Json = nlohmann::ordered_json;
 
 /// Visited and omitted views of a target in the joint flight.
-struct FlownViews {
-  std::size_t flown = 0;
-  std::map<std::string, std::size_t> why_not;  ///< number of views by reason
+struct VisitedViews {
+  std::size_t visited = 0;
+  std::map<std::string, std::size_t> skip_reason;  ///< number of views by reason
 
   /// Returns the number of omitted views and their most frequent reason; ties are resolved
   /// alphabetically. Empty if all views are visited.
   std::string reason() const {
     std::size_t all = 0;
-    for (const auto& [why, views] : why_not) all += views;
-    const auto most =
-        std::ranges::max_element(why_not, {}, [](const auto& one) { return one.second; });
-    if (most == why_not.end()) return "";
+    for (const auto& [reason, views] : skip_reason) all += views;
+    const auto max =
+        std::ranges::max_element(skip_reason, {}, [](const auto& one) { return one.second; });
+    if (max == skip_reason.end()) return "";
     std::string text = support::counted(all, "view");
-    if (most->second < all) text += fmt::format("; {} of them", most->second);
-    return text + ": " + most->first;
+    if (max->second < all) text += fmt::format("; {} of them", max->second);
+    return text + ": " + max->first;
   }
 };
 
-std::vector<FlownViews> flown_views(std::span<const SurveyedTarget> targets,
-                                    const DistrictFlight& flight) {
-  std::vector<FlownViews> views(targets.size());
-  for (const DistrictStation& station : flight.stations) {
-    if (station.why_not.empty()) {
-      ++views[station.target].flown;
+std::vector<VisitedViews> visited_views(std::span<const SurveyedTarget> targets,
+                                        const DistrictFlight& flight) {
+  std::vector<VisitedViews> views(targets.size());
+  for (const DistrictCapturePoint& capture_point : flight.capture_points) {
+    if (capture_point.skip_reason.empty()) {
+      ++views[capture_point.target].visited;
     } else {
-      ++views[station.target].why_not[station.why_not];
+      ++views[capture_point.target].skip_reason[capture_point.skip_reason];
     }
   }
   return views;
@@ -55,8 +55,8 @@ std::vector<FlownViews> flown_views(std::span<const SurveyedTarget> targets,
 Json outlines_json(const std::vector<Ring>& rings) {
   Json list = Json::array();
   for (const Ring& ring : rings) {
-    Json& places = list.emplace_back(Json::array());
-    for (const Eigen::Vector2d& place : ring) places.push_back({place.x(), place.y()});
+    Json& footprint = list.emplace_back(Json::array());
+    for (const Eigen::Vector2d& position : ring) footprint.push_back({position.x(), position.y()});
   }
   return list;
 }
@@ -75,18 +75,18 @@ Json survey_json(const SurveyFigures& figures, const std::filesystem::path& out)
           {"file_bytes", figures.file_bytes}};
 }
 
-Json target_json(const SurveyedTarget& one, const FlownViews& views,
+Json target_json(const SurveyedTarget& one, const VisitedViews& views,
                  const std::filesystem::path& out) {
-  const PreparedTarget& target = one.target;
+  const DistrictTarget& target = one.target;
   return {{"title", target.title},
           {"ids", target.ids},
           {"survey", one.figures ? survey_json(*one.figures, out) : Json()},
-          {"why_none", one.why_none},
-          {"views_flown", views.flown},
+          {"why_none", one.failure_reason},
+          {"views_flown", views.visited},
           {"why_not_flown", views.reason()},
           {"height_m", target.box.sizes().z()},
           {"outlines", outlines_json(target.outlines)},
-          {"pad", json_of(target.pad)}};
+          {"pad", to_json(target.pad)}};
 }
 
 Json files_json(const package::FlightFiles& files) {
@@ -104,8 +104,8 @@ Json files_json(const package::FlightFiles& files) {
 Json pad_json(const PadFlight& pad) {
   const flight::Route& route = pad.route;
   Json json{{"pad", pad.pad},
-            {"position", json_of(route.options.takeoff)},
-            {"stations", route.stations.size()},
+            {"position", to_json(route.options.takeoff)},
+            {"stations", route.capture_points.size()},
             {"length_m", route.length},
             {"duration_s", route.duration},
             {"energy_wh", route.energy / 3600.0},
@@ -121,34 +121,34 @@ Json pad_json(const PadFlight& pad) {
   return json;
 }
 
-double least_clearance(const DistrictFlight& flight) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const PadFlight& pad : flight.pads) least = std::min(least, pad.route.min_clearance);
-  return least;
+double min_clearance(const DistrictFlight& flight) {
+  double min = std::numeric_limits<double>::infinity();
+  for (const PadFlight& pad : flight.pads) min = std::min(min, pad.route.min_clearance);
+  return min;
 }
 
-std::size_t flown(const DistrictFlight& flight) {
+std::size_t visited(const DistrictFlight& flight) {
   return static_cast<std::size_t>(
-      std::ranges::count(flight.stations, std::string(), &DistrictStation::why_not));
+      std::ranges::count(flight.capture_points, std::string(), &DistrictCapturePoint::skip_reason));
 }
 
 Json flight_json(const DistrictFlight& flight) {
   if (flight.pads.empty()) return {};
-  Json pads = Json::array(), stations = Json::array();
+  Json pads = Json::array(), capture_points = Json::array();
   for (const PadFlight& pad : flight.pads) pads.push_back(pad_json(pad));
-  for (const DistrictStation& station : flight.stations) {
-    stations.push_back({station.target, station.view, station.why_not});
+  for (const DistrictCapturePoint& capture_point : flight.capture_points) {
+    capture_points.push_back({capture_point.target, capture_point.view, capture_point.skip_reason});
   }
   return {{"vehicle", flight.pads[0].route.vehicle.name},
-          {"views", flight.stations.size()},
-          {"views_flown", flown(flight)},
+          {"views", flight.capture_points.size()},
+          {"views_flown", visited(flight)},
           {"sorties", flight.sorties()},
           {"length_m", flight.length()},
           {"duration_s", flight.duration()},
           {"clearance_m", flight.pads[0].route.clearance},
-          {"min_clearance_m", least_clearance(flight)},
+          {"min_clearance_m", min_clearance(flight)},
           {"pads", pads},
-          {"stations", stations},
+          {"stations", capture_points},
           {"notes", flight.notes}};
 }
 
@@ -166,32 +166,32 @@ std::string number_or_none(bool is_there, double number) {
 
 }  // namespace
 
-std::string results_json(const DistrictFile& district, const Prepared& prepared,
+std::string results_json(const DistrictFile& district, const DistrictPlan& district_plan,
                          std::span<const SurveyedTarget> targets, const DistrictFlight& flight,
                          const std::filesystem::path& out) {
-  const std::vector<FlownViews> views = flown_views(targets, flight);
+  const std::vector<VisitedViews> views = visited_views(targets, flight);
   const auto surveyed = std::ranges::count_if(
       targets, [](const SurveyedTarget& target) { return target.figures.has_value(); });
   Json json{{"district", district.name},
             {"version", version},
-            {"map", district.wishes.map.filename().string()},
+            {"map", district.request.map.filename().string()},
             {"planner", district.planner},
             {"seed", district.seed},
-            {"vehicle", district.wishes.vehicle},
+            {"vehicle", district.request.vehicle},
             {"surveyed", surveyed},
             {"complete", surveyed == std::ssize(targets)},
-            {"pads", json_of(prepared.pads)},
+            {"pads", to_json(district_plan.pads)},
             {"targets", Json::array()}};
   for (std::size_t i = 0; i < targets.size(); ++i) {
     json["targets"].push_back(target_json(targets[i], views[i], out));
   }
   json["flight"] = flight_json(flight);
-  json["neighbours"] = outlines_json(prepared.neighbours);
+  json["neighbours"] = outlines_json(district_plan.neighbours);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string targets_csv(std::span<const SurveyedTarget> targets, const DistrictFlight& flight) {
-  const std::vector<FlownViews> views = flown_views(targets, flight);
+  const std::vector<VisitedViews> views = visited_views(targets, flight);
   std::string csv =
       "title,things,views,coverage,coverage_visible,alone_duration_s,alone_length_m,views_flown,"
       "remark\n";
@@ -204,7 +204,7 @@ std::string targets_csv(std::span<const SurveyedTarget> targets, const DistrictF
         figures.views, number_or_none(is_there, figures.coverage),
         number_or_none(figures.coverage_visible.has_value(), figures.coverage_visible.value_or(0)),
         number_or_none(is_there, figures.time), number_or_none(is_there, figures.length),
-        views[i].flown, field(is_there ? views[i].reason() : one.why_none));
+        views[i].visited, field(is_there ? views[i].reason() : one.failure_reason));
   }
   return csv;
 }
@@ -230,9 +230,9 @@ std::string results_text(std::span<const SurveyedTarget> targets, const District
     text += fmt::format(
         "\n  flight    {} of {} views, {:.1f} m in {:.1f} min, {} from {}; each target separately "
         "{:.1f} min\n  clearance required {:.2f} m, minimum {:.2f} m, verified for every leg",
-        flown(flight), flight.stations.size(), flight.length(), flight.duration() / 60.0,
+        visited(flight), flight.capture_points.size(), flight.length(), flight.duration() / 60.0,
         support::counted(flight.sorties(), "sortie"), support::counted(flight.pads.size(), "pad"),
-        alone / 60.0, flight.pads[0].route.clearance, least_clearance(flight));
+        alone / 60.0, flight.pads[0].route.clearance, min_clearance(flight));
   }
   return text + "\n";
 }

@@ -13,7 +13,7 @@ inline constexpr const char* results_name = "district.json";
 inline constexpr const char* table_name = "targets.csv";
 
 /// Returns all survey results and the joint flight as JSON. Package paths are relative to `out`.
-std::string results_json(const DistrictFile& district, const Prepared& prepared,
+std::string results_json(const DistrictFile& district, const DistrictPlan& district_plan,
                          std::span<const SurveyedTarget> targets, const DistrictFlight& flight,
                          const std::filesystem::path& out);
 

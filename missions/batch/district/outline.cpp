@@ -25,26 +25,26 @@ constexpr double foot_height = 0.5;
 using Corner = std::pair<std::int64_t, std::int64_t>;
 using Edge = std::pair<Corner, Corner>;
 
-Corner corner_of(const Vector3d& vertex) {
+Corner make_corner(const Vector3d& vertex) {
   return {std::llround(100.0 * vertex.x()), std::llround(100.0 * vertex.y())};
 }
 
-Vector2d place_of(const Corner& corner) {
+Vector2d to_position(const Corner& corner) {
   return 0.01 * Vector2d(static_cast<double>(corner.first), static_cast<double>(corner.second));
 }
 
 /// Returns the edges that belong to exactly one base face.
-std::set<Edge> border_of(const geometry::Mesh& mesh) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Vector3d& vertex : mesh.vertices) lowest = std::min(lowest, vertex.z());
+std::set<Edge> find_border_edges(const geometry::Mesh& mesh) {
+  double min_height = std::numeric_limits<double>::infinity();
+  for (const Vector3d& vertex : mesh.vertices) min_height = std::min(min_height, vertex.z());
   std::set<Edge> border;
   for (const auto& triangle : mesh.triangles) {
     std::array<Corner, 3> corners;
     bool is_low = true;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d& vertex = mesh.vertices[triangle[i]];
-      corners[i] = corner_of(vertex);
-      is_low = is_low && vertex.z() <= lowest + foot_height;
+      corners[i] = make_corner(vertex);
+      is_low = is_low && vertex.z() <= min_height + foot_height;
     }
     if (!is_low) continue;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -69,7 +69,7 @@ std::vector<Ring> chained(const std::set<Edge>& border) {
     Ring& ring = rings.emplace_back();
     Corner here = start;
     do {
-      ring.push_back(place_of(here));
+      ring.push_back(to_position(here));
       const auto found = next.find(here);
       if (found == next.end() || found->second.empty()) return {};
       const Corner to = *found->second.begin();
@@ -86,31 +86,32 @@ std::vector<Ring> chained(const std::set<Edge>& border) {
 
 }  // namespace
 
-std::vector<Ring> outline_of(const geometry::Mesh& mesh) {
-  std::vector<Ring> rings = chained(border_of(mesh));
+std::vector<Ring> compute_outline(const geometry::Mesh& mesh) {
+  std::vector<Ring> rings = chained(find_border_edges(mesh));
   if (!rings.empty()) return rings;
-  std::vector<Vector2d> places;
-  for (const Vector3d& vertex : mesh.vertices) places.push_back(vertex.head<2>());
-  return {convex_hull(std::move(places))};
+  std::vector<Vector2d> positions;
+  for (const Vector3d& vertex : mesh.vertices) positions.push_back(vertex.head<2>());
+  return {convex_hull(std::move(positions))};
 }
 
 // Implements Andrew's monotone chain algorithm (1979).
-Ring convex_hull(std::vector<Vector2d> places) {
+Ring convex_hull(std::vector<Vector2d> positions) {
   const auto less = [](const Vector2d& a, const Vector2d& b) {
     return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y());
   };
-  std::ranges::sort(places, less);
+  std::ranges::sort(positions, less);
   Ring hull;
-  const auto add = [&](const Vector2d& place, std::size_t fixed) {
+  const auto add = [&](const Vector2d& position, std::size_t fixed) {
     while (hull.size() > fixed &&
-           geometry::turn(hull[hull.size() - 2], hull.back(), place) <= 0.0) {
+           geometry::turn(hull[hull.size() - 2], hull.back(), position) <= 0.0) {
       hull.pop_back();
     }
-    hull.push_back(place);
+    hull.push_back(position);
   };
-  for (const Vector2d& place : places) add(place, 1);
+  for (const Vector2d& position : positions) add(position, 1);
   const std::size_t upper = hull.size();
-  for (auto place = places.rbegin() + 1; place < places.rend(); ++place) add(*place, upper);
+  for (auto position = positions.rbegin() + 1; position < positions.rend(); ++position)
+    add(*position, upper);
   if (hull.size() > 1) hull.pop_back();
   return hull;
 }

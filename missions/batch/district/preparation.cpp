@@ -39,18 +39,18 @@ using Eigen::Vector3d;
 using site_data::Object;
 using site_data::Role;
 using site_data::Source;
-using support::json_of;
-using support::vector_of;
+using support::to_json;
+using support::to_vector;
 using wizard::MissionValues;
 using Json = nlohmann::ordered_json;
 
 Json box_json(const Eigen::AlignedBox3d& box) {
-  return {{"min", json_of(Eigen::Vector3d(box.min()))},
-          {"max", json_of(Eigen::Vector3d(box.max()))}};
+  return {{"min", to_json(Eigen::Vector3d(box.min()))},
+          {"max", to_json(Eigen::Vector3d(box.max()))}};
 }
 
-Eigen::AlignedBox3d box_of(const Json& json) {
-  return {vector_of(json.at("min")), vector_of(json.at("max"))};
+Eigen::AlignedBox3d parse_box(const Json& json) {
+  return {to_vector(json.at("min")), to_vector(json.at("max"))};
 }
 
 /// Rounds to centimetres, which is sufficient for a map.
@@ -58,65 +58,65 @@ Json rings_json(const std::vector<Ring>& rings) {
   const auto shown = [](double value) { return std::round(100.0 * value) / 100.0; };
   Json list = Json::array();
   for (const Ring& ring : rings) {
-    Json& places = list.emplace_back(Json::array());
-    for (const Eigen::Vector2d& place : ring) {
-      places.push_back({shown(place.x()), shown(place.y())});
+    Json& footprint = list.emplace_back(Json::array());
+    for (const Eigen::Vector2d& position : ring) {
+      footprint.push_back({shown(position.x()), shown(position.y())});
     }
   }
   return list;
 }
 
-std::vector<Ring> rings_of(const Json& json) {
+std::vector<Ring> parse_rings(const Json& json) {
   std::vector<Ring> rings;
-  for (const Json& places : json) {
+  for (const Json& footprint : json) {
     Ring& ring = rings.emplace_back();
-    for (const Json& place : places) {
-      ring.emplace_back(place.at(0).get<double>(), place.at(1).get<double>());
+    for (const Json& position : footprint) {
+      ring.emplace_back(position.at(0).get<double>(), position.at(1).get<double>());
     }
   }
   return rings;
 }
 
-Json json_of(const PreparedTarget& target) {
+Json to_json(const DistrictTarget& target) {
   return {{"title", target.title},
           {"ids", target.ids},
           {"box", box_json(target.box)},
           {"unknown", box_json(target.unknown)},
-          {"pad", json_of(target.pad)},
-          {"refusal", target.refusal},
+          {"pad", to_json(target.pad)},
+          {"refusal", target.rejection_reason},
           {"outlines", rings_json(target.outlines)}};
 }
 
-PreparedTarget target_of(const Json& json) {
+DistrictTarget parse_target(const Json& json) {
   return {.title = json.at("title"),
           .ids = json.at("ids"),
-          .outlines = rings_of(json.at("outlines")),
-          .box = box_of(json.at("box")),
-          .unknown = box_of(json.at("unknown")),
-          .pad = vector_of(json.at("pad")),
-          .refusal = json.at("refusal")};
+          .outlines = parse_rings(json.at("outlines")),
+          .box = parse_box(json.at("box")),
+          .unknown = parse_box(json.at("unknown")),
+          .pad = to_vector(json.at("pad")),
+          .rejection_reason = json.at("refusal")};
 }
 
 /// Returns a checksum of all inputs of the preparation. Throws Error{bad_file} if a file named by
 /// the district cannot be read.
-std::string digest_of(const DistrictFile& district) {
+std::string compute_checksum(const DistrictFile& district) {
   std::string inputs = std::string(version) + "\n" + geometry::read_file(district.file);
-  std::vector<fs::path> files{district.wishes.map};
-  if (district.wishes.terrain) files.push_back(*district.wishes.terrain);
-  files.insert(files.end(), district.wishes.obstacles.begin(), district.wishes.obstacles.end());
+  std::vector<fs::path> files{district.request.map};
+  if (district.request.terrain) files.push_back(*district.request.terrain);
+  files.insert(files.end(), district.request.obstacles.begin(), district.request.obstacles.end());
   for (const fs::path& file : files) {
     geometry::require_regular_file(file);
-    inputs += "\n" + support::sha256_of_file(file);
+    inputs += "\n" + support::compute_file_sha256(file);
   }
   return support::sha256(std::as_bytes(std::span(inputs)));
 }
 
 /// Maximum distance between a target and a pad of the joint flight [m].
-constexpr double most_to_pad = 300.0;
+constexpr double max_pad_distance = 300.0;
 
-std::vector<AlignedBox3d> unknown_boxes(std::span<const PreparedTarget> targets) {
+std::vector<AlignedBox3d> unknown_boxes(std::span<const DistrictTarget> targets) {
   std::vector<AlignedBox3d> boxes;
-  for (const PreparedTarget& target : targets) boxes.push_back(target.unknown);
+  for (const DistrictTarget& target : targets) boxes.push_back(target.unknown);
   return boxes;
 }
 
@@ -132,61 +132,63 @@ class PadChoice {
   /// Stores references to all arguments. Throws Error{bad_config} if a pad of the district is
   /// invalid.
   PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
-            const flight::GeodeticPoint& origin, std::span<const PreparedTarget> targets);
+            const flight::GeodeticPoint& origin, std::span<const DistrictTarget> targets);
 
   /// Returns the pad of a target's survey: next to the target, or else the nearest pad of the
   /// district.
-  std::optional<Vector3d> pad_of(std::size_t target, double top);
+  std::optional<Vector3d> find_pad(std::size_t target, double top);
 
   /// Returns the pads given by the district. Otherwise selects pads of the target surveys until no
   /// target is farther than 300 m from a pad. The first is the one nearest to the centre; then the
   /// pads of the farthest targets are added.
-  std::vector<Vector3d> pads_of_flight() const;
+  std::vector<Vector3d> find_flight_pads() const;
 
  private:
-  void take_given(const DistrictFile& district, const flight::GeodeticPoint& origin);
+  void read_configured_pads(const DistrictFile& district, const flight::GeodeticPoint& origin);
 
-  std::span<const PreparedTarget> targets_;
+  std::span<const DistrictTarget> targets_;
   wizard::PadSearch search_;
-  std::vector<Vector3d> given_;
+  std::vector<Vector3d> configured_pads_;
   std::vector<std::optional<Vector3d>> own_;  ///< pads of the target surveys, by target
 };
 
 PadChoice::PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
-                     const flight::GeodeticPoint& origin, std::span<const PreparedTarget> targets)
+                     const flight::GeodeticPoint& origin, std::span<const DistrictTarget> targets)
     : targets_(targets), search_(draft, unknown_boxes(targets)), own_(targets.size()) {
-  take_given(district, origin);
+  read_configured_pads(district, origin);
 }
 
-void PadChoice::take_given(const DistrictFile& district, const flight::GeodeticPoint& origin) {
+void PadChoice::read_configured_pads(const DistrictFile& district,
+                                     const flight::GeodeticPoint& origin) {
   const flight::LocalFrame frame(origin);
   double top = 0.0;
-  for (const PreparedTarget& target : targets_) top = std::max(top, target.unknown.max().z());
+  for (const DistrictTarget& target : targets_) top = std::max(top, target.unknown.max().z());
   for (const wizard::Click& click : district.pads) {
-    const Vector3d place = frame.to_local({click.latitude_deg, click.longitude_deg, origin.height});
-    const auto pad = search_.at(place.head<2>());
-    if (!pad || search_.room_over(*pad, top, 1.0) <= 0.0) {
+    const Vector3d position =
+        frame.to_local({click.latitude_deg, click.longitude_deg, origin.height});
+    const auto pad = search_.at(position.head<2>());
+    if (!pad || search_.climb_clearance(*pad, top, 1.0) <= 0.0) {
       throw Error(ErrorKind::bad_config,
                   fmt::format("{}: key pads: {:.7f},{:.7f} is not free, level and even ground "
                               "outside the surveyed objects; use another position",
                               district.file.string(), click.latitude_deg, click.longitude_deg));
     }
-    given_.push_back(*pad);
+    configured_pads_.push_back(*pad);
   }
 }
 
-std::optional<Vector3d> PadChoice::pad_of(std::size_t target, double top) {
+std::optional<Vector3d> PadChoice::find_pad(std::size_t target, double top) {
   const AlignedBox3d& unknown = targets_[target].unknown;
-  own_[target] = search_.beside(unknown, top);
-  if (own_[target] || given_.empty()) return own_[target];
-  return *std::ranges::min_element(given_, {},
+  own_[target] = search_.find_pad_beside(unknown, top);
+  if (own_[target] || configured_pads_.empty()) return own_[target];
+  return *std::ranges::min_element(configured_pads_, {},
                                    [&](const Vector3d& pad) { return distance(pad, unknown); });
 }
 
-std::vector<Vector3d> PadChoice::pads_of_flight() const {
-  if (!given_.empty()) return given_;
+std::vector<Vector3d> PadChoice::find_flight_pads() const {
+  if (!configured_pads_.empty()) return configured_pads_;
   AlignedBox3d all;
-  for (const PreparedTarget& target : targets_) all.extend(target.unknown);
+  for (const DistrictTarget& target : targets_) all.extend(target.unknown);
   std::vector<Vector3d> pads;
   const Vector3d* next = nullptr;
   double nearest = std::numeric_limits<double>::infinity();
@@ -199,7 +201,7 @@ std::vector<Vector3d> PadChoice::pads_of_flight() const {
   while (next != nullptr) {
     pads.push_back(*next);
     next = nullptr;
-    double farthest = most_to_pad;
+    double farthest = max_pad_distance;
     for (std::size_t i = 0; i < targets_.size(); ++i) {
       if (!own_[i]) continue;
       double off = std::numeric_limits<double>::infinity();
@@ -223,62 +225,62 @@ AlignedBox3d box_around(const std::vector<Object>& objects, const Group& group) 
 /// Generates unique titles that are valid file and mission names.
 class Titles {
  public:
-  std::string title_of(const std::string& id, std::size_t members) {
-    constexpr std::size_t most = 60;
+  std::string make_title(const std::string& id, std::size_t members) {
+    constexpr std::size_t max = 60;
     std::string title;
-    for (const char c : id.substr(0, most)) {
+    for (const char c : id.substr(0, max)) {
       const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
                             (c >= 'A' && c <= 'Z') || c == '-' || c == '_' || c == '.';
       title += is_plain ? c : '_';
     }
     if (title.empty() || title[0] == '.') title = "_" + title;
     if (members > 1) title += "_and_" + std::to_string(members - 1);
-    const std::size_t times = ++given_[title];
-    return times == 1 ? title : title_of(title + "-" + std::to_string(times), 1);
+    const std::size_t times = ++configured_pads_[title];
+    return times == 1 ? title : make_title(title + "-" + std::to_string(times), 1);
   }
 
  private:
-  std::map<std::string, std::size_t> given_;
+  std::map<std::string, std::size_t> configured_pads_;
 };
 
 /// Prepares one district. Its members are the results of the preparation steps.
 class Preparer {
  public:
-  Preparer(const DistrictFile& district, fs::path out, const Tell& tell)
-      : district_(district), out_(std::move(out)), tell_(tell) {}
+  Preparer(const DistrictFile& district, fs::path out, const ReportProgress& report_progress)
+      : district_(district), out_(std::move(out)), report_progress_(report_progress) {}
 
-  Prepared run(std::string digest) {
-    tell_("reading " + district_.wishes.map.filename().string());
+  DistrictPlan run(std::string content_checksum) {
+    report_progress_("reading " + district_.request.map.filename().string());
     // Opened first, because file paths in missions are relative to this folder.
     geometry::OutputFolder folder(out_);
     read_files();
-    take_things();
+    split_obstacles();
     group();
     place_pads();
-    prepared_.digest = std::move(digest);
+    district_plan_.content_checksum = std::move(content_checksum);
     write_missions();
     write_flights(folder);
-    folder.write(prepared_name, prepared_json(prepared_));
+    folder.write(district_plan_name, district_plan_json(district_plan_));
     folder.commit();
-    return std::move(prepared_);
+    return std::move(district_plan_);
   }
 
  private:
   MissionValues basics(const fs::path& file) const {
     return {.file = file,
-            .verb = "skycap district",
-            .vehicle = district_.wishes.vehicle,
+            .command = "skycap district",
+            .vehicle = district_.request.vehicle,
             .sources = {},
             .origin = chosen_.origin,
             .origin_is = "the centre of the district's targets",
             .unknown = {}};
   }
 
-  bool has_terrain() const { return district_.wishes.terrain.has_value(); }
+  bool has_terrain() const { return district_.request.terrain.has_value(); }
 
   void read_files() {
     const site_data::ReadOnce once;
-    files_ = wizard::files_of(district_.wishes);
+    files_ = wizard::collect_files(district_.request);
     chosen_ = choose_targets(district_, files_);
     draft_ = read_draft();
   }
@@ -287,7 +289,7 @@ class Preparer {
   config::MissionSetup read_draft() const {
     MissionValues values = basics(out_ / "all.yaml");
     values.sources =
-        wizard::sources_of(files_, chosen_.are_all ? std::vector<std::string>() : chosen_.ids);
+        wizard::select_sources(files_, chosen_.are_all ? std::vector<std::string>() : chosen_.ids);
     const AlignedBox3d somewhere(Vector3d::Zero(), Vector3d::Ones());
     const std::string text =
         mission_text(wizard::values_for(values, somewhere, 0.0, has_terrain()));
@@ -296,7 +298,7 @@ class Preparer {
 
   /// Divides the obstacles into individual objects, written for each target, and files referenced
   /// by every mission.
-  void take_things() {
+  void split_obstacles() {
     const site_data::SitePriors& site = *draft_.scene().priors;
     targets_ = &site.priors[0].objects;
     target_error_ = site.priors[0].uncertainty;
@@ -322,12 +324,12 @@ class Preparer {
     Titles titles;
     for (const Group& group : grouped(*targets_, district_.merge_distance)) {
       const std::size_t first = group.front();
-      PreparedTarget target{.title = titles.title_of((*targets_)[first].id, group.size()),
+      DistrictTarget target{.title = titles.make_title((*targets_)[first].id, group.size()),
                             .ids = {},
                             .outlines = {},
                             .box = box_around(*targets_, group),
                             .unknown = {},
-                            .refusal = {}};
+                            .rejection_reason = {}};
       const fs::path file = out_ / missions_folder / (target.title + ".yaml");
       MissionValues values =
           wizard::values_for(basics(file), target.box, target_error_, has_terrain());
@@ -337,7 +339,7 @@ class Preparer {
       for (const std::size_t i : group) {
         const Object& object = (*targets_)[i];
         target.ids.push_back(object.id);
-        for (Ring& ring : outline_of(object.mesh)) target.outlines.push_back(std::move(ring));
+        for (Ring& ring : compute_outline(object.mesh)) target.outlines.push_back(std::move(ring));
         const MissionValues own = wizard::values_for(
             basics(file), geometry::bounding_box(object.mesh), target_error_, has_terrain());
         values.registration_distance =
@@ -347,26 +349,27 @@ class Preparer {
       values.ground = has_terrain() ? std::round(100.0 * target.box.min().z()) / 100.0 : 0.0;
       values.clearance = draft_.flight().clearance;
       target.unknown = values.unknown;
-      prepared_.targets.push_back(std::move(target));
+      district_plan_.targets.push_back(std::move(target));
       values_.push_back(std::move(values));
       groups_.push_back(group);
     }
   }
 
   void place_pads() {
-    tell_(fmt::format("searching for take-off points beside {} targets", values_.size()));
-    PadChoice choice(district_, draft_.flight(), chosen_.origin, prepared_.targets);
+    report_progress_(
+        fmt::format("searching for take-off points beside {} targets", values_.size()));
+    PadChoice choice(district_, draft_.flight(), chosen_.origin, district_plan_.targets);
     for (std::size_t i = 0; i < values_.size(); ++i) {
-      const auto pad = choice.pad_of(i, wizard::top_of_climbs(values_[i]));
+      const auto pad = choice.find_pad(i, wizard::compute_max_climb_altitude(values_[i]));
       if (!pad) {
-        prepared_.targets[i].refusal =
+        district_plan_.targets[i].rejection_reason =
             "no take-off point within 100 m of it is free, level and even; set pads";
         continue;
       }
-      prepared_.targets[i].pad = *pad;
+      district_plan_.targets[i].pad = *pad;
       values_[i] = with_pad(std::move(values_[i]), *pad);
     }
-    prepared_.pads = choice.pads_of_flight();
+    district_plan_.pads = choice.find_flight_pads();
   }
 
   /// Returns the distance from a fence beyond which enclosed objects cannot affect clearances or
@@ -415,7 +418,7 @@ class Preparer {
   }
 
   /// Returns the boxes of other targets within sensor range of a target's own box.
-  std::vector<AlignedBox3d> boxes_beside(std::size_t target) const {
+  std::vector<AlignedBox3d> neighbour_boxes(std::size_t target) const {
     const AlignedBox3d& own = values_[target].unknown;
     const Vector3d reach = Vector3d::Constant(wizard::sensor_range(values_[target]));
     const AlignedBox3d reached(own.min() - reach, own.max() + reach);
@@ -428,19 +431,19 @@ class Preparer {
   }
 
   void write_missions() {
-    tell_(fmt::format("writing {} missions", values_.size()));
+    report_progress_(fmt::format("writing {} missions", values_.size()));
     geometry::OutputFolder missions(out_ / missions_folder), sites(out_ / sites_folder);
     missions.replace([](std::string_view name) { return name.ends_with(".yaml"); });
     sites.replace([](std::string_view name) { return name.ends_with(".city.json"); });
     for (std::size_t i = 0; i < values_.size(); ++i) {
-      const PreparedTarget& target = prepared_.targets[i];
-      if (!target.refusal.empty()) continue;
+      const DistrictTarget& target = district_plan_.targets[i];
+      if (!target.rejection_reason.empty()) continue;
       MissionValues& values = values_[i];
       const std::string city = target.title + ".city.json";
       sites.write(city, city_near(values.fence, groups_[i]));
       values.sources = sources_in(out_ / sites_folder / city, target.ids);
       values.sees_neighbours = true;
-      values.unknown_beside = boxes_beside(i);
+      values.extra_unknown_boxes = neighbour_boxes(i);
       missions.write(target.title + ".yaml", mission_text(values));
     }
     sites.commit();
@@ -448,7 +451,7 @@ class Preparer {
   }
 
   void write_flights(geometry::OutputFolder& folder) {
-    if (prepared_.pads.empty()) return;
+    if (district_plan_.pads.empty()) return;
     MissionValues values = basics(out_);
     Group all;
     std::set<std::string> names;
@@ -460,26 +463,26 @@ class Preparer {
           std::max(values.registration_distance, values_[i].registration_distance);
       values.view_distance = std::max(values.view_distance, values_[i].view_distance);
       all.insert(all.end(), groups_[i].begin(), groups_[i].end());
-      for (const std::string& id : prepared_.targets[i].ids) ids.push_back(id);
+      for (const std::string& id : district_plan_.targets[i].ids) ids.push_back(id);
     }
     names.insert(ids.begin(), ids.end());
-    for (const Vector3d& pad : prepared_.pads) {
+    for (const Vector3d& pad : district_plan_.pads) {
       values.fence.extend(wizard::with_pad(values, pad).fence);
     }
     values.clearance = draft_.flight().clearance;
     for (const std::size_t i : things_near(values.fence)) {
       if (names.contains(things_[i].id)) continue;
-      for (Ring& ring : outline_of(things_[i].mesh)) {
-        prepared_.neighbours.push_back(std::move(ring));
+      for (Ring& ring : compute_outline(things_[i].mesh)) {
+        district_plan_.neighbours.push_back(std::move(ring));
       }
     }
     values.sources = sources_in(out_ / city_name, ids);
     folder.write(city_name, city_near(values.fence, all));
     geometry::OutputFolder flights(out_ / flights_folder);
     flights.replace([](std::string_view name) { return !name.starts_with("."); });
-    for (std::size_t pad = 0; pad < prepared_.pads.size(); ++pad) {
+    for (std::size_t pad = 0; pad < district_plan_.pads.size(); ++pad) {
       values.file = out_ / flights_folder / (pad_name(pad) + ".yaml");
-      values.pad = prepared_.pads[pad];
+      values.pad = district_plan_.pads[pad];
       flights.write(pad_name(pad) + ".yaml", mission_text(values));
     }
     flights.commit();
@@ -487,7 +490,7 @@ class Preparer {
 
   const DistrictFile& district_;
   fs::path out_;
-  const Tell& tell_;
+  const ReportProgress& report_progress_;
   std::vector<Source> files_, rest_;
   ChosenTargets chosen_;
   config::MissionSetup draft_;
@@ -497,39 +500,42 @@ class Preparer {
   std::vector<AlignedBox3d> thing_boxes_;
   std::vector<Group> groups_;
   std::vector<MissionValues> values_;
-  Prepared prepared_;
+  DistrictPlan district_plan_;
 };
 
 }  // namespace
 
 std::string pad_name(std::size_t pad) { return "pad_" + std::to_string(pad + 1); }
 
-std::string prepared_json(const Prepared& prepared) {
-  Json json{
-      {"digest", prepared.digest}, {"pads", json_of(prepared.pads)}, {"targets", Json::array()}};
-  for (const PreparedTarget& target : prepared.targets) json["targets"].push_back(json_of(target));
-  json["neighbours"] = rings_json(prepared.neighbours);
+std::string district_plan_json(const DistrictPlan& district_plan) {
+  Json json{{"digest", district_plan.content_checksum},
+            {"pads", to_json(district_plan.pads)},
+            {"targets", Json::array()}};
+  for (const DistrictTarget& target : district_plan.targets)
+    json["targets"].push_back(to_json(target));
+  json["neighbours"] = rings_json(district_plan.neighbours);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Prepared read_prepared(const fs::path& file) {
+DistrictPlan read_district_plan(const fs::path& file) {
   try {
     const Json json = geometry::parse_json<Json>(geometry::read_file(file, geometry::largest_json));
-    Prepared prepared{.digest = json.at("digest"),
-                      .pads = {},
-                      .targets = {},
-                      .neighbours = rings_of(json.at("neighbours"))};
-    for (const Json& pad : json.at("pads")) prepared.pads.push_back(vector_of(pad));
-    for (const Json& target : json.at("targets")) prepared.targets.push_back(target_of(target));
-    return prepared;
+    DistrictPlan district_plan{.content_checksum = json.at("digest"),
+                               .pads = {},
+                               .targets = {},
+                               .neighbours = parse_rings(json.at("neighbours"))};
+    for (const Json& pad : json.at("pads")) district_plan.pads.push_back(to_vector(pad));
+    for (const Json& target : json.at("targets"))
+      district_plan.targets.push_back(parse_target(target));
+    return district_plan;
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::bad_file, file.string() + ": is damaged (" + error.what() +
                                          "); remove it; skycap district creates it again");
   }
 }
 
-CampaignFile campaign_of(const DistrictFile& district, const Prepared& prepared,
-                         const fs::path& out) {
+CampaignFile make_campaign(const DistrictFile& district, const DistrictPlan& district_plan,
+                           const fs::path& out) {
   CampaignFile file{.name = district.name,
                     .folder = out / missions_folder,
                     .missions = {},
@@ -538,21 +544,22 @@ CampaignFile campaign_of(const DistrictFile& district, const Prepared& prepared,
                     .first_seed = district.seed,
                     .variants = {{"", district.set}},
                     .results = ItemResults::package};
-  for (const PreparedTarget& target : prepared.targets) {
-    if (target.refusal.empty()) file.missions.push_back(target.title + ".yaml");
+  for (const DistrictTarget& target : district_plan.targets) {
+    if (target.rejection_reason.empty()) file.missions.push_back(target.title + ".yaml");
   }
   return file;
 }
 
-Prepared prepare(const DistrictFile& district, const fs::path& out, const Tell& tell) {
-  tell("reading the district's files");
-  std::string digest = digest_of(district);
-  const fs::path kept = out / prepared_name;
+DistrictPlan prepare(const DistrictFile& district, const fs::path& out,
+                     const ReportProgress& report_progress) {
+  report_progress("reading the district's files");
+  std::string content_checksum = compute_checksum(district);
+  const fs::path kept = out / district_plan_name;
   if (fs::exists(kept)) {
-    Prepared prepared = read_prepared(kept);
-    if (prepared.digest == digest) return prepared;
+    DistrictPlan district_plan = read_district_plan(kept);
+    if (district_plan.content_checksum == content_checksum) return district_plan;
   }
-  return Preparer(district, out, tell).run(std::move(digest));
+  return Preparer(district, out, report_progress).run(std::move(content_checksum));
 }
 
 }  // namespace skycap::missions::batch

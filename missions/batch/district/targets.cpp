@@ -23,7 +23,7 @@ using flight::GeodeticPoint;
 using site_data::Object;
 
 /// Maximum difference of target base heights on a ground plane without terrain [m].
-constexpr double most_uneven = 2.0;
+constexpr double max_unevenness = 2.0;
 
 /// Maximum size of a group, as it is surveyed in one mission [m].
 constexpr double largest_group = 80.0;
@@ -31,9 +31,9 @@ constexpr double largest_group = 80.0;
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
 /// Tests whether an object is in the area of the targets.
-class Whereabouts {
+class TargetFilter {
  public:
-  Whereabouts(const TargetChoice& choice, const flight::LocalFrame& frame)
+  TargetFilter(const TargetChoice& choice, const flight::LocalFrame& frame)
       : choice_(choice), frame_(frame) {
     if (!choice.near) return;
     near_ = frame.to_local({choice.near->latitude_deg, choice.near->longitude_deg, 0.0}).head<2>();
@@ -60,40 +60,41 @@ class Whereabouts {
 };
 
 /// Returns the origin at the centre of the boxes, at the minimum or maximum of their base heights.
-GeodeticPoint origin_of(const std::vector<AlignedBox3d>& boxes, const flight::LocalFrame& frame,
-                        bool has_terrain, const std::string& map) {
+GeodeticPoint compute_origin(const std::vector<AlignedBox3d>& boxes,
+                             const flight::LocalFrame& frame, bool has_terrain,
+                             const std::string& map) {
   AlignedBox3d all;
-  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  double min_height = std::numeric_limits<double>::infinity(), max_height = -min_height;
   for (const AlignedBox3d& box : boxes) {
     all.extend(box);
     Vector3d foot = box.center();
     foot.z() = box.min().z();
     const double height = frame.to_geodetic(foot).height;
-    lowest = std::min(lowest, height);
-    highest = std::max(highest, height);
+    min_height = std::min(min_height, height);
+    max_height = std::max(max_height, height);
   }
-  if (!has_terrain && highest - lowest > most_uneven) {
+  if (!has_terrain && max_height - min_height > max_unevenness) {
     throw Error(ErrorKind::bad_config,
                 fmt::format("{}: the heights of its targets differ by {:.1f} m, and the ground "
                             "between them is unknown; set terrain, or choose targets within {:g} m",
-                            map, highest - lowest, most_uneven));
+                            map, max_height - min_height, max_unevenness));
   }
   GeodeticPoint origin = frame.to_geodetic(all.center());
   constexpr double centimetre = 1e-7;  // one centimetre of latitude [degrees]
   origin.latitude_deg = rounded(origin.latitude_deg, centimetre);
   origin.longitude_deg = rounded(origin.longitude_deg, centimetre);
   origin.height =
-      has_terrain ? std::floor(100.0 * lowest) / 100.0 : std::ceil(100.0 * highest) / 100.0;
+      has_terrain ? std::floor(100.0 * min_height) / 100.0 : std::ceil(100.0 * max_height) / 100.0;
   return origin;
 }
 
 /// Returns the distance between two meshes at their vertices, up to `up_to` [m].
 double gap(const geometry::Mesh& a, const geometry::MeshDistance& to_a, const geometry::Mesh& b,
            const geometry::MeshDistance& to_b, double up_to) {
-  double least = up_to;
-  for (const Vector3d& corner : a.vertices) least = std::min(least, to_b.distance(corner));
-  for (const Vector3d& corner : b.vertices) least = std::min(least, to_a.distance(corner));
-  return least;
+  double min = up_to;
+  for (const Vector3d& corner : a.vertices) min = std::min(min, to_b.distance(corner));
+  for (const Vector3d& corner : b.vertices) min = std::min(min, to_a.distance(corner));
+  return min;
 }
 
 struct Pair {
@@ -133,18 +134,18 @@ ChosenTargets choose_targets(const DistrictFile& district,
                              const std::vector<site_data::Source>& files) {
   const TargetChoice& choice = district.targets;
   const std::string map = files[0].file.string();
-  site_data::Source source = wizard::sources_of(files, choice.ids)[0];
+  site_data::Source source = wizard::select_sources(files, choice.ids)[0];
   source.select.attributes = choice.attributes;
-  const GeodeticPoint middle = site_data::middle_of(source);
+  const GeodeticPoint middle = site_data::compute_centre(source);
   const flight::LocalFrame frame(middle);
   const std::vector<Object> objects = wizard::read_things(files, source.select, middle).objects;
-  const Whereabouts whereabouts(choice, frame);
+  const TargetFilter target_filter(choice, frame);
   ChosenTargets chosen;
   std::vector<AlignedBox3d> boxes;
   for (const Object& object : objects) {
     if (!site_data::has_area(object.mesh)) continue;
     const AlignedBox3d box = geometry::bounding_box(object.mesh);
-    if (!whereabouts.hold(box)) continue;
+    if (!target_filter.hold(box)) continue;
     chosen.ids.push_back(object.id);
     boxes.push_back(box);
   }
@@ -161,13 +162,13 @@ ChosenTargets choose_targets(const DistrictFile& district,
   if (twice != sorted.end()) wizard::require_single(objects, *twice, map);
   chosen.are_all =
       choice.ids.empty() && choice.attributes.empty() && chosen.ids.size() == objects.size();
-  chosen.origin = origin_of(boxes, frame, district.wishes.terrain.has_value(), map);
+  chosen.origin = compute_origin(boxes, frame, district.request.terrain.has_value(), map);
   return chosen;
 }
 
 std::vector<Group> grouped(std::span<const Object> objects, double together) {
-  std::vector<std::size_t> group_of(objects.size());
-  std::iota(group_of.begin(), group_of.end(), std::size_t{0});
+  std::vector<std::size_t> group_indices(objects.size());
+  std::iota(group_indices.begin(), group_indices.end(), std::size_t{0});
   std::vector<Group> groups(objects.size());
   std::vector<AlignedBox3d> boxes;
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -175,12 +176,12 @@ std::vector<Group> grouped(std::span<const Object> objects, double together) {
     boxes.push_back(geometry::bounding_box(objects[i].mesh));
   }
   for (const auto& [distance, a, b] : near_pairs(objects, together)) {
-    const std::size_t to = std::min(group_of[a], group_of[b]);
-    const std::size_t from = std::max(group_of[a], group_of[b]);
+    const std::size_t to = std::min(group_indices[a], group_indices[b]);
+    const std::size_t from = std::max(group_indices[a], group_indices[b]);
     const AlignedBox3d both = boxes[to].merged(boxes[from]);
     if (to == from || both.sizes().maxCoeff() > largest_group) continue;
     boxes[to] = both;
-    for (const std::size_t member : groups[from]) group_of[member] = to;
+    for (const std::size_t member : groups[from]) group_indices[member] = to;
     groups[to].insert(groups[to].end(), groups[from].begin(), groups[from].end());
     groups[from].clear();
   }

@@ -22,15 +22,15 @@ namespace {
 std::vector<double> image_times(const scan::ScanRoute& route, double period) {
   if (!route.image_times.empty()) return route.image_times;
   constexpr double rounding = 1e-9;
-  constexpr double most_images = 1e6;
+  constexpr double max_images = 1e6;
   std::vector<double> times;
-  const double start = route.carrier.start(), duration = route.carrier.end() - start;
-  if (!(duration / period <= most_images)) {
+  const double start = route.platform.start(), duration = route.platform.end() - start;
+  if (!(duration / period <= max_images)) {
     throw Error(ErrorKind::bad_config,
                 "scan.frame_period: one image every " + support::short_text(period) +
                     " s of a flight of " + support::short_text(duration) + " s would be " +
                     support::short_text(duration / period) + " images; at most " +
-                    support::short_text(most_images) + " are allowed");
+                    support::short_text(max_images) + " are allowed");
   }
   for (std::size_t i = 0; static_cast<double>(i) * period <= duration + rounding; ++i) {
     times.push_back(start + static_cast<double>(i) * period);
@@ -48,34 +48,34 @@ double longest_ray(const geometry::Camera& camera) {
 
 }  // namespace
 
-int scan_with_camera(const ScanVerbOptions& options, const config::MissionSetup& setup,
+int scan_with_camera(const ScanCommandOptions& options, const config::MissionSetup& setup,
                      const config::SensorDescription& sensor, geometry::OutputFolder& folder,
                      const Console& console) {
   auto config = std::get<sim::DepthCameraConfig>(sensor.sensor);
   config.noise.seed = setup.run.seed;
-  const scan::ScanFlight flown =
-      flown_by(options, setup.scan, setup.run.seed, scan::Carrier::gimbal);
-  const auto& [route, believed, mount] = flown;
+  const scan::ScanFlight scan_flight =
+      make_scan_flight(options, setup.scan, setup.run.seed, scan::Platform::gimbal);
+  const auto& [route, estimated, mount] = scan_flight;
   std::vector<scan::Frame> frames;
   for (const double time : image_times(route, setup.scan.frame_period)) {
-    frames.push_back({time, route.carrier.pose(time) * mount.real * scan::body_from_camera(),
-                      believed.pose(time) * mount.believed * scan::body_from_camera()});
+    frames.push_back({time, route.platform.pose(time) * mount.real * scan::body_from_camera(),
+                      estimated.pose(time) * mount.estimated * scan::body_from_camera()});
   }
   ProgressLine progress(console, options.is_quiet);
   progress.show(setup.name + ": loading scene");
   const scene::SensedScene truth(setup.scene(), options.mission.parent_path(), setup.run.threads);
   const sim::DepthCamera camera(config);
   const sim::Scene scene = truth.scene(
-      setup.run.threads, within_reach(flown, {route.carrier.start(), route.carrier.end()},
+      setup.run.threads, within_reach(scan_flight, {route.platform.start(), route.platform.end()},
                                       longest_ray(camera.camera())));
-  const auto report = [&](std::size_t taken, std::size_t points) {
-    progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", setup.name, taken,
+  const auto report = [&](std::size_t captured, std::size_t points) {
+    progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", setup.name, captured,
                               frames.size(), 1e-6 * static_cast<double>(points)));
   };
   const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
-  const HoldsResults results(console);
+  const PendingResultsGuard results(console);
   scan::ScanJournal journal(folder.path());
-  nlohmann::ordered_json identity = identity_of(sensor, truth, flown);
+  nlohmann::ordered_json identity = make_identity(sensor, truth, scan_flight);
   identity["rawlog"] = has_rawlog;
   const nlohmann::ordered_json begun =
       open_journal(journal, options.resumes, options, setup.identity(), identity, console);

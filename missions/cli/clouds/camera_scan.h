@@ -9,7 +9,7 @@
 namespace skycap::missions::cli {
 
 /// Records and commits the depth images of a flight. Returns the exit code.
-int scan_with_camera(const ScanVerbOptions& options, const config::MissionSetup& setup,
+int scan_with_camera(const ScanCommandOptions& options, const config::MissionSetup& setup,
                      const config::SensorDescription& sensor, geometry::OutputFolder& folder,
                      const Console& console);
 

@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 struct Truth {
   geometry::Mesh model;
   /// Adjacent objects that a mission's sensor observes: ground, neighbours.
-  geometry::Mesh beside{};
+  geometry::Mesh surroundings{};
   double registration_distance;
   std::size_t samples;
   /// Visibility of each sample, if a mission defines the views.
@@ -50,60 +50,61 @@ bool is_mission_file(const fs::path& file) {
 }
 
 /// Evaluates a cloud in pieces, because laser scans may exceed memory.
-evaluation::CloudJudgement judged_cloud(const EvaluateOptions& options, const Truth& truth,
-                                        ProgressLine& progress, const Console& console) {
+evaluation::CloudEvaluation evaluate_cloud(const EvaluateOptions& options, const Truth& truth,
+                                           ProgressLine& progress, const Console& console) {
   const fs::path& file = options.cloud;
-  evaluation::CloudJudge judge(truth.model, truth.samples, truth.registration_distance,
-                               options.threads, truth.beside);
-  const auto take = [&](std::span<const Eigen::Vector3f> piece, double share) {
+  evaluation::CloudEvaluator evaluator(truth.model, truth.samples, truth.registration_distance,
+                                       options.threads, truth.surroundings);
+  const auto add_points = [&](std::span<const Eigen::Vector3f> chunk, double share) {
     if (console.stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
     progress.show(fmt::format("{}: {:.0f} %", file.string(), 100.0 * share));
-    judge.add(piece);
+    evaluator.add(chunk);
   };
-  const std::size_t skipped = geometry::read_positions(file, take);
+  const std::size_t skipped = geometry::read_positions(file, add_points);
   progress.clear();
   if (skipped > 0) {
     warn(console, fmt::format("{}: {} points skipped (NaN or infinite)", file.string(), skipped));
   }
-  return judge.judgement();
+  return evaluator.result();
 }
 
 /// Evaluates a mesh by samples of its surface, because its vertices are unevenly distributed.
-evaluation::CloudJudgement judged_mesh(const EvaluateOptions& options, const Truth& truth) {
+evaluation::CloudEvaluation evaluate_mesh(const EvaluateOptions& options, const Truth& truth) {
   const geometry::Mesh mesh = geometry::read_mesh(options.mesh);
-  evaluation::AccuracyMeter accuracy(truth.model, options.threads, truth.beside);
+  evaluation::AccuracyMeter accuracy(truth.model, options.threads, truth.surroundings);
   evaluation::AccuracyMeter completeness(mesh, options.threads);
   constexpr std::uint64_t seed = 2;  // differs from the seed of the ground-truth samples
   accuracy.add(geometry::sample_surface(mesh, truth.samples, seed).points);
-  completeness.add(evaluation::places_asked(truth.model, truth.samples));
-  return {accuracy.points(), accuracy.beside(),
+  completeness.add(evaluation::sample_positions(truth.model, truth.samples));
+  return {accuracy.points(), accuracy.surroundings(),
           completeness.share_within(truth.registration_distance), accuracy.accuracy(),
           geometry::surface_area(truth.model)};
 }
 
 /// Returns the covered fraction of the visible surface, or nullopt if the visibility is unknown.
-std::optional<double> visible_share(const evaluation::CloudJudgement& judged, const Truth& truth) {
-  if (judged.is_covered.size() != truth.is_visible.size()) return std::nullopt;
-  return evaluation::covered_share(judged.is_covered, truth.is_visible);
+std::optional<double> visible_share(const evaluation::CloudEvaluation& evaluated,
+                                    const Truth& truth) {
+  if (evaluated.is_covered.size() != truth.is_visible.size()) return std::nullopt;
+  return evaluation::covered_share(evaluated.is_covered, truth.is_visible);
 }
 
 /// Reads the ground truth of options.model. The visibility is computed only if `wants_visible`.
 /// Throws Error.
-Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config::Report& report,
-               const std::stop_token& stop) {
+Truth make_truth(const EvaluateOptions& options, bool wants_visible, const config::Report& report,
+                 const std::stop_token& stop) {
   if (is_mission_file(options.model)) {
     const fs::path file = options.model;
     const config::MissionSetup setup = config::read_mission(file, {}, report);
     const double distance = options.distance.value_or(setup.evaluation().registration_distance);
-    const auto beside = [&](const geometry::Mesh& model) {
-      return scene::surroundings_of(setup.scene(), geometry::bounding_box(model));
+    const auto surroundings = [&](const geometry::Mesh& model) {
+      return scene::make_surroundings(setup.scene(), geometry::bounding_box(model));
     };
     if (!wants_visible) {
       const geometry::Mesh model = evaluation::placed_model(setup.scene(), file.parent_path());
-      return {model, beside(model), distance, setup.evaluation().samples};
+      return {model, surroundings(model), distance, setup.evaluation().samples};
     }
     const evaluation::SurveyScene scene(setup.simulation, file.parent_path(), setup.run.threads);
-    return {scene.model(), beside(scene.model()), distance, setup.evaluation().samples,
+    return {scene.model(), surroundings(scene.model()), distance, setup.evaluation().samples,
             scene.visible(setup.run.threads, stop)};
   }
   if (!options.distance) {
@@ -120,18 +121,18 @@ Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config:
 
 /// Returns the results as JSON.
 nlohmann::ordered_json evaluation_json(const EvaluateOptions& options, const Truth& truth,
-                                       const evaluation::CloudJudgement& judged) {
-  const evaluation::CloudAccuracy& accuracy = judged.accuracy;
-  const std::optional<double> visible = visible_share(judged, truth);
+                                       const evaluation::CloudEvaluation& evaluated) {
+  const evaluation::CloudAccuracy& accuracy = evaluated.accuracy;
+  const std::optional<double> visible = visible_share(evaluated, truth);
   const bool is_mesh = !options.mesh.empty();
   return {
       {is_mesh ? "mesh" : "cloud", (is_mesh ? options.mesh : options.cloud).string()},
       {"model", options.model},
-      {"points", judged.points},
-      {"points_beside", judged.beside},
+      {"points", evaluated.points},
+      {"points_beside", evaluated.surroundings},
       {"registration_distance_m", truth.registration_distance},
       {"samples", truth.samples},
-      {"coverage", judged.coverage},
+      {"coverage", evaluated.coverage},
       {"coverage_visible", visible ? nlohmann::ordered_json(*visible) : nlohmann::ordered_json()},
       {"distance_to_model_m",
        {{"mean", accuracy.mean},
@@ -139,91 +140,93 @@ nlohmann::ordered_json evaluation_json(const EvaluateOptions& options, const Tru
         {"median", accuracy.median},
         {"percentile_95", accuracy.percentile_95},
         {"largest", accuracy.largest}}},
-      {"area_m2", judged.area},
-      {"points_per_m2", judged.density()}};
+      {"area_m2", evaluated.area},
+      {"points_per_m2", evaluated.density()}};
 }
 
 /// Prints the results in the format of options.is_json.
 void print_evaluation(const EvaluateOptions& options, const Truth& truth,
-                      const evaluation::CloudJudgement& judged, std::ostream& out) {
+                      const evaluation::CloudEvaluation& evaluated, std::ostream& out) {
   if (options.is_json) {
-    out << support::json_text(evaluation_json(options, truth, judged));
+    out << support::json_text(evaluation_json(options, truth, evaluated));
     return;
   }
-  const evaluation::CloudAccuracy& accuracy = judged.accuracy;
-  const std::optional<double> visible = visible_share(judged, truth);
+  const evaluation::CloudAccuracy& accuracy = evaluated.accuracy;
+  const std::optional<double> visible = visible_share(evaluated, truth);
   const fs::path& file = options.mesh.empty() ? options.cloud : options.mesh;
   out << fmt::format(
       "{}: {} points against {}{}\n  coverage  {:.2f}% of the surface within {:g} m{}\n  accuracy  "
       "mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95% below {:.4g} m, maximum {:.4g} m\n  "
       "density   {:.4g} points per m^2 of the surface ({:.4g} m^2)\n",
-      file.filename().string(), judged.points, options.model,
-      truth.beside.triangles.empty()
+      file.filename().string(), evaluated.points, options.model,
+      truth.surroundings.triangles.empty()
           ? ""
-          : fmt::format("; {} more on the ground and on neighbours", judged.beside),
-      100.0 * judged.coverage, truth.registration_distance,
+          : fmt::format("; {} more on the ground and on neighbours", evaluated.surroundings),
+      100.0 * evaluated.coverage, truth.registration_distance,
       visible ? fmt::format(", {:.2f}% of the visible surface", 100.0 * *visible) : "",
       accuracy.mean, accuracy.root_mean_square, accuracy.median, accuracy.percentile_95,
-      accuracy.largest, judged.density(), judged.area);
+      accuracy.largest, evaluated.density(), evaluated.area);
 }
 
 constexpr const char* evaluation_name = "evaluation.json";
 
 std::string checksum(const geometry::Mesh& mesh) {
-  const auto sum_of = [](const auto& items) {
-    return geometry::crc32_of(
+  const auto compute_checksum = [](const auto& items) {
+    return geometry::compute_crc32(
         {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
   };
-  return fmt::format("{:08x} {:08x}", sum_of(mesh.vertices), sum_of(mesh.triangles));
+  return fmt::format("{:08x} {:08x}", compute_checksum(mesh.vertices),
+                     compute_checksum(mesh.triangles));
 }
 
 /// Evaluation of a cloud whose points are divided into pieces in file order.
-class PiecesOfCloud final : public PieceWork {
+class CloudShards final : public ShardedJob {
  public:
-  PiecesOfCloud(const EvaluateOptions& options, const Console& console)
+  CloudShards(const EvaluateOptions& options, const Console& console)
       : options_(options),
         console_(console),
         progress_(console, options.is_quiet),
         truth_(read_truth()),
-        digest_(checksum(truth_.model) + " beside " + checksum(truth_.beside)) {}
+        content_checksum_(checksum(truth_.model) + " beside " + checksum(truth_.surroundings)) {}
 
-  bool do_piece(std::size_t number) override {
-    geometry::OutputFolder folder(piece_folder(number));
+  bool process_shard(std::size_t number) override {
+    geometry::OutputFolder folder(own_shard_folder(number));
     if (evaluation::has_tally(folder.path(), identity(number))) return true;
-    evaluation::CloudJudge judge(truth_.model, truth_.samples, truth_.registration_distance,
-                                 options_.threads, truth_.beside);
+    evaluation::CloudEvaluator evaluator(truth_.model, truth_.samples, truth_.registration_distance,
+                                         options_.threads, truth_.surroundings);
     double begin = 0.0;  // file position of the next points, as a fraction
     geometry::read_positions(
         options_.cloud, [&](std::span<const Eigen::Vector3f> points, double end) {
-          const auto place = static_cast<std::size_t>(begin * static_cast<double>(options_.pieces));
+          const auto piece_index =
+              static_cast<std::size_t>(begin * static_cast<double>(options_.shards));
           begin = end;
-          const bool is_own = std::min(place, options_.pieces - 1) == number;
+          const bool is_own = std::min(piece_index, options_.shards - 1) == number;
           if (!is_own || console_.stop.stop_requested()) return;
           progress_.show(
               fmt::format("{}: piece {}, {:.0f}%", options_.cloud.string(), number, 100.0 * end));
-          judge.add(points);
+          evaluator.add(points);
         });
     if (console_.stop.stop_requested()) return false;
-    evaluation::stage_tally(identity(number), judge.take_tally(), folder);
+    evaluation::stage_tally(identity(number), evaluator.take_tally(), folder);
     folder.commit();
     return true;
   }
 
-  bool take_piece(std::size_t number) override {
-    if (!evaluation::has_tally(piece_folder(number), identity(number))) return false;
-    all_.add(evaluation::read_tally(piece_folder(number)));
+  bool load_shard(std::size_t number) override {
+    if (!evaluation::has_tally(own_shard_folder(number), identity(number))) return false;
+    all_.add(evaluation::read_tally(own_shard_folder(number)));
     return true;
   }
 
   int join(geometry::OutputFolder& folder) override {
-    const evaluation::CloudJudgement judged =
-        judgement_of(all_, geometry::surface_area(truth_.model));
-    nlohmann::ordered_json json = evaluation_json(options_, truth_, judged);
+    const evaluation::CloudEvaluation evaluated =
+        evaluate_tally(all_, geometry::surface_area(truth_.model));
+    nlohmann::ordered_json json = evaluation_json(options_, truth_, evaluated);
     json["complete"] = true;
     folder.write(evaluation_name, support::json_text(json));
     folder.commit();
     progress_.clear();
-    if (!options_.is_quiet) print_evaluation(options_, truth_, judged, console_.out);
+    if (!options_.is_quiet) print_evaluation(options_, truth_, evaluated, console_.out);
     return 0;
   }
 
@@ -231,11 +234,11 @@ class PiecesOfCloud final : public PieceWork {
   Truth read_truth() {
     progress_.show("loading " + options_.model);
     const bool wants_visible = !options_.task.index;  // only required for the whole cloud
-    return truth_of(options_, wants_visible, progress_.teller(), console_.stop);
+    return make_truth(options_, wants_visible, progress_.progress_callback(), console_.stop);
   }
 
-  fs::path piece_folder(std::size_t number) const {
-    return folder_of_piece(*options_.out, number, options_.pieces);
+  fs::path own_shard_folder(std::size_t number) const {
+    return shard_folder(*options_.out, number, options_.shards);
   }
 
   /// Returns a string that identifies the inputs of a piece.
@@ -243,19 +246,19 @@ class PiecesOfCloud final : public PieceWork {
     const auto changed = fs::last_write_time(options_.cloud).time_since_epoch().count();
     return fmt::format("{} {} {} {} model {} distance {} samples {} piece {} of {}", version,
                        fs::absolute(options_.cloud).string(), fs::file_size(options_.cloud),
-                       changed, digest_, truth_.registration_distance, truth_.samples, number,
-                       options_.pieces);
+                       changed, content_checksum_, truth_.registration_distance, truth_.samples,
+                       number, options_.shards);
   }
 
   const EvaluateOptions& options_;
   const Console& console_;
   ProgressLine progress_;
   Truth truth_;
-  std::string digest_;
+  std::string content_checksum_;
   evaluation::CloudTally all_;
 };
 
-batch::Words command_of(const EvaluateOptions& options) {
+batch::Words make_command(const EvaluateOptions& options) {
   std::error_code missing;
   const bool is_file = fs::exists(options.model, missing);
   batch::Words words{"evaluate",
@@ -266,7 +269,7 @@ batch::Words command_of(const EvaluateOptions& options) {
                      "--out",
                      fs::absolute(*options.out),
                      "--pieces",
-                     std::to_string(options.pieces),
+                     std::to_string(options.shards),
                      "--samples",
                      std::to_string(options.samples)};
   if (options.distance) {
@@ -276,41 +279,41 @@ batch::Words command_of(const EvaluateOptions& options) {
 }
 
 /// Evaluates a cloud in pieces according to the options. Returns the exit code.
-int evaluate_pieces(const EvaluateOptions& options, const Console& console) {
+int evaluate_shards(const EvaluateOptions& options, const Console& console) {
   if (!options.mesh.empty() || !options.out) {
     throw Error(ErrorKind::bad_usage, "--pieces requires --cloud and --out");
   }
   if (!fs::is_regular_file(options.cloud)) {
     throw Error(ErrorKind::bad_file, options.cloud.string() + ": does not exist");
   }
-  const batch::JobRequest job{.command = command_of(options),
+  const batch::JobRequest job{.command = make_command(options),
                               .out = *options.out,
                               .title = "Evaluation of " + options.cloud.filename().string(),
                               .name = "evaluate",
-                              .items = options.pieces,
+                              .items = options.shards,
                               .jobs = geometry::thread_count(options.threads)};
-  return run_pieces(
+  return run_shards(
       job, options.task, options.is_quiet, evaluation_name,
-      [&] { return std::make_unique<PiecesOfCloud>(options, console); }, console);
+      [&] { return std::make_unique<CloudShards>(options, console); }, console);
 }
 
 }  // namespace
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
-  if (options.pieces > 0) return evaluate_pieces(options, console);
-  if (options.task.is_given() || options.out) {
+  if (options.shards > 0) return evaluate_shards(options, console);
+  if (options.task.is_set() || options.out) {
     throw Error(ErrorKind::bad_usage,
                 "--out, --index, --chunk, --collect and --submit require --pieces");
   }
   ProgressLine progress(console, options.is_quiet);
   progress.show("loading " + options.model);
-  const Truth truth = truth_of(options, true, progress.teller(), console.stop);
+  const Truth truth = make_truth(options, true, progress.progress_callback(), console.stop);
   const bool is_mesh = !options.mesh.empty();
   progress.show("reading " + (is_mesh ? options.mesh : options.cloud).string());
-  const evaluation::CloudJudgement judged =
-      is_mesh ? judged_mesh(options, truth) : judged_cloud(options, truth, progress, console);
+  const evaluation::CloudEvaluation evaluated =
+      is_mesh ? evaluate_mesh(options, truth) : evaluate_cloud(options, truth, progress, console);
   progress.clear();
-  print_evaluation(options, truth, judged, console.out);
+  print_evaluation(options, truth, evaluated, console.out);
   return 0;
 }
 

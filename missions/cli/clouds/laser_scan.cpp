@@ -30,7 +30,7 @@ sim::LidarConfig seeded(sim::LidarConfig config, std::uint64_t seed) {
   return config;
 }
 
-std::shared_ptr<const flight::UtmProjection> projection_of(const scan::FlownScanOptions& scan) {
+std::shared_ptr<const flight::UtmProjection> make_projection(const scan::ScanFlightOptions& scan) {
   if (scan.crs == scan::ScanCrs::local) return nullptr;
   if (!scan.site) {
     throw Error(ErrorKind::bad_config,
@@ -41,11 +41,11 @@ std::shared_ptr<const flight::UtmProjection> projection_of(const scan::FlownScan
 }
 
 /// Returns the sensor's poses as a TUM file, up to the first pose at or after `end` [s].
-std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_from_sensor,
+std::string sensor_tum(const sim::Trajectory& platform, const Isometry3d& body_from_sensor,
                        double end) {
   std::vector<flight::TimedPose> poses;
-  for (const sim::StampedPose& pose : carrier.poses()) {
-    poses.push_back({pose.time, carrier.pose(pose.time) * body_from_sensor});
+  for (const sim::StampedPose& pose : platform.poses()) {
+    poses.push_back({pose.time, platform.pose(pose.time) * body_from_sensor});
     if (pose.time >= end) break;
   }
   return flight::write_tum(poses);
@@ -58,24 +58,25 @@ double seconds_since(Clock::time_point start) {
 /// Shows the progress of a scan, at most ten times a second.
 class ScanReport {
  public:
-  ScanReport(ProgressLine& line, std::string name, double shots_in_firing,
+  ScanReport(ProgressLine& line, std::string name, double pulses_per_firing,
              const sim::FiringRange& range)
-      : line_(line), name_(std::move(name)), shots_in_firing_(shots_in_firing), range_(range) {}
+      : line_(line), name_(std::move(name)), pulses_per_firing_(pulses_per_firing), range_(range) {}
 
   void operator()(const scan::ScanProgress& progress) {
     const Clock::time_point now = Clock::now();
     if (now - shown_ < std::chrono::milliseconds(100)) return;
     shown_ = now;
-    const auto flown = static_cast<double>(progress.firings - range_.first);
+    const auto measured_firings = static_cast<double>(progress.firings - range_.first);
     const auto all = static_cast<double>(range_.count);
-    std::string text = fmt::format("{}: {:.1f}% flown, {:.1f} M points", name_, 100.0 * flown / all,
-                                   1e-6 * static_cast<double>(progress.points));
+    std::string text =
+        fmt::format("{}: {:.1f}% flown, {:.1f} M points", name_, 100.0 * measured_firings / all,
+                    1e-6 * static_cast<double>(progress.points));
     if (begun_) {
-      const double rate = (flown - *begun_) / seconds_since(start_);
-      text += fmt::format(", {:.1f} M pulses/s, {:.0f} s left", 1e-6 * shots_in_firing_ * rate,
-                          (all - flown) / rate);
+      const double rate = (measured_firings - *begun_) / seconds_since(start_);
+      text += fmt::format(", {:.1f} M pulses/s, {:.0f} s left", 1e-6 * pulses_per_firing_ * rate,
+                          (all - measured_firings) / rate);
     } else {  // the pace is not yet known
-      begun_ = flown;
+      begun_ = measured_firings;
       start_ = now;
     }
     line_.show(text);
@@ -84,13 +85,13 @@ class ScanReport {
  private:
   ProgressLine& line_;
   std::string name_;
-  double shots_in_firing_;
+  double pulses_per_firing_;
   sim::FiringRange range_;       ///< firings of the scan
   std::optional<double> begun_;  ///< completed firings at the first report
   Clock::time_point start_, shown_;
 };
 
-std::vector<scan::LaserOutput> output_files(const ScanVerbOptions& options,
+std::vector<scan::LaserOutput> output_files(const ScanCommandOptions& options,
                                             const scan::CloudFormatContext& context) {
   std::vector<scan::LaserOutput> outputs;
   const auto add = [&](const std::string& name, const auto& format, scan::ReturnPosition position) {
@@ -105,15 +106,15 @@ std::vector<scan::LaserOutput> output_files(const ScanVerbOptions& options,
   for (const std::string& name : options.formats) {
     const scan::CloudFormatInfo& info = scan::cloud_format_named(name);
     const std::shared_ptr<const scan::CloudFormat> format = info.make(context);
-    add("scan" + info.ending, format, scan::ReturnPosition::reported);
-    if (options.with_truth) add("scan_true" + info.ending, format, scan::ReturnPosition::actual);
+    add("scan" + info.extension, format, scan::ReturnPosition::reported);
+    if (options.with_truth) add("scan_true" + info.extension, format, scan::ReturnPosition::actual);
   }
   return outputs;
 }
 
 }  // namespace
 
-LaserScan::LaserScan(const ScanVerbOptions& options, const config::MissionSetup& setup,
+LaserScan::LaserScan(const ScanCommandOptions& options, const config::MissionSetup& setup,
                      const config::SensorDescription& sensor, const Console& console,
                      const std::filesystem::path& index)
     : options_(options),
@@ -121,65 +122,65 @@ LaserScan::LaserScan(const ScanVerbOptions& options, const config::MissionSetup&
       sensor_(sensor),
       console_(console),
       lidar_(seeded(std::get<sim::LidarConfig>(sensor.sensor), setup.run.seed)),
-      flown_(flown_by(options, setup.scan, setup.run.seed, scan::Carrier::airframe)),
-      flight_(flown_.of_scanner()),
-      projection_(projection_of(setup.scan)),
-      preview_(scan::preview_pieces(lidar_.config(), flown_.route.carrier)),
+      scan_flight_(make_scan_flight(options, setup.scan, setup.run.seed, scan::Platform::airframe)),
+      flight_(scan_flight_.lidar_flight()),
+      projection_(make_projection(setup.scan)),
+      preview_(scan::make_preview_segments(lidar_.config(), scan_flight_.route.platform)),
       progress_(console, options.is_quiet),
       truth_(read_scene(index)) {
   outputs_ =
       output_files(options, {sensor.name, lidar_.config(), flight_, truth_.centre(), projection_});
-  identity_ = identity_of(sensor, truth_, flown_);
+  identity_ = make_identity(sensor, truth_, scan_flight_);
   identity_.update({{"formats", options.formats}, {"truth", options.with_truth}});
-  const double shots = shots_of(lidar_.firings(flown_.route.carrier));
+  const double pulses = pulse_count(lidar_.firings(scan_flight_.route.platform));
   outputs_.push_back(
-      {scan::preview_name, scan::preview_format(preview_, scan::preview_share(shots))});
+      {scan::preview_name, scan::preview_format(preview_, scan::preview_share(pulses))});
 }
 
-double LaserScan::shots_of(std::uint64_t firings) const {
+double LaserScan::pulse_count(std::uint64_t firings) const {
   return static_cast<double>(lidar_.config().channels.size()) * static_cast<double>(firings);
 }
 
-double LaserScan::seconds_of(std::uint64_t firings) const {
+double LaserScan::to_seconds(std::uint64_t firings) const {
   return static_cast<double>(firings) * lidar_.config().firing_period;
 }
 
-Json LaserScan::identity(const scan::FlightPiece& piece) const {
+Json LaserScan::identity(const scan::FlightShard& shard) const {
   Json all = identity_;
-  all.update({{"piece", piece.number}, {"pieces", piece.count}});
+  all.update({{"piece", shard.number}, {"pieces", shard.count}});
   return all;
 }
 
 scene::SensedScene LaserScan::read_scene(const std::filesystem::path& index) {
-  scan::require_measurable(lidar_, flown_.route.carrier);
+  scan::require_measurable(lidar_, scan_flight_.route.platform);
   progress_.show(setup_.name + ": loading scene");
   return {setup_.scene(), options_.mission.parent_path(), setup_.run.threads, index};
 }
 
-void LaserScan::prepare(const scan::FlightPiece& piece) {
+void LaserScan::prepare(const scan::FlightShard& shard) {
   if (scene_ && !truth_.is_tiled()) return;
   scene_.reset();  // frees memory before loading the next scene
-  const sim::FiringRange range = firings_of(piece, lidar_, flown_.route.carrier);
-  const double start = flown_.route.carrier.start();
-  const scan::TimeSpan span{start + seconds_of(range.first),
-                            start + seconds_of(range.first + range.count)};
-  scene_ =
-      truth_.scene(setup_.run.threads, scan::within_reach(flown_, span, lidar_.config().max_range));
+  const sim::FiringRange range = find_firings(shard, lidar_, scan_flight_.route.platform);
+  const double start = scan_flight_.route.platform.start();
+  const scan::TimeSpan span{start + to_seconds(range.first),
+                            start + to_seconds(range.first + range.count)};
+  scene_ = truth_.scene(setup_.run.threads,
+                        scan::within_reach(scan_flight_, span, lidar_.config().max_range));
 }
 
-scan::LaserResult LaserScan::record(const scan::FlightPiece& piece, scan::ScanJournal& journal,
+scan::LaserResult LaserScan::record(const scan::FlightShard& shard, scan::ScanJournal& journal,
                                     const Json& begun, geometry::OutputFolder& folder) {
-  const sim::FiringRange range = firings_of(piece, lidar_, flown_.route.carrier);
+  const sim::FiringRange range = find_firings(shard, lidar_, scan_flight_.route.platform);
   return record_laser(*scene_, lidar_, flight_, outputs_, journal, begun, folder,
                       {.threads = setup_.run.threads,
-                       .piece = piece,
-                       .report = ScanReport(progress_, setup_.name, shots_of(1), range),
+                       .shard = shard,
+                       .report = ScanReport(progress_, setup_.name, pulse_count(1), range),
                        .stop = console_.stop});
 }
 
 int LaserScan::run(geometry::OutputFolder& folder) {
   prepare({});
-  const HoldsResults results(console_);
+  const PendingResultsGuard results(console_);
   scan::ScanJournal journal(folder.path());
   const Json begun =
       open_journal(journal, options_.resumes, options_, setup_.identity(), identity_, console_);
@@ -189,52 +190,53 @@ int LaserScan::run(geometry::OutputFolder& folder) {
   return exit_code;
 }
 
-bool LaserScan::run_piece(const scan::FlightPiece& piece, const std::filesystem::path& results) {
-  geometry::OutputFolder folder(folder_of_piece(results, piece.number, piece.count));
-  if (complete(piece, results)) return true;
-  prepare(piece);
-  const HoldsResults holds(console_);
+bool LaserScan::scan_shard(const scan::FlightShard& shard, const std::filesystem::path& results) {
+  geometry::OutputFolder folder(shard_folder(results, shard.number, shard.count));
+  if (complete(shard, results)) return true;
+  prepare(shard);
+  const PendingResultsGuard holds(console_);
   scan::ScanJournal journal(folder.path());
-  const bool resumes = journal.is_of(setup_.identity(), identity(piece));
+  const bool resumes = journal.matches_run(setup_.identity(), identity(shard));
   const Json begun =
-      open_journal(journal, resumes, options_, setup_.identity(), identity(piece), console_);
-  const scan::LaserResult recorded = record(piece, journal, begun, folder);
+      open_journal(journal, resumes, options_, setup_.identity(), identity(shard), console_);
+  const scan::LaserResult recorded = record(shard, journal, begun, folder);
   progress_.clear();
   if (!recorded.scan.is_complete) return false;
   folder.replace([](std::string_view name) {
     return !name.starts_with(".") && name != scan::ScanJournal::folder_name;
   });
-  folder.write(scan::piece_name,
-               scan::piece_text(support::identity_text(setup_.identity(), identity(piece)),
-                                recorded.reached));
+  folder.write(scan::shard_file_name,
+               scan::completed_shard_text(
+                   support::identity_text(setup_.identity(), identity(shard)), recorded.reached));
   folder.commit();
   journal.close();
   return true;
 }
 
-std::optional<scan::CompletePiece> LaserScan::complete(const scan::FlightPiece& piece,
-                                                       const std::filesystem::path& results) const {
-  const std::filesystem::path folder = folder_of_piece(results, piece.number, piece.count);
-  auto holds = scan::complete_piece(
-      folder, support::identity_text(setup_.identity(), identity(piece)), outputs_.size());
+std::optional<scan::CompletedShard> LaserScan::complete(
+    const scan::FlightShard& shard, const std::filesystem::path& results) const {
+  const std::filesystem::path folder = shard_folder(results, shard.number, shard.count);
+  auto holds = scan::read_completed_shard(
+      folder, support::identity_text(setup_.identity(), identity(shard)), outputs_.size());
   if (!holds) return std::nullopt;
-  return scan::CompletePiece{folder, std::move(*holds)};
+  return scan::CompletedShard{folder, std::move(*holds)};
 }
 
-int LaserScan::join(std::span<const scan::CompletePiece> pieces, geometry::OutputFolder& folder) {
-  const HoldsResults results(console_);
+int LaserScan::join(std::span<const scan::CompletedShard> shards, geometry::OutputFolder& folder) {
+  const PendingResultsGuard results(console_);
   progress_.show(setup_.name + ": merging the pieces");
-  return finish(join_pieces(pieces, outputs_, folder), folder);
+  return finish(join_shards(shards, outputs_, folder), folder);
 }
 
 int LaserScan::finish(const scan::LaserResult& recorded, geometry::OutputFolder& folder) {
   std::erase_if(outputs_, [](const auto& output) { return output.bytes == 0; });
   const bool is_complete = recorded.scan.is_complete;
-  const sim::Trajectory& carrier = flown_.route.carrier;
+  const sim::Trajectory& platform = scan_flight_.route.platform;
   const double end =
-      is_complete ? carrier.end() : carrier.start() + seconds_of(recorded.scan.progress.firings);
-  folder.write("trajectory.tum", sensor_tum(carrier, flown_.mount.real, end));
-  folder.write("trajectory_estimated.tum", sensor_tum(flown_.believed, flown_.mount.believed, end));
+      is_complete ? platform.end() : platform.start() + to_seconds(recorded.scan.progress.firings);
+  folder.write("trajectory.tum", sensor_tum(platform, scan_flight_.mount.real, end));
+  folder.write("trajectory_estimated.tum",
+               sensor_tum(scan_flight_.estimated, scan_flight_.mount.estimated, end));
   folder.write(scan_name, support::json_text(figures(recorded)));
   write_page(scan_name, options_.has_report, folder, console_);
   commit_scan(folder, is_complete);
@@ -253,8 +255,8 @@ Json LaserScan::figures(const scan::LaserResult& recorded) const {
           {"sensor", sensor_.name},
           {"seed", setup_.run.seed},
           {"complete", recorded.scan.is_complete},
-          {"flight_s", seconds_of(recorded.scan.progress.firings)},
-          {"shots", static_cast<std::uint64_t>(shots_of(recorded.scan.progress.firings))},
+          {"flight_s", to_seconds(recorded.scan.progress.firings)},
+          {"shots", static_cast<std::uint64_t>(pulse_count(recorded.scan.progress.firings))},
           {"points", recorded.scan.progress.points},
           {"las_crs", setup_.scan.crs == scan::ScanCrs::utm ? "utm" : "local"},
           {"simulation_s", recorded.reached.time},
@@ -271,14 +273,14 @@ Json LaserScan::figures(const scan::LaserResult& recorded) const {
 
 void LaserScan::print(const scan::LaserResult& recorded,
                       const std::filesystem::path& folder) const {
-  const double shots = shots_of(recorded.scan.progress.firings), time = recorded.reached.time;
+  const double pulses = pulse_count(recorded.scan.progress.firings), time = recorded.reached.time;
   std::ostream& out = console_.out;
   out << fmt::format(
              "{}: {}, {:.1f} s of flight{}\n  scan      {:.2f} M pulses, {:.2f} M points in {:.1f} "
              "s, {:.1f} M pulses/s\n",
-             setup_.name, sensor_.name, seconds_of(recorded.scan.progress.firings),
-             recorded.scan.is_complete ? "" : ", interrupted", 1e-6 * shots,
-             1e-6 * static_cast<double>(recorded.scan.progress.points), time, 1e-6 * shots / time)
+             setup_.name, sensor_.name, to_seconds(recorded.scan.progress.firings),
+             recorded.scan.is_complete ? "" : ", interrupted", 1e-6 * pulses,
+             1e-6 * static_cast<double>(recorded.scan.progress.points), time, 1e-6 * pulses / time)
       << "  results   " << folder.string();
   for (const scan::LaserOutput& file : outputs_) {
     out << fmt::format(", {} {:.1f} MB", file.name, 1e-6 * static_cast<double>(file.bytes));

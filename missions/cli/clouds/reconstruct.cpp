@@ -15,7 +15,7 @@ int reconstruct_cloud(const ReconstructOptions& options, const Console& console)
   support::ReconstructionConfig config;
   config.depth = options.depth;
   config.spacing = options.spacing;
-  config.least_density = options.least_density;
+  config.min_density = options.min_density;
   config.threads = options.threads;
   config.validate();
   std::filesystem::path out = options.cloud;

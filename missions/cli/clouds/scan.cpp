@@ -24,21 +24,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class PiecesOfFlight final : public PieceWork {
+class FlightShards final : public ShardedJob {
  public:
-  PiecesOfFlight(const ScanVerbOptions& options, const config::MissionSetup& setup,
-                 const config::SensorDescription& sensor, const fs::path& out,
-                 const Console& console)
-      : scan_(options, setup, sensor, console, folder_of_pieces(out) / "tiles.json"),
-        pieces_(options.pieces),
+  FlightShards(const ScanCommandOptions& options, const config::MissionSetup& setup,
+               const config::SensorDescription& sensor, const fs::path& out, const Console& console)
+      : scan_(options, setup, sensor, console, shards_folder(out) / "tiles.json"),
+        shards_(options.shards),
         out_(out) {}
 
-  bool do_piece(std::size_t number) override { return scan_.run_piece({number, pieces_}, out_); }
+  bool process_shard(std::size_t number) override {
+    return scan_.scan_shard({number, shards_}, out_);
+  }
 
-  bool take_piece(std::size_t number) override {
-    auto piece = scan_.complete({number, pieces_}, out_);
-    if (!piece) return false;
-    complete_.push_back(std::move(*piece));
+  bool load_shard(std::size_t number) override {
+    auto shard = scan_.complete({number, shards_}, out_);
+    if (!shard) return false;
+    complete_.push_back(std::move(*shard));
     return true;
   }
 
@@ -46,15 +47,15 @@ class PiecesOfFlight final : public PieceWork {
 
  private:
   LaserScan scan_;
-  std::size_t pieces_;
+  std::size_t shards_;
   fs::path out_;
-  std::vector<scan::CompletePiece> complete_;
+  std::vector<scan::CompletedShard> complete_;
 };
 
 /// Returns the command that repeats this scan as a task.
-batch::Words command_of(const ScanVerbOptions& options, const fs::path& out) {
+batch::Words make_command(const ScanCommandOptions& options, const fs::path& out) {
   batch::Words words{"scan",     fs::absolute(options.mission), "--out", fs::absolute(out),
-                     "--pieces", std::to_string(options.pieces)};
+                     "--pieces", std::to_string(options.shards)};
   const auto add = [&](const std::string& option, const std::string& value) {
     words.insert(words.end(), {option, value});
   };
@@ -73,43 +74,43 @@ batch::Words command_of(const ScanVerbOptions& options, const fs::path& out) {
   return words;
 }
 
-int scan_in_pieces(const ScanVerbOptions& options, const config::MissionSetup& setup,
+int scan_in_shards(const ScanCommandOptions& options, const config::MissionSetup& setup,
                    const config::SensorDescription& sensor, const fs::path& out,
                    const Console& console) {
-  const batch::JobRequest job{.command = command_of(options, out),
+  const batch::JobRequest job{.command = make_command(options, out),
                               .out = out,
                               .title = "Scan " + setup.name,
                               .name = setup.name,
-                              .items = options.pieces,
+                              .items = options.shards,
                               .jobs = geometry::thread_count(setup.run.threads)};
-  return run_pieces(
+  return run_shards(
       job, options.task, options.is_quiet, scan_name,
-      [&] { return std::make_unique<PiecesOfFlight>(options, setup, sensor, out, console); },
+      [&] { return std::make_unique<FlightShards>(options, setup, sensor, out, console); },
       console);
 }
 
-config::SensorDescription sensor_of(const ScanVerbOptions& options,
-                                    const scan::FlownScanOptions& scan) {
+config::SensorDescription make_sensor(const ScanCommandOptions& options,
+                                      const scan::ScanFlightOptions& scan) {
   return config::find_sensor(
       options.sensor.value_or(config::named_from(options.mission.parent_path(), scan.sensor)));
 }
 
 }  // namespace
 
-int scan(const ScanVerbOptions& options, const Console& console) {
+int scan(const ScanCommandOptions& options, const Console& console) {
   const config::MissionSetup setup = read_shown(config::read_mission, options, console);
-  const config::SensorDescription sensor = sensor_of(options, setup.scan);
+  const config::SensorDescription sensor = make_sensor(options, setup.scan);
   const fs::path out = options.out.value_or(fs::path("results") / setup.name / "scan");
   const bool is_laser = std::holds_alternative<sim::LidarConfig>(sensor.sensor);
-  if (options.pieces > 0) {
+  if (options.shards > 0) {
     if (!is_laser) {
       throw Error(
           ErrorKind::bad_usage,
           "--pieces: " + sensor.name + " is a camera; only scans of laser scanners can be split");
     }
-    return scan_in_pieces(options, setup, sensor, out, console);
+    return scan_in_shards(options, setup, sensor, out, console);
   }
-  if (options.task.is_given()) {
+  if (options.task.is_set()) {
     throw Error(ErrorKind::bad_usage, "--index, --chunk, --collect and --submit require --pieces");
   }
   geometry::OutputFolder folder(out);

@@ -7,22 +7,23 @@
 
 namespace skycap::missions::cli {
 
-scan::ScanFlight flown_by(const ScanVerbOptions& options, const scan::FlownScanOptions& scan,
-                          std::uint64_t seed, scan::Carrier carrier) {
-  return scan::scan_flight(scan, seed, options.mission.parent_path(), options.route, carrier);
+scan::ScanFlight make_scan_flight(const ScanCommandOptions& options,
+                                  const scan::ScanFlightOptions& scan, std::uint64_t seed,
+                                  scan::Platform platform) {
+  return scan::scan_flight(scan, seed, options.mission.parent_path(), options.route, platform);
 }
 
-nlohmann::ordered_json identity_of(const config::SensorDescription& sensor,
-                                   const scene::SensedScene& scene,
-                                   const scan::ScanFlight& flight) {
+nlohmann::ordered_json make_identity(const config::SensorDescription& sensor,
+                                     const scene::SensedScene& scene,
+                                     const scan::ScanFlight& flight) {
   return {{"sensor", sensor.name},
-          {"sensor_digest", fmt::format("{:08x}", geometry::crc32_of(sensor.text))},
-          {"scene_digest", scene.digest()},
-          {"route_digest", digest_of(flight)}};
+          {"sensor_digest", fmt::format("{:08x}", geometry::compute_crc32(sensor.text))},
+          {"scene_digest", scene.content_checksum()},
+          {"route_digest", compute_checksum(flight)}};
 }
 
 nlohmann::ordered_json open_journal(scan::ScanJournal& journal, bool resumes,
-                                    const ScanVerbOptions& options, const support::Identity& run,
+                                    const ScanCommandOptions& options, const support::Identity& run,
                                     const nlohmann::ordered_json& identity,
                                     const Console& console) {
   nlohmann::ordered_json begun = journal.open(run, identity, resumes);

@@ -17,17 +17,19 @@ inline constexpr const char* scan_name = "scan.json";
 
 /// Returns the flight along the route from the options or the mission keys. `seed` is the seed of
 /// the navigation errors.
-scan::ScanFlight flown_by(const ScanVerbOptions& options, const scan::FlownScanOptions& scan,
-                          std::uint64_t seed, scan::Carrier carrier);
+scan::ScanFlight make_scan_flight(const ScanCommandOptions& options,
+                                  const scan::ScanFlightOptions& scan, std::uint64_t seed,
+                                  scan::Platform platform);
 
 /// Returns the inputs that identify a scan: sensor description, scene and flight.
-nlohmann::ordered_json identity_of(const config::SensorDescription& sensor,
-                                   const scene::SensedScene& scene, const scan::ScanFlight& flight);
+nlohmann::ordered_json make_identity(const config::SensorDescription& sensor,
+                                     const scene::SensedScene& scene,
+                                     const scan::ScanFlight& flight);
 
 /// Starts a journal, or reopens that of an interrupted scan if `resumes` is set. Returns the
 /// recorded progress, which is null for a new scan.
 nlohmann::ordered_json open_journal(scan::ScanJournal& journal, bool resumes,
-                                    const ScanVerbOptions& options, const support::Identity& run,
+                                    const ScanCommandOptions& options, const support::Identity& run,
                                     const nlohmann::ordered_json& identity, const Console& console);
 
 /// Commits a scan. An incomplete scan does not overwrite a complete one but is committed to the

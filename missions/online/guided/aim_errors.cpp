@@ -6,7 +6,7 @@
 
 namespace skycap::missions::online {
 
-std::string failures_of(const AimErrors& errors, double arrival) {
+std::string describe_failures(const AimErrors& errors, double arrival) {
   const auto degrees = [](double angle) { return angle / geometry::radians_per_degree; };
   std::string text;
   const auto add = [&](const std::string& failure) {

@@ -22,6 +22,6 @@ struct AimErrors {
 
 /// Describes the errors that exceed their tolerances, for messages. Returns an empty string if all
 /// are within tolerance. `arrival` is the position tolerance [m].
-std::string failures_of(const AimErrors& errors, double arrival);
+std::string describe_failures(const AimErrors& errors, double arrival);
 
 }  // namespace skycap::missions::online

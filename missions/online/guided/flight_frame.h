@@ -8,7 +8,7 @@
 
 namespace skycap::missions::online {
 
-struct VehiclePlace {
+struct VehiclePosition {
   double latitude_deg = 0.0, longitude_deg = 0.0;
   double height_above_home = 0.0;  ///< [m]
 };
@@ -18,13 +18,13 @@ class FlightFrame {
   FlightFrame(const flight::GeodeticPoint& origin, const Eigen::Vector3d& pad)
       : frame_(origin), home_height_(frame_.to_geodetic(pad).height) {}
 
-  Eigen::Vector3d to_mission(const VehiclePlace& place) const {
+  Eigen::Vector3d to_mission(const VehiclePosition& position) const {
     return frame_.to_local(
-        {place.latitude_deg, place.longitude_deg, home_height_ + place.height_above_home});
+        {position.latitude_deg, position.longitude_deg, home_height_ + position.height_above_home});
   }
 
-  VehiclePlace to_vehicle(const Eigen::Vector3d& place) const {
-    const flight::GeodeticPoint point = frame_.to_geodetic(place);
+  VehiclePosition to_vehicle(const Eigen::Vector3d& position) const {
+    const flight::GeodeticPoint point = frame_.to_geodetic(position);
     return {point.latitude_deg, point.longitude_deg, point.height - home_height_};
   }
 

@@ -18,7 +18,7 @@ constexpr double decisive_slope = -0.5;
 
 /// In steady wind the vehicle's tilt is constant. The report then differs by this tilt for this
 /// number of consecutive reports.
-constexpr double least_tilt = 1.5 * degree, tolerance = 1.0 * degree;
+constexpr double min_tilt = 1.5 * degree, tolerance = 1.0 * degree;
 constexpr std::size_t enough_steady = 10;
 
 }  // namespace
@@ -32,9 +32,9 @@ void GimbalReport::begin_aim(double now, double asked) {
 void GimbalReport::hear(double now, double reported, double vehicle_pitch) {
   if (is_against_vehicle_ || now - begin_ < turning) return;
   weigh(reported, vehicle_pitch);
-  const bool is_off = std::abs(reported - asked_) > tolerance + 0.5 * least_tilt;
+  const bool is_off = std::abs(reported - asked_) > tolerance + 0.5 * min_tilt;
   const bool is_right = std::abs(reported + vehicle_pitch - asked_) < tolerance;
-  steady_ = is_off && is_right && std::abs(vehicle_pitch) > least_tilt ? steady_ + 1 : 0;
+  steady_ = is_off && is_right && std::abs(vehicle_pitch) > min_tilt ? steady_ + 1 : 0;
   is_against_vehicle_ = steady_ >= enough_steady || (vehicle_squares_ > needed_squares &&
                                                      products_ < decisive_slope * vehicle_squares_);
 }

@@ -39,13 +39,13 @@ double turn_between(double a, double b) {
   return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
 }
 
-std::string place_text(const Vector3d& place) {
-  return fmt::format("({:.1f}, {:.1f}, {:.1f})", place.x(), place.y(), place.z());
+std::string position_text(const Vector3d& location) {
+  return fmt::format("({:.1f}, {:.1f}, {:.1f})", location.x(), location.y(), location.z());
 }
 
 /// Combines a trouble with one that occurred while the vehicle came to rest. The later one
 /// determines the further actions.
-Trouble joined(const Trouble& first, const MaybeTrouble& later) {
+FlightFailure joined(const FlightFailure& first, const MaybeFailure& later) {
   if (!later) return first;
   return {later->kind, first.what + "; then " + later->what};
 }
@@ -75,7 +75,7 @@ double GuidedFlight::camera_pitch() const {
   return gimbal_.camera_pitch(*state.gimbal_pitch(), state.pitch().value_or(0.0));
 }
 
-Vector3d GuidedFlight::position() const { return place_of(link_.state(), frame_); }
+Vector3d GuidedFlight::position() const { return to_position(link_.state(), frame_); }
 
 geometry::View GuidedFlight::view() const {
   const double yaw = link_.state().yaw().value_or(yaw_);
@@ -84,71 +84,72 @@ geometry::View GuidedFlight::view() const {
           {std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch)}};
 }
 
-MaybeTrouble GuidedFlight::command(std::uint16_t number, const std::array<float, 7>& params,
+MaybeFailure GuidedFlight::command(std::uint16_t number, const std::array<float, 7>& params,
                                    const std::string& what) {
   const std::optional<std::uint8_t> answer = link_.command(number, params);
   if (answer && *answer == 0) return std::nullopt;
-  if (!answer) return Trouble{TroubleKind::link, "timeout: no answer to the command to " + what};
+  if (!answer)
+    return FlightFailure{FailureKind::link, "timeout: no answer to the command to " + what};
   const std::string& warning = link_.state().warning();
-  return refused(fmt::format("the autopilot rejected the command to {} (result {}){}", what,
-                             *answer, warning.empty() ? "" : ": " + warning));
+  return rejected(fmt::format("the autopilot rejected the command to {} (result {}){}", what,
+                              *answer, warning.empty() ? "" : ": " + warning));
 }
 
-MaybeTrouble GuidedFlight::enter_mode(std::uint32_t mode, const std::string& name) {
+MaybeFailure GuidedFlight::enter_mode(std::uint32_t mode, const std::string& name) {
   constexpr float by_its_number = 1.0F;
-  if (MaybeTrouble trouble =
+  if (MaybeFailure failure =
           command(set_mode, {by_its_number, static_cast<float>(mode)}, "enter mode " + name)) {
-    return trouble;
+    return failure;
   }
   const double end = link_.now() + mode_patience;
   while (link_.state().heartbeat()->mode != mode) {
-    if (link_.now() > end) return refused("timeout: the autopilot did not enter mode " + name);
+    if (link_.now() > end) return rejected("timeout: the autopilot did not enter mode " + name);
     listen();
   }
   mode_ = mode;
   return std::nullopt;
 }
 
-MaybeTrouble GuidedFlight::arm_motors() {
-  if (MaybeTrouble trouble = command(arm, {1.0F}, "arm")) return trouble;
+MaybeFailure GuidedFlight::arm_motors() {
+  if (MaybeFailure failure = command(arm, {1.0F}, "arm")) return failure;
   const double end = link_.now() + mode_patience;
   while (!link_.state().heartbeat()->is_armed) {
-    if (link_.now() > end) return refused("timeout: the vehicle did not arm");
+    if (link_.now() > end) return rejected("timeout: the vehicle did not arm");
     listen();
   }
   return std::nullopt;
 }
 
-MaybeTrouble GuidedFlight::take_off(const Vector3d& above) {
-  if (MaybeTrouble trouble = enter_mode(guided_mode, "GUIDED")) return trouble;
+MaybeFailure GuidedFlight::take_off(const Vector3d& above) {
+  if (MaybeFailure failure = enter_mode(guided_mode, "GUIDED")) return failure;
   yaw_ = *link_.state().yaw();
   const Vector3d begin = position();
   const double climb = frame_.to_vehicle(above).height_above_home;
-  if (MaybeTrouble trouble = arm_motors()) return trouble;
-  if (MaybeTrouble trouble = command(flight::command::takeoff,
+  if (MaybeFailure failure = arm_motors()) return failure;
+  if (MaybeFailure failure = command(flight::command::takeoff,
                                      {0, 0, 0, 0, 0, 0, static_cast<float>(climb)}, "take off")) {
-    return trouble;
+    return failure;
   }
   is_flying_ = true;
-  place_ = above;
-  flown_ = {above};
+  position_ = above;
+  executed_path_ = {above};
   const double end = link_.now() + 2.0 * motion_.takeoff_time(climb) + settle_patience;
-  while (!is_at(place_)) {
+  while (!is_at(position_)) {
     listen();
-    MaybeTrouble trouble = watch({begin, place_});
-    if (!trouble && link_.now() > end)
-      trouble = refused("timeout: the vehicle did not climb to its take-off altitude");
-    if (!trouble) continue;
-    place_ = stopping_place({begin, above});
-    flown_ = {place_};
-    if (trouble->kind == TroubleKind::pilot) return trouble;
-    return joined(*trouble, come_to_rest({begin, above}));
+    MaybeFailure failure = watch({begin, position_});
+    if (!failure && link_.now() > end)
+      failure = rejected("timeout: the vehicle did not climb to its take-off altitude");
+    if (!failure) continue;
+    position_ = stopping_point({begin, above});
+    executed_path_ = {position_};
+    if (failure->kind == FailureKind::pilot) return failure;
+    return joined(*failure, come_to_rest({begin, above}));
   }
   return std::nullopt;
 }
 
-MaybeTrouble GuidedFlight::aim(const geometry::View& view) {
-  yaw_ = flight::yaw_of(view), pitch_ = flight::pitch_of(view);
+MaybeFailure GuidedFlight::aim(const geometry::View& view) {
+  yaw_ = flight::compute_yaw(view), pitch_ = flight::compute_pitch(view);
   gimbal_.begin_aim(link_.now(), pitch_);
   constexpr float by_angles = 2.0F;
   return command(flight::command::mount_control,
@@ -156,69 +157,71 @@ MaybeTrouble GuidedFlight::aim(const geometry::View& view) {
                  "turn the gimbal");
 }
 
-MaybeTrouble GuidedFlight::fly(const std::vector<Vector3d>& way) {
-  flown_ = {way.front()};
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    if (MaybeTrouble trouble = fly_leg(way[i])) return trouble;
+MaybeFailure GuidedFlight::fly(const std::vector<Vector3d>& path) {
+  executed_path_ = {path.front()};
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    if (MaybeFailure failure = fly_leg(path[i])) return failure;
   }
   return std::nullopt;
 }
 
-MaybeTrouble GuidedFlight::fly_leg(const Vector3d& to) {
-  const flight::ScriptedLeg leg = flight::scripted_leg(motion_, place_, to);
+MaybeFailure GuidedFlight::fly_leg(const Vector3d& to) {
+  const flight::ScriptedLeg leg = flight::scripted_leg(motion_, position_, to);
   leg_ = {leg.from, leg.to};
-  double flown = 0.0, last = link_.now();
+  double elapsed = 0.0, last = link_.now();
   const double end = last + leg.moving + settle_patience;
-  while (flown < leg.moving || !is_at(to)) {
+  while (elapsed < leg.moving || !is_at(to)) {
     const flight::SetPoint sent =
-        send_on(leg, flight::set_point(leg, motion_.vehicle().mode.jerk, flown));
+        send_on(leg, flight::set_point(leg, motion_.vehicle().mode.jerk, elapsed));
     listen();
     const double late = link_.now() - last;
-    MaybeTrouble trouble;
+    MaybeFailure failure;
     if (late > longest_stall) {
       listen();  // Processes messages received during the stall.
-      trouble = Trouble{TroubleKind::stalled,
+      failure =
+          FlightFailure{FailureKind::stalled,
                         fmt::format("set points were interrupted for {:.1f} s because this program "
                                     "was suspended; stopping at the current position",
                                     late)};
     } else {
-      trouble = watch(leg_);
+      failure = watch(leg_);
     }
-    if (!trouble && link_.now() > end) {
-      trouble = Trouble{TroubleKind::off_leg,
-                        "timeout: the vehicle did not come to rest at " + place_text(to)};
+    if (!failure && link_.now() > end) {
+      failure = FlightFailure{FailureKind::off_leg,
+                              "timeout: the vehicle did not come to rest at " + position_text(to)};
     }
-    flown = time_after(leg, motion_.vehicle().mode.jerk, flown, sent, late);
-    if (trouble) return give_up(leg, flown, *trouble);
+    elapsed = time_after(leg, motion_.vehicle().mode.jerk, elapsed, sent, late);
+    if (failure) return abort_leg(leg, elapsed, *failure);
     last = link_.now();
   }
-  place_ = to;
-  flown_.push_back(to);
+  position_ = to;
+  executed_path_.push_back(to);
   return std::nullopt;
 }
 
 /// Stops on the leg and holds position. Returns the trouble, combined with any later one.
-Trouble GuidedFlight::give_up(const flight::ScriptedLeg& leg, double time, const Trouble& trouble) {
-  if (trouble.kind == TroubleKind::pilot) return trouble;
-  if (trouble.kind == TroubleKind::stalled) {
-    if (MaybeTrouble silent = watch_link(link_.state(), mode_, link_.now())) {
+FlightFailure GuidedFlight::abort_leg(const flight::ScriptedLeg& leg, double time,
+                                      const FlightFailure& failure) {
+  if (failure.kind == FailureKind::pilot) return failure;
+  if (failure.kind == FailureKind::stalled) {
+    if (MaybeFailure silent = watch_link(link_.state(), mode_, link_.now())) {
       brake(leg, time);
-      return joined(trouble, silent);
+      return joined(failure, silent);
     }
-    place_ = stopping_place(leg_);
-    flown_.push_back(place_);
+    position_ = stopping_point(leg_);
+    executed_path_.push_back(position_);
   } else {
     brake(leg, time);
   }
-  const bool is_heard = trouble.kind != TroubleKind::link && trouble.kind != TroubleKind::position;
+  const bool is_heard = failure.kind != FailureKind::link && failure.kind != FailureKind::position;
   // A vehicle off its leg holds its position, because no path back to the leg is verified.
-  hold_after(trouble);
-  if (!is_heard || trouble.kind == TroubleKind::off_leg) return trouble;
-  return joined(trouble, come_to_rest(leg_));
+  hold_after(failure);
+  if (!is_heard || failure.kind == FailureKind::off_leg) return failure;
+  return joined(failure, come_to_rest(leg_));
 }
 
-void GuidedFlight::hold_after(const Trouble& trouble) {
-  if (trouble.kind == TroubleKind::off_leg) place_ = position();
+void GuidedFlight::hold_after(const FlightFailure& failure) {
+  if (failure.kind == FailureKind::off_leg) position_ = position();
 }
 
 void GuidedFlight::brake(const flight::ScriptedLeg& leg, double time) {
@@ -228,91 +231,92 @@ void GuidedFlight::brake(const flight::ScriptedLeg& leg, double time) {
     send_on(leg, flight::braking_point(leg, jerk, time, link_.now() - begin));
     listen();
   }
-  place_ = flight::braking_point(leg, jerk, time, braking).position;
-  flown_.push_back(place_);
+  position_ = flight::braking_point(leg, jerk, time, braking).position;
+  executed_path_.push_back(position_);
 }
 
 /// Holds until the vehicle is at rest at the hold position, on the given leg.
-MaybeTrouble GuidedFlight::come_to_rest(const flight::Segment& leg) {
+MaybeFailure GuidedFlight::come_to_rest(const flight::Segment& leg) {
   const double end = link_.now() + settle_patience;
-  while (!is_at(place_)) {
-    hold_for_a_moment();
-    MaybeTrouble trouble = watch_place(leg);
-    if (!trouble && link_.now() > end) {
-      trouble = Trouble{TroubleKind::off_leg,
-                        "timeout: the vehicle did not come to rest at " + place_text(place_)};
+  while (!is_at(position_)) {
+    hold_briefly();
+    MaybeFailure failure = watch_position(leg);
+    if (!failure && link_.now() > end) {
+      failure =
+          FlightFailure{FailureKind::off_leg,
+                        "timeout: the vehicle did not come to rest at " + position_text(position_)};
     }
-    if (!trouble) continue;
-    hold_after(*trouble);
-    return trouble;
+    if (!failure) continue;
+    hold_after(*failure);
+    return failure;
   }
   return std::nullopt;
 }
 
-MaybeTrouble GuidedFlight::settle(const geometry::View& view) {
+MaybeFailure GuidedFlight::settle(const geometry::View& view) {
   const double end = link_.now() + settle_patience;
   double since = link_.now();
   while (link_.now() - since < limits_.hold) {
-    hold_for_a_moment();
-    if (MaybeTrouble trouble = watch({place_, place_})) {
-      hold_after(*trouble);
-      return trouble;
+    hold_briefly();
+    if (MaybeFailure failure = watch({position_, position_})) {
+      hold_after(*failure);
+      return failure;
     }
-    const std::string failures = failures_of(errors_at(view), limits_.arrival);
+    const std::string failures = describe_failures(errors_at(view), limits_.arrival);
     if (!failures.empty()) since = link_.now();
     if (link_.now() > end) {
-      return refused("timeout: the camera did not settle at " + place_text(place_) +
-                     " on the requested direction: " +
-                     (failures.empty() ? "it did not stay there for flight.hold" : failures));
+      return rejected("timeout: the camera did not settle at " + position_text(position_) +
+                      " on the requested direction: " +
+                      (failures.empty() ? "it did not stay there for flight.hold" : failures));
     }
   }
   return std::nullopt;
 }
 
-MaybeTrouble GuidedFlight::hold_until(const std::function<bool()>& is_done, double limit,
-                                      const Trouble& too_late) {
+MaybeFailure GuidedFlight::hold_until(const std::function<bool()>& is_done, double limit,
+                                      const FlightFailure& too_late) {
   const double end = link_.now() + limit;
   while (!is_done()) {
-    hold_for_a_moment();
-    if (MaybeTrouble trouble = watch({place_, place_})) {
-      hold_after(*trouble);
-      return trouble;
+    hold_briefly();
+    if (MaybeFailure failure = watch({position_, position_})) {
+      hold_after(*failure);
+      return failure;
     }
     if (link_.now() > end) return too_late;
   }
   return std::nullopt;
 }
 
-Trouble GuidedFlight::hold_on() {
+FlightFailure GuidedFlight::hold_until_takeover() {
   is_returning_ = true;
   double heard = link_.now();
   bool is_lost = false;
   while (true) {
-    hold_for_a_moment();
-    const MaybeTrouble trouble = watch_link(link_.state(), mode_, link_.now());
-    if (!trouble) heard = link_.now();
+    hold_briefly();
+    const MaybeFailure failure = watch_link(link_.state(), mode_, link_.now());
+    if (!failure) heard = link_.now();
     // When the link is restored, the vehicle holds at the position reached in the meantime.
-    if (!trouble && is_lost) place_ = stopping_place(leg_);
-    is_lost = trouble && trouble->kind == TroubleKind::link;
-    if (trouble && trouble->kind == TroubleKind::pilot) return *trouble;
-    if (trouble && link_.now() - heard > limits_.patience) return *trouble;
+    if (!failure && is_lost) position_ = stopping_point(leg_);
+    is_lost = failure && failure->kind == FailureKind::link;
+    if (failure && failure->kind == FailureKind::pilot) return *failure;
+    if (failure && link_.now() - heard > limits_.patience) return *failure;
   }
 }
 
-void GuidedFlight::hold_for_a_moment() {
-  send({place_});
+void GuidedFlight::hold_briefly() {
+  send({position_});
   listen();
 }
 
-MaybeTrouble GuidedFlight::land(const Vector3d& pad) {
-  if (MaybeTrouble trouble = enter_mode(land_mode, "LAND")) return trouble;
+MaybeFailure GuidedFlight::land(const Vector3d& pad) {
+  if (MaybeFailure failure = enter_mode(land_mode, "LAND")) return failure;
   const double end =
-      link_.now() + 2.0 * motion_.landing_time(place_.z() - pad.z()) + limits_.patience;
+      link_.now() + 2.0 * motion_.landing_time(position_.z() - pad.z()) + limits_.patience;
   while (link_.state().heartbeat()->is_armed) {
     listen();
-    const MaybeTrouble trouble = watch({place_, {place_.x(), place_.y(), pad.z()}});
-    if (trouble && link_.state().heartbeat()->is_armed) return trouble;
-    if (link_.now() > end) return refused("timeout: the vehicle did not land");
+    const MaybeFailure failure = watch({position_, {position_.x(), position_.y(), pad.z()}});
+    if (failure && link_.state().heartbeat()->is_armed) return failure;
+    if (link_.now() > end) return rejected("timeout: the vehicle did not land");
   }
   is_flying_ = false;
   return std::nullopt;
@@ -327,20 +331,20 @@ flight::SetPoint GuidedFlight::send_on(const flight::ScriptedLeg& leg,
   return sent;
 }
 
-Vector3d GuidedFlight::stopping_place(const flight::Segment& leg) const {
-  const Vector3d way = leg.to - leg.from;
-  const double acceleration = way.norm() == 0.0 ? motion_.vehicle().mode.acceleration
-                                                : motion_.leg_acceleration(way.normalized());
-  return online::stopping_place(leg, position(), link_.state().position()->velocity, acceleration);
+Vector3d GuidedFlight::stopping_point(const flight::Segment& leg) const {
+  const Vector3d path = leg.to - leg.from;
+  const double acceleration = path.norm() == 0.0 ? motion_.vehicle().mode.acceleration
+                                                 : motion_.leg_acceleration(path.normalized());
+  return online::stopping_point(leg, position(), link_.state().position()->velocity, acceleration);
 }
 
 void GuidedFlight::send(const flight::SetPoint& point) {
-  const VehiclePlace place = frame_.to_vehicle(point.position);
+  const VehiclePosition location = frame_.to_vehicle(point.position);
   constexpr double wire_degrees = 1e7;
   mavlink::PositionTarget target;
-  target.latitude = static_cast<std::int32_t>(std::lround(place.latitude_deg * wire_degrees));
-  target.longitude = static_cast<std::int32_t>(std::lround(place.longitude_deg * wire_degrees));
-  target.height = static_cast<float>(place.height_above_home);
+  target.latitude = static_cast<std::int32_t>(std::lround(location.latitude_deg * wire_degrees));
+  target.longitude = static_cast<std::int32_t>(std::lround(location.longitude_deg * wire_degrees));
+  target.height = static_cast<float>(location.height_above_home);
   target.velocity = {static_cast<float>(point.velocity.y()), static_cast<float>(point.velocity.x()),
                      static_cast<float>(-point.velocity.z())};
   target.yaw = static_cast<float>(yaw_);
@@ -350,41 +354,42 @@ void GuidedFlight::send(const flight::SetPoint& point) {
   link_.send(target);
 }
 
-bool GuidedFlight::is_at(const Vector3d& place) const {
-  return (position() - place).norm() <= limits_.arrival &&
+bool GuidedFlight::is_at(const Vector3d& location) const {
+  return (position() - location).norm() <= limits_.arrival &&
          link_.state().position()->velocity.norm() <= rest_speed;
 }
 
 AimErrors GuidedFlight::errors_at(const geometry::View& view) const {
-  return {.position = (position() - place_).norm(),
+  return {.position = (position() - position_).norm(),
           .speed = link_.state().position()->velocity.norm(),
-          .turn = turn_between(link_.state().yaw().value_or(yaw_), flight::yaw_of(view)),
+          .turn = turn_between(link_.state().yaw().value_or(yaw_), flight::compute_yaw(view)),
           .pitch = camera_pitch(),
-          .asked_pitch = flight::pitch_of(view),
+          .asked_pitch = flight::compute_pitch(view),
           .vehicle_pitch = link_.state().pitch().value_or(0.0)};
 }
 
 /// Returns a trouble if the position or the control of the vehicle is uncertain.
-MaybeTrouble GuidedFlight::watch_place(const flight::Segment& leg) const {
-  if (MaybeTrouble trouble = watch_link(link_.state(), mode_, link_.now())) return trouble;
+MaybeFailure GuidedFlight::watch_position(const flight::Segment& leg) const {
+  if (MaybeFailure failure = watch_link(link_.state(), mode_, link_.now())) return failure;
   const double off = std::sqrt(nearest(leg, position()).squared_distance);
   if (off > limits_.corridor) {
-    return Trouble{
-        TroubleKind::off_leg,
+    return FlightFailure{
+        FailureKind::off_leg,
         fmt::format("cross-track error of {:.1f} m at {}; the leg is verified for {:.1f} m", off,
-                    place_text(position()), limits_.corridor)};
+                    position_text(position()), limits_.corridor)};
   }
   return std::nullopt;
 }
 
-MaybeTrouble GuidedFlight::watch(const flight::Segment& leg) const {
-  if (MaybeTrouble trouble = watch_place(leg)) return trouble;
+MaybeFailure GuidedFlight::watch(const flight::Segment& leg) const {
+  if (MaybeFailure failure = watch_position(leg)) return failure;
   if (is_returning_) return std::nullopt;
-  if (stop_.stop_requested()) return Trouble{TroubleKind::interrupted, "interrupted"};
+  if (stop_.stop_requested()) return FlightFailure{FailureKind::interrupted, "interrupted"};
   const double battery = this->battery().value_or(0.0);
   if (battery < battery_needed_) {
-    return Trouble{TroubleKind::battery, fmt::format("battery at {:.0f}%; the return needs {:.0f}%",
-                                                     100.0 * battery, 100.0 * battery_needed_)};
+    return FlightFailure{FailureKind::battery,
+                         fmt::format("battery at {:.0f}%; the return needs {:.0f}%",
+                                     100.0 * battery, 100.0 * battery_needed_)};
   }
   return std::nullopt;
 }

@@ -44,29 +44,29 @@ class GuidedFlight {
 
   /// Arms the motors and climbs vertically to the position `above`. Requires a vehicle prepared by
   /// prepare() (preflight.h).
-  MaybeTrouble take_off(const Eigen::Vector3d& above);
+  MaybeFailure take_off(const Eigen::Vector3d& above);
 
   /// Returns true between take-off by this object and landing.
   bool is_flying() const { return is_flying_; }
 
   /// Starts to turn the vehicle and the camera to the direction of `view`.
-  MaybeTrouble aim(const geometry::View& view);
+  MaybeFailure aim(const geometry::View& view);
 
   /// Flies a verified path leg by leg. The path must start at the hold position.
-  MaybeTrouble fly(const std::vector<Eigen::Vector3d>& way);
+  MaybeFailure fly(const std::vector<Eigen::Vector3d>& path);
 
   /// Waits until the vehicle is at rest and the camera is aimed in the direction of `view`.
-  MaybeTrouble settle(const geometry::View& view);
+  MaybeFailure settle(const geometry::View& view);
 
   /// Holds position until `is_done` returns true. Returns `too_late` after `limit` seconds.
-  MaybeTrouble hold_until(const std::function<bool()>& is_done, double limit,
-                          const Trouble& too_late);
+  MaybeFailure hold_until(const std::function<bool()>& is_done, double limit,
+                          const FlightFailure& too_late);
 
   /// Holds position until another station takes control or the link is lost. Returns the reason.
-  Trouble hold_on();
+  FlightFailure hold_until_takeover();
 
   /// Lands at the current position, which must be above `pad`.
-  MaybeTrouble land(const Eigen::Vector3d& pad);
+  MaybeFailure land(const Eigen::Vector3d& pad);
 
   /// Starts the return. From then on, stop requests and low battery are ignored.
   void begin_return() { is_returning_ = true; }
@@ -75,10 +75,12 @@ class GuidedFlight {
   void need_battery(double share) { battery_needed_ = share; }
 
   /// Returns the path from the hold position back to the start of the last path.
-  std::vector<Eigen::Vector3d> way_back() const { return {flown_.rbegin(), flown_.rend()}; }
+  std::vector<Eigen::Vector3d> reversed_track() const {
+    return {executed_path_.rbegin(), executed_path_.rend()};
+  }
 
   /// Discards the last path when it is not required for the return.
-  void forget_way() { flown_ = {place_}; }
+  void clear_track() { executed_path_ = {position_}; }
 
   /// Returns the estimated vehicle position and camera direction.
   geometry::View view() const;
@@ -88,25 +90,26 @@ class GuidedFlight {
   std::optional<double> battery() const { return link_.state().battery(); }
 
  private:
-  MaybeTrouble command(std::uint16_t number, const std::array<float, 7>& params,
+  MaybeFailure command(std::uint16_t number, const std::array<float, 7>& params,
                        const std::string& what);
-  MaybeTrouble enter_mode(std::uint32_t mode, const std::string& name);
-  MaybeTrouble fly_leg(const Eigen::Vector3d& to);
-  MaybeTrouble watch(const flight::Segment& leg) const;
-  MaybeTrouble watch_place(const flight::Segment& leg) const;
-  Trouble give_up(const flight::ScriptedLeg& leg, double time, const Trouble& trouble);
+  MaybeFailure enter_mode(std::uint32_t mode, const std::string& name);
+  MaybeFailure fly_leg(const Eigen::Vector3d& to);
+  MaybeFailure watch(const flight::Segment& leg) const;
+  MaybeFailure watch_position(const flight::Segment& leg) const;
+  FlightFailure abort_leg(const flight::ScriptedLeg& leg, double time,
+                          const FlightFailure& failure);
   void brake(const flight::ScriptedLeg& leg, double time);
-  MaybeTrouble come_to_rest(const flight::Segment& leg);
-  Eigen::Vector3d stopping_place(const flight::Segment& leg) const;
+  MaybeFailure come_to_rest(const flight::Segment& leg);
+  Eigen::Vector3d stopping_point(const flight::Segment& leg) const;
   flight::SetPoint send_on(const flight::ScriptedLeg& leg, const flight::SetPoint& point);
   void listen();
   double camera_pitch() const;
   AimErrors errors_at(const geometry::View& view) const;
   void send(const flight::SetPoint& point);
-  void hold_for_a_moment();
-  bool is_at(const Eigen::Vector3d& place) const;
-  MaybeTrouble arm_motors();
-  void hold_after(const Trouble& trouble);
+  void hold_briefly();
+  bool is_at(const Eigen::Vector3d& location) const;
+  MaybeFailure arm_motors();
+  void hold_after(const FlightFailure& failure);
   Eigen::Vector3d position() const;
 
   flight::mavlink::AutopilotLink& link_;
@@ -114,9 +117,9 @@ class GuidedFlight {
   flight::Motion motion_;
   GuidedLimits limits_;
   std::stop_token stop_;
-  std::uint32_t mode_ = 0;                           ///< Last flight mode set by this program.
-  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  ///< Current or next hold position.
-  std::vector<Eigen::Vector3d> flown_;
+  std::uint32_t mode_ = 0;                              ///< Last flight mode set by this program.
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();  ///< Current or next hold position.
+  std::vector<Eigen::Vector3d> executed_path_;
   flight::Segment leg_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< Last flown leg.
   GimbalReport gimbal_;
   double yaw_ = 0.0, pitch_ = 0.0;  ///< Commanded heading and camera pitch [rad].

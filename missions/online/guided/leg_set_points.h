@@ -20,7 +20,7 @@ double time_after(const flight::ScriptedLeg& leg, double jerk, double time,
 
 /// Returns the point of the leg where a vehicle on it comes to rest if it brakes now with
 /// `acceleration` [m/s^2].
-Eigen::Vector3d stopping_place(const flight::Segment& leg, const Eigen::Vector3d& position,
+Eigen::Vector3d stopping_point(const flight::Segment& leg, const Eigen::Vector3d& position,
                                const Eigen::Vector3d& velocity, double acceleration);
 
 }  // namespace skycap::missions::online

@@ -11,7 +11,7 @@ namespace mavlink = flight::mavlink;
 
 /// EKF_STATUS_FLAGS: attitude, velocity, absolute position and height must be valid. Flags of an
 /// uncertain estimate must not be set.
-constexpr std::uint16_t estimates_needed = 1 | 2 | 4 | 16 | 32, guesses = 128 | 1024;
+constexpr std::uint16_t estimates_needed = 1 | 2 | 4 | 16 | 32, prediction_flags = 128 | 1024;
 
 constexpr double heartbeat_patience = 5.0;  ///< Heartbeats are sent at 1 Hz.
 constexpr double position_patience = 1.5;   ///< Positions are sent at 10 Hz.
@@ -19,24 +19,25 @@ constexpr double silence_patience = 0.75;   ///< At least one message arrives wi
 
 }  // namespace
 
-bool is_sure_of_place(const mavlink::VehicleState& state) {
+bool has_position_estimate(const mavlink::VehicleState& state) {
   return state.estimator() && (*state.estimator() & estimates_needed) == estimates_needed &&
-         (*state.estimator() & guesses) == 0;
+         (*state.estimator() & prediction_flags) == 0;
 }
 
-Eigen::Vector3d place_of(const mavlink::VehicleState& state, const FlightFrame& frame) {
+Eigen::Vector3d to_position(const mavlink::VehicleState& state, const FlightFrame& frame) {
   const mavlink::HeardPosition& heard = state.position().value();
   return frame.to_mission({heard.latitude_deg, heard.longitude_deg, heard.height_above_home});
 }
 
-MaybeTrouble watch_link(const mavlink::VehicleState& state, std::uint32_t mode, double now) {
+MaybeFailure watch_link(const mavlink::VehicleState& state, std::uint32_t mode, double now) {
   const mavlink::HeardHeartbeat& heartbeat = state.heartbeat().value();
-  if (!heartbeat.is_armed) return Trouble{TroubleKind::pilot, "the vehicle was disarmed"};
+  if (!heartbeat.is_armed) return FlightFailure{FailureKind::pilot, "the vehicle was disarmed"};
   if (heartbeat.mode != mode) {
-    return Trouble{TroubleKind::pilot,
-                   fmt::format("another station or the pilot has control: the vehicle is in mode "
-                               "{}, which was not set by this program",
-                               heartbeat.mode)};
+    return FlightFailure{
+        FailureKind::pilot,
+        fmt::format("another station or the pilot has control: the vehicle is in mode "
+                    "{}, which was not set by this program",
+                    heartbeat.mode)};
   }
   const double silence = now - state.last_heard().value();
   const double without_beat = now - heartbeat.time;
@@ -44,16 +45,16 @@ MaybeTrouble watch_link(const mavlink::VehicleState& state, std::uint32_t mode, 
   // Other messages shortly after the last position do not shorten the silence.
   const bool is_silent = age > position_patience && silence > silence_patience;
   if (is_silent || without_beat > heartbeat_patience) {
-    return Trouble{TroubleKind::link,
-                   fmt::format("link lost: no message from the vehicle for {:.1f} s",
-                               std::max(silence, without_beat))};
+    return FlightFailure{FailureKind::link,
+                         fmt::format("link lost: no message from the vehicle for {:.1f} s",
+                                     std::max(silence, without_beat))};
   }
   if (age > position_patience) {
-    return Trouble{TroubleKind::position,
-                   fmt::format("the position estimate is {:.1f} s old", age)};
+    return FlightFailure{FailureKind::position,
+                         fmt::format("the position estimate is {:.1f} s old", age)};
   }
-  if (is_sure_of_place(state)) return std::nullopt;
-  return Trouble{TroubleKind::position, "position estimate lost (EKF)"};
+  if (has_position_estimate(state)) return std::nullopt;
+  return FlightFailure{FailureKind::position, "position estimate lost (EKF)"};
 }
 
 }  // namespace skycap::missions::online

@@ -12,13 +12,13 @@
 namespace skycap::missions::online {
 
 /// Returns true if the estimator reports valid attitude, velocity, position and height.
-bool is_sure_of_place(const flight::mavlink::VehicleState& state);
+bool has_position_estimate(const flight::mavlink::VehicleState& state);
 
 /// Returns the estimated position in the mission frame. A position message must have been received.
-Eigen::Vector3d place_of(const flight::mavlink::VehicleState& state, const FlightFrame& frame);
+Eigen::Vector3d to_position(const flight::mavlink::VehicleState& state, const FlightFrame& frame);
 
 /// Returns the current problem of a flying vehicle that was commanded to `mode`, if any. `now` is
 /// the link time [s].
-MaybeTrouble watch_link(const flight::mavlink::VehicleState& state, std::uint32_t mode, double now);
+MaybeFailure watch_link(const flight::mavlink::VehicleState& state, std::uint32_t mode, double now);
 
 }  // namespace skycap::missions::online

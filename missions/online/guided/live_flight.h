@@ -25,10 +25,10 @@
 
 namespace skycap::missions::online {
 
-/// Takes scan `number` for the view `wanted`. `taken` is the estimated camera pose. Throws Error if
-/// no scan is available.
-using Sensor = std::function<geometry::Scan(const geometry::View& wanted,
-                                            const geometry::View& taken, std::size_t number)>;
+/// Takes scan `number` for the view `requested`. `actual_view` is the estimated camera pose. Throws
+/// Error if no scan is available.
+using Sensor = std::function<geometry::Scan(const geometry::View& requested,
+                                            const geometry::View& actual_view, std::size_t number)>;
 
 struct FlightOptions {
   /// Return after a failure instead of holding until a pilot takes control.
@@ -47,7 +47,7 @@ struct FlightOptions {
 };
 
 struct FlightEnd {
-  MaybeTrouble trouble;     ///< Reason for an early end of the survey.
+  MaybeFailure failure;     ///< Reason for an early end of the survey.
   bool has_landed = false;  ///< True after a landing on the pad under this program's control.
 };
 
@@ -61,21 +61,21 @@ class LiveFlight {
   FlightEnd run();
 
  private:
-  MaybeTrouble begin();
-  MaybeTrouble go_on();
-  MaybeTrouble visit(const geometry::View& view);
-  void search_way(const geometry::View& view);
-  MaybeTrouble find_way(const geometry::View& view);
-  MaybeTrouble check_battery();
-  MaybeTrouble sense(const geometry::View& view);
-  MaybeTrouble plan();
-  MaybeTrouble beside(std::function<void()> work, double limit, TroubleKind kind,
-                      const std::string& what);
-  FlightEnd end(const Trouble& trouble);
-  FlightEnd hold(const Trouble& trouble);
-  FlightEnd go_home(const MaybeTrouble& trouble);
-  double share_for(const std::vector<Eigen::Vector3d>& way) const;
-  std::vector<Eigen::Vector3d> way_home() const;
+  MaybeFailure begin();
+  MaybeFailure go_on();
+  MaybeFailure visit(const geometry::View& view);
+  void search_path(const geometry::View& view);
+  MaybeFailure find_path(const geometry::View& view);
+  MaybeFailure check_battery();
+  MaybeFailure sense(const geometry::View& view);
+  MaybeFailure plan();
+  MaybeFailure run_async(std::function<void()> work, double limit, FailureKind kind,
+                         const std::string& what);
+  FlightEnd end(const FlightFailure& failure);
+  FlightEnd hold(const FlightFailure& failure);
+  FlightEnd return_to_home(const MaybeFailure& failure);
+  double share_for(const std::vector<Eigen::Vector3d>& path) const;
+  std::vector<Eigen::Vector3d> return_path() const;
 
   LiveSurvey& survey_;
   GuidedFlight& vehicle_;
@@ -93,9 +93,9 @@ class LiveFlight {
   bool is_gimbal_noted_ = false;
 
   // Results of background work, which may be written after the end of the flight.
-  std::vector<Eigen::Vector3d> way_;  ///< Path to the next view.
+  std::vector<Eigen::Vector3d> path_;  ///< Path to the next view.
   geometry::Scan scan_;
-  std::optional<session::FlownLeg> home_found_;
+  std::optional<session::ExecutedLeg> found_return_path_;
   bool is_new_ = false;  ///< False if the survey already contained the last scan.
   std::future<void> work_;
 };

@@ -23,7 +23,7 @@ using Kind = NetworkAddress::Kind;
 
 constexpr std::size_t largest_read = 1 << 16;  // Upper limit of the size of a datagram.
 
-[[noreturn]] void refuse(const std::string& text, const std::string& what) {
+[[noreturn]] void reject(const std::string& text, const std::string& what) {
   throw Error(ErrorKind::bad_usage, "--connect " + text + ": " + what);
 }
 
@@ -46,21 +46,21 @@ NetworkAddress parse_address(const std::string& text) {
       "must be udp:HOST:PORT, udpout:HOST:PORT or tcp:HOST:PORT, with an IPv4 "
       "address such as 127.0.0.1 for HOST";
   const std::size_t first = text.find(':'), last = text.rfind(':');
-  if (first == std::string::npos || first == last) refuse(text, form);
+  if (first == std::string::npos || first == last) reject(text, form);
   NetworkAddress address;
   const std::string kind = text.substr(0, first);
   if (kind == "udpout") address.kind = Kind::udp_send;
   if (kind == "tcp") address.kind = Kind::tcp;
-  if (kind != "udp" && kind != "udpout" && kind != "tcp") refuse(text, form);
+  if (kind != "udp" && kind != "udpout" && kind != "tcp") reject(text, form);
   in_addr host{};
   if (::inet_pton(AF_INET, text.substr(first + 1, last - first - 1).c_str(), &host) != 1) {
-    refuse(text, form);
+    reject(text, form);
   }
   address.host = ntohl(host.s_addr);
   const char* const end = text.data() + text.size();
   const auto [stop, failure] = std::from_chars(text.data() + last + 1, end, address.port);
   if (failure != std::errc() || stop != end || address.port == 0) {
-    refuse(text, "the port must be a number from 1 to 65535");
+    reject(text, "the port must be a number from 1 to 65535");
   }
   return address;
 }
@@ -74,9 +74,9 @@ NetworkPort::NetworkPort(const NetworkAddress& address, double pace)
     has_peer_ = !waits;
     return;
   }
-  const std::string why = std::generic_category().message(errno);
+  const std::string reason = std::generic_category().message(errno);
   if (handle_ >= 0) ::close(handle_);
-  throw Error(ErrorKind::bad_usage, "--connect: cannot resolve the address: " + why);
+  throw Error(ErrorKind::bad_usage, "--connect: cannot resolve the address: " + reason);
 }
 
 NetworkPort::~NetworkPort() { ::close(handle_); }
@@ -104,9 +104,9 @@ void NetworkPort::hear_only(const void* address, std::size_t size) {
 flight::mavlink::Bytes NetworkPort::receive(double patience) {
   constexpr double milliseconds = 1e3;
   const int wait = static_cast<int>(std::ceil(std::max(0.0, patience) * milliseconds / pace_));
-  pollfd wanted{handle_, POLLIN, 0};
+  pollfd poll_request{handle_, POLLIN, 0};
   flight::mavlink::Bytes bytes;
-  if (::poll(&wanted, 1, wait) <= 0) return bytes;
+  if (::poll(&poll_request, 1, wait) <= 0) return bytes;
   bytes.resize(largest_read);
   sockaddr_in sender{};
   socklen_t size = sizeof sender;

@@ -19,7 +19,7 @@ struct NetworkAddress {
   std::uint32_t host = 0;  ///< IPv4 address in host byte order.
   std::uint16_t port = 0;
 
-  bool is_of_this_machine() const { return (host >> 24) == 127; }
+  bool is_loopback() const { return (host >> 24) == 127; }
 };
 
 /// Parses udp:HOST:PORT, udpout:HOST:PORT or tcp:HOST:PORT, where HOST is an IPv4 address. Throws

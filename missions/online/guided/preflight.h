@@ -15,7 +15,7 @@ namespace skycap::missions::online {
 /// Waits for messages of an ArduCopter, requests the required message rates, and waits for a valid
 /// position estimate. The vehicle must be disarmed and on the pad. Returns the first check that
 /// fails.
-MaybeTrouble prepare(flight::mavlink::AutopilotLink& link, const FlightFrame& frame,
+MaybeFailure prepare(flight::mavlink::AutopilotLink& link, const FlightFrame& frame,
                      const Eigen::Vector3d& pad, const GuidedLimits& limits,
                      const std::stop_token& stop);
 

@@ -21,11 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::array endings{".ply", ".pcd", ".las", ".laz", ".e57", ".xyz", ".png"};
+constexpr std::array extensions{".ply", ".pcd", ".las", ".laz", ".e57", ".xyz", ".png"};
 
 std::optional<fs::path> scan_in(const fs::path& folder, const std::string& name) {
-  for (const char* ending : endings) {
-    const fs::path file = folder / (name + ending);
+  for (const char* extension : extensions) {
+    const fs::path file = folder / (name + extension);
     std::error_code failure;
     if (fs::exists(file, failure)) return file;
   }
@@ -34,9 +34,9 @@ std::optional<fs::path> scan_in(const fs::path& folder, const std::string& name)
 
 std::string pose_text(const Eigen::Isometry3d& pose) {
   const Eigen::Quaterniond turn(pose.linear());
-  const Eigen::Vector3d place = pose.translation();
-  return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", place.x(),
-                     place.y(), place.z(), turn.x(), turn.y(), turn.z(), turn.w());
+  const Eigen::Vector3d position = pose.translation();
+  return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", position.x(),
+                     position.y(), position.z(), turn.x(), turn.y(), turn.z(), turn.w());
 }
 
 fs::path wait_for_scan(const fs::path& folder, const std::string& name, double patience,
@@ -59,17 +59,17 @@ Sensor folder_sensor(const flight::FlightOptions& flight, const LiveOptions& liv
                 folder.string() + ": is not a folder; give the folder that scans are written to");
   }
   return [flight, live, folder, input = std::move(input), patience, stop = std::move(stop)](
-             const geometry::View&, const geometry::View& taken, std::size_t number) {
+             const geometry::View&, const geometry::View& actual_view, std::size_t number) {
     const std::string name = fmt::format("scan-{:04}", number);
     if (const auto old = scan_in(folder, name)) {
       throw Error(ErrorKind::bad_file,
                   old->string() + ": existed before the scan was taken; empty the folder");
     }
-    ScanInput wanted = input;
-    wanted.world_from_sensor = geometry::camera_pose(taken);
-    geometry::write_file(folder / (name + ".pose"), pose_text(wanted.world_from_sensor));
-    wanted.file = wait_for_scan(folder, name, patience, stop);
-    ScanFound found = read_scan(wanted, flight.capture, live);
+    ScanInput requested = input;
+    requested.world_from_sensor = geometry::camera_pose(actual_view);
+    geometry::write_file(folder / (name + ".pose"), pose_text(requested.world_from_sensor));
+    requested.file = wait_for_scan(folder, name, patience, stop);
+    ScanFound found = read_scan(requested, flight.capture, live);
     require_usable(found.scan, flight);
     return std::move(found.scan);
   };

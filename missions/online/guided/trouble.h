@@ -8,8 +8,8 @@
 namespace skycap::missions::online {
 
 /// Reason why a flight cannot continue.
-enum class TroubleKind {
-  refused,      ///< The autopilot rejects a command or executes it incorrectly.
+enum class FailureKind {
+  rejected,     ///< The autopilot rejects a command or executes it incorrectly.
   pilot,        ///< Another station has taken control.
   link,         ///< The link to the vehicle is lost.
   position,     ///< The vehicle's position estimate is invalid.
@@ -22,13 +22,13 @@ enum class TroubleKind {
   interrupted,  ///< The user requested a stop.
 };
 
-struct Trouble {
-  TroubleKind kind;
+struct FlightFailure {
+  FailureKind kind;
   std::string what;  ///< Message for the user.
 };
 
-inline Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }
+inline FlightFailure rejected(std::string what) { return {FailureKind::rejected, std::move(what)}; }
 
-using MaybeTrouble = std::optional<Trouble>;
+using MaybeFailure = std::optional<FlightFailure>;
 
 }  // namespace skycap::missions::online

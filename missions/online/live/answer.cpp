@@ -23,38 +23,37 @@ namespace {
 
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
-using support::json_of;
+using support::to_json;
 
 Json view_json(const geometry::View& view, const flight::FlightOptions& flight) {
   const Eigen::Quaterniond turn(geometry::camera_pose(view).linear());
-  Json json{{"position", json_of(view.position)},
-            {"direction", json_of(view.direction)},
+  Json json{{"position", to_json(view.position)},
+            {"direction", to_json(view.direction)},
             {"quaternion_xyzw", {turn.x(), turn.y(), turn.z(), turn.w()}},
-            {"heading_deg", flight::yaw_of(view) / geometry::radians_per_degree},
-            {"gimbal_pitch_deg", flight::pitch_of(view) / geometry::radians_per_degree}};
-  if (!flight.has_place) return json;
+            {"heading_deg", flight::compute_yaw(view) / geometry::radians_per_degree},
+            {"gimbal_pitch_deg", flight::compute_pitch(view) / geometry::radians_per_degree}};
+  if (!flight.is_georeferenced) return json;
   const flight::Site& site = flight.site;
-  const flight::GeodeticPoint place = flight::LocalFrame(site.origin).to_geodetic(view.position);
-  json["latitude_deg"] = place.latitude_deg;
-  json["longitude_deg"] = place.longitude_deg;
-  json["height_ellipsoid_m"] = place.height;
-  if (site.geoid_undulation) json["height_geoid_m"] = place.height - *site.geoid_undulation;
+  const flight::GeodeticPoint geodetic = flight::LocalFrame(site.origin).to_geodetic(view.position);
+  json["latitude_deg"] = geodetic.latitude_deg;
+  json["longitude_deg"] = geodetic.longitude_deg;
+  json["height_ellipsoid_m"] = geodetic.height;
+  if (site.geoid_undulation) json["height_geoid_m"] = geodetic.height - *site.geoid_undulation;
   return json;
 }
 
-Json way_json(const session::FlownLeg& way) {
+Json leg_json(const session::ExecutedLeg& path) {
   Json points = Json::array();
-  for (const Vector3d& point : way.points) points.push_back(json_of(point));
+  for (const Vector3d& point : path.points) points.push_back(to_json(point));
   return points;
 }
 
 /// Returns the next en-route frames, limited by the size of a message header.
 Json frames_json(const std::vector<session::ViewInFlight>& frames,
                  const flight::FlightOptions& flight) {
-  constexpr std::size_t most = 64;
+  constexpr std::size_t max = 64;
   Json json = Json::array();
-  for (const session::ViewInFlight& frame :
-       std::span(frames).first(std::min(frames.size(), most))) {
+  for (const session::ViewInFlight& frame : std::span(frames).first(std::min(frames.size(), max))) {
     Json one = view_json(frame.view, flight);
     one["time_s"] = frame.time;
     json.push_back(std::move(one));
@@ -84,8 +83,8 @@ std::string pose_text(const PoseFinding& pose) {
   return "";
 }
 
-const char* state_of(const Proposal& proposal) {
-  if (proposal.end) return session::name_of(*proposal.end);
+const char* state_name(const Proposal& proposal) {
+  if (proposal.end) return session::to_string(*proposal.end);
   return proposal.view ? "view" : "first_scan";
 }
 
@@ -94,21 +93,21 @@ const char* state_of(const Proposal& proposal) {
 std::string answer_json(const LiveSurvey& survey, const flight::FlightOptions& flight) {
   const Proposal& proposal = survey.proposal();
   Json json{{"id", proposal.number},
-            {"state", state_of(proposal)},
+            {"state", state_name(proposal)},
             {"scans", survey.views().size()},
             {"points", survey.planner().cloud().size()},
             {"rejected", survey.set_aside()},
             {"view", proposal.view ? view_json(*proposal.view, flight) : Json()}};
   if (flight.capture.is_moving) {
-    json["en_route"] = survey.on_way();
+    json["en_route"] = survey.en_route();
     json["frame_period_s"] = flight.capture.frame_period;
   }
-  if (proposal.view && !proposal.way.points.empty()) {
-    json["path"] = way_json(proposal.way);
-    json["clearance_m"] = proposal.way.clearance;
+  if (proposal.view && !proposal.path.points.empty()) {
+    json["path"] = leg_json(proposal.path);
+    json["clearance_m"] = proposal.path.clearance;
     if (flight.capture.is_moving) json["frames"] = frames_json(survey.frames(), flight);
   }
-  if (proposal.warns_of_pose()) json["warning"] = "pose";
+  if (proposal.has_pose_warning()) json["warning"] = "pose";
   if (proposal.pose) json["pose"] = finding_json(*proposal.pose);
   if (const survey::CoverageEstimator* estimator = survey.planner().estimator();
       estimator != nullptr && !survey.views().empty()) {
@@ -123,16 +122,16 @@ std::string answer_text(const LiveSurvey& survey) {
       fmt::format("{} scans, {} points", survey.views().size(), survey.planner().cloud().size());
   if (survey.set_aside() > 0) scans += fmt::format(", {} scans rejected", survey.set_aside());
   if (proposal.pose) scans += pose_text(*proposal.pose);
-  if (proposal.end) return std::string(state_of(proposal)) + " after " + scans;
+  if (proposal.end) return std::string(state_name(proposal)) + " after " + scans;
   if (!proposal.view) return "take the first scan from any position that sees the scene";
   const Vector3d& at = proposal.view->position;
   std::string text = fmt::format(
       "view {}: {:.3f} {:.3f} {:.3f}, heading {:.1f} deg, pitch {:.1f} deg", proposal.number,
-      at.x(), at.y(), at.z(), flight::yaw_of(*proposal.view) / geometry::radians_per_degree,
-      flight::pitch_of(*proposal.view) / geometry::radians_per_degree);
-  if (!proposal.way.points.empty()) {
-    text += fmt::format("; {} legs, clearance {:.2f} m", proposal.way.points.size() - 1,
-                        proposal.way.clearance);
+      at.x(), at.y(), at.z(), flight::compute_yaw(*proposal.view) / geometry::radians_per_degree,
+      flight::compute_pitch(*proposal.view) / geometry::radians_per_degree);
+  if (!proposal.path.points.empty()) {
+    text += fmt::format("; {} legs, clearance {:.2f} m", proposal.path.points.size() - 1,
+                        proposal.path.clearance);
     if (const std::size_t frames = survey.frames().size(); frames > 0) {
       text += fmt::format(", {} en-route scans", frames);
     }

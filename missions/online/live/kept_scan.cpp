@@ -31,12 +31,12 @@ std::string kept_scan(const geometry::Scan& scan) {
 
 geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
   geometry::PlyReader reader(name, bytes);
-  constexpr std::array<std::string_view, 4> wanted{"x", "y", "z", "pixel"};
+  constexpr std::array<std::string_view, 4> keys{"x", "y", "z", "pixel"};
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
   };
   if (reader.elements().size() != 1) fail("is not a scan of a survey");
-  const geometry::PlyTable table = reader.read_element(wanted);
+  const geometry::PlyTable table = reader.read_element(keys);
   const std::vector<double>&x = table.columns[0], &y = table.columns[1], &z = table.columns[2],
         &pixels = table.columns[3];
   if (y.size() != x.size() || z.size() != x.size() ||
@@ -57,14 +57,14 @@ geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
   return scan;
 }
 
-std::string digest_of(std::string_view bytes) {
+std::string compute_checksum(std::string_view bytes) {
   return support::sha256(std::as_bytes(std::span(bytes)));
 }
 
 geometry::Scan read_kept_scan(const std::filesystem::path& file, const std::string& sha256) {
   constexpr std::size_t largest = std::size_t{384} << 20;  // [bytes]
   const std::string bytes = geometry::read_file(file, largest);
-  if (digest_of(bytes) != sha256) {
+  if (compute_checksum(bytes) != sha256) {
     throw Error(ErrorKind::bad_file,
                 file.string() +
                     ": is damaged (checksum differs from the journal); restore it from a backup");

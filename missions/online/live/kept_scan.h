@@ -18,7 +18,7 @@ std::string kept_scan(const geometry::Scan& scan);
 geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes);
 
 /// Returns the SHA-256 checksum of a file's bytes in hexadecimal digits, as stored in the journal.
-std::string digest_of(std::string_view bytes);
+std::string compute_checksum(std::string_view bytes);
 
 /// Reads a file written by kept_scan(). Throws Error{bad_file} if its checksum differs from
 /// `sha256`.

@@ -19,10 +19,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const std::optional<geometry::View>& view) {
+Json to_json(const std::optional<geometry::View>& view) {
   if (!view) return {};
-  return {{"position", support::json_of(view->position)},
-          {"direction", support::json_of(view->direction)}};
+  return {{"position", support::to_json(view->position)},
+          {"direction", support::to_json(view->direction)}};
 }
 
 PoseFinding parse_finding(const Json& json) {
@@ -57,7 +57,7 @@ ScanRecord parse_scan(const Json& json) {
       .sha256 = json.at("sha256").get<std::string>(),
       .world_from_sensor = parse_pose(json.at("pose").get<std::vector<double>>(), "its pose"),
       .pose = {},
-      .is_on_way = json.value("en_route", false)};
+      .is_en_route = json.value("en_route", false)};
   if (json.contains("found")) scan.pose = parse_finding(json["found"]);
   const std::filesystem::path file = scan.file;
   if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
@@ -69,8 +69,8 @@ ScanRecord parse_scan(const Json& json) {
 ProposalRecord parse_proposal(const Json& json) {
   ProposalRecord proposal;
   if (const Json& view = json.at("view"); !view.is_null()) {
-    proposal.view = {support::vector_of(view.at("position")),
-                     support::vector_of(view.at("direction"))};
+    proposal.view = {support::to_vector(view.at("position")),
+                     support::to_vector(view.at("direction"))};
   }
   if (const Json& end = json.at("end"); !end.is_null()) {
     proposal.end = session::stop_reason_named(end.get<std::string>());
@@ -81,11 +81,11 @@ ProposalRecord parse_proposal(const Json& json) {
 
 void add_record(const Json& json, std::vector<LiveEvent>& events) {
   const bool follows = !events.empty() && !events.back().proposal && !events.back().is_rejected &&
-                       !events.back().is_on_way();
+                       !events.back().is_en_route();
   if (json.contains("scan") && !follows) {
     events.push_back({.scan = parse_scan(json["scan"])});
   } else if (json.contains("refusal") && !follows) {
-    events.push_back({.refusal = json["refusal"].get<std::string>()});
+    events.push_back({.rejection_reason = json["refusal"].get<std::string>()});
   } else if (json.contains("rejected") && follows) {
     events.back().is_rejected = true;
   } else if (json.contains("proposal") && follows) {
@@ -98,17 +98,17 @@ void add_record(const Json& json, std::vector<LiveEvent>& events) {
 
 }  // namespace
 
-std::string text_of(const ScanRecord& scan) {
+std::string to_journal_line(const ScanRecord& scan) {
   Json json{{"id", scan.id},
             {"file", scan.file},
             {"sha256", scan.sha256},
             {"pose", pose_json(scan.world_from_sensor)}};
   if (scan.pose) json["found"] = journal_json(*scan.pose);
-  if (scan.is_on_way) json["en_route"] = true;
+  if (scan.is_en_route) json["en_route"] = true;
   return support::journal_line({{"scan", std::move(json)}});
 }
 
-std::string refusal_text(const std::string& reason) {
+std::string view_rejection_text(const std::string& reason) {
   return support::journal_line({{"refusal", reason}});
 }
 
@@ -116,15 +116,16 @@ std::string rejection_text(const std::string& reason) {
   return support::journal_line({{"rejected", reason}});
 }
 
-std::string text_of(const ProposalRecord& proposal) {
+std::string to_journal_line(const ProposalRecord& proposal) {
   return support::journal_line(
       {{"proposal",
-        {{"view", json_of(proposal.view)},
-         {"end", proposal.end ? Json(session::name_of(*proposal.end)) : Json()},
+        {{"view", to_json(proposal.view)},
+         {"end", proposal.end ? Json(session::to_string(*proposal.end)) : Json()},
          {"reach", session::reach_json(proposal.reach)}}}});
 }
 
-std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file) {
+std::vector<LiveEvent> parse_events(const std::vector<std::string>& records,
+                                    const std::string& file) {
   std::vector<LiveEvent> events;
   for (std::size_t i = 1; i < records.size(); ++i) {
     const auto fail = [&](const std::string& what) {
@@ -164,23 +165,23 @@ Json pose_json(const Eigen::Isometry3d& pose) {
 }
 
 Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::string& what) {
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorKind::bad_file, what + " " + why);
+  const auto reject = [&](const std::string& reason) {
+    throw Error(ErrorKind::bad_file, what + " " + reason);
   };
-  if (numbers.size() != 12) refuse("must have twelve numbers, [rotation | position] row by row");
+  if (numbers.size() != 12) reject("must have twelve numbers, [rotation | position] row by row");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (int i = 0; i < 12; ++i) pose(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
   const Eigen::Matrix3d turn = pose.linear();
   const double stretch = (turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm();
   constexpr double rounding = 1e-9, sloppiness = 1e-2;
   if (!(stretch < sloppiness && turn.determinant() > 0.0)) {
-    refuse("must be a rotation without scale or reflection");
+    reject("must be a rotation without scale or reflection");
   }
   // Trackers let rotations drift. Rotations written by Skycap remain bit-identical.
   if (stretch > rounding) {
     pose.linear() = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
   }
-  geometry::require_place(pose.translation(), what);
+  geometry::require_valid_position(pose.translation(), what);
   return pose;
 }
 

@@ -22,7 +22,8 @@ struct ScanRecord {
   std::string sha256;  ///< SHA-256 checksum of the file.
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< Pose as received.
   std::optional<PoseFinding> pose;  ///< Result of the pose check, if pose checks are enabled.
-  bool is_on_way = false;  ///< True for an en-route scan, which leaves the proposed view unchanged.
+  bool is_en_route =
+      false;  ///< True for an en-route scan, which leaves the proposed view unchanged.
 };
 
 /// Proposal after a scan or a refusal.
@@ -36,21 +37,22 @@ struct ProposalRecord {
 /// if the program ended before it was recorded.
 struct LiveEvent {
   std::optional<ScanRecord> scan;  ///< Acknowledged scan; empty for a refusal.
-  std::string refusal;             ///< Reason for the refusal.
+  std::string rejection_reason;    ///< Reason for the refusal.
   bool is_rejected = false;  ///< The planner rejected the scan as unusable; it does not count.
   std::optional<ProposalRecord> proposal;
 
-  bool is_on_way() const { return scan && scan->is_on_way; }
+  bool is_en_route() const { return scan && scan->is_en_route; }
 };
 
-std::string text_of(const ScanRecord& scan);
-std::string refusal_text(const std::string& reason);
+std::string to_journal_line(const ScanRecord& scan);
+std::string view_rejection_text(const std::string& reason);
 std::string rejection_text(const std::string& reason);
-std::string text_of(const ProposalRecord& proposal);
+std::string to_journal_line(const ProposalRecord& proposal);
 
 /// Parses all records of a journal except the first. Throws Error{bad_file} naming `file` and the
 /// line of a record of unknown type.
-std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file);
+std::vector<LiveEvent> parse_events(const std::vector<std::string>& records,
+                                    const std::string& file);
 
 /// Returns the result of a pose check as in answers and journals. Journals store the full
 /// `correction`.

@@ -38,24 +38,26 @@ fs::path made_folder(const fs::path& folder) {
 }
 
 /// Computes the id of a scan. `sha256` is the checksum of the stored scan.
-std::string id_of(const std::string& sha256, const Eigen::Isometry3d& world_from_sensor,
-                  const std::optional<PoseCovariance>& covariance) {
+std::string make_id(const std::string& sha256, const Eigen::Isometry3d& world_from_sensor,
+                    const std::optional<PoseCovariance>& covariance) {
   std::string text = sha256 + pose_json(world_from_sensor).dump();
   if (covariance) text += nlohmann::ordered_json(covariance->triangle()).dump();
-  return digest_of(text);
+  return compute_checksum(text);
 }
 
-bool is_same(const ProposalRecord& a, const ProposalRecord& b) { return text_of(a) == text_of(b); }
+bool is_same(const ProposalRecord& a, const ProposalRecord& b) {
+  return to_journal_line(a) == to_journal_line(b);
+}
 
 }  // namespace
 
 struct LiveSurvey::Impl {
   Impl(const session::SurveyOptions& survey_options, const LiveOptions& live_options,
-       const support::Identity& identity, const fs::path& place, const LiveStart& begin,
+       const support::Identity& identity, const fs::path& source, const LiveStart& begin,
        unsigned threads)
       : options(survey_options),
         live(live_options),
-        folder(made_folder(place)),
+        folder(made_folder(source)),
         first_view(begin.view),
         run{.seed = identity.seed, .threads = threads, .sphere = begin.sphere},
         log(folder / journal_name) {
@@ -67,7 +69,7 @@ struct LiveSurvey::Impl {
       support::require_same_survey(log.file().string(), log.records().front(), text,
                                    "use another folder");
     }
-    events = events_of(log.records(), log.file().string());
+    events = parse_events(log.records(), log.file().string());
     replay();
   }
 
@@ -77,34 +79,34 @@ struct LiveSurvey::Impl {
     }
     remembered = 0;
     numbers.clear();
-    taken.clear();
+    recorded_scans.clear();
     set_aside = 0;
-    guide = std::make_unique<session::MissionPlanner>(options, first_view, run);
-    survey::SurveyPorts ports = guide->ports();
-    if (ports.can_reach) {
-      ports.can_reach = [this, can_reach = std::move(ports.can_reach)](const Vector3d&,
-                                                                       const geometry::View& to) {
+    guide = std::make_unique<session::ConstrainedPlanner>(options, first_view, run);
+    survey::SurveyCallbacks callbacks = guide->callbacks();
+    if (callbacks.can_reach) {
+      callbacks.can_reach = [this, can_reach = std::move(callbacks.can_reach)](
+                                const Vector3d&, const geometry::View& to) {
         return can_reach(departure, to);
       };
-      ports.can_reach = reach.remembering(std::move(ports.can_reach), guide->flight());
+      callbacks.can_reach = reach.remembering(std::move(callbacks.can_reach), guide->flight());
     }
-    steps = std::make_unique<survey::SurveySteps>(guide->planner(), guide->limits(), ports);
-    proposal = {.number = 0, .view = first_view, .way = {}, .end = {}, .pose = {}};
-    if (guide->flight() != nullptr) proposal.way = guide->flight()->way();
+    steps = std::make_unique<survey::SurveyStepper>(guide->planner(), guide->limits(), callbacks);
+    proposal = {.number = 0, .view = first_view, .path = {}, .end = {}, .pose = {}};
+    if (guide->flight() != nullptr) proposal.path = guide->flight()->path();
   }
 
-  ScanNumber next_number(bool is_on_way) const {
-    if (!is_on_way) return {steps->views().size()};
+  ScanNumber next_number(bool is_en_route) const {
+    if (!is_en_route) return {steps->views().size()};
     return {steps->views().size(), steps->passed()};
   }
 
   /// Returns the start of the path after a scan. This is the proposed view if the sensor is within
   /// the position and tracking errors that the clearance includes, otherwise the sensor's position.
   Vector3d departure_after(const geometry::Scan& scan) const {
-    const Vector3d place = scan.sensor_position();
+    const Vector3d source = scan.sensor_position();
     const double errors = options.flight.position_error + options.flight.tracking_error;
-    const bool is_there = proposal.view && (proposal.view->position - place).norm() <= errors;
-    return is_there ? proposal.view->position : place;
+    const bool is_there = proposal.view && (proposal.view->position - source).norm() <= errors;
+    return is_there ? proposal.view->position : source;
   }
 
   void replay() {
@@ -116,9 +118,9 @@ struct LiveSurvey::Impl {
         catch_up();
         continue;
       }
-      if (event.is_on_way()) continue;
+      if (event.is_en_route()) continue;
       if (!known) {  // The program was killed before the proposal was recorded.
-        write_down(text_of(*event.proposal));
+        write_down(to_journal_line(*event.proposal));
       } else if (!is_same(*known, *event.proposal)) {
         throw Error(
             ErrorKind::bad_file,
@@ -145,8 +147,8 @@ struct LiveSurvey::Impl {
     return corrected(std::move(scan), *record.pose->correction);
   }
 
-  std::optional<PoseFinding> look_at_pose(const geometry::Scan& scan,
-                                          const std::optional<PoseCovariance>& covariance) {
+  std::optional<PoseFinding> check_pose(const geometry::Scan& scan,
+                                        const std::optional<PoseCovariance>& covariance) {
     if (!poses) return std::nullopt;
     PoseFinding finding = poses->find(
         scan, covariance.value_or(PoseCovariance::of(live.pose_sigma, live.pose_sigma_angle)));
@@ -156,23 +158,24 @@ struct LiveSurvey::Impl {
 
   /// Rejects a scan. The proposed view remains, but the sensor position is unknown.
   void leave_aside(LiveEvent& event) {
-    numbers.emplace(event.scan->id, next_number(event.is_on_way()));
+    numbers.emplace(event.scan->id, next_number(event.is_en_route()));
     ++set_aside;
     ++proposal.number;
-    proposal.way = {};
+    proposal.path = {};
     proposal.pose = event.scan->pose;
-    if (!event.is_on_way()) event.proposal = ProposalRecord{proposal.view, proposal.end, {}};
+    if (!event.is_en_route()) event.proposal = ProposalRecord{proposal.view, proposal.end, {}};
   }
 
   /// Adds an en-route scan. The proposed view and the path to it remain.
   void pass(const LiveEvent& event, const geometry::Scan& scan) {
     numbers.emplace(event.scan->id, next_number(true));
-    taken.push_back({static_cast<std::uint32_t>(steps->views().size()), scan.sensor_position()});
+    recorded_scans.push_back(
+        {static_cast<std::uint32_t>(steps->views().size()), scan.sensor_position()});
     steps->pass(scan);
     remember(scan);
     departure = scan.sensor_position();
     ++proposal.number;
-    proposal.way = reach.record().way;
+    proposal.path = reach.record().path;
     proposal.pose = event.scan->pose;
   }
 
@@ -184,14 +187,14 @@ struct LiveSurvey::Impl {
   }
 
   /// Processes an event and fills in the proposal after it. Returns false for a scan that the
-  /// planner rejects as unusable. `why` then contains the reason and `unwritten` the pending
+  /// planner rejects as unusable. `reason` then contains the reason and `unwritten` the pending
   /// record, and the planner must be reset.
   bool happen(LiveEvent& event, const geometry::Scan& scan) {
     if (event.scan && event.scan->pose && event.scan->pose->is_wrong) {
       leave_aside(event);
       return true;
     }
-    if (event.is_on_way()) {
+    if (event.is_en_route()) {
       pass(event, scan);
       return true;
     }
@@ -199,18 +202,18 @@ struct LiveSurvey::Impl {
     if (event.scan) departure = departure_after(scan);
     std::optional<geometry::View> view;
     try {
-      view = event.scan ? steps->take_in(scan) : steps->refuse();
+      view = event.scan ? steps->add_scan(scan) : steps->reject();
     } catch (const Error& failure) {
       if (!event.scan || event.proposal) throw;
       event.is_rejected = true;
-      why = failure.what();
-      unwritten = rejection_text(why);
+      reason = failure.what();
+      unwritten = rejection_text(reason);
       return false;
     }
     if (event.scan) {
       const std::size_t number = steps->views().size() - 1;
       numbers.emplace(event.scan->id, ScanNumber{number});
-      taken.push_back({static_cast<std::uint32_t>(number), scan.sensor_position()});
+      recorded_scans.push_back({static_cast<std::uint32_t>(number), scan.sensor_position()});
       remember(scan);
     }
     propose(event, view);
@@ -219,12 +222,12 @@ struct LiveSurvey::Impl {
   }
 
   void propose(const LiveEvent& event, const std::optional<geometry::View>& view) {
-    const bool is_lost = !event.scan && proposal.warns_of_pose();
+    const bool is_lost = !event.scan && proposal.has_pose_warning();
     std::optional<PoseFinding> pose = is_lost ? proposal.pose : std::nullopt;
     if (event.scan) pose = event.scan->pose;
-    proposal = {.number = proposal.number + 1, .view = view, .way = {}, .end = {}, .pose = pose};
+    proposal = {.number = proposal.number + 1, .view = view, .path = {}, .end = {}, .pose = pose};
     if (!view) proposal.end = steps->stop_reason();
-    if (view && guide->flight() != nullptr && !is_lost) proposal.way = reach.record().way;
+    if (view && guide->flight() != nullptr && !is_lost) proposal.path = reach.record().path;
   }
 
   /// Records that cannot be written now are written before any other record.
@@ -240,40 +243,40 @@ struct LiveSurvey::Impl {
   }
 
   /// Stores a scan and processes it. Returns false if its id is known.
-  bool bring(const geometry::Scan& scan, const std::string& given_id,
-             const std::optional<PoseCovariance>& covariance, bool is_on_way) {
-    const std::string bytes = kept_scan(scan), sha256 = digest_of(bytes);
+  bool bring(const geometry::Scan& scan, const std::string& requested_id,
+             const std::optional<PoseCovariance>& covariance, bool is_en_route) {
+    const std::string bytes = kept_scan(scan), sha256 = compute_checksum(bytes);
     const std::string id =
-        given_id.empty() ? id_of(sha256, scan.world_from_sensor, covariance) : given_id;
+        requested_id.empty() ? make_id(sha256, scan.world_from_sensor, covariance) : requested_id;
     if (numbers.contains(id)) return false;
-    require_wanted(is_on_way);
+    require_expected_scan(is_en_route);
     catch_up();
     const ScanRecord record{.id = id,
                             .file = fmt::format("{}/{:06}.ply", scans_name, events.size()),
                             .sha256 = sha256,
                             .world_from_sensor = scan.world_from_sensor,
-                            .pose = look_at_pose(scan, covariance),
-                            .is_on_way = is_on_way};
+                            .pose = check_pose(scan, covariance),
+                            .is_en_route = is_en_route};
     geometry::write_file(folder / record.file, bytes);
     geometry::sync_to_disk(folder / scans_name);
-    log.append(text_of(record));
-    take_in({.scan = record, .refusal = {}, .proposal = {}}, as_used(scan, record));
+    log.append(to_journal_line(record));
+    add_event({.scan = record, .rejection_reason = {}, .proposal = {}}, as_used(scan, record));
     return true;
   }
 
-  void require_wanted(bool is_on_way) const {
-    const auto refuse = [](const std::string& what) { throw Error(ErrorKind::bad_usage, what); };
-    if (options.flight.is_flown() && proposal.end) {
-      refuse(
+  void require_expected_scan(bool is_en_route) const {
+    const auto reject = [](const std::string& what) { throw Error(ErrorKind::bad_usage, what); };
+    if (options.flight.has_vehicle() && proposal.end) {
+      reject(
           "the survey is complete, and no path to the pose of this scan was verified; finish the "
           "survey");
     }
-    if (!is_on_way) return;
+    if (!is_en_route) return;
     if (!options.flight.capture.is_moving) {
-      refuse("en-route scans require sensor.capture: moving");
+      reject("en-route scans require sensor.capture: moving");
     }
     if (steps->views().empty()) {
-      refuse("en-route scans require a scan from the first view; add it first");
+      reject("en-route scans require a scan from the first view; add it first");
     }
   }
 
@@ -285,23 +288,23 @@ struct LiveSurvey::Impl {
     for (const survey::SurveyedView& view : steps->views()) {
       record.views.push_back({view, std::numeric_limits<double>::quiet_NaN()});
     }
-    record.scans = taken;
-    for (session::TakenScan& scan :
+    record.scans = recorded_scans;
+    for (session::RecordedScan& scan :
          record.scans) {  // Includes scans on the path to a view that was not taken.
       scan.view = std::min(scan.view, static_cast<std::uint32_t>(record.views.size() - 1));
     }
     return record;
   }
 
-  void take_in(LiveEvent event, const geometry::Scan& scan) {
+  void add_event(LiveEvent event, const geometry::Scan& scan) {
     events.push_back(std::move(event));
     if (happen(events.back(), scan)) {
-      if (events.back().proposal) write_down(text_of(*events.back().proposal));
+      if (events.back().proposal) write_down(to_journal_line(*events.back().proposal));
       return;
     }
     replay();  // The planner may have processed a part of the scan.
     catch_up();
-    throw Error(ErrorKind::bad_geometry, why);
+    throw Error(ErrorKind::bad_geometry, reason);
   }
 
   session::SurveyOptions options;
@@ -311,17 +314,17 @@ struct LiveSurvey::Impl {
   survey::PlannerRun run;
   geometry::RecordLog log;
   std::vector<LiveEvent> events;
-  std::unique_ptr<session::MissionPlanner> guide;
-  std::unique_ptr<survey::SurveySteps> steps;
-  session::ReachMemory reach;
+  std::unique_ptr<session::ConstrainedPlanner> guide;
+  std::unique_ptr<survey::SurveyStepper> steps;
+  session::ReachabilityCache reach;
   Proposal proposal;
   Vector3d departure = Vector3d::Zero();
-  std::map<std::string, ScanNumber> numbers;  ///< Numbers of the scans by id.
-  std::vector<session::TakenScan> taken;      ///< Accepted scans.
+  std::map<std::string, ScanNumber> numbers;          ///< Numbers of the scans by id.
+  std::vector<session::RecordedScan> recorded_scans;  ///< Accepted scans.
   std::size_t set_aside = 0;
   std::optional<PoseCheck> poses;
   std::size_t remembered = 0;  ///< Number of points of the planner's cloud that `poses` contains.
-  std::string why;             ///< Reason for rejecting the last scan.
+  std::string reason;          ///< Reason for rejecting the last scan.
   std::optional<std::string> unwritten;  ///< Record that could not be written yet.
 };
 
@@ -340,20 +343,20 @@ const std::vector<survey::SurveyedView>& LiveSurvey::views() const { return impl
 
 std::size_t LiveSurvey::set_aside() const { return impl_->set_aside; }
 
-std::size_t LiveSurvey::on_way() const { return impl_->steps->passed(); }
+std::size_t LiveSurvey::en_route() const { return impl_->steps->passed(); }
 
 std::vector<session::ViewInFlight> LiveSurvey::frames() const {
   const Proposal& next = impl_->proposal;
   const bool is_measured = impl_->options.flight.capture.is_moving && !views().empty();
-  if (!is_measured || !next.view || next.way.points.empty()) return {};
+  if (!is_measured || !next.view || next.path.points.empty()) return {};
   std::vector<session::ViewInFlight> frames =
       impl_->guide->flight()->frames(views().back().view, *next.view);
   frames.erase(frames.begin(),
-               frames.begin() + static_cast<std::ptrdiff_t>(std::min(on_way(), frames.size())));
+               frames.begin() + static_cast<std::ptrdiff_t>(std::min(en_route(), frames.size())));
   return frames;
 }
 
-std::optional<ScanNumber> LiveSurvey::number_of(const std::string& id) const {
+std::optional<ScanNumber> LiveSurvey::scan_number(const std::string& id) const {
   const auto found = impl_->numbers.find(id);
   return found == impl_->numbers.end() ? std::nullopt : std::optional(found->second);
 }
@@ -363,12 +366,12 @@ bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id,
   return impl_->bring(scan, id, covariance, false);
 }
 
-bool LiveSurvey::add_on_way(const geometry::Scan& scan, const std::string& id,
-                            const std::optional<PoseCovariance>& covariance) {
+bool LiveSurvey::add_en_route(const geometry::Scan& scan, const std::string& id,
+                              const std::optional<PoseCovariance>& covariance) {
   return impl_->bring(scan, id, covariance, true);
 }
 
-void LiveSurvey::refuse(const std::string& reason) {
+void LiveSurvey::reject(const std::string& reason) {
   if (!impl_->proposal.view || views().empty()) {
     throw Error(
         ErrorKind::bad_usage,
@@ -376,15 +379,15 @@ void LiveSurvey::refuse(const std::string& reason) {
                                                             : "the survey is complete"));
   }
   impl_->catch_up();
-  impl_->log.append(refusal_text(reason));
-  impl_->take_in({.scan = {}, .refusal = reason, .proposal = {}}, {});
+  impl_->log.append(view_rejection_text(reason));
+  impl_->add_event({.scan = {}, .rejection_reason = reason, .proposal = {}}, {});
 }
 
 session::SurveyFlight* LiveSurvey::flight() { return impl_->guide->flight(); }
 
 session::SurveyRecord LiveSurvey::so_far() const {
   session::SurveyRecord record = impl_->views_record();
-  impl_->guide->tell(record);
+  impl_->guide->fill_record(record);
   return record;
 }
 
@@ -395,7 +398,7 @@ session::SurveyRecord LiveSurvey::finish() {
 }
 
 std::string scan_id(const geometry::Scan& scan, const std::optional<PoseCovariance>& covariance) {
-  return id_of(digest_of(kept_scan(scan)), scan.world_from_sensor, covariance);
+  return make_id(compute_checksum(kept_scan(scan)), scan.world_from_sensor, covariance);
 }
 
 }  // namespace skycap::missions::online

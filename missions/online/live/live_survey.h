@@ -35,21 +35,21 @@ struct Proposal {
   std::optional<geometry::View> view;
   /// For surveys with a vehicle: path to the view, verified collision-free in free space, with its
   /// clearance [m].
-  session::FlownLeg way;
+  session::ExecutedLeg path;
   /// Reason why the survey has no next view. Empty before the first scan.
   std::optional<survey::StopReason> end;
   /// Pose check of the previous scan, if it was checked. After a rejected scan, it remains until a
-  /// scan is accepted. During that time the sensor position is unknown and `way` is empty.
+  /// scan is accepted. During that time the sensor position is unknown and `path` is empty.
   std::optional<PoseFinding> pose;
 
-  bool warns_of_pose() const { return pose && pose->is_wrong; }
+  bool has_pose_warning() const { return pose && pose->is_wrong; }
 };
 
 /// Number of views used before a scan. For en-route scans, also the number of scans already taken
 /// on that path.
 struct ScanNumber {
   std::size_t view = 0;
-  std::optional<std::size_t> on_way{};
+  std::optional<std::size_t> en_route{};
   bool operator==(const ScanNumber&) const = default;
 };
 
@@ -66,7 +66,8 @@ class LiveSurvey {
  public:
   /// Opens the survey in `folder` or creates a new one, with `threads` threads (0: all processors).
   /// Throws Error{bad_file} naming the file if the survey's identity differs from `identity`, or if
-  /// the folder is damaged or in use by another program. Also throws all errors of MissionPlanner.
+  /// the folder is damaged or in use by another program. Also throws all errors of
+  /// ConstrainedPlanner.
   LiveSurvey(const session::SurveyOptions& options, const LiveOptions& live,
              const support::Identity& identity, const std::filesystem::path& folder,
              const LiveStart& start, unsigned threads);
@@ -82,7 +83,7 @@ class LiveSurvey {
   std::size_t set_aside() const;  ///< Returns the number of scans rejected because of their poses.
 
   /// Returns the number of scans accepted since the last view, on the path to the proposed view.
-  std::size_t on_way() const;
+  std::size_t en_route() const;
 
   /// Returns the remaining en-route scans of the current path if the survey takes them
   /// (CaptureOptions). Times count from the departure from the last view [s]. Returns an empty list
@@ -90,7 +91,7 @@ class LiveSurvey {
   std::vector<session::ViewInFlight> frames() const;
 
   /// Returns the number of the scan with this id, if it exists.
-  std::optional<ScanNumber> number_of(const std::string& id) const;
+  std::optional<ScanNumber> scan_number(const std::string& id) const;
 
   /// Stores a scan, checks its pose (LiveOptions), and plans with it or rejects it. Returns false
   /// if a scan with this id exists; the scan is then acknowledged and ignored. An empty `id` stands
@@ -102,12 +103,12 @@ class LiveSurvey {
 
   /// Adds an en-route scan like add(). The proposed view remains. Throws Error{bad_usage} before
   /// the first view, after the end of the survey, and if the survey takes no en-route scans.
-  bool add_on_way(const geometry::Scan& scan, const std::string& id,
-                  const std::optional<PoseCovariance>& covariance = {});
+  bool add_en_route(const geometry::Scan& scan, const std::string& id,
+                    const std::optional<PoseCovariance>& covariance = {});
 
   /// Rejects the proposed view and plans another one. Throws Error{bad_usage} if no view is
   /// proposed.
-  void refuse(const std::string& reason);
+  void reject(const std::string& reason);
 
   /// Returns the path planner of the vehicle, or null for surveys without a vehicle.
   session::SurveyFlight* flight();

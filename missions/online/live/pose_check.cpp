@@ -17,9 +17,9 @@ using geometry::RigidDirection;
 using geometry::SurfacePatch;
 
 // Maximum number of points of a scan that are combined into patches.
-constexpr std::size_t most_patch_points = 100'000;
-constexpr std::size_t most_patches = 1500;
-constexpr std::size_t least_matches = 50;
+constexpr std::size_t max_patch_points = 100'000;
+constexpr std::size_t max_patches = 1500;
+constexpr std::size_t min_matches = 50;
 // Deviations above this number of standard deviations are significant.
 constexpr double sigmas = 5.0;
 
@@ -37,11 +37,10 @@ bool are_flat(const std::vector<SurfacePatch>& patches, double radius) {
 
 /// Returns the patches of the scan with the smallest radius at which most are flat. Returns no
 /// patches if no radius suffices.
-Patches patches_of(const geometry::ScanSpan& scan, std::span<const geometry::SurfaceMap> maps) {
+Patches select_patches(const geometry::ScanSpan& scan, std::span<const geometry::SurfaceMap> maps) {
   for (std::size_t level = 0; level < maps.size(); ++level) {
     const double radius = maps[level].radius();
-    geometry::ScanPatches all =
-        geometry::scan_patches(scan, radius, most_patch_points, most_patches);
+    geometry::ScanPatches all = geometry::scan_patches(scan, radius, max_patch_points, max_patches);
     const bool is_surface = 3 * all.patches.size() >= all.tried;
     if (is_surface && are_flat(all.patches, radius)) return {std::move(all.patches), level};
   }
@@ -98,24 +97,24 @@ PoseCheck::PoseCheck(double radius, bool registers)
             geometry::SurfaceMap(4.0 * radius), geometry::SurfaceMap(8.0 * radius)} {}
 
 void PoseCheck::remember(const geometry::ScanSpan& scan, std::span<const Eigen::Vector3f> kept) {
-  constexpr std::size_t most_images = 16;
+  constexpr std::size_t max_images = 16;
   for (geometry::SurfaceMap& map : maps_) map.add(kept, scan.sensor_position());
   last_.emplace_back(scan);
-  if (last_.size() > most_images) last_.pop_front();
+  if (last_.size() > max_images) last_.pop_front();
 }
 
 PoseFinding PoseCheck::find(const geometry::ScanSpan& scan, const PoseCovariance& covariance) {
   PoseFinding finding;
   if (last_.empty()) return finding;
-  const Patches patches = patches_of(scan, maps_);
+  const Patches patches = select_patches(scan, maps_);
   geometry::SurfaceMap& map = maps_[patches.level];
   const double reach =
       std::min(4.0 * map.radius() + sigmas * covariance.position(), 8.0 * map.radius());
-  const Registration found = geometry::register_scan(patches.patches, map, reach, least_matches);
+  const Registration found = geometry::register_scan(patches.patches, map, reach, min_matches);
   const Vector3d sensor = scan.sensor_position();
   finding.matches = found.matches;
   finding.error = found.first_error;
-  finding.is_checked = found.matches >= least_matches;
+  finding.is_checked = found.matches >= min_matches;
   constexpr double much = 0.1;
   finding.seen_through = seen_through(scan, patches.patches, covariance, map);
   finding.is_wrong = finding.seen_through > much;
@@ -138,27 +137,27 @@ double PoseCheck::seen_through(const geometry::ScanSpan& scan,
                                const std::vector<SurfacePatch>& patches,
                                const PoseCovariance& covariance,
                                const geometry::SurfaceMap& map) const {
-  constexpr std::size_t most_tests = 20'000, least_tests = 50;
+  constexpr std::size_t max_tests = 20'000, min_tests = 50;
   std::size_t there = 0, through = 0;
   const Vector3d sensor = scan.sensor_position();
   const double along = covariance.position(), about = covariance.angle();
-  const auto look = [&](const RangeImage& image, const Vector3d& point) {
+  const auto count_visibility = [&](const RangeImage& image, const Vector3d& point) {
     const double range = (point - sensor).norm();
     const double tolerance = 2.0 * map.radius() + 0.02 * range + sigmas * (along + about * range);
-    const Sight sight = image.sight(point, tolerance);
-    there += sight == Sight::there ? 1 : 0;
-    through += sight == Sight::through ? 1 : 0;
+    const Visibility visibility = image.visibility(point, tolerance);
+    there += visibility == Visibility::there ? 1 : 0;
+    through += visibility == Visibility::through ? 1 : 0;
   };
   const RangeImage image(scan);
   const geometry::PointGrid& known = map.spread_points();
-  const std::size_t stride = std::max<std::size_t>(1, known.size() / most_tests);
+  const std::size_t stride = std::max<std::size_t>(1, known.size() / max_tests);
   for (std::size_t i = 0; i < known.size(); i += stride) {
-    look(image, known.point(static_cast<std::uint32_t>(i)).cast<double>());
+    count_visibility(image, known.point(static_cast<std::uint32_t>(i)).cast<double>());
   }
   for (const SurfacePatch& patch : patches) {
-    for (const RangeImage& earlier : last_) look(earlier, patch.mean);
+    for (const RangeImage& earlier : last_) count_visibility(earlier, patch.mean);
   }
-  if (there + through < least_tests) return 0.0;
+  if (there + through < min_tests) return 0.0;
   return static_cast<double>(through) / static_cast<double>(there + through);
 }
 

@@ -26,7 +26,7 @@ double largest_deviation(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, axes.eigenvalues().maxCoeff()));
 }
 
-Matrix matrix_of(const std::vector<double>& numbers) {
+Matrix to_matrix(const std::vector<double>& numbers) {
   Matrix matrix;
   std::size_t at = 0;
   for (int row = 0; row < 6; ++row) {
@@ -39,13 +39,13 @@ Matrix matrix_of(const std::vector<double>& numbers) {
 }
 
 /// Returns the reason why a matrix is not a valid pose covariance; empty if it is valid.
-std::string fault_of(const Matrix& matrix) {
+std::string find_defect(const Matrix& matrix) {
   Matrix correlations = Matrix::Identity();
   for (int i = 0; i < 6; ++i) {
-    const double most = i < 3 ? farthest : widest * geometry::radians_per_degree;
-    if (!(matrix(i, i) >= 0.0 && matrix(i, i) <= most * most)) {
+    const double max = i < 3 ? farthest : widest * geometry::radians_per_degree;
+    if (!(matrix(i, i) >= 0.0 && matrix(i, i) <= max * max)) {
       return fmt::format("the variance of {} is {:.6g}; it must be from 0 to {:.6g} {}", names[i],
-                         matrix(i, i), most * most, i < 3 ? "m^2 (100 m)" : "rad^2 (90 degrees)");
+                         matrix(i, i), max * max, i < 3 ? "m^2 (100 m)" : "rad^2 (90 degrees)");
     }
   }
   for (int i = 0; i < 6; ++i) {
@@ -115,8 +115,8 @@ PoseCovariance parse_pose_covariance(const std::string& text, const std::string&
                             "ry rz [m, rad] row by row, or the 21 of its upper triangle",
                             what, numbers.size()));
   }
-  const Matrix matrix = matrix_of(numbers);
-  const std::string fault = fault_of(matrix);
+  const Matrix matrix = to_matrix(numbers);
+  const std::string fault = find_defect(matrix);
   if (!fault.empty()) throw Error(ErrorKind::bad_usage, what + ": " + fault);
   return {0.5 * (matrix + matrix.transpose())};
 }

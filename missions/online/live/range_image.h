@@ -10,7 +10,7 @@
 
 namespace skycap::missions::online {
 
-enum class Sight {
+enum class Visibility {
   unknown,  ///< The scan has too few returns in this direction.
   hidden,   ///< The point is behind the measured surface.
   there,    ///< The point is on the measured surface.
@@ -25,7 +25,7 @@ class RangeImage {
   explicit RangeImage(const geometry::ScanSpan& scan);
 
   /// Returns the visibility of a point in the world frame. `tolerance` is the range error [m].
-  Sight sight(const Eigen::Vector3d& point, double tolerance) const;
+  Visibility visibility(const Eigen::Vector3d& point, double tolerance) const;
 
  private:
   struct Cell {

@@ -9,9 +9,9 @@
 namespace skycap::missions::online {
 namespace {
 
-constexpr double steepest = 5.67;  // Tangent of 80 degrees.
+constexpr double max_slope = 5.67;  // Tangent of 80 degrees.
 // Fraction of the depth, larger than the quantisation steps of depth images.
-constexpr double least_jump = 0.03;
+constexpr double min_jump = 0.03;
 
 /// Depths by pixel; 0 for no-return pixels.
 class DepthGrid {
@@ -29,9 +29,9 @@ class DepthGrid {
   }
 
   bool is_flying(std::uint32_t pixel) const {
-    const int row = row_of(pixel), column = column_of(pixel);
-    constexpr std::array<std::array<int, 2>, 4> ways{{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
-    for (const auto& [down, right] : ways) {
+    const int row = pixel_row(pixel), column = pixel_column(pixel);
+    constexpr std::array<std::array<int, 2>, 4> directions{{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
+    for (const auto& [down, right] : directions) {
       for (int far = 1; far <= 2; ++far) {
         if (is_between(row, column, far * down, far * right)) return true;
       }
@@ -40,8 +40,8 @@ class DepthGrid {
   }
 
   bool is_isolated(std::uint32_t pixel) const {
-    constexpr int least = 3;
-    const int row = row_of(pixel), column = column_of(pixel);
+    constexpr int min = 3;
+    const int row = pixel_row(pixel), column = pixel_column(pixel);
     const double depth = at(row, column);
     int others = 0;
     for (int down = -2; down <= 2; ++down) {
@@ -51,14 +51,14 @@ class DepthGrid {
         others += far > 0 && other > 0.0 && std::abs(other - depth) <= far * step(depth) ? 1 : 0;
       }
     }
-    return others < least;
+    return others < min;
   }
 
  private:
-  int row_of(std::uint32_t pixel) const {
+  int pixel_row(std::uint32_t pixel) const {
     return static_cast<int>(pixel / static_cast<std::uint32_t>(width_));
   }
-  int column_of(std::uint32_t pixel) const {
+  int pixel_column(std::uint32_t pixel) const {
     return static_cast<int>(pixel % static_cast<std::uint32_t>(width_));
   }
   double at(int row, int column) const {
@@ -67,21 +67,21 @@ class DepthGrid {
                    static_cast<std::size_t>(column)];
   }
   /// Returns the maximum depth change between adjacent pixels on a single surface.
-  double step(double depth) const { return steepest * pixel_size_ * depth; }
+  double step(double depth) const { return max_slope * pixel_size_ * depth; }
 
   bool is_between(int row, int column, int down, int right) const {
     const double depth = at(row, column);
     const double before = at(row - down, column - right), after = at(row + down, column + right);
     if (before == 0.0 || after == 0.0) return false;
-    const double most =
-        std::max(step(depth) * std::max(std::abs(down), std::abs(right)), least_jump * depth);
-    const bool is_steep = (before < depth - most && after > depth + most) ||
-                          (before > depth + most && after < depth - most);
-    return is_steep && goes_on(before, at(row - 2 * down, column - 2 * right), most) &&
-           goes_on(after, at(row + 2 * down, column + 2 * right), most);
+    const double max =
+        std::max(step(depth) * std::max(std::abs(down), std::abs(right)), min_jump * depth);
+    const bool is_steep = (before < depth - max && after > depth + max) ||
+                          (before > depth + max && after < depth - max);
+    return is_steep && goes_on(before, at(row - 2 * down, column - 2 * right), max) &&
+           goes_on(after, at(row + 2 * down, column + 2 * right), max);
   }
-  static bool goes_on(double depth, double beyond, double most) {
-    return beyond == 0.0 || std::abs(beyond - depth) <= most;
+  static bool goes_on(double depth, double beyond, double max) {
+    return beyond == 0.0 || std::abs(beyond - depth) <= max;
   }
 
   int width_, height_;

@@ -23,7 +23,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// Returns the pose given by position and quaternion.
-Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
+Isometry3d make_pose(const std::vector<double>& n, const std::string& what) {
   const Eigen::Quaterniond turn(n[6], n[3], n[4], n[5]);
   if (!(std::abs(turn.norm() - 1.0) < 1e-2)) {
     throw Error(ErrorKind::bad_file,
@@ -32,7 +32,7 @@ Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
   Isometry3d pose = Isometry3d::Identity();
   pose.translation() = Vector3d(n[0], n[1], n[2]);
   pose.linear() = turn.normalized().toRotationMatrix();
-  geometry::require_place(pose.translation(), what);
+  geometry::require_valid_position(pose.translation(), what);
   return pose;
 }
 
@@ -45,7 +45,7 @@ Vector2d distorted(const Vector2d& slope, const std::array<double, 5>& coefficie
           y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
 }
 
-Lens lens_of(const geometry::Camera& camera) {
+CameraIntrinsics to_intrinsics(const geometry::Camera& camera) {
   return {.focal_length_px = camera.focal_length_px(),
           .principal_point_px = camera.principal_point_px(),
           .distortion = {}};
@@ -63,10 +63,10 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
   std::vector<Seen> seen;
   seen.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto place = camera.project(points[i]);
-    if (!place) continue;
-    const long column = std::clamp(std::lround(place->x()), 0L, camera.width() - 1L);
-    const long row = std::clamp(std::lround(place->y()), 0L, camera.height() - 1L);
+    const auto pixel = camera.project(points[i]);
+    if (!pixel) continue;
+    const long column = std::clamp(std::lround(pixel->x()), 0L, camera.width() - 1L);
+    const long row = std::clamp(std::lround(pixel->y()), 0L, camera.height() - 1L);
     seen.push_back({static_cast<std::uint32_t>(row * camera.width() + column),
                     static_cast<float>(points[i].z()), static_cast<std::uint32_t>(i)});
   }
@@ -89,13 +89,13 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
 }
 
 /// Inverts the distortion. Returns an empty value if the iteration does not converge.
-std::optional<Vector2d> undistorted(const Vector2d& wanted, const Lens& lens) {
-  Vector2d slope = wanted;
-  constexpr int most_rounds = 50;
-  for (int round = 0; round < most_rounds; ++round) {
-    const Vector2d error = wanted - distorted(slope, lens.distortion);
+std::optional<Vector2d> undistorted(const Vector2d& observed, const CameraIntrinsics& intrinsics) {
+  Vector2d slope = observed;
+  constexpr int max_rounds = 50;
+  for (int round = 0; round < max_rounds; ++round) {
+    const Vector2d error = observed - distorted(slope, intrinsics.distortion);
     // 0.001 pixel is far below the resolution of depth sensors.
-    if (error.cwiseProduct(lens.focal_length_px).norm() < 1e-3) return slope;
+    if (error.cwiseProduct(intrinsics.focal_length_px).norm() < 1e-3) return slope;
     slope += error;
   }
   return std::nullopt;
@@ -114,30 +114,30 @@ std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
 
 /// Throws if the intrinsics are those of an image of another size. This is assumed if the principal
 /// point is far from the image centre by the same factor in both directions.
-void require_same_size(const geometry::DepthImage& image, const Lens& lens) {
+void require_same_size(const geometry::DepthImage& image, const CameraIntrinsics& intrinsics) {
   const Vector2d middle(0.5 * (image.width - 1), 0.5 * (image.height - 1));
-  const Vector2d factor = middle.cwiseQuotient(lens.principal_point_px);
-  constexpr double most = 1.4, same = 1.25;
+  const Vector2d factor = middle.cwiseQuotient(intrinsics.principal_point_px);
+  constexpr double max = 1.4, same = 1.25;
   const double size = std::sqrt(factor.x() * factor.y()), skew = factor.x() / factor.y();
-  const bool is_same_size = size < most && size > 1.0 / most;
+  const bool is_same_size = size < max && size > 1.0 / max;
   // Single rows or columns and cropped images do not permit a decision.
   if (!(size > 0.0) || is_same_size || !(skew < same && skew > 1.0 / same)) return;
   throw Error(
       ErrorKind::bad_file,
       fmt::format("the intrinsics are those of an image of about {:.0f} x {:.0f} pixels (principal "
                   "point {:g}, {:g}), but the image has {} x {}; multiply fx fy cx cy by {:.3g}",
-                  2.0 * lens.principal_point_px.x(), 2.0 * lens.principal_point_px.y(),
-                  lens.principal_point_px.x(), lens.principal_point_px.y(), image.width,
+                  2.0 * intrinsics.principal_point_px.x(), 2.0 * intrinsics.principal_point_px.y(),
+                  intrinsics.principal_point_px.x(), intrinsics.principal_point_px.y(), image.width,
                   image.height, size));
 }
 
 }  // namespace
 
-std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
-  const Vector2d wanted = (pixel - principal_point_px).cwiseQuotient(focal_length_px);
-  if (!wanted.allFinite()) return std::nullopt;
-  if (distortion == std::array<double, 5>{}) return wanted.homogeneous();
-  const std::optional<Vector2d> slope = undistorted(wanted, *this);
+std::optional<Vector3d> CameraIntrinsics::ray(const Vector2d& pixel) const {
+  const Vector2d observed = (pixel - principal_point_px).cwiseQuotient(focal_length_px);
+  if (!observed.allFinite()) return std::nullopt;
+  if (distortion == std::array<double, 5>{}) return observed.homogeneous();
+  const std::optional<Vector2d> slope = undistorted(observed, *this);
   if (!slope) return std::nullopt;
   return slope->homogeneous();
 }
@@ -154,22 +154,23 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& wh
   return numbers;
 }
 
-Lens parse_lens(const std::string& text, const std::string& what) {
+CameraIntrinsics parse_intrinsics(const std::string& text, const std::string& what) {
   const std::vector<double> n = parse_numbers(text, what);
   if ((n.size() != 4 && n.size() != 9) || n[0] == 0.0 || n[1] == 0.0) {
     throw Error(ErrorKind::bad_usage, what +
                                           ": must be \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 "
                                           "k3\", with non-zero focal lengths");
   }
-  Lens lens{.focal_length_px = {n[0], n[1]}, .principal_point_px = {n[2], n[3]}, .distortion = {}};
-  if (n.size() == 9) std::copy(n.begin() + 4, n.end(), lens.distortion.begin());
-  return lens;
+  CameraIntrinsics intrinsics{
+      .focal_length_px = {n[0], n[1]}, .principal_point_px = {n[2], n[3]}, .distortion = {}};
+  if (n.size() == 9) std::copy(n.begin() + 4, n.end(), intrinsics.distortion.begin());
+  return intrinsics;
 }
 
 Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
   std::vector<double> numbers = parse_numbers(text, what);
   if (numbers.size() == 8) numbers.erase(numbers.begin());
-  if (numbers.size() == 7) return pose_of(numbers, what);
+  if (numbers.size() == 7) return make_pose(numbers, what);
   if (numbers.size() == 16) {
     if (!std::equal(numbers.begin() + 12, numbers.end(), std::begin({0.0, 0.0, 0.0, 1.0}))) {
       throw Error(ErrorKind::bad_file,
@@ -184,8 +185,9 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
           " numbers; it must be x y z qx qy qz qw, or a matrix of three or four rows of four");
 }
 
-std::vector<Vector3d> points_of(const geometry::DepthImage& image, const Lens& lens, double unit,
-                                std::size_t& without_return) {
+std::vector<Vector3d> unproject_points(const geometry::DepthImage& image,
+                                       const CameraIntrinsics& intrinsics, double unit,
+                                       std::size_t& without_return) {
   constexpr std::uint16_t too_near = 0, too_far = 65535;
   std::vector<Vector3d> points;
   points.reserve(image.values.size());
@@ -193,7 +195,7 @@ std::vector<Vector3d> points_of(const geometry::DepthImage& image, const Lens& l
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column, ++value) {
       const bool is_return = *value != too_near && *value != too_far;
-      const auto ray = is_return ? lens.ray({column, row}) : std::nullopt;
+      const auto ray = is_return ? intrinsics.ray({column, row}) : std::nullopt;
       if (ray) {
         points.emplace_back(*ray * (unit * *value));
       } else {
@@ -209,16 +211,17 @@ ScanFound read_scan(const ScanInput& input, const flight::CaptureOptions& captur
   if (input.file.extension() == ".png") {
     const geometry::DepthImage image = geometry::read_depth_png(input.file);
     try {
-      return scan_of(image, input.lens, input.depth_unit, input.world_from_sensor, capture, live);
+      return make_scan(image, input.intrinsics, input.depth_unit, input.world_from_sensor, capture,
+                       live);
     } catch (const Error& error) {
       throw Error(error.kind(), input.file.string() + ": " + error.what());
     }
   }
-  return scan_of(points_in_sensor(input), input.world_from_sensor, capture, live);
+  return make_scan(points_in_sensor(input), input.world_from_sensor, capture, live);
 }
 
-ScanFound scan_of(std::span<const Vector3d> points, const Isometry3d& world_from_sensor,
-                  const flight::CaptureOptions& capture, const LiveOptions& live) {
+ScanFound make_scan(std::span<const Vector3d> points, const Isometry3d& world_from_sensor,
+                    const flight::CaptureOptions& capture, const LiveOptions& live) {
   ScanFound found;
   found.scan.world_from_sensor = world_from_sensor;
   if (capture.is_scanner) {
@@ -232,15 +235,16 @@ ScanFound scan_of(std::span<const Vector3d> points, const Isometry3d& world_from
   return found;
 }
 
-ScanFound scan_of(const geometry::DepthImage& image, const std::optional<Lens>& lens, double unit,
-                  const Isometry3d& world_from_sensor, const flight::CaptureOptions& capture,
-                  const LiveOptions& live) {
+ScanFound make_scan(const geometry::DepthImage& image,
+                    const std::optional<CameraIntrinsics>& intrinsics, double unit,
+                    const Isometry3d& world_from_sensor, const flight::CaptureOptions& capture,
+                    const LiveOptions& live) {
   const geometry::Camera camera(capture.camera);
   ScanFound found;
   found.scan.world_from_sensor = world_from_sensor;
-  const Lens used = lens.value_or(lens_of(camera));
+  const CameraIntrinsics used = intrinsics.value_or(to_intrinsics(camera));
   require_same_size(image, used);
-  organise(points_of(image, used, unit, found.without_return), camera, found);
+  organise(unproject_points(image, used, unit, found.without_return), camera, found);
   found.left_out = filter(found.scan, capture.camera, live);
   return found;
 }
@@ -253,7 +257,7 @@ LeftOut filter(geometry::Scan& scan, const geometry::CameraConfig& camera,
 
 void require_usable(const geometry::Scan& scan, const flight::FlightOptions& flight) {
   geometry::require_usable(scan, flight.capture.camera);
-  const bool needs_pixels = flight.is_flown() && !flight.capture.is_scanner;
+  const bool needs_pixels = flight.has_vehicle() && !flight.capture.is_scanner;
   if (needs_pixels && scan.pixels.empty() && !scan.points.empty()) {
     throw Error(ErrorKind::bad_geometry,
                 "the scan has no pixels; with flight.vehicle a depth image is required to "

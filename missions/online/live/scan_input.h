@@ -22,7 +22,7 @@
 namespace skycap::missions::online {
 
 /// Intrinsics of a depth image: pinhole camera with Brown-Conrady distortion, in OpenCV's notation.
-struct Lens {
+struct CameraIntrinsics {
   Eigen::Vector2d focal_length_px, principal_point_px;
   std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3
 
@@ -32,7 +32,8 @@ struct Lens {
 };
 
 /// Parses "fx fy cx cy", optionally followed by "k1 k2 p1 p2 k3". Throws Error{bad_usage}.
-Lens parse_lens(const std::string& text, const std::string& what = "--intrinsics");
+CameraIntrinsics parse_intrinsics(const std::string& text,
+                                  const std::string& what = "--intrinsics");
 
 /// Parses a pose from 7 numbers "x y z qx qy qz qw", 12 or 16 numbers (a matrix, row by row), or 8
 /// numbers (a line of a TUM trajectory, whose time is ignored). `what` is the prefix of error
@@ -49,7 +50,7 @@ struct ScanInput {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
   bool is_in_world = false;  ///< The cloud's points are in the world frame.
   /// Intrinsics of the depth image (default: those of the survey's camera).
-  std::optional<Lens> lens;
+  std::optional<CameraIntrinsics> intrinsics;
   double depth_unit = 0.001;  ///< Depth per unit of a pixel value [m].
 };
 
@@ -70,19 +71,21 @@ ScanFound read_scan(const ScanInput& input, const flight::CaptureOptions& captur
 
 /// Returns the points of a depth image in its optical frame. `without_return` is set to the number
 /// of pixels without a point.
-std::vector<Eigen::Vector3d> points_of(const geometry::DepthImage& image, const Lens& lens,
-                                       double unit, std::size_t& without_return);
+std::vector<Eigen::Vector3d> unproject_points(const geometry::DepthImage& image,
+                                              const CameraIntrinsics& intrinsics, double unit,
+                                              std::size_t& without_return);
 
 /// Converts points in the sensor's optical frame to a scan, like read_scan().
-ScanFound scan_of(std::span<const Eigen::Vector3d> points,
-                  const Eigen::Isometry3d& world_from_sensor, const flight::CaptureOptions& capture,
-                  const LiveOptions& live);
+ScanFound make_scan(std::span<const Eigen::Vector3d> points,
+                    const Eigen::Isometry3d& world_from_sensor,
+                    const flight::CaptureOptions& capture, const LiveOptions& live);
 
-/// Converts a depth image to a scan of a survey with a depth camera. `lens` defaults to the
+/// Converts a depth image to a scan of a survey with a depth camera. `intrinsics` defaults to the
 /// intrinsics of the survey's camera. `unit` is the depth per unit of a pixel value [m].
-ScanFound scan_of(const geometry::DepthImage& image, const std::optional<Lens>& lens, double unit,
-                  const Eigen::Isometry3d& world_from_sensor, const flight::CaptureOptions& capture,
-                  const LiveOptions& live);
+ScanFound make_scan(const geometry::DepthImage& image,
+                    const std::optional<CameraIntrinsics>& intrinsics, double unit,
+                    const Eigen::Isometry3d& world_from_sensor,
+                    const flight::CaptureOptions& capture, const LiveOptions& live);
 
 /// Removes flying pixels and isolated returns if enabled in `live`.
 LeftOut filter(geometry::Scan& scan, const geometry::CameraConfig& camera, const LiveOptions& live);

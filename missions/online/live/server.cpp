@@ -25,8 +25,8 @@ using Clock = std::chrono::steady_clock;
 constexpr auto patience = std::chrono::seconds(30);
 constexpr int poll_period = 100;  // Maximum delay in the detection of a stop request [ms].
 
-[[noreturn]] void fail(const std::string& place, const std::string& what) {
-  throw Error(ErrorKind::bad_usage, place + ": " + what);
+[[noreturn]] void fail(const std::string& endpoint, const std::string& what) {
+  throw Error(ErrorKind::bad_usage, endpoint + ": " + what);
 }
 
 std::string last_error() { return std::generic_category().message(errno); }
@@ -52,13 +52,13 @@ class Handle {
 
 /// Returns true if data is available within `milliseconds`.
 bool is_readable(int handle, int milliseconds) {
-  pollfd wanted{handle, POLLIN, 0};
-  return ::poll(&wanted, 1, milliseconds) > 0;
+  pollfd poll_request{handle, POLLIN, 0};
+  return ::poll(&poll_request, 1, milliseconds) > 0;
 }
 
 /// Returns false if the client does not accept the message within the time limit.
 bool send_all(int handle, const Message& message) {
-  const std::string frame = frame_of(message);
+  const std::string frame = encode_frame(message);
   std::string_view rest = frame;
   const Clock::time_point begun = Clock::now();
   while (!rest.empty() && Clock::now() - begun < patience) {
@@ -66,8 +66,8 @@ bool send_all(int handle, const Message& message) {
     if (count > 0) rest.remove_prefix(static_cast<std::size_t>(count));
     if (count < 0 && errno != EAGAIN && errno != EINTR) return false;
     if (count < 0) {
-      pollfd wanted{handle, POLLOUT, 0};
-      ::poll(&wanted, 1, poll_period);
+      pollfd poll_request{handle, POLLOUT, 0};
+      ::poll(&poll_request, 1, poll_period);
     }
   }
   return rest.empty();
@@ -79,8 +79,8 @@ void dismiss(int handle, const Message& message) {
   send_all(handle, message);
   ::shutdown(handle, SHUT_WR);
   std::array<char, 4096> unread{};
-  constexpr int most_reads = 16, moment = 50;  // [ms]
-  for (int i = 0; i < most_reads && is_readable(handle, moment); ++i) {
+  constexpr int max_reads = 16, moment = 50;  // [ms]
+  for (int i = 0; i < max_reads && is_readable(handle, moment); ++i) {
     if (::recv(handle, unread.data(), unread.size(), MSG_DONTWAIT) <= 0) return;
   }
 }
@@ -170,9 +170,9 @@ Handle unix_listener(const std::filesystem::path& path) {
   Handle listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const mode_t mask = ::umask(0177);  // Only the owner may open the socket.
   const bool is_made = is_bound(listener.get(), address);
-  const std::string why = is_made ? "" : last_error();
+  const std::string reason = is_made ? "" : last_error();
   ::umask(mask);
-  if (!is_made) fail(name, "cannot be created: " + why);
+  if (!is_made) fail(name, "cannot be created: " + reason);
   return listener;
 }
 
@@ -195,19 +195,19 @@ Handle tcp_listener(std::uint16_t& port) {
 
 }  // namespace
 
-Server::Server(ServerPlace place) : place_(std::move(place)) {
-  if (place_.port) {
-    listener_ = tcp_listener(*place_.port).release();
-    address_ = "tcp:127.0.0.1:" + std::to_string(*place_.port);
+Server::Server(ServerEndpoint endpoint) : endpoint_(std::move(endpoint)) {
+  if (endpoint_.port) {
+    listener_ = tcp_listener(*endpoint_.port).release();
+    address_ = "tcp:127.0.0.1:" + std::to_string(*endpoint_.port);
   } else {
-    listener_ = unix_listener(place_.socket).release();
-    address_ = "unix:" + place_.socket.string();
+    listener_ = unix_listener(endpoint_.socket).release();
+    address_ = "unix:" + endpoint_.socket.string();
   }
 }
 
 Server::~Server() {
   ::close(listener_);
-  if (!place_.port) ::unlink(place_.socket.c_str());
+  if (!endpoint_.port) ::unlink(endpoint_.socket.c_str());
 }
 
 void Server::run(Session& session, const std::function<void(const std::string&)>& note,

@@ -13,7 +13,7 @@
 namespace skycap::missions::online {
 
 /// Address of the server: a Unix socket that only its owner can open, or a local TCP port.
-struct ServerPlace {
+struct ServerEndpoint {
   std::filesystem::path socket;       ///< Path of the Unix socket; empty if `port` is set.
   std::optional<std::uint16_t> port;  ///< TCP port at 127.0.0.1; 0 selects a free port.
 };
@@ -22,7 +22,7 @@ struct ServerPlace {
 class Server {
  public:
   /// Throws Error{bad_usage} if the address is in use or not available.
-  explicit Server(ServerPlace place);
+  explicit Server(ServerEndpoint endpoint);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   ~Server();
@@ -38,7 +38,7 @@ class Server {
            const std::stop_token& stop);
 
  private:
-  ServerPlace place_;
+  ServerEndpoint endpoint_;
   std::string address_;
   int listener_ = -1;
 };

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-[[noreturn]] void refuse_message(const std::string& what) {
+[[noreturn]] void reject_message(const std::string& what) {
   throw Error(ErrorKind::bad_file, what);
 }
 
@@ -32,11 +32,11 @@ std::vector<Value> values_at(const std::string& payload, std::size_t begin, std:
 /// Reads an integer from 0 to 2^32 - 1.
 std::uint32_t count_at(const Json& header, const char* key) {
   const Json& number = header.at(key);
-  constexpr auto most = std::numeric_limits<std::uint32_t>::max();
+  constexpr auto max = std::numeric_limits<std::uint32_t>::max();
   const bool is_whole = number.is_number_unsigned() ||
                         (number.is_number_integer() && number.get<std::int64_t>() >= 0);
-  if (!is_whole || number.get<std::uint64_t>() > most) {
-    refuse_message(std::string(key) + " must be an integer from 0 to " + std::to_string(most));
+  if (!is_whole || number.get<std::uint64_t>() > max) {
+    reject_message(std::string(key) + " must be an integer from 0 to " + std::to_string(max));
   }
   return number.get<std::uint32_t>();
 }
@@ -48,39 +48,39 @@ std::string row_at(const Json& header, const char* key) {
   return text;
 }
 
-Eigen::Isometry3d pose_of(const Json& header) {
+Eigen::Isometry3d make_pose(const Json& header) {
   return parse_pose_text(row_at(header, "pose"), "pose");
 }
 
 /// Returns the covariance of a scan's header, if present.
-std::optional<PoseCovariance> covariance_of(const Json& header) {
+std::optional<PoseCovariance> read_covariance(const Json& header) {
   constexpr const char *sigma = "pose_sigma", *covariance = "pose_covariance";
   if (header.contains(sigma) && header.contains(covariance)) {
-    refuse_message("pose_sigma conflicts with pose_covariance; remove one of them");
+    reject_message("pose_sigma conflicts with pose_covariance; remove one of them");
   }
   if (header.contains(sigma)) return parse_pose_sigma(row_at(header, sigma), sigma);
   if (!header.contains(covariance)) return std::nullopt;
   return parse_pose_covariance(row_at(header, covariance), covariance);
 }
 
-ScanNumber number_of(const Json& header) {
+ScanNumber scan_number(const Json& header) {
   ScanNumber number{count_at(header, "number")};
-  // Clients of version 0.1 send "on_way".
+  // Clients of version 0.1 send "en_route".
   for (const char* field : {"en_route", "on_way"}) {
-    if (header.contains(field)) number.on_way = count_at(header, field);
+    if (header.contains(field)) number.en_route = count_at(header, field);
   }
   return number;
 }
 
-std::string text_of(const ScanNumber& number) {
+std::string to_string(const ScanNumber& number) {
   const std::string text = "scan " + std::to_string(number.view);
-  return number.on_way ? text + " en-route frame " + std::to_string(*number.on_way) : text;
+  return number.en_route ? text + " en-route frame " + std::to_string(*number.en_route) : text;
 }
 
-void require_payload(const Message& message, std::size_t size, const std::string& what_takes) {
+void require_payload(const Message& message, std::size_t size, const std::string& requirement) {
   if (message.payload.size() == size) return;
-  refuse_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
-                 what_takes + std::to_string(size));
+  reject_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
+                 requirement + std::to_string(size));
 }
 
 /// Reads points in the world frame (floats), followed by pixels if present.
@@ -91,7 +91,7 @@ geometry::Scan cloud_scan(const Message& message) {
   const std::size_t size = std::size_t{count} * (point + (has_pixels ? pixel : 0));
   require_payload(message, size, std::to_string(count) + " points require ");
   geometry::Scan scan;
-  scan.world_from_sensor = pose_of(message.header);
+  scan.world_from_sensor = make_pose(message.header);
   scan.points.resize(count);
   if (count > 0) std::memcpy(scan.points.data()->data(), message.payload.data(), count * point);
   if (has_pixels) {
@@ -108,10 +108,10 @@ ScanFound sensor_cloud_scan(const Message& message, const flight::CaptureOptions
   require_payload(message, std::size_t{count} * point, std::to_string(count) + " points require ");
   std::vector<Eigen::Vector3d> points;
   points.reserve(count);
-  for (const auto& place : values_at<std::array<float, 3>>(message.payload, 0, count)) {
-    points.emplace_back(place[0], place[1], place[2]);
+  for (const auto& position : values_at<std::array<float, 3>>(message.payload, 0, count)) {
+    points.emplace_back(position[0], position[1], position[2]);
   }
-  return scan_of(points, pose_of(message.header), capture, live);
+  return make_scan(points, make_pose(message.header), capture, live);
 }
 
 ScanFound depth_scan(const Message& message, const flight::CaptureOptions& capture,
@@ -120,20 +120,20 @@ ScanFound depth_scan(const Message& message, const flight::CaptureOptions& captu
   const std::uint32_t width = count_at(header, "width"), height = count_at(header, "height");
   constexpr std::uint32_t largest_side = 1 << 15;
   if (width < 1 || height < 1 || width > largest_side || height > largest_side) {
-    refuse_message("scan: width and height must be from 1 to 32768");
+    reject_message("scan: width and height must be from 1 to 32768");
   }
-  if (std::uint64_t{width} * height > geometry::most_depth_pixels) {
-    refuse_message("scan: the image has more than 2.5e7 pixels");
+  if (std::uint64_t{width} * height > geometry::max_depth_pixels) {
+    reject_message("scan: the image has more than 2.5e7 pixels");
   }
   geometry::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
   const std::size_t count = std::size_t{width} * height;
   require_payload(message, count * sizeof(std::uint16_t), "the image requires ");
   image.values = values_at<std::uint16_t>(message.payload, 0, count);
-  std::optional<Lens> lens;
-  if (header.contains("lens")) lens = parse_lens(row_at(header, "lens"), "lens");
+  std::optional<CameraIntrinsics> intrinsics;
+  if (header.contains("lens")) intrinsics = parse_intrinsics(row_at(header, "lens"), "lens");
   const double unit = header.at("unit").get<double>();
-  if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
-  return scan_of(image, lens, unit, pose_of(header), capture, live);
+  if (!(unit >= 1e-6 && unit <= 1.0)) reject_message("scan: unit must be from 1e-6 to 1 m");
+  return make_scan(image, intrinsics, unit, make_pose(header), capture, live);
 }
 
 }  // namespace
@@ -172,44 +172,44 @@ Message Session::answer_unguarded(const Message& message) {
     return answer;
   }
   if (type == "next") return present();
-  if (type == "scan") return take_scan(message);
-  if (type == "refuse") return refuse(message);
+  if (type == "scan") return add_scan(message);
+  if (type == "refuse") return reject(message);
   if (type == "finish") {
-    if (survey_.views().empty()) refuse_message("finish: no scan yet");
+    if (survey_.views().empty()) reject_message("finish: no scan yet");
     Message answer{{{"type", "finished"}, {"text", finish_()}}, {}};
     is_finished_ = true;
     return answer;
   }
-  refuse_message("unknown type '" + type + "'; expected hello, scan, next, refuse or finish");
+  reject_message("unknown type '" + type + "'; expected hello, scan, next, refuse or finish");
 }
 
-bool Session::is_taken(const ScanNumber& number) const {
+bool Session::is_added(const ScanNumber& number) const {
   return number.view < survey_.views().size() ||
-         (number.on_way && *number.on_way < survey_.on_way());
+         (number.en_route && *number.en_route < survey_.en_route());
 }
 
 std::string Session::next_text() const {
   const std::size_t next = survey_.views().size();
   std::string text = "the next one is " + std::to_string(next);
   if (flight_.capture.is_moving && next > 0) {
-    text += ", or en-route frame " + std::to_string(survey_.on_way());
+    text += ", or en-route frame " + std::to_string(survey_.en_route());
   }
   return text;
 }
 
 void Session::require_in_order(const ScanNumber& number) const {
   const std::size_t next = survey_.views().size();
-  const bool is_ahead = number.view > next ||
-                        (number.view == next && number.on_way && *number.on_way > survey_.on_way());
-  if (is_ahead) refuse_message(text_of(number) + " is out of order: " + next_text());
+  const bool is_ahead = number.view > next || (number.view == next && number.en_route &&
+                                               *number.en_route > survey_.en_route());
+  if (is_ahead) reject_message(to_string(number) + " is out of order: " + next_text());
 }
 
-Message Session::take_scan(const Message& message) {
+Message Session::add_scan(const Message& message) {
   const auto format = message.header.at("format").get<std::string>();
   if (format != "points" && format != "cloud" && format != "depth") {
-    refuse_message("scan: unknown format '" + format + "'; expected points, cloud or depth");
+    reject_message("scan: unknown format '" + format + "'; expected points, cloud or depth");
   }
-  const ScanNumber number = number_of(message.header);
+  const ScanNumber number = scan_number(message.header);
   require_in_order(number);
   ScanFound found;
   if (format == "points") {
@@ -222,12 +222,12 @@ Message Session::take_scan(const Message& message) {
     require_usable(found.scan, flight_);
   }
   const geometry::Scan& scan = found.scan;
-  const std::optional<PoseCovariance> covariance = covariance_of(message.header);
-  if (is_taken(number) && survey_.number_of(scan_id(scan, covariance)) != number) {
-    refuse_message(text_of(number) + " was a different scan; " + next_text());
+  const std::optional<PoseCovariance> covariance = read_covariance(message.header);
+  if (is_added(number) && survey_.scan_number(scan_id(scan, covariance)) != number) {
+    reject_message(to_string(number) + " was a different scan; " + next_text());
   }
-  const bool is_new =
-      number.on_way ? survey_.add_on_way(scan, "", covariance) : survey_.add(scan, "", covariance);
+  const bool is_new = number.en_route ? survey_.add_en_route(scan, "", covariance)
+                                      : survey_.add(scan, "", covariance);
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;
@@ -238,16 +238,16 @@ Message Session::take_scan(const Message& message) {
   return answer;
 }
 
-Message Session::refuse(const Message& message) {
+Message Session::reject(const Message& message) {
   const auto id = std::size_t{count_at(message.header, "id")};
   const std::size_t present_id = survey_.proposal().number;
   if (id > present_id) {
-    refuse_message("refuse: unknown proposal " + std::to_string(id) + "; the current one is " +
+    reject_message("refuse: unknown proposal " + std::to_string(id) + "; the current one is " +
                    std::to_string(present_id));
   }
   // A proposal that was already refused is acknowledged.
   if (id == present_id) {
-    survey_.refuse(message.header.value("reason", std::string("not stated")));
+    survey_.reject(message.header.value("reason", std::string("not stated")));
     has_changed_ = true;
   }
   return present();

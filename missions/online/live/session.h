@@ -32,11 +32,11 @@ class Session {
 
  private:
   Message answer_unguarded(const Message& message);
-  bool is_taken(const ScanNumber& number) const;
+  bool is_added(const ScanNumber& number) const;
   std::string next_text() const;
   void require_in_order(const ScanNumber& number) const;
-  Message take_scan(const Message& message);
-  Message refuse(const Message& message);
+  Message add_scan(const Message& message);
+  Message reject(const Message& message);
   Message present() const;
 
   std::string mission_;

@@ -25,11 +25,11 @@ void require(bool is_right, const std::string& what) {
 
 Message error_message(const std::string& what) { return {{{"type", "error"}, {"what", what}}, {}}; }
 
-std::string frame_of(const Message& message) {
+std::string encode_frame(const Message& message) {
   const std::string body = support::journal_line(message.header) + message.payload;
   const Lengths lengths{static_cast<std::uint32_t>(body.size() - message.payload.size()),
                         static_cast<std::uint32_t>(message.payload.size()),
-                        geometry::crc32_of(body)};
+                        geometry::compute_crc32(body)};
   std::string frame(sizeof lengths, '\0');
   std::memcpy(frame.data(), lengths.data(), sizeof lengths);
   return frame + body;
@@ -45,7 +45,7 @@ std::optional<Message> FrameReader::next() {
   const std::size_t size = std::size_t{header_size} + payload_size;
   if (buffer_.size() - sizeof lengths < size) return std::nullopt;
   const std::string_view body = std::string_view(buffer_).substr(sizeof lengths, size);
-  require(geometry::crc32_of(body) == checksum, "is damaged (checksum)");
+  require(geometry::compute_crc32(body) == checksum, "is damaged (checksum)");
   Message message{geometry::parse_json<nlohmann::ordered_json>(body.substr(0, header_size)),
                   std::string(body.substr(header_size))};
   require(message.header.is_object(), "header is not a JSON object");

@@ -23,7 +23,7 @@ struct Message {
   std::string payload;
 };
 
-std::string frame_of(const Message& message);
+std::string encode_frame(const Message& message);
 
 /// Returns the message {"type": "error", "what": what}.
 Message error_message(const std::string& what);

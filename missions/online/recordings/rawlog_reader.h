@@ -38,7 +38,7 @@ struct RawlogScan {
   std::string label;       ///< Label of the sensor.
   double time = 0.0;       ///< Seconds since 1970.
   /// Pose of the optical frame.
-  Eigen::Isometry3d carrier_from_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   /// Pose of the platform relative to its start, from the accumulated movements.
   std::optional<Eigen::Isometry3d> moved;
   /// Depth image, or points in the optical frame.
@@ -55,7 +55,7 @@ struct RawlogPose {
   PoseSource source = PoseSource::estimate;
   double time = 0.0;  ///< Seconds since 1970.
   /// Platform frame: x forward, z up.
-  Eigen::Isometry3d world_from_carrier = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d world_from_platform = Eigen::Isometry3d::Identity();
 };
 
 class RawlogReader {

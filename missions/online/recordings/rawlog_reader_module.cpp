@@ -41,7 +41,7 @@ class Archive final : public mrpt::serialization::CArchive {
 };
 
 /// Extracts the message from an MRPT exception, whose text has lines before and after it.
-std::string message_of(const std::exception& failure) {
+std::string exception_message(const std::exception& failure) {
   std::string text = failure.what();
   constexpr std::string_view begin = "Message:";
   if (const auto at = text.find(begin); at != std::string::npos) text.erase(0, at + begin.size());
@@ -51,11 +51,11 @@ std::string message_of(const std::exception& failure) {
 
 /// Returns the folder of the rawlog's external files. MRPT's detectImagesDirectory() does not find
 /// folders.
-std::string images_of(const std::filesystem::path& file) {
+std::string find_image_folder(const std::filesystem::path& file) {
   std::string name = file.filename().string();
   name.erase(std::min(name.find(".rawlog"), name.size()));
-  for (const char* ending : {"_Images", "_images", "_IMAGES"}) {
-    const std::filesystem::path folder = file.parent_path() / (name + ending);
+  for (const char* extension : {"_Images", "_images", "_IMAGES"}) {
+    const std::filesystem::path folder = file.parent_path() / (name + extension);
     if (std::filesystem::is_directory(folder)) return folder.string();
   }
   return (file.parent_path() / "Images").string();
@@ -64,16 +64,16 @@ std::string images_of(const std::filesystem::path& file) {
 class Reader final : public RawlogReader {
  public:
   explicit Reader(std::filesystem::path file)
-      : file_(std::move(file)), images_(images_of(file_)), archive_(file_) {}
+      : file_(std::move(file)), images_(find_image_folder(file_)), archive_(file_) {}
 
   std::optional<Entry> next() override {
     while (found_.empty()) {
       const mrpt::serialization::CSerializable::Ptr object = read_object();
       if (is_at_end_) return std::nullopt;
       try {
-        take_in(*object);
+        add_object(*object);
       } catch (const std::exception& failure) {
-        fail(message_of(failure));
+        fail(exception_message(failure));
       }
     }
     Entry entry = std::move(found_.front());
@@ -103,47 +103,47 @@ class Reader final : public RawlogReader {
       fail("it requires more than 2 GiB of memory");
     } catch (const std::exception& failure) {
       const std::string damage = archive_.damage();
-      fail(damage.empty() ? message_of(failure) : damage);
+      fail(damage.empty() ? exception_message(failure) : damage);
     }
     fail("it contains no object");
   }
 
-  void take_in(const mrpt::serialization::CSerializable& object) {
+  void add_object(const mrpt::serialization::CSerializable& object) {
     if (const auto* frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(&object)) {
-      for (const auto& observation : *frame) take_observation(*observation);
+      for (const auto& observation : *frame) read_observation(*observation);
     } else if (const auto* actions = dynamic_cast<const mrpt::obs::CActionCollection*>(&object)) {
-      take_actions(*actions);
+      read_actions(*actions);
     } else if (const auto* one = dynamic_cast<const mrpt::obs::CObservation*>(&object)) {
-      take_observation(*one);
+      read_observation(*one);
     } else if (const auto* all = dynamic_cast<const mrpt::obs::CRawlog*>(&object)) {
-      for (std::size_t i = 0; i < all->size(); ++i) take_in(*all->getAsGeneric(i));
+      for (std::size_t i = 0; i < all->size(); ++i) add_object(*all->getAsGeneric(i));
     }
   }
 
-  void take_actions(const mrpt::obs::CActionCollection& actions) {
+  void read_actions(const mrpt::obs::CActionCollection& actions) {
     if (!moved_) moved_ = Isometry3d::Identity();
     if (const auto in_space = actions.getActionByClass<mrpt::obs::CActionRobotMovement3D>()) {
-      *moved_ = *moved_ * isometry_of(in_space->poseChange.getMeanVal());
+      *moved_ = *moved_ * to_isometry(in_space->poseChange.getMeanVal());
     } else if (const auto in_plane = actions.getBestMovementEstimation()) {
-      *moved_ = *moved_ * isometry_of(mrpt::poses::CPose3D(in_plane->poseChange->getMeanVal()));
+      *moved_ = *moved_ * to_isometry(mrpt::poses::CPose3D(in_plane->poseChange->getMeanVal()));
     }
   }
 
-  void take_observation(const mrpt::obs::CObservation& observation) {
+  void read_observation(const mrpt::obs::CObservation& observation) {
     const double time = mrpt::Clock::toDouble(observation.timestamp);
     if (const auto* estimate =
             dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation)) {
-      const Isometry3d carrier_from_estimated = isometry_of(estimate->sensorPose);
+      const Isometry3d platform_from_estimated = to_isometry(estimate->sensorPose);
       found_.emplace_back(
           RawlogPose{PoseSource::estimate, time,
-                     isometry_of(estimate->pose.getMeanVal()) * carrier_from_estimated.inverse()});
+                     to_isometry(estimate->pose.getMeanVal()) * platform_from_estimated.inverse()});
     } else if (const auto* wheels =
                    dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation)) {
       found_.emplace_back(RawlogPose{PoseSource::odometry, time,
-                                     isometry_of(mrpt::poses::CPose3D(wheels->odometry))});
+                                     to_isometry(mrpt::poses::CPose3D(wheels->odometry))});
     } else {
       mrpt::io::setLazyLoadPathBase(images_);
-      if (auto scan = scan_of(observation)) {
+      if (auto scan = make_scan(observation)) {
         scan->number = observations_;
         scan->label = observation.sensorLabel;
         scan->time = time;

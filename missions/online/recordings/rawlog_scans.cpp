@@ -40,7 +40,7 @@ Points in_optical(std::span<const float> x, std::span<const float> y, std::span<
 }
 
 /// Returns the reason why a camera's parameters are not valid intrinsics; empty if they are valid.
-std::string fault_of(const mrpt::img::TCamera& camera) {
+std::string find_defect(const mrpt::img::TCamera& camera) {
   const auto is_focal = [](double length) { return std::isfinite(length) && length > 0.0; };
   if (!is_focal(camera.fx()) || !is_focal(camera.fy()) || !std::isfinite(camera.cx()) ||
       !std::isfinite(camera.cy())) {
@@ -59,7 +59,7 @@ std::string fault_of(const mrpt::img::TCamera& camera) {
 
 /// Returns true if the name is within the folder of the rawlog's images. Other paths on this
 /// machine are not read.
-bool is_beside(const std::string& name) {
+bool is_plain_file_name(const std::string& name) {
   const std::filesystem::path path = name;
   const bool leaves = std::ranges::find(path, std::filesystem::path("..")) != path.end();
   return name.size() > 2 && path.is_relative() && !leaves;
@@ -67,8 +67,8 @@ bool is_beside(const std::string& name) {
 
 /// Returns the reason why an observation's external file cannot be read; empty after success.
 template <typename Observation>
-std::string fault_of_load(const Observation& observation, const std::string& name) {
-  if (!is_beside(name)) return "stored in '" + name + "', outside the rawlog's folder";
+std::string find_load_error(const Observation& observation, const std::string& name) {
+  if (!is_plain_file_name(name)) return "stored in '" + name + "', outside the rawlog's folder";
   try {
     observation.load();
     return {};
@@ -78,7 +78,7 @@ std::string fault_of_load(const Observation& observation, const std::string& nam
 }
 
 /// Returns true if the number of pixels or points exceeds that of the largest depth image file.
-bool is_too_much(std::ptrdiff_t count) { return count > geometry::most_depth_pixels; }
+bool is_too_much(std::ptrdiff_t count) { return count > geometry::max_depth_pixels; }
 
 /// Adds the points, or sets `fault` if there are too many.
 void put_points(RawlogScan& scan, std::span<const float> x, std::span<const float> y,
@@ -90,7 +90,7 @@ void put_points(RawlogScan& scan, std::span<const float> x, std::span<const floa
   }
 }
 
-RecordedImage image_of(const mrpt::obs::CObservation3DRangeScan& observation) {
+RecordedImage make_image(const mrpt::obs::CObservation3DRangeScan& observation) {
   const auto& ranges = observation.rangeImage;
   const mrpt::img::TCamera& camera = observation.cameraParams;
   RecordedImage image{
@@ -110,17 +110,17 @@ RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
   RawlogScan scan;
   if (observation.hasRangeImage) {
     if (observation.rangeImage_isExternallyStored()) {
-      scan.fault = fault_of_load(observation, observation.rangeImage_getExternalStorageFile(""));
+      scan.fault = find_load_error(observation, observation.rangeImage_getExternalStorageFile(""));
     }
-    if (scan.fault.empty()) scan.fault = fault_of(observation.cameraParams);
+    if (scan.fault.empty()) scan.fault = find_defect(observation.cameraParams);
     const double unit = observation.rangeUnits;
     if (!(unit >= 1e-6 && unit <= 1.0)) scan.fault = "the depth unit must be from 1e-6 to 1 m";
     if (is_too_much(observation.rangeImage.size())) scan.fault = "more than 2.5e7 pixels";
-    if (scan.fault.empty()) scan.content = image_of(observation);
+    if (scan.fault.empty()) scan.content = make_image(observation);
     return scan;
   }
   if (observation.hasPoints3D && observation.points3D_isExternallyStored()) {
-    scan.fault = fault_of_load(observation, observation.points3D_getExternalStorageFile());
+    scan.fault = find_load_error(observation, observation.points3D_getExternalStorageFile());
   }
   if (!observation.hasPoints3D) scan.fault = "neither range image nor points";
   if (scan.fault.empty()) {
@@ -132,7 +132,7 @@ RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
 RawlogScan cloud_scan(const mrpt::obs::CObservationPointCloud& observation) {
   RawlogScan scan;
   if (observation.isExternallyStored()) {
-    scan.fault = fault_of_load(observation, observation.getExternalStorageFile());
+    scan.fault = find_load_error(observation, observation.getExternalStorageFile());
   }
   if (scan.fault.empty() && !observation.pointcloud) scan.fault = "no points";
   if (!scan.fault.empty()) return scan;
@@ -152,14 +152,14 @@ RawlogScan velodyne_scan(const mrpt::obs::CObservationVelodyneScan& observation)
 
 }  // namespace
 
-Isometry3d isometry_of(const mrpt::poses::CPose3D& pose) {
+Isometry3d to_isometry(const mrpt::poses::CPose3D& pose) {
   Isometry3d isometry = Isometry3d::Identity();
   isometry.linear() = pose.getRotationMatrix().asEigen();
   isometry.translation() = Eigen::Vector3d(pose.x(), pose.y(), pose.z());
   return isometry;
 }
 
-std::optional<RawlogScan> scan_of(const mrpt::obs::CObservation& observation) {
+std::optional<RawlogScan> make_scan(const mrpt::obs::CObservation& observation) {
   std::optional<RawlogScan> scan;
   if (const auto* range = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation)) {
     scan = range_scan(*range);
@@ -171,9 +171,9 @@ std::optional<RawlogScan> scan_of(const mrpt::obs::CObservation& observation) {
     scan = velodyne_scan(*turning);
   }
   if (!scan) return std::nullopt;
-  mrpt::poses::CPose3D place;
-  observation.getSensorPose(place);
-  scan->carrier_from_sensor = isometry_of(place) * sensor_from_optical();
+  mrpt::poses::CPose3D pose;
+  observation.getSensorPose(pose);
+  scan->platform_from_sensor = to_isometry(pose) * sensor_from_optical();
   return scan;
 }
 

@@ -16,12 +16,12 @@ class CPose3D;
 
 namespace skycap::missions::online {
 
-Eigen::Isometry3d isometry_of(const mrpt::poses::CPose3D& pose);
+Eigen::Isometry3d to_isometry(const mrpt::poses::CPose3D& pose);
 
 /// Returns the scan in an observation, without number, label, time and movement. Supported are
 /// CObservation3DRangeScan (range image, otherwise points), CObservationPointCloud and
 /// CObservationVelodyneScan. Returns an empty value for other classes. Throws all exceptions of
 /// MRPT.
-std::optional<RawlogScan> scan_of(const mrpt::obs::CObservation& observation);
+std::optional<RawlogScan> make_scan(const mrpt::obs::CObservation& observation);
 
 }  // namespace skycap::missions::online

@@ -13,7 +13,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 /// Limits on the contents of a rawlog, which its compressed size does not bound.
-constexpr std::size_t most_poses = 3'000'000, most_sensors = 64, longest_label = 256;
+constexpr std::size_t max_poses = 3'000'000, max_sensors = 64, longest_label = 256;
 
 /// Formats labels for messages.
 std::string quoted(const std::vector<std::string>& labels) {
@@ -22,11 +22,12 @@ std::string quoted(const std::vector<std::string>& labels) {
   return text;
 }
 
-std::vector<Vector3d> points_of(const RecordedImage& range, std::size_t& without_return) {
-  const Lens lens{.focal_length_px = range.focal_length_px,
-                  .principal_point_px = range.principal_point_px,
-                  .distortion = range.distortion};
-  std::vector<Vector3d> points = points_of(range.image, lens, range.unit, without_return);
+std::vector<Vector3d> unproject_points(const RecordedImage& range, std::size_t& without_return) {
+  const CameraIntrinsics intrinsics{.focal_length_px = range.focal_length_px,
+                                    .principal_point_px = range.principal_point_px,
+                                    .distortion = range.distortion};
+  std::vector<Vector3d> points =
+      unproject_points(range.image, intrinsics, range.unit, without_return);
   if (range.is_depth) return points;
   // The image contains ranges, so the depth of each point is converted from its range.
   for (Vector3d& point : points) point *= point.z() / point.norm();
@@ -55,7 +56,7 @@ void RawlogSequence::survey_file(const std::function<void(const std::string&)>& 
   const auto reader = open_rawlog(file_);
   while (const auto entry = reader->next()) {
     if (const auto* pose = std::get_if<RawlogPose>(&*entry)) {
-      if (poses_.size() == most_poses) fail("has more than 3 million poses; use --poses");
+      if (poses_.size() == max_poses) fail("has more than 3 million poses; use --poses");
       if (!choice_.poses) poses_.push_back(*pose);
       continue;
     }
@@ -63,7 +64,7 @@ void RawlogSequence::survey_file(const std::function<void(const std::string&)>& 
     if (report) report(file_.string() + ": reading poses, scan " + std::to_string(++scans));
     has_movements = has_movements || scan.moved;
     if (std::ranges::find(labels, scan.label) != labels.end()) continue;
-    if (labels.size() == most_sensors) fail("has scans of more than 64 sensors");
+    if (labels.size() == max_sensors) fail("has scans of more than 64 sensors");
     if (scan.label.size() > longest_label) fail("has a sensor label of more than 256 bytes");
     labels.push_back(scan.label);
   }
@@ -120,14 +121,14 @@ void RawlogSequence::choose_poses(bool has_movements) {
   }
 }
 
-Isometry3d RawlogSequence::pose_of(const RawlogScan& scan) const {
+Isometry3d RawlogSequence::compute_pose(const RawlogScan& scan) const {
   if (choice_.poses) return pose_at(trajectory_, scan.time, pose_source_);
-  const Isometry3d world_from_carrier =
+  const Isometry3d world_from_platform =
       poses_.empty() ? scan.moved.value_or(Isometry3d::Identity())
                      : nearest_pose(std::span<const RawlogPose>(poses_), scan.time, file_.string())
-                           .world_from_carrier;
-  const Isometry3d world_from_sensor = world_from_carrier * scan.carrier_from_sensor;
-  geometry::require_place(world_from_sensor.translation(), "its pose");
+                           .world_from_platform;
+  const Isometry3d world_from_sensor = world_from_platform * scan.platform_from_sensor;
+  geometry::require_valid_position(world_from_sensor.translation(), "its pose");
   const Eigen::Matrix3d turn = world_from_sensor.linear();
   if (!(turn * turn.transpose()).isIdentity(1e-6)) {
     throw Error(ErrorKind::bad_file, "its pose is not a rotation without scale");
@@ -142,7 +143,7 @@ std::optional<RawlogFrame> RawlogSequence::next() {
     RawlogFrame frame{.id = scan->label + " " + std::to_string(scan->number)};
     try {
       if (!scan->fault.empty()) throw Error(ErrorKind::bad_file, scan->fault);
-      frame.world_from_sensor = pose_of(*scan);
+      frame.world_from_sensor = compute_pose(*scan);
     } catch (const Error& failure) {
       note_(frame.id + " is skipped: " + failure.what());
       continue;
@@ -153,19 +154,19 @@ std::optional<RawlogFrame> RawlogSequence::next() {
   return std::nullopt;
 }
 
-ScanFound scan_of(const RawlogFrame& frame, const flight::CaptureOptions& capture,
-                  const LiveOptions& live) {
+ScanFound make_scan(const RawlogFrame& frame, const flight::CaptureOptions& capture,
+                    const LiveOptions& live) {
   std::size_t without_return = 0;
   std::vector<Vector3d> points;
   if (const auto* range = std::get_if<RecordedImage>(&frame.scan.content)) {
-    points = points_of(*range, without_return);
+    points = unproject_points(*range, without_return);
   } else {
     for (const Eigen::Vector3f& point :
          std::get<std::vector<Eigen::Vector3f>>(frame.scan.content)) {
       points.push_back(point.cast<double>());
     }
   }
-  ScanFound found = scan_of(points, frame.world_from_sensor, capture, live);
+  ScanFound found = make_scan(points, frame.world_from_sensor, capture, live);
   found.without_return = without_return;
   return found;
 }

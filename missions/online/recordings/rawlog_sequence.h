@@ -56,7 +56,7 @@ class RawlogSequence {
   [[noreturn]] void fail(const std::string& what) const;
   void choose_sensor(const std::vector<std::string>& labels);
   void choose_poses(bool has_movements);
-  Eigen::Isometry3d pose_of(const RawlogScan& scan) const;
+  Eigen::Isometry3d compute_pose(const RawlogScan& scan) const;
 
   std::filesystem::path file_;
   RawlogChoice choice_;
@@ -68,7 +68,7 @@ class RawlogSequence {
 };
 
 /// Converts a rawlog's scan to a scan of the survey.
-ScanFound scan_of(const RawlogFrame& frame, const flight::CaptureOptions& capture,
-                  const LiveOptions& live);
+ScanFound make_scan(const RawlogFrame& frame, const flight::CaptureOptions& capture,
+                    const LiveOptions& live);
 
 }  // namespace skycap::missions::online

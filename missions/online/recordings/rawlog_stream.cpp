@@ -15,11 +15,11 @@ RawlogBytes::RawlogBytes(const std::filesystem::path& file) : file_(gzopen(file.
 RawlogBytes::~RawlogBytes() { gzclose(file_); }
 
 std::size_t RawlogBytes::read(void* buffer, std::size_t count) {
-  constexpr std::size_t most = std::size_t{1} << 30;  // zlib counts bytes with int.
+  constexpr std::size_t max = std::size_t{1} << 30;  // zlib counts bytes with int.
   auto* to = static_cast<char*>(buffer);
   std::size_t done = 0;
   while (done < count) {
-    const int got = gzread(file_, to + done, static_cast<unsigned>(std::min(count - done, most)));
+    const int got = gzread(file_, to + done, static_cast<unsigned>(std::min(count - done, max)));
     if (got <= 0) break;
     done += static_cast<std::size_t>(got);
   }

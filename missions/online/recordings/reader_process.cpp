@@ -44,7 +44,7 @@ void put_scan(PipeWriter& pipe, const RawlogScan& scan) {
   pipe.put(scan.number);
   pipe.put_text(scan.label);
   pipe.put(scan.time);
-  put_pose(pipe, scan.carrier_from_sensor);
+  put_pose(pipe, scan.platform_from_sensor);
   pipe.put(scan.moved.has_value());
   if (scan.moved) put_pose(pipe, *scan.moved);
   pipe.put_text(scan.fault);
@@ -68,7 +68,7 @@ void read_all(PipeWriter& pipe, const std::function<std::unique_ptr<RawlogReader
         pipe.put(Tag::pose);
         pipe.put(pose.source);
         pipe.put(pose.time);
-        put_pose(pipe, pose.world_from_carrier);
+        put_pose(pipe, pose.world_from_platform);
       }
     }
     pipe.put(Tag::end);
@@ -85,55 +85,55 @@ class ProcessReader final : public RawlogReader {
 
   std::optional<std::variant<RawlogScan, RawlogPose>> next() override {
     if (is_at_end_) return std::nullopt;
-    const auto tag = child_.take<Tag>();
+    const auto tag = child_.read<Tag>();
     if (tag == Tag::image || tag == Tag::points) return scan(tag);
     if (tag == Tag::pose) {
       RawlogPose pose;
-      pose.source = child_.take<PoseSource>();
-      pose.time = child_.take<double>();
-      pose.world_from_carrier = take_pose();
+      pose.source = child_.read<PoseSource>();
+      pose.time = child_.read<double>();
+      pose.world_from_platform = read_pose();
       return pose;
     }
-    if (tag == Tag::error) throw Error(ErrorKind::bad_file, child_.take_text());
+    if (tag == Tag::error) throw Error(ErrorKind::bad_file, child_.read_text());
     is_at_end_ = true;
     return std::nullopt;
   }
 
  private:
-  Eigen::Isometry3d take_pose() {
+  Eigen::Isometry3d read_pose() {
     Eigen::Isometry3d pose;
-    pose.matrix() = Eigen::Matrix4d::Map(child_.take<PoseNumbers>().data());
+    pose.matrix() = Eigen::Matrix4d::Map(child_.read<PoseNumbers>().data());
     return pose;
   }
 
   RecordedImage image() {
     RecordedImage range;
-    range.image.width = child_.take<int>();
-    range.image.height = child_.take<int>();
-    range.image.values = child_.take_row<std::vector<std::uint16_t>>();
-    range.unit = child_.take<double>();
-    range.is_depth = child_.take<bool>();
+    range.image.width = child_.read<int>();
+    range.image.height = child_.read<int>();
+    range.image.values = child_.read_row<std::vector<std::uint16_t>>();
+    range.unit = child_.read<double>();
+    range.is_depth = child_.read<bool>();
     for (double* value : {&range.focal_length_px.x(), &range.focal_length_px.y(),
                           &range.principal_point_px.x(), &range.principal_point_px.y()}) {
-      *value = child_.take<double>();
+      *value = child_.read<double>();
     }
-    range.distortion = child_.take<std::array<double, 5>>();
+    range.distortion = child_.read<std::array<double, 5>>();
     return range;
   }
 
   RawlogScan scan(Tag tag) {
     RawlogScan scan;
-    scan.number = child_.take<std::size_t>();
-    scan.label = child_.take_text();
-    scan.time = child_.take<double>();
-    scan.carrier_from_sensor = take_pose();
-    if (child_.take<bool>()) scan.moved = take_pose();
-    scan.fault = child_.take_text();
+    scan.number = child_.read<std::size_t>();
+    scan.label = child_.read_text();
+    scan.time = child_.read<double>();
+    scan.platform_from_sensor = read_pose();
+    if (child_.read<bool>()) scan.moved = read_pose();
+    scan.fault = child_.read_text();
     if (tag == Tag::image) {
       scan.content = image();
       return scan;
     }
-    const auto numbers = child_.take_row<std::vector<float>>();
+    const auto numbers = child_.read_row<std::vector<float>>();
     std::vector<Eigen::Vector3f> points(numbers.size() / 3);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i] = Eigen::Vector3f::Map(&numbers[3 * i]);

@@ -55,14 +55,14 @@ RecordedSequence read_tum(const fs::path& folder, std::size_t count) {
   return sequence;
 }
 
-constexpr std::string_view image_ending = ".depth.png";
+constexpr std::string_view image_suffix = ".depth.png";
 
 /// Returns the images of the 7-Scenes layout, sorted by name.
 std::vector<fs::path> numbered_images(const fs::path& folder) {
   std::vector<fs::path> images;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with("frame-") && name.ends_with(image_ending)) images.push_back(entry.path());
+    if (name.starts_with("frame-") && name.ends_with(image_suffix)) images.push_back(entry.path());
   }
   std::ranges::sort(images);
   return images;
@@ -72,7 +72,7 @@ RecordedSequence read_numbered(const std::vector<fs::path>& images, std::size_t 
   RecordedSequence sequence;
   for (std::size_t i = 0; i < std::min(count, images.size()); ++i) {
     const std::string name = images[i].filename().string();
-    const std::string id = name.substr(0, name.size() - image_ending.size());
+    const std::string id = name.substr(0, name.size() - image_suffix.size());
     add_frame(sequence, id, images[i], [&] {
       const fs::path pose = images[i].parent_path() / (id + ".pose.txt");
       return parse_pose_text(geometry::read_file(pose, largest_pose), pose.string());
@@ -84,10 +84,10 @@ RecordedSequence read_numbered(const std::vector<fs::path>& images, std::size_t 
 }  // namespace
 
 RecordedSequence read_sequence(const fs::path& folder, std::size_t count) {
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorKind::bad_file, folder.string() + ": " + why);
+  const auto reject = [&](const std::string& reason) {
+    throw Error(ErrorKind::bad_file, folder.string() + ": " + reason);
   };
-  if (!fs::is_directory(folder)) refuse("is not a folder; give the folder of a recording");
+  if (!fs::is_directory(folder)) reject("is not a folder; give the folder of a recording");
   RecordedSequence sequence;
   if (fs::exists(folder / "depth.txt")) {
     sequence = read_tum(folder, count);
@@ -95,8 +95,8 @@ RecordedSequence read_sequence(const fs::path& folder, std::size_t count) {
     sequence = read_numbered(numbered_images(folder), count);
   }
   if (!sequence.frames.empty()) return sequence;
-  if (!sequence.notes.empty()) refuse("has no usable frame; " + sequence.notes.front());
-  refuse(
+  if (!sequence.notes.empty()) reject("has no usable frame; " + sequence.notes.front());
+  reject(
       "contains neither depth.txt and groundtruth.txt (TUM RGB-D) nor frame-NNNNNN.depth.png with "
       "frame-NNNNNN.pose.txt (7-Scenes)");
   return sequence;

@@ -53,7 +53,7 @@ class Rawlog final : public Recording {
     if (!frame) return std::nullopt;
     const std::string id = frame->id;
     return Frame{id, id, [this, frame = std::make_shared<const RawlogFrame>(*std::move(frame))] {
-                   return scan_of(*frame, capture_, live_);
+                   return make_scan(*frame, capture_, live_);
                  }};
   }
 
@@ -66,20 +66,20 @@ class Rawlog final : public Recording {
 
 }  // namespace
 
-std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
+std::unique_ptr<Recording> open_recording(const std::filesystem::path& source,
                                           const RecordingChoice& choice,
                                           const flight::CaptureOptions& capture,
                                           const LiveOptions& live,
                                           const std::function<void(const std::string&)>& note,
                                           const std::function<void(const std::string&)>& report) {
-  if (std::filesystem::is_regular_file(place)) {
-    return std::make_unique<Rawlog>(RawlogSequence(place, choice.rawlog, note, report),
+  if (std::filesystem::is_regular_file(source)) {
+    return std::make_unique<Rawlog>(RawlogSequence(source, choice.rawlog, note, report),
                                     choice.count, capture, live);
   }
   if (choice.rawlog.poses || !choice.rawlog.sensor.empty()) {
     throw Error(ErrorKind::bad_usage, "--poses and --sensor require a rawlog");
   }
-  RecordedSequence sequence = read_sequence(place, choice.count);
+  RecordedSequence sequence = read_sequence(source, choice.count);
   for (const std::string& remark : sequence.remarks) note(remark);
   for (const std::string& left_out : sequence.notes) note(left_out);
   return std::make_unique<Folder>(std::move(sequence), choice.image, capture, live);

@@ -45,7 +45,7 @@ class Recording {
 /// a survey. `note` receives one line for each skipped frame with the reason. `report` receives the
 /// progress of the initial reading. Throws Error{bad_file}, and Error{bad_usage} for a choice that
 /// the recording does not have.
-std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
+std::unique_ptr<Recording> open_recording(const std::filesystem::path& source,
                                           const RecordingChoice& choice,
                                           const flight::CaptureOptions& capture,
                                           const LiveOptions& live,

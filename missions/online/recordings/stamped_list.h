@@ -38,18 +38,18 @@ Eigen::Isometry3d pose_at(std::span<const Stamped> poses, double time, const std
 /// prefix `what` if it is more than 20 ms away.
 template <typename Item>
 const Item& nearest_pose(std::span<const Item> items, double time, const std::string& what) {
-  constexpr double most_apart = 0.02;  // [s]
-  const std::string complaint = what + ": no pose within 20 ms of its time";
-  if (items.empty()) throw Error(ErrorKind::bad_file, complaint);
+  constexpr double max_time_difference = 0.02;  // [s]
+  const std::string error_message = what + ": no pose within 20 ms of its time";
+  if (items.empty()) throw Error(ErrorKind::bad_file, error_message);
   auto near = std::ranges::lower_bound(items, time, {}, &Item::time);
   const bool is_last = near == items.end();
   if (near != items.begin() && (is_last || time - std::prev(near)->time <= near->time - time)) {
     --near;
   }
   const double apart = std::abs(near->time - time);
-  if (apart <= most_apart) return *near;
+  if (apart <= max_time_difference) return *near;
   throw Error(ErrorKind::bad_file,
-              fmt::format("{} (the nearest is {:.3f} s off)", complaint, apart));
+              fmt::format("{} (the nearest is {:.3f} s off)", error_message, apart));
 }
 
 }  // namespace skycap::missions::online

@@ -26,8 +26,8 @@ std::optional<std::size_t> index_in(std::string_view text) {
 /// Parser of one row. Error messages start with file name and line.
 class RowReader {
  public:
-  RowReader(std::string place, std::span<const std::string> vehicles)
-      : place_(std::move(place)), vehicles_(vehicles) {}
+  RowReader(std::string location, std::span<const std::string> vehicles)
+      : location_(std::move(location)), vehicles_(vehicles) {}
 
   TimetableRow read(const std::string& line) const {
     const std::vector<std::string> fields = flight::split(line, ',');
@@ -39,21 +39,21 @@ class RowReader {
     check_vehicle(row);
     row.sortie = index(fields[2], "sortie");
     row.file = fields[3];
-    const bool is_beside = row.file.find('/') == std::string::npos;
-    if (!is_beside || vehicle_of_file(row.file) != row.vehicle) {
-      fail("the file \"" + row.file + "\" is not one of " + stem_of(row.vehicle) + ".*");
+    const bool is_in_same_folder = row.file.find('/') == std::string::npos;
+    if (!is_in_same_folder || parse_vehicle_number(row.file) != row.vehicle) {
+      fail("the file \"" + row.file + "\" is not one of " + make_stem(row.vehicle) + ".*");
     }
     row.start = number(fields[4], "start_s");
     row.landing = number(fields[5], "landing_s");
     if (row.start < 0.0 || row.landing <= row.start) fail("the landing must be after the start");
     for (int axis = 0; axis < 3; ++axis) row.pad[axis] = number(fields[6 + axis], "pad");
-    geometry::require_place(row.pad, place_ + "pad");
+    geometry::require_valid_position(row.pad, location_ + "pad");
     return row;
   }
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorKind::bad_file, place_ + what);
+    throw Error(ErrorKind::bad_file, location_ + what);
   }
 
   std::size_t index(const std::string& field, const std::string& name) const {
@@ -78,7 +78,7 @@ class RowReader {
          " in flight.vehicles, not " + row.name);
   }
 
-  std::string place_;
+  std::string location_;
   std::span<const std::string> vehicles_;  ///< Vehicles of the mission.
 };
 
@@ -100,7 +100,7 @@ std::string timetable_csv(std::span<const TimetableRow> rows) {
 std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
                                          const flight::FlightOptions& options) {
   const std::string text = geometry::read_file(path, largest_timetable);
-  const std::vector<std::string> lines = flight::lines_of(text);
+  const std::vector<std::string> lines = flight::split_lines(text);
   if (lines.empty() || lines.front() != header) {
     throw Error(
         ErrorKind::bad_file,
@@ -108,21 +108,23 @@ std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
   }
   std::vector<TimetableRow> rows;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::string place = path.string() + ":" + std::to_string(i + 1) + ": ";
-    TimetableRow row = RowReader(place, options.fleet.names).read(lines[i]);
+    const std::string location = path.string() + ":" + std::to_string(i + 1) + ": ";
+    TimetableRow row = RowReader(location, options.fleet.names).read(lines[i]);
     const bool is_twice = std::ranges::any_of(rows, [&](const TimetableRow& other) {
       return other.vehicle == row.vehicle && other.sortie == row.sortie;
     });
-    if (is_twice) throw Error(ErrorKind::bad_file, place + "the sortie is listed twice");
+    if (is_twice) throw Error(ErrorKind::bad_file, location + "the sortie is listed twice");
     rows.push_back(std::move(row));
   }
   if (!rows.empty()) return rows;
   throw Error(ErrorKind::bad_file, path.string() + ": contains no sorties");
 }
 
-std::string stem_of(std::size_t vehicle) { return std::string(stem) + std::to_string(vehicle + 1); }
+std::string make_stem(std::size_t vehicle) {
+  return std::string(stem) + std::to_string(vehicle + 1);
+}
 
-std::optional<std::size_t> vehicle_of_file(std::string_view name) {
+std::optional<std::size_t> parse_vehicle_number(std::string_view name) {
   if (!name.starts_with(stem)) return std::nullopt;
   name.remove_prefix(stem.size());
   const std::size_t end = name.find_first_not_of("0123456789");
@@ -131,25 +133,25 @@ std::optional<std::size_t> vehicle_of_file(std::string_view name) {
 }
 
 bool is_fleet_file(std::string_view name) {
-  return name == timetable_name || vehicle_of_file(name).has_value();
+  return name == timetable_name || parse_vehicle_number(name).has_value();
 }
 
-flight::FlightOptions flight_of_file(const std::filesystem::path& file,
-                                     const flight::FlightOptions& options) {
-  const std::optional<std::size_t> vehicle = vehicle_of_file(file.filename().string());
+flight::FlightOptions find_file_flight(const std::filesystem::path& file,
+                                       const flight::FlightOptions& options) {
+  const std::optional<std::size_t> vehicle = parse_vehicle_number(file.filename().string());
   if (!vehicle || !options.is_fleet()) return options;
   const std::filesystem::path table = file.parent_path() / timetable_name;
   for (const TimetableRow& row : read_timetable(table, options)) {
-    if (row.vehicle == *vehicle) return options.of_vehicle(*vehicle, row.pad);
+    if (row.vehicle == *vehicle) return options.for_vehicle(*vehicle, row.pad);
   }
   throw Error(ErrorKind::bad_file, table.string() + ": contains no sortie of vehicle " +
                                        std::to_string(*vehicle + 1) + ", whose file is " +
                                        file.filename().string());
 }
 
-flight::Format own_format(flight::Dialect dialect) {
-  if (dialect == flight::Dialect::dji) return flight::Format::kmz;
-  return dialect == flight::Dialect::px4 ? flight::Format::plan : flight::Format::waypoints;
+flight::Format own_format(flight::AutopilotType autopilot) {
+  if (autopilot == flight::AutopilotType::dji) return flight::Format::kmz;
+  return autopilot == flight::AutopilotType::px4 ? flight::Format::plan : flight::Format::waypoints;
 }
 
 }  // namespace skycap::missions::package

@@ -43,11 +43,11 @@ std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
                                          const flight::FlightOptions& options);
 
 /// Returns the prefix of a vehicle's route file names, such as "fleet-1" for the first vehicle.
-std::string stem_of(std::size_t vehicle);
+std::string make_stem(std::size_t vehicle);
 
 /// Returns the index of the vehicle that a route file belongs to, or an empty value for files
 /// without a fleet prefix.
-std::optional<std::size_t> vehicle_of_file(std::string_view name);
+std::optional<std::size_t> parse_vehicle_number(std::string_view name);
 
 /// Returns true for the timetable and for route files of a fleet.
 bool is_fleet_file(std::string_view name);
@@ -55,10 +55,10 @@ bool is_fleet_file(std::string_view name);
 /// Returns the flight options of the vehicle of a route file, with the pad from the timetable in
 /// the same folder. For files without a fleet prefix, returns `options`. Throws like
 /// read_timetable().
-flight::FlightOptions flight_of_file(const std::filesystem::path& file,
-                                     const flight::FlightOptions& options);
+flight::FlightOptions find_file_flight(const std::filesystem::path& file,
+                                       const flight::FlightOptions& options);
 
 /// Returns the native format of an autopilot.
-flight::Format own_format(flight::Dialect dialect);
+flight::Format own_format(flight::AutopilotType autopilot);
 
 }  // namespace skycap::missions::package

@@ -13,23 +13,23 @@
 namespace skycap::missions::package {
 
 /// Flight of a vehicle through a route file: path segments and timing.
-struct FlownFile {
-  flight::FlownRoute route;
+struct InterpretedFile {
+  flight::InterpretedRoute route;
   flight::FlightScript script;  ///< One leg for each segment of the route.
 };
 
 /// Simulates the flight of a file with this content. `own` contains the flight options of its
 /// vehicle, which takes off from its pad. Throws Error{bad_file} with the first problem of the
 /// file.
-FlownFile flown_file(const flight::FlightOptions& own, const std::string& content,
-                     flight::Format format);
+InterpretedFile interpret_flight_file(const flight::FlightOptions& own, const std::string& content,
+                                      flight::Format format);
 
 /// Simulates the flight of a row's file in the folder of the timetable `path`. Error messages
 /// contain the file name.
-FlownFile flown_file(const std::filesystem::path& path, const TimetableRow& row,
-                     const flight::FlightOptions& options);
+InterpretedFile interpret_flight_file(const std::filesystem::path& path, const TimetableRow& row,
+                                      const flight::FlightOptions& options);
 
-struct TimetableProof {
+struct TimetableVerification {
   flight::Problems problems;  ///< Rows and pairs that could not be verified.
   std::size_t sorties = 0;
   double makespan = 0.0;  ///< Time of the last landing [s].
@@ -41,15 +41,15 @@ struct TimetableProof {
 /// times, for all timing errors within flight.timing_tolerance. They keep flight.clearance to
 /// vehicles on the ground. Landings match the timetable. The sorties of a vehicle do not overlap.
 /// Throws Error{bad_file} if the timetable or a file cannot be read.
-TimetableProof prove_timetable(const std::filesystem::path& path,
-                               const flight::FlightOptions& options, double up_to);
+TimetableVerification verify_timetable(const std::filesystem::path& path,
+                                       const flight::FlightOptions& options, double up_to);
 
-/// Returns all sorties of a timetable for the simulator. Throws like prove_timetable().
+/// Returns all sorties of a timetable for the simulator. Throws like verify_timetable().
 std::vector<flight::FleetFlight> fleet_flights(const std::filesystem::path& path,
                                                const flight::FlightOptions& options);
 
 /// Returns the camera positions in a vehicle's files whose photos may be missing at the time
-/// `after` [s] because of delays up to flight.timing_tolerance. Throws like prove_timetable().
+/// `after` [s] because of delays up to flight.timing_tolerance. Throws like verify_timetable().
 std::vector<Eigen::Vector3d> left_by(const std::filesystem::path& path,
                                      const flight::FlightOptions& options, std::size_t vehicle,
                                      double after);

@@ -12,21 +12,22 @@
 namespace skycap::missions::package {
 
 /// Quantised observation.
-struct Dose {
+struct ObservationStrength {
   std::uint32_t target;
   std::uint32_t hazard;  ///< Hazard in units of 1/256.
 };
 
-std::vector<Dose> doses_of(std::span<const survey::skycap::Look> looks);
+std::vector<ObservationStrength> observation_strengths(
+    std::span<const survey::surfel::Observation> observations);
 
-class DoseSum {
+class ObservationSum {
  public:
   /// Weights targets by area. At least one target must have a non-zero area.
-  explicit DoseSum(std::span<const survey::skycap::GainField::Target> targets);
+  explicit ObservationSum(std::span<const survey::surfel::GainField::Target> targets);
 
-  void add(std::span<const Dose> doses);
+  void add(std::span<const ObservationStrength> strengths);
   /// Removes the doses of a view that was added before.
-  void remove(std::span<const Dose> doses);
+  void remove(std::span<const ObservationStrength> strengths);
 
   /// Returns the expected covered fraction of the targets' area.
   double covered() const;

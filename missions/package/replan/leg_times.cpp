@@ -8,7 +8,7 @@ namespace {
 constexpr double blocked_share = 1.15, blocked_time = 4.0;
 
 /// Maximum number of cached legs; the cache is then cleared.
-constexpr std::size_t most_legs = 1U << 16;
+constexpr std::size_t max_legs = 1U << 16;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ constexpr std::size_t most_legs = 1U << 16;
 template <typename Visit>
 void LegTimes::for_each_leg(const Stops& stops, Visit visit) {
   if (stops.empty()) return;
-  if (legs_.size() > most_legs) legs_.clear();
+  if (legs_.size() > max_legs) legs_.clear();
   for (std::size_t i = 0; i <= stops.size(); ++i) {
     const Stop* from = i == 0 ? nullptr : stops[i - 1].get();
     const Stop* to = i == stops.size() ? nullptr : stops[i].get();
@@ -28,7 +28,7 @@ void LegTimes::for_each_leg(const Stops& stops, Visit visit) {
   }
 }
 
-double LegTimes::least(const Stops& stops) {
+double LegTimes::min(const Stops& stops) {
   double sum = static_cast<double>(stops.size()) * problem_.time_per_view + bends(stops);
   for_each_leg(stops, [&](Leg& leg, const auto* from, const auto* to) {
     if (leg.straight < 0.0) leg.straight = problem_.straight_time(from, to);
@@ -59,15 +59,15 @@ bool LegTimes::ask_next(const Stops& stops) {
   return has_asked;
 }
 
-double LegTimes::proven(const Stops& stops) {
+double LegTimes::verified_time(const Stops& stops) {
   while (ask_next(stops)) {
   }
   for_each_leg(stops, [&](Leg& leg, const auto* from, const auto* to) {
-    if (!leg.is_proven && !leg.is_blocked) leg.is_blocked = !problem_.has_returns(from, to);
-    leg.is_proven = true;
+    if (!leg.is_verified && !leg.is_blocked) leg.is_blocked = !problem_.has_returns(from, to);
+    leg.is_verified = true;
     return true;
   });
-  return least(stops);
+  return min(stops);
 }
 
 }  // namespace skycap::missions::package

@@ -15,7 +15,7 @@ namespace skycap::missions::package {
 struct Stop {
   geometry::View view;
   std::uint32_t number;  ///< Number that is unique within a search, from 1.
-  std::vector<Dose> doses{};
+  std::vector<ObservationStrength> strengths{};
 };
 
 /// Stops in tour order. Tours share their stops because most of them differ in only one or two.
@@ -28,20 +28,20 @@ class LegTimes {
 
   /// Returns a lower bound on the duration of a tour [s], including rest times. Unchecked legs
   /// count as free.
-  double least(const Stops& stops);
+  double min(const Stops& stops);
 
   /// Checks one more leg of the tour for collisions. Returns false if all legs have been checked.
   bool ask_next(const Stops& stops);
 
   /// Checks all legs and the returns from them. Returns the duration of the tour [s].
-  double proven(const Stops& stops);
+  double verified_time(const Stops& stops);
 
  private:
   double bends(const Stops& stops) const;
 
   struct Leg {
     double straight = -1.0;  ///< Duration [s]; negative if unknown.
-    bool is_asked = false, is_proven = false, is_blocked = false;
+    bool is_asked = false, is_verified = false, is_blocked = false;
   };
 
   template <typename Visit>

@@ -21,11 +21,11 @@ namespace {
 
 using Eigen::Vector3d;
 using geometry::View;
-using survey::skycap::GainField;
-using survey::skycap::Look;
+using survey::surfel::GainField;
+using survey::surfel::Observation;
 
 /// Margin of views in addition to the clearance, so that the legs from them can be verified [m].
-constexpr double spare_clearance = 0.05;
+constexpr double clearance_margin = 0.05;
 
 /// Tolerance for equal coverage. Repeated simulated flights with the same views differ by several
 /// times this value.
@@ -33,21 +33,21 @@ constexpr double equal_coverage = 5e-4;
 
 /// Penalty per view in fly-through capture [s]. Without it, tours would have so many views that
 /// moves of single views have no effect.
-constexpr double price_of_passing = 0.3;
+constexpr double fly_through_price = 0.3;
 
 /// Ratio of computation times for a scanner's path (tens of scans of three views) and a view. The
 /// number of moves is reduced by this factor.
-constexpr std::size_t dearer_ways = 12;
+constexpr std::size_t leg_cost_factor = 12;
 
 /// Factor of the number of moves for fly-through tours, which have this many times more views than
 /// the initial tour.
 constexpr std::size_t more_passed_views = 2;
 
 /// Returns the maximum height of a route.
-double top_of(const flight::Route& route) {
+double compute_max_altitude(const flight::Route& route) {
   double top = route.options.takeoff.z() + route.options.takeoff_climb;
-  for (const flight::Station& station : route.stations) {
-    top = std::max(top, station.view.position.z());
+  for (const flight::CapturePoint& capture_point : route.capture_points) {
+    top = std::max(top, capture_point.view.position.z());
   }
   return top;
 }
@@ -56,7 +56,7 @@ double top_of(const flight::Route& route) {
 /// stops.
 bool is_passed(const flight::Route& route) {
   return std::ranges::any_of(
-      route.sorties, [](const flight::Sortie& sortie) { return sortie.passage.has_value(); });
+      route.sorties, [](const flight::Sortie& sortie) { return sortie.fly_through.has_value(); });
 }
 
 /// Tour problem of a mission and the data that it refers to.
@@ -71,7 +71,7 @@ class MissionProblem {
         limits_(planner.limits),
         motion_(present.vehicle, present.options.conditions),
         clearance_(present.clearance),
-        returnable_(space, planning_law(present.options, top_of(present))),
+        returnable_(space, planning_rtl_profile(present.options, compute_max_altitude(present))),
         costs_(motion_),
         passing_(is_passed(present) ? std::optional(present.options.passing) : std::nullopt),
         mount_(flight.capture.scans_in_flight() ? flight.capture.mount : std::nullopt),
@@ -83,44 +83,44 @@ class MissionProblem {
     problem_.home = home_;
     problem_.view_distance = planner.view_distance;
     if (passing_) {
-      problem_.time_per_view = price_of_passing;
+      problem_.time_per_view = fly_through_price;
       problem_.bend_time = [this](const View* before, const View& at, const View* after) {
-        return bend_time(at.position - place(before), place(after) - at.position);
+        return bend_time(at.position - view_position(before), view_position(after) - at.position);
       };
     } else {
-      const flight::Station station{
+      const flight::CapturePoint capture_point{
           .view = {}, .hold = flight.rest_before(), .hold_after = flight.rest_after()};
-      problem_.time_per_view = costs_.station_cost(station).time;
+      problem_.time_per_view = costs_.capture_cost(capture_point).time;
     }
-    problem_.looks = [this](const View& view) {
-      return mount_ ? std::vector<Look>() : surface_.looks(view);
+    problem_.observations = [this](const View& view) {
+      return mount_ ? std::vector<Observation>() : surface_.observations(view);
     };
     if (mount_) {
-      problem_.way_looks = [this](const View* from, const View* to) {
-        return way_looks({place(from), place(to)}, from, to);
+      problem_.leg_observations = [this](const View* from, const View* to) {
+        return leg_observations({view_position(from), view_position(to)}, from, to);
       };
     }
-    problem_.view_of = [this](const Vector3d& target, const Vector3d& towards, double distance) {
-      return limits_.view_of_target(target, towards, distance);
+    problem_.find_view = [this](const Vector3d& target, const Vector3d& towards, double distance) {
+      return limits_.make_target_view(target, towards, distance);
     };
     problem_.is_allowed = [this](const View& view) {
-      return limits_.allow(view) && can_look(vehicle_, carrier(view));
+      return limits_.allow(view) && can_aim(vehicle_, platform(view));
     };
     problem_.is_in_free_space = [this](const View& view) {
-      const double kept = std::max(clearance_, limits_.stand_off) + spare_clearance;
+      const double kept = std::max(clearance_, limits_.min_standoff) + clearance_margin;
       return space_.is_free({view.position, view.position}, kept);
     };
-    problem_.has_way_home = [this](const View& view) {
+    problem_.has_return_path = [this](const View& view) {
       return returnable_.has_returns({view.position, view.position}, clearance_);
     };
     problem_.straight_time = [this](const View* from, const View* to) {
       return straight_time(from, to);
     };
     problem_.is_free = [this](const View* from, const View* to) {
-      return space_.is_free({place(from), place(to)}, clearance_);
+      return space_.is_free({view_position(from), view_position(to)}, clearance_);
     };
     problem_.has_returns = [this](const View* from, const View* to) {
-      return returnable_.has_returns({place(from), place(to)}, clearance_);
+      return returnable_.has_returns({view_position(from), view_position(to)}, clearance_);
     };
   }
 
@@ -131,12 +131,12 @@ class MissionProblem {
 
   /// Returns the predicted coverage of a route: that of its views or, for scanners, of its flown
   /// paths.
-  double promised(const flight::Route& route) const {
-    if (!mount_) return covered_by(problem_, picture_views(route));
-    const std::vector<View> views = views_of(route);
-    DoseSum covered(problem_.targets);
+  double predicted_coverage(const flight::Route& route) const {
+    if (!mount_) return covered_by(problem_, photo_views(route));
+    const std::vector<View> views = collect_views(route);
+    ObservationSum covered(problem_.targets);
     const auto add = [&](const flight::Leg& leg, const View* from, const View* to) {
-      covered.add(doses_of(way_looks(leg.points, from, to)));
+      covered.add(observation_strengths(leg_observations(leg.points, from, to)));
     };
     for (const flight::Sortie& sortie : route.sorties) {
       add(sortie.out, nullptr, &views[sortie.first]);
@@ -149,41 +149,45 @@ class MissionProblem {
   }
 
   /// Converts stations to views. Stations of a scanner define the direction of the vehicle's nose.
-  std::vector<View> views_of(const flight::Route& route) const {
+  std::vector<View> collect_views(const flight::Route& route) const {
     std::vector<View> views;
-    for (const flight::Station& station : route.stations) {
-      views.push_back(mount_ ? geometry::scanner_view(*mount_, station.view) : station.view);
+    for (const flight::CapturePoint& capture_point : route.capture_points) {
+      views.push_back(mount_ ? geometry::scanner_view(*mount_, capture_point.view)
+                             : capture_point.view);
     }
     return views;
   }
 
   /// Returns the stations and paths of a route as flown.
-  StationPlan stations_of(const flight::Route& route) const {
-    StationPlan plan{views_of(route), {}};
-    plan.ways.resize(plan.views.size());
-    for (std::size_t i = 1; i < plan.views.size(); ++i) plan.ways[i] = route.legs[i - 1].points;
-    if (!route.sorties.empty()) plan.ways.front() = route.sorties.front().out.points;
+  CapturePlan capture_plan(const flight::Route& route) const {
+    CapturePlan plan{collect_views(route), {}};
+    plan.paths.resize(plan.views.size());
+    for (std::size_t i = 1; i < plan.views.size(); ++i) plan.paths[i] = route.legs[i - 1].points;
+    if (!route.sorties.empty()) plan.paths.front() = route.sorties.front().out.points;
     return plan;
   }
 
  private:
-  const Vector3d& place(const View* view) const { return view == nullptr ? home_ : view->position; }
+  const Vector3d& view_position(const View* view) const {
+    return view == nullptr ? home_ : view->position;
+  }
 
   double straight_time(const View* from, const View* to) const {
     if (passing_) return passing_time(from, to);
-    const double leg = motion_.leg_time(place(to) - place(from));
+    const double leg = motion_.leg_time(view_position(to) - view_position(from));
     if (from == nullptr || to == nullptr) return leg;
-    const flight::Station there{.view = carrier(*to)}, here{.view = carrier(*from)};
+    const flight::CapturePoint there{.view = platform(*to)}, here{.view = platform(*from)};
     return costs_.aimed_time(leg, &here, &there);
   }
 
   /// Returns the duration of a fly-through path [s]. Stops occur only above the pad, where half of
   /// the acceleration ramp is lost.
   double passing_time(const View* from, const View* to) const {
-    const Vector3d way = place(to) - place(from);
-    if (way.norm() == 0.0) return from == nullptr || to == nullptr ? 0.0 : turn_time(*from, *to);
-    const Vector3d direction = way.normalized();
-    const double flying = way.norm() / passing_speed(direction);
+    const Vector3d displacement = view_position(to) - view_position(from);
+    if (displacement.norm() == 0.0)
+      return from == nullptr || to == nullptr ? 0.0 : turn_time(*from, *to);
+    const Vector3d direction = displacement.normalized();
+    const double flying = displacement.norm() / passing_speed(direction);
     if (from != nullptr && to != nullptr) return std::max(flying, turn_time(*from, *to));
     return flying + ramp_loss(direction);
   }
@@ -207,19 +211,20 @@ class MissionProblem {
   }
 
   double turn_time(const View& from, const View& to) const {
-    const View here = carrier(from), there = carrier(to);
-    return least_interval({flight::yaw_of(here), flight::pitch_of(here)},
-                          {flight::yaw_of(there), flight::pitch_of(there)}, motion_, *passing_);
+    const View here = platform(from), there = platform(to);
+    return min_interval({flight::compute_yaw(here), flight::compute_pitch(here)},
+                        {flight::compute_yaw(there), flight::compute_pitch(there)}, motion_,
+                        *passing_);
   }
 
-  View carrier(const View& view) const {
+  View platform(const View& view) const {
     return mount_ ? geometry::nose_view(*mount_, view) : view;
   }
 
   /// Returns the viewing directions of a scanner for a direction of the nose. These are three
   /// quarters of the ring, because surfaces above are observed from above or not at all, or the
   /// field of view.
-  std::vector<View> looks_of(const View& nose) const {
+  std::vector<View> scanner_views(const View& nose) const {
     const View view = geometry::scanner_view(*mount_, nose);
     if (kind_ == sim::ScannerKind::rosette) return {view};
     constexpr double almost = 1e-3;  // Avoids the undefined azimuth of the vertical direction.
@@ -231,33 +236,35 @@ class MissionProblem {
   /// Returns the observations of scans along a path at intervals of sweep_step_. The nose rotates
   /// on the last segment. At home, it points in the direction of the other end. Single-line LiDARs
   /// observe the area that they sweep at the view distance.
-  std::vector<Look> way_looks(const std::vector<Vector3d>& points, const View* from,
-                              const View* to) const {
-    const View begin = carrier(from != nullptr ? *from : *to);
-    const double yaw = flight::yaw_of(begin);
-    const double turn = std::remainder(flight::yaw_of(carrier(to != nullptr ? *to : *from)) - yaw,
-                                       2.0 * std::numbers::pi);
+  std::vector<Observation> leg_observations(const std::vector<Vector3d>& points, const View* from,
+                                            const View* to) const {
+    const View begin = platform(from != nullptr ? *from : *to);
+    const double yaw = flight::compute_yaw(begin);
+    const double turn = std::remainder(
+        flight::compute_yaw(platform(to != nullptr ? *to : *from)) - yaw, 2.0 * std::numbers::pi);
     std::vector<View> views;
     std::vector<float> shares;  // Relative hazard of the observations of each view.
     for (std::size_t i = 1; i < points.size(); ++i) {
-      const Vector3d way = points[i] - points[i - 1];
-      const auto count = std::max(1L, std::lround(way.norm() / sweep_step_));
+      const Vector3d displacement = points[i] - points[i - 1];
+      const auto count = std::max(1L, std::lround(displacement.norm() / sweep_step_));
       for (long k = 0; k < count; ++k) {
         const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
         const double turned = i + 1 == points.size() ? turn : 0.0, at = yaw + share * turned;
-        const View nose{points[i - 1] + share * way, {std::sin(at), std::cos(at), 0.0}};
-        for (const View& view : looks_of(nose)) views.push_back(view);
+        const View nose{points[i - 1] + share * displacement, {std::sin(at), std::cos(at), 0.0}};
+        for (const View& view : scanner_views(nose)) views.push_back(view);
         shares.resize(views.size(), kind_ == sim::ScannerKind::line
-                                        ? swept_share(way, nose.direction, turned, count)
+                                        ? swept_share(displacement, nose.direction, turned, count)
                                         : 1.0F);
       }
     }
-    std::vector<std::vector<Look>> looks(views.size());
-    geometry::parallel_for(views.size(), threads_,
-                           [&](std::size_t i) { looks[i] = surface_.looks(views[i]); });
-    std::vector<Look> all;
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      for (const Look& look : looks[i]) all.push_back({look.target, shares[i] * look.hazard});
+    std::vector<std::vector<Observation>> observations(views.size());
+    geometry::parallel_for(views.size(), threads_, [&](std::size_t i) {
+      observations[i] = surface_.observations(views[i]);
+    });
+    std::vector<Observation> all;
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      for (const Observation& observation : observations[i])
+        all.push_back({observation.target, shares[i] * observation.hazard});
     }
     return all;
   }
@@ -265,8 +272,9 @@ class MissionProblem {
   /// Returns the length that each of `count` scans on a straight path sweeps, relative to
   /// sweep_step_. The length is measured at the view distance to the left while the nose rotates
   /// clockwise by `turn`.
-  float swept_share(const Vector3d& way, const Vector3d& nose, double turn, long count) const {
-    const double swept = way.dot(nose) + problem_.view_distance * turn;
+  float swept_share(const Vector3d& displacement, const Vector3d& nose, double turn,
+                    long count) const {
+    const double swept = displacement.dot(nose) + problem_.view_distance * turn;
     return static_cast<float>(std::abs(swept) / static_cast<double>(count) / sweep_step_);
   }
 
@@ -288,7 +296,7 @@ class MissionProblem {
 };
 
 /// Returns an empty value if planning the route fails. The previous route is then used.
-std::optional<flight::Route> certified(const PlanRoute& plan, const std::vector<View>& views) {
+std::optional<flight::Route> verified_route(const PlanRoute& plan, const std::vector<View>& views) {
   try {
     return plan({views, std::vector<std::vector<Vector3d>>(views.size())});
   } catch (const Interrupted&) {
@@ -300,16 +308,17 @@ std::optional<flight::Route> certified(const PlanRoute& plan, const std::vector<
 
 }  // namespace
 
-MissionFigures figures_of(const flight::Route& route, double promised) {
-  MissionFigures figures{
-      .duration = least_duration(route), .views = route.stations.size(), .promised = promised};
+MissionFigures compute_figures(const flight::Route& route, double predicted_coverage) {
+  MissionFigures figures{.duration = min_duration(route),
+                         .views = route.capture_points.size(),
+                         .predicted_coverage = predicted_coverage};
   for (const flight::Sortie& sortie : route.sorties) {
-    if (const auto& passage = sortie.passage) {
-      figures.length += passage->length + 2.0 * route.options.takeoff_climb;
-      figures.pieces += passage->stops + 1;
+    if (const auto& fly_through = sortie.fly_through) {
+      figures.length += fly_through->length + 2.0 * route.options.takeoff_climb;
+      figures.segments += fly_through->stops + 1;
     } else {
       figures.length += sortie.length;
-      figures.pieces += sortie_points(route, sortie).size() - 1;
+      figures.segments += sortie_points(route, sortie).size() - 1;
     }
   }
   return figures;
@@ -323,37 +332,38 @@ MissionChoice choose_mission(const flight::FlightOptions& flight,
   const auto begin = std::chrono::steady_clock::now();
   const MissionProblem asked(flight, planner, options, surface, space, present);
   const TourProblem& problem = asked.problem();
-  const std::vector<View> views = asked.views_of(present);
+  const std::vector<View> views = asked.collect_views(present);
   MissionChoice choice;
-  choice.survey = figures_of(present, asked.promised(present));
-  choice.anew = choice.survey;
+  choice.survey = compute_figures(present, asked.predicted_coverage(present));
+  choice.replanned = choice.survey;
   choice.route = std::move(present);
-  const double least = choice.survey.promised - equal_coverage;
+  const double min = choice.survey.predicted_coverage - equal_coverage;
   // The coverage of a scanner also depends on the paths that can be flown.
-  const double wanted = problem.way_looks ? least : covered_by(problem, surveyed) - equal_coverage;
+  const double target_coverage =
+      problem.leg_observations ? min : covered_by(problem, surveyed) - equal_coverage;
   const auto cost = [&](const MissionFigures& figures) {
-    return figures.duration +
-           100.0 * options.search.price * std::max(0.0, wanted - figures.promised);
+    return figures.duration + 100.0 * options.search.price *
+                                  std::max(0.0, target_coverage - figures.predicted_coverage);
   };
 
   const auto try_tour = [&](const FoundTour& tour) {
     if (stop.stop_requested()) return;
-    std::optional<flight::Route> route = certified(plan, tour.views);
+    std::optional<flight::Route> route = verified_route(plan, tour.views);
     if (!route) return;
-    const MissionFigures figures = figures_of(*route, asked.promised(*route));
-    if (figures.promised < least || cost(figures) >= cost(choice.anew)) return;
-    choice.anew = figures;
+    const MissionFigures figures = compute_figures(*route, asked.predicted_coverage(*route));
+    if (figures.predicted_coverage < min || cost(figures) >= cost(choice.replanned)) return;
+    choice.replanned = figures;
     choice.route = *std::move(route);
-    choice.is_anew = true;
+    choice.is_replanned = true;
   };
-  const FoundTour spared = spare_views(problem, views, least);
+  const FoundTour spared = remove_views(problem, views, min);
   if (spared.views.size() < views.size()) try_tour(spared);
   SearchSettings search = options.search;
-  if (problem.way_looks) search.moves_per_view /= dearer_ways;
+  if (problem.leg_observations) search.moves_per_view /= leg_cost_factor;
   if (problem.bend_time) search.moves_per_view *= more_passed_views;
-  try_tour(anneal(problem, spared.views, wanted, search, stop));
+  try_tour(anneal(problem, spared.views, target_coverage, search, stop));
 
-  choice.stations = asked.stations_of(choice.route);
+  choice.capture_points = asked.capture_plan(choice.route);
   choice.computing =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return choice;

@@ -29,32 +29,33 @@ struct MissionFigures {
   double duration = 0.0;  ///< [s]
   double length = 0.0;
   std::size_t views = 0;
-  std::size_t pieces = 0;  ///< Number of path segments; the vehicle stops after each.
-  double promised = 0.0;   ///< Predicted covered fraction of the surface measured by the survey.
+  std::size_t segments = 0;  ///< Number of path segments; the vehicle stops after each.
+  double predicted_coverage =
+      0.0;  ///< Predicted covered fraction of the surface measured by the survey.
 };
 
 /// Returns the figures of a verified route with the given predicted coverage.
-MissionFigures figures_of(const flight::Route& route, double promised);
+MissionFigures compute_figures(const flight::Route& route, double predicted_coverage);
 
 /// Stations in fixed order, with the path to each from the previous station or from above the pad.
 /// Empty paths are planned later.
-struct StationPlan {
+struct CapturePlan {
   std::vector<geometry::View> views;
-  std::vector<std::vector<Eigen::Vector3d>> ways;
+  std::vector<std::vector<Eigen::Vector3d>> paths;
 };
 
 struct MissionChoice {
-  flight::Route route;    ///< The better of the two routes.
-  bool is_anew = false;   ///< True if the replanned route is the better one.
-  StationPlan stations;   ///< Stations of the route.
-  MissionFigures survey;  ///< Figures of the survey's views that have a verified return.
+  flight::Route route;         ///< The better of the two routes.
+  bool is_replanned = false;   ///< True if the replanned route is the better one.
+  CapturePlan capture_points;  ///< Stations of the route.
+  MissionFigures survey;       ///< Figures of the survey's views that have a verified return.
   /// Figures of the best replanned mission; equal to `survey` if no better one was found.
-  MissionFigures anew;
+  MissionFigures replanned;
   double computing = 0.0;  ///< Computation time including verification of routes [s].
 };
 
 /// Plans a verified route through views in fixed order.
-using PlanRoute = std::function<flight::Route(const StationPlan&)>;
+using PlanRoute = std::function<flight::Route(const CapturePlan&)>;
 
 /// Options for replanning in addition to those of flight and planner.
 struct ChoiceOptions {
@@ -71,7 +72,7 @@ struct ChoiceOptions {
 /// so far.
 MissionChoice choose_mission(const flight::FlightOptions& flight,
                              const survey::PlannerOptions& planner, const ChoiceOptions& options,
-                             const survey::skycap::GainField& surface,
+                             const survey::surfel::GainField& surface,
                              const flight::FreeSpace& space,
                              const std::vector<geometry::View>& surveyed, flight::Route present,
                              const PlanRoute& plan, const std::stop_token& stop = {});

@@ -17,14 +17,14 @@ using geometry::View;
 constexpr std::size_t shifts = 56, drops = 6, replacements = 10, joins = 10, additions = 4,
                       carries = 7;  // The remaining moves reverse a part of the tour.
 /// Frequency of moves that add a view en route in fly-through capture [%].
-constexpr std::size_t additions_on_way = 20;
+constexpr std::size_t en_route_additions = 20;
 /// Standard deviations of small and large shifts of a view and of shifts of its aim, in view
 /// distances.
 constexpr double small_shift = 0.036, large_shift = 0.12, aim_shift = 0.1;
 constexpr double large_share = 0.4;  ///< Fraction of large shifts.
 /// Range of distances of new views from their targets in view distances, and maximum angle to the
 /// normal.
-constexpr double nearest = 0.4, farthest = 1.3, most_tilt = 1.22;  // 70 degrees
+constexpr double nearest = 0.4, farthest = 1.3, max_tilt = 1.22;  // 70 degrees
 /// New views observe the target with the most missing area out of this number of random targets.
 constexpr int targets_drawn = 6;
 
@@ -38,9 +38,10 @@ std::size_t TourMoves::below(std::size_t end) {
   return static_cast<std::size_t>(random_.uniform() * static_cast<double>(end));
 }
 
-std::optional<Move> TourMoves::propose(const Stops& stops, const DoseSum& covered, double scale) {
+std::optional<Move> TourMoves::propose(const Stops& stops, const ObservationSum& covered,
+                                       double scale) {
   if (stops.empty()) return add(stops, covered);
-  if (problem_.bend_time && below(100) < additions_on_way) return add_on_way(stops, covered);
+  if (problem_.bend_time && below(100) < en_route_additions) return add_en_route(stops, covered);
   std::size_t kind = below(100);
   const auto is_drawn = [&](std::size_t share) {
     if (kind < share) return true;
@@ -56,7 +57,7 @@ std::optional<Move> TourMoves::propose(const Stops& stops, const DoseSum& covere
   return turn(stops);
 }
 
-std::uint32_t TourMoves::missing_target(const DoseSum& covered) {
+std::uint32_t TourMoves::missing_target(const ObservationSum& covered) {
   auto best = static_cast<std::uint32_t>(below(covered.size()));
   for (int i = 1; i < targets_drawn; ++i) {
     const auto other = static_cast<std::uint32_t>(below(covered.size()));
@@ -65,16 +66,16 @@ std::uint32_t TourMoves::missing_target(const DoseSum& covered) {
   return best;
 }
 
-std::optional<View> TourMoves::view_of_missing(const DoseSum& covered) {
+std::optional<View> TourMoves::find_missing_surface_view(const ObservationSum& covered) {
   const auto& target = problem_.targets[missing_target(covered)];
   const Vector3d normal = target.normal.cast<double>();
   const Vector3d u = geometry::any_orthogonal(normal), v = normal.cross(u);
-  const double tilt = most_tilt * std::sqrt(random_.uniform());
+  const double tilt = max_tilt * std::sqrt(random_.uniform());
   const double azimuth = 2.0 * std::numbers::pi * random_.uniform();
   const Vector3d towards =
       std::cos(tilt) * normal + std::sin(tilt) * (std::cos(azimuth) * u + std::sin(azimuth) * v);
-  return problem_.view_of(target.position.cast<double>(), towards,
-                          problem_.view_distance * random_.between(nearest, farthest));
+  return problem_.find_view(target.position.cast<double>(), towards,
+                            problem_.view_distance * random_.between(nearest, farthest));
 }
 
 View TourMoves::shifted(const View& view, double shift, double aim) {
@@ -107,8 +108,8 @@ std::optional<Move> TourMoves::drop(const Stops& stops) {
   return move;
 }
 
-std::optional<Move> TourMoves::replace(const Stops& stops, const DoseSum& covered) {
-  const auto view = view_of_missing(covered);
+std::optional<Move> TourMoves::replace(const Stops& stops, const ObservationSum& covered) {
+  const auto view = find_missing_surface_view(covered);
   if (!view) return std::nullopt;
   std::optional<Move> move = drop(stops);
   insert(*move, *view);
@@ -131,8 +132,8 @@ std::optional<Move> TourMoves::join(const Stops& stops) {
   return move;
 }
 
-std::optional<Move> TourMoves::add(const Stops& stops, const DoseSum& covered) {
-  const auto view = view_of_missing(covered);
+std::optional<Move> TourMoves::add(const Stops& stops, const ObservationSum& covered) {
+  const auto view = find_missing_surface_view(covered);
   if (!view) return std::nullopt;
   Move move{stops, {}};
   insert(move, *view);
@@ -141,24 +142,26 @@ std::optional<Move> TourMoves::add(const Stops& stops, const DoseSum& covered) {
 
 /// Adds a view where the path is closest to the best position for observing the target, with a
 /// random offset along the path.
-std::optional<Move> TourMoves::add_on_way(const Stops& stops, const DoseSum& covered) {
+std::optional<Move> TourMoves::add_en_route(const Stops& stops, const ObservationSum& covered) {
   constexpr double beside = 0.2;  // Standard deviation in view distances.
   const auto& target = problem_.targets[missing_target(covered)];
   const Vector3d seen = target.position.cast<double>();
   const Vector3d best = seen + problem_.view_distance * target.normal.cast<double>();
   std::size_t leg = 0;
-  Vector3d place = problem_.home;
+  Vector3d leg_point = problem_.home;
   for (std::size_t i = 0; i <= stops.size(); ++i) {
-    const Vector3d from = end_of_leg(stops, i), way = end_of_leg(stops, i + 1) - from;
-    const double share = way.squaredNorm() > 0.0 ? way.dot(best - from) / way.squaredNorm() : 0.0;
-    const Vector3d on_leg = from + std::clamp(share, 0.0, 1.0) * way;
-    if (i == 0 || (on_leg - best).norm() < (place - best).norm()) leg = i, place = on_leg;
+    const Vector3d from = leg_end(stops, i), displacement = leg_end(stops, i + 1) - from;
+    const double share = displacement.squaredNorm() > 0.0
+                             ? displacement.dot(best - from) / displacement.squaredNorm()
+                             : 0.0;
+    const Vector3d on_leg = from + std::clamp(share, 0.0, 1.0) * displacement;
+    if (i == 0 || (on_leg - best).norm() < (leg_point - best).norm()) leg = i, leg_point = on_leg;
   }
-  const Vector3d way = end_of_leg(stops, leg + 1) - end_of_leg(stops, leg);
-  if (way.norm() == 0.0) return std::nullopt;
-  place += beside * problem_.view_distance * random_.normal() * way.normalized();
-  if ((place - seen).norm() < nearest * problem_.view_distance) return std::nullopt;
-  Move move{stops, {}, stop(geometry::look_at(place, seen))};
+  const Vector3d displacement = leg_end(stops, leg + 1) - leg_end(stops, leg);
+  if (displacement.norm() == 0.0) return std::nullopt;
+  leg_point += beside * problem_.view_distance * random_.normal() * displacement.normalized();
+  if ((leg_point - seen).norm() < nearest * problem_.view_distance) return std::nullopt;
+  Move move{stops, {}, stop(geometry::look_at(leg_point, seen))};
   move.stops.insert(move.stops.begin() + static_cast<std::ptrdiff_t>(leg), move.added);
   return move;
 }
@@ -190,19 +193,20 @@ std::optional<Move> TourMoves::turn(const Stops& stops) {
 }
 
 /// Returns the start of leg `leg`, which is the end of the previous leg.
-Vector3d TourMoves::end_of_leg(const Stops& stops, std::size_t leg) const {
+Vector3d TourMoves::leg_end(const Stops& stops, std::size_t leg) const {
   return leg == 0 || leg == stops.size() + 1 ? problem_.home : stops[leg - 1]->view.position;
 }
 
 /// Inserts the view at the position with the smallest detour.
 void TourMoves::insert(Move& move, const View& view) {
-  const auto place = [&](std::size_t i) { return end_of_leg(move.stops, i); };
+  const auto leg_point = [&](std::size_t i) { return leg_end(move.stops, i); };
   std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i <= move.stops.size(); ++i) {
-    const double detour = (view.position - place(i)).norm() +
-                          (place(i + 1) - view.position).norm() - (place(i + 1) - place(i)).norm();
-    if (detour < least) best = i, least = detour;
+    const double detour = (view.position - leg_point(i)).norm() +
+                          (leg_point(i + 1) - view.position).norm() -
+                          (leg_point(i + 1) - leg_point(i)).norm();
+    if (detour < min) best = i, min = detour;
   }
   move.added = stop(view);
   move.stops.insert(move.stops.begin() + static_cast<std::ptrdiff_t>(best), move.added);

@@ -33,22 +33,22 @@ class TourMoves {
   /// in the order or reverse a part of the tour. `scale` is the relative step size, which starts at
   /// 1 and decreases. `covered` is the coverage of the tour. Returns an empty value if the drawn
   /// move is not possible.
-  std::optional<Move> propose(const Stops& stops, const DoseSum& covered, double scale);
+  std::optional<Move> propose(const Stops& stops, const ObservationSum& covered, double scale);
 
  private:
   std::size_t below(std::size_t end);
-  std::uint32_t missing_target(const DoseSum& covered);
-  std::optional<geometry::View> view_of_missing(const DoseSum& covered);
+  std::uint32_t missing_target(const ObservationSum& covered);
+  std::optional<geometry::View> find_missing_surface_view(const ObservationSum& covered);
   geometry::View shifted(const geometry::View& view, double shift, double aim_shift);
   std::optional<Move> shift(const Stops& stops, double scale);
   std::optional<Move> drop(const Stops& stops);
-  std::optional<Move> replace(const Stops& stops, const DoseSum& covered);
+  std::optional<Move> replace(const Stops& stops, const ObservationSum& covered);
   std::optional<Move> join(const Stops& stops);
-  std::optional<Move> add(const Stops& stops, const DoseSum& covered);
-  std::optional<Move> add_on_way(const Stops& stops, const DoseSum& covered);
+  std::optional<Move> add(const Stops& stops, const ObservationSum& covered);
+  std::optional<Move> add_en_route(const Stops& stops, const ObservationSum& covered);
   std::optional<Move> carry(const Stops& stops);
   std::optional<Move> turn(const Stops& stops);
-  Eigen::Vector3d end_of_leg(const Stops& stops, std::size_t leg) const;
+  Eigen::Vector3d leg_end(const Stops& stops, std::size_t leg) const;
   void insert(Move& move, const geometry::View& view);
 
   const TourProblem& problem_;

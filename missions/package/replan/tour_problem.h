@@ -17,24 +17,25 @@ namespace skycap::missions::package {
 struct TourProblem {
   using View = geometry::View;
 
-  std::span<const survey::skycap::GainField::Target> targets;
-  std::function<std::vector<survey::skycap::Look>(const View&)> looks;
+  std::span<const survey::surfel::GainField::Target> targets;
+  std::function<std::vector<survey::surfel::Observation>(const View&)> observations;
   /// Returns the observations on the straight path between two views, where null is the home
   /// position. The result must be the same in both directions. Empty if the sensor does not measure
   /// en route.
-  std::function<std::vector<survey::skycap::Look>(const View* from, const View* to)> way_looks{};
+  std::function<std::vector<survey::surfel::Observation>(const View* from, const View* to)>
+      leg_observations{};
 
   /// Returns the view of a target from a direction (unit vector) and distance [m], adjusted to the
   /// limits. Returns an empty value if the limits allow no such view.
   std::function<std::optional<View>(const Eigen::Vector3d& target, const Eigen::Vector3d& towards,
                                     double distance)>
-      view_of;
+      find_view;
   /// Return whether the camera may have this pose: by inexpensive limits, and by verified free
   /// space.
   std::function<bool(const View&)> is_allowed, is_in_free_space;
   /// Returns true if a verified return from the view exists. Evaluated last because it is
   /// expensive.
-  std::function<bool(const View&)> has_way_home;
+  std::function<bool(const View&)> has_return_path;
 
   Eigen::Vector3d home = Eigen::Vector3d::Zero();  ///< Position above the pad.
   /// Returns the duration of the straight path between two views, including the final rotation of

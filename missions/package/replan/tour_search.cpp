@@ -28,33 +28,33 @@ std::vector<View> viewed_from(const Stops& stops) {
 /// State of the search: a tour with its coverage and duration.
 class Search {
  public:
-  Search(const TourProblem& problem, const std::vector<View>& tour, double wanted,
+  Search(const TourProblem& problem, const std::vector<View>& tour, double target_coverage,
          std::uint64_t seed)
       : problem_(problem),
-        wanted_(wanted),
+        target_coverage_(target_coverage),
         random_(seed, 0),
         moves_(problem, random_),
         legs_(problem),
-        ways_(problem),
+        leg_doses_(problem),
         covered_(problem.targets) {
     for (const View& view : tour) {
       const std::shared_ptr<Stop> stop = moves_.stop(view);
-      stop->doses = doses_of(problem.looks(view));
-      covered_.add(stop->doses);
+      stop->strengths = observation_strengths(problem.observations(view));
+      covered_.add(stop->strengths);
       stops_.push_back(stop);
     }
-    ways_.change(covered_, {}, stops_);
-    time_ = legs_.proven(stops_);
+    leg_doses_.change(covered_, {}, stops_);
+    time_ = legs_.verified_time(stops_);
     keep_best();
   }
 
-  void spare() {
-    while (const auto without = least_without_one()) {
+  void remove_views() {
+    while (const auto without = remove_one_view()) {
       stops_ = *without;
-      time_ = legs_.proven(stops_);
-      covered_ = DoseSum(problem_.targets);
-      for (const auto& stop : stops_) covered_.add(stop->doses);
-      ways_.change(covered_, {}, stops_);
+      time_ = legs_.verified_time(stops_);
+      covered_ = ObservationSum(problem_.targets);
+      for (const auto& stop : stops_) covered_.add(stop->strengths);
+      leg_doses_.change(covered_, {}, stops_);
     }
     keep_best();
   }
@@ -68,7 +68,7 @@ class Search {
       const double temperature = settings.first_temperature * std::exp(progress * fall);
       const double worst = cost(time_) - temperature * std::log(1.0 - random_.uniform());
       const auto move = moves_.propose(stops_, covered_, std::pow(last_scale, progress));
-      if (move && take(*move, worst)) keep_best();
+      if (move && accept(*move, worst)) keep_best();
     }
   }
 
@@ -78,23 +78,23 @@ class Search {
 
  private:
   double cost(double time) const {
-    return time + price_ * std::max(0.0, wanted_ - covered_.covered());
+    return time + price_ * std::max(0.0, target_coverage_ - covered_.covered());
   }
 
   /// Applies the move if the new cost is at most `worst`. Inexpensive checks are made first.
-  bool take(const Move& move, double worst) {
-    if (legs_.least(move.stops) > worst) return false;
+  bool accept(const Move& move, double worst) {
+    if (legs_.min(move.stops) > worst) return false;
     if (move.added) {
       const View& view = move.added->view;
       if (!problem_.is_allowed(view) || !problem_.is_in_free_space(view)) return false;
-      move.added->doses = doses_of(problem_.looks(view));
+      move.added->strengths = observation_strengths(problem_.observations(view));
     }
     change(move.removed, move.added.get());
-    ways_.change(covered_, stops_, move.stops);
-    double time = legs_.least(move.stops);
-    while (cost(time) <= worst && legs_.ask_next(move.stops)) time = legs_.least(move.stops);
-    if (cost(time) > worst || (move.added && !problem_.has_way_home(move.added->view))) {
-      ways_.change(covered_, move.stops, stops_);
+    leg_doses_.change(covered_, stops_, move.stops);
+    double time = legs_.min(move.stops);
+    while (cost(time) <= worst && legs_.ask_next(move.stops)) time = legs_.min(move.stops);
+    if (cost(time) > worst || (move.added && !problem_.has_return_path(move.added->view))) {
+      leg_doses_.change(covered_, move.stops, stops_);
       change_back(move.removed, move.added.get());
       return false;
     }
@@ -104,49 +104,51 @@ class Search {
   }
 
   void change(const Stops& removed, const Stop* added) {
-    for (const auto& stop : removed) covered_.remove(stop->doses);
-    if (added != nullptr) covered_.add(added->doses);
+    for (const auto& stop : removed) covered_.remove(stop->strengths);
+    if (added != nullptr) covered_.add(added->strengths);
   }
 
   void change_back(const Stops& removed, const Stop* added) {
-    if (added != nullptr) covered_.remove(added->doses);
-    for (const auto& stop : removed) covered_.add(stop->doses);
+    if (added != nullptr) covered_.remove(added->strengths);
+    for (const auto& stop : removed) covered_.add(stop->strengths);
   }
 
   void keep_best() {
     const double covered = covered_.covered();
-    const auto is_best = [&] { return covered >= wanted_ && (!best_ || time_ < best_->time); };
+    const auto is_best = [&] {
+      return covered >= target_coverage_ && (!best_ || time_ < best_->time);
+    };
     if (!is_best()) return;
-    time_ = legs_.proven(stops_);
+    time_ = legs_.verified_time(stops_);
     if (is_best()) best_ = FoundTour{viewed_from(stops_), time_, covered};
   }
 
   /// Returns the fastest tour with one stop less that still has the required coverage.
-  std::optional<Stops> least_without_one() {
+  std::optional<Stops> remove_one_view() {
     std::optional<Stops> best;
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < stops_.size(); ++i) {
       Stops without = stops_;
       without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
-      covered_.remove(stops_[i]->doses);
-      ways_.change(covered_, stops_, without);
-      const bool is_enough = covered_.covered() >= wanted_;
-      ways_.change(covered_, without, stops_);
-      covered_.add(stops_[i]->doses);
+      covered_.remove(stops_[i]->strengths);
+      leg_doses_.change(covered_, stops_, without);
+      const bool is_enough = covered_.covered() >= target_coverage_;
+      leg_doses_.change(covered_, without, stops_);
+      covered_.add(stops_[i]->strengths);
       if (!is_enough) continue;
-      const double time = legs_.proven(without);
-      if (time < least) best = std::move(without), least = time;
+      const double time = legs_.verified_time(without);
+      if (time < min) best = std::move(without), min = time;
     }
     return best;
   }
 
   const TourProblem& problem_;
-  double wanted_;
+  double target_coverage_;
   geometry::RandomNumbers random_;
   TourMoves moves_;
   LegTimes legs_;
-  WayDoses ways_;
-  DoseSum covered_;
+  LegDoses leg_doses_;
+  ObservationSum covered_;
   Stops stops_;
   double time_ = 0.0;
   double price_ = 0.0;  ///< Cost of missing the whole surface [s].
@@ -155,27 +157,28 @@ class Search {
 
 }  // namespace
 
-FoundTour spare_views(const TourProblem& problem, const std::vector<View>& tour, double wanted) {
-  Search search(problem, tour, wanted, 0);
-  search.spare();
+FoundTour remove_views(const TourProblem& problem, const std::vector<View>& tour,
+                       double target_coverage) {
+  Search search(problem, tour, target_coverage, 0);
+  search.remove_views();
   return search.found();
 }
 
-FoundTour anneal(const TourProblem& problem, const std::vector<View>& tour, double wanted,
+FoundTour anneal(const TourProblem& problem, const std::vector<View>& tour, double target_coverage,
                  const SearchSettings& settings, const std::stop_token& stop) {
-  Search search(problem, tour, wanted, settings.seed);
+  Search search(problem, tour, target_coverage, settings.seed);
   search.anneal(settings, stop);
   return search.found();
 }
 
 double covered_by(const TourProblem& problem, const std::vector<View>& views) {
-  DoseSum covered(problem.targets);
-  for (const View& view : views) covered.add(doses_of(problem.looks(view)));
-  if (!problem.way_looks) return covered.covered();
+  ObservationSum covered(problem.targets);
+  for (const View& view : views) covered.add(observation_strengths(problem.observations(view)));
+  if (!problem.leg_observations) return covered.covered();
   for (std::size_t i = 0; i <= views.size() && !views.empty(); ++i) {
     const auto* from = i == 0 ? nullptr : &views[i - 1];
     const auto* to = i == views.size() ? nullptr : &views[i];
-    covered.add(doses_of(problem.way_looks(from, to)));
+    covered.add(observation_strengths(problem.leg_observations(from, to)));
   }
   return covered.covered();
 }

@@ -24,15 +24,16 @@ struct SearchSettings {
 };
 
 /// Repeatedly removes the view whose removal saves the most time, while the covered fraction of the
-/// targets' area stays at least `wanted`.
-FoundTour spare_views(const TourProblem& problem, const std::vector<geometry::View>& tour,
-                      double wanted);
+/// targets' area stays at least `target_coverage`.
+FoundTour remove_views(const TourProblem& problem, const std::vector<geometry::View>& tour,
+                       double target_coverage);
 
-/// Returns the fastest tour found that covers the fraction `wanted`. The search starts from `tour`.
-/// If `tour` has this coverage, the result is not slower by the estimates of the search. A stop
-/// request ends the search early.
-FoundTour anneal(const TourProblem& problem, const std::vector<geometry::View>& tour, double wanted,
-                 const SearchSettings& settings, const std::stop_token& stop = {});
+/// Returns the fastest tour found that covers the fraction `target_coverage`. The search starts
+/// from `tour`. If `tour` has this coverage, the result is not slower by the estimates of the
+/// search. A stop request ends the search early.
+FoundTour anneal(const TourProblem& problem, const std::vector<geometry::View>& tour,
+                 double target_coverage, const SearchSettings& settings,
+                 const std::stop_token& stop = {});
 
 /// Returns the expected covered fraction of the targets' area for a tour through `views`.
 double covered_by(const TourProblem& problem, const std::vector<geometry::View>& views);

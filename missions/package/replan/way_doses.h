@@ -13,20 +13,20 @@ namespace skycap::missions::package {
 
 /// Cache of the doses of each straight path, which are independent of its direction. Keeps a
 /// reference to the problem.
-class WayDoses {
+class LegDoses {
  public:
-  explicit WayDoses(const TourProblem& problem) : problem_(problem) {}
+  explicit LegDoses(const TourProblem& problem) : problem_(problem) {}
 
   /// Replaces the doses of the tour `from` in the sum by those of the tour `to`. Paths in both
   /// tours are not evaluated.
-  void change(DoseSum& sum, const Stops& from, const Stops& to);
+  void change(ObservationSum& sum, const Stops& from, const Stops& to);
 
  private:
-  const std::vector<Dose>& doses(const Stop* a, const Stop* b);
+  const std::vector<ObservationStrength>& strengths(const Stop* a, const Stop* b);
 
   const TourProblem& problem_;
   /// Doses by path; the key contains the numbers of both stops.
-  std::unordered_map<std::uint64_t, std::vector<Dose>> doses_;
+  std::unordered_map<std::uint64_t, std::vector<ObservationStrength>> strengths_;
 };
 
 }  // namespace skycap::missions::package

@@ -11,7 +11,7 @@ namespace skycap::missions::package {
 namespace {
 
 using Eigen::Vector3d;
-using flight::Dialect;
+using flight::AutopilotType;
 
 std::string metres(double length) { return support::short_text(length) + " m"; }
 
@@ -21,46 +21,47 @@ ReturnCheck check_returns(const std::filesystem::path& file,
                           const std::optional<double>& return_height,
                           const flight::FlightOptions& options, const flight::FreeSpace& space,
                           const std::vector<Vector3d>& points) {
-  const std::optional<Dialect> dialect =
-      options.is_flown() ? dialect_of(file, options.flown()) : std::nullopt;
-  if (!dialect || points.size() < 2) {
+  const std::optional<AutopilotType> autopilot =
+      options.has_vehicle() ? autopilot_for_file(file, options.required_vehicle()) : std::nullopt;
+  if (!autopilot || points.size() < 2) {
     return {true, "returns not checked: no autopilot returns by this file"};
   }
   std::vector<flight::Segment> legs;
   for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
   const double ground = options.pad(options.airspace.base).z();
-  flight::ReturnLaw law{.dialects = {*dialect},
-                        .landings = {{points[0].x(), points[0].y(), ground}},
-                        .landing_climb = options.climb()};
-  if (*dialect != Dialect::dji) {
+  flight::RtlProfile rtl_profile{.autopilots = {*autopilot},
+                                 .landings = {{points[0].x(), points[0].y(), ground}},
+                                 .landing_climb = options.climb()};
+  if (*autopilot != AutopilotType::dji) {
     const std::vector<Vector3d>& rally = options.rally;
-    law.landings.insert(law.landings.end(), rally.begin(), rally.end());
+    rtl_profile.landings.insert(rtl_profile.landings.end(), rally.begin(), rally.end());
   }
   const double clearance =
       std::max(0.0, flight::return_clearance(options.clearance) - flight::rounding_bound);
 
-  const auto stated = stated_height(file, return_height, *dialect);
+  const auto stated = stated_height(file, return_height, *autopilot);
   if (stated && !stated->problems.empty()) {
     return {false, "not safe, " + stated->by + ": " + stated->problems.front()};
   }
   std::string fault;
   if (stated) {
-    law.level = ground + stated->height;
-    const flight::ReturnSearch proof = prove_returns(space, legs, law, clearance);
-    if (proof.found) {
+    rtl_profile.level = ground + stated->height;
+    const flight::ReturnSearch verification = verify_returns(space, legs, rtl_profile, clearance);
+    if (verification.found) {
       return {true, "all returns verified at " + metres(stated->height) + " (" + stated->by +
-                        "), minimum clearance " + metres(proof.found->clearance)};
+                        "), minimum clearance " + metres(verification.found->clearance)};
     }
-    fault = "not safe, at " + metres(stated->height) + " (" + stated->by + ") " + proof.why + "; ";
+    fault = "not safe, at " + metres(stated->height) + " (" + stated->by + ") " +
+            verification.reason + "; ";
   }
   const double top = space.extent().isEmpty() ? ground : space.extent().max().z();
-  const flight::ReturnSearch least =
-      least_return(space, legs, law, options.highest_return(ground, top), clearance);
-  if (!least.found) {
-    return {false, fault.empty() ? "not safe, no return altitude is: " + least.why
+  const flight::ReturnSearch min = min_return_altitude(
+      space, legs, rtl_profile, options.max_return_altitude(ground, top), clearance);
+  if (!min.found) {
+    return {false, fault.empty() ? "not safe, no return altitude is: " + min.reason
                                  : fault + " no other altitude is safe"};
   }
-  const std::string needed = metres(least.found->height);
+  const std::string needed = metres(min.found->height);
   if (!fault.empty()) return {false, fault + "the lowest safe return altitude is " + needed};
   return {true, "the file does not contain the vehicle's return altitude: set it to " + needed +
                     " above take-off, the lowest verified one"};

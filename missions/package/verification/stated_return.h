@@ -12,8 +12,8 @@ namespace skycap::missions::package {
 
 /// Returns the autopilot for a route file, based on the file name. Returns an empty value for map
 /// and set-point files.
-std::optional<flight::Dialect> dialect_of(const std::filesystem::path& file,
-                                          const flight::Vehicle& vehicle);
+std::optional<flight::AutopilotType> autopilot_for_file(const std::filesystem::path& file,
+                                                        const flight::Vehicle& vehicle);
 
 /// Return altitude above take-off [m] and its source.
 struct StatedHeight {
@@ -26,6 +26,6 @@ struct StatedHeight {
 /// the same folder. Throws Error{bad_file} for an unreadable parameter file.
 std::optional<StatedHeight> stated_height(const std::filesystem::path& route,
                                           const std::optional<double>& given,
-                                          flight::Dialect dialect);
+                                          flight::AutopilotType autopilot);
 
 }  // namespace skycap::missions::package

@@ -22,10 +22,10 @@ geometry::Mesh above(geometry::Mesh mesh, double height) {
 }
 
 /// Returns the triangles within `radius` of a position in plan view.
-std::vector<flight::Triangle> triangles_at(const geometry::Mesh& mesh, const Vector3d& place,
+std::vector<flight::Triangle> triangles_at(const geometry::Mesh& mesh, const Vector3d& position,
                                            double radius) {
-  const Eigen::AlignedBox2d around(place.head<2>().array() - radius,
-                                   place.head<2>().array() + radius);
+  const Eigen::AlignedBox2d around(position.head<2>().array() - radius,
+                                   position.head<2>().array() + radius);
   std::vector<flight::Triangle> near;
   for (const auto& [a, b, c] : mesh.triangles) {
     const flight::Triangle triangle{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
@@ -63,21 +63,22 @@ TrueSpace true_space(const flight::FlightOptions& options, const geometry::Mesh&
   return {std::move(everywhere), flight::KnownSpace(without_ground(std::move(obstacles)))};
 }
 
-std::vector<flight::PadGround> true_grounds(const flight::FlightOptions& options,
-                                            const geometry::Mesh& model, const Vector3d& pad) {
+std::vector<flight::LandingSurface> true_landing_surfaces(const flight::FlightOptions& options,
+                                                          const geometry::Mesh& model,
+                                                          const Vector3d& pad) {
   const double radius = options.pad_radius();
-  std::vector<flight::PadGround> found;
-  for (const Vector3d& place : options.landings(pad)) {
-    const std::vector<flight::Triangle> near = triangles_at(model, place, radius);
+  std::vector<flight::LandingSurface> found;
+  for (const Vector3d& position : options.landings(pad)) {
+    const std::vector<flight::Triangle> near = triangles_at(model, position, radius);
     std::vector<Vector3d> heights;
-    for (const Eigen::Vector2d& at : flight::places_on(place, radius)) {
-      const auto height = height_at(near, at, place.z(), radius + 1.0);
+    for (const Eigen::Vector2d& at : flight::landing_points(position, radius)) {
+      const auto height = height_at(near, at, position.z(), radius + 1.0);
       if (height) heights.emplace_back(at.x(), at.y(), *height);
     }
-    const auto ground = flight::pad_ground(place, heights, flight::GroundSource::scene);
+    const auto ground = flight::pad_ground(position, heights, flight::GroundSource::scene);
     if (ground) found.push_back(*ground);
   }
-  return options.grounds(pad, found);
+  return options.landing_surfaces(pad, found);
 }
 
 }  // namespace skycap::missions::package

@@ -22,8 +22,8 @@ TrueSpace true_space(const flight::FlightOptions& options, const geometry::Mesh&
 
 /// Returns the ground of the pad and rally points from the mesh. Where the mesh has no ground,
 /// returns the ground from other sources.
-std::vector<flight::PadGround> true_grounds(const flight::FlightOptions& options,
-                                            const geometry::Mesh& model,
-                                            const Eigen::Vector3d& pad);
+std::vector<flight::LandingSurface> true_landing_surfaces(const flight::FlightOptions& options,
+                                                          const geometry::Mesh& model,
+                                                          const Eigen::Vector3d& pad);
 
 }  // namespace skycap::missions::package

@@ -27,7 +27,7 @@ struct Quantity {
   string_view rest;
 };
 
-std::optional<Quantity> quantity_of(string_view text) {
+std::optional<Quantity> parse_quantity(string_view text) {
   text = geometry::trimmed(text);
   std::size_t end = 0;
   while (end < text.size() &&
@@ -42,7 +42,7 @@ std::optional<Quantity> quantity_of(string_view text) {
 
 /// Returns the length of a unit in metres, or an empty value for unknown names. An empty name
 /// stands for metres.
-std::optional<double> metres_of_unit(string_view name) {
+std::optional<double> find_metres_per_unit(string_view name) {
   std::string unit = geometry::lower_case(name);
   std::erase(unit, '.');
   for (const string_view metre : {"", "m", "meter", "meters", "metre", "metres", "mtr"}) {
@@ -64,15 +64,15 @@ std::optional<double> metres_of_unit(string_view name) {
 std::optional<double> feet_and_inches(string_view text) {
   const std::size_t mark = text.find_first_of("'f");
   if (mark == string_view::npos) return std::nullopt;
-  const std::optional<Quantity> feet = quantity_of(text.substr(0, mark));
+  const std::optional<Quantity> feet = parse_quantity(text.substr(0, mark));
   if (!feet || !feet->rest.empty()) return std::nullopt;
   string_view rest = text.substr(mark);
   for (const string_view name : {"feet", "foot", "ft", "'"}) {
     if (!rest.starts_with(name)) continue;
     rest.remove_prefix(name.size());
-    const std::optional<Quantity> inches = quantity_of(rest);
+    const std::optional<Quantity> inches = parse_quantity(rest);
     if (!inches) return std::nullopt;
-    const std::optional<double> unit = metres_of_unit(inches->rest);
+    const std::optional<double> unit = find_metres_per_unit(inches->rest);
     if (!inches->rest.empty() && unit != inch) return std::nullopt;
     return feet->number * foot + inches->number * inch;
   }
@@ -81,34 +81,34 @@ std::optional<double> feet_and_inches(string_view text) {
 
 std::optional<double> one_length(string_view text) {
   text = geometry::trimmed(text);
-  if (const std::optional<Quantity> quantity = quantity_of(text)) {
-    if (const std::optional<double> unit = metres_of_unit(quantity->rest)) {
+  if (const std::optional<Quantity> quantity = parse_quantity(text)) {
+    if (const std::optional<double> unit = find_metres_per_unit(quantity->rest)) {
       return quantity->number * *unit;
     }
     // In a range, only the second number may have a unit.
     if (quantity->rest.starts_with('-') || quantity->rest.starts_with("\xE2\x80\x93")) {
       const std::size_t dash = quantity->rest.starts_with('-') ? 1 : 3;
-      const std::optional<Quantity> most = quantity_of(quantity->rest.substr(dash));
-      const std::optional<double> unit = most ? metres_of_unit(most->rest) : std::nullopt;
-      if (unit) return std::max(quantity->number, most->number) * *unit;
+      const std::optional<Quantity> max = parse_quantity(quantity->rest.substr(dash));
+      const std::optional<double> unit = max ? find_metres_per_unit(max->rest) : std::nullopt;
+      if (unit) return std::max(quantity->number, max->number) * *unit;
     }
   }
   return feet_and_inches(text);
 }
 
 /// Returns the maximum of a list, or an empty value if an entry cannot be parsed.
-std::optional<double> greatest_of(string_view text,
-                                  const std::function<std::optional<double>(string_view)>& read) {
-  std::optional<double> greatest;
+std::optional<double> find_max_value(
+    string_view text, const std::function<std::optional<double>(string_view)>& read) {
+  std::optional<double> max_height;
   while (true) {
     const std::size_t end = std::min(text.find_first_of(";|"), text.size());
     const string_view part = geometry::trimmed(text.substr(0, end));
     if (!part.empty()) {
       const std::optional<double> value = read(part);
       if (!value) return std::nullopt;
-      greatest = std::max(greatest.value_or(*value), *value);
+      max_height = std::max(max_height.value_or(*value), *value);
     }
-    if (end == text.size()) return greatest;
+    if (end == text.size()) return max_height;
     text.remove_prefix(end + 1);
   }
 }
@@ -117,13 +117,13 @@ std::optional<double> one_count(string_view text) {
   double sum = 0.0;
   while (true) {
     const std::size_t plus = std::min(text.find('+', 1), text.size());
-    const std::optional<Quantity> part = quantity_of(text.substr(0, plus));
+    const std::optional<Quantity> part = parse_quantity(text.substr(0, plus));
     if (!part) return std::nullopt;
     if (!part->rest.empty()) {  // For example "2-3".
       if (plus != text.size() || !part->rest.starts_with('-')) return std::nullopt;
-      const std::optional<Quantity> most = quantity_of(part->rest.substr(1));
-      if (!most || !most->rest.empty()) return std::nullopt;
-      return std::max(part->number, most->number);
+      const std::optional<Quantity> max = parse_quantity(part->rest.substr(1));
+      if (!max || !max->rest.empty()) return std::nullopt;
+      return std::max(part->number, max->number);
     }
     sum += part->number;
     if (plus == text.size()) return sum;
@@ -186,9 +186,9 @@ class HeightReader {
     constexpr std::array<string_view, 6> usual{"height",      "building_height", "est_height",
                                                "bldg_height", "hoehe",           "max_height"};
     const std::optional<Found> height =
-        height_attribute_.empty() ? find(object, usual) : find_given(object);
+        height_attribute_.empty() ? find(object, usual) : find_configured(object);
     if (height) {
-      const std::optional<double> metres = metres_of(height->value);
+      const std::optional<double> metres = parse_metres(height->value);
       if (!metres) {
         object.height_problem = "has the " + height->name + " '" + height->value.substr(0, 60) +
                                 "', which is not a height in metres or feet";
@@ -204,7 +204,7 @@ class HeightReader {
     read_storeys(object);
   }
 
-  std::optional<Found> find_given(const FileObject& object) const {
+  std::optional<Found> find_configured(const FileObject& object) const {
     const auto found = object.attributes.find(height_attribute_);
     if (found == object.attributes.end() || geometry::trimmed(found->second).empty()) {
       return std::nullopt;
@@ -218,7 +218,7 @@ class HeightReader {
     constexpr std::array<string_view, 1> roof_height{"roof_height"}, roof_levels{"roof_levels"};
     const std::optional<Found> levels = find(object, storeys);
     if (!levels) return;
-    const std::optional<double> count = storeys_of(levels->value);
+    const std::optional<double> count = parse_storeys(levels->value);
     if (!count) {
       object.height_problem = "has the " + levels->name + " '" + levels->value.substr(0, 60) +
                               "', which is not a number of storeys";
@@ -226,7 +226,7 @@ class HeightReader {
     }
     double roof = 0.0;
     if (const auto found = find(object, roof_height)) {
-      const std::optional<double> metres = metres_of(found->value);
+      const std::optional<double> metres = parse_metres(found->value);
       if (!metres) {
         object.height_problem = "has the " + found->name + " '" + found->value.substr(0, 60) +
                                 "', which is not a height in metres or feet";
@@ -234,7 +234,7 @@ class HeightReader {
       }
       roof = std::max(0.0, *metres);
     } else if (const auto in_roof = find(object, roof_levels)) {
-      const std::optional<double> more = storeys_of(in_roof->value);
+      const std::optional<double> more = parse_storeys(in_roof->value);
       if (!more) {
         object.height_problem = "has the " + in_roof->name + " '" + in_roof->value.substr(0, 60) +
                                 "', which is not a number of storeys";
@@ -256,11 +256,11 @@ class HeightReader {
     constexpr std::array<string_view, 2> heights{"min_height", "building_min_height"};
     constexpr std::array<string_view, 2> levels{"building_min_level", "min_level"};
     if (const auto found = find(object, heights)) {
-      object.min_height = metres_of(found->value);
+      object.min_height = parse_metres(found->value);
       if (!object.min_height) ++without_min_;
     } else if (const auto level = find(object, levels)) {
       // In Shapefiles, "building_m" may also be an abbreviation of the material.
-      const std::optional<double> count = storeys_of(level->value);
+      const std::optional<double> count = parse_storeys(level->value);
       if (count) object.min_height = storey * *count;
     }
     if (object.min_height && *object.min_height < 0.0) object.min_height = 0.0;
@@ -286,20 +286,20 @@ class HeightReader {
 
 }  // namespace
 
-std::optional<double> metres_of(string_view text) { return greatest_of(text, one_length); }
+std::optional<double> parse_metres(string_view text) { return find_max_value(text, one_length); }
 
-std::optional<double> storeys_of(string_view text) { return greatest_of(text, one_count); }
+std::optional<double> parse_storeys(string_view text) { return find_max_value(text, one_count); }
 
 void read_building_heights(FileContents& contents, const std::string& height_attribute) {
   HeightReader(contents, height_attribute).read();
 }
 
 std::string attribute_names(const FileObject& object) {
-  constexpr std::size_t most = 12;
+  constexpr std::size_t max = 12;
   std::string names;
   std::size_t count = 0;
   for (const auto& [name, value] : object.attributes) {
-    if (++count > most) return names + ", ...";
+    if (++count > max) return names + ", ...";
     names += (names.empty() ? "" : ", ") + one_line(name.substr(0, 40));
   }
   return names.empty() ? "none" : names;

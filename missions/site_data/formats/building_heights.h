@@ -13,10 +13,10 @@ namespace skycap::missions::site_data {
 
 /// Parses a length in metres: "12.5", "12,5 m", "40 ft", "7'4\"". Lists and ranges ("12;13",
 /// "10-12") give their maximum. Other text gives an empty value.
-std::optional<double> metres_of(std::string_view text);
+std::optional<double> parse_metres(std::string_view text);
 
 /// Parses a number of storeys: "4", "2;5" (maximum), "3+1" (sum).
-std::optional<double> storeys_of(std::string_view text);
+std::optional<double> parse_storeys(std::string_view text);
 
 /// Sets height and min_height of each outline from its attributes unless the file's reader has set
 /// them. `height_attribute` is the name of the height attribute; empty selects the known names.

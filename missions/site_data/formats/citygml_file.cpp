@@ -64,23 +64,23 @@ SurfaceKind kind_named(Name name) {
 }
 
 /// Parses the level of detail, for example 2 in "lod2MultiSurface".
-std::optional<double> level_of(Name name) {
+std::optional<double> read_detail_level(Name name) {
   if (!name.starts_with("lod") || name.size() < 4 || name[3] < '0' || name[3] > '9') {
     return std::nullopt;
   }
   return name[3] - '0';
 }
 
-pugi::xml_attribute attribute(pugi::xml_node node, Name wanted) {
+pugi::xml_attribute attribute(pugi::xml_node node, Name name) {
   for (const pugi::xml_attribute candidate : node.attributes()) {
-    if (local_name(candidate.name()) == wanted) return candidate;
+    if (local_name(candidate.name()) == name) return candidate;
   }
   return {};
 }
 
-pugi::xml_node child(pugi::xml_node node, Name wanted) {
+pugi::xml_node child(pugi::xml_node node, Name name) {
   for (const pugi::xml_node candidate : node.children()) {
-    if (local_name(candidate.name()) == wanted) return candidate;
+    if (local_name(candidate.name()) == name) return candidate;
   }
   return {};
 }
@@ -97,8 +97,8 @@ struct Surroundings {
 
 class Walker final : public pugi::xml_tree_walker {
  public:
-  Walker(const std::filesystem::path& file, FileContents& contents, std::size_t most_objects)
-      : file_(file), contents_(contents), most_objects_(most_objects) {
+  Walker(const std::filesystem::path& file, FileContents& contents, std::size_t max_objects)
+      : file_(file), contents_(contents), max_objects_(max_objects) {
     around_.emplace_back();
   }
 
@@ -119,32 +119,32 @@ class Walker final : public pugi::xml_tree_walker {
 
  private:
   void enter(pugi::xml_node node, Surroundings& here);
-  void take_system(pugi::xml_node node);
+  void read_reference_system(pugi::xml_node node);
   void enter_object(pugi::xml_node node, Name name, Surroundings& here);
   void read_attribute(pugi::xml_node node, Name name, const Surroundings& here);
   void read_polygon(pugi::xml_node node, Surroundings& here);
   void read_ring(pugi::xml_node boundary, int dimension);
   void read_positions(pugi::xml_node part, int& dimension);
 
-  struct Place {
+  struct PolygonIndex {
     std::size_t object, polygon;
   };
 
   const std::filesystem::path& file_;
   FileContents& contents_;
-  std::size_t most_objects_;
+  std::size_t max_objects_;
   /// Contexts of the elements from the root to the current one.
   std::vector<Surroundings> around_;
   std::map<std::string, std::size_t> left_out_;
-  std::unordered_map<std::string, SurfaceKind> kind_of_;  ///< Kinds by referenced identifier.
-  std::unordered_map<std::string, Place> unknown_;        ///< Polygons without a kind.
-  std::size_t polygons_ = 0, rings_without_place_ = 0, rings_without_heights_ = 0;
+  std::unordered_map<std::string, SurfaceKind> surface_kinds_;  ///< Kinds by referenced identifier.
+  std::unordered_map<std::string, PolygonIndex> unknown_;       ///< Polygons without a kind.
+  std::size_t polygons_ = 0, rings_without_position_ = 0, rings_without_heights_ = 0;
   std::vector<double> numbers_;  // Member to reuse its memory.
 };
 
 void Walker::enter(pugi::xml_node node, Surroundings& here) {
   const Name name = local_name(node.name());
-  take_system(node);
+  read_reference_system(node);
   if (const pugi::xml_attribute dimension = attribute(node, "srsDimension")) {
     here.dimension = dimension.as_int();
   }
@@ -161,13 +161,13 @@ void Walker::enter(pugi::xml_node node, Surroundings& here) {
     read_polygon(node, here);
     return;
   }
-  if (const std::optional<double> lod = level_of(name)) here.lod = lod;
+  if (const std::optional<double> lod = read_detail_level(name)) here.lod = lod;
   const SurfaceKind kind = kind_named(name);
   if (kind != SurfaceKind::unknown) here.kind = kind;
   if (here.kind != SurfaceKind::unknown) {
     const pugi::xml_attribute reference = attribute(node, "href");
     if (Name(reference.as_string()).starts_with('#')) {
-      kind_of_.emplace(reference.as_string() + 1, here.kind);
+      surface_kinds_.emplace(reference.as_string() + 1, here.kind);
     }
   }
   if (name == "Address") here.is_address = true;
@@ -176,7 +176,7 @@ void Walker::enter(pugi::xml_node node, Surroundings& here) {
 }
 
 /// Sets the reference system that an element defines for its contents.
-void Walker::take_system(pugi::xml_node node) {
+void Walker::read_reference_system(pugi::xml_node node) {
   const std::string crs = attribute(node, "srsName").as_string();
   if (crs.empty() || crs == contents_.crs) return;
   (contents_.crs.empty() ? contents_.crs : contents_.other_crs) = crs;
@@ -188,8 +188,8 @@ void Walker::enter_object(pugi::xml_node node, Name name, Surroundings& here) {
   const Name around = local_name(node.parent().name());
   const bool is_member = around == "cityObjectMember" || around == "featureMember";
   if (!id && !is_member) return;
-  if (contents_.objects.size() == most_objects_) {
-    fail_file(file_, "has more than " + std::to_string(most_objects_) + " objects");
+  if (contents_.objects.size() == max_objects_) {
+    fail_file(file_, "has more than " + std::to_string(max_objects_) + " objects");
   }
   FileObject& object = contents_.objects.emplace_back();
   object.id = id ? id.as_string() : std::to_string(contents_.objects.size());
@@ -216,7 +216,7 @@ void Walker::read_attribute(pugi::xml_node node, Name name, const Surroundings& 
 
 void Walker::read_polygon(pugi::xml_node node, Surroundings& here) {
   here.is_done = true;
-  if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+  if (++polygons_ > max_polygons) fail_file(file_, "has more than 50 million polygons");
   if (!here.object) {
     contents_.objects.emplace_back().id = std::to_string(contents_.objects.size());
     here.object = contents_.objects.size() - 1;
@@ -242,7 +242,7 @@ void Walker::read_polygon(pugi::xml_node node, Surroundings& here) {
   }
   if (here.kind == SurfaceKind::unknown) {
     if (const pugi::xml_attribute id = attribute(node, "id")) {
-      unknown_.emplace(id.as_string(), Place{*here.object, object.polygons.size() - 1});
+      unknown_.emplace(id.as_string(), PolygonIndex{*here.object, object.polygons.size() - 1});
     }
   }
 }
@@ -251,14 +251,14 @@ void Walker::read_polygon(pugi::xml_node node, Surroundings& here) {
 /// no area.
 void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   const pugi::xml_node ring = child(boundary, "LinearRing");
-  take_system(ring);
+  read_reference_system(ring);
   if (const pugi::xml_attribute own = attribute(ring, "srsDimension")) dimension = own.as_int();
   numbers_.clear();
   for (const pugi::xml_node part : ring.children()) {
     const Name name = local_name(part.name());
     if (name == "pointProperty" || name == "pointRep") {
       const pugi::xml_node point = child(part, "Point");
-      take_system(point);
+      read_reference_system(point);
       for (const pugi::xml_node position : point.children()) read_positions(position, dimension);
     } else {
       read_positions(part, dimension);
@@ -277,8 +277,8 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
     fail_file(file_, "has a ring of " + std::to_string(numbers_.size()) +
                          " numbers, which is not a multiple of " + std::to_string(dimension));
   }
-  if (numbers_.empty()) ++rings_without_place_;
-  if (contents_.corners.size() + numbers_.size() / width > most_corners) {
+  if (numbers_.empty()) ++rings_without_position_;
+  if (contents_.corners.size() + numbers_.size() / width > max_corners) {
     fail_file(file_, "has more than a thousand million corners");
   }
   for (std::size_t i = 0; i < numbers_.size(); i += width) {
@@ -291,7 +291,7 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
 void Walker::read_positions(pugi::xml_node part, int& dimension) {
   const Name name = local_name(part.name());
   if (name != "posList" && name != "pos" && name != "coordinates") return;
-  take_system(part);
+  read_reference_system(part);
   if (const pugi::xml_attribute own = attribute(part, "srsDimension")) dimension = own.as_int();
   GmlSeparators separators;
   if (name == "coordinates") {
@@ -304,16 +304,16 @@ void Walker::read_positions(pugi::xml_node part, int& dimension) {
 }
 
 void Walker::finish() {
-  for (const auto& [id, place] : unknown_) {
-    const auto kind = kind_of_.find(id);
-    if (kind == kind_of_.end()) continue;
-    contents_.objects[place.object].polygons[place.polygon].kind = kind->second;
+  for (const auto& [id, polygon] : unknown_) {
+    const auto kind = surface_kinds_.find(id);
+    if (kind == surface_kinds_.end()) continue;
+    contents_.objects[polygon.object].polygons[polygon.polygon].kind = kind->second;
   }
   for (const auto& [name, count] : left_out_) {
     contents_.notes.push_back(std::to_string(count) + " " + name + " ignored");
   }
-  if (rings_without_place_ > 0) {
-    contents_.notes.push_back(std::to_string(rings_without_place_) +
+  if (rings_without_position_ > 0) {
+    contents_.notes.push_back(std::to_string(rings_without_position_) +
                               " rings without straight lines ignored");
   }
   if (rings_without_heights_ == 0) return;
@@ -325,7 +325,7 @@ void Walker::finish() {
 }
 
 /// Returns the version from the namespaces of the root.
-std::string version_of(pugi::xml_node root) {
+std::string read_version(pugi::xml_node root) {
   for (const char* version : {"3.0", "2.0", "1.0"}) {
     for (const pugi::xml_attribute attribute : root.attributes()) {
       const Name value(attribute.value());
@@ -359,7 +359,7 @@ std::size_t xml_tree_bytes(std::string_view xml) {
 }  // namespace
 
 FileContents parse_citygml(const std::filesystem::path& file, std::string bytes,
-                           std::size_t most_objects) {
+                           std::size_t max_objects) {
   require_tree_fits(file, xml_tree_bytes(bytes));
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer_inplace(
@@ -372,8 +372,8 @@ FileContents parse_citygml(const std::filesystem::path& file, std::string bytes,
   }
   const pugi::xml_node root = document.document_element();
   FileContents contents;
-  contents.format = version_of(root);
-  Walker walker(file, contents, most_objects);
+  contents.format = read_version(root);
+  Walker walker(file, contents, max_objects);
   document.traverse(walker);
   walker.finish();
   contents.is_latitude_first = is_by_authority(contents.crs);

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 using Json = nlohmann::json;
 
-constexpr std::size_t most_json_corners = 16'000'000;
+constexpr std::size_t max_json_corners = 16'000'000;
 
 SurfaceKind kind_named(const std::string& name) {
   if (name == "WallSurface") return SurfaceKind::wall;
@@ -32,28 +32,28 @@ bool is_inside_a_building(const std::string& type) {
 }
 
 /// Conversion of a geometry's vertices to coordinates.
-struct VertexPlaces {
+struct VertexTransform {
   const Json* vertices = nullptr;
   Vector3d scale = Vector3d::Ones(), translation = Vector3d::Zero();
 
   Vector3d at(std::size_t index) const {
     const Json& vertex = vertices->at(index);
-    Vector3d place;
+    Vector3d corner;
     for (int axis = 0; axis < 3; ++axis) {
-      place[axis] =
+      corner[axis] =
           vertex.at(static_cast<std::size_t>(axis)).get<double>() * scale[axis] + translation[axis];
     }
-    return place;
+    return corner;
   }
 };
 
-Vector3d vector_of(const Json& numbers) {
+Vector3d to_vector(const Json& numbers) {
   return {numbers.at(0).get<double>(), numbers.at(1).get<double>(), numbers.at(2).get<double>()};
 }
 
 /// Returns the nesting depth of the surfaces in the boundaries of a geometry type; empty for types
 /// without surfaces.
-std::optional<int> nesting_of(const std::string& type) {
+std::optional<int> find_nesting_depth(const std::string& type) {
   if (type == "MultiSurface" || type == "CompositeSurface") return 0;
   if (type == "Solid") return 1;
   if (type == "MultiSolid" || type == "CompositeSolid") return 2;
@@ -73,8 +73,8 @@ class Reader {
   void read_geometry(const Json& geometry, FileObject& object);
   void read_boundaries(const Json& boundaries, int nesting, const Json* values);
   void read_surface(const Json& rings, const Json* value);
-  std::optional<double> level_of(const Json& geometry);
-  const Json* surface_of(const Json* value);
+  std::optional<double> read_detail_level(const Json& geometry);
+  const Json* find_surface(const Json* value);
   void read_instance(const Json& geometry, FileObject& object);
 
   const std::filesystem::path& file_;
@@ -86,7 +86,7 @@ class Reader {
 
   // State of the geometry that is being read.
   FileObject* object_ = nullptr;
-  VertexPlaces places_;
+  VertexTransform transform_;
   Eigen::Affine3d placed_ = Eigen::Affine3d::Identity();
   std::optional<double> lod_;
   const Json* surfaces_ = nullptr;  ///< Semantics of the surfaces.
@@ -102,21 +102,21 @@ void Reader::read_header(const Json& root) {
     }
   }
   if (const auto transform = root.find("transform"); transform != root.end()) {
-    scale_ = vector_of(transform->at("scale"));
-    translation_ = vector_of(transform->at("translate"));
+    scale_ = to_vector(transform->at("scale"));
+    translation_ = to_vector(transform->at("translate"));
   }
   if (const auto found = root.find("geometry-templates"); found != root.end()) templates_ = *found;
 }
 
 void Reader::read_objects(const Json& root) {
-  std::map<std::string, std::size_t> index_of;
+  std::map<std::string, std::size_t> object_indices;
   const Json& objects = root.at("CityObjects");
   const std::size_t first = contents_.objects.size();
   for (const auto& [id, value] : objects.items()) {
     FileObject& object = contents_.objects.emplace_back();
     object.id = id;
     object.kind = value.at("type").get<std::string>();
-    index_of[id] = contents_.objects.size() - 1;
+    object_indices[id] = contents_.objects.size() - 1;
     if (const auto found = value.find("attributes"); found != value.end()) {
       for (const auto& [key, attribute] : found->items()) {
         if (attribute.is_structured() || attribute.is_null()) continue;
@@ -129,8 +129,8 @@ void Reader::read_objects(const Json& root) {
   for (const auto& [id, value] : objects.items()) {
     FileObject& object = contents_.objects[i++];
     if (const auto parents = value.find("parents"); parents != value.end() && !parents->empty()) {
-      const auto parent = index_of.find(parents->at(0).get<std::string>());
-      if (parent != index_of.end()) object.parent = parent->second;
+      const auto parent = object_indices.find(parents->at(0).get<std::string>());
+      if (parent != object_indices.end()) object.parent = parent->second;
     }
     if (is_inside_a_building(object.kind)) {
       ++left_out_;
@@ -141,7 +141,7 @@ void Reader::read_objects(const Json& root) {
     if (geometries->is_null()) continue;
     try {
       for (const Json& geometry : *geometries) {
-        places_ = {&root.at("vertices"), scale_, translation_};
+        transform_ = {&root.at("vertices"), scale_, translation_};
         placed_.setIdentity();
         read_geometry(geometry, object);
       }
@@ -154,7 +154,7 @@ void Reader::read_objects(const Json& root) {
 
 /// Returns the level of detail, which may be a number or a string. Empty for geometries that belong
 /// to all levels.
-std::optional<double> Reader::level_of(const Json& geometry) {
+std::optional<double> Reader::read_detail_level(const Json& geometry) {
   const auto found = geometry.find("lod");
   if (found == geometry.end()) return std::nullopt;
   std::optional<double> level;
@@ -172,23 +172,23 @@ std::optional<double> Reader::level_of(const Json& geometry) {
 void Reader::read_geometry(const Json& geometry, FileObject& object) {
   const std::string type = geometry.at("type").get<std::string>();
   if (type == "GeometryInstance") return read_instance(geometry, object);
-  const std::optional<int> nesting = nesting_of(type);
+  const std::optional<int> nesting = find_nesting_depth(type);
   if (!nesting) {
     ++without_surfaces_;
     return;
   }
   object_ = &object;
-  lod_ = level_of(geometry);
+  lod_ = read_detail_level(geometry);
   const Json* values = nullptr;
   surfaces_ = nullptr;
   if (const auto semantics = geometry.find("semantics"); semantics != geometry.end()) {
-    const auto list_of = [&](const char* key) -> const Json* {
+    const auto find_list = [&](const char* key) -> const Json* {
       if (!semantics->is_object()) return nullptr;
       const auto list = semantics->find(key);
       return list != semantics->end() && list->is_array() ? &*list : nullptr;
     };
-    surfaces_ = list_of("surfaces");
-    values = list_of("values");
+    surfaces_ = find_list("surfaces");
+    values = find_list("values");
     if (surfaces_ == nullptr || values == nullptr) ++without_kind_;
   }
   read_boundaries(geometry.at("boundaries"), *nesting, values);
@@ -201,12 +201,12 @@ void Reader::read_instance(const Json& geometry, FileObject& object) {
     matrix(i / 4, i % 4) = numbers.at(static_cast<std::size_t>(i)).get<double>();
   }
   placed_.matrix() = matrix;
-  placed_.pretranslate(places_.at(geometry.at("boundaries").at(0).get<std::size_t>()));
+  placed_.pretranslate(transform_.at(geometry.at("boundaries").at(0).get<std::size_t>()));
   const Json& original = templates_.at("templates").at(geometry.at("template").get<std::size_t>());
   if (original.at("type") == "GeometryInstance") {
     fail_file(file_, "has a geometry template that contains a template");
   }
-  places_ = {&templates_.at("vertices-templates"), Vector3d::Ones(), Vector3d::Zero()};
+  transform_ = {&templates_.at("vertices-templates"), Vector3d::Ones(), Vector3d::Zero()};
   read_geometry(original, object);
 }
 
@@ -223,7 +223,7 @@ void Reader::read_boundaries(const Json& boundaries, int nesting, const Json* va
 }
 
 /// Returns the semantics of a surface, or null.
-const Json* Reader::surface_of(const Json* value) {
+const Json* Reader::find_surface(const Json* value) {
   if (value == nullptr || !value->is_number_integer() || surfaces_ == nullptr) return nullptr;
   const auto index = value->get<std::int64_t>();
   const bool is_there = index >= 0 && index < std::ssize(*surfaces_) &&
@@ -235,7 +235,7 @@ const Json* Reader::surface_of(const Json* value) {
 
 void Reader::read_surface(const Json& rings, const Json* value) {
   SurfaceKind kind = SurfaceKind::unknown;
-  if (const Json* const surface = surface_of(value)) {
+  if (const Json* const surface = find_surface(value)) {
     const std::string type = surface->value("type", std::string());
     if (is_inside_a_building(type)) {
       ++left_out_;
@@ -243,16 +243,16 @@ void Reader::read_surface(const Json& rings, const Json* value) {
     }
     kind = kind_named(type);
   }
-  if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+  if (++polygons_ > max_polygons) fail_file(file_, "has more than 50 million polygons");
   FilePolygon& polygon = contents_.add_polygon(*object_);
   polygon.kind = kind;
   polygon.lod = lod_;
   for (const Json& ring : rings) {
-    if (contents_.corners.size() + ring.size() > most_json_corners) {
+    if (contents_.corners.size() + ring.size() > max_json_corners) {
       fail_file(file_, "has more than 16 million corners of polygons; split the file");
     }
     for (const Json& index : ring) {
-      contents_.corners.push_back(placed_ * places_.at(index.get<std::size_t>()));
+      contents_.corners.push_back(placed_ * transform_.at(index.get<std::size_t>()));
     }
     contents_.close_ring(polygon);
   }
@@ -291,7 +291,7 @@ std::size_t json_tree_bytes(std::string_view json) {
 }
 
 /// Parses a file of one JSON text, or of one text per line.
-std::vector<Json> texts_of(const std::filesystem::path& file, std::string_view bytes) {
+std::vector<Json> parse_documents(const std::filesystem::path& file, std::string_view bytes) {
   std::vector<Json> texts;
   texts.push_back(geometry::parse_json<Json>(bytes));
   if (!texts[0].is_discarded()) return texts;
@@ -312,7 +312,7 @@ std::vector<Json> texts_of(const std::filesystem::path& file, std::string_view b
 
 FileContents parse_cityjson(const std::filesystem::path& file, std::string_view bytes) {
   require_tree_fits(file, json_tree_bytes(bytes));
-  const std::vector<Json> texts = texts_of(file, bytes);
+  const std::vector<Json> texts = parse_documents(file, bytes);
   FileContents contents;
   try {
     Reader reader(file, contents);

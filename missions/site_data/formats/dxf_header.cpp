@@ -68,7 +68,7 @@ struct Header {
   std::size_t thick = 0;  ///< Number of entities with a thickness.
 };
 
-Header header_of(string_view text) {
+Header parse_header(string_view text) {
   Header header;
   string_view variable, section;
   for (Pairs pair(text); pair.next();) {
@@ -89,9 +89,9 @@ Header header_of(string_view text) {
 
 }  // namespace
 
-void take_dxf_unit(const std::filesystem::path& file, string_view text, bool has_unit,
-                   FileContents& contents) {
-  const Header header = header_of(text);
+void apply_dxf_unit(const std::filesystem::path& file, string_view text, bool has_unit,
+                    FileContents& contents) {
+  const Header header = parse_header(text);
   if (header.thick > 0) {
     contents.notes.push_back(std::to_string(header.thick) +
                              " entities have a thickness, which is ignored: set height");

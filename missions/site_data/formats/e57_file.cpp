@@ -4,18 +4,19 @@
 
 namespace skycap::missions::site_data {
 
-FileContents read_e57(const std::filesystem::path& file, const CloudThinning& thinning) {
+FileContents read_e57(const std::filesystem::path& file, const CloudDownsampling& downsampling) {
   geometry::E57Reader input(file);
   FileContents contents;
   contents.format =
       "E57 of " + std::to_string(input.scans()) + (input.scans() == 1 ? " scan" : " scans");
   set_wkt(contents, input.reference_system());
   CellSet cells;
-  const Eigen::Vector3d cells_per_unit = thinning.metres_per_unit(contents) / thinning.spacing;
+  const Eigen::Vector3d cells_per_unit =
+      downsampling.metres_per_unit(contents) / downsampling.spacing;
   geometry::E57Points points;
   while (input.next(points)) {
-    for (const Eigen::Vector3d& place : points.positions) {
-      if (cells.add(place.cwiseProduct(cells_per_unit))) contents.points.push_back(place);
+    for (const Eigen::Vector3d& position : points.positions) {
+      if (cells.add(position.cwiseProduct(cells_per_unit))) contents.points.push_back(position);
     }
   }
   note_skipped(input.skipped(), contents);

@@ -16,7 +16,7 @@ void fail_file(const std::filesystem::path& file, const std::string& what) {
 }
 
 void require_tree_fits(const std::filesystem::path& file, std::size_t bytes) {
-  if (bytes > most_tree_bytes) {
+  if (bytes > max_tree_bytes) {
     fail_file(file, "requires more than 2 GiB of memory; split the file");
   }
 }

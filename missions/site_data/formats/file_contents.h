@@ -96,14 +96,14 @@ struct FileContents {
 };
 
 /// Limits on the polygons, raster cells, corners and bytes of a file. Indices have 32 bits.
-inline constexpr std::size_t most_polygons = 50'000'000, most_cells = 40'000'000,
-                             most_corners = 1'000'000'000, most_bytes = std::size_t{2} << 30;
+inline constexpr std::size_t max_polygons = 50'000'000, max_cells = 40'000'000,
+                             max_corners = 1'000'000'000, max_bytes = std::size_t{2} << 30;
 
 /// Maximum memory of an input file and its parse tree, estimated from element counts. With the data
 /// read from the tree, the total is less than 2 GiB.
-inline constexpr std::size_t most_tree_bytes = std::size_t{3} << 29;
+inline constexpr std::size_t max_tree_bytes = std::size_t{3} << 29;
 
-/// Throws Error{bad_file} if the tree would exceed most_tree_bytes.
+/// Throws Error{bad_file} if the tree would exceed max_tree_bytes.
 void require_tree_fits(const std::filesystem::path& file, std::size_t bytes);
 
 /// Replaces line ends and other control characters by spaces, for text from files in messages.
@@ -124,7 +124,7 @@ void set_wkt(FileContents& contents, const std::string& wkt);
 /// References (xlink) are ignored, because their targets are read directly. Rooms, furniture and
 /// closure surfaces are skipped with a note.
 FileContents parse_citygml(const std::filesystem::path& file, std::string bytes,
-                           std::size_t most_objects = 2'000'000);
+                           std::size_t max_objects = 2'000'000);
 
 /// Reads CityJSON 1.0 to 2.0 (OGC 20-072r5) and CityJSONSeq (one feature per line).
 FileContents parse_cityjson(const std::filesystem::path& file, std::string_view bytes);

@@ -49,7 +49,7 @@ bool is_database(const fs::path& file) {
 
 /// Returns true if a non-empty file exists whose name is that of `file` plus `more`, such as
 /// "town.gpkg-wal".
-bool has_beside(const fs::path& file, const char* more) {
+bool has_nonempty_sibling(const fs::path& file, const char* more) {
   std::error_code failure;
   const auto size = fs::file_size(file.string() + more, failure);
   return !failure && size > 0;
@@ -85,30 +85,32 @@ void CopyFolder::make(const fs::path& file) {
 /// with a log and Shapefiles without an index.
 fs::path OpenDataset::readable(const fs::path& file) {
   if (is_database(file)) {
-    const bool has_log = has_beside(file, "-wal") || has_beside(file, "-journal");
+    const bool has_log =
+        has_nonempty_sibling(file, "-wal") || has_nonempty_sibling(file, "-journal");
     is_immutable_ = !has_log;
     if (!has_log) return file;
     copy_.make(file);
     const fs::path copy = copy_.path() / file.filename();
     for (const char* more : {"", "-wal", "-journal"}) {
-      if (more[0] == '\0' || has_beside(file, more)) {
+      if (more[0] == '\0' || has_nonempty_sibling(file, more)) {
         copy_file(file, file.string() + more, copy.string() + more);
       }
     }
     notes_.emplace_back("read from a copy, with the changes of its log file");
     return copy;
   }
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(),
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto beside = [&](const char* other) { return fs::path(file).replace_extension(other); };
-  if (ending != ".shp" || fs::exists(beside(".shx")) || fs::exists(beside(".SHX"))) return file;
+  const auto sibling = [&](const char* other) { return fs::path(file).replace_extension(other); };
+  if (extension != ".shp" || fs::exists(sibling(".shx")) || fs::exists(sibling(".SHX")))
+    return file;
   copy_.make(file);
   const fs::path copy = copy_.path() / (file.stem().string() + ".shp");
   copy_file(file, file, copy);
   for (const char* other : {".dbf", ".prj", ".cpg", ".DBF", ".PRJ", ".CPG"}) {
-    if (fs::exists(beside(other))) {
-      copy_file(file, beside(other), fs::path(copy).replace_extension(other));
+    if (fs::exists(sibling(other))) {
+      copy_file(file, sibling(other), fs::path(copy).replace_extension(other));
     }
   }
   CPLSetConfigOption("SHAPE_RESTORE_SHX", "YES");
@@ -131,20 +133,21 @@ OpenDataset::OpenDataset(const fs::path& file, unsigned kind,
   dataset_ = GDALDataset::Open(opened.c_str(), kind | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                list.data(), is_immutable_ ? immutable.data() : nullptr, nullptr);
   if (dataset_ == nullptr) {
-    const std::string complaint = gdal_complaint();
-    fail_file(file, "cannot be read" + (complaint.empty() ? "" : " (GDAL: " + complaint + ")"));
+    const std::string error_message = last_gdal_error();
+    fail_file(file,
+              "cannot be read" + (error_message.empty() ? "" : " (GDAL: " + error_message + ")"));
   }
 }
 
 OpenDataset::~OpenDataset() { GDALClose(dataset_); }
 
-std::string gdal_complaint() {
+std::string last_gdal_error() {
   std::string text = CPLGetLastErrorMsg();
   std::ranges::replace(text, '\n', ' ');
   return text.substr(0, 300);
 }
 
-std::string wkt_of(const OGRSpatialReference* system) {
+std::string to_wkt(const OGRSpatialReference* system) {
   if (system == nullptr) return {};
   const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   char* text = nullptr;

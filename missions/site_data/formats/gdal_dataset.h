@@ -54,9 +54,9 @@ class OpenDataset {
 };
 
 /// Returns GDAL's last error message as one line.
-std::string gdal_complaint();
+std::string last_gdal_error();
 
 /// Returns the reference system as WKT for PROJ; empty without a system.
-std::string wkt_of(const OGRSpatialReference* system);
+std::string to_wkt(const OGRSpatialReference* system);
 
 }  // namespace skycap::missions::site_data

@@ -28,11 +28,11 @@ class MapReader {
  private:
   bool is_kml() const { return driver_ == "LIBKML" || driver_ == "KML"; }
   void require_layer(const std::string& layer);
-  void take_system(OGRLayer& layer);
-  void take_units(OGRLayer& layer, double latitude);
+  void read_reference_system(OGRLayer& layer);
+  void set_units(OGRLayer& layer, double latitude);
   void read_feature(OGRLayer& layer, OGRFeature& feature);
   void read_attributes(OGRFeature& feature, FileObject& object);
-  void read_altitudes(FileObject& object, double highest);
+  void read_altitudes(FileObject& object, double max_height);
   void read_geometry(const OGRGeometry& geometry, FileObject& object);
   void read_polygon(const OGRPolygon& polygon, FileObject& object);
   void read_ring(const OGRSimpleCurve& ring, FilePolygon& polygon);
@@ -81,12 +81,12 @@ void MapReader::read(const std::string& layer) {
     read_feature(*from, *feature);
   }
   if (CPLGetLastErrorType() == CE_Failure)
-    fail_file(file_, "is damaged (" + gdal_complaint() + ")");
+    fail_file(file_, "is damaged (" + last_gdal_error() + ")");
   add_notes();
 }
 
-void MapReader::take_system(OGRLayer& layer) {
-  std::string wkt = wkt_of(layer.GetSpatialRef());
+void MapReader::read_reference_system(OGRLayer& layer) {
+  std::string wkt = to_wkt(layer.GetSpatialRef());
   // GeoPackages contain placeholder names for undefined systems.
   if (wkt.find("\"Undefined ") != std::string::npos) wkt.clear();
   if (!has_system_) contents_.crs = wkt;
@@ -101,7 +101,7 @@ void MapReader::take_system(OGRLayer& layer) {
 }
 
 /// Sets the number of the layer's units per metre.
-void MapReader::take_units(OGRLayer& layer, double latitude) {
+void MapReader::set_units(OGRLayer& layer, double latitude) {
   const OGRSpatialReference* const system = layer.GetSpatialRef();
   if (system == nullptr) {
     units_per_metre_.setOnes();
@@ -126,7 +126,7 @@ void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
   object.kind = layer.GetName();
   OGREnvelope envelope;
   given->getEnvelope(&envelope);
-  take_units(layer, 0.5 * (envelope.MinY + envelope.MaxY));
+  set_units(layer, 0.5 * (envelope.MinY + envelope.MaxY));
   const std::size_t first_corner = contents_.corners.size();
   if (given->hasCurveGeometry() != 0) {
     const std::unique_ptr<OGRGeometry> straight(given->getLinearGeometry());
@@ -140,22 +140,22 @@ void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
     return;
   }
   if (is_kml()) {
-    double highest = 0.0;
+    double max_height = 0.0;
     for (std::size_t i = first_corner; i < contents_.corners.size(); ++i) {
-      highest = std::max(highest, contents_.corners[i].z());
+      max_height = std::max(max_height, contents_.corners[i].z());
     }
-    read_altitudes(object, highest);
+    read_altitudes(object, max_height);
   }
-  take_system(layer);
+  read_reference_system(layer);
   contents_.objects.push_back(std::move(object));
 }
 
 /// Interprets the third coordinate. In KML, the altitude mode defines its meaning; in other formats
-/// it is a height. `highest` is the maximum of the corners.
-void MapReader::read_altitudes(FileObject& object, double highest) {
+/// it is a height. `max_height` is the maximum of the corners.
+void MapReader::read_altitudes(FileObject& object, double max_height) {
   const auto mode = object.attributes.find("altitudeMode");
   const std::string name = mode == object.attributes.end() ? "" : mode->second;
-  const bool is_extruded = number_of(object, "extrude") != 0.0;
+  const bool is_extruded = numeric_tag(object, "extrude") != 0.0;
   const bool has_corners = object.has_heights;
   object.has_heights = has_corners && name == "absolute";
   if (object.has_heights && is_extruded) {
@@ -164,8 +164,8 @@ void MapReader::read_altitudes(FileObject& object, double highest) {
   }
   // On land, the sea floor is the ground.
   const bool is_relative = name == "relativeToGround" || name == "relativeToSeaFloor";
-  if (has_corners && is_relative && highest > 0.0) {
-    object.height = highest;
+  if (has_corners && is_relative && max_height > 0.0) {
+    object.height = max_height;
     if (!is_extruded) ++raised_;
   }
 }
@@ -213,7 +213,7 @@ void MapReader::read_geometry(const OGRGeometry& geometry, FileObject& object) {
       for (const OGRGeometry* part : *geometry.toGeometryCollection()) read_geometry(*part, object);
       return;
     case wkbPoint:
-      if (may_state_height(object) || number_of(object, "extrude") != 0.0) {
+      if (may_state_height(object) || numeric_tag(object, "extrude") != 0.0) {
         return add_pole(*geometry.toPoint(), object);
       }
       [[fallthrough]];
@@ -231,9 +231,9 @@ void MapReader::read_line(const OGRLineString& line, FileObject& object) {
                            has_tag(object, "man_made"));
   if (is_closed && (driver_ == "DXF" || is_part)) {
     object.has_heights |= line.Is3D() != 0;
-    if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+    if (++polygons_ > max_polygons) fail_file(file_, "has more than 50 million polygons");
     read_ring(line, contents_.add_polygon(object));
-  } else if (may_state_height(object) || number_of(object, "extrude") != 0.0) {
+  } else if (may_state_height(object) || numeric_tag(object, "extrude") != 0.0) {
     add_wall(line, object);
   } else {
     leave_out(object);
@@ -245,7 +245,7 @@ void MapReader::leave_out(const FileObject& object) { ++(is_cable(object) ? cabl
 void MapReader::add_corner(double x, double y, double z) {
   const Eigen::Vector3d corner(x, y, z);
   if (!corner.allFinite()) fail_file(file_, "has a corner that is not finite");
-  if (contents_.corners.size() == most_corners) {
+  if (contents_.corners.size() == max_corners) {
     fail_file(file_, "has more than a thousand million corners");
   }
   contents_.corners.push_back(corner);
@@ -257,7 +257,7 @@ void MapReader::add_pole(const OGRPoint& point, FileObject& object) {
   object.has_heights |= point.Is3D() != 0;
   double radius = pole_radius;
   for (const char* key : {"diameter", "diameter_crown", "width"}) {
-    radius = std::max(radius, 0.5 * std::min(100.0, number_of(object, key)));
+    radius = std::max(radius, 0.5 * std::min(100.0, numeric_tag(object, key)));
   }
   radius /= std::cos(M_PI / 8.0);
   FilePolygon& polygon = contents_.add_polygon(object);
@@ -279,10 +279,11 @@ void MapReader::add_wall(const OGRLineString& line, FileObject& object) {
     const Eigen::Vector2d metres = (to - from).cwiseQuotient(units_per_metre_);
     if (!(metres.norm() > 0.0)) continue;
     const Eigen::Vector2d along = metres.normalized() * wall_radius, across(-along.y(), along.x());
-    if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+    if (++polygons_ > max_polygons) fail_file(file_, "has more than 50 million polygons");
     FilePolygon& polygon = contents_.add_polygon(object);
-    const auto add = [&](const Eigen::Vector2d& place, const Eigen::Vector2d& beside, double z) {
-      const Eigen::Vector2d corner = place + beside.cwiseProduct(units_per_metre_);
+    const auto add = [&](const Eigen::Vector2d& position, const Eigen::Vector2d& neighbour,
+                         double z) {
+      const Eigen::Vector2d corner = position + neighbour.cwiseProduct(units_per_metre_);
       add_corner(corner.x(), corner.y(), z);
     };
     add(from, -along - across, line.getZ(i));
@@ -295,7 +296,7 @@ void MapReader::add_wall(const OGRLineString& line, FileObject& object) {
 }
 
 void MapReader::read_polygon(const OGRPolygon& polygon, FileObject& object) {
-  if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+  if (++polygons_ > max_polygons) fail_file(file_, "has more than 50 million polygons");
   object.has_heights |= polygon.Is3D() != 0;
   FilePolygon& result = contents_.add_polygon(object);
   for (const OGRLinearRing* ring : polygon) read_ring(*ring, result);

@@ -50,7 +50,7 @@ constexpr std::array<Unit, 28> units{{{"m", 1.0},
                                       {"us foot", us_foot},
                                       {"survey foot", us_foot}}};
 
-void take_unit(const std::string& given, FileContents& contents) {
+void set_unit(const std::string& given, FileContents& contents) {
   std::string name = given;
   std::ranges::transform(name, name.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -64,7 +64,7 @@ void take_unit(const std::string& given, FileContents& contents) {
 }
 
 /// Returns the alpha band of a dataset, or null.
-GDALRasterBand* alpha_of(GDALDataset& dataset) {
+GDALRasterBand* find_alpha_band(GDALDataset& dataset) {
   for (int i = 2; i <= dataset.GetRasterCount(); ++i) {
     GDALRasterBand* const band = dataset.GetRasterBand(i);
     if (band->GetColorInterpretation() == GCI_AlphaBand) return band;
@@ -83,7 +83,7 @@ class HeightBand {
     const int flags = band.GetMaskFlags();
     const bool has_mask = (flags & GMF_ALL_VALID) == 0 && (flags & GMF_NODATA) == 0;
     if (has_mask) masks_.push_back(band.GetMaskBand());
-    if (GDALRasterBand* const alpha = alpha_of(dataset)) masks_.push_back(alpha);
+    if (GDALRasterBand* const alpha = find_alpha_band(dataset)) masks_.push_back(alpha);
     heights_.resize(static_cast<std::size_t>(columns_));
     opacities_.resize(static_cast<std::size_t>(columns_));
   }
@@ -113,7 +113,7 @@ class HeightBand {
                       nullptr) == CE_None) {
       return;
     }
-    fail_file(file_, "is damaged in row " + std::to_string(row) + " (" + gdal_complaint() + ")");
+    fail_file(file_, "is damaged in row " + std::to_string(row) + " (" + last_gdal_error() + ")");
   }
 
   const std::filesystem::path& file_;
@@ -139,7 +139,7 @@ void read_rows(const std::filesystem::path& file, GDALDataset& dataset, GDALRast
   }
 }
 
-void refuse_pictures(const std::filesystem::path& file, GDALRasterBand& band) {
+void reject_images(const std::filesystem::path& file, GDALRasterBand& band) {
   const GDALColorInterp meaning = band.GetColorInterpretation();
   const bool is_colour =
       meaning >= GCI_PaletteIndex && meaning <= GCI_BlackBand && meaning != GCI_AlphaBand;
@@ -172,18 +172,18 @@ extern "C" void skycap_read_raster(const std::filesystem::path& file, FileConten
   if (band == nullptr || dataset->GetGeoTransform(affine.data()) != CE_None) {
     fail_file(file, "has no georeference");
   }
-  refuse_pictures(file, *band);
+  reject_images(file, *band);
   const std::size_t cells =
       static_cast<std::size_t>(band->GetXSize()) * static_cast<std::size_t>(band->GetYSize());
-  if (cells > most_cells) {
+  if (cells > max_cells) {
     fail_file(file, "has " + std::to_string(cells) + " cells; the maximum is 40 million");
   }
   contents.columns = static_cast<std::size_t>(band->GetXSize());
   contents.rows = static_cast<std::size_t>(band->GetYSize());
   contents.right = {affine[1], affine[4]};
   contents.down = {affine[2], affine[5]};
-  contents.crs = wkt_of(dataset->GetSpatialRef());
-  take_unit(band->GetUnitType(), contents);
+  contents.crs = to_wkt(dataset->GetSpatialRef());
+  set_unit(band->GetUnitType(), contents);
   note_bands(*dataset, contents);
   read_rows(file, *dataset, *band, affine, contents);
 }

@@ -11,7 +11,7 @@ namespace skycap::missions::site_data {
 void append_gml_numbers(const std::filesystem::path& file, std::string_view text,
                         const GmlSeparators& separators, std::vector<double>& numbers) {
   const char point = separators.decimal.empty() ? '.' : separators.decimal[0];
-  std::string gaps = " \n\t\r," + separators.of_coordinates + separators.of_places;
+  std::string gaps = " \n\t\r," + separators.coordinate_separator + separators.of_tuples;
   std::erase(gaps, point);
   std::string with_points;
   if (point != '.') {

@@ -11,7 +11,7 @@ namespace skycap::missions::site_data {
 /// Separators from the attributes of a `coordinates` element. Empty members have the defaults
 /// point, comma and space.
 struct GmlSeparators {
-  std::string decimal, of_coordinates, of_places;  ///< Attributes decimal, cs and ts.
+  std::string decimal, coordinate_separator, of_tuples;  ///< Attributes decimal, cs and ts.
 };
 
 /// Appends the numbers in `text`, separated by white space, commas or the given separators. Throws

@@ -7,7 +7,7 @@
 namespace skycap::missions::site_data {
 namespace {
 
-std::optional<double> metres_of_unit(int epsg) {
+std::optional<double> find_metres_per_unit(int epsg) {
   if (epsg == 9001) return 1.0;
   if (epsg == 9002) return 0.3048;
   if (epsg == 9003) return 1200.0 / 3937.0;  // US survey foot.
@@ -27,24 +27,25 @@ void name_reference_system(const geometry::LasReferenceSystem& stated, FileConte
     contents.notes.push_back(
         "its reference system is given by GeoTIFF parameters, which are not supported");
   }
-  contents.height_unit = metres_of_unit(stated.vertical_unit);
+  contents.height_unit = find_metres_per_unit(stated.vertical_unit);
 }
 
 void read_points(geometry::LasReader& input, const std::vector<int>& classes,
-                 const CloudThinning& thinning, FileContents& contents) {
-  const auto is_wanted = [&](int point_class) {
+                 const CloudDownsampling& downsampling, FileContents& contents) {
+  const auto is_selected = [&](int point_class) {
     if (classes.empty()) return point_class != 7 && point_class != 18;
     return std::ranges::find(classes, point_class) != classes.end();
   };
   CellSet cells;
-  const Eigen::Vector3d cells_per_unit = thinning.metres_per_unit(contents) / thinning.spacing;
+  const Eigen::Vector3d cells_per_unit =
+      downsampling.metres_per_unit(contents) / downsampling.spacing;
   geometry::LasPoints points;
   while (input.next(points)) {
     for (std::size_t i = 0; i < points.positions.size(); ++i) {
-      const Eigen::Vector3d& place = points.positions[i];
-      if (!is_wanted(points.classes[i])) continue;
-      if (!cells.add(place.cwiseProduct(cells_per_unit))) continue;
-      contents.points.push_back(place);
+      const Eigen::Vector3d& position = points.positions[i];
+      if (!is_selected(points.classes[i])) continue;
+      if (!cells.add(position.cwiseProduct(cells_per_unit))) continue;
+      contents.points.push_back(position);
     }
   }
 }
@@ -52,7 +53,7 @@ void read_points(geometry::LasReader& input, const std::vector<int>& classes,
 }  // namespace
 
 FileContents read_las(const std::filesystem::path& file, const std::vector<int>& classes,
-                      const CloudThinning& thinning) {
+                      const CloudDownsampling& downsampling) {
   geometry::LasReader input(file);
   FileContents contents;
   contents.has_classes = true;
@@ -60,7 +61,7 @@ FileContents read_las(const std::filesystem::path& file, const std::vector<int>&
                     std::to_string(input.header().format) +
                     (input.header().is_compressed ? ", compressed (LAZ)" : "");
   name_reference_system(input.reference_system(), contents);
-  read_points(input, classes, thinning, contents);
+  read_points(input, classes, downsampling, contents);
   return contents;
 }
 

@@ -31,7 +31,7 @@ std::string lower_case(std::string text) {
 
 }  // namespace
 
-double number_of(const FileObject& object, const char* key) {
+double numeric_tag(const FileObject& object, const char* key) {
   const auto found = object.attributes.find(key);
   double number = 0.0;
   if (found != object.attributes.end()) {

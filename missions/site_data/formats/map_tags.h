@@ -13,7 +13,7 @@ namespace skycap::missions::site_data {
 void add_tags(const std::string& text, std::map<std::string, std::string>& attributes);
 
 /// Returns the number at the start of an attribute, or 0 without one.
-double number_of(const FileObject& object, const char* key);
+double numeric_tag(const FileObject& object, const char* key);
 
 /// Returns true if the attribute exists and is not "no".
 bool has_tag(const FileObject& object, const char* key);

@@ -50,7 +50,7 @@ bool is_harmless(string_view name) {
 
 bool is_deciding(string_view name) { return std::ranges::find(deciding, name) != deciding.end(); }
 
-[[noreturn]] void refuse_extension(const std::filesystem::path& file, const std::string& name) {
+[[noreturn]] void reject_extension(const std::filesystem::path& file, const std::string& name) {
   fail_file(file, "requires the glTF extension " + one_line(name.substr(0, 60)) +
                       ", which is not supported; save the scene without it");
 }
@@ -65,10 +65,10 @@ class Entities {
   std::optional<string_view> arguments(string_view reference, string_view type) const {
     std::size_t at = 0;
     while ((at = text_.find(reference, at)) != string_view::npos) {
-      const std::size_t behind = at + reference.size();
-      const std::size_t equals = text_.find_first_not_of(" \t\r\n", behind);
+      const std::size_t after_reference = at + reference.size();
+      const std::size_t equals = text_.find_first_not_of(" \t\r\n", after_reference);
       const bool is_definition = equals != string_view::npos && text_[equals] == '=';
-      at = behind;
+      at = after_reference;
       if (!is_definition) continue;
       return arguments_at(equals + 1, type);
     }
@@ -148,7 +148,7 @@ std::optional<double> number_within(const std::string& text) {
   return geometry::number_in(plain);
 }
 
-std::optional<double> prefix_of(const std::string& name) {
+std::optional<double> find_metric_prefix(const std::string& name) {
   struct Prefix {
     const char* name;
     double factor;
@@ -173,7 +173,7 @@ std::optional<double> si_length(const Entities& entities, const std::string& ref
   if (!arguments) return std::nullopt;
   const std::vector<std::string> parts = split(*arguments);
   if (parts.size() != 4 || parts[1] != ".LENGTHUNIT." || parts[3] != ".METRE.") return std::nullopt;
-  return prefix_of(parts[2]);
+  return find_metric_prefix(parts[2]);
 }
 
 /// Linear unit of an IFC file.
@@ -234,13 +234,13 @@ SceneFacts gltf_facts(const std::filesystem::path& file, string_view json) {
   const Json root = geometry::parse_json<Json>(geometry::without_mark(json));
   if (root.is_discarded() || !root.is_object()) return facts;  // Assimp reports the error.
   for (const std::string& name : names_in(root, "extensionsRequired")) {
-    if (!is_harmless(name)) refuse_extension(file, name);
+    if (!is_harmless(name)) reject_extension(file, name);
   }
   for (const std::string& name : names_in(root, "extensionsUsed")) {
-    if (is_deciding(name)) refuse_extension(file, name);
+    if (is_deciding(name)) reject_extension(file, name);
   }
   if (const auto own = root.find("extensions"); own != root.end() && own->contains("CESIUM_RTC")) {
-    refuse_extension(file, "CESIUM_RTC");
+    reject_extension(file, "CESIUM_RTC");
   }
   const auto scenes = root.find("scenes");
   if (scenes != root.end() && scenes->is_array() && scenes->size() > 1) {

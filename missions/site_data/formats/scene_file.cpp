@@ -32,19 +32,19 @@ void put_nodes(PipeWriter& pipe, const std::vector<SceneNode>& nodes) {
   }
 }
 
-std::vector<SceneNode> take_nodes(ChildProcess& child) {
-  const auto count = child.take<std::size_t>();
+std::vector<SceneNode> receive_nodes(ChildProcess& child) {
+  const auto count = child.read<std::size_t>();
   std::vector<SceneNode> nodes;
   for (std::size_t i = 0; i < count; ++i) {
     SceneNode& node = nodes.emplace_back();
-    node.id = child.take_text();
-    const auto parent = child.take<std::size_t>();
+    node.id = child.read_text();
+    const auto parent = child.read<std::size_t>();
     if (parent < i) node.parent = parent;
-    const auto coordinates = child.take_row<std::vector<double>>();
+    const auto coordinates = child.read_row<std::vector<double>>();
     for (std::size_t at = 0; at + 2 < coordinates.size(); at += 3) {
       node.mesh.vertices.push_back(Eigen::Vector3d::Map(&coordinates[at]));
     }
-    node.mesh.triangles = child.take_row<decltype(node.mesh.triangles)>();
+    node.mesh.triangles = child.read_row<decltype(node.mesh.triangles)>();
   }
   return nodes;
 }
@@ -69,7 +69,7 @@ void read_nodes(PipeWriter& pipe, ReadScene* read, const std::filesystem::path& 
 }
 
 /// Returns an upper limit of Assimp's processor time for valid files, with a large margin [s].
-unsigned most_seconds(const std::filesystem::path& file) {
+unsigned max_seconds(const std::filesystem::path& file) {
   constexpr std::uintmax_t megabyte = 1'000'000;
   return static_cast<unsigned>(8 + 4 * (std::filesystem::file_size(file) / megabyte));
 }
@@ -79,14 +79,14 @@ unsigned most_seconds(const std::filesystem::path& file) {
 FileContents read_scene(const std::filesystem::path& file) {
   ReadScene* const read =
       support::module_function<ReadScene>("libskycap_assimp.so", read_scene_name);
-  ChildProcess child({file.string(), "assimp", most_seconds(file)},
+  ChildProcess child({file.string(), "assimp", max_seconds(file)},
                      [&](PipeWriter& pipe) { read_nodes(pipe, read, file); });
-  if (child.take<Answer>() == Answer::error) throw Error(ErrorKind::bad_file, child.take_text());
+  if (child.read<Answer>() == Answer::error) throw Error(ErrorKind::bad_file, child.read_text());
   FileContents contents;
   contents.is_scene = true;
   contents.is_y_up = true;
   contents.unit = 1.0;
-  for (SceneNode& node : take_nodes(child)) {
+  for (SceneNode& node : receive_nodes(child)) {
     FileObject& object = contents.objects.emplace_back();
     object.id = std::move(node.id);
     object.parent = node.parent;

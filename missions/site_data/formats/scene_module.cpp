@@ -40,7 +40,7 @@ std::string decoded(const std::string& name) {
 /// a scene. Names may be URI references (RFC 3986).
 class OneFolder final : public Assimp::DefaultIOSystem {
  public:
-  explicit OneFolder(const std::filesystem::path& file) : folder_(folder_of(file)) {}
+  explicit OneFolder(const std::filesystem::path& file) : folder_(find_folder(file)) {}
 
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     const bool is_for_reading = mode != nullptr && mode[0] == 'r';
@@ -48,7 +48,7 @@ class OneFolder final : public Assimp::DefaultIOSystem {
     std::error_code failure;
     std::string name = file;
     if (!std::filesystem::exists(name, failure)) name = decoded(name);
-    if (!is_below(folder_of(name))) return nullptr;
+    if (!is_below(find_folder(name))) return nullptr;
     Assimp::IOStream* const stream = Assimp::DefaultIOSystem::Open(name.c_str(), mode);
     return stream == nullptr ? nullptr : without_mark(stream);
   }
@@ -75,14 +75,14 @@ class OneFolder final : public Assimp::DefaultIOSystem {
     return new Assimp::MemoryIOStream(bytes, read, true);
   }
   /// Resolves links, so that they cannot lead out of the folder.
-  static std::filesystem::path folder_of(const std::filesystem::path& file) {
+  static std::filesystem::path find_folder(const std::filesystem::path& file) {
     std::error_code failure;
     return std::filesystem::weakly_canonical(file, failure).parent_path();
   }
   std::filesystem::path folder_;
 };
 
-Eigen::Affine3d affine_of(const aiMatrix4x4& m) {
+Eigen::Affine3d to_affine(const aiMatrix4x4& m) {
   Eigen::Affine3d result;
   result.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0.0,
       0.0, 0.0, 1.0;
@@ -110,7 +110,7 @@ class SceneReader {
 void SceneReader::read(const aiNode& node, const Eigen::Affine3d& world_from_parent,
                        std::optional<std::size_t> parent, int depth) {
   if (depth > deepest) fail_file(file_, "has nodes nested deeper than 60");
-  const Eigen::Affine3d world_from_node = world_from_parent * affine_of(node.mTransformation);
+  const Eigen::Affine3d world_from_node = world_from_parent * to_affine(node.mTransformation);
   const std::size_t index = nodes_.size();
   SceneNode& object = nodes_.emplace_back();
   object.id = node.mName.length > 0 ? node.mName.C_Str() : std::to_string(index + 1);
@@ -126,7 +126,7 @@ void SceneReader::read(const aiNode& node, const Eigen::Affine3d& world_from_par
 void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from_node,
                            SceneNode& object) {
   triangles_ += mesh.mNumFaces;
-  if (triangles_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+  if (triangles_ > max_polygons) fail_file(file_, "has more than 50 million polygons");
   const auto first = static_cast<std::uint32_t>(object.mesh.vertices.size());
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& vertex = mesh.mVertices[i];
@@ -158,9 +158,9 @@ extern "C" void skycap_read_scene(const std::filesystem::path& file,
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_GlobalScale |
                                            aiProcess_ValidateDataStructure);
   if (scene == nullptr || scene->mRootNode == nullptr) {
-    std::string complaint = importer.GetErrorString();
-    std::ranges::replace(complaint, '\n', ' ');
-    fail_file(file, "cannot be read (assimp: " + complaint.substr(0, 300) + ")");
+    std::string error_message = importer.GetErrorString();
+    std::ranges::replace(error_message, '\n', ' ');
+    fail_file(file, "cannot be read (assimp: " + error_message.substr(0, 300) + ")");
   }
   SceneReader(file, *scene, nodes).read(*scene->mRootNode, Eigen::Affine3d::Identity(), {}, 0);
 }

@@ -250,15 +250,16 @@ FamilyScene fences(RandomNumbers& draw, const Fineness& fineness) {
   }
   const double y = draw.between(11.0, 14.0);  // One railing along x, and one along y.
   for (const bool is_along_x : {true, false}) {
-    const auto place = [&](double along, double z) {
+    const auto add_vertex = [&](double along, double z) {
       return is_along_x ? Vector3d(along, y, z) : Vector3d(-26.0, along, z);
     };
     const double half = is_along_x ? 20.0 : 10.0;
     for (double at = -half; at <= half + 1e-9; at += 2.0) {
-      parts.push_back({"post", bar(place(at, 0.0), place(at, 1.15), 0.03, fineness)});
+      parts.push_back({"post", bar(add_vertex(at, 0.0), add_vertex(at, 1.15), 0.03, fineness)});
     }
     for (const double z : {0.4, 0.75, 1.1}) {
-      parts.push_back({"rail", bar(place(-half - 0.1, z), place(half + 0.1, z), 0.025, fineness)});
+      parts.push_back(
+          {"rail", bar(add_vertex(-half - 0.1, z), add_vertex(half + 0.1, z), 0.025, fineness)});
     }
   }
   const double line = -draw.between(11.0, 14.0), pole = draw.between(6.5, 8.0);

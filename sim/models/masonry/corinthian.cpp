@@ -67,7 +67,7 @@ Polyline3 shaft_ring(const Column& column, double radius, double z, bool is_flut
 
 void add_shaft(const Column& column, double capital_foot, const Fineness& fineness, Parts& parts) {
   const double foot = 0.98 * column.foot_radius, length = capital_foot - foot;
-  const int pieces =
+  const int subdivisions =
       std::clamp(static_cast<int>(std::lround(0.5 / std::sqrt(fineness.chord_error))), 4, 24);
   std::vector<Polyline3> rings;
   const auto add = [&](double share, bool is_fluted) {
@@ -76,7 +76,7 @@ void add_shaft(const Column& column, double capital_foot, const Fineness& finene
   };
   if (column.flutes > 0) add(0.0, false);
   add(column.flutes > 0 ? 0.03 : 0.0, false);
-  for (int i = 1; i < pieces; ++i) add(0.04 + 0.93 * i / pieces, true);
+  for (int i = 1; i < subdivisions; ++i) add(0.04 + 0.93 * i / subdivisions, true);
   add(column.flutes > 0 ? 0.98 : 1.0, false);
   if (column.flutes > 0) add(1.0, false);
   parts.push_back({"column shaft", loft(rings)});
@@ -104,9 +104,9 @@ struct Capital {
 
 void add_bell(const Capital& capital, const Fineness& fineness, Parts& parts) {
   Profile profile(fineness, 0.0, capital.foot - 0.02);
-  constexpr int pieces = 6;
-  for (int i = 0; i <= pieces; ++i) {
-    const double share = static_cast<double>(i) / pieces;
+  constexpr int subdivisions = 6;
+  for (int i = 0; i <= subdivisions; ++i) {
+    const double share = static_cast<double>(i) / subdivisions;
     profile.to(capital.bell_radius_at(share),
                capital.foot - 0.02 + share * (capital.bell_height() + 0.02));
   }

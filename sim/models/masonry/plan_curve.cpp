@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using std::numbers::pi;
 
-constexpr double same_place = 1e-6;  // Distance below which points are identical [m].
+constexpr double position_tolerance = 1e-6;  // Distance below which points are identical [m].
 
 }  // namespace
 
@@ -72,25 +72,27 @@ PlanCurve PlanCurve::rectangle(double width, double depth) {
 }
 
 double PlanCurve::wrapped(double s) const {
-  return s - length_ * std::floor((s + same_place) / length_);
+  return s - length_ * std::floor((s + position_tolerance) / length_);
 }
 
 Vector2d PlanCurve::point(double s, double offset) const {
-  const double place = wrapped(s);
-  const auto is_past = [](double value, const Leg& leg) { return value < leg.start - same_place; };
-  const auto leg = std::upper_bound(legs_.begin(), legs_.end(), place, is_past) - 1;
-  const double along = std::max(0.0, place - leg->start);
+  const double arc_position = wrapped(s);
+  const auto is_past = [](double value, const Leg& leg) {
+    return value < leg.start - position_tolerance;
+  };
+  const auto leg = std::upper_bound(legs_.begin(), legs_.end(), arc_position, is_past) - 1;
+  const double along = std::max(0.0, arc_position - leg->start);
   const Vector2d normal = leg->normal(along);
-  if (along > same_place) return leg->point(along) + offset * normal;
+  if (along > position_tolerance) return leg->point(along) + offset * normal;
   const Leg& before = leg == legs_.begin() ? legs_.back() : *(leg - 1);
   const Vector2d normal_before = before.normal(before.length);
   return leg->from + offset * (normal + normal_before) / (1.0 + normal.dot(normal_before));
 }
 
 bool PlanCurve::is_corner(double s) const {
-  const double place = wrapped(s);
+  const double arc_position = wrapped(s);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    if (std::abs(place - legs_[i].start) > same_place) continue;
+    if (std::abs(arc_position - legs_[i].start) > position_tolerance) continue;
     const Leg& before = legs_[(i + legs_.size() - 1) % legs_.size()];
     return before.normal(before.length).dot(legs_[i].normal(0.0)) < 1.0 - 1e-6;
   }

@@ -38,7 +38,7 @@ Polyline2 half_circle(const Vector2d& centre, double radius, int chords) {
 
 /// Returns half a course beside or above an arch: from s = `outer` to the outline of the voussoirs,
 /// or to the axis above them. `curve` is half of the outline, from the springing to the crown.
-Polyline2 course_beside(const Polyline2& curve, double outer, double bottom, double top) {
+Polyline2 side_course(const Polyline2& curve, double outer, double bottom, double top) {
   Polyline2 inner;  // From the bottom up.
   const auto add = [&](double s, double z) {
     if (inner.empty() || (inner.back() - Vector2d(s, z)).norm() > 1e-6) inner.emplace_back(s, z);
@@ -140,7 +140,7 @@ class ArchedBay {
     } else if (top <= springing_ + 1e-6) {
       add_piers(is_even, bottom, top);
     } else {
-      add_beside_the_arch(bottom, top);
+      add_arch_sides(bottom, top);
     }
   }
 
@@ -171,13 +171,13 @@ class ArchedBay {
     add_stones(centre + joint, right, bottom, top);
   }
 
-  void add_beside_the_arch(double bottom, double top) {
+  void add_arch_sides(double bottom, double top) {
     const auto crown = static_cast<std::ptrdiff_t>(extrados_.size() / 2);
     const Polyline2 right_curve(extrados_.begin(), extrados_.begin() + crown + 1);
     const Polyline2 left_curve(extrados_.rbegin(), extrados_.rbegin() + crown + 1);
     const double left = opening_.centre - half_width_, right = opening_.centre + half_width_;
-    wall_.tiles.push_back(course_beside(left_curve, left, bottom, top));
-    wall_.tiles.push_back(course_beside(right_curve, right, bottom, top));
+    wall_.tiles.push_back(side_course(left_curve, left, bottom, top));
+    wall_.tiles.push_back(side_course(right_curve, right, bottom, top));
   }
 
   void add_stones(double start, double end, double bottom, double top) {

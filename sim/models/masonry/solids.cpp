@@ -29,10 +29,10 @@ double distance_to_segment(const Vector2d& point, const Vector2d& a, const Vecto
 Polyline2 simplified(const Polyline2& line, double tolerance) {
   std::vector<char> is_kept(line.size(), 0);
   is_kept.front() = is_kept.back() = 1;
-  std::vector<std::pair<std::size_t, std::size_t>> pieces{{0, line.size() - 1}};
-  while (!pieces.empty()) {
-    const auto [first, last] = pieces.back();
-    pieces.pop_back();
+  std::vector<std::pair<std::size_t, std::size_t>> subdivisions{{0, line.size() - 1}};
+  while (!subdivisions.empty()) {
+    const auto [first, last] = subdivisions.back();
+    subdivisions.pop_back();
     std::size_t farthest = first;
     double distance = tolerance;
     for (std::size_t i = first + 1; i < last; ++i) {
@@ -41,8 +41,8 @@ Polyline2 simplified(const Polyline2& line, double tolerance) {
     }
     if (farthest == first) continue;
     is_kept[farthest] = 1;
-    pieces.emplace_back(first, farthest);
-    pieces.emplace_back(farthest, last);
+    subdivisions.emplace_back(first, farthest);
+    subdivisions.emplace_back(farthest, last);
   }
   Polyline2 result;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -224,14 +224,14 @@ Mesh box(const Vector3d& smallest, const Vector3d& largest) {
 
 Mesh sweep(const Polyline2& section, const Polyline3& path, const Vector3d& up, bool is_closed) {
   const std::size_t count = path.size();
-  const auto left_of_leg = [&](std::size_t leg) {
+  const auto leg_left_normal = [&](std::size_t leg) {
     return Vector3d(up.cross(path[(leg + 1) % count] - path[leg % count]).normalized());
   };
   std::vector<Polyline3> rings;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_first = !is_closed && i == 0, is_last = !is_closed && i + 1 == count;
-    const Vector3d before = left_of_leg(is_first ? 0 : i + count - 1);
-    const Vector3d after = is_last ? before : left_of_leg(i);
+    const Vector3d before = leg_left_normal(is_first ? 0 : i + count - 1);
+    const Vector3d after = is_last ? before : leg_left_normal(i);
     // At the mitre, the mouldings of both legs have their own distance from the path.
     const Vector3d sideways = (before + after) / (1.0 + before.dot(after));
     Polyline3& ring = rings.emplace_back();

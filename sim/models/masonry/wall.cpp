@@ -29,41 +29,42 @@ class Face {
   Face(const PlanCurve& plan, Mesh& mesh) : plan_(plan), mesh_(mesh) {}
 
   /// Returns the vertex at (s, z), displaced outwards from the plan by `offset`.
-  std::uint32_t vertex(const Vector2d& place, double offset) {
-    const double s = place.x() - plan_.length() * std::floor((place.x() + same) / plan_.length());
-    const Vector3d wanted(s, place.y(), offset);
-    const Key middle = key_of(wanted);
+  std::uint32_t vertex(const Vector2d& position, double offset) {
+    const double s =
+        position.x() - plan_.length() * std::floor((position.x() + same) / plan_.length());
+    const Vector3d target(s, position.y(), offset);
+    const Key middle = make_key(target);
     for (std::int64_t i = -1; i <= 1; ++i) {
       for (std::int64_t j = -1; j <= 1; ++j) {
         for (std::int64_t k = -1; k <= 1; ++k) {
           const auto found = indices_.find({middle[0] + i, middle[1] + j, middle[2] + k});
-          if (found != indices_.end() && (places_[found->second] - wanted).norm() < same) {
+          if (found != indices_.end() && (positions_[found->second] - target).norm() < same) {
             return found->second;
           }
         }
       }
     }
-    const auto index = static_cast<std::uint32_t>(places_.size());
+    const auto index = static_cast<std::uint32_t>(positions_.size());
     indices_.emplace(middle, index);
-    places_.push_back(wanted);
+    positions_.push_back(target);
     const Vector2d point = plan_.point(s, offset);
-    mesh_.vertices.emplace_back(point.x(), point.y(), place.y());
+    mesh_.vertices.emplace_back(point.x(), point.y(), position.y());
     return index;
   }
 
-  Vector2d place(std::uint32_t vertex) const { return places_[vertex].head<2>(); }
+  Vector2d position(std::uint32_t vertex) const { return positions_[vertex].head<2>(); }
 
  private:
   using Key = std::array<std::int64_t, 3>;
-  static Key key_of(const Vector3d& place) {
-    return {std::llround(place.x() / (2 * same)), std::llround(place.y() / (2 * same)),
-            std::llround(place.z() / (2 * same))};
+  static Key make_key(const Vector3d& position) {
+    return {std::llround(position.x() / (2 * same)), std::llround(position.y() / (2 * same)),
+            std::llround(position.z() / (2 * same))};
   }
 
   const PlanCurve& plan_;
   Mesh& mesh_;
   std::map<Key, std::uint32_t> indices_;
-  std::vector<Vector3d> places_;
+  std::vector<Vector3d> positions_;
 };
 
 /// Builds one wall. The steps are in the order of build() below.
@@ -106,7 +107,7 @@ class WallBuilder {
       after.erase(loop.back());
       const auto is_at = [&](double z) {
         return std::all_of(loop.begin(), loop.end(), [&](std::uint32_t v) {
-          return std::abs(face_.place(v).y() - z) < same;
+          return std::abs(face_.position(v).y() - z) < same;
         });
       };
       if (is_at(wall_.bottom)) {
@@ -155,23 +156,23 @@ class WallBuilder {
 
   /// Returns the positions of a counter-clockwise loop, continuous where s wraps around.
   Polyline2 unrolled(const Loop& loop) const {
-    Polyline2 places;
+    Polyline2 positions;
     for (const std::uint32_t v : loop) {
-      Vector2d place = face_.place(v);
-      const double from_first = places.empty() ? 0.0 : place.x() - places[0].x();
-      place.x() -= std::round(from_first / wall_.plan.length()) * wall_.plan.length();
-      places.push_back(place);
+      Vector2d position = face_.position(v);
+      const double from_first = positions.empty() ? 0.0 : position.x() - positions[0].x();
+      position.x() -= std::round(from_first / wall_.plan.length()) * wall_.plan.length();
+      positions.push_back(position);
     }
-    return places;
+    return positions;
   }
 
   /// Fills the opening bounded by this loop.
   void fill(const Loop& loop) {
     Polyline2 outline = unrolled(loop);
     Vector2d low = outline[0], high = low;
-    for (const Vector2d& place : outline) {
-      low = low.cwiseMin(place);
-      high = high.cwiseMax(place);
+    for (const Vector2d& position : outline) {
+      low = low.cwiseMin(position);
+      high = high.cwiseMax(position);
     }
     const auto turns_to = [&](const Opening& opening) {
       return (0.5 * (low.x() + high.x()) - opening.centre) / wall_.plan.length();
@@ -185,7 +186,7 @@ class WallBuilder {
     assert(found != wall_.openings.end() && "the tiles leave a gap that is no opening");
     const Opening& opening = *found;
     const double shift = std::round(turns_to(opening)) * wall_.plan.length();
-    for (Vector2d& place : outline) place.x() -= shift;
+    for (Vector2d& position : outline) position.x() -= shift;
     if (opening.back == Opening::Back::flat) {
       fill_flat(opening, outline, loop);
     } else {
@@ -195,7 +196,8 @@ class WallBuilder {
 
   void fill_flat(const Opening& opening, const Polyline2& outline, const Loop& loop) {
     Loop panel;
-    for (const Vector2d& place : outline) panel.push_back(face_.vertex(place, -opening.depth));
+    for (const Vector2d& position : outline)
+      panel.push_back(face_.vertex(position, -opening.depth));
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const std::size_t j = (i + 1) % loop.size();
       add(loop[i], loop[j], panel[j]);
@@ -282,10 +284,10 @@ class WallBuilder {
 
 }  // namespace
 
-double Opening::head_height(double s, double beside) const {
+double Opening::head_height(double s, double margin) const {
   for (std::size_t i = 0; i + 1 < head.size(); ++i) {
     const Vector2d &right = head[i], &left = head[i + 1];
-    if (beside >= right.x() || beside <= left.x()) continue;
+    if (margin >= right.x() || margin <= left.x()) continue;
     return left.y() + (s - left.x()) / (right.x() - left.x()) * (right.y() - left.y());
   }
   return sill;

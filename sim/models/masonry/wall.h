@@ -28,9 +28,9 @@ struct Opening {
   Back back = Back::flat;
   Polyline2 head;  ///< Upper edge from the right end to the left, in (s, z).
 
-  /// Returns z of the upper edge at s, for the piece of the edge above `beside`, which is inside
+  /// Returns z of the upper edge at s, for the piece of the edge above `margin`, which is inside
   /// the opening.
-  double head_height(double s, double beside) const;
+  double head_height(double s, double margin) const;
   Polyline2 outline() const;  ///< Returns the outline, counter-clockwise.
 };
 

@@ -30,7 +30,7 @@ SideSplitter::SideSplitter(const Wall& wall) {
     for (const Vector2d& corner : polygon) {
       for (const double turn : {-1.0, 0.0, 1.0}) {
         const Vector2d shifted(corner.x() + turn * wall.plan.length(), corner.y());
-        auto& cell = cells_[cell_of(shifted)];
+        auto& cell = cells_[cell_at(shifted)];
         const auto is_same = [&](const Vector2d& p) { return (p - shifted).norm() < same_corner; };
         if (std::none_of(cell.begin(), cell.end(), is_same)) cell.push_back(shifted);
       }
@@ -50,23 +50,24 @@ Polyline2 SideSplitter::split(const Polyline2& tile) const {
   return refined;
 }
 
-SideSplitter::Cell SideSplitter::cell_of(const Vector2d& place) {
-  return {static_cast<std::int64_t>(std::floor(place.x() / 0.5)),
-          static_cast<std::int64_t>(std::floor(place.y() / 0.5))};
+SideSplitter::Cell SideSplitter::cell_at(const Vector2d& along_wall) {
+  return {static_cast<std::int64_t>(std::floor(along_wall.x() / 0.5)),
+          static_cast<std::int64_t>(std::floor(along_wall.y() / 0.5))};
 }
 
 Polyline2 SideSplitter::corners_within(const Vector2d& a, const Vector2d& b) const {
   const Vector2d margin(same_corner, same_corner), along = b - a;
-  const Cell first = cell_of(a.cwiseMin(b) - margin), last = cell_of(a.cwiseMax(b) + margin);
+  const Cell first = cell_at(a.cwiseMin(b) - margin), last = cell_at(a.cwiseMax(b) + margin);
   Polyline2 corners;
   for (std::int64_t x = first[0]; x <= last[0]; ++x) {
     for (std::int64_t y = first[1]; y <= last[1]; ++y) {
       const auto cell = cells_.find({x, y});
       if (cell == cells_.end()) continue;
       for (const Vector2d& corner : cell->second) {
-        const bool is_beside = std::abs(cross(along, corner - a)) > same_corner * along.norm();
-        const double place = (corner - a).dot(along) / along.norm();
-        if (!is_beside && place > 2 * same_corner && place < along.norm() - 2 * same_corner) {
+        const bool is_off_line = std::abs(cross(along, corner - a)) > same_corner * along.norm();
+        const double along_wall = (corner - a).dot(along) / along.norm();
+        if (!is_off_line && along_wall > 2 * same_corner &&
+            along_wall < along.norm() - 2 * same_corner) {
           corners.push_back(corner);
         }
       }

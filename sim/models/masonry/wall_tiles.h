@@ -25,7 +25,7 @@ class SideSplitter {
 
  private:
   using Cell = std::array<std::int64_t, 2>;
-  static Cell cell_of(const Eigen::Vector2d& place);
+  static Cell cell_at(const Eigen::Vector2d& position);
 
   /// Returns the known corners between a and b, in that order.
   Polyline2 corners_within(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;

@@ -4,13 +4,13 @@
 #include <limits>
 #include <utility>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 
 /// Returns the offset of the first pixel of a plane.
-std::size_t margin_of(const RasterView& view) {
+std::size_t compute_margin(const RasterView& view) {
   return static_cast<std::size_t>(row_margin) * static_cast<std::size_t>(view.stride);
 }
 
@@ -21,7 +21,7 @@ void DepthRaster::draw(const RasterView& view, std::size_t count, const PointArr
   // The stride is invalid until the end, so that planes are reset after an exception.
   const int stride = std::exchange(stride_, 0);
   if (depths_.size() != view.outside || stride != view.stride) {
-    const std::size_t with_margins = view.outside + 2 * margin_of(view);
+    const std::size_t with_margins = view.outside + 2 * compute_margin(view);
     for (Plane& plane : nearest_) plane.assign(with_margins, nothing);
     row_wise_.assign(with_margins, nothing);
     depths_.resize(view.outside);
@@ -35,8 +35,8 @@ void DepthRaster::draw(const RasterView& view, std::size_t count, const PointArr
   std::ranges::fill(depths_, nothing);
   for (int size = 2; size <= largest_window; ++size) {
     if (!is_used_[static_cast<std::size_t>(size)]) continue;
-    float* const nearest = nearest_[static_cast<std::size_t>(size)].data() + margin_of(view);
-    draw_squares(view, size, nearest, row_wise_.data() + margin_of(view), depths_.data());
+    float* const nearest = nearest_[static_cast<std::size_t>(size)].data() + compute_margin(view);
+    draw_squares(view, size, nearest, row_wise_.data() + compute_margin(view), depths_.data());
   }
   for (const Square& square : large_) draw_square(view, square);
   stride_ = view.stride;
@@ -56,7 +56,7 @@ void DepthRaster::draw_chunk(const RasterView& view, const PointArrays& points, 
   std::array<float*, largest_window + 1> planes{};
   std::array<bool, largest_window + 1> is_used = is_used_;
   for (std::size_t size = 2; size < planes.size(); ++size) {
-    planes[size] = nearest_[size].data() + margin_of(view);
+    planes[size] = nearest_[size].data() + compute_margin(view);
   }
   for (std::size_t k = 0; k < inside; ++k) {
     const std::size_t i = inside_[k];
@@ -88,4 +88,4 @@ void DepthRaster::draw_square(const RasterView& view, const Square& square) {
   }
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -8,7 +8,7 @@
 
 #include "survey/skycap/raster/sight_kernels.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Depth image of points drawn as squares. The memory is reused; use one object per thread.
 class DepthRaster {
@@ -51,4 +51,4 @@ class DepthRaster {
   std::array<std::int32_t, chunk> sizes_{};
 };
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

@@ -6,7 +6,7 @@
 
 #include "survey/vector_clones.h"
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 namespace {
 
 constexpr float largest_square = 1e4F;  // larger than any raster [px]
@@ -33,8 +33,8 @@ constexpr float largest_square = 1e4F;  // larger than any raster [px]
     const std::int32_t pixel =
         static_cast<std::int32_t>(is_inside ? row + 0.5F : 0.0F) * view.stride +
         static_cast<std::int32_t>(is_inside ? column + 0.5F : 0.0F);
-    const float wanted = is_inside ? one_pixel_at / forward : 2.0F;
-    const float at_most = wanted < largest_square ? wanted : largest_square;
+    const float square = is_inside ? one_pixel_at / forward : 2.0F;
+    const float at_most = square < largest_square ? square : largest_square;
     const float width = at_most > 2.0F ? at_most : 2.0F;
     const auto whole = static_cast<std::int32_t>(width);
     out.pixels[i] = is_inside ? static_cast<std::uint32_t>(pixel) : view.outside;
@@ -64,9 +64,9 @@ constexpr float largest_square = 1e4F;  // larger than any raster [px]
     const float distance = std::sqrt(dx * dx + (dy * dy + dz * dz));
     const float cosine = facing / distance;
     const bool is_inside =
-        (facing > 0.0F) & (forward >= view.least_range) & (forward <= view.most_range) &
+        (facing > 0.0F) & (forward >= view.min_range) & (forward <= view.max_range) &
         (std::abs(right) <= view.half_slope[0] * forward) &
-        (std::abs(down) <= view.half_slope[1] * forward) & (cosine >= view.least_cosine);
+        (std::abs(down) <= view.half_slope[1] * forward) & (cosine >= view.min_cosine);
     const float scale = view.focal_length / forward;
     const float column = right * scale + first_column, row = down * scale + first_row;
     const std::int32_t pixel = static_cast<std::int32_t>(is_inside ? row : 0.0F) * view.stride +
@@ -84,30 +84,30 @@ constexpr float largest_square = 1e4F;  // larger than any raster [px]
 
 /// Returns the minimum of `size` values with stride `step` around `at`.
 template <int size>
-[[gnu::always_inline]] inline float least_about(const float* at, std::ptrdiff_t step) {
+[[gnu::always_inline]] inline float min_along(const float* at, std::ptrdiff_t step) {
   const float* value = at - (size - 1 - pixels_before_square(size)) * step;
-  float least = *value;
+  float min = *value;
 #pragma GCC unroll 8
   for (int k = 1; k < size; ++k) {
     value += step;
-    least = *value < least ? *value : least;
+    min = *value < min ? *value : min;
   }
-  return least;
+  return min;
 }
 
 /// A pixel is covered by the squares whose points are in a window of the same size around it. The
 /// minimum is computed along rows, then along columns.
 template <int size>
-[[gnu::always_inline]] inline void draw_squares_of(const RasterView& view, float* nearest,
-                                                   float* row_wise, float* depths) {
+[[gnu::always_inline]] inline void draw_squares_impl(const RasterView& view, float* nearest,
+                                                     float* row_wise, float* depths) {
   const std::size_t count = view.outside;
   const std::ptrdiff_t stride = view.stride;
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) row_wise[i] = least_about<size>(nearest + i, 1);
+  for (std::size_t i = 0; i < count; ++i) row_wise[i] = min_along<size>(nearest + i, 1);
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const float least = least_about<size>(row_wise + i, stride);
-    depths[i] = least < depths[i] ? least : depths[i];
+    const float min = min_along<size>(row_wise + i, stride);
+    depths[i] = min < depths[i] ? min : depths[i];
     nearest[i] = std::numeric_limits<float>::infinity();
   }
 }
@@ -117,19 +117,19 @@ template <int size>
                                                      float* depths) {
   switch (size) {
     case 2:
-      return draw_squares_of<2>(view, nearest, row_wise, depths);
+      return draw_squares_impl<2>(view, nearest, row_wise, depths);
     case 3:
-      return draw_squares_of<3>(view, nearest, row_wise, depths);
+      return draw_squares_impl<3>(view, nearest, row_wise, depths);
     case 4:
-      return draw_squares_of<4>(view, nearest, row_wise, depths);
+      return draw_squares_impl<4>(view, nearest, row_wise, depths);
     case 5:
-      return draw_squares_of<5>(view, nearest, row_wise, depths);
+      return draw_squares_impl<5>(view, nearest, row_wise, depths);
     case 6:
-      return draw_squares_of<6>(view, nearest, row_wise, depths);
+      return draw_squares_impl<6>(view, nearest, row_wise, depths);
     case 7:
-      return draw_squares_of<7>(view, nearest, row_wise, depths);
+      return draw_squares_impl<7>(view, nearest, row_wise, depths);
     default:
-      return draw_squares_of<largest_window>(view, nearest, row_wise, depths);
+      return draw_squares_impl<largest_window>(view, nearest, row_wise, depths);
   }
 }
 
@@ -185,4 +185,4 @@ void project_targets(const RasterView& view, float rays, std::size_t count,
   project(view, rays, count, positions, normals, projected);
 }
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

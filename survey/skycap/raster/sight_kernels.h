@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace skycap::survey::skycap {
+namespace skycap::survey::surfel {
 
 /// Maximum width of a square that is drawn by windows [px], and reach of the windows. Each row has
 /// as many spare pixels at its right end.
@@ -14,17 +14,17 @@ constexpr int largest_window = 8, row_margin = largest_window / 2;
 
 /// View and its raster for the visibility test, with a border of one pixel and the margin.
 struct RasterView {
-  float position[3];              ///< sensor position, world frame [m]
-  float right[3];                 ///< camera axis, world frame
-  float down[3];                  ///< camera axis, world frame
-  float forward[3];               ///< camera axis, world frame
-  float focal_length;             ///< [px]
-  float width, height;            ///< without border [px]
-  std::int32_t stride;            ///< width with border and margin [px]
-  std::uint32_t outside;          ///< number of all pixels; index of points outside the image
-  float half_slope[2];            ///< tangents of half the field of view, right and down
-  float least_range, most_range;  ///< along the optical axis [m]
-  float least_cosine;             ///< minimum cosine of the angle of incidence
+  float position[3];           ///< sensor position, world frame [m]
+  float right[3];              ///< camera axis, world frame
+  float down[3];               ///< camera axis, world frame
+  float forward[3];            ///< camera axis, world frame
+  float focal_length;          ///< [px]
+  float width, height;         ///< without border [px]
+  std::int32_t stride;         ///< width with border and margin [px]
+  std::uint32_t outside;       ///< number of all pixels; index of points outside the image
+  float half_slope[2];         ///< tangents of half the field of view, right and down
+  float min_range, max_range;  ///< along the optical axis [m]
+  float min_cosine;            ///< minimum cosine of the angle of incidence
 };
 
 /// Points as a structure of arrays.
@@ -70,4 +70,4 @@ void project_targets(const RasterView& view, float rays, std::size_t count,
                      const PointArrays& positions, const PointArrays& normals,
                      const TargetArrays& projected);
 
-}  // namespace skycap::survey::skycap
+}  // namespace skycap::survey::surfel

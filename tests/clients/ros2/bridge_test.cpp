@@ -57,7 +57,7 @@ TEST_F(BridgedRobot, GivesAScanOnceItIsAtTheView) {
 
 TEST_F(BridgedRobot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
   const std::string begun = R"({"en_route": 0, "frame_period_s": 1.0, )";
-  answer_ = begun + std::string(wanted).substr(1);
+  answer_ = begun + std::string(first_view).substr(1);
   begin();
   for (int step = 0; step <= 40; ++step) odometry(8.0 + 0.05 * step, {2.5 * 0.05 * step, 0, 0});
   for (const double time : {8.5, 9.02, 9.4, 9.6}) {  // within tolerance from 9.88 s on
@@ -65,7 +65,7 @@ TEST_F(BridgedRobot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
     proceed();
   }
   using skycap_live::From;
-  EXPECT_THAT(origins_, ElementsAre(From::way, From::way));  // a second and more apart
+  EXPECT_THAT(origins_, ElementsAre(From::en_route, From::en_route));  // a second and more apart
   EXPECT_NEAR(poses_.back()[3], 2.5 * 1.6, 1e-9);
   EXPECT_THAT(goals_, SizeIs(1));  // the way stands
   cloud(9.95);                     // there, but not at rest
@@ -211,9 +211,9 @@ TEST_F(BridgedRobot, NothingThatIsWrongGetsIntoTheSurvey) {
   proceed(1.0);
   EXPECT_THAT(warnings_.back(), HasSubstr("its pose is unknown"));
   now_ += 10.0;
-  SampleCloud spoiled(seconds(10.5), {{1, 2, 3}});
-  spoiled.message.row_step = 1;
-  bridge_->receive(spoiled.message, now_);
+  SampleCloud corrupted(seconds(10.5), {{1, 2, 3}});
+  corrupted.message.row_step = 1;
+  bridge_->receive(corrupted.message, now_);
   EXPECT_THAT(warnings_.back(), HasSubstr("cloud: its rows have 1 bytes"));
   SampleCloud stampless(0, {{1, 2, 3}});
   now_ += 10.0;
@@ -238,7 +238,7 @@ TEST_F(BridgedRobot, ComplainsOfAKindOnceInFiveSeconds) {
 TEST_F(BridgedRobot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
   begin();
   arrive();
-  answer_ = std::string(wanted);
+  answer_ = std::string(first_view);
   answer_.insert(1, R"("warning": "pose", )");
   cloud(10.0);
   proceed();
@@ -249,7 +249,7 @@ TEST_F(BridgedRobot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
   cloud(10.1);
   proceed();
   EXPECT_THAT(scans_, SizeIs(1));
-  answer_ = wanted;
+  answer_ = first_view;
   command("take");
   cloud(10.2);
   proceed();
@@ -261,11 +261,11 @@ TEST_F(BridgedRobot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
 TEST_F(BridgedRobot, TriesAScanThatTheSurveyRefusedAgainLater) {
   begin({.taking = Taking::every});
   arrive();
-  refusal_ = R"({"type":"error","what":"the scan has no pixels"})";
+  rejection_ = R"({"type":"error","what":"the scan has no pixels"})";
   cloud(10.0);
   proceed();
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("the scan has no pixels")));
-  refusal_.clear();
+  rejection_.clear();
   cloud(10.1);
   proceed(1.1);
   EXPECT_THAT(scans_, IsEmpty());
@@ -300,7 +300,7 @@ TEST_F(BridgedRobot, TakesDepthImagesWithTheirCamera) {
   bridge_->receive(image.message, now_);
   proceed();
   ASSERT_THAT(scans_, SizeIs(1));
-  EXPECT_THAT(std::get<DepthScan>(scans_[0]).lens, ElementsAre(2, 4, 1.5, 0.5));
+  EXPECT_THAT(std::get<DepthScan>(scans_[0]).intrinsics, ElementsAre(2, 4, 1.5, 0.5));
 }
 
 TEST_F(BridgedRobot, IsToldByCommands) {
@@ -310,7 +310,7 @@ TEST_F(BridgedRobot, IsToldByCommands) {
   proceed();
   EXPECT_THAT(scans_, IsEmpty());
   command("refuse behind the \"fence\"\n");
-  EXPECT_THAT(refused_, ElementsAre(R"(3 behind the \"fence\"?)"));
+  EXPECT_THAT(rejected_, ElementsAre(R"(3 behind the \"fence\"?)"));
   command("dance");
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("'dance': unknown command")));
   command("finish");
@@ -323,11 +323,11 @@ TEST_F(BridgedRobot, AsksForTheSurveyNowAndThen) {
   Bridge lost({},
               {.next = [&]() -> std::string {
                  if (++asked > 1) throw std::runtime_error("connection closed by the server");
-                 return wanted;
+                 return first_view;
                },
                .finish = {},
                .add = {},
-               .refuse = {}},
+               .reject = {}},
               {.goal = [](const Goal&) {},
                .status = [](const std::string&) {},
                .warning = [](const std::string&) {}});

@@ -17,7 +17,7 @@ namespace skycap::ros2 {
 using Eigen::Vector3d;
 
 /// A survey that wants a view at (5, 0, 0), along z of the world: the robot does not have to turn.
-inline constexpr const char* wanted =
+inline constexpr const char* first_view =
     R"({"id": 3, "state": "view", "scans": 2, "points": 9, "rejected": 0,
         "view": {"position": [5, 0, 0], "direction": [0, 0, 1], "quaternion_xyzw": [0, 0, 0, 1]},
         "path": [[0, 0, 0], [5, 0, 0]], "clearance_m": 2})";
@@ -32,21 +32,21 @@ class BridgedRobot : public testing::Test {
                    .add =
                        [this](const SensorScan& scan, const skycap_live::Pose& pose,
                               const skycap_live::PoseError& error, skycap_live::From from) {
-                         if (!refusal_.empty()) throw skycap_live::Refused(refusal_);
+                         if (!rejection_.empty()) throw skycap_live::Rejected(rejection_);
                          scans_.push_back(scan);
                          poses_.push_back(pose);
                          errors_.push_back(error);
                          origins_.push_back(from);
                          return answer_;
                        },
-                   .refuse =
+                   .reject =
                        [this](std::size_t id, const std::string& reason) {
-                         refused_.push_back(std::to_string(id) + " " + reason);
+                         rejected_.push_back(std::to_string(id) + " " + reason);
                          return answer_;
                        }},
-        Outlets{.goal = [this](const Goal& goal) { goals_.push_back(goal); },
-                .status = [this](const std::string& text) { status_ = text; },
-                .warning = [this](const std::string& line) { warnings_.push_back(line); }});
+        BridgeCallbacks{.goal = [this](const Goal& goal) { goals_.push_back(goal); },
+                        .status = [this](const std::string& text) { status_ = text; },
+                        .warning = [this](const std::string& line) { warnings_.push_back(line); }});
     bridge_->begin();
   }
 
@@ -87,13 +87,13 @@ class BridgedRobot : public testing::Test {
   }
 
   double now_ = 100.0;
-  std::string answer_ = wanted, refusal_, status_;
+  std::string answer_ = first_view, rejection_, status_;
   int finished_ = 0;
   std::vector<SensorScan> scans_;
   std::vector<skycap_live::Pose> poses_;
   std::vector<skycap_live::PoseError> errors_;
   std::vector<skycap_live::From> origins_;
-  std::vector<std::string> warnings_, refused_;
+  std::vector<std::string> warnings_, rejected_;
   std::vector<Goal> goals_;
   std::unique_ptr<Bridge> bridge_;
 };

@@ -20,7 +20,7 @@ using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 constexpr double rounding = 1e-12;
 constexpr double right_angle = std::numbers::pi / 2;
@@ -89,19 +89,19 @@ TEST(Mount, MovesTheCovarianceAsManyDrawnErrorsDo) {
 
 TEST(BodyPose, RefusesWhatIsNoPose) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  const auto complaint = [](const auto& spoil) {
+  const auto error_message = [](const auto& corrupt) {
     SampleOdometry odometry(seconds(1.0), {1, 2, 3});
-    spoil(odometry.message.pose);
-    return complaint_of([&] { body_pose(odometry.message); });
+    corrupt(odometry.message.pose);
+    return thrown_message([&] { body_pose(odometry.message); });
   };
-  EXPECT_EQ(complaint([](auto&) {}), "");
-  EXPECT_THAT(complaint([](auto& p) { p.pose.position.z = none; }), HasSubstr("position"));
-  EXPECT_THAT(complaint([](auto& p) { p.pose.orientation.x = none; }), HasSubstr("quaternion"));
-  EXPECT_THAT(complaint([](auto& p) { p.pose.orientation.w = 0; }), HasSubstr("quaternion"));
-  EXPECT_THAT(complaint([](auto& p) { p.pose.orientation.w = 1.02; }), HasSubstr("quaternion"));
-  EXPECT_THAT(complaint([](auto& p) { p.covariance[7] = none; }), HasSubstr("is not finite"));
-  EXPECT_THAT(complaint([](auto& p) { p.covariance[0] = -1; }), HasSubstr("negative variance"));
-  EXPECT_THAT(complaint([](auto& p) { p.covariance[1] = 1; }), HasSubstr("not symmetric"));
+  EXPECT_EQ(error_message([](auto&) {}), "");
+  EXPECT_THAT(error_message([](auto& p) { p.pose.position.z = none; }), HasSubstr("position"));
+  EXPECT_THAT(error_message([](auto& p) { p.pose.orientation.x = none; }), HasSubstr("quaternion"));
+  EXPECT_THAT(error_message([](auto& p) { p.pose.orientation.w = 0; }), HasSubstr("quaternion"));
+  EXPECT_THAT(error_message([](auto& p) { p.pose.orientation.w = 1.02; }), HasSubstr("quaternion"));
+  EXPECT_THAT(error_message([](auto& p) { p.covariance[7] = none; }), HasSubstr("is not finite"));
+  EXPECT_THAT(error_message([](auto& p) { p.covariance[0] = -1; }), HasSubstr("negative variance"));
+  EXPECT_THAT(error_message([](auto& p) { p.covariance[1] = 1; }), HasSubstr("not symmetric"));
 }
 
 TEST(BodyPose, OfZerosHasNoCovariance) {
@@ -114,7 +114,7 @@ TEST(BodyPose, OfZerosHasNoCovariance) {
 TEST(Extrinsic, RefusesWhatIsNone) {
   for (const char* text :
        {"", "1 2 3", "0 0 0 0 0 0 2", "0 0 0 0 0 0 1 0", "0 0 0 0 0 0 x", "nan 0 0 0 0 0 1"}) {
-    EXPECT_THAT(complaint_of([&] { parse_extrinsic(text, "--sensor"); }),
+    EXPECT_THAT(thrown_message([&] { parse_extrinsic(text, "--sensor"); }),
                 HasSubstr("it must be x y z qx qy qz qw"))
         << text;
   }
@@ -151,10 +151,10 @@ TEST(PoseHistory, TurnsTheShortWayWhateverTheSignsOfQuaternions) {
 
 TEST(PoseHistory, SaysWhyAPoseIsNotKnown) {
   PoseHistory history({});
-  const auto expect = [&](double time, PoseMatch::State state, const std::string& why) {
+  const auto expect = [&](double time, PoseMatch::State state, const std::string& reason) {
     const PoseMatch match = history.at(seconds(time));
     EXPECT_EQ(match.state, state) << time;
-    EXPECT_THAT(match.why, HasSubstr(why)) << time;
+    EXPECT_THAT(match.reason, HasSubstr(reason)) << time;
   };
   expect(5.0, PoseMatch::State::open, "after it");
   history.add(seconds(10.0), pose_at(0.0));
@@ -165,14 +165,14 @@ TEST(PoseHistory, SaysWhyAPoseIsNotKnown) {
   expect(9.95, PoseMatch::State::open, "before it");
   expect(10.05, PoseMatch::State::open, "after it");
   expect(10.25, PoseMatch::State::open, "before it");
-  expect(10.32, PoseMatch::State::refused, "as if at 200 m/s");
-  expect(10.38, PoseMatch::State::refused, "60 rad/s");
+  expect(10.32, PoseMatch::State::rejected, "as if at 200 m/s");
+  expect(10.38, PoseMatch::State::rejected, "60 rad/s");
   expect(10.45, PoseMatch::State::open, "after it");
 }
 
 TEST(PoseHistory, KeepsTheFirstOfPosesWithOneStamp) {
   PoseHistory history({});
-  EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), PoseHistory::Added::taken);
+  EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), PoseHistory::Added::accepted);
   EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), PoseHistory::Added::known);
   EXPECT_EQ(history.add(seconds(1.0), pose_at(2.0)), PoseHistory::Added::contradicts);
   EXPECT_EQ(history.at(seconds(1.0)).pose.position.x(), 1.0);
@@ -180,7 +180,7 @@ TEST(PoseHistory, KeepsTheFirstOfPosesWithOneStamp) {
 
 /// However far in the future a stamp is, its pose goes with the others.
 TEST(PoseHistory, ForgetsWhatCameFirst) {
-  PoseHistory history({.most = 3});
+  PoseHistory history({.max = 3});
   history.add(seconds(1e9), pose_at(0.0));
   for (int i = 1; i <= 3; ++i) history.add(seconds(i), pose_at(i));
   EXPECT_NE(history.at(seconds(1e9)).state, PoseMatch::State::known);
@@ -189,14 +189,14 @@ TEST(PoseHistory, ForgetsWhatCameFirst) {
 
 TEST(Stamps, ThatAreNoneAreRefused) {
   std::string frame;
-  Header header = header_of(seconds(0.0), frame);
-  EXPECT_THAT(complaint_of([&] { stamp_of(header); }), HasSubstr("not set"));
+  Header header = make_header(seconds(0.0), frame);
+  EXPECT_THAT(thrown_message([&] { to_stamp(header); }), HasSubstr("not set"));
   header.stamp = {.sec = -1, .nanosec = 5};
-  EXPECT_THAT(complaint_of([&] { stamp_of(header); }), HasSubstr("not set"));
+  EXPECT_THAT(thrown_message([&] { to_stamp(header); }), HasSubstr("not set"));
   header.stamp = {.sec = 1, .nanosec = 1'000'000'000};
-  EXPECT_THAT(complaint_of([&] { stamp_of(header); }), HasSubstr("nanoseconds"));
+  EXPECT_THAT(thrown_message([&] { to_stamp(header); }), HasSubstr("nanoseconds"));
   header.stamp = {.sec = 2'147'483'647, .nanosec = 999'999'999};
-  EXPECT_EQ(stamp_of(header), 2'147'483'647'999'999'999);
+  EXPECT_EQ(to_stamp(header), 2'147'483'647'999'999'999);
 }
 
 }  // namespace

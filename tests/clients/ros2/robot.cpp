@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 const Quaterniond optical_on_gimbal(0.5, -0.5, 0.5, -0.5);
 const Vector3d gimbal_on_body(0.1, 0.0, -0.3);
 
-Quaterniond turn_of(const PoseMessage& pose) {
+Quaterniond to_quaternion(const PoseMessage& pose) {
   const auto& [x, y, z, w] = pose.orientation;
   return Quaterniond(w, x, y, z).normalized();
 }
@@ -38,7 +38,7 @@ Isometry3d isometry(const PoseMessage& pose) {
 
 constexpr Stamp step = 20'000'000;
 
-std::string text_of(const PoseMessage& pose) {
+std::string to_string(const PoseMessage& pose) {
   const auto& [p, q] = pose;
   char text[256];
   std::snprintf(text, sizeof text, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g", p.x, p.y, p.z, q.x,
@@ -60,9 +60,9 @@ Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string
       fixed_(participant_, topics + "/tf_static", Writing::latched),
       clouds_(participant_, topics + "/points", Writing::sensor),
       commands_(participant_, topics + "/skycap/command", Writing::command),
-      views_(participant_, topics + "/skycap/next_sensor_pose", Reading::latched, 1),
-      paths_(participant_, topics + "/skycap/path", Reading::latched, 10),
-      statuses_(participant_, topics + "/skycap/status", Reading::latched, 1) {
+      views_(participant_, topics + "/skycap/next_sensor_pose", ReaderQos::latched, 1),
+      paths_(participant_, topics + "/skycap/path", ReaderQos::latched, 10),
+      statuses_(participant_, topics + "/skycap/status", ReaderQos::latched, 1) {
   if (!has_gimbal_) return;
   const SampleTransforms camera(
       1, {{"gimbal", "camera_optical", Vector3d::Zero(), optical_on_gimbal}});
@@ -70,7 +70,7 @@ Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string
 }
 
 void Robot::listen() {
-  views_.take([this](const PoseStamped& message) { wanted_ = message.pose; });
+  views_.take([this](const PoseStamped& message) { target_ = message.pose; });
   paths_.take([this](const Path& message) {
     longest_path_ = std::max<std::size_t>(longest_path_, message.poses._length);
   });
@@ -80,8 +80,8 @@ void Robot::listen() {
 Robot::Measured Robot::measure(const PoseMessage& sensor, std::size_t number) const {
   const Isometry3d world_from_sensor = isometry(sensor);
   const geometry::Scan scan =
-      sensor_.scan(scene_.scene(), geometry::view_of(world_from_sensor), number, 1);
-  Measured measured{sensor, {text_of(sensor), {}}};
+      sensor_.scan(scene_.scene(), geometry::to_view(world_from_sensor), number, 1);
+  Measured measured{sensor, {to_string(sensor), {}}};
   for (const Eigen::Vector3f& point : scan.points) {
     measured.scan.points.push_back(
         (world_from_sensor.inverse() * point.cast<double>()).cast<float>());
@@ -111,7 +111,7 @@ void Robot::send_gimbal(const Quaterniond& sensor) const {
 
 void Robot::turn_to(const PoseMessage& pose) {
   if (!has_gimbal_) return;
-  const Quaterniond from = turn_of(here_), to = turn_of(pose);
+  const Quaterniond from = to_quaternion(here_), to = to_quaternion(pose);
   constexpr int steps = 20;
   for (int i = 0; i < steps; ++i) {
     send_odometry(clock_ += step, pose);
@@ -126,11 +126,11 @@ void Robot::send_cloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) 
   clouds_.write(sample.message);
 }
 
-void Robot::stand_at(const PoseMessage& pose, int steps) {
+void Robot::stay_at(const PoseMessage& pose, int steps) {
   here_ = pose;
   for (int i = 0; i < steps; ++i) {
     send_odometry(clock_ += step, pose);
-    send_gimbal(turn_of(pose));
+    send_gimbal(to_quaternion(pose));
     std::this_thread::sleep_for(2ms);
   }
 }
@@ -158,7 +158,7 @@ void Robot::send_nonsense(const Measured& measured) {
 
 bool Robot::wait_for_status(const std::string& text) {
   for (int i = 0; i < 300; ++i) {
-    stand_at(here_, 5);
+    stay_at(here_, 5);
     listen();
     if (!status_.is_null() && status_.dump().find(text) != std::string::npos) return true;
     std::this_thread::sleep_for(90ms);
@@ -170,16 +170,17 @@ bool Robot::survey() {
   const auto end = std::chrono::steady_clock::now() + 120s;
   if (!wait_for_status("\"state\":\"view\"")) return false;
   while (std::chrono::steady_clock::now() < end) {
-    stand_at(here_, 1);
+    stay_at(here_, 1);
     std::this_thread::sleep_for(50ms);
     listen();
     if (status_.at("taken") != scans_.size()) continue;
     if (status_.at("state") != "view") return true;
-    const auto place = status_.at("view").at("position").get<std::vector<double>>();
-    if (std::abs(place[0] - wanted_.position.x) > 1e-9) continue;  // its message is on the way
-    const Measured measured = measure(wanted_, scans_.size());
-    turn_to(wanted_);
-    stand_at(wanted_, 20);
+    const auto status_position = status_.at("view").at("position").get<std::vector<double>>();
+    if (std::abs(status_position[0] - target_.position.x) > 1e-9)
+      continue;  // its message is on the way
+    const Measured measured = measure(target_, scans_.size());
+    turn_to(target_);
+    stay_at(target_, 20);
     send_nonsense(measured);
     const std::size_t taken = scans_.size();
     for (int attempt = 0; attempt < 20 && status_.at("taken") == taken; ++attempt) {
@@ -190,7 +191,7 @@ bool Robot::survey() {
         std::this_thread::sleep_for(100ms);
         listen();
       }
-      stand_at(wanted_, 1);
+      stay_at(target_, 1);
     }
     scans_.push_back(measured.scan);
   }

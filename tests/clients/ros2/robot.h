@@ -48,7 +48,7 @@ class Robot {
 
   void listen();
   Measured measure(const PoseMessage& sensor, std::size_t number) const;
-  void stand_at(const PoseMessage& pose, int steps);
+  void stay_at(const PoseMessage& pose, int steps);
   /// The body above the sensor, and the gimbal on its way there.
   void send_gimbal(const Eigen::Quaterniond& sensor) const;
   /// Turns while it measures: a scan that nobody may use.
@@ -70,7 +70,7 @@ class Robot {
   Reader<Path> paths_;
   Reader<String> statuses_;
   nlohmann::json status_;
-  PoseMessage here_{{0, 0, 0}, {0, 0, 0, 1}}, wanted_{};
+  PoseMessage here_{{0, 0, 0}, {0, 0, 0, 1}}, target_{};
   std::size_t longest_path_ = 0;
   Stamp clock_ = 1'000'000'000'000;
   std::vector<SentScan> scans_;

@@ -15,7 +15,7 @@
 
 namespace skycap::ros2 {
 
-inline Header header_of(Stamp stamp, std::string& frame) {
+inline Header make_header(Stamp stamp, std::string& frame) {
   return {.stamp = {.sec = static_cast<std::int32_t>(stamp / 1'000'000'000),
                     .nanosec = static_cast<std::uint32_t>(stamp % 1'000'000'000)},
           .frame_id = frame.data()};
@@ -27,7 +27,7 @@ inline Stamp seconds(double time) { return static_cast<Stamp>(time * 1e9); }
 struct SampleOdometry {
   SampleOdometry(Stamp stamp, const Eigen::Vector3d& position,
                  const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
-    message.header = header_of(stamp, frame);
+    message.header = make_header(stamp, frame);
     message.child_frame_id = child_frame.data();
     message.pose.pose = {.position = {position.x(), position.y(), position.z()},
                          .orientation = {turn.x(), turn.y(), turn.z(), turn.w()}};
@@ -50,7 +50,7 @@ struct SampleTransforms {
     for (Frame& frame : frames) {
       const Eigen::Vector3d& p = frame.position;
       const Eigen::Quaterniond& q = frame.turn;
-      transforms.push_back({header_of(stamp, frame.parent),
+      transforms.push_back({make_header(stamp, frame.parent),
                             frame.name.data(),
                             {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}});
     }
@@ -74,7 +74,7 @@ struct SampleCloud {
       std::memcpy(&data[step * i], points[i].data(), 3 * sizeof(float));
     }
     fields = {{names[0].data(), 0, 7, 1}, {names[1].data(), 4, 7, 1}, {names[2].data(), 8, 7, 1}};
-    message.header = header_of(stamp, frame);
+    message.header = make_header(stamp, frame);
     message.height = 1;
     message.width = static_cast<std::uint32_t>(points.size());
     message.point_step = step;
@@ -105,7 +105,7 @@ struct SampleImage {
               std::string encoding_name)
       : encoding(std::move(encoding_name)), data(pixels.size() * sizeof(Number)) {
     std::memcpy(data.data(), pixels.data(), data.size());
-    message.header = header_of(stamp, frame);
+    message.header = make_header(stamp, frame);
     message.width = width;
     message.height = static_cast<std::uint32_t>(pixels.size()) / width;
     message.encoding = encoding.data();
@@ -124,7 +124,7 @@ struct SampleImage {
 /// Of a camera of 4 x 2 pixels with fx = 2, fy = 4 and its principal point at (1.5, 0.5).
 struct SampleInfo {
   explicit SampleInfo(std::vector<double> d = {}) : distortion(std::move(d)) {
-    message.header = header_of(seconds(1.0), frame);
+    message.header = make_header(seconds(1.0), frame);
     message.width = 4;
     message.height = 2;
     message.distortion_model = model.data();

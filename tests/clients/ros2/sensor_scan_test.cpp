@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 constexpr float far_away = std::numeric_limits<float>::infinity();
@@ -24,13 +24,13 @@ constexpr float far_away = std::numeric_limits<float>::infinity();
 TEST(CloudScan, HasThePointsThatAreSome) {
   const SampleCloud cloud(seconds(1.0),
                           {{1, 2, 3}, {none, 2, 3}, {0, 0, 0}, {1, 2, far_away}, {4, 0, 6}});
-  EXPECT_THAT(scan_of(cloud.message, Axes::optical).xyz, ElementsAre(1, 2, 3, 4, 0, 6));
+  EXPECT_THAT(make_scan(cloud.message, Axes::optical).xyz, ElementsAre(1, 2, 3, 4, 0, 6));
 }
 
 /// One metre ahead, two to the left, three up: minus two to the right, minus three down.
 TEST(CloudScan, TurnsTheAxesOfABodyToThoseOfACamera) {
   const SampleCloud cloud(seconds(1.0), {{1, 2, 3}});
-  EXPECT_THAT(scan_of(cloud.message, Axes::flu).xyz, ElementsAre(-2, -3, 1));
+  EXPECT_THAT(make_scan(cloud.message, Axes::flu).xyz, ElementsAre(-2, -3, 1));
 }
 
 /// Two rows of two points with four bytes between the rows.
@@ -42,7 +42,7 @@ TEST(CloudScan, OfAnOrganisedCloudGoesRowByRow) {
   cloud.message.height = 2;
   cloud.message.width = 2;
   cloud.message.row_step = 36;
-  EXPECT_THAT(scan_of(cloud.message, Axes::optical).xyz,
+  EXPECT_THAT(make_scan(cloud.message, Axes::optical).xyz,
               ElementsAre(1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4));
 }
 
@@ -52,32 +52,32 @@ TEST(CloudScan, ReadsBigEndianNumbersAndDoubles) {
     std::reverse(cloud.data.begin() + i, cloud.data.begin() + i + 4);
   }
   cloud.message.is_bigendian = true;
-  EXPECT_THAT(scan_of(cloud.message, Axes::optical).xyz, ElementsAre(1.5F, -2.25F, 3.0F));
+  EXPECT_THAT(make_scan(cloud.message, Axes::optical).xyz, ElementsAre(1.5F, -2.25F, 3.0F));
 
   SampleCloud doubles(seconds(1.0), {{0, 0, 0}, {0, 0, 0}});  // 32 bytes
-  const double place[3] = {7.0, -8.5, 9.25};
-  std::memcpy(doubles.data.data(), place, sizeof place);
+  const double coordinates[3] = {7.0, -8.5, 9.25};
+  std::memcpy(doubles.data.data(), coordinates, sizeof coordinates);
   doubles.message.width = 1;
   doubles.message.point_step = doubles.message.row_step = 32;
   for (std::uint32_t i = 0; i < 3; ++i) {
     doubles.fields[i].offset = 8 * i;
     doubles.fields[i].datatype = 8;
   }
-  EXPECT_THAT(scan_of(doubles.message, Axes::optical).xyz, ElementsAre(7.0F, -8.5F, 9.25F));
+  EXPECT_THAT(make_scan(doubles.message, Axes::optical).xyz, ElementsAre(7.0F, -8.5F, 9.25F));
 }
 
 TEST(CloudScan, OfNoPointsIsEmpty) {
   const SampleCloud cloud(seconds(1.0), {});
-  EXPECT_THAT(scan_of(cloud.message, Axes::optical).xyz, IsEmpty());
+  EXPECT_THAT(make_scan(cloud.message, Axes::optical).xyz, IsEmpty());
 }
 
-struct Spoiling {
-  const char* complaint;
-  std::function<void(SampleCloud&)> spoil;
+struct Corruption {
+  const char* error_message;
+  std::function<void(SampleCloud&)> corrupt;
 };
 
 TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
-  const std::vector<Spoiling> spoilings = {
+  const std::vector<Corruption> corruptions = {
       {"1 rows of 64 are a different number", [](SampleCloud& c) { c.data.pop_back(); }},
       {"2 rows of 32 are a different number",
        [](SampleCloud& c) {
@@ -105,12 +105,12 @@ TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
       {"missing field x", [](SampleCloud& c) { c.fields[0].name = nullptr; }},
       {"missing field x", [](SampleCloud& c) { c.fields.clear(); }},
   };
-  for (const Spoiling& spoiling : spoilings) {
+  for (const Corruption& corruption : corruptions) {
     SampleCloud cloud(seconds(1.0), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}});
-    spoiling.spoil(cloud);
+    corruption.corrupt(cloud);
     cloud.attach();
-    EXPECT_THAT(complaint_of([&] { scan_of(cloud.message, Axes::optical); }),
-                HasSubstr(spoiling.complaint));
+    EXPECT_THAT(thrown_message([&] { make_scan(cloud.message, Axes::optical); }),
+                HasSubstr(corruption.error_message));
   }
 }
 
@@ -118,12 +118,13 @@ TEST(DepthScan, Of16UC1IsTheImageWithItsLens) {
   const SampleImage image(seconds(1.0), 4,
                           std::vector<std::uint16_t>{0, 1, 2, 3, 400, 500, 600, 65535}, "16UC1");
   const SampleInfo info({0.1, -0.2, 0.001, 0.002, 0.03});
-  const auto scan = std::get<DepthScan>(scan_of(image.message, lens_of(info.message, false)));
+  const auto scan =
+      std::get<DepthScan>(make_scan(image.message, to_intrinsics(info.message, false)));
   EXPECT_THAT(scan.depth, ElementsAre(0, 1, 2, 3, 400, 500, 600, 65535));
   EXPECT_EQ(scan.width, 4);
   EXPECT_EQ(scan.height, 2);
   EXPECT_EQ(scan.unit, 0.001);
-  EXPECT_THAT(scan.lens, ElementsAre(2, 4, 1.5, 0.5, 0.1, -0.2, 0.001, 0.002, 0.03));
+  EXPECT_THAT(scan.intrinsics, ElementsAre(2, 4, 1.5, 0.5, 0.1, -0.2, 0.001, 0.002, 0.03));
 }
 
 /// Pixel (3, 1): x = (3 - 1.5) / 2 * 8, y = (1 - 0.5) / 4 * 8.
@@ -131,7 +132,8 @@ TEST(DepthScan, Of32FC1IsACloud) {
   const SampleImage image(seconds(1.0), 4,
                           std::vector<float>{none, 0, -1, far_away, none, none, none, 8}, "32FC1");
   const SampleInfo info;
-  const auto scan = std::get<CloudScan>(scan_of(image.message, lens_of(info.message, false)));
+  const auto scan =
+      std::get<CloudScan>(make_scan(image.message, to_intrinsics(info.message, false)));
   EXPECT_THAT(scan.xyz, ElementsAre(6, 1, 8));
 }
 
@@ -139,53 +141,57 @@ TEST(DepthScan, OfARectifiedImageGoesByP) {
   SampleInfo info({0.1});
   const double p[12] = {3, 0, 1, 0, 0, 5, 2, 0, 0, 0, 1, 0};
   std::memcpy(info.message.p, p, sizeof p);
-  EXPECT_THAT(lens_of(info.message, true).lens, ElementsAre(3, 5, 1, 2));
-  EXPECT_THAT(lens_of(info.message, false).lens, ElementsAre(2, 4, 1.5, 0.5, 0.1, 0, 0, 0, 0));
+  EXPECT_THAT(to_intrinsics(info.message, true).intrinsics, ElementsAre(3, 5, 1, 2));
+  EXPECT_THAT(to_intrinsics(info.message, false).intrinsics,
+              ElementsAre(2, 4, 1.5, 0.5, 0.1, 0, 0, 0, 0));
 }
 
 TEST(DepthScan, RefusesImagesWhoseNumbersDoNotFit) {
   const SampleInfo info;
-  const CameraLens lens = lens_of(info.message, false);
-  const auto complaint = [&](const std::function<void(Image&)>& spoil) {
+  const CameraIntrinsics intrinsics = to_intrinsics(info.message, false);
+  const auto error_message = [&](const std::function<void(Image&)>& corrupt) {
     SampleImage image(seconds(1.0), 4, std::vector<std::uint16_t>(8), "16UC1");
-    spoil(image.message);
-    return complaint_of([&] { scan_of(image.message, lens); });
+    corrupt(image.message);
+    return thrown_message([&] { make_scan(image.message, intrinsics); });
   };
-  EXPECT_THAT(complaint([](Image& i) { i.step = 7; }), HasSubstr("4 times 2 require more"));
-  EXPECT_THAT(complaint([](Image& i) { i.step = 9; }),
+  EXPECT_THAT(error_message([](Image& i) { i.step = 7; }), HasSubstr("4 times 2 require more"));
+  EXPECT_THAT(error_message([](Image& i) { i.step = 9; }),
               HasSubstr("2 rows of 9 are a different number"));
-  EXPECT_THAT(complaint([](Image& i) { i.data._length = 15; }), HasSubstr("it has 15 bytes"));
-  EXPECT_THAT(complaint([](Image& i) { i.width = 0; }), HasSubstr("from 1 to 32768"));
-  EXPECT_THAT(complaint([](Image& i) { i.height = 0xFFFFFFFF; }), HasSubstr("from 1 to 32768"));
-  EXPECT_THAT(complaint([](Image& i) { i.width = 3; }), HasSubstr("CameraInfo has 4 x 2"));
-  EXPECT_THAT(complaint([](Image& i) { i.encoding = nullptr; }), HasSubstr("16UC1 or 32FC1"));
+  EXPECT_THAT(error_message([](Image& i) { i.data._length = 15; }), HasSubstr("it has 15 bytes"));
+  EXPECT_THAT(error_message([](Image& i) { i.width = 0; }), HasSubstr("from 1 to 32768"));
+  EXPECT_THAT(error_message([](Image& i) { i.height = 0xFFFFFFFF; }), HasSubstr("from 1 to 32768"));
+  EXPECT_THAT(error_message([](Image& i) { i.width = 3; }), HasSubstr("CameraInfo has 4 x 2"));
+  EXPECT_THAT(error_message([](Image& i) { i.encoding = nullptr; }), HasSubstr("16UC1 or 32FC1"));
 }
 
 TEST(DepthScan, RefusesLensesThatItCannotGoBy) {
-  const auto complaint = [](const std::function<void(SampleInfo&)>& spoil,
-                            std::vector<double> distortion = {}) {
+  const auto error_message = [](const std::function<void(SampleInfo&)>& corrupt,
+                                std::vector<double> distortion = {}) {
     SampleInfo info(std::move(distortion));
-    spoil(info);
-    return complaint_of([&] { lens_of(info.message, false); });
+    corrupt(info);
+    return thrown_message([&] { to_intrinsics(info.message, false); });
   };
   const auto nothing = [](SampleInfo&) {};
-  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.k[0] = 0; }),
+  EXPECT_THAT(error_message([](SampleInfo& i) { i.message.k[0] = 0; }),
               HasSubstr("invalid focal length or principal point"));
-  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.k[2] = none; }),
+  EXPECT_THAT(error_message([](SampleInfo& i) { i.message.k[2] = none; }),
               HasSubstr("invalid focal length or principal point"));
-  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.binning_x = 2; }), HasSubstr("binning"));
-  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.roi.width = 2; }), HasSubstr("region"));
-  EXPECT_THAT(complaint([](SampleInfo& i) { i.message.roi.y_offset = 1; }), HasSubstr("region"));
-  EXPECT_THAT(complaint(nothing, {0, 0, 0, 0, 0, 0.1, 0, 0}), HasSubstr("plumb_bob"));
-  EXPECT_THAT(complaint(nothing, {none}), HasSubstr("D is not finite"));
-  EXPECT_EQ(complaint(nothing, {0, 0, 0, 0, 0, 0, 0, 0}), "");
+  EXPECT_THAT(error_message([](SampleInfo& i) { i.message.binning_x = 2; }), HasSubstr("binning"));
+  EXPECT_THAT(error_message([](SampleInfo& i) { i.message.roi.width = 2; }), HasSubstr("region"));
+  EXPECT_THAT(error_message([](SampleInfo& i) { i.message.roi.y_offset = 1; }),
+              HasSubstr("region"));
+  EXPECT_THAT(error_message(nothing, {0, 0, 0, 0, 0, 0.1, 0, 0}), HasSubstr("plumb_bob"));
+  EXPECT_THAT(error_message(nothing, {none}), HasSubstr("D is not finite"));
+  EXPECT_EQ(error_message(nothing, {0, 0, 0, 0, 0, 0, 0, 0}), "");
   std::string fisheye = "equidistant";
-  EXPECT_THAT(complaint([&](SampleInfo& i) { i.message.distortion_model = fisheye.data(); }, {0.1}),
-              HasSubstr("'equidistant' with 1"));
+  EXPECT_THAT(
+      error_message([&](SampleInfo& i) { i.message.distortion_model = fisheye.data(); }, {0.1}),
+      HasSubstr("'equidistant' with 1"));
   const SampleInfo distorted({0.1});
   const SampleImage image(seconds(1.0), 4, std::vector<float>(8), "32FC1");
-  EXPECT_THAT(complaint_of([&] { scan_of(image.message, lens_of(distorted.message, false)); }),
-              HasSubstr("rectify"));
+  EXPECT_THAT(
+      thrown_message([&] { make_scan(image.message, to_intrinsics(distorted.message, false)); }),
+      HasSubstr("rectify"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 std::mutex guard;
 std::optional<std::mt19937> random_bits;  // nothing: all is sent as it is
-std::size_t spoiled = 0;
+std::size_t corrupted = 0;
 
 std::uint32_t below(std::size_t limit) {
   return static_cast<std::uint32_t>((*random_bits)() % std::max<std::size_t>(limit, 1));
@@ -29,10 +29,10 @@ Number number_at(const std::string& packet, std::size_t at) {
 }
 
 /// Other bytes, other numbers where a length may be, or fewer bytes with any number after them.
-void spoil(std::string& packet, std::size_t begin, std::size_t end) {
+void corrupt(std::string& packet, std::size_t begin, std::size_t end) {
   constexpr std::array<std::uint32_t, 6> extremes{0, 1, 0x7fffffff, 0x80000000, 0xfffffffe, ~0U};
   if (end < begin + 8 || end > packet.size()) return;
-  ++spoiled;
+  ++corrupted;
   const std::size_t count = 1 + below(4);
   for (std::size_t i = 0; i < count; ++i) {
     // The first four bytes say how the others are to be read.
@@ -49,7 +49,7 @@ void spoil(std::string& packet, std::size_t begin, std::size_t end) {
 
 /// The serialised data in a packet of RTPS 2.x: of submessages DATA and DATA_FRAG whose writers are
 /// users', not those of discovery. The last one may end too soon.
-void spoil_data(std::string& packet) {
+void corrupt_data(std::string& packet) {
   constexpr std::size_t packet_header = 20, header = 4;
   constexpr unsigned char data = 0x15, data_frag = 0x16;
   if (packet.size() < packet_header || packet.compare(0, 4, "RTPS") != 0) return;
@@ -62,7 +62,7 @@ void spoil_data(std::string& packet) {
     const bool is_users = (writer_kind & 0xc0U) == 0;
     if ((kind == data || kind == data_frag) && is_users && !has_inline_qos) {
       const std::size_t payload = at + 8 + number_at<std::uint16_t>(packet, at + 6);
-      spoil(packet, payload, end);
+      corrupt(packet, payload, end);
       if (kind == data && end == packet.size() && payload + 8 < end && below(5) == 0) {
         packet.resize(payload + 4 + 4 * below((end - payload) / 4));
         const auto left = static_cast<std::uint16_t>(packet.size() - at - header);
@@ -76,19 +76,19 @@ void spoil_data(std::string& packet) {
 
 }  // namespace
 
-SpoiledWire::SpoiledWire(std::uint32_t seed) {
+CorruptedWire::CorruptedWire(std::uint32_t seed) {
   const std::lock_guard lock(guard);
   random_bits.emplace(seed);
 }
 
-SpoiledWire::~SpoiledWire() {
+CorruptedWire::~CorruptedWire() {
   const std::lock_guard lock(guard);
   random_bits.reset();
 }
 
-std::size_t SpoiledWire::count() {
+std::size_t CorruptedWire::count() {
   const std::lock_guard lock(guard);
-  return spoiled;
+  return corrupted;
 }
 
 }  // namespace skycap::ros2
@@ -103,10 +103,10 @@ extern "C" ssize_t sendmsg(int socket, const msghdr* message, int flags) {
     const std::lock_guard lock(guard);
     if (!random_bits) return send(socket, message, flags);
     for (std::size_t i = 0; i < message->msg_iovlen; ++i) {
-      const iovec& piece = message->msg_iov[i];
-      packet.append(static_cast<const char*>(piece.iov_base), piece.iov_len);
+      const iovec& chunk = message->msg_iov[i];
+      packet.append(static_cast<const char*>(chunk.iov_base), chunk.iov_len);
     }
-    skycap::ros2::spoil_data(packet);
+    skycap::ros2::corrupt_data(packet);
   }
   std::size_t asked = 0;
   for (std::size_t i = 0; i < message->msg_iovlen; ++i) asked += message->msg_iov[i].iov_len;

@@ -7,12 +7,12 @@
 
 namespace skycap::ros2 {
 
-class SpoiledWire {
+class CorruptedWire {
  public:
-  explicit SpoiledWire(std::uint32_t seed);
-  SpoiledWire(const SpoiledWire&) = delete;
-  SpoiledWire& operator=(const SpoiledWire&) = delete;
-  ~SpoiledWire();
+  explicit CorruptedWire(std::uint32_t seed);
+  CorruptedWire(const CorruptedWire&) = delete;
+  CorruptedWire& operator=(const CorruptedWire&) = delete;
+  ~CorruptedWire();
 
   /// Pieces of data that were spoiled so far.
   static std::size_t count();

@@ -36,7 +36,7 @@ namespace {
 
 using missions::online::short_mission;
 using testing::HasSubstr;
-using tests::content_of;
+using tests::read_content;
 using tests::TestFolder;
 using namespace std::chrono_literals;
 
@@ -79,7 +79,7 @@ class Program {
     return std::nullopt;
   }
 
-  std::string said() const { return content_of(log_); }
+  std::string log_text() const { return read_content(log_); }
 
  private:
   std::string log_;
@@ -95,7 +95,7 @@ class LiveRobot : public testing::Test {
         std::vector<std::string>{SKYCAP_PROGRAM, "serve", folder_ / "m.yaml", "--survey",
                                  folder_ / "served", "--socket", folder_ / "s"},
         folder_ / "server.log");
-    for (int i = 0; i < 300 && server_->said().find("unix:") == std::string::npos; ++i) {
+    for (int i = 0; i < 300 && server_->log_text().find("unix:") == std::string::npos; ++i) {
       std::this_thread::sleep_for(100ms);
     }
   }
@@ -115,7 +115,7 @@ class LiveRobot : public testing::Test {
 };
 
 /// A PLY of floats.
-std::string ply_of(const std::vector<Eigen::Vector3f>& points) {
+std::string make_ply(const std::vector<Eigen::Vector3f>& points) {
   std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                      std::to_string(points.size()) +
                      "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
@@ -126,29 +126,29 @@ std::string ply_of(const std::vector<Eigen::Vector3f>& points) {
 /// Through DDS, with nonsense between, comes what `skycap next` makes of the same scans and poses:
 /// the journal has every scan's digest and pose and every view that was proposed.
 TEST_F(LiveRobot, IsSurveyedAsByHandWithTheSameScans) {
-  const std::string mission = short_mission(tests::flown_mission());
+  const std::string mission = short_mission(tests::flight_mission());
   serve(mission);
   start_bridge();
   Robot robot(mission, domain_, topics_);
-  ASSERT_TRUE(robot.survey()) << bridge_->said() << server_->said();
+  ASSERT_TRUE(robot.survey()) << bridge_->log_text() << server_->log_text();
   EXPECT_GE(robot.scans().size(), 3U);
   EXPECT_GE(robot.longest_path(), 2U);
   for (const SentScan& scan : robot.scans()) {
-    const std::string file = folder_.write("scan.ply", ply_of(scan.points));
+    const std::string file = folder_.write("scan.ply", make_ply(scan.points));
     const tests::ProgramRun run =
         tests::run_skycap({"next", folder_ / "m.yaml", "--survey", folder_ / "by_hand", "--scan",
                            file, "--pose", scan.pose, "--quiet", "--no-report"});
     EXPECT_THAT(run.exit_code, testing::AnyOf(0, 10, 11)) << run.err;
   }
-  const std::string journal = content_of(folder_.path() / "by_hand" / "live.journal");
+  const std::string journal = read_content(folder_.path() / "by_hand" / "live.journal");
   EXPECT_GT(journal.size(), 1000U);
-  EXPECT_TRUE(journal == content_of(folder_.path() / "served" / "live.journal"));
+  EXPECT_TRUE(journal == read_content(folder_.path() / "served" / "live.journal"));
   robot.command("finish");
-  EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->said();
+  EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->log_text();
   EXPECT_TRUE(server_->exit_code());
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "served" / "views.csv"));
-  EXPECT_THAT(bridge_->said(), HasSubstr("warning: odometry: another pose"));
-  EXPECT_THAT(bridge_->said(), HasSubstr("warning: cloud: "));
+  EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: odometry: another pose"));
+  EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: cloud: "));
 }
 
 /// The body never turns; the gimbal does, and measures on the way, too.
@@ -157,15 +157,15 @@ TEST_F(LiveRobot, TurnsItsCameraOnAGimbalThatTFTellsOf) {
   serve(mission);
   start_bridge({"--tf", topics_ + "/tf", "--tf-static", topics_ + "/tf_static"});
   Robot robot(mission, domain_, topics_, true);
-  ASSERT_TRUE(robot.survey()) << bridge_->said() << server_->said();
+  ASSERT_TRUE(robot.survey()) << bridge_->log_text() << server_->log_text();
   EXPECT_GE(robot.scans().size(), 3U);
   server_.reset();
   const geometry::RecordLog log(folder_.path() / "served" / "live.journal");
-  const auto events = missions::online::events_of(log.records(), "the journal");
+  const auto events = missions::online::parse_events(log.records(), "the journal");
   ASSERT_EQ(events.size(), robot.scans().size());
   for (std::size_t i = 0; i < events.size(); ++i) {
-    const Eigen::Isometry3d wanted = parse_extrinsic(robot.scans()[i].pose, "");
-    EXPECT_TRUE(events[i].scan->world_from_sensor.isApprox(wanted, 1e-9)) << i;
+    const Eigen::Isometry3d expected = parse_extrinsic(robot.scans()[i].pose, "");
+    EXPECT_TRUE(events[i].scan->world_from_sensor.isApprox(expected, 1e-9)) << i;
   }
 }
 
@@ -175,10 +175,10 @@ TEST_F(LiveRobot, IsToldWhenItsBridgeIsStopped) {
   for (const int signal : {SIGINT, SIGTERM}) {
     start_bridge();
     Robot robot(mission, domain_, topics_);
-    ASSERT_TRUE(robot.wait_for_status("\"doing\":\"waiting for a scan\"")) << bridge_->said();
+    ASSERT_TRUE(robot.wait_for_status("\"doing\":\"waiting for a scan\"")) << bridge_->log_text();
     bridge_->signal(signal);
     EXPECT_TRUE(robot.wait_for_status("stopped"));
-    EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->said();
+    EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->log_text();
     std::this_thread::sleep_for(1s);  // until the server has noticed
   }
 }
@@ -188,22 +188,22 @@ TEST_F(LiveRobot, IsToldWhenTheSurveyIsLost) {
   serve(mission);
   start_bridge();
   Robot robot(mission, domain_, topics_);
-  ASSERT_TRUE(robot.wait_for_status("\"doing\":\"waiting for a scan\"")) << bridge_->said();
+  ASSERT_TRUE(robot.wait_for_status("\"doing\":\"waiting for a scan\"")) << bridge_->log_text();
   server_.reset();
   EXPECT_TRUE(robot.wait_for_status("server lost"));
   EXPECT_EQ(bridge_->exit_code(), 1);
-  EXPECT_THAT(bridge_->said(), HasSubstr("error: the survey at unix:"));
+  EXPECT_THAT(bridge_->log_text(), HasSubstr("error: the survey at unix:"));
 }
 
 TEST_F(LiveRobot, NeedsASurveyThatIsServedAndTopicsThatAreSome) {
   start_bridge();
   EXPECT_EQ(bridge_->exit_code(), 1);
-  EXPECT_THAT(bridge_->said(), HasSubstr("no server at this address"));
+  EXPECT_THAT(bridge_->log_text(), HasSubstr("no server at this address"));
   bridge_.emplace(std::vector<std::string>{SKYCAP_ROS2_PROGRAM, "unix:s", "--domain",
                                            std::to_string(domain_), "--cloud", "points"},
                   folder_ / "bridge.log");
   EXPECT_EQ(bridge_->exit_code(), 2);
-  EXPECT_THAT(bridge_->said(), HasSubstr("the topic 'points' must begin with /"));
+  EXPECT_THAT(bridge_->log_text(), HasSubstr("the topic 'points' must begin with /"));
 }
 
 /// What a driver sends, over and over.
@@ -216,7 +216,7 @@ void send_all_kinds(const Participant& participant, const std::string& topics, i
   const Writer<CameraInfo> infos(participant, topics + "/camera_info", Writing::sensor);
   const Writer<String> commands(participant, topics + "/skycap/command", Writing::command);
   std::this_thread::sleep_for(1s);  // they find their readers
-  const SpoiledWire wire(7);
+  const CorruptedWire wire(7);
   std::string take = "take";
   std::vector<Eigen::Vector3f> points(40, {0.1F, 0.2F, 2.0F});
   for (int i = 0; i < rounds; ++i) {
@@ -251,18 +251,18 @@ TEST_F(LiveRobot, WhoseMessagesAreSpoiledOnTheWireEndsNothing) {
          has_images ? "--image" : "--cloud", topics_ + (has_images ? "/depth" : "/points")});
     bridge_.emplace(words, folder_ / "bridge.log");
     const Participant participant(domain_);
-    Reader<String> statuses(participant, topics_ + "/skycap/status", Reading::latched, 1);
+    Reader<String> statuses(participant, topics_ + "/skycap/status", ReaderQos::latched, 1);
     std::string status;
     const auto listen = [&] { statuses.take([&](const String& m) { status = m.data; }); };
     for (int i = 0; i < 300 && status.empty(); ++i, listen()) std::this_thread::sleep_for(100ms);
-    ASSERT_THAT(status, HasSubstr("waiting for odometry")) << bridge_->said();
-    const std::size_t before = SpoiledWire::count();
+    ASSERT_THAT(status, HasSubstr("waiting for odometry")) << bridge_->log_text();
+    const std::size_t before = CorruptedWire::count();
     send_all_kinds(participant, topics_, rounds == nullptr ? 200 : std::stoi(rounds));
-    std::cout << SpoiledWire::count() - before << " pieces of data were spoiled\n";
+    std::cout << CorruptedWire::count() - before << " pieces of data were spoiled\n";
     std::this_thread::sleep_for(1s);
     bridge_->signal(SIGTERM);
-    EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->said();
-    EXPECT_THAT(bridge_->said(), HasSubstr("warning: "));
+    EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->log_text();
+    EXPECT_THAT(bridge_->log_text(), HasSubstr("warning: "));
     listen();
     EXPECT_THAT(status, HasSubstr("stopped"));
     std::this_thread::sleep_for(1s);  // until the server has noticed
@@ -284,7 +284,8 @@ TEST_F(LiveRobot, IsGivenNoOptionThatOthersLeaveWithoutEffect) {
     words.insert(words.end(), options.begin(), options.end());
     bridge_.emplace(words, folder_ / "bridge.log");
     EXPECT_EQ(bridge_->exit_code(), 2);
-    EXPECT_THAT(bridge_->said(), HasSubstr("error: " + options.front() + " has no effect with"));
+    EXPECT_THAT(bridge_->log_text(),
+                HasSubstr("error: " + options.front() + " has no effect with"));
   }
 }
 

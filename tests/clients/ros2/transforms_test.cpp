@@ -20,7 +20,7 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 using Frame = SampleTransforms::Frame;
 using State = PoseMatch::State;
 
@@ -34,8 +34,8 @@ class TransformTree : public testing::Test {
     const SampleTransforms sample(seconds(time), {frame});
     tree_.add(sample.transforms.front(), is_static);
   }
-  std::string complaint(double time, const Frame& frame, bool is_static = false) {
-    return complaint_of([&] { add(time, frame, is_static); });
+  std::string error_message(double time, const Frame& frame, bool is_static = false) {
+    return thrown_message([&] { add(time, frame, is_static); });
   }
   PoseMatch at(const std::string& target, const std::string& source, double time) const {
     return tree_.at(target, source, seconds(time));
@@ -51,7 +51,7 @@ TEST_F(TransformTree, ChainsWhatStandsAndWhatTurns) {
   add(10.1, {"mast", "gimbal", {0, 0, 0.2}, about_z(10)});
   add(0.0, {"gimbal", "camera", {1, 0, 0}, about_z(90)}, true);
   const PoseMatch half = at("base_link", "camera", 10.05);
-  ASSERT_EQ(half.state, State::known) << half.why;
+  ASSERT_EQ(half.state, State::known) << half.reason;
   const double angle = 5.0 * geometry::radians_per_degree;
   EXPECT_LT((half.pose.position - Vector3d(std::cos(angle), std::sin(angle), 2.1)).norm(), 1e-12);
   EXPECT_LT(half.pose.turn.angularDistance(about_z(95)), 1e-12);
@@ -70,14 +70,15 @@ TEST_F(TransformTree, LeadsFromBranchToBranch) {
   ASSERT_EQ(match.state, State::known);
   EXPECT_EQ(match.pose.position, Vector3d(1, 0, 0.5));
   EXPECT_EQ(at("map", "camera", 1.0).state, State::open);
-  EXPECT_THAT(at("map", "camera", 1.0).why, HasSubstr("no transforms lead from 'map' to 'camera'"));
+  EXPECT_THAT(at("map", "camera", 1.0).reason,
+              HasSubstr("no transforms lead from 'map' to 'camera'"));
   EXPECT_EQ(at("nobody", "nobody", 1.0).state, State::known);
 }
 
 TEST_F(TransformTree, RefusesToBridgeJumps) {
   add(10.0, {"map", "odom", {0, 0, 0}});
   add(10.1, {"map", "odom", {50, 0, 0}});
-  EXPECT_EQ(at("map", "odom", 10.05).state, State::refused);
+  EXPECT_EQ(at("map", "odom", 10.05).state, State::rejected);
   EXPECT_EQ(at("map", "odom", 10.1).state, State::known);
 }
 
@@ -93,43 +94,45 @@ TEST_F(TransformTree, HasNoCirclesNorTooLongChains) {
   add(0.0, {"a", "b"}, true);
   add(0.0, {"b", "c"}, true);
   add(0.0, {"c", "a"}, true);
-  EXPECT_EQ(at("map", "a", 1.0).state, State::refused);
-  EXPECT_THAT(at("map", "a", 1.0).why, HasSubstr("have no end"));
-  EXPECT_THAT(complaint(0.0, {"d", "d"}, true), HasSubstr("is its own parent"));
+  EXPECT_EQ(at("map", "a", 1.0).state, State::rejected);
+  EXPECT_THAT(at("map", "a", 1.0).reason, HasSubstr("have no end"));
+  EXPECT_THAT(error_message(0.0, {"d", "d"}, true), HasSubstr("is its own parent"));
   for (int i = 0; i < 65; ++i) {
     add(0.0, {"f" + std::to_string(i), "f" + std::to_string(i + 1)}, true);
   }
-  EXPECT_EQ(at("f1", "f65", 1.0).state, State::refused);
+  EXPECT_EQ(at("f1", "f65", 1.0).state, State::rejected);
   EXPECT_EQ(at("f0", "f60", 1.0).state, State::known);
 }
 
 TEST_F(TransformTree, PassesOverNonsense) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   add(10.0, {"base_link", "gimbal"});
-  EXPECT_THAT(complaint(10.0, {"base_link", "gimbal", {1, 0, 0}}), HasSubstr("the same stamp"));
-  EXPECT_THAT(complaint(10.1, {"mast", "gimbal"}), HasSubstr("it was in 'base_link' until now"));
-  EXPECT_THAT(complaint(10.1, {"base_link", "gimbal"}, true),
+  EXPECT_THAT(error_message(10.0, {"base_link", "gimbal", {1, 0, 0}}), HasSubstr("the same stamp"));
+  EXPECT_THAT(error_message(10.1, {"mast", "gimbal"}),
+              HasSubstr("it was in 'base_link' until now"));
+  EXPECT_THAT(error_message(10.1, {"base_link", "gimbal"}, true),
               HasSubstr("must not be static and moving"));
-  EXPECT_THAT(complaint(10.1, {"", "x"}), HasSubstr("parent has no name"));
-  EXPECT_THAT(complaint(10.1, {"x", ""}), HasSubstr("child has no name"));
-  EXPECT_THAT(complaint(10.1, {"x", std::string(101, 'y')}), HasSubstr("longer than 100 bytes"));
-  EXPECT_THAT(complaint(0.0, {"x", "y"}), HasSubstr("stamp is not set"));
-  EXPECT_THAT(complaint(10.1, {"x", "y", {none, 0, 0}}), HasSubstr("is not finite"));
-  EXPECT_THAT(complaint(10.1, {"x", "y", {1e200, 0, 0}}), HasSubstr("more than 1e7 m"));
-  EXPECT_THAT(complaint(10.1, {"x", "y", {0, 0, 0}, {0, 0, 0, 0}}), HasSubstr("quaternion"));
+  EXPECT_THAT(error_message(10.1, {"", "x"}), HasSubstr("parent has no name"));
+  EXPECT_THAT(error_message(10.1, {"x", ""}), HasSubstr("child has no name"));
+  EXPECT_THAT(error_message(10.1, {"x", std::string(101, 'y')}),
+              HasSubstr("longer than 100 bytes"));
+  EXPECT_THAT(error_message(0.0, {"x", "y"}), HasSubstr("stamp is not set"));
+  EXPECT_THAT(error_message(10.1, {"x", "y", {none, 0, 0}}), HasSubstr("is not finite"));
+  EXPECT_THAT(error_message(10.1, {"x", "y", {1e200, 0, 0}}), HasSubstr("more than 1e7 m"));
+  EXPECT_THAT(error_message(10.1, {"x", "y", {0, 0, 0}, {0, 0, 0, 0}}), HasSubstr("quaternion"));
   EXPECT_EQ(at("x", "y", 10.1).state, State::open);  // nothing of them stayed
   const SampleTransforms nameless(seconds(1.0), {{"x", "y"}});
   TransformStamped transform = nameless.transforms.front();
   transform.child_frame_id = nullptr;
-  EXPECT_THAT(complaint_of([&] { tree_.add(transform, false); }), HasSubstr("has no name"));
+  EXPECT_THAT(thrown_message([&] { tree_.add(transform, false); }), HasSubstr("has no name"));
 }
 
 TEST_F(TransformTree, HoldsNoMoreThanItMay) {
-  for (std::size_t i = 0; i < Transforms::most_frames; ++i) {
+  for (std::size_t i = 0; i < Transforms::max_frames; ++i) {
     add(1.0, {"map", "f" + std::to_string(i)});
   }
-  EXPECT_THAT(complaint(1.0, {"map", "one more"}), HasSubstr("more than 256 frames"));
-  for (std::size_t i = 0; i <= Transforms::most_poses; ++i) {
+  EXPECT_THAT(error_message(1.0, {"map", "one more"}), HasSubstr("more than 256 frames"));
+  for (std::size_t i = 0; i <= Transforms::max_poses; ++i) {
     add(2.0 + 0.01 * static_cast<double>(i), {"map", "f0"});
   }
   EXPECT_EQ(at("map", "f0", 1.0).state, State::open);  // gone

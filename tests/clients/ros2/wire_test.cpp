@@ -58,7 +58,7 @@ std::string sent(const Message& message) {
   const Participant participant(own_domain());
   const std::string topic = topics() + "/wire";
   const Writer<Message> writer(participant, topic, Writing::latched);
-  const Reader<Message> reader(participant, topic, Reading::latched, 1);
+  const Reader<Message> reader(participant, topic, ReaderQos::latched, 1);
   writer.write(message);
   for (int attempt = 0; attempt < 1000; ++attempt) {
     ddsi_serdata* data = nullptr;
@@ -142,14 +142,14 @@ TEST(Wire, OfOdometry) {
 TEST(Wire, OfPosesAndPaths) {
   std::string frame = "map";
   std::vector<PoseStamped> poses(2);
-  poses[0] = {header_of(seconds(7.5), frame), {{1, 2, 3}, {4, 5, 6, 7}}};
-  poses[1] = {header_of(seconds(8.0), frame), {{8, 9, 10}, {11, 12, 13, 14}}};
+  poses[0] = {make_header(seconds(7.5), frame), {{1, 2, 3}, {4, 5, 6, 7}}};
+  poses[1] = {make_header(seconds(8.0), frame), {{8, 9, 10}, {11, 12, 13, 14}}};
   Cdr one, two;
   one.header(7, 500'000'000, "map").doubles(7, 1);
   EXPECT_EQ(sent(poses[0]), one.whole());
   two.header(9, 0, "map").number(2U).header(7, 500'000'000, "map").doubles(7, 1);
   two.header(8, 0, "map").doubles(7, 8);
-  EXPECT_EQ(sent(Path{header_of(seconds(9.0), frame), {2, 2, poses.data(), false}}), two.whole());
+  EXPECT_EQ(sent(Path{make_header(seconds(9.0), frame), {2, 2, poses.data(), false}}), two.whole());
 }
 
 /// TransformStamped[]: Header, string child_frame_id, Transform: Vector3 translation, Quaternion

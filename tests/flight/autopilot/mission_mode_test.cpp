@@ -51,9 +51,9 @@ Covered speed_up(double jerk, double rise, double jerk_hold, double acceleration
   return state;
 }
 
-double largest_that(double most, const std::function<bool(double)>& holds) {
-  if (holds(most)) return most;
-  double low = 0.0, high = most;
+double largest_that(double max, const std::function<bool(double)>& holds) {
+  if (holds(max)) return max;
+  double low = 0.0, high = max;
   for (int i = 0; i < 40; ++i) (holds(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
   return low;
 }
@@ -153,15 +153,15 @@ TEST(BrakingDistance, AgreesWithItsIntegration) {
 struct Hop {
   double horizontal, vertical;
 };
-struct Flown {
+struct LoggedSortie {
   double seconds;  ///< in ArduCopter's simulator, from take-off to disarmed
   std::vector<Hop> hops;
 };
 
 /// Three sorties that were flown in ArduCopter 4.8 at 4 m/s with its defaults: from 5 m above the
 /// pad from stop to stop, a second of hold at each, and a landing from 5 m.
-const std::vector<Flown>& flown_sorties() {
-  static const std::vector<Flown> sorties{
+const std::vector<LoggedSortie>& logged_sorties() {
+  static const std::vector<LoggedSortie> sorties{
       {191.0,
        {{27.38, -2.99},
         {8.80, 0.00},
@@ -202,7 +202,7 @@ const std::vector<Flown>& flown_sorties() {
 // The bar: within 5 % of the times that were flown.
 TEST(ArduCopter, TimesAreThoseOfFlights) {
   const Motion motion(vehicle_profile("generic_ardupilot"), {.cruise_speed = 4.0});
-  for (const Flown& sortie : flown_sorties()) {
+  for (const LoggedSortie& sortie : logged_sorties()) {
     double time = motion.takeoff_time(5.0) + motion.landing_time(5.0);
     for (const Hop& hop : sortie.hops) {
       time += motion.leg_time({hop.horizontal, 0.0, hop.vertical}) + 1.0;

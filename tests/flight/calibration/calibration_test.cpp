@@ -23,7 +23,7 @@ using testing::ThrowsMessage;
 constexpr double period = 0.1;  ///< between samples [s]
 
 /// The one that flies: not quite the preset.
-Vehicle flown() {
+Vehicle reference_vehicle() {
   Vehicle vehicle = vehicle_profile("generic_ardupilot");
   vehicle.endurance_min = 22.0;
   vehicle.avionics_power = 35.0;
@@ -40,8 +40,9 @@ std::vector<Vector3d> velocities() {
   fly({0, 0, 0}, 70);
   fly({0, 0, 2.5}, 20);
   for (const double speed : {3.0, 6.0, 9.0}) {
-    for (const Vector2d& way : {Vector2d(1, 0), Vector2d(0, 1), Vector2d(-1, 0), Vector2d(0, -1)}) {
-      fly({speed * way.x(), speed * way.y(), 0}, 25);
+    for (const Vector2d& direction :
+         {Vector2d(1, 0), Vector2d(0, 1), Vector2d(-1, 0), Vector2d(0, -1)}) {
+      fly({speed * direction.x(), speed * direction.y(), 0}, 25);
     }
   }
   fly({0, 0, -1.5}, 33);
@@ -50,7 +51,7 @@ std::vector<Vector3d> velocities() {
 }
 
 /// `noise` is of the measured power [W].
-FlightLog log_of(const Vehicle& vehicle, const Vector2d& wind, double noise) {
+FlightLog make_log(const Vehicle& vehicle, const Vector2d& wind, double noise) {
   const Motion motion(vehicle, {.wind = wind});
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -63,22 +64,22 @@ FlightLog log_of(const Vehicle& vehicle, const Vector2d& wind, double noise) {
 }
 
 TEST(Calibration, FindsTheVehicleAndTheWindOfAPerfectLog) {
-  const Calibration found =
-      calibrate(log_of(flown(), {2.0, -1.0}, 0.0), vehicle_profile("generic_ardupilot"), 1.225);
+  const Calibration found = calibrate(make_log(reference_vehicle(), {2.0, -1.0}, 0.0),
+                                      vehicle_profile("generic_ardupilot"), 1.225);
   EXPECT_NEAR(found.vehicle.endurance_min, 22.0, 0.01);
   EXPECT_NEAR(found.vehicle.avionics_power, 35.0, 0.5);
   EXPECT_NEAR(found.vehicle.drag_area, 0.06, 0.001);
   EXPECT_LT((found.wind - Vector2d(2.0, -1.0)).norm(), 0.02);
-  EXPECT_NEAR(found.hover_power, Motion(flown(), {}).hover_power(), 0.1);
+  EXPECT_NEAR(found.hover_power, Motion(reference_vehicle(), {}).hover_power(), 0.1);
   EXPECT_LT(found.energy_error, 0.001);
-  EXPECT_EQ(found.vehicle.energy_error, least_energy_error);
+  EXPECT_EQ(found.vehicle.energy_error, min_energy_error);
 }
 
 // Single readings that are off by a tenth of the power leave its energy within a percent.
 TEST(Calibration, IsGoodForTheEnergyOfANoisyLog) {
-  const Calibration found =
-      calibrate(log_of(flown(), {2.0, -1.0}, 25.0), vehicle_profile("generic_ardupilot"), 1.225);
-  const Motion real(flown(), {}), model(found.vehicle, {});
+  const Calibration found = calibrate(make_log(reference_vehicle(), {2.0, -1.0}, 25.0),
+                                      vehicle_profile("generic_ardupilot"), 1.225);
+  const Motion real(reference_vehicle(), {}), model(found.vehicle, {});
   for (const Vector3d& velocity :
        {Vector3d(0, 0, 0), Vector3d(0, 0, 2), Vector3d(5, 0, 0), Vector3d(0, 9, 0)}) {
     EXPECT_NEAR(model.flight_power(velocity) / real.flight_power(velocity), 1.0, 0.02);
@@ -88,7 +89,7 @@ TEST(Calibration, IsGoodForTheEnergyOfANoisyLog) {
 
 // A model that cannot say what happened says so by its error: power that swings by a third.
 TEST(Calibration, SaysHowFarItIsOff) {
-  FlightLog log = log_of(flown(), {0, 0}, 0.0);
+  FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     if (i * 5 / log.samples.size() % 2 == 1) log.samples[i].power *= 1.33;
   }
@@ -99,20 +100,22 @@ TEST(Calibration, RefusesLogsThatHoldTooLittle) {
   const auto tried = [](FlightLog log) {
     return [log] { calibrate(log, vehicle_profile("generic_ardupilot"), 1.225); };
   };
-  FlightLog log = log_of(flown(), {0, 0}, 0.0);
+  FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   FlightLog hovering = log, level = log, brief = log;
   std::erase_if(hovering.samples, [](const LogSample& s) { return s.velocity.norm() > 0.1; });
   std::erase_if(level.samples, [](const LogSample& s) { return s.velocity.norm() < 0.1; });
   brief.samples.resize(600);
-  const auto says = [](const char* what) { return ThrowsMessage<Error>(HasSubstr(what)); };
-  EXPECT_THAT(tried(brief), says("s of steady flight; required: at least 120 s"));
+  const auto throws_message = [](const char* what) {
+    return ThrowsMessage<Error>(HasSubstr(what));
+  };
+  EXPECT_THAT(tried(brief), throws_message("s of steady flight; required: at least 120 s"));
   EXPECT_THAT(tried(hovering),
-              says("s of level flight faster than 2.5 m/s; required: at least 30 s"));
-  EXPECT_THAT(tried(level), says("s of hovering; required: at least 20 s"));
+              throws_message("s of level flight faster than 2.5 m/s; required: at least 30 s"));
+  EXPECT_THAT(tried(level), throws_message("s of hovering; required: at least 20 s"));
 }
 
 TEST(Calibration, TakesOverTheAutopilotsLimits) {
-  FlightLog log = log_of(flown(), {0, 0}, 0.0);
+  FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   log.parameters = {{"WPNAV_SPEED_UP", 400}, {"WP_SPD_DN", 2.25},    {"ATC_INPUT_TC", 0.2},
                     {"LAND_SPEED", 70},      {"ATC_SLEW_YAW", 9000}, {"FENCE_RADIUS", 300}};
   const Calibration found = calibrate(log, vehicle_profile("generic_ardupilot"), 1.225);
@@ -126,16 +129,16 @@ TEST(Calibration, TakesOverTheAutopilotsLimits) {
 
 // Legs of 20 m that take 0.8 s more than the law says; every second waypoint is passed.
 TEST(Calibration, SettlingIsWhatLegsTakeBeyondTheirLaw) {
-  FlightLog log = log_of(flown(), {0, 0}, 0.0);
+  FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   const LocalFrame frame({51.0, 7.0, 0.0});
   const Vehicle vehicle = vehicle_profile("generic_ardupilot");
   const Motion motion(vehicle, {});
-  const double law = motion.leg_time({20, 0, 0}) - vehicle.mode.settle_time;
+  const double predicted = motion.leg_time({20, 0, 0}) - vehicle.mode.settle_time;
   double time = 10.0;
   for (int i = 0; i < 20; ++i) {
-    const GeodeticPoint place = frame.to_geodetic({20.0 * i, 0, 0});
-    log.commands.push_back({time, 16, 0, 0, place.latitude_deg, place.longitude_deg, 30.0});
-    time += law + 0.8 + (i % 2 == 0 ? 0.0 : 3.0);
+    const GeodeticPoint geodetic = frame.to_geodetic({20.0 * i, 0, 0});
+    log.commands.push_back({time, 16, 0, 0, geodetic.latitude_deg, geodetic.longitude_deg, 30.0});
+    time += predicted + 0.8 + (i % 2 == 0 ? 0.0 : 3.0);
     if (i % 2 == 0) log.commands.push_back({time, 93, 0.5, 0, 0, 0, 0});
     time += 0.5;
   }

@@ -9,7 +9,7 @@
 namespace skycap::flight {
 namespace {
 
-std::size_t width_of(char letter) {
+std::size_t field_width(char letter) {
   switch (letter) {
     case 'b':
     case 'B':
@@ -65,16 +65,16 @@ std::string number(char letter, double value) {
       return raw(static_cast<std::int32_t>(std::llround(value * 100.0)));
     default: {
       const std::string bytes = raw(static_cast<std::int64_t>(std::llround(value)));
-      return bytes.substr(0, width_of(letter));
+      return bytes.substr(0, field_width(letter));
     }
   }
 }
 
 }  // namespace
 
-std::size_t size_of(const LogFormat& format) {
+std::size_t compute_size(const LogFormat& format) {
   std::size_t size = 3;
-  for (const char letter : format.letters) size += width_of(letter);
+  for (const char letter : format.letters) size += field_width(letter);
   return size;
 }
 
@@ -89,7 +89,7 @@ void DataflashWriter::put_text(std::string text, std::size_t size) {
 
 void DataflashWriter::describe(const LogFormat& format) {
   begin(128);
-  bytes_ += {static_cast<char>(format.type), static_cast<char>(size_of(format))};
+  bytes_ += {static_cast<char>(format.type), static_cast<char>(compute_size(format))};
   put_text(format.name, 4), put_text(format.letters, 16), put_text(format.labels, 64);
 }
 
@@ -100,7 +100,7 @@ void DataflashWriter::add(const LogFormat& format, const std::map<std::string, d
   for (std::size_t i = 0; i < format.letters.size(); ++i) {
     const char letter = format.letters[i];
     if (letter == 'N' || letter == 'n' || letter == 'Z') {
-      put_text(text, width_of(letter));
+      put_text(text, field_width(letter));
       continue;
     }
     const auto found = values.find(labels.at(i));

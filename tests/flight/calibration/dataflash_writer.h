@@ -14,7 +14,7 @@ struct LogFormat {
 };
 
 /// The size of its messages, header included.
-std::size_t size_of(const LogFormat& format);
+std::size_t compute_size(const LogFormat& format);
 
 class DataflashWriter {
  public:

@@ -113,12 +113,15 @@ TEST(DataflashLog, AnyBytesAreReadOrRefused) {
   }
 }
 
-TEST(DataflashLog, SaysWhatIsMissing) {
-  const auto says = [](const char* what) { return ThrowsMessage<Error>(HasSubstr(what)); };
-  EXPECT_THAT([] { read_dataflash("no log"); }, says("dataflash log"));
-  EXPECT_THAT([] { read_dataflash(sample_log().substr(0, 4 * 89)); }, says("contains no velocity"));
+TEST(DataflashLog, ReportsWhatIsMissing) {
+  const auto throws_message = [](const char* what) {
+    return ThrowsMessage<Error>(HasSubstr(what));
+  };
+  EXPECT_THAT([] { read_dataflash("no log"); }, throws_message("dataflash log"));
+  EXPECT_THAT([] { read_dataflash(sample_log().substr(0, 4 * 89)); },
+              throws_message("contains no velocity"));
   EXPECT_THAT([] { read_dataflash(sample_log().substr(0, 4 * 89 + 46)); },
-              says("contains no battery"));
+              throws_message("contains no battery"));
 }
 
 TEST(CsvLog, ColumnsComeInAnyOrder) {
@@ -131,14 +134,14 @@ TEST(CsvLog, ColumnsComeInAnyOrder) {
 
 TEST(CsvLog, FaultsAreSaidByLine) {
   const std::string header = "time_s,east_m_s,north_m_s,up_m_s,power_w\n";
-  const auto refuses = [&](const std::string& text, const char* what) {
+  const auto rejects = [&](const std::string& text, const char* what) {
     EXPECT_THAT([&] { read_csv_log(text); }, ThrowsMessage<Error>(HasSubstr(what))) << text;
   };
-  refuses("time_s,power_w\n", "line 1 has no column east_m_s");
-  refuses(header + "1,0,0,0,x\n", "line 2 has \"x\" for power_w; it must be a number");
-  refuses(header + "1,0,0\n", "line 2 has too few fields");
-  refuses(header + "1,0,0,0,9\n1,0,0,0,9\n", "line 3 is not later than the line before it");
-  refuses(header, "there is no sample");
+  rejects("time_s,power_w\n", "line 1 has no column east_m_s");
+  rejects(header + "1,0,0,0,x\n", "line 2 has \"x\" for power_w; it must be a number");
+  rejects(header + "1,0,0\n", "line 2 has too few fields");
+  rejects(header + "1,0,0,0,9\n1,0,0,0,9\n", "line 3 is not later than the line before it");
+  rejects(header, "there is no sample");
 }
 
 TEST(CsvLog, OfMoreSamplesThanAllowedIsRefused) {

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 /// How a version describes the messages that calibration reads.
 struct Layout {
@@ -69,7 +69,7 @@ const std::vector<Layout>& layouts() {
 }
 
 /// The one that flies: hovers at that power [W].
-Vehicle flown(double hover_power) {
+Vehicle reference_vehicle(double hover_power) {
   Vehicle vehicle = vehicle_profile("generic_ardupilot");
   vehicle.avionics_power = 0.1 * hover_power;
   vehicle.endurance_min = endurance_at(vehicle, hover_power);
@@ -82,8 +82,8 @@ Vector3d velocity_at(double time) {
   if (time < 60.0) return Vector3d::Zero();
   if (time > 320.0) return {0, 0, 2.0};
   const auto leg = static_cast<int>((time - 60.0) / 20.0);
-  const double speed = leg % 2 == 0 ? 4.0 : 8.0, way = 0.5 * M_PI * (leg / 2 % 4);
-  return {speed * std::sin(way), speed * std::cos(way), 0.0};
+  const double speed = leg % 2 == 0 ? 4.0 : 8.0, direction = 0.5 * M_PI * (leg / 2 % 4);
+  return {speed * std::sin(direction), speed * std::cos(direction), 0.0};
 }
 
 constexpr double duration = 340.0;
@@ -92,9 +92,9 @@ double time_factor(const LogFormat& format) {
   return format.labels.starts_with("TimeMS") ? 1e3 : 1e6;
 }
 
-/// A log with ten readings a second; `amperes_of` changes what the current sensor says.
+/// A log with ten readings a second; `measure_amperes` changes what the current sensor says.
 template <class Amperes>
-std::string log_of(const Layout& layout, const Vehicle& vehicle, const Amperes& amperes_of) {
+std::string make_log(const Layout& layout, const Vehicle& vehicle, const Amperes& measure_amperes) {
   const Motion motion(vehicle, {.wind = {1.0, -2.0}});
   DataflashWriter log;
   for (const LogFormat* format :
@@ -116,13 +116,13 @@ std::string log_of(const Layout& layout, const Vehicle& vehicle, const Amperes& 
     log.add(layout.battery,
             {{is_old ? "TimeMS" : "TimeUS", time_factor(layout.battery) * (time + 100.01)},
              {"Volt", unit * volts},
-             {"Curr", unit * amperes_of(motion.flight_power(velocity) / volts)}});
+             {"Curr", unit * measure_amperes(motion.flight_power(velocity) / volts)}});
   }
   return log.bytes();
 }
 
-std::string log_of(const Layout& layout, const Vehicle& vehicle) {
-  return log_of(layout, vehicle, [](double amperes) { return amperes; });
+std::string make_log(const Layout& layout, const Vehicle& vehicle) {
+  return make_log(layout, vehicle, [](double amperes) { return amperes; });
 }
 
 double hover_error(const Calibration& found, const Vehicle& vehicle) {
@@ -139,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(Calibration, LogLayouts, testing::Range<std::size_t>(0,
 
 TEST_P(LogLayouts, GiveThePowerThatWasFlown) {
   for (const double power : {150.0, 190.0, 215.0, 250.0, 400.0}) {
-    const Vehicle vehicle = flown(power);
-    const Calibration found = calibrate(read_dataflash(log_of(layout(), vehicle)),
+    const Vehicle vehicle = reference_vehicle(power);
+    const Calibration found = calibrate(read_dataflash(make_log(layout(), vehicle)),
                                         vehicle_profile("generic_ardupilot"), 1.225);
     EXPECT_LT(std::abs(hover_error(found, vehicle)), 0.005) << power << " W";
     EXPECT_EQ(found.outliers, 0U);
@@ -149,12 +149,12 @@ TEST_P(LogLayouts, GiveThePowerThatWasFlown) {
 }
 
 struct Damage {
-  std::size_t lost = 0, spoiled = 0;  ///< bytes
+  std::size_t lost = 0, corrupted = 0;  ///< bytes
 };
 
 std::string damaged(std::string log, const Damage& damage, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  for (std::size_t i = 0; i < damage.spoiled; ++i) {
+  for (std::size_t i = 0; i < damage.corrupted; ++i) {
     log[random() % log.size()] = static_cast<char>(random());
   }
   std::string kept;
@@ -168,14 +168,14 @@ std::string damaged(std::string log, const Damage& damage, std::uint64_t seed) {
 
 // Up to one byte in a hundred, lost or spoiled.
 TEST_P(LogLayouts, GiveNearlyThePowerOfDamagedLogsOrRefuseThem) {
-  const Vehicle vehicle = flown(250.0);
-  const std::string log = log_of(layout(), vehicle);
+  const Vehicle vehicle = reference_vehicle(250.0);
+  const std::string log = make_log(layout(), vehicle);
   int read = 0;
   for (const double share : {1e-4, 1e-3, 3e-3, 1e-2}) {
     const auto bytes = static_cast<std::size_t>(share * static_cast<double>(log.size()));
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
-      const Damage damage = seed % 2 == 0 ? Damage{.lost = bytes} : Damage{.spoiled = bytes};
-      const std::string complaint = complaint_of([&] {
+      const Damage damage = seed % 2 == 0 ? Damage{.lost = bytes} : Damage{.corrupted = bytes};
+      const std::string error_message = thrown_message([&] {
         const Calibration found = calibrate(read_dataflash(damaged(log, damage, seed)),
                                             vehicle_profile("generic_ardupilot"), 1.225);
         ++read;
@@ -183,7 +183,7 @@ TEST_P(LogLayouts, GiveNearlyThePowerOfDamagedLogsOrRefuseThem) {
             << 100.0 * share << " % of bytes, seed " << seed;
         EXPECT_LT(found.energy_error, 0.05);
       });
-      EXPECT_THAT(complaint, testing::Not(HasSubstr("scatters"))) << share;
+      EXPECT_THAT(error_message, testing::Not(HasSubstr("scatters"))) << share;
     }
   }
   EXPECT_GE(read, 6);  // the rest has lost the description of its messages
@@ -193,11 +193,11 @@ const Layout& newest() { return layouts().back(); }
 
 // A model whose rotors cannot be better than momentum theory: the hover is right, and it is said.
 TEST(CalibrationBounds, HoverIsRightAndTheBoundIsAWarning) {
-  Vehicle vehicle = flown(250.0);
+  Vehicle vehicle = reference_vehicle(250.0);
   vehicle.avionics_power = 110.0;
   for (const double scale : {0.6, 0.8, 0.86}) {
     const std::string log =
-        log_of(newest(), vehicle, [&](double amperes) { return scale * amperes; });
+        make_log(newest(), vehicle, [&](double amperes) { return scale * amperes; });
     const Calibration found =
         calibrate(read_dataflash(log), vehicle_profile("generic_ardupilot"), 1.225);
     EXPECT_NEAR(found.hover_power, scale * Motion(vehicle, {}).hover_power(),
@@ -209,7 +209,7 @@ TEST(CalibrationBounds, HoverIsRightAndTheBoundIsAWarning) {
 
 // One leg north and one east cannot tell wind from drag: there is none then, and hover is right.
 TEST(CalibrationBounds, WindThatTheLogDoesNotShowIsNone) {
-  const Vehicle vehicle = flown(215.0);
+  const Vehicle vehicle = reference_vehicle(215.0);
   const Motion motion(vehicle, {});
   FlightLog log;
   for (int i = 0; i < 2400; ++i) {
@@ -223,9 +223,9 @@ TEST(CalibrationBounds, WindThatTheLogDoesNotShowIsNone) {
 }
 
 TEST(CalibrationBounds, DragThatTheLogDoesNotShowIsAWarning) {
-  Vehicle vehicle = flown(250.0);
+  Vehicle vehicle = reference_vehicle(250.0);
   vehicle.drag_area = 0.0;
-  const Calibration found = calibrate(read_dataflash(log_of(newest(), vehicle)),
+  const Calibration found = calibrate(read_dataflash(make_log(newest(), vehicle)),
                                       vehicle_profile("generic_ardupilot"), 1.225);
   EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("drag_area is at its limit")));
 }
@@ -233,9 +233,9 @@ TEST(CalibrationBounds, DragThatTheLogDoesNotShowIsAWarning) {
 // Whatever the preset's endurance says of its own mass.
 TEST(CalibrationMass, FitsThePresetsOtherFigures) {
   for (const double mass : {1.0, 1.5, 2.5, 3.0}) {
-    Vehicle vehicle = flown(300.0);
+    Vehicle vehicle = reference_vehicle(300.0);
     vehicle.mass = mass;
-    const Calibration found = calibrate(read_dataflash(log_of(newest(), vehicle)),
+    const Calibration found = calibrate(read_dataflash(make_log(newest(), vehicle)),
                                         vehicle_profile("generic_ardupilot"), 1.225, mass);
     EXPECT_EQ(found.vehicle.mass, mass);
     EXPECT_EQ(found.vehicle.rotor_diameter, 0.3);
@@ -245,10 +245,10 @@ TEST(CalibrationMass, FitsThePresetsOtherFigures) {
 
 // Rotors of 0.3 m take 369 W to hold 4 kg up.
 TEST(CalibrationMass, ScalesRotorsThatCouldNotCarryIt) {
-  Vehicle vehicle = flown(300.0);
+  Vehicle vehicle = reference_vehicle(300.0);
   vehicle.mass = 4.0;
   vehicle.rotor_diameter = 0.3 * std::sqrt(2.0);
-  const Calibration found = calibrate(read_dataflash(log_of(newest(), vehicle)),
+  const Calibration found = calibrate(read_dataflash(make_log(newest(), vehicle)),
                                       vehicle_profile("generic_ardupilot"), 1.225, 4.0);
   EXPECT_NEAR(found.vehicle.rotor_diameter, vehicle.rotor_diameter, 1e-9);
   EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("rotor_diameter is set to 0.424 m")));
@@ -256,21 +256,21 @@ TEST(CalibrationMass, ScalesRotorsThatCouldNotCarryIt) {
 }
 
 TEST(CalibrationRefusals, NameTheirTrueReason) {
-  const Vehicle vehicle = flown(250.0);
-  const auto complaint = [&](const auto& amperes_of) {
-    return complaint_of([&] {
-      calibrate(read_dataflash(log_of(newest(), vehicle, amperes_of)),
+  const Vehicle vehicle = reference_vehicle(250.0);
+  const auto error_message = [&](const auto& measure_amperes) {
+    return thrown_message([&] {
+      calibrate(read_dataflash(make_log(newest(), vehicle, measure_amperes)),
                 vehicle_profile("generic_ardupilot"), 1.225);
     });
   };
-  EXPECT_THAT(complaint([](double) { return 0.0; }), HasSubstr("measures no power"));
-  EXPECT_THAT(complaint([](double) { return 0.02; }), HasSubstr("measures no power"));
-  EXPECT_THAT(complaint([](double) { return std::nan(""); }), HasSubstr("contains no current"));
+  EXPECT_THAT(error_message([](double) { return 0.0; }), HasSubstr("measures no power"));
+  EXPECT_THAT(error_message([](double) { return 0.02; }), HasSubstr("measures no power"));
+  EXPECT_THAT(error_message([](double) { return std::nan(""); }), HasSubstr("contains no current"));
   EXPECT_THAT(
-      complaint([](double amperes) { return 0.3 * amperes; }),
+      error_message([](double amperes) { return 0.3 * amperes; }),
       HasSubstr(
           "2.00 kg on 4 rotors of 0.300 m need at least 130.5 W; set the mass that flew (--mass)"));
-  EXPECT_THAT(complaint([&](double amperes) {
+  EXPECT_THAT(error_message([&](double amperes) {
                 static int count = 0;
                 const double swing = count++ / 60 % 2 == 0 ? 1.7 : 1.0;  // each 6 s
                 return swing * amperes;
@@ -279,22 +279,24 @@ TEST(CalibrationRefusals, NameTheirTrueReason) {
 }
 
 TEST(CalibrationRefusals, NameTheFlightThatSuffices) {
-  FlightLog log = read_dataflash(log_of(newest(), flown(250.0)));
-  const auto complaint = [](const FlightLog& some) {
-    return complaint_of([&] { calibrate(some, vehicle_profile("generic_ardupilot"), 1.225); });
+  FlightLog log = read_dataflash(make_log(newest(), reference_vehicle(250.0)));
+  const auto error_message = [](const FlightLog& some) {
+    return thrown_message([&] { calibrate(some, vehicle_profile("generic_ardupilot"), 1.225); });
   };
   FlightLog hovering = log, brief = log, level = log;
   for (LogSample& sample : hovering.samples) sample.velocity.setZero();
   std::erase_if(level.samples, [](const LogSample& s) { return s.velocity.norm() < 0.1; });
   brief.samples.resize(300);
-  EXPECT_THAT(complaint(hovering), HasSubstr("required: at least 30 s: fly 4 level legs of 100 m"));
-  EXPECT_THAT(complaint(level), HasSubstr("required: at least 20 s: hover for 30 s"));
-  EXPECT_THAT(complaint(brief), HasSubstr("required: at least 120 s: hover for 60 s and fly 4"));
+  EXPECT_THAT(error_message(hovering),
+              HasSubstr("required: at least 30 s: fly 4 level legs of 100 m"));
+  EXPECT_THAT(error_message(level), HasSubstr("required: at least 20 s: hover for 30 s"));
+  EXPECT_THAT(error_message(brief),
+              HasSubstr("required: at least 120 s: hover for 60 s and fly 4"));
 }
 
 TEST(ForeignLogs, AreNamedForWhatTheyAre) {
   const auto kind = [](const std::string& bytes) {
-    return complaint_of([&] { read_dataflash(bytes); });
+    return thrown_message([&] { read_dataflash(bytes); });
   };
   using namespace std::string_literals;
   EXPECT_THAT(kind("FMT, 128, 89, FMT, BBnNZ, Type,Length\n"), HasSubstr("an ArduPilot text log"));
@@ -329,11 +331,11 @@ TEST(ExecutedItems, AreMiseWhereTheLogHasThem) {
 
 // Legs of one time are a list, not a flight: nothing is said of how long they settle.
 TEST(ExecutedItems, LegsWithoutTimesSayNothing) {
-  FlightLog log = read_dataflash(log_of(newest(), flown(250.0)));
+  FlightLog log = read_dataflash(make_log(newest(), reference_vehicle(250.0)));
   const LocalFrame frame({51.0, 7.0, 0.0});
   for (int i = 0; i < 20; ++i) {
-    const GeodeticPoint place = frame.to_geodetic({20.0 * i, 0, 0});
-    log.commands.push_back({1.0, 16, 0, 0, place.latitude_deg, place.longitude_deg, 30.0});
+    const GeodeticPoint geodetic = frame.to_geodetic({20.0 * i, 0, 0});
+    log.commands.push_back({1.0, 16, 0, 0, geodetic.latitude_deg, geodetic.longitude_deg, 30.0});
     log.commands.push_back({1.0, 93, 0.5, 0, 0, 0, 0});
   }
   const Calibration found = calibrate(log, vehicle_profile("generic_ardupilot"), 1.225);
@@ -344,8 +346,8 @@ TEST(ExecutedItems, LegsWithoutTimesSayNothing) {
 
 // A vehicle that was switched off and on writes a second flight whose times begin again.
 TEST(DataflashTimes, GoOnAfterARestart) {
-  const Vehicle vehicle = flown(250.0);
-  const std::string log = log_of(newest(), vehicle);
+  const Vehicle vehicle = reference_vehicle(250.0);
+  const std::string log = make_log(newest(), vehicle);
   const FlightLog once = read_dataflash(log), twice = read_dataflash(log + log);
   EXPECT_GT(twice.samples.size(), 2 * once.samples.size() - 20);
   for (std::size_t i = 1; i < twice.samples.size(); ++i) {

@@ -19,7 +19,7 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 constexpr double voxel = 0.5;
 
@@ -27,11 +27,11 @@ constexpr double voxel = 0.5;
 const AlignedBox3d west(Vector3d(-10, -6, 0), Vector3d(2, 6, 8));
 const AlignedBox3d east(Vector3d(-2, -6, 0), Vector3d(10, 6, 8));
 
-MeasuredSpace space_of(const AlignedBox3d& region) {
+MeasuredSpace make_space(const AlignedBox3d& region) {
   return MeasuredSpace({.voxel = voxel, .region = region});
 }
 
-geometry::Scan scan_of(const std::vector<Eigen::Vector3f>& points) {
+geometry::Scan make_scan(const std::vector<Eigen::Vector3f>& points) {
   geometry::Scan scan;
   scan.points = points;
   return scan;
@@ -61,7 +61,7 @@ std::vector<AlignedBox3d> measured_in(const AlignedBox3d& region, std::mt19937_6
 TEST(MeasuredUnion, IsWhatOneSurveyThatMeasuredAllOfItWouldKnow) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 20; ++round) {
-    MeasuredSpace a = space_of(west), b = space_of(east), all = space_of(west.merged(east));
+    MeasuredSpace a = make_space(west), b = make_space(east), all = make_space(west.merged(east));
     for (const AlignedBox3d& box : measured_in(west, random)) {
       a.declare_free(box);
       all.declare_free(box);
@@ -72,8 +72,8 @@ TEST(MeasuredUnion, IsWhatOneSurveyThatMeasuredAllOfItWouldKnow) {
     }
     const std::vector<Eigen::Vector3f> points_a{scenes::point_in(random, west).cast<float>()};
     const std::vector<Eigen::Vector3f> points_b{scenes::point_in(random, east).cast<float>()};
-    a.insert(scan_of(points_a), 0.1), all.insert(scan_of(points_a), 0.1);
-    b.insert(scan_of(points_b), 0.1), all.insert(scan_of(points_b), 0.1);
+    a.insert(make_scan(points_a), 0.1), all.insert(make_scan(points_a), 0.1);
+    b.insert(make_scan(points_b), 0.1), all.insert(make_scan(points_b), 0.1);
     const MeasuredUnion together(both(std::move(a), std::move(b)));
     const AlignedBox3d around(Vector3d(-14, -9, -2), Vector3d(14, 9, 11));
     for (int i = 0; i < 300; ++i) {
@@ -86,10 +86,10 @@ TEST(MeasuredUnion, IsWhatOneSurveyThatMeasuredAllOfItWouldKnow) {
 
 // What one survey has seen free is in the way all the same where another one has met something.
 TEST(MeasuredUnion, KeepsWhatAnyHasMetInTheWay) {
-  MeasuredSpace a = space_of(west), b = space_of(east);
+  MeasuredSpace a = make_space(west), b = make_space(east);
   a.declare_free(west);
   b.declare_free(east);
-  b.insert(scan_of({{0.25F, 0.25F, 4.25F}}), 0.1);
+  b.insert(make_scan({{0.25F, 0.25F, 4.25F}}), 0.1);
   const MeasuredUnion together(both(std::move(a), std::move(b)));
   const Closest closest = together.closest({{0.25, -4, 4.25}, {0.25, -2, 4.25}}, 5.0);
   EXPECT_EQ(closest.kind, ObstacleKind::occupied_space);
@@ -98,8 +98,8 @@ TEST(MeasuredUnion, KeepsWhatAnyHasMetInTheWay) {
 }
 
 /// A wall in the east, as a survey of the west sees it over its own box.
-MeasuredSpace seen_from_the_west(const std::vector<AlignedBox3d>& beside) {
-  MeasuredSpace space({.voxel = voxel, .region = west, .beside = beside});
+MeasuredSpace seen_from_the_west(const std::vector<AlignedBox3d>& extra_boxes) {
+  MeasuredSpace space({.voxel = voxel, .region = west, .extra_boxes = extra_boxes});
   const geometry::Camera camera(
       {.width = 96, .height = 64, .horizontal_fov = 1.5, .vertical_fov = 1.1});
   const geometry::Mesh wall = scenes::box({9, -20, -20}, {10, 20, 30});
@@ -121,9 +121,9 @@ TEST(MeasuredUnion, CountsWhatASurveyHasSeenBeyondItsRegion) {
   EXPECT_EQ(kept.free_volume(), alone.free_volume());
   EXPECT_TRUE(read_again(kept).extent().isApprox(alone.extent()));
   EXPECT_TRUE(kept.known_box().contains(Vector3d(7, 0, 4)));
-  const MeasuredUnion without(both(read_again(alone), space_of(east)));
+  const MeasuredUnion without(both(read_again(alone), make_space(east)));
   EXPECT_EQ(without.closest(beyond, 1.0).distance, 0.0);
-  const MeasuredUnion with(both(read_again(kept), space_of(east)));
+  const MeasuredUnion with(both(read_again(kept), make_space(east)));
   EXPECT_TRUE(with.is_free(beyond, 1.0));
   EXPECT_FALSE(with.is_free({{7, 0, 4}, {9, 0, 4}}, 0.1));                      // the wall
   EXPECT_FALSE(with.is_free({{-1.75, 5.75, 7.75}, {-1.75, 5.75, 7.75}}, 0.1));  // out of sight
@@ -133,9 +133,9 @@ TEST(MeasuredUnion, CountsWhatASurveyHasSeenBeyondItsRegion) {
 // For the survey itself a box beside it is as closed as its own; what is free is what would be if
 // both were one, wherever neither leaves a gap to the hull.
 TEST(MeasuredUnion, LetsASurveyFlyInTheBoxesOfOthersWhereItHasSeenThemFreeOnly) {
-  const MeasuredSpace beside = seen_from_the_west({east});
+  const MeasuredSpace extra_boxes = seen_from_the_west({east});
   MeasuredSpace one({.voxel = voxel, .region = west.merged(east)});
-  EXPECT_EQ(beside.closest({{9.5, 5, 1}, {9.5, 5, 2}}, 1.0).kind, ObstacleKind::unknown_space);
+  EXPECT_EQ(extra_boxes.closest({{9.5, 5, 1}, {9.5, 5, 2}}, 1.0).kind, ObstacleKind::unknown_space);
   EXPECT_TRUE(seen_from_the_west({}).is_free({{6, 5.5, 7.5}, {6, 5.5, 7.5}}, 0.2));
   const geometry::Camera camera(
       {.width = 96, .height = 64, .horizontal_fov = 1.5, .vertical_fov = 1.1});
@@ -145,15 +145,15 @@ TEST(MeasuredUnion, LetsASurveyFlyInTheBoxesOfOthersWhereItHasSeenThemFreeOnly) 
   const AlignedBox3d around(Vector3d(-14, -9, -2), Vector3d(14, 9, 11));
   for (int i = 0; i < 500; ++i) {
     const Segment leg{scenes::point_in(random, around), scenes::point_in(random, around)};
-    EXPECT_NEAR(beside.closest(leg, 6.0).distance, one.closest(leg, 6.0).distance, 1e-9);
+    EXPECT_NEAR(extra_boxes.closest(leg, 6.0).distance, one.closest(leg, 6.0).distance, 1e-9);
   }
 }
 
 // Nobody has been there: the box of a target that was not surveyed is closed.
 TEST(MeasuredUnion, IsClosedWhereNothingWasMeasured) {
-  MeasuredSpace a = space_of(west);
+  MeasuredSpace a = make_space(west);
   a.declare_free(west);
-  const MeasuredUnion together(both(std::move(a), space_of(east)));
+  const MeasuredUnion together(both(std::move(a), make_space(east)));
   EXPECT_TRUE(together.is_free({{-8, 0, 4}, {-5, 0, 4}}, 1.0));
   EXPECT_FALSE(together.is_free({{-8, 0, 4}, {5, 0, 4}}, 1.0));
   EXPECT_TRUE(together.is_free({{-8, 0, 10}, {8, 0, 10}}, 1.0));  // vouched for, over both
@@ -167,13 +167,14 @@ TEST(MeasuredUnion, OfNothingIsFree) {
 }
 
 TEST(MeasuredUnion, RefusesSpacesThatDoNotGoTogether) {
+  EXPECT_THAT(thrown_message(
+                  [] { MeasuredUnion(both(make_space(west), MeasuredSpace({.voxel = voxel}))); }),
+              HasSubstr("a measured space without a region cannot be merged"));
   EXPECT_THAT(
-      complaint_of([] { MeasuredUnion(both(space_of(west), MeasuredSpace({.voxel = voxel}))); }),
-      HasSubstr("a measured space without a region cannot be merged"));
-  EXPECT_THAT(complaint_of([] {
-                MeasuredUnion(both(space_of(west), MeasuredSpace({.voxel = 0.25, .region = east})));
-              }),
-              HasSubstr("measured_space.voxel is 0.25; it must be that of the space"));
+      thrown_message([] {
+        MeasuredUnion(both(make_space(west), MeasuredSpace({.voxel = 0.25, .region = east})));
+      }),
+      HasSubstr("measured_space.voxel is 0.25; it must be that of the space"));
 }
 
 }  // namespace

@@ -18,17 +18,17 @@ using Eigen::Vector3d;
 using testing::Each;
 using testing::IsEmpty;
 
-struct Stations {
-  std::vector<Station> stations;
+struct CapturePoints {
+  std::vector<CapturePoint> capture_points;
   std::vector<std::uint32_t> targets;
 
   /// So many around a target.
   void add(const Vector3d& middle, int count, std::uint32_t target, std::mt19937_64& random) {
     const Eigen::AlignedBox3d around(middle - Vector3d(15, 15, 5), middle + Vector3d(15, 15, 5));
     for (int i = 0; i < count; ++i) {
-      Station station;
-      station.view = {scenes::point_in(random, around), Vector3d::UnitX()};
-      stations.push_back(station);
+      CapturePoint capture_point;
+      capture_point.view = {scenes::point_in(random, around), Vector3d::UnitX()};
+      capture_points.push_back(capture_point);
       targets.push_back(target);
     }
   }
@@ -52,13 +52,14 @@ std::vector<std::uint32_t> numbers_below(std::size_t count) {
 
 TEST(PadSorties, FlyEachTargetFromThePadBesideIt) {
   std::mt19937_64 random(1);
-  Stations given;
+  CapturePoints given;
   given.add({0, 0, 15}, 8, 0, random);
   given.add({600, 0, 15}, 8, 1, random);
   const std::vector<Vector3d> pads{{620, 20, 0}, {-20, 20, 0}};
-  const PadSorties sorties = sorties_from_pads(given.stations, given.targets, pads, 5.0, motion());
+  const PadSorties sorties =
+      sorties_from_pads(given.capture_points, given.targets, pads, 5.0, motion());
   EXPECT_EQ(sorted(sorties.order), numbers_below(16));
-  EXPECT_THAT(sorties.out_of_reach, IsEmpty());
+  EXPECT_THAT(sorties.unreachable, IsEmpty());
   ASSERT_EQ(sorties.pads.size(), 16U);
   for (std::size_t i = 0; i < 16; ++i) {
     EXPECT_EQ(sorties.pads[i], sorties.order[i] < 8 ? 1U : 0U);
@@ -67,12 +68,13 @@ TEST(PadSorties, FlyEachTargetFromThePadBesideIt) {
 
 TEST(PadSorties, LeaveOutWhatNoBatteryReaches) {
   std::mt19937_64 random(2);
-  Stations given;
+  CapturePoints given;
   given.add({0, 0, 15}, 3, 0, random);
   given.add({90'000, 0, 15}, 2, 1, random);
   const std::vector<Vector3d> pads{{20, 20, 0}};
-  const PadSorties sorties = sorties_from_pads(given.stations, given.targets, pads, 5.0, motion());
-  EXPECT_EQ(sorted(sorties.out_of_reach), (std::vector<std::uint32_t>{3, 4}));
+  const PadSorties sorties =
+      sorties_from_pads(given.capture_points, given.targets, pads, 5.0, motion());
+  EXPECT_EQ(sorted(sorties.unreachable), (std::vector<std::uint32_t>{3, 4}));
   EXPECT_EQ(sorted(sorties.order), numbers_below(3));
   EXPECT_THAT(sorties.pads, Each(0U));
 }
@@ -80,13 +82,14 @@ TEST(PadSorties, LeaveOutWhatNoBatteryReaches) {
 // Neighbouring targets are ordered together, a thousand stations at a time.
 TEST(PadSorties, OrderThousandsOfStationsNearlyAsShortAsAllAtOnce) {
   std::mt19937_64 random(3);
-  Stations given;
+  CapturePoints given;
   for (std::uint32_t target = 0; target < 240; ++target) {
     const std::uint32_t row = target / 16;
     given.add({40.0 * (target % 16), 40.0 * row, 15}, 5, target, random);
   }
   const std::vector<Vector3d> pads{{-30, -30, 0}};
-  const PadSorties sorties = sorties_from_pads(given.stations, given.targets, pads, 5.0, motion());
+  const PadSorties sorties =
+      sorties_from_pads(given.capture_points, given.targets, pads, 5.0, motion());
   EXPECT_EQ(sorted(sorties.order), numbers_below(1200));
   // A tour of many places that lie evenly in an area is 0.7124 sqrt(places x area) long; these lie
   // evenly in depth, too, which makes it longer (Beardwood, Halton & Hammersley 1959).
@@ -97,9 +100,10 @@ TEST(PadSorties, OfNoStationsOrPadsAreNone) {
   EXPECT_THAT(sorties_from_pads({}, {}, std::vector<Vector3d>{{0, 0, 0}}, 5.0, motion()).order,
               IsEmpty());
   std::mt19937_64 random(4);
-  Stations given;
+  CapturePoints given;
   given.add({0, 0, 15}, 2, 0, random);
-  EXPECT_THAT(sorties_from_pads(given.stations, given.targets, {}, 5.0, motion()).order, IsEmpty());
+  EXPECT_THAT(sorties_from_pads(given.capture_points, given.targets, {}, 5.0, motion()).order,
+              IsEmpty());
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ Vehicle vehicle_for(Format format) {
   return vehicle_profile(format == Format::kmz ? "m350_rtk" : "generic");
 }
 
-std::string content_of(const std::filesystem::path& path) {
+std::string read_content(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
@@ -48,7 +48,7 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-const FormatInfo& info_of(Format format) { return formats()[static_cast<std::size_t>(format)]; }
+const FormatInfo& find_info(Format format) { return formats()[static_cast<std::size_t>(format)]; }
 
 class EveryFormat : public testing::TestWithParam<Format> {};
 
@@ -59,22 +59,22 @@ TEST_P(EveryFormat, IsValidAndReadsBackAsTheSameFlight) {
   const std::string content = write(plan, format);
   EXPECT_THAT(validate(content, format), IsEmpty());
   EXPECT_EQ(write(plan, format), content) << "not the same bytes each time";
-  const FlownRoute route = interpret(content, format, facts_of(plan));
+  const InterpretedRoute route = interpret(content, format, make_flight_facts(plan));
   EXPECT_THAT(route.problems, IsEmpty());
-  std::vector<Vector3d> flown;
-  for (const FlownPiece& piece : route.pieces) {
-    if (piece.is_over_pad) continue;
-    flown.push_back(piece.start.to);
-    flown.push_back(piece.to);
+  std::vector<Vector3d> executed_points;
+  for (const InterpretedSegment& segment : route.segments) {
+    if (segment.is_over_pad) continue;
+    executed_points.push_back(segment.start.to);
+    executed_points.push_back(segment.to);
   }
   for (const Waypoint& waypoint : plan.waypoints) {
     double nearest = 1e9;
-    for (const Vector3d& point : flown)
+    for (const Vector3d& point : executed_points)
       nearest = std::min(nearest, (point - waypoint.position).norm());
     EXPECT_LT(nearest, rounding_bound);
   }
   // And nowhere else: every point read lies on a leg of the plan.
-  for (const Vector3d& point : flown) {
+  for (const Vector3d& point : executed_points) {
     double nearest_leg = 1e9;
     for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
       const Segment leg{plan.waypoints[i - 1].position, plan.waypoints[i].position};
@@ -88,11 +88,11 @@ TEST_P(EveryFormat, GetsItsNameOnlyOnceProvedAgain) {
   const Format format = GetParam();
   const FlightPlan plan = sample_plan(vehicle_for(format));
   const Scratch scratch;
-  const std::string name = std::string("mission") + info_of(format).ending;
+  const std::string name = std::string("mission") + find_info(format).extension;
   const KnownSpace space(sample_site());
   const ExportResult result = export_flight(plan, format, space, scratch / name);
   EXPECT_GE(result.min_clearance, plan.clearance - rounding_bound);
-  EXPECT_EQ(content_of(scratch / name), write(plan, format));
+  EXPECT_EQ(read_content(scratch / name), write(plan, format));
 
   // A crane appears after planning: the file must not change.
   Obstacles changed = sample_site();
@@ -100,10 +100,10 @@ TEST_P(EveryFormat, GetsItsNameOnlyOnceProvedAgain) {
       {(0.5 * (plan.waypoints[1].position + plan.waypoints[2].position)).cast<float>()}, 0.1};
   FlightPlan renamed = plan;
   renamed.name = "another";
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { export_flight(renamed, format, KnownSpace(changed), scratch / name); }),
               testing::HasSubstr(" was not written: "));
-  EXPECT_EQ(content_of(scratch / name), write(plan, format));
+  EXPECT_EQ(read_content(scratch / name), write(plan, format));
   EXPECT_FALSE(scratch.has(name + ".part"));
 
   const auto points = read_route(scratch / name, plan.site, plan.pad);
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Export, EveryFormat,
                                          Format::geojson, Format::litchi, Format::csv,
                                          Format::ned_csv, Format::tum),
                          [](const auto& parameter) {
-                           std::string name = info_of(parameter.param).name;
+                           std::string name = find_info(parameter.param).name;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
@@ -139,8 +139,8 @@ TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
     const Scratch scratch;
     const KnownSpace space(sample_site());
     for (const FormatInfo& info : testing_support::not_empty(formats())) {
-      if (!holds_curves(info.format)) continue;
-      const std::string name = std::string("mission") + info.ending;
+      if (!supports_curves(info.format)) continue;
+      const std::string name = std::string("mission") + info.extension;
       EXPECT_GE(export_flight(plan, info.format, space, scratch / name).min_clearance,
                 plan.clearance - rounding_bound);
       const auto points = read_route(scratch / name, plan.site, plan.pad);
@@ -174,15 +174,15 @@ TEST(Export, SaysWhatAFormatCannotHold) {
 
 TEST(Export, UnknownFormatsAndFilesAreNamed) {
   EXPECT_EQ(format_named("kmz"), Format::kmz);
-  EXPECT_THAT(testing_support::complaint_of([&] { format_named("gpx"); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { format_named("gpx"); }),
               testing::HasSubstr("unknown format \"gpx\""));
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { read_route("/nowhere/mission.plan", {}, Vector3d::Zero()); }),
               testing::HasSubstr("/nowhere/mission.plan: "));
-  EXPECT_THAT(testing_support::complaint_of([&] { format_of_file("a.gpx", ""); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { detect_format("a.gpx", ""); }),
               testing::HasSubstr("a.gpx is not a route file"));
-  EXPECT_EQ(format_of_file("a.csv", "latitude,longitude"), Format::litchi);
-  EXPECT_EQ(format_of_file("a.csv", "# frame: NED"), Format::csv);
+  EXPECT_EQ(detect_format("a.csv", "latitude,longitude"), Format::litchi);
+  EXPECT_EQ(detect_format("a.csv", "# frame: NED"), Format::csv);
 }
 
 // An independent reader of the XML formats, where it is installed.
@@ -201,9 +201,9 @@ TEST(Export, XmlIsWellFormedByXmllint) {
 // ---- trajectories ----------------------------------------------------------------------------
 
 // Derivatives by differences agree with what is stated: the profile is the motion that it says.
-class TrajectoryOf : public testing::TestWithParam<FlightStyle> {};
+class TrajectoryStyles : public testing::TestWithParam<FlightStyle> {};
 
-TEST_P(TrajectoryOf, VelocitiesAndAccelerationsAreTheDerivatives) {
+TEST_P(TrajectoryStyles, VelocitiesAndAccelerationsAreTheDerivatives) {
   const FlightPlan plan = corner_plan(GetParam());
   constexpr double dt = 0.001;
   const std::vector<TimedState> states = trajectory(plan, dt);
@@ -221,22 +221,22 @@ TEST_P(TrajectoryOf, VelocitiesAndAccelerationsAreTheDerivatives) {
   EXPECT_NEAR(states.back().time, stop_times(plan).back().departure, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Styles, TrajectoryOf,
+INSTANTIATE_TEST_SUITE_P(Styles, TrajectoryStyles,
                          testing::Values(FlightStyle::stop, FlightStyle::blend, FlightStyle::smooth,
                                          FlightStyle::pass));
 
 // In passing as at stops: each view's picture is taken in its place, looking its way; the vehicle
 // moves meanwhile, no faster than asked.
 TEST(Trajectory, PassedViewsAreThoseOfTheStops) {
-  const auto shots = [](FlightStyle style) {
-    std::vector<TimedState> taken;
+  const auto captures = [](FlightStyle style) {
+    std::vector<TimedState> captured;
     for (const TimedState& state : trajectory(corner_plan(style), 0.1)) {
-      if (state.is_shot) taken.push_back(state);
+      if (state.is_capture) captured.push_back(state);
     }
-    return taken;
+    return captured;
   };
-  const std::vector<TimedState> stopped = shots(FlightStyle::stop),
-                                passed = shots(FlightStyle::pass);
+  const std::vector<TimedState> stopped = captures(FlightStyle::stop),
+                                passed = captures(FlightStyle::pass);
   ASSERT_EQ(stopped.size(), 3U);
   ASSERT_EQ(passed.size(), stopped.size());
   std::size_t moving = 0;
@@ -260,7 +260,7 @@ TEST(Trajectory, CsvRoundTripsInBothFrames) {
       EXPECT_LT((read[i].position - states[i].position).norm(), 1e-5);
       EXPECT_LT((read[i].velocity - states[i].velocity).norm(), 1e-5);
       EXPECT_NEAR(std::remainder(read[i].yaw - states[i].yaw, 2 * M_PI), 0.0, 1e-5);
-      EXPECT_EQ(read[i].is_shot, states[i].is_shot);
+      EXPECT_EQ(read[i].is_capture, states[i].is_capture);
     }
   }
 }
@@ -294,7 +294,7 @@ TEST(Trajectory, BadFilesAreRefusedByLine) {
   EXPECT_THAT(validate_tum("0 0 x 0 0 0 0 1\n"), testing::Contains(HasSubstr("\"x\"")));
   EXPECT_THAT(validate_tum("# only a comment\n"), testing::Contains(HasSubstr("no row")));
   EXPECT_THAT(validate_trajectory_csv("t,x\n0,0\n"), testing::Contains(HasSubstr("frame")));
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { trajectory(sample_plan(vehicle_profile("generic")), 0.0); }),
               testing::HasSubstr("interval is 0.0"));
 }
@@ -325,19 +325,19 @@ TEST(Geodesy, RoundTripsEverywhere) {
 }
 
 TEST(Geodesy, AbsurdSitesAreNamed) {
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 Site{{91, 0, 0}, {}}.validate();
               }),
               testing::HasSubstr("latitude is 91.0"));
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 Site{{0, 181, 0}, {}}.validate();
               }),
               testing::HasSubstr("longitude is 181.0"));
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 Site{{0, 0, std::nan("")}, {}}.validate();
               }),
               testing::HasSubstr("ellipsoid height is nan"));
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 Site{{0, 0, 0}, 500.0}.validate();
               }),
               testing::HasSubstr("geoid undulation is 500.0"));

@@ -55,9 +55,9 @@ Shapes shapes(const std::string& report, const std::string& kind) {
       if (c == ',' || c == '(' || c == ')') c = ' ';
     }
     std::istringstream stream(numbers);
-    std::vector<Vector3d> places;
-    for (Vector3d p; stream >> p.x() >> p.y() >> p.z();) places.push_back(p);
-    found.push_back(places);
+    std::vector<Vector3d> positions;
+    for (Vector3d p; stream >> p.x() >> p.y() >> p.z();) positions.push_back(p);
+    found.push_back(positions);
   }
   return found;
 }
@@ -65,24 +65,24 @@ Shapes shapes(const std::string& report, const std::string& kind) {
 /// 1e-8 degrees is a millimetre, and heights are written in millimetres.
 void expect_at(const Vector3d& read, const FlightPlan& plan, const Vector3d& position,
                double undulation) {
-  const GeodeticPoint place = LocalFrame(plan.site.origin).to_geodetic(position);
-  EXPECT_NEAR(read.x(), place.longitude_deg, 1e-8);
-  EXPECT_NEAR(read.y(), place.latitude_deg, 1e-8);
-  EXPECT_NEAR(read.z(), place.height - undulation, 1e-3);
+  const GeodeticPoint geodetic = LocalFrame(plan.site.origin).to_geodetic(position);
+  EXPECT_NEAR(read.x(), geodetic.longitude_deg, 1e-8);
+  EXPECT_NEAR(read.y(), geodetic.latitude_deg, 1e-8);
+  EXPECT_NEAR(read.z(), geodetic.height - undulation, 1e-3);
 }
 
 void expect_flight(const std::string& report, const FlightPlan& plan, double undulation) {
   const Shapes lines = shapes(report, "LINESTRING"), points = shapes(report, "POINT");
   ASSERT_GE(lines.size(), 1U) << report;
   ASSERT_EQ(lines[0].size(), plan.waypoints.size());
-  std::size_t station = 0;
+  std::size_t capture_point = 0;
   for (std::size_t i = 0; i < plan.waypoints.size(); ++i) {
     expect_at(lines[0][i], plan, plan.waypoints[i].position, undulation);
-    if (!plan.waypoints[i].is_station) continue;
-    ASSERT_LT(station, points.size());
-    expect_at(points[station++].at(0), plan, plan.waypoints[i].position, undulation);
+    if (!plan.waypoints[i].is_capture_point) continue;
+    ASSERT_LT(capture_point, points.size());
+    expect_at(points[capture_point++].at(0), plan, plan.waypoints[i].position, undulation);
   }
-  EXPECT_EQ(station, points.size());
+  EXPECT_EQ(capture_point, points.size());
 }
 
 TEST_F(Gdal, ReadsOurGeoJson) {

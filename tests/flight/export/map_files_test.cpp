@@ -22,9 +22,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << "nothing to replace: " << from;
-  return place == std::string::npos ? text : text.replace(place, from.size(), to);
+  const std::size_t offset = text.find(from);
+  EXPECT_NE(offset, std::string::npos) << "nothing to replace: " << from;
+  return offset == std::string::npos ? text : text.replace(offset, from.size(), to);
 }
 
 // ---- KMZ -------------------------------------------------------------------------------------
@@ -115,20 +115,20 @@ TEST(Kmz, ActionRules) {
       Contains(HasSubstr("takePhoto without a gimbalRotate")));
 }
 
-TEST(Kmz, HoldsWhatThePilotExpects) {
+TEST(Kmz, ContainsWhatThePilotExpects) {
   const FlightPlan plan = sample_plan(vehicle_profile("m350_rtk"));
   const RouteFile route = read_kmz(write_kmz(plan));
   ASSERT_EQ(route.points.size(), plan.waypoints.size());
   for (std::size_t i = 0; i < route.points.size(); ++i) {
     EXPECT_EQ(route.points[i].datum, HeightDatum::takeoff);
-    if (!plan.waypoints[i].is_station) continue;
+    if (!plan.waypoints[i].is_capture_point) continue;
     EXPECT_NEAR(route.points[i].yaw_deg, plan.waypoints[i].yaw * 180 / M_PI, 1e-4);
     EXPECT_NEAR(route.points[i].pitch_deg, plan.waypoints[i].pitch * 180 / M_PI, 1e-4);
-    EXPECT_EQ(route.points[i].shots, 2);
+    EXPECT_EQ(route.points[i].captures, 2);
     EXPECT_EQ(route.points[i].hold, plan.waypoints[i].hold + plan.waypoints[i].hold_after);
   }
   EXPECT_THAT(
-      testing_support::complaint_of([&] { write_kmz(sample_plan(vehicle_profile("generic"))); }),
+      testing_support::thrown_message([&] { write_kmz(sample_plan(vehicle_profile("generic"))); }),
       testing::HasSubstr("does not fly DJI missions"));
 }
 
@@ -199,13 +199,15 @@ TEST(GeoJson, Rules) {
 
 TEST(GeoJson, StationsCarryTheirHeightsAboveEveryKnownDatum) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
-  const auto station = [&] { return nlohmann::json::parse(write_geojson(plan))["features"][1]; };
-  const nlohmann::json known = station();
+  const auto capture_point = [&] {
+    return nlohmann::json::parse(write_geojson(plan))["features"][1];
+  };
+  const nlohmann::json known = capture_point();
   const double ellipsoid = known["geometry"]["coordinates"][2];
   EXPECT_NEAR(known["properties"]["height_amsl_m"].get<double>(), ellipsoid - 46.7, 1e-6);
   EXPECT_NEAR(known["properties"]["height_takeoff_m"].get<double>(), 7.25, 1e-3);
   plan.site.geoid_undulation.reset();
-  EXPECT_TRUE(station()["properties"]["height_amsl_m"].is_null());
+  EXPECT_TRUE(capture_point()["properties"]["height_amsl_m"].is_null());
 }
 
 // ---- Litchi ----------------------------------------------------------------------------------
@@ -226,22 +228,22 @@ TEST(Litchi, Rules) {
   const RouteFile route = read_litchi(good);
   ASSERT_FALSE(route.points.empty());
   for (std::size_t i = 0; i < route.points.size(); ++i) {
-    if (!plan.waypoints[i].is_station) continue;
+    if (!plan.waypoints[i].is_capture_point) continue;
     EXPECT_NEAR(route.points[i].yaw_deg, plan.waypoints[i].yaw * 180 / M_PI, 1e-4);
     EXPECT_NEAR(route.points[i].pitch_deg, plan.waypoints[i].pitch * 180 / M_PI, 0.5);
-    EXPECT_EQ(route.points[i].shots, 2);
+    EXPECT_EQ(route.points[i].captures, 2);
     EXPECT_EQ(route.points[i].hold, plan.waypoints[i].hold + plan.waypoints[i].hold_after);
   }
 }
 
 TEST(Litchi, WhatItCannotHoldIsSaid) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
-  plan.waypoints[1].shots = 20;
-  EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
+  plan.waypoints[1].captures = 20;
+  EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),
               testing::HasSubstr("a waypoint with 20 shots cannot be written for Litchi"));
   plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints.resize(120, plan.waypoints[0]);
-  EXPECT_THAT(testing_support::complaint_of([&] { write_litchi(plan); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),
               testing::HasSubstr("has 120 waypoints; the limit of Litchi is 99"));
 }
 

@@ -36,11 +36,11 @@ json& item(json& plan, std::size_t i) { return plan["mission"]["items"][i]; }
 // At home's height whatever the ground's: PX4 adds the height of return to the point's own.
 TEST(PlanFile, HoldsTheRallyPointsOfTheProof) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
-  plan.returns->law.landings.emplace_back(35.0, 20.0, -1.0);
-  const MissionFile file = read_plan(write_plan(plan));
+  plan.returns->rtl_profile.landings.emplace_back(35.0, 20.0, -1.0);
+  const MavlinkMission file = read_plan(write_plan(plan));
   ASSERT_EQ(file.rally.size(), 1U);
-  const Eigen::Vector3d place = LocalFrame(plan.site.origin).to_local(file.rally.front());
-  EXPECT_LT((place.head<2>() - Eigen::Vector2d(35, 20)).norm(), 0.02);
+  const Eigen::Vector3d position = LocalFrame(plan.site.origin).to_local(file.rally.front());
+  EXPECT_LT((position.head<2>() - Eigen::Vector2d(35, 20)).norm(), 0.02);
   EXPECT_EQ(file.rally.front().height, 0.0);
 }
 
@@ -154,18 +154,18 @@ TEST(PlanFile, CircleRules) {
   EXPECT_THAT(with_circle(-5, false), Contains(HasSubstr("positive radius")));
 }
 
-TEST(PlanFile, HoldsWhatThePilotExpects) {
+TEST(PlanFile, ContainsWhatThePilotExpects) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
-  const RouteFile route = route_of(read_plan(good_plan()).items);
+  const RouteFile route = make_route(read_plan(good_plan()).items);
   const std::vector<StopTime> times = stop_times(plan);
   ASSERT_EQ(route.points.size(), plan.waypoints.size());
   for (std::size_t i = 0; i < route.points.size(); ++i) {
     const Waypoint& waypoint = plan.waypoints[i];
     EXPECT_EQ(route.points[i].datum, HeightDatum::takeoff);
-    if (!waypoint.is_station) continue;
+    if (!waypoint.is_capture_point) continue;
     EXPECT_NEAR(route.points[i].yaw_deg, waypoint.yaw * 180 / M_PI, 1e-4);
     EXPECT_NEAR(route.points[i].pitch_deg, waypoint.pitch * 180 / M_PI, 1e-4);
-    EXPECT_EQ(route.points[i].shots, 2);
+    EXPECT_EQ(route.points[i].captures, 2);
     EXPECT_NEAR(route.points[i].hold, times[i].departure - times[i].arrival, 1e-3);
   }
 }
@@ -181,9 +181,9 @@ TEST(MissionItems, PX4TurnsByTheWaypointArduPilotByACommandOfItsOwn) {
   const auto ardupilot = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
   EXPECT_EQ(count(px4, command::condition_yaw), 0);
   EXPECT_EQ(count(ardupilot, command::condition_yaw), 4);
-  EXPECT_THAT(check_items(px4, Dialect::px4), IsEmpty());
-  EXPECT_THAT(check_items(ardupilot, Dialect::ardupilot), IsEmpty());
-  EXPECT_THAT(check_items(ardupilot, Dialect::px4), testing::Not(IsEmpty()));
+  EXPECT_THAT(check_items(px4, AutopilotType::px4), IsEmpty());
+  EXPECT_THAT(check_items(ardupilot, AutopilotType::ardupilot), IsEmpty());
+  EXPECT_THAT(check_items(ardupilot, AutopilotType::px4), testing::Not(IsEmpty()));
 }
 
 std::vector<int> commands(const std::vector<MissionItem>& items, std::size_t first,
@@ -203,10 +203,10 @@ TEST(MissionItems, ArduPilotAimsOnTheWayAndStaysAfterTheShot) {
   using namespace command;
   EXPECT_EQ(commands(items, 0, 4),
             (std::vector{takeoff, change_speed, change_speed, change_speed}));
-  std::size_t next = 4, stop = 1, stations = 0;
+  std::size_t next = 4, stop = 1, capture_points = 0;
   for (; items[next].command != land; ++stop) {
     const Waypoint& waypoint = plan.waypoints[stop];
-    if (!waypoint.is_station) {
+    if (!waypoint.is_capture_point) {
       EXPECT_EQ(commands(items, next, 2), (std::vector{command::waypoint, delay}));
       EXPECT_EQ(items[next].params[0], 0.0);
       EXPECT_DOUBLE_EQ(items[next + 1].params[0], corner_hold);
@@ -217,12 +217,12 @@ TEST(MissionItems, ArduPilotAimsOnTheWayAndStaysAfterTheShot) {
               (std::vector{mount_control, condition_yaw, command::waypoint, delay, start_capture,
                            start_capture, delay}));
     EXPECT_EQ(items[next + 2].params[0], 0.0);
-    EXPECT_NEAR(items[next + 3].params[0], times[stop].shot - times[stop].arrival, 1e-3);
+    EXPECT_NEAR(items[next + 3].params[0], times[stop].capture - times[stop].arrival, 1e-3);
     EXPECT_GE(items[next + 3].params[0], waypoint.hold - 1e-3);
     EXPECT_DOUBLE_EQ(items[next + 6].params[0], waypoint.hold_after);
-    ++stations, next += 7;
+    ++capture_points, next += 7;
   }
-  EXPECT_EQ(stations, 4U);
+  EXPECT_EQ(capture_points, 4U);
   EXPECT_EQ(stop, plan.waypoints.size());
 }
 
@@ -252,14 +252,15 @@ TEST(MissionItems, PX4HoldsInTheWaypointAndDelaysAfterTheShot) {
 
 TEST(MissionItems, ArduPilotsMemoryIsForeseen) {
   auto items = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
-  EXPECT_THAT(check_items(as_stored(items, Dialect::ardupilot), Dialect::ardupilot), IsEmpty());
+  EXPECT_THAT(check_items(as_stored(items, AutopilotType::ardupilot), AutopilotType::ardupilot),
+              IsEmpty());
   for (MissionItem& item : items) {
     if (item.command == command::waypoint) item.params[0] = 1.5;
   }
-  EXPECT_THAT(check_items(items, Dialect::ardupilot), Contains(HasSubstr("whole seconds")));
+  EXPECT_THAT(check_items(items, AutopilotType::ardupilot), Contains(HasSubstr("whole seconds")));
   MissionItem stored{
       command::waypoint, frame::relative, {1.9, 0, 0, 0, 51.12345678, -1.23456789, 7.257}};
-  stored = as_stored({stored}, Dialect::ardupilot)[0];
+  stored = as_stored({stored}, AutopilotType::ardupilot)[0];
   EXPECT_EQ(stored.params[0], 1.0);
   EXPECT_DOUBLE_EQ(stored.params[4], 51.1234568);
   EXPECT_DOUBLE_EQ(stored.params[6], 7.25);
@@ -269,20 +270,20 @@ TEST(MissionItems, GimbalCommandsThatArduPilotWouldSpoilAreFound) {
   auto items = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
   const auto with = [&](std::array<double, 7> params) {
     items[1] = {command::gimbal_pitch_yaw, frame::mission, params};
-    return check_items(items, Dialect::ardupilot);
+    return check_items(items, AutopilotType::ardupilot);
   };
   EXPECT_THAT(with({-7, 0, 0, 0, 0, 0, 0}), IsEmpty());
   EXPECT_THAT(with({-7.5, 0, 0, 0, 0, 0, 0}), Contains(HasSubstr("fraction of a degree")));
-  EXPECT_THAT(with({-7, 0, not_given, 0, 0, 0, 0}), Contains(HasSubstr("no parameter 3")));
+  EXPECT_THAT(with({-7, 0, unspecified, 0, 0, 0, 0}), Contains(HasSubstr("no parameter 3")));
 }
 
 TEST(MissionItems, TooManyForTheVehicleIsSaid) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.vehicle.max_waypoints = 10;
-  EXPECT_THAT(testing_support::complaint_of([&] { mission_items(plan); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { mission_items(plan); }),
               testing::HasSubstr("mission items; vehicle \"generic\" accepts 10"));
   EXPECT_THAT(
-      testing_support::complaint_of([&] { write_plan(sample_plan(vehicle_profile("m30t"))); }),
+      testing_support::thrown_message([&] { write_plan(sample_plan(vehicle_profile("m30t"))); }),
       testing::HasSubstr("does not fly MAVLink missions"));
 }
 
@@ -295,12 +296,13 @@ TEST(WaypointsFile, HasTabsHomeForArduPilotAndNoNaN) {
   EXPECT_TRUE(
       ardupilot.starts_with("QGC WPL 110\n0\t1\t0\t16\t0.0000\t0.0000\t0.0000\t0.0000\t51.75"));
   EXPECT_THAT(px4 + ardupilot, testing::Not(HasSubstr("nan")));
-  EXPECT_THAT(validate_waypoints(px4, Dialect::px4), IsEmpty());
-  EXPECT_THAT(validate_waypoints(ardupilot, Dialect::ardupilot), IsEmpty());
-  EXPECT_THAT(validate_waypoints(px4, Dialect::ardupilot), Contains(HasSubstr("must be home")));
-  EXPECT_THAT(validate_waypoints(ardupilot, Dialect::px4), Contains(HasSubstr("is a home")));
-  EXPECT_EQ(route_of(read_waypoints(px4).items).points.size(),
-            route_of(read_waypoints(ardupilot).items).points.size());
+  EXPECT_THAT(validate_waypoints(px4, AutopilotType::px4), IsEmpty());
+  EXPECT_THAT(validate_waypoints(ardupilot, AutopilotType::ardupilot), IsEmpty());
+  EXPECT_THAT(validate_waypoints(px4, AutopilotType::ardupilot),
+              Contains(HasSubstr("must be home")));
+  EXPECT_THAT(validate_waypoints(ardupilot, AutopilotType::px4), Contains(HasSubstr("is a home")));
+  EXPECT_EQ(make_route(read_waypoints(px4).items).points.size(),
+            make_route(read_waypoints(ardupilot).items).points.size());
   EXPECT_EQ(read_waypoints(px4).items.front().number, 0U);
   EXPECT_EQ(read_waypoints(ardupilot).items.front().number, 1U);
 }
@@ -310,13 +312,13 @@ TEST(WaypointsFile, RulesOfTheText) {
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
-    return validate_waypoints(text, Dialect::px4);
+    return validate_waypoints(text, AutopilotType::px4);
   };
   std::string windows = good;
   for (std::size_t i = 0; (i = windows.find('\n', i)) != std::string::npos; i += 2) {
     windows.replace(i, 1, "\r\n");
   }
-  EXPECT_THAT(validate_waypoints(windows, Dialect::px4), IsEmpty());
+  EXPECT_THAT(validate_waypoints(windows, AutopilotType::px4), IsEmpty());
   EXPECT_THAT(with("WPL 110", "WPL 120"), Contains(HasSubstr("line 1")));
   EXPECT_THAT(with("\n0\t1\t3\t22", "\n0 1 3 22"), Contains(HasSubstr("separated by tabs")));
   EXPECT_THAT(with("\n0\t1\t3", "\n# a comment\n0\t1\t3"),

@@ -6,12 +6,12 @@ namespace skycap::flight::mavlink {
 namespace {
 
 constexpr std::uint8_t accepted = 0, invalid_sequence = 13;
-constexpr Address station{255, 190};
+constexpr Address gcs{255, 190};
 
 /// The frame in these bytes, if they are one of a message that is known here.
 std::optional<Frame> frame_in(const Bytes& bytes) {
   FrameReader reader(
-      extra_byte_of<MissionRequestList, MissionCount, MissionAnswer, MissionRequest, WireItem>);
+      find_crc_extra<MissionRequestList, MissionCount, MissionAnswer, MissionRequest, WireItem>);
   reader.feed(bytes);
   return reader.next();
 }
@@ -22,17 +22,17 @@ Bytes Autopilot::ask_or_accept() {
   if (incoming_.size() < expected_) {
     MissionRequest request;
     request.sequence = static_cast<std::uint16_t>(incoming_.size());
-    return say(request);
+    return send_message(request);
   }
   mission_ = incoming_;
-  return say(MissionAnswer{});
+  return send_message(MissionAnswer{});
 }
 
 Bytes Autopilot::take(const WireItem& item) {
   if (item.sequence != incoming_.size()) {
     MissionAnswer answer;
     answer.result = invalid_sequence;
-    return say(answer);
+    return send_message(answer);
   }
   incoming_.push_back(item);
   return ask_or_accept();
@@ -48,20 +48,20 @@ std::optional<Bytes> Autopilot::receive(const Bytes& bytes) {
   }
   if (const auto item = decode<WireItem>(*frame)) return take(*item);
   if (const auto request = decode<MissionRequest>(*frame)) {
-    return say(mission_.at(request->sequence));
+    return send_message(mission_.at(request->sequence));
   }
   if (!decode<MissionRequestList>(*frame)) return {};
   MissionCount count;
   count.count = static_cast<std::uint16_t>(mission_.size());
-  return say(count);
+  return send_message(count);
 }
 
-bool upload(Autopilot& autopilot, const std::vector<WireItem>& items, int spoiled) {
+bool upload(Autopilot& autopilot, const std::vector<WireItem>& items, int corrupted) {
   std::uint8_t sequence = 0;
   int sent = 0;
   const auto send = [&](const auto& message) {
-    Bytes bytes = encode(message, station, sequence++);
-    if (sent++ == spoiled) {
+    Bytes bytes = encode(message, gcs, sequence++);
+    if (sent++ == corrupted) {
       bytes[bytes.size() / 2] ^= 0x10;
       if (autopilot.receive(bytes)) throw std::logic_error("a damaged frame was understood");
       bytes[bytes.size() / 2] ^= 0x10;
@@ -80,7 +80,7 @@ bool upload(Autopilot& autopilot, const std::vector<WireItem>& items, int spoile
 
 std::vector<WireItem> download(Autopilot& autopilot) {
   const auto ask = [&](const auto& message) {
-    return frame_in(autopilot.receive(encode(message, station, 0)).value()).value();
+    return frame_in(autopilot.receive(encode(message, gcs, 0)).value()).value();
   };
   const std::size_t count = decode<MissionCount>(ask(MissionRequestList{})).value().count;
   std::vector<WireItem> items;

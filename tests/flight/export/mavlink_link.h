@@ -98,7 +98,7 @@ class Autopilot {
 
  private:
   template <class M>
-  Bytes say(const M& message) {
+  Bytes send_message(const M& message) {
     return encode(message, {1, 1}, sequence_++);
   }
   Bytes ask_or_accept();
@@ -109,9 +109,9 @@ class Autopilot {
   std::uint8_t sequence_ = 0;
 };
 
-/// Uploads a mission; true if it was accepted. `spoiled` frames, counted from 0, are damaged on
+/// Uploads a mission; true if it was accepted. `corrupted` frames, counted from 0, are damaged on
 /// their way to the autopilot and sent again.
-bool upload(Autopilot& autopilot, const std::vector<WireItem>& items, int spoiled = -1);
+bool upload(Autopilot& autopilot, const std::vector<WireItem>& items, int corrupted = -1);
 std::vector<WireItem> download(Autopilot& autopilot);
 
 }  // namespace skycap::flight::mavlink

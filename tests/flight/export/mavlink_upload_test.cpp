@@ -12,14 +12,14 @@ namespace {
 
 using mavlink::WireItem;
 
-bool has_place(const MissionItem& item) { return item.frame != frame::mission; }
+bool has_position(const MissionItem& item) { return item.frame != frame::mission; }
 
 std::vector<WireItem> on_the_wire(const std::vector<MissionItem>& items) {
   std::vector<WireItem> wire;
   for (const MissionItem& item : items) {
     WireItem to;
     for (std::size_t i = 0; i < 4; ++i) to.params[i] = static_cast<float>(item.params[i]);
-    const double scale = has_place(item) ? 1e7 : 1.0;
+    const double scale = has_position(item) ? 1e7 : 1.0;
     to.x = static_cast<std::int32_t>(std::lround(item.params[4] * scale));
     to.y = static_cast<std::int32_t>(std::lround(item.params[5] * scale));
     to.z = static_cast<float>(item.params[6]);
@@ -41,13 +41,13 @@ void expect_same(const std::vector<MissionItem>& sent, const std::vector<WireIte
     EXPECT_EQ(back[i].frame, sent[i].frame);
     EXPECT_EQ(back[i].autocontinue, 1);
     for (std::size_t p = 0; p < 4; ++p) {
-      const auto wanted = static_cast<float>(sent[i].params[p]);
-      EXPECT_TRUE(back[i].params[p] == wanted ||
-                  (std::isnan(back[i].params[p]) && std::isnan(wanted)))
+      const auto expected = static_cast<float>(sent[i].params[p]);
+      EXPECT_TRUE(back[i].params[p] == expected ||
+                  (std::isnan(back[i].params[p]) && std::isnan(expected)))
           << "item " << i << ", parameter " << p + 1;
     }
     EXPECT_EQ(back[i].z, static_cast<float>(sent[i].params[6]));
-    if (!has_place(sent[i])) continue;
+    if (!has_position(sent[i])) continue;
     // 1e-7 degrees is the wire's unit: 11 mm.
     EXPECT_NEAR(1e-7 * back[i].x, sent[i].params[4], 1e-7);
     EXPECT_NEAR(1e-7 * back[i].y, sent[i].params[5], 1e-7);

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-FlightPlan plan_of(const char* vehicle) {
+FlightPlan make_plan(const char* vehicle) {
   FlightPlan plan = sample_plan(vehicle_profile(vehicle));
   plan.returns->height = 47.0;
   return plan;
@@ -65,7 +65,7 @@ std::map<std::string, double> read_as_qgroundcontrol(const std::string& text) {
 
 // Centimetres under the old names, metres under those since 4.7.
 TEST(Parameters, ArduPilotReturnsAtTheCertifiedHeightByEitherName) {
-  const auto values = read_as_mission_planner(write_parameters(plan_of("generic_ardupilot")));
+  const auto values = read_as_mission_planner(write_parameters(make_plan("generic_ardupilot")));
   EXPECT_EQ(values.at("RTL_ALT"), 4700);
   EXPECT_EQ(values.at("RTL_ALT_M"), 47);
   EXPECT_EQ(values.at("RTL_CONE_SLOPE"), 0);
@@ -81,16 +81,16 @@ TEST(Parameters, ArduPilotReturnsAtTheCertifiedHeightByEitherName) {
 }
 
 TEST(Parameters, ArduPilotGoesToRallyPointsHoweverFar) {
-  FlightPlan plan = plan_of("generic_ardupilot");
+  FlightPlan plan = make_plan("generic_ardupilot");
   EXPECT_FALSE(read_as_mission_planner(write_parameters(plan)).contains("RALLY_LIMIT_KM"));
-  plan.returns->law.landings.emplace_back(35.0, 20.0, 0.0);
+  plan.returns->rtl_profile.landings.emplace_back(35.0, 20.0, 0.0);
   const auto values = read_as_mission_planner(write_parameters(plan));
   EXPECT_EQ(values.at("RALLY_LIMIT_KM"), 0.0);
   EXPECT_EQ(values.at("RALLY_INCL_HOME"), 1.0);
 }
 
 TEST(Parameters, Px4ReturnsAtTheCertifiedHeight) {
-  const auto values = read_as_qgroundcontrol(write_parameters(plan_of("generic")));
+  const auto values = read_as_qgroundcontrol(write_parameters(make_plan("generic")));
   EXPECT_EQ(values.at("RTL_RETURN_ALT"), 47);
   EXPECT_EQ(values.at("RTL_CONE_ANG"), 0);
   EXPECT_EQ(values.at("RTL_TYPE"), 0);
@@ -104,27 +104,29 @@ TEST(Parameters, Px4ReturnsAtTheCertifiedHeight) {
 
 TEST(Parameters, AreReadBackAsWritten) {
   for (const char* vehicle : {"generic_ardupilot", "generic"}) {
-    const FlightPlan plan = plan_of(vehicle);
-    const Dialect dialect = plan.vehicle.dialect;
+    const FlightPlan plan = make_plan(vehicle);
+    const AutopilotType autopilot = plan.vehicle.autopilot;
     const std::vector<Parameter> read = read_parameters(write_parameters(plan));
-    EXPECT_EQ(return_height(read, dialect), 47.0);
-    EXPECT_THAT(return_problems(read, dialect), IsEmpty());
-    const auto twin = dialect == Dialect::px4 ? read_as_qgroundcontrol(write_parameters(plan))
-                                              : read_as_mission_planner(write_parameters(plan));
-    EXPECT_EQ(read.size(), twin.size());
-    for (const Parameter& parameter : read) EXPECT_EQ(twin.at(parameter.name), parameter.value);
+    EXPECT_EQ(return_height(read, autopilot), 47.0);
+    EXPECT_THAT(return_problems(read, autopilot), IsEmpty());
+    const auto reference = autopilot == AutopilotType::px4
+                               ? read_as_qgroundcontrol(write_parameters(plan))
+                               : read_as_mission_planner(write_parameters(plan));
+    EXPECT_EQ(read.size(), reference.size());
+    for (const Parameter& parameter : read)
+      EXPECT_EQ(reference.at(parameter.name), parameter.value);
   }
 }
 
 TEST(Parameters, SaysWhichSettingsChangeTheWayHome) {
-  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_CONE_SLOPE", 0}}, Dialect::ardupilot),
+  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_CONE_SLOPE", 0}}, AutopilotType::ardupilot),
               IsEmpty());
-  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}}, Dialect::ardupilot),
+  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}}, AutopilotType::ardupilot),
               ElementsAre("RTL_CONE_SLOPE is 3; it must be 0"));
   EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_ALT_M", 4700}, {"RTL_CONE_SLOPE", 0}},
-                              Dialect::ardupilot),
+                              AutopilotType::ardupilot),
               ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be equal"));
-  EXPECT_THAT(return_problems({{"RTL_RETURN_ALT", 47}, {"RTL_CONE_ANG", 0}}, Dialect::px4),
+  EXPECT_THAT(return_problems({{"RTL_RETURN_ALT", 47}, {"RTL_CONE_ANG", 0}}, AutopilotType::px4),
               ElementsAre("NAV_ACC_RAD is 10; it must be in [0.05, 1]"));
 }
 
@@ -138,11 +140,11 @@ TEST(Parameters, NamesTheLineThatIsNone) {
 }
 
 TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
-  FlightPlan plan = plan_of("generic");
+  FlightPlan plan = make_plan("generic");
   plan.returns.reset();
-  EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { write_parameters(plan); }),
               testing::HasSubstr("has no verified return"));
-  EXPECT_THAT(testing_support::complaint_of([&] { write_parameters(plan_of("m350_rtk")); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { write_parameters(make_plan("m350_rtk")); }),
               testing::HasSubstr("does not use parameter files"));
 }
 
@@ -156,7 +158,7 @@ TEST(ReturnAltitude, IsStatedInFull) {
   EXPECT_EQ(read_kmz(write_kmz(plan)).return_height, 42.7);
   FlightPlan own = sample_plan(vehicle_profile("generic_ardupilot"));
   own.returns->height = 42.7;
-  EXPECT_EQ(return_height(read_parameters(write_parameters(own)), Dialect::ardupilot), 42.7);
+  EXPECT_EQ(return_height(read_parameters(write_parameters(own)), AutopilotType::ardupilot), 42.7);
 }
 
 }  // namespace

@@ -19,27 +19,27 @@ Obstacles sample_site() {
 namespace {
 
 /// Plans for stations that look at the middle of the building.
-FlightPlan plan_for(const Vehicle& vehicle, const std::vector<Eigen::Vector3d>& places,
+FlightPlan plan_for(const Vehicle& vehicle, const std::vector<Eigen::Vector3d>& positions,
                     FlightStyle style) {
   const Obstacles obstacles = sample_site();
   const KnownSpace space(obstacles), pad_space(without_ground(obstacles));
-  std::vector<Station> stations;
-  for (const Eigen::Vector3d& place : places) {
-    stations.push_back({geometry::look_at(place, {0, 0, 7}), 2.0, 2,
-                        static_cast<std::uint32_t>(stations.size() + 10)});
+  std::vector<CapturePoint> capture_points;
+  for (const Eigen::Vector3d& position : positions) {
+    capture_points.push_back({geometry::look_at(position, {0, 0, 7}), 2.0, 2,
+                              static_cast<std::uint32_t>(capture_points.size() + 10)});
   }
   RouteOptions options;
   options.takeoff = {-30, -25, 0};
   options.style = style;
-  options.passing = {.speed = 3.0, .most_cut = 0.5, .exposure = 0.001, .period = 1.0};
-  options.returns = ReturnOptions{{Dialect::ardupilot, Dialect::px4}, 40.0};
-  const Route route = plan_route(stations, vehicle, space, &pad_space, options);
+  options.passing = {.speed = 3.0, .max_cut = 0.5, .exposure = 0.001, .period = 1.0};
+  options.returns = ReturnOptions{{AutopilotType::ardupilot, AutopilotType::px4}, 40.0};
+  const Route route = plan_route(capture_points, vehicle, space, &pad_space, options);
   if (route.sorties.size() != 1 || !route.unreached.empty()) {
     throw std::logic_error("the sample flight must be one sortie through all stations" +
                            (route.unreached.empty() ? "" : ": " + route.unreached[0].reason));
   }
   const Site site{{51.753458, -1.254022, 111.5}, 46.7};
-  return flight_plan(route, 0, "sample", site, obstacles, Corners::flown_round);
+  return flight_plan(route, 0, "sample", site, obstacles, Corners::rounded);
 }
 
 }  // namespace

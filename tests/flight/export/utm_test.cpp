@@ -48,11 +48,11 @@ double meridian(double latitude) {
 TEST(Utm, TheCentralMeridianHasItsLengthTimesItsScale) {
   for (const double latitude_deg : {0.0, 10.0, 51.0, 83.0}) {
     const UtmProjection utm({{latitude_deg, -3.0, 12.0}, {}});
-    const Vector3d place = utm.to_map(Vector3d::Zero());
+    const Vector3d position = utm.to_map(Vector3d::Zero());
     EXPECT_EQ(utm.epsg(), 32630);
-    EXPECT_NEAR(place.x(), 500'000.0, 1e-6);
-    EXPECT_NEAR(place.y(), 0.9996 * meridian(latitude_deg * std::numbers::pi / 180.0), 1e-4);
-    EXPECT_NEAR(place.z(), 12.0, 1e-8);  // rounding of 6,378 km
+    EXPECT_NEAR(position.x(), 500'000.0, 1e-6);
+    EXPECT_NEAR(position.y(), 0.9996 * meridian(latitude_deg * std::numbers::pi / 180.0), 1e-4);
+    EXPECT_NEAR(position.z(), 12.0, 1e-8);  // rounding of 6,378 km
   }
 }
 
@@ -66,19 +66,20 @@ TEST(Utm, IsWhereProjPutsPointsByTheWktOfTheFile) {
     const Object map(proj_create(context.get(), utm.wkt().c_str()), proj_destroy);
     const Object earth(proj_create(context.get(), "EPSG:4979"), proj_destroy);
     ASSERT_TRUE(map && earth) << utm.wkt();
-    const Object way(
+    const Object pipeline(
         proj_create_crs_to_crs_from_pj(context.get(), earth.get(), map.get(), nullptr, nullptr),
         proj_destroy);
-    ASSERT_TRUE(way);
+    ASSERT_TRUE(pipeline);
     for (const Vector3d& local : {Vector3d(0, 0, 0), Vector3d(120, -80, 35), Vector3d(-3, 900, 60),
                                   Vector3d(5000, 7000, 100)}) {
       const GeodeticPoint point = frame.to_geodetic(local);
-      const PJ_COORD expected = proj_trans(
-          way.get(), PJ_FWD, proj_coord(point.latitude_deg, point.longitude_deg, point.height, 0));
-      const Vector3d place = utm.to_map(local);
-      EXPECT_NEAR(place.x(), expected.xyz.x, 1e-4) << local.transpose();
-      EXPECT_NEAR(place.y(), expected.xyz.y, 1e-4) << local.transpose();
-      EXPECT_NEAR(place.z(), expected.xyz.z, 1e-4) << local.transpose();
+      const PJ_COORD expected =
+          proj_trans(pipeline.get(), PJ_FWD,
+                     proj_coord(point.latitude_deg, point.longitude_deg, point.height, 0));
+      const Vector3d position = utm.to_map(local);
+      EXPECT_NEAR(position.x(), expected.xyz.x, 1e-4) << local.transpose();
+      EXPECT_NEAR(position.y(), expected.xyz.y, 1e-4) << local.transpose();
+      EXPECT_NEAR(position.z(), expected.xyz.z, 1e-4) << local.transpose();
     }
   }
 }
@@ -101,12 +102,12 @@ TEST(Utm, HeightsAreAboveTheGeoidWhereItIsKnown) {
   const Context context(proj_context_create(), proj_context_destroy);
   const Object map(proj_create(context.get(), utm.wkt().c_str()), proj_destroy);
   ASSERT_EQ(proj_get_type(map.get()), PJ_TYPE_COMPOUND_CRS);
-  const auto code_of = [&](int part) {
+  const auto authority_code = [&](int part) {
     const Object crs(proj_crs_get_sub_crs(context.get(), map.get(), part), proj_destroy);
     return std::string(proj_get_id_auth_name(crs.get(), 0)) + ":" + proj_get_id_code(crs.get(), 0);
   };
-  EXPECT_EQ(code_of(0), "EPSG:32630");
-  EXPECT_EQ(code_of(1), "EPSG:5773");  // EGM96 height
+  EXPECT_EQ(authority_code(0), "EPSG:32630");
+  EXPECT_EQ(authority_code(1), "EPSG:5773");  // EGM96 height
   EXPECT_EQ(UtmProjection(ushuaia).epsg(), 32719);
 }
 
@@ -116,7 +117,7 @@ TEST(Utm, RefusesThePoles) {
         UtmProjection({{85.5, 0.0, 0.0}, {}});
       },
       testing::ThrowsMessage<Error>(HasSubstr("UTM is from 80 degrees south to 84")));
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 UtmProjection({{95.0, 0.0, 0.0}, {}});
               }),
               testing::HasSubstr("latitude is 95.0"));

@@ -23,22 +23,23 @@ using Eigen::Vector3d;
 using Order = std::vector<std::uint32_t>;
 
 /// A flat world: times are metres, and so are energies.
-FleetProblem flat_problem(std::uint64_t seed, std::size_t stations,
+FleetProblem flat_problem(std::uint64_t seed, std::size_t capture_points,
                           const std::vector<Vector3d>& pads) {
   std::mt19937_64 random(seed);
-  std::vector<Vector3d> places;
-  for (std::size_t i = 0; i < stations; ++i) {
-    places.push_back(scenes::point_in(random, {Vector3d(0, 0, 0), Vector3d(100, 100, 0)}));
+  std::vector<Vector3d> point_count;
+  for (std::size_t i = 0; i < capture_points; ++i) {
+    point_count.push_back(scenes::point_in(random, {Vector3d(0, 0, 0), Vector3d(100, 100, 0)}));
   }
   FleetProblem problem;
   for (const Vector3d& pad : pads) {
-    FleetVehicle vehicle{.energy_per_sortie = 1e9, .stations_per_sortie = 1000};
+    FleetVehicle vehicle{.energy_per_sortie = 1e9, .capture_points_per_sortie = 1000};
     const auto part = [](double length) { return PartCost{length, length, 0.0}; };
-    for (const Vector3d& place : places) {
-      vehicle.out.push_back(part(10.0 + (place - pad).norm()));
-      vehicle.station.push_back(part(2.0));
-      vehicle.back.push_back(part(20.0 + (place - pad).norm()));
-      for (const Vector3d& next : places) vehicle.legs.push_back(part((next - place).norm()));
+    for (const Vector3d& position : point_count) {
+      vehicle.out.push_back(part(10.0 + (position - pad).norm()));
+      vehicle.capture_point.push_back(part(2.0));
+      vehicle.back.push_back(part(20.0 + (position - pad).norm()));
+      for (const Vector3d& next : point_count)
+        vehicle.legs.push_back(part((next - position).norm()));
     }
     problem.vehicles.push_back(std::move(vehicle));
   }
@@ -68,19 +69,20 @@ double best_cut(const FleetProblem& problem, std::span<const std::uint32_t> orde
 /// 1962), by the set's bits.
 std::vector<double> best_tours(const FleetVehicle& vehicle) {
   const std::size_t count = vehicle.count(), sets = std::size_t{1} << count;
-  std::vector<double> ways(sets * count, never), tours(sets, never);
+  std::vector<double> leg_costs(sets * count, never), tours(sets, never);
   tours[0] = 0.0;
   for (std::size_t set = 1; set < sets; ++set) {
     for (std::uint32_t last = 0; last < count; ++last) {
       const std::size_t before = set & ~(std::size_t{1} << last);
       if (before == set) continue;
-      double way = never;
-      if (before == 0) way = vehicle.out[last].time;
+      double leg_cost = never;
+      if (before == 0) leg_cost = vehicle.out[last].time;
       for (std::uint32_t from = 0; from < count; ++from) {
-        way = std::min(way, ways[before * count + from] + vehicle.leg(from, last).time);
+        leg_cost =
+            std::min(leg_cost, leg_costs[before * count + from] + vehicle.leg(from, last).time);
       }
-      ways[set * count + last] = way += vehicle.station[last].time;
-      tours[set] = std::min(tours[set], way + vehicle.back[last].time);
+      leg_costs[set * count + last] = leg_cost += vehicle.capture_point[last].time;
+      tours[set] = std::min(tours[set], leg_cost + vehicle.back[last].time);
     }
   }
   return tours;
@@ -107,10 +109,10 @@ double optimum(const FleetProblem& problem, FleetGoal goal) {
   return best.back();
 }
 
-Order all_stations(const FleetSplit& split) {
+Order all_capture_points(const FleetSplit& split) {
   Order all;
   for (const FleetPart& part : split.parts) {
-    all.insert(all.end(), part.stations.begin(), part.stations.end());
+    all.insert(all.end(), part.capture_points.begin(), part.capture_points.end());
   }
   std::ranges::sort(all);
   return all;
@@ -120,13 +122,13 @@ TEST(FleetSplit, IsTheBestOfAllCutsOfItsOrder) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const FleetProblem problem = flat_problem(seed, 12, {{0, 0, 0}, {50, 0, 0}, {100, 0, 0}});
     const Order order = counted(12);
-    for (const FleetGoal goal : {FleetGoal::makespan, FleetGoal::flown}) {
+    for (const FleetGoal goal : {FleetGoal::makespan, FleetGoal::total_flight_time}) {
       const FleetSplit split = split_among(problem, order, goal);
-      const double figure = goal == FleetGoal::makespan ? split.makespan : split.flown;
+      const double figure = goal == FleetGoal::makespan ? split.makespan : split.total_flight_time;
       EXPECT_NEAR(figure, best_cut(problem, order, 0, goal), 1e-9) << "seed " << seed;
       Order joined;
       for (const FleetPart& part : split.parts) {
-        joined.insert(joined.end(), part.stations.begin(), part.stations.end());
+        joined.insert(joined.end(), part.capture_points.begin(), part.capture_points.end());
       }
       EXPECT_EQ(joined, order);
     }
@@ -155,35 +157,35 @@ TEST(FleetSplit, FliesSeveralSortiesWhereTheBatteryAsksForThem) {
 
 // Against all ways of sharing nine stations out: what is found is the best, and both bounds are.
 TEST(FleetSplit, IsTheOptimumOfSmallCasesAndTheBoundsHold) {
-  double least_bound = 1.0, least_collected = 1.0;
+  double min_bound = 1.0, min_collected = 1.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const double apart : {0.0, 40.0}) {
       std::vector<Vector3d> pads{{0, 0, 0}, {apart, 0, 0}};
       if (seed % 2 == 0) pads.emplace_back(50, 100, 0);
       const FleetProblem problem = flat_problem(seed, 9, pads);
       const double soonest = optimum(problem, FleetGoal::makespan);
-      const double shortest = optimum(problem, FleetGoal::flown);
+      const double shortest = optimum(problem, FleetGoal::total_flight_time);
       const FleetSplit fast = share_among(problem, counted(9), FleetGoal::makespan);
       EXPECT_NEAR(fast.makespan, soonest, 1e-9) << "seed " << seed;
-      EXPECT_EQ(all_stations(fast), counted(9));
-      const FleetSplit thrifty = share_among(problem, counted(9), FleetGoal::flown);
-      EXPECT_NEAR(thrifty.flown, shortest, 1e-9) << "seed " << seed;
+      EXPECT_EQ(all_capture_points(fast), counted(9));
+      const FleetSplit thrifty = share_among(problem, counted(9), FleetGoal::total_flight_time);
+      EXPECT_NEAR(thrifty.total_flight_time, shortest, 1e-9) << "seed " << seed;
 
       const FleetBound bound = fleet_bound(problem, 2.0 * soonest);
       EXPECT_LE(bound.makespan, soonest + 1e-9);
-      EXPECT_LE(bound.flown, shortest + 1e-9);
-      least_bound = std::min(least_bound, bound.makespan / soonest);
+      EXPECT_LE(bound.total_flight_time, shortest + 1e-9);
+      min_bound = std::min(min_bound, bound.makespan / soonest);
       const double collected = collection_bound(problem, 1.5 * soonest);
       EXPECT_LE(collected, soonest + 1e-9) << "seed " << seed;
       EXPECT_LE(collection_bound(problem, 0.9 * soonest), 0.9 * soonest + 1e-9);
-      least_collected = std::min(least_collected, collected / soonest);
+      min_collected = std::min(min_collected, collected / soonest);
     }
   }
   // Tours that come to a station twice cost the rest.
-  EXPECT_GE(least_bound, 0.8);
-  EXPECT_GE(least_collected, 0.8);
-  RecordProperty("least_bound", std::to_string(least_bound));
-  RecordProperty("least_collected", std::to_string(least_collected));
+  EXPECT_GE(min_bound, 0.8);
+  EXPECT_GE(min_collected, 0.8);
+  RecordProperty("least_bound", std::to_string(min_bound));
+  RecordProperty("least_collected", std::to_string(min_collected));
 }
 
 // One vehicle's share is a tour: it is no longer than LEMON's.
@@ -192,15 +194,15 @@ TEST(FleetSplit, OfOneVehicleIsNoLongerThanTheToursOfALibrary) {
   for (const std::size_t count : {50, 80}) {
     const FleetProblem problem = flat_problem(count, count, {{30, 0, 0}});
     const FleetVehicle& vehicle = problem.vehicles.front();
-    const std::size_t places = count + 1;  // the pad last
-    std::vector<double> costs(places * places, 0.0);
+    const std::size_t point_count = count + 1;  // the pad last
+    std::vector<double> costs(point_count * point_count, 0.0);
     for (std::uint32_t i = 0; i < count; ++i) {
-      costs[i * places + count] = costs[count * places + i] = vehicle.out[i].time;
-      for (std::uint32_t j = 0; j < count; ++j) costs[i * places + j] = vehicle.leg(i, j).time;
+      costs[i * point_count + count] = costs[count * point_count + i] = vehicle.out[i].time;
+      for (std::uint32_t j = 0; j < count; ++j) costs[i * point_count + j] = vehicle.leg(i, j).time;
     }
     // A landing takes ten seconds more than a take-off, a station two.
     const double others = 10.0 + 2.0 * static_cast<double>(count);
-    const double library = others + lemon_tour(places, costs);
+    const double library = others + lemon_tour(point_count, costs);
     const double ours = share_among(problem, counted(count), FleetGoal::makespan, 2).makespan;
     EXPECT_LE(ours, library + 1e-9) << count << " stations";
     EXPECT_GE(ours, fleet_bound(problem, library).makespan);
@@ -215,7 +217,7 @@ TEST(CollectionBound, SeesThatEveryVehicleHasToFlyFar) {
   for (FleetVehicle& vehicle : problem.vehicles) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       vehicle.out[i].time = vehicle.back[i].time = 100.0;
-      vehicle.station[i].time = 0.0;
+      vehicle.capture_point[i].time = 0.0;
       for (std::uint32_t j = 0; j < 3; ++j) vehicle.leg(i, j).time = i == j ? 0.0 : 150.0;
     }
   }
@@ -232,13 +234,13 @@ TEST(FleetSplit, IsNoWorseAfterExchanges) {
     const FleetSplit cut = split_among(problem, counted(40), FleetGoal::makespan);
     const FleetSplit better = exchanged(problem, cut, FleetGoal::makespan);
     EXPECT_LT(better.makespan, cut.makespan);
-    EXPECT_EQ(all_stations(better), counted(40));
+    EXPECT_EQ(all_capture_points(better), counted(40));
     const FleetSplit again = exchanged(problem, cut, FleetGoal::makespan);
     for (std::size_t v = 0; v < 3; ++v)
-      EXPECT_EQ(again.parts[v].stations, better.parts[v].stations);
+      EXPECT_EQ(again.parts[v].capture_points, better.parts[v].capture_points);
     const FleetSplit cooled = annealed(problem, cut, FleetGoal::makespan);
     EXPECT_LT(cooled.makespan, cut.makespan);
-    EXPECT_EQ(all_stations(cooled), counted(40));
+    EXPECT_EQ(all_capture_points(cooled), counted(40));
     EXPECT_EQ(annealed(problem, cut, FleetGoal::makespan).makespan, cooled.makespan);
   }
 }
@@ -247,16 +249,16 @@ TEST(FleetSplit, IsNoWorseAfterExchanges) {
 TEST(FleetSplit, GivesMoreToTheFaster) {
   FleetProblem problem = flat_problem(8, 30, {{0, 0, 0}, {0, 0, 0}});
   for (auto* parts : {&problem.vehicles[1].out, &problem.vehicles[1].back,
-                      &problem.vehicles[1].station, &problem.vehicles[1].legs}) {
+                      &problem.vehicles[1].capture_point, &problem.vehicles[1].legs}) {
     for (PartCost& part : *parts) part.time *= 0.5;
   }
   const FleetSplit split = share_among(problem, counted(30), FleetGoal::makespan);
-  EXPECT_GT(split.parts[1].stations.size(), split.parts[0].stations.size());
+  EXPECT_GT(split.parts[1].capture_points.size(), split.parts[0].capture_points.size());
   EXPECT_LT(split.makespan, part_time(problem.vehicles[1], counted(30)));
-  EXPECT_FALSE(split.parts[0].stations.empty());
+  EXPECT_FALSE(split.parts[0].capture_points.empty());
 }
 
-FleetMember member_of(const Vehicle& vehicle, const Eigen::Vector2d& wind = {0.0, 0.0}) {
+FleetMember make_member(const Vehicle& vehicle, const Eigen::Vector2d& wind = {0.0, 0.0}) {
   FleetMember member{vehicle, {}};
   member.options.takeoff = {-5, -5, 0};
   member.options.conditions.wind = wind;
@@ -269,20 +271,20 @@ TEST(FleetCosts, NoWayRoundACornerIsFasterThanTheLeast) {
   std::mt19937_64 random(4);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(60, 60, 40));
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
-    const FleetMember member = member_of(vehicle, {3.0, 1.0});
+    const FleetMember member = make_member(vehicle, {3.0, 1.0});
     const Motion motion(vehicle, member.options.conditions);
     for (int i = 0; i < 2000; ++i) {
-      std::vector<Station> stations(2);
-      for (Station& station : stations) {
-        station.view = {scenes::point_in(random, box), Vector3d(1, 0, 0)};
+      std::vector<CapturePoint> capture_points(2);
+      for (CapturePoint& capture_point : capture_points) {
+        capture_point.view = {scenes::point_in(random, box), Vector3d(1, 0, 0)};
       }
       const Vector3d corner = scenes::point_in(random, box);
-      const Vector3d from = stations[0].view.position, to = stations[1].view.position;
-      const double least = least_costs(stations, member).leg(0, 1).time;
+      const Vector3d from = capture_points[0].view.position, to = capture_points[1].view.position;
+      const double min = lower_bound_costs(capture_points, member).leg(0, 1).time;
       const double straight = motion.leg_time(to - from);
-      EXPECT_LE(least, straight + 1e-9);
-      EXPECT_GT(least, 0.5 * straight);
-      EXPECT_LE(least, motion.leg_time(corner - from) + motion.leg_time(to - corner));
+      EXPECT_LE(min, straight + 1e-9);
+      EXPECT_GT(min, 0.5 * straight);
+      EXPECT_LE(min, motion.leg_time(corner - from) + motion.leg_time(to - corner));
     }
   }
 }
@@ -295,32 +297,33 @@ TEST(FleetCosts, NoWayRoundABallIsFasterThanTheLeast) {
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(40, 40, 20));
   int compared = 0;
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
-    const FleetMember member = member_of(vehicle);
+    const FleetMember member = make_member(vehicle);
     const Motion motion(vehicle, {});
     for (int i = 0; i < 4000; ++i) {
-      std::vector<Station> stations(2);
-      for (Station& station : stations) {
-        station.view = {scenes::point_in(random, box), Vector3d(1, 0, 0)};
+      std::vector<CapturePoint> capture_points(2);
+      for (CapturePoint& capture_point : capture_points) {
+        capture_point.view = {scenes::point_in(random, box), Vector3d(1, 0, 0)};
       }
-      const Vector3d from = stations[0].view.position, to = stations[1].view.position;
+      const Vector3d from = capture_points[0].view.position, to = capture_points[1].view.position;
       const Vector3d centre = from + uniform(random) * (to - from);
       const double radius = 2.0 * uniform(random);
-      std::vector<Vector3d> way{from};
+      std::vector<Vector3d> leg_cost{from};
       for (int corners = 1 + i % 2; corners > 0; --corners) {
         const Vector3d aside = scenes::point_in(random, {Vector3d(-4, -4, -4), Vector3d(4, 4, 4)});
-        way.push_back(centre + aside);
+        leg_cost.push_back(centre + aside);
       }
-      way.push_back(to);
+      leg_cost.push_back(to);
       double time = 0.0, nearest_by = never;
-      for (std::size_t k = 1; k < way.size(); ++k) {
-        time += motion.leg_time(way[k] - way[k - 1]) + (k > 1 ? corner_hold : 0.0);
-        const double squared = nearest({way[k - 1], way[k]}, centre).squared_distance;
+      for (std::size_t k = 1; k < leg_cost.size(); ++k) {
+        time += motion.leg_time(leg_cost[k] - leg_cost[k - 1]) + (k > 1 ? corner_hold : 0.0);
+        const double squared = nearest({leg_cost[k - 1], leg_cost[k]}, centre).squared_distance;
         nearest_by = std::min(nearest_by, std::sqrt(squared));
       }
       if (nearest_by < radius) continue;
       ++compared;
-      const Shortfalls shortfalls{{0.0, 0.0}, {0.0, radius, radius, 0.0}};
-      EXPECT_LE(least_costs(stations, member, shortfalls).leg(0, 1).time, time + 1e-9);
+      const ClearanceDeficits clearance_deficits{{0.0, 0.0}, {0.0, radius, radius, 0.0}};
+      EXPECT_LE(lower_bound_costs(capture_points, member, clearance_deficits).leg(0, 1).time,
+                time + 1e-9);
     }
   }
   EXPECT_GT(compared, 1000);

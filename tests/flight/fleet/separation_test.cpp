@@ -25,7 +25,7 @@ ScriptedLeg leg_between(const Vector3d& from, const Vector3d& to, double speed, 
           .acceleration = acceleration};
 }
 
-Vector3d place_at(const TimedFlight& flight, double time) {
+Vector3d position_at(const TimedFlight& flight, double time) {
   double begin = flight.start;
   for (const ScriptedLeg& leg : flight.script) {
     if (time <= begin + leg.duration()) return set_point(leg, flight.jerk, time - begin).position;
@@ -36,26 +36,26 @@ Vector3d place_at(const TimedFlight& flight, double time) {
 
 /// The least distance of places at times `step` apart, each within the tolerance of both.
 double sampled(const TimedFlight& first, const TimedFlight& second, double tolerance, double step) {
-  double least = 1e9;
+  double min_distance = 1e9;
   for (double t = first.start; t <= first.landing(); t += step) {
-    const Vector3d place = place_at(first, t);
+    const Vector3d position = position_at(first, t);
     const double from = std::max(second.start, t - 2.0 * tolerance);
     const double to = std::min(second.landing(), t + 2.0 * tolerance);
     for (double u = from; u <= to; u += step) {
-      least = std::min(least, (place - place_at(second, u)).norm());
+      min_distance = std::min(min_distance, (position - position_at(second, u)).norm());
     }
   }
-  return least;
+  return min_distance;
 }
 
 TEST(Separation, OfHeadOnFlightsIsZeroAndOfParallelOnesTheirGap) {
   const TimedFlight there{{leg_between({0, 0, 10}, {40, 0, 10}, 4.0, 1.0)}, jerk, 0.0};
   const TimedFlight back{{leg_between({40, 0, 10}, {0, 0, 10}, 4.0, 1.0)}, jerk, 0.0};
   const TimedFlight beside{{leg_between({0, 7, 10}, {40, 7, 10}, 4.0, 1.0)}, jerk, 0.0};
-  EXPECT_NEAR(proven_distance(there, back, 0.0, 100.0), 0.0, 1e-9);
+  EXPECT_NEAR(verified_distance(there, back, 0.0, 100.0), 0.0, 1e-9);
   EXPECT_TRUE(too_near(there, back, {.distance = 1.0}));
-  EXPECT_NEAR(proven_distance(there, beside, 0.0, 100.0), 7.0, 2e-3);
-  EXPECT_LE(proven_distance(there, beside, 0.0, 100.0), 7.0);
+  EXPECT_NEAR(verified_distance(there, beside, 0.0, 100.0), 7.0, 2e-3);
+  EXPECT_LE(verified_distance(there, beside, 0.0, 100.0), 7.0);
   EXPECT_FALSE(too_near(there, beside, {.distance = 6.99}));
   EXPECT_TRUE(too_near(there, beside, {.distance = 7.01}));
 }
@@ -65,14 +65,14 @@ TEST(Separation, ShrinksWithTheTolerance) {
   const TimedFlight first{{leg_between({-20, 0, 10}, {20, 0, 10}, 4.0, 0.0)}, jerk, 0.0};
   const TimedFlight second{{leg_between({0, -20, 10}, {0, 20, 10}, 4.0, 0.0)}, jerk, 8.0};
   // Both cross in the middle of their flights, 8 s apart.
-  EXPECT_GT(proven_distance(first, second, 0.0, 100.0), 10.0);
+  EXPECT_GT(verified_distance(first, second, 0.0, 100.0), 10.0);
   double before = 1e9;
   for (const double tolerance : {0.0, 1.0, 2.0, 3.0, 3.9}) {
-    const double distance = proven_distance(first, second, tolerance, 100.0);
+    const double distance = verified_distance(first, second, tolerance, 100.0);
     EXPECT_LT(distance, before);
     before = distance;
   }
-  EXPECT_NEAR(proven_distance(first, second, 4.0, 100.0), 0.0, 1e-3);
+  EXPECT_NEAR(verified_distance(first, second, 4.0, 100.0), 0.0, 1e-3);
 }
 
 TEST(Separation, IsNotAskedForWhereOneHasLandedLongBefore) {
@@ -91,7 +91,7 @@ TEST(Separation, SaysWhereTheyMeet) {
   ASSERT_TRUE(encounter);
   EXPECT_LT(encounter->distance, 5.0);
   EXPECT_NEAR((encounter->first - encounter->second).norm(), encounter->distance, 1e-9);
-  EXPECT_NEAR((encounter->first - place_at(first, encounter->time)).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((encounter->first - position_at(first, encounter->time)).norm(), 0.0, 1e-6);
   EXPECT_NEAR((encounter->second - Vector3d(20, 3, 10)).norm(), 0.0, 1e-9);
 }
 
@@ -106,29 +106,29 @@ TEST(Separation, OfRandomTimedLegsIsNeverMoreThanSamplesSay) {
     const double speed = 1.0 + 9.0 * uniform(random), wait = 2.0 * uniform(random);
     return TimedFlight{{leg_between(from, to, speed, wait)}, jerk, 5.0 * uniform(random)};
   };
-  int certified = 0;
+  int verified = 0;
   for (int i = 0; i < 100'000; ++i) {
     const TimedFlight first = random_flight(), second = random_flight();
     const double tolerance = i % 4 == 0 ? 0.5 * uniform(random) : 0.0;
     const double step = tolerance > 0.0 ? 0.25 : 0.05;
-    const double least = sampled(first, second, tolerance, step);
+    const double min_distance = sampled(first, second, tolerance, step);
     const SeparationRule rule{5.0 + 10.0 * uniform(random), tolerance};
     const auto encounter = too_near(first, second, rule);
     if (!encounter) {
-      ++certified;
-      ASSERT_GE(least, rule.distance) << "pair " << i;
+      ++verified;
+      ASSERT_GE(min_distance, rule.distance) << "pair " << i;
     } else {
       ASSERT_LT(encounter->distance, rule.distance + 1e-5) << "pair " << i;
     }
     if (i % 10 != 0) continue;
-    const double bound = proven_distance(first, second, tolerance, 200.0);
-    ASSERT_LE(bound, least + 1e-9) << "pair " << i;
-    if (least > 1e8) continue;  // together for less than a step, if at all
+    const double bound = verified_distance(first, second, tolerance, 200.0);
+    ASSERT_LE(bound, min_distance + 1e-9) << "pair " << i;
+    if (min_distance > 1e8) continue;  // together for less than a step, if at all
     // Samples of both are at most a step from the nearest places, at up to 10 m/s each.
-    ASSERT_GE(bound, std::min(200.0, least) - 2.0 * 10.0 * step - 2e-3) << "pair " << i;
+    ASSERT_GE(bound, std::min(200.0, min_distance) - 2.0 * 10.0 * step - 2e-3) << "pair " << i;
   }
-  EXPECT_GT(certified, 30'000);
-  EXPECT_LT(certified, 90'000);
+  EXPECT_GT(verified, 30'000);
+  EXPECT_LT(verified, 90'000);
 }
 
 TEST(Separation, FromAPlaceOnTheGroundIsThatOfTheWholeFlight) {

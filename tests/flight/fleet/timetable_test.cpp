@@ -20,14 +20,14 @@ ScriptedLeg leg_between(const Vector3d& from, const Vector3d& to) {
 }
 
 /// Up, to a place and back, down.
-FlightScript there_and_back(const Vector3d& pad, const Vector3d& place) {
+FlightScript there_and_back(const Vector3d& pad, const Vector3d& position) {
   const Vector3d above = pad + Vector3d(0, 0, 6);
-  return {leg_between(pad, above), leg_between(above, place), leg_between(place, above),
+  return {leg_between(pad, above), leg_between(above, position), leg_between(position, above),
           leg_between(above, pad)};
 }
 
-std::vector<TimedFlight> flights_of(const std::vector<FleetSortie>& sorties,
-                                    const Timetable& table) {
+std::vector<TimedFlight> make_flights(const std::vector<FleetSortie>& sorties,
+                                      const Timetable& table) {
   std::vector<TimedFlight> flights;
   for (std::size_t i = 0; i < sorties.size(); ++i) {
     flights.push_back({sorties[i].script, jerk, table.starts[i]});
@@ -37,10 +37,11 @@ std::vector<TimedFlight> flights_of(const std::vector<FleetSortie>& sorties,
 
 /// Whether flights of different vehicles come too near to each other.
 bool has_conflict(const std::vector<TimedFlight>& flights,
-                  const std::vector<std::size_t>& vehicle_of, const SeparationRule& rule) {
+                  const std::vector<std::size_t>& vehicle_indices, const SeparationRule& rule) {
   for (std::size_t i = 0; i < flights.size(); ++i) {
     for (std::size_t j = i + 1; j < flights.size(); ++j) {
-      if (vehicle_of[i] != vehicle_of[j] && too_near(flights[i], flights[j], rule)) return true;
+      if (vehicle_indices[i] != vehicle_indices[j] && too_near(flights[i], flights[j], rule))
+        return true;
     }
   }
   return false;
@@ -61,13 +62,13 @@ TEST(Timetable, DelaysAsLittleAsCanBeWhereTwoCross) {
                                          {1, 0, there_and_back({40, 0, 0}, {0, 40, 10}), jerk}};
   const SeparationRule rule{.distance = 10.0, .tolerance = 1.0};
   const std::vector<std::size_t> vehicles{0, 1};
-  EXPECT_TRUE(has_conflict(flights_of(sorties, {.starts = {0.0, 0.0}}), vehicles, rule));
+  EXPECT_TRUE(has_conflict(make_flights(sorties, {.starts = {0.0, 0.0}}), vehicles, rule));
   const Timetable table = timetable(sorties, 2, rule);
-  EXPECT_FALSE(has_conflict(flights_of(sorties, table), vehicles, rule));
+  EXPECT_FALSE(has_conflict(make_flights(sorties, table), vehicles, rule));
   for (int seconds = 0; seconds < 60; ++seconds) {
     const double later = seconds;
     for (const auto& starts : {std::vector<double>{0.0, later}, std::vector<double>{later, 0.0}}) {
-      const std::vector<TimedFlight> flights = flights_of(sorties, {.starts = starts});
+      const std::vector<TimedFlight> flights = make_flights(sorties, {.starts = starts});
       if (has_conflict(flights, vehicles, rule)) continue;
       EXPECT_LE(table.makespan, std::max(flights[0].landing(), flights[1].landing()) + 1e-9);
     }
@@ -82,7 +83,7 @@ TEST(Timetable, FliesOneAfterTheOtherWhereNothingElseHelps) {
   }
   const SeparationRule rule{.distance = 60.0, .tolerance = 4.0};
   const Timetable table = timetable(sorties, 3, rule);
-  EXPECT_FALSE(has_conflict(flights_of(sorties, table), {0, 1, 2}, rule));
+  EXPECT_FALSE(has_conflict(make_flights(sorties, table), {0, 1, 2}, rule));
   const double one = duration(sorties[0].script);
   EXPECT_GE(table.makespan, 3.0 * one + 4.0 * rule.tolerance);
   EXPECT_LE(table.makespan, 3.0 * one + 4.0 * rule.tolerance + 6.0);  // whole seconds

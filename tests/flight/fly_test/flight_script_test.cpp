@@ -21,11 +21,11 @@ using Eigen::Vector3d;
 /// The sample flight, read from the file of that vehicle's autopilot.
 struct Sample {
   explicit Sample(const std::string& vehicle) : plan(sample_plan(vehicle_profile(vehicle))) {
-    const FlightFacts facts = facts_of(plan);
-    const FlownRoute route = plan.vehicle.dialect == Dialect::dji
-                                 ? interpret(unpack_kmz(write_kmz(plan)), facts)
-                                 : interpret(sample_file(plan.vehicle.dialect), facts);
-    script = script_of(route, motion());
+    const FlightFacts facts = make_flight_facts(plan);
+    const InterpretedRoute route = plan.vehicle.autopilot == AutopilotType::dji
+                                       ? interpret(unpack_kmz(write_kmz(plan)), facts)
+                                       : interpret(sample_file(plan.vehicle.autopilot), facts);
+    script = make_flight_script(route, motion());
   }
   Motion motion() const { return {plan.vehicle, plan.conditions}; }
   double jerk() const { return plan.vehicle.mode.jerk; }
@@ -56,7 +56,7 @@ TEST_P(AScript, LeadsFromThePadThroughAllStationsAndBack) {
       wait = leg.wait;
     }
     EXPECT_LT(nearest, 2.0 * rounding_bound);
-    if (!waypoint.is_station) continue;
+    if (!waypoint.is_capture_point) continue;
     EXPECT_GE(wait, waypoint.hold + waypoint.hold_after - 0.01);
   }
 }
@@ -84,13 +84,14 @@ TEST_P(AScript, MovesAlongItsLegsWithinTheirLimits) {
 TEST_P(AScript, IsGivenUpWithoutLeavingItsLeg) {
   const Sample sample(GetParam());
   for (const ScriptedLeg& leg : testing_support::not_empty(sample.script)) {
-    const Vector3d way = leg.to - leg.from;
+    const Vector3d displacement = leg.to - leg.from;
     for (double t = 0.0; t < leg.duration(); t += 0.21) {
       const double braking = braking_time(leg, sample.jerk(), t);
       const SetPoint rest = braking_point(leg, sample.jerk(), t, braking);
       EXPECT_LT(rest.velocity.norm(), 1e-9);
-      const double along = (rest.position - leg.from).dot(way) / std::max(1e-9, way.norm());
-      EXPECT_LT(along, way.norm() + 1e-9);
+      const double along =
+          (rest.position - leg.from).dot(displacement) / std::max(1e-9, displacement.norm());
+      EXPECT_LT(along, displacement.norm() + 1e-9);
       EXPECT_GT(along, -1e-9);
       const SetPoint begin = braking_point(leg, sample.jerk(), t, 0.0);
       EXPECT_LT((begin.position - set_point(leg, sample.jerk(), t).position).norm(), 1e-9);
@@ -101,19 +102,20 @@ TEST_P(AScript, IsGivenUpWithoutLeavingItsLeg) {
 // A file that flies at half the speed takes longer, by what its legs' own law says.
 TEST(FlightScript, FliesAtTheSpeedOfTheFile) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
-  MissionFile file = sample_file(Dialect::px4);
-  file.items[index_of(file, command::change_speed)].params[1] = 0.5 * plan.conditions.cruise_speed;
+  MavlinkMission file = sample_file(AutopilotType::px4);
+  file.items[find_index(file, command::change_speed)].params[1] =
+      0.5 * plan.conditions.cruise_speed;
   const Motion motion(plan.vehicle, plan.conditions);
   Conditions slow = plan.conditions;
   slow.cruise_speed *= 0.5;
-  const FlightScript script = script_of(interpret(file, facts_of(plan)), motion);
+  const FlightScript script = make_flight_script(interpret(file, make_flight_facts(plan)), motion);
   std::size_t legs = 0;
   for (const ScriptedLeg& leg : script) {
     if (leg.is_over_pad || leg.to.z() == plan.pad.z()) continue;
-    const Vector3d way = leg.to - leg.from;
-    if (way.norm() == 0.0 || way.head<2>().norm() < 0.1) continue;
+    const Vector3d displacement = leg.to - leg.from;
+    if (displacement.norm() == 0.0 || displacement.head<2>().norm() < 0.1) continue;
     EXPECT_NEAR(leg.moving + plan.vehicle.mode.settle_time,
-                Motion(plan.vehicle, slow).leg_time(way), 1e-9);
+                Motion(plan.vehicle, slow).leg_time(displacement), 1e-9);
     ++legs;
   }
   EXPECT_GE(legs, 5U) << "to four stations and back";

@@ -13,8 +13,8 @@ constexpr double step = 0.04;
 
 class AVehicleModel : public testing::Test {
  protected:
-  void fly(const SetPoint& wanted, double time, const Vector3d& air = Vector3d::Zero()) {
-    for (double t = 0.0; t < time; t += step) model_.fly(wanted, error_, air, step);
+  void fly(const SetPoint& target, double time, const Vector3d& air = Vector3d::Zero()) {
+    for (double t = 0.0; t < time; t += step) model_.fly(target, error_, air, step);
   }
 
   Motion motion_{vehicle_profile("generic"), Conditions{}};
@@ -43,12 +43,12 @@ TEST_F(AVehicleModel, IsAsFarOffAsItTakesItselfToBe) {
 
 // A set point that moves steadily is followed without falling behind.
 TEST_F(AVehicleModel, KeepsUpWithASteadySetPoint) {
-  SetPoint wanted{{1, 2, 30}, {3, 0, 0}};
+  SetPoint target{{1, 2, 30}, {3, 0, 0}};
   for (int i = 0; i < 1500; ++i) {
-    model_.fly(wanted, error_, Vector3d::Zero(), step);
-    wanted.position.x() += 3.0 * step;
+    model_.fly(target, error_, Vector3d::Zero(), step);
+    target.position.x() += 3.0 * step;
   }
-  EXPECT_NEAR((model_.position() - wanted.position).norm(), 0.0, 0.01);
+  EXPECT_NEAR((model_.position() - target.position).norm(), 0.0, 0.01);
   EXPECT_NEAR(model_.velocity().x(), 3.0, 0.01);
 }
 

@@ -57,16 +57,16 @@ TEST(Weather, IsStillWithoutWind) {
 TEST(ReceiverError, StaysWithinItsBoundAndChangesSlowly) {
   geometry::RandomNumbers random(2, 1);
   ReceiverError receiver(0.3, random);
-  double greatest = 0.0;
+  double max = 0.0;
   Vector3d before = receiver.next(0.04);
   for (int i = 0; i < 500'000; ++i) {
     const Vector3d error = receiver.next(0.04);
     ASSERT_LE(error.norm(), 0.3 + 1e-12);
     ASSERT_LT((error - before).norm(), 0.03);
-    greatest = std::max(greatest, error.norm());
+    max = std::max(max, error.norm());
     before = error;
   }
-  EXPECT_GT(greatest, 0.28);
+  EXPECT_GT(max, 0.28);
 }
 
 }  // namespace

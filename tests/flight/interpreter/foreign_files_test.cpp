@@ -34,7 +34,7 @@ std::string all_replaced(std::string text, const std::string& from, const std::s
 
 /// The text with its line of that number, from 1, replaced.
 std::string with_line(const std::string& text, std::size_t number, const std::string& line) {
-  std::vector<std::string> lines = lines_of(text);
+  std::vector<std::string> lines = split_lines(text);
   lines.at(number - 1) = line;
   std::string result;
   for (const std::string& one : lines) result += one + "\n";
@@ -47,12 +47,12 @@ const std::string& our_waypoints() {
   return text;
 }
 
-void expect_same_flight(const FlownRoute& route, const FlownRoute& expected) {
-  EXPECT_THAT(problems_of(route), IsEmpty());
-  ASSERT_FALSE(expected.pieces.empty());
-  ASSERT_EQ(route.pieces.size(), expected.pieces.size());
-  for (std::size_t i = 0; i < route.pieces.size(); ++i) {
-    EXPECT_LT((route.pieces[i].to - expected.pieces[i].to).norm(), 1e-6) << "piece " << i;
+void expect_same_flight(const InterpretedRoute& route, const InterpretedRoute& expected) {
+  EXPECT_THAT(find_problems(route), IsEmpty());
+  ASSERT_FALSE(expected.segments.empty());
+  ASSERT_EQ(route.segments.size(), expected.segments.size());
+  for (std::size_t i = 0; i < route.segments.size(); ++i) {
+    EXPECT_LT((route.segments[i].to - expected.segments[i].to).norm(), 1e-6) << "piece " << i;
   }
   EXPECT_EQ(route.stops.size(), expected.stops.size());
 }
@@ -62,18 +62,18 @@ struct WaypointsCase {
   std::string text;
 };
 
-class WaypointsOfOthers : public testing::TestWithParam<WaypointsCase> {};
+class ForeignWaypointsFiles : public testing::TestWithParam<WaypointsCase> {};
 
-TEST_P(WaypointsOfOthers, AreFlownAsOurOwn) {
-  const FlightFacts facts = sample_facts(Dialect::ardupilot);
-  const FlownRoute route = interpret(read_waypoints(GetParam().text), facts);
+TEST_P(ForeignWaypointsFiles, AreInterpretedLikeOwnFiles) {
+  const FlightFacts facts = sample_facts(AutopilotType::ardupilot);
+  const InterpretedRoute route = interpret(read_waypoints(GetParam().text), facts);
   expect_same_flight(route, interpret(read_waypoints(our_waypoints()), facts));
 }
 
 std::vector<WaypointsCase> waypoints_cases() {
   const std::string& good = our_waypoints();
   const auto home = [&](const char* line) { return with_line(good, 2, line); };
-  const std::string land = lines_of(good).back();
+  const std::string land = split_lines(good).back();
   const std::string nowhere = split(land, '\t')[0] + "\t0\t3\t21\t0\t0\t0\t0\t0\t0\t0\t1";
   return {
       {"mission_planners_unknown_home", home("0\t1\t0\t0\t0\t0\t0\t0\t0\t0\t0\t1")},
@@ -90,33 +90,33 @@ std::vector<WaypointsCase> waypoints_cases() {
       {"carriage_returns", all_replaced(good, "\n", "\r")},
       {"windows_line_ends", all_replaced(good, "\n", "\r\n")},
       {"none_is_current", all_replaced(good, "\n0\t1\t", "\n0\t0\t")},
-      {"landing_without_a_place", with_line(good, lines_of(good).size(), nowhere)},
-      {"take_off_without_a_place",
-       with_line(good, 3,
-                 "1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t" + split(lines_of(good)[2], '\t')[10] + "\t1")},
+      {"landing_without_a_place", with_line(good, split_lines(good).size(), nowhere)},
+      {"take_off_without_a_place", with_line(good, 3,
+                                             "1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t" +
+                                                 split(split_lines(good)[2], '\t')[10] + "\t1")},
   };
 }
 
-INSTANTIATE_TEST_SUITE_P(Interpreter, WaypointsOfOthers, testing::ValuesIn(waypoints_cases()),
+INSTANTIATE_TEST_SUITE_P(Interpreter, ForeignWaypointsFiles, testing::ValuesIn(waypoints_cases()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST(WaypointsOfOthersRefused, NameTheTrueReason) {
-  const auto complaint = [](const std::string& text) {
-    return testing_support::complaint_of([&] { read_waypoints(text); });
+TEST(ForeignWaypointsRejected, NameTheTrueReason) {
+  const auto error_message = [](const std::string& text) {
+    return testing_support::thrown_message([&] { read_waypoints(text); });
   };
-  EXPECT_THAT(complaint(all_replaced(our_waypoints(), "WPL 110", "WPL 100")),
+  EXPECT_THAT(error_message(all_replaced(our_waypoints(), "WPL 110", "WPL 100")),
               HasSubstr("line 1 has version 100, whose columns have another order; save the "
                         "mission again as QGC WPL 110"));
-  EXPECT_THAT(complaint("1,2,3\n"), HasSubstr("line 1 must be \"QGC WPL 110\""));
-  EXPECT_THAT(complaint(with_line(our_waypoints(), 4, "2 0 3")),
+  EXPECT_THAT(error_message("1,2,3\n"), HasSubstr("line 1 must be \"QGC WPL 110\""));
+  EXPECT_THAT(error_message(with_line(our_waypoints(), 4, "2 0 3")),
               HasSubstr("line 4 has 3 fields separated by tabs or blanks; it must have 12"));
 }
 
 // PX4 takes a place of zeros literally.
-TEST(WaypointsOfOthersRefused, LandingsWithoutAPlaceOnPx4) {
-  MissionFile file = sample_file(Dialect::px4);
+TEST(ForeignWaypointsRejected, LandingsWithoutAPlaceOnPx4) {
+  MavlinkMission file = sample_file(AutopilotType::px4);
   file.items.back().params[4] = file.items.back().params[5] = 0.0;
-  EXPECT_THAT(problems_of(file, Dialect::px4), Contains(HasSubstr("has no position")));
+  EXPECT_THAT(find_problems(file, AutopilotType::px4), Contains(HasSubstr("has no position")));
 }
 
 // ---- .plan -----------------------------------------------------------------------------------
@@ -128,15 +128,15 @@ struct PlanCase {
   std::function<void(json&)> change;
 };
 
-class PlansOfOthers : public testing::TestWithParam<PlanCase> {};
+class ForeignPlanFiles : public testing::TestWithParam<PlanCase> {};
 
-TEST_P(PlansOfOthers, AreFlownAsOurOwn) {
+TEST_P(ForeignPlanFiles, AreInterpretedLikeOwnFiles) {
   // The rules of the fence are those of another test: a file without one lacks the mission's.
-  FlightFacts facts = sample_facts(Dialect::px4);
+  FlightFacts facts = sample_facts(AutopilotType::px4);
   facts.no_fly.clear(), facts.fence.reset();
   json plan = our_plan();
   plan["geoFence"]["polygons"] = json::array();
-  const FlownRoute expected = interpret(read_plan(plan.dump()), facts);
+  const InterpretedRoute expected = interpret(read_plan(plan.dump()), facts);
   GetParam().change(plan);
   expect_same_flight(interpret(read_plan(plan.dump()), facts), expected);
 }
@@ -145,13 +145,13 @@ void each_item(json& plan, const std::function<void(json&)>& change) {
   for (json& item : plan["mission"]["items"]) change(item);
 }
 
-void split_place(json& item) {
+void split_position(json& item) {
   item["coordinate"] = {item["params"][4], item["params"][5], item["params"][6]};
   item["params"].erase(item["params"].begin() + 4, item["params"].end());
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Interpreter, PlansOfOthers,
+    Interpreter, ForeignPlanFiles,
     testing::Values(
         PlanCase{"without_terrain_height",
                  [](json& p) { each_item(p, [](json& i) { i.erase("AMSLAltAboveTerrain"); }); }},
@@ -183,11 +183,11 @@ INSTANTIATE_TEST_SUITE_P(
                  [](json& p) {
                    each_item(p, [](json& i) { i["doJumpId"] = 10 * i["doJumpId"].get<int>(); });
                  }},
-        PlanCase{"with_four_parameters_and_a_place", [](json& p) { each_item(p, split_place); }},
+        PlanCase{"with_four_parameters_and_a_place", [](json& p) { each_item(p, split_position); }},
         PlanCase{"with_named_parameters_and_a_place",
                  [](json& p) {
                    each_item(p, [](json& i) {
-                     split_place(i);
+                     split_position(i);
                      for (int k = 0; k < 4; ++k)
                        i["param" + std::to_string(k + 1)] = i["params"][k];
                      i.erase("params");
@@ -196,19 +196,19 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(PlansOfOthersRefused, NameTheTrueReason) {
-  const auto complaint = [](const std::function<void(json&)>& change) {
+  const auto error_message = [](const std::function<void(json&)>& change) {
     json plan = our_plan();
     change(plan);
-    return testing_support::complaint_of([&] { read_plan(plan.dump()); });
+    return testing_support::thrown_message([&] { read_plan(plan.dump()); });
   };
-  EXPECT_THAT(complaint([](json& p) {
+  EXPECT_THAT(error_message([](json& p) {
                 p["mission"]["items"][2] = {{"type", "ComplexItem"}, {"complexItemType", "survey"}};
               }),
               HasSubstr("mission.items[2].type must be \"SimpleItem\", but is survey "
                         "(ComplexItem); save it as waypoints first"));
-  EXPECT_THAT(complaint([](json& p) { p["mission"]["items"][2]["doJumpId"] = 1; }),
+  EXPECT_THAT(error_message([](json& p) { p["mission"]["items"][2]["doJumpId"] = 1; }),
               HasSubstr("mission.items[2].doJumpId must be an integer greater than"));
-  EXPECT_THAT(complaint([](json& p) {
+  EXPECT_THAT(error_message([](json& p) {
                 p["geoFence"] = {{"polygon", {{1, 2}, {3, 4}, {5, 6}}}, {"version", 1}};
               }),
               HasSubstr("geoFence.version must be 2"));
@@ -225,7 +225,7 @@ struct Member {
   std::string name, content;
 };
 
-std::string archive_of(const std::vector<Member>& members) {
+std::string make_archive(const std::vector<Member>& members) {
   zip_error_t error;
   zip_source_t* source = zip_source_buffer_create(nullptr, 0, 0, &error);
   zip_source_keep(source);
@@ -251,19 +251,19 @@ struct KmzCase {
   std::string bytes;
 };
 
-class KmzOfOthers : public testing::TestWithParam<KmzCase> {};
+class ForeignKmzFiles : public testing::TestWithParam<KmzCase> {};
 
-TEST_P(KmzOfOthers, AreFlownAsOurOwn) {
-  const FlightFacts facts = facts_of(dji_plan());
-  const FlownRoute expected = interpret(unpack_kmz(write_kmz(dji_plan())), facts);
+TEST_P(ForeignKmzFiles, AreInterpretedLikeOwnFiles) {
+  const FlightFacts facts = make_flight_facts(dji_plan());
+  const InterpretedRoute expected = interpret(unpack_kmz(write_kmz(dji_plan())), facts);
   expect_same_flight(interpret(unpack_kmz(GetParam().bytes), facts), expected);
 }
 
 std::vector<KmzCase> kmz_cases() {
   const KmzContent good = unpack_kmz(write_kmz(dji_plan()));
   const auto packed = [&](const std::string& before, const std::string& between) {
-    return archive_of({{before + "wpmz" + between + "template.kml", good.template_kml},
-                       {before + "wpmz" + between + "waylines.wpml", good.waylines_wpml}});
+    return make_archive({{before + "wpmz" + between + "template.kml", good.template_kml},
+                         {before + "wpmz" + between + "waylines.wpml", good.waylines_wpml}});
   };
   const auto both = [&](const std::function<std::string(const std::string&)>& change) {
     return pack_kmz({change(good.template_kml), change(good.waylines_wpml)});
@@ -276,8 +276,8 @@ std::vector<KmzCase> kmz_cases() {
       {"a_folder_before", packed("mission/", "/")},
       {"backslashes", packed("", "\\")},
       {"files_at_the_top",
-       archive_of({{"template.kml", good.template_kml}, {"waylines.wpml", good.waylines_wpml}})},
-      {"waylines_alone", archive_of({{"wpmz/waylines.wpml", good.waylines_wpml}})},
+       make_archive({{"template.kml", good.template_kml}, {"waylines.wpml", good.waylines_wpml}})},
+      {"waylines_alone", make_archive({{"wpmz/waylines.wpml", good.waylines_wpml}})},
       {"line_ends_in_coordinates", both([](const std::string& text) {
          return all_replaced(all_replaced(text, "<coordinates>", "<coordinates>\n            "),
                              "</coordinates>", "\n          </coordinates>");
@@ -297,27 +297,27 @@ std::vector<KmzCase> kmz_cases() {
   };
 }
 
-INSTANTIATE_TEST_SUITE_P(Interpreter, KmzOfOthers, testing::ValuesIn(kmz_cases()),
+INSTANTIATE_TEST_SUITE_P(Interpreter, ForeignKmzFiles, testing::ValuesIn(kmz_cases()),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(KmzOfOthersRefused, NameTheTrueReason) {
   const KmzContent good = unpack_kmz(write_kmz(dji_plan()));
-  const auto complaint = [](const std::string& bytes) {
-    return testing_support::complaint_of([&] { read_kmz(bytes); });
+  const auto error_message = [](const std::string& bytes) {
+    return testing_support::thrown_message([&] { read_kmz(bytes); });
   };
-  EXPECT_THAT(complaint(archive_of({{"doc.kml", "<kml/>"}})),
+  EXPECT_THAT(error_message(make_archive({{"doc.kml", "<kml/>"}})),
               HasSubstr("wpmz/waylines.wpml is missing; it contains doc.kml"));
-  EXPECT_THAT(complaint(archive_of({{"a/waylines.wpml", good.waylines_wpml},
-                                    {"b/waylines.wpml", good.waylines_wpml}})),
+  EXPECT_THAT(error_message(make_archive({{"a/waylines.wpml", good.waylines_wpml},
+                                          {"b/waylines.wpml", good.waylines_wpml}})),
               HasSubstr("it contains both a/waylines.wpml and b/waylines.wpml; remove one"));
   KmzContent moved = good;
   const std::size_t height = moved.waylines_wpml.find("<wpml:executeHeight>") + 20;
   moved.waylines_wpml.insert(height, "1");
-  EXPECT_THAT(complaint(pack_kmz(moved)), HasSubstr("template.kml and waylines.wpml differ"));
+  EXPECT_THAT(error_message(pack_kmz(moved)), HasSubstr("template.kml and waylines.wpml differ"));
 }
 
 // Pilot 2: the template above the geoid, the waylines above the ellipsoid.
-TEST(KmzOfOthers, HeightsOfBothFilesMayHaveTheirOwnDatum) {
+TEST(ForeignKmzFiles, HeightsOfBothFilesMayHaveTheirOwnDatum) {
   KmzContent kmz = unpack_kmz(write_kmz(dji_plan()));
   const LocalFrame frame(dji_plan().site.origin);
   const double foot = frame.to_geodetic(dji_plan().pad).height;
@@ -335,13 +335,13 @@ TEST(KmzOfOthers, HeightsOfBothFilesMayHaveTheirOwnDatum) {
   kmz.template_kml = all_replaced(kmz.template_kml, "relativeToStartPoint", "EGM96");
   kmz.waylines_wpml = all_replaced(raised(kmz.waylines_wpml, "executeHeight", foot),
                                    "relativeToStartPoint", "WGS84");
-  const FlightFacts facts = facts_of(dji_plan());
-  const FlownRoute expected = interpret(unpack_kmz(write_kmz(dji_plan())), facts);
-  const FlownRoute route = interpret(kmz, facts);
-  ASSERT_EQ(route.pieces.size(), expected.pieces.size());
+  const FlightFacts facts = make_flight_facts(dji_plan());
+  const InterpretedRoute expected = interpret(unpack_kmz(write_kmz(dji_plan())), facts);
+  const InterpretedRoute route = interpret(kmz, facts);
+  ASSERT_EQ(route.segments.size(), expected.segments.size());
   EXPECT_THAT(route.problems, IsEmpty());
-  for (std::size_t i = 0; i < route.pieces.size(); ++i) {
-    EXPECT_LT((route.pieces[i].to - expected.pieces[i].to).norm(), 0.01) << "piece " << i;
+  for (std::size_t i = 0; i < route.segments.size(); ++i) {
+    EXPECT_LT((route.segments[i].to - expected.segments[i].to).norm(), 0.01) << "piece " << i;
   }
 }
 

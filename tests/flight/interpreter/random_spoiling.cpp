@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr double degree = std::numbers::pi / 180.0;
 
 /// The numbers in a WPML text, by place and length.
-std::vector<std::pair<std::size_t, std::size_t>> numbers_of(const std::string& text) {
+std::vector<std::pair<std::size_t, std::size_t>> find_numbers(const std::string& text) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t i = text.find("<wpml:missionConfig>"); i < text.size(); ++i) {
     if (text[i] != '>') continue;
@@ -26,7 +26,7 @@ std::vector<std::pair<std::size_t, std::size_t>> numbers_of(const std::string& t
 
 }  // namespace
 
-Vector3d Ground::place(double latitude, double longitude, double up) const {
+Vector3d Ground::position(double latitude, double longitude, double up) const {
   constexpr double a = 6378137.0, e2 = 6.69437999014e-3;
   const double sine = std::sin(latitude_deg * degree), w = std::sqrt(1.0 - e2 * sine * sine);
   const double north = a * (1.0 - e2) / (w * w * w) + height;
@@ -35,15 +35,15 @@ Vector3d Ground::place(double latitude, double longitude, double up) const {
           pad.z() + up};
 }
 
-Eigen::AlignedBox3d Ground::around(double half_width, double highest) const {
+Eigen::AlignedBox3d Ground::around(double half_width, double max_height) const {
   constexpr double metres_per_degree = 111e3;
   const double north = half_width / metres_per_degree;
   const double east = north / std::cos(latitude_deg * degree);
   return {Vector3d(latitude_deg - north, longitude_deg - east, 1.0),
-          Vector3d(latitude_deg + north, longitude_deg + east, highest)};
+          Vector3d(latitude_deg + north, longitude_deg + east, max_height)};
 }
 
-void spoil(MissionFile& file, std::mt19937_64& random, const Eigen::AlignedBox3d& site) {
+void corrupt(MavlinkMission& file, std::mt19937_64& random, const Eigen::AlignedBox3d& site) {
   const std::size_t first = file.items.front().number;
   const auto pick = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
   const auto within = [&](double low, double high) {
@@ -85,29 +85,29 @@ void spoil(MissionFile& file, std::mt19937_64& random, const Eigen::AlignedBox3d
   for (std::size_t i = 0; i < file.items.size(); ++i) file.items[i].number = first + i;
 }
 
-std::string spoiled(std::string wpml, std::mt19937_64& random) {
-  const auto numbers = numbers_of(wpml);
-  const auto [place, size] = numbers[random() % numbers.size()];
-  wpml.replace(place, size, std::array{"0", "1", "2", "5", "15", "-5", "60"}[random() % 7]);
+std::string corrupted(std::string wpml, std::mt19937_64& random) {
+  const auto numbers = find_numbers(wpml);
+  const auto [position, size] = numbers[random() % numbers.size()];
+  wpml.replace(position, size, std::array{"0", "1", "2", "5", "15", "-5", "60"}[random() % 7]);
   return wpml;
 }
 
-std::vector<Vector3d> flight_of(const std::vector<MissionItem>& items, const Ground& ground) {
+std::vector<Vector3d> make_flight(const std::vector<MissionItem>& items, const Ground& ground) {
   const double pad_height = ground.height + ground.pad.z();
-  std::vector<Vector3d> places = {ground.pad};
+  std::vector<Vector3d> positions = {ground.pad};
   std::vector<int> jumped(items.size(), 0);
-  for (std::size_t i = 0; i < items.size() && places.size() < 10000; ++i) {
+  for (std::size_t i = 0; i < items.size() && positions.size() < 10000; ++i) {
     const auto& p = items[i].params;
     const double up =
         items[i].frame == 0 || items[i].frame == 5 ? p[6] + ground.undulation - pad_height : p[6];
-    const Vector3d place = ground.place(p[4], p[5], up);
+    const Vector3d position = ground.position(p[4], p[5], up);
     if (items[i].command == 22) {
-      places.push_back({ground.pad.x(), ground.pad.y(), ground.pad.z() + up});
+      positions.push_back({ground.pad.x(), ground.pad.y(), ground.pad.z() + up});
     }
-    if (items[i].command == 16 || items[i].command == 19) places.push_back(place);
+    if (items[i].command == 16 || items[i].command == 19) positions.push_back(position);
     if (items[i].command == 21) {
-      places.push_back({place.x(), place.y(), places.back().z()});
-      places.push_back({place.x(), place.y(), ground.pad.z()});
+      positions.push_back({position.x(), position.y(), positions.back().z()});
+      positions.push_back({position.x(), position.y(), ground.pad.z()});
       break;
     }
     if (items[i].command == 177 && jumped[i]++ < p[1]) {
@@ -116,29 +116,31 @@ std::vector<Vector3d> flight_of(const std::vector<MissionItem>& items, const Gro
       }
     }
   }
-  return places;
+  return positions;
 }
 
-std::vector<Vector3d> flight_of(const std::string& wayline, const Ground& ground) {
+std::vector<Vector3d> make_flight(const std::string& wayline, const Ground& ground) {
   const auto after = [&](const std::string& tag, std::size_t from) {
     return wayline.find(tag, from) + tag.size();
   };
-  std::vector<Vector3d> places = {ground.pad};
+  std::vector<Vector3d> positions = {ground.pad};
   for (std::size_t i = wayline.find("<Placemark>"); i != std::string::npos;
        i = wayline.find("<Placemark>", i + 1)) {
-    const std::size_t place = after("<coordinates>", i);
-    const double longitude = std::stod(wayline.substr(place));
-    const double latitude = std::stod(wayline.substr(wayline.find(',', place) + 1));
+    const std::size_t position = after("<coordinates>", i);
+    const double longitude = std::stod(wayline.substr(position));
+    const double latitude = std::stod(wayline.substr(wayline.find(',', position) + 1));
     const double up = std::stod(wayline.substr(after("<wpml:executeHeight>", i)));
-    places.push_back(ground.place(latitude, longitude, up));
+    positions.push_back(ground.position(latitude, longitude, up));
   }
-  places.push_back({places.back().x(), places.back().y(), ground.pad.z()});
-  return places;
+  positions.push_back({positions.back().x(), positions.back().y(), ground.pad.z()});
+  return positions;
 }
 
-bool keeps_clear(const CgalOracle& oracle, const std::vector<Vector3d>& places, double clearance) {
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    if (oracle.judge({places[i - 1], places[i]}, clearance) == Verdict::violated) return false;
+bool keeps_clear(const CgalOracle& oracle, const std::vector<Vector3d>& positions,
+                 double clearance) {
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    if (oracle.classify({positions[i - 1], positions[i]}, clearance) == Verdict::violated)
+      return false;
   }
   return true;
 }

@@ -14,59 +14,59 @@
 namespace skycap::flight {
 namespace {
 
-constexpr int spoilings = 200;
+constexpr int corruptions = 200;
 
 /// The sample's.
 const Ground ground{51.753458, -1.254022, 111.5, 46.7, {-30, -25, 0}};
 
-bool keeps_clear(const std::vector<Eigen::Vector3d>& places) {
+bool keeps_clear(const std::vector<Eigen::Vector3d>& positions) {
   static const CgalOracle oracle(sample_site().mesh);
-  return keeps_clear(oracle, places, 2.0 - 3.0 * rounding_bound);
+  return keeps_clear(oracle, positions, 2.0 - 3.0 * rounding_bound);
 }
 
-class RandomSpoilings : public testing::TestWithParam<Dialect> {};
+class RandomCorruptions : public testing::TestWithParam<AutopilotType> {};
 
-TEST_P(RandomSpoilings, AreRefusedOrHarmless) {
-  std::mt19937_64 random(GetParam() == Dialect::px4 ? 5 : 6);
-  int harmless = 0, refused = 0;
-  for (int i = 0; i < spoilings; ++i) {
-    MissionFile file = sample_file(GetParam());
-    spoil(file, random, ground.around(25, 25));
-    if (!problems_of(file, GetParam()).empty()) {
-      ++refused;
+TEST_P(RandomCorruptions, AreRejectedOrHarmless) {
+  std::mt19937_64 random(GetParam() == AutopilotType::px4 ? 5 : 6);
+  int harmless = 0, rejected = 0;
+  for (int i = 0; i < corruptions; ++i) {
+    MavlinkMission file = sample_file(GetParam());
+    corrupt(file, random, ground.around(25, 25));
+    if (!find_problems(file, GetParam()).empty()) {
+      ++rejected;
       continue;
     }
     ++harmless;
-    EXPECT_TRUE(keeps_clear(flight_of(file.items, ground))) << "spoiling " << i;
+    EXPECT_TRUE(keeps_clear(make_flight(file.items, ground))) << "spoiling " << i;
   }
-  EXPECT_GT(refused, spoilings / 2);
+  EXPECT_GT(rejected, corruptions / 2);
   EXPECT_GT(harmless, 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Interpreter, RandomSpoilings,
-                         testing::Values(Dialect::px4, Dialect::ardupilot),
+INSTANTIATE_TEST_SUITE_P(Interpreter, RandomCorruptions,
+                         testing::Values(AutopilotType::px4, AutopilotType::ardupilot),
                          [](const auto& parameter) {
-                           return parameter.param == Dialect::px4 ? "px4" : "ardupilot";
+                           return parameter.param == AutopilotType::px4 ? "px4" : "ardupilot";
                          });
 
-TEST(RandomWpmlSpoilings, AreRefusedOrHarmless) {
+TEST(RandomWpmlCorruptions, AreRejectedOrHarmless) {
   const FlightPlan plan = sample_plan(vehicle_profile("m350_rtk"));
   const KmzContent good = unpack_kmz(write_kmz(plan));
-  const FlightFacts facts = facts_of(plan);
+  const FlightFacts facts = make_flight_facts(plan);
   std::mt19937_64 random(7);
-  int harmless = 0, refused = 0;
-  for (int i = 0; i < spoilings; ++i) {
+  int harmless = 0, rejected = 0;
+  for (int i = 0; i < corruptions; ++i) {
     KmzContent kmz = good;
     std::string& text = i % 4 == 0 ? kmz.template_kml : kmz.waylines_wpml;
-    text = spoiled(text, random);
-    bool is_refused = !validate_kmz(pack_kmz(kmz)).empty();
-    is_refused = is_refused || !problems_of(interpret(kmz, facts)).empty();
-    ++(is_refused ? refused : harmless);
-    if (!is_refused) {
-      EXPECT_TRUE(keeps_clear(flight_of(kmz.waylines_wpml, ground))) << "spoiling " << i;
+    text = corrupted(text, random);
+    bool is_rejected = !validate_kmz(pack_kmz(kmz)).empty();
+    is_rejected = is_rejected || !find_problems(interpret(kmz, facts)).empty();
+    ++(is_rejected ? rejected : harmless);
+    if (!is_rejected) {
+      EXPECT_TRUE(keeps_clear(make_flight(kmz.waylines_wpml, ground))) << "spoiling " << i;
     }
   }
-  EXPECT_GT(refused, spoilings / 4);
+  EXPECT_GT(rejected, corruptions / 4);
   EXPECT_GT(harmless, 3);
 }
 

@@ -10,22 +10,22 @@
 namespace skycap::flight {
 
 /// The sample flight as the file of that autopilot: PX4's .plan, ArduPilot's .waypoints.
-MissionFile sample_file(Dialect dialect);
-FlightFacts sample_facts(Dialect dialect);
+MavlinkMission sample_file(AutopilotType autopilot);
+FlightFacts sample_facts(AutopilotType autopilot);
 
 /// All that is wrong with a flight over the sample's site at 2 m.
-Problems problems_of(const FlownRoute& route);
-Problems problems_of(const MissionFile& file, Dialect dialect);
+Problems find_problems(const InterpretedRoute& route);
+Problems find_problems(const MavlinkMission& file, AutopilotType autopilot);
 
 /// The index of the n-th item with that command.
-std::size_t index_of(const MissionFile& file, int command, std::size_t n = 0);
+std::size_t find_index(const MavlinkMission& file, int command, std::size_t n = 0);
 
 /// The index of the waypoint of the n-th station, and of the item that holds before its shots.
-std::size_t station_of(const MissionFile& file, std::size_t n = 0);
-std::size_t hold_of(const MissionFile& file, std::size_t n = 0);
+std::size_t find_waypoint(const MavlinkMission& file, std::size_t n = 0);
+std::size_t find_hold(const MavlinkMission& file, std::size_t n = 0);
 
 /// The place of a local position in the sample's frame: latitude and longitude.
-GeodeticPoint place_at(const Eigen::Vector3d& local);
+GeodeticPoint position_at(const Eigen::Vector3d& local);
 
 /// Moves an item to a local position, its height above home.
 void move(MissionItem& item, const Eigen::Vector3d& local);

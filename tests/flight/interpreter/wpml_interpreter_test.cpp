@@ -29,13 +29,15 @@ const KmzContent& good() {
 
 /// The n-th place of `from` is replaced.
 std::string replaced(std::string text, const std::string& from, const std::string& to, int n = 0) {
-  std::size_t place = text.find(from);
-  while (n-- > 0 && place != std::string::npos) place = text.find(from, place + 1);
-  EXPECT_NE(place, std::string::npos) << "nothing to replace: " << from;
-  return place == std::string::npos ? text : text.replace(place, from.size(), to);
+  std::size_t offset = text.find(from);
+  while (n-- > 0 && offset != std::string::npos) offset = text.find(from, offset + 1);
+  EXPECT_NE(offset, std::string::npos) << "nothing to replace: " << from;
+  return offset == std::string::npos ? text : text.replace(offset, from.size(), to);
 }
 
-Problems after(const KmzContent& kmz) { return problems_of(interpret(kmz, facts_of(plan()))); }
+Problems after(const KmzContent& kmz) {
+  return find_problems(interpret(kmz, make_flight_facts(plan())));
+}
 Problems with_waylines(const std::string& from, const std::string& to, int n = 0) {
   return after({good().template_kml, replaced(good().waylines_wpml, from, to, n)});
 }
@@ -118,10 +120,11 @@ TEST(WpmlInterpreter, ThePadIsTheMissions) {
   const std::size_t start = good().template_kml.find("<wpml:takeOffRefPoint>");
   const std::size_t stop = good().template_kml.find("</wpml:takeOffRefPoint>");
   const std::string was = good().template_kml.substr(start, stop - start);
-  const GeodeticPoint pad = place_at(plan().pad), elsewhere = place_at({-30, 35, 0});
-  const auto reference = [&](const GeodeticPoint& place, double up) {
-    return with_template(was, "<wpml:takeOffRefPoint>" + degrees(place.latitude_deg) + "," +
-                                  degrees(place.longitude_deg) + "," + fixed(place.height + up, 3));
+  const GeodeticPoint pad = position_at(plan().pad), elsewhere = position_at({-30, 35, 0});
+  const auto reference = [&](const GeodeticPoint& offset, double up) {
+    return with_template(was, "<wpml:takeOffRefPoint>" + degrees(offset.latitude_deg) + "," +
+                                  degrees(offset.longitude_deg) + "," +
+                                  fixed(offset.height + up, 3));
   };
   EXPECT_THAT(reference(pad, 0.0), IsEmpty());
   EXPECT_THAT(reference(pad, 30.0), Contains(HasSubstr("30.0 m above the take-off point")));
@@ -132,15 +135,15 @@ TEST(WpmlInterpreter, ThePadIsTheMissions) {
 TEST(WpmlInterpreter, TheWayToTheFirstWaypointIsProven) {
   FlightPlan moved = plan();
   moved.waypoints.front().position = {14, -16, 8};
-  FlightFacts facts = facts_of(plan());
-  const FlownRoute route = interpret(unpack_kmz(write_kmz(moved)), facts);
-  ASSERT_GE(route.pieces.size(), 2U);
-  EXPECT_TRUE(route.pieces[0].is_over_pad);
+  FlightFacts facts = make_flight_facts(plan());
+  const InterpretedRoute route = interpret(unpack_kmz(write_kmz(moved)), facts);
+  ASSERT_GE(route.segments.size(), 2U);
+  EXPECT_TRUE(route.segments[0].is_over_pad);
   bool comes_level = false;
-  for (const FlownPiece& piece : route.pieces) {
-    comes_level =
-        comes_level || (piece.from_item == "the take-off point" && piece.to_item == "waypoint 0" &&
-                        (piece.to - Eigen::Vector3d(14, -16, 8)).norm() < 0.02);
+  for (const InterpretedSegment& segment : route.segments) {
+    comes_level = comes_level ||
+                  (segment.from_item == "the take-off point" && segment.to_item == "waypoint 0" &&
+                   (segment.to - Eigen::Vector3d(14, -16, 8)).norm() < 0.02);
   }
   EXPECT_TRUE(comes_level);
 }
@@ -149,9 +152,11 @@ TEST(LitchiInterpreter, SpeedsAndCurvesAreProvenOrRefusedByLine) {
   const FlightPlan generic = sample_plan(vehicle_profile("generic"));
   const std::string text = write_litchi(generic);
   const auto with = [&](const std::string& from, const std::string& to) {
-    return problems_of(interpret(replaced(text, from, to, 1), Format::litchi, facts_of(generic)));
+    return find_problems(
+        interpret(replaced(text, from, to, 1), Format::litchi, make_flight_facts(generic)));
   };
-  EXPECT_THAT(problems_of(interpret(text, Format::litchi, facts_of(generic))), IsEmpty());
+  EXPECT_THAT(find_problems(interpret(text, Format::litchi, make_flight_facts(generic))),
+              IsEmpty());
   EXPECT_THAT(with(",0.2,0,0,0", ",9.0,0,0,0"),
               Contains(StartsWith("line 3 has a curve of 9.0 m")));
   EXPECT_THAT(with(",0,4.00,", ",0,15.00,"), Contains(StartsWith("line 3 has speed 15.00 m/s")));

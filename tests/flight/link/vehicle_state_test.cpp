@@ -12,7 +12,7 @@ namespace {
 constexpr Address vehicle{1, 1}, gimbal{1, 154}, other{2, 1};
 
 template <class M>
-Frame frame_of(const M& message, std::uint8_t sequence, Address sender = vehicle) {
+Frame make_frame(const M& message, std::uint8_t sequence, Address sender = vehicle) {
   FrameReader reader(guided_extra_byte);
   reader.feed(encode(message, sender, sequence));
   return reader.next().value();
@@ -27,42 +27,42 @@ Heartbeat heartbeat(std::uint32_t mode) {
 
 class HeardVehicle : public testing::Test {
  protected:
-  HeardVehicle() { state_.hear(frame_of(heartbeat(4), 100), 1.0); }
+  HeardVehicle() { state_.hear(make_frame(heartbeat(4), 100), 1.0); }
 
   VehicleState state_;
 };
 
 TEST(VehicleState, WaitsForAnAutopilot) {
   VehicleState state;
-  state.hear(frame_of(GlobalPosition{}, 0), 1.0);
-  Heartbeat station;
-  station.autopilot = 8;
-  state.hear(frame_of(station, 1, other), 1.0);
+  state.hear(make_frame(GlobalPosition{}, 0), 1.0);
+  Heartbeat gcs;
+  gcs.autopilot = 8;
+  state.hear(make_frame(gcs, 1, other), 1.0);
   EXPECT_FALSE(state.autopilot());
   EXPECT_FALSE(state.last_heard());
-  state.hear(frame_of(heartbeat(4), 2), 2.0);
+  state.hear(make_frame(heartbeat(4), 2), 2.0);
   EXPECT_EQ(state.autopilot(), vehicle);
   EXPECT_EQ(state.heartbeat()->mode, 4U);
 }
 
 TEST_F(HeardVehicle, IsTheOnlyOne) {
-  state_.hear(frame_of(heartbeat(5), 101, other), 2.0);
+  state_.hear(make_frame(heartbeat(5), 101, other), 2.0);
   EXPECT_EQ(state_.heartbeat()->mode, 4U);
   EXPECT_EQ(state_.last_heard(), 1.0);
 }
 
 // Frames that come twice or late must not take a vehicle back into the mode that it was in before.
 TEST_F(HeardVehicle, DoesNotGoBack) {
-  state_.hear(frame_of(heartbeat(9), 102), 2.0);
-  state_.hear(frame_of(heartbeat(4), 101), 3.0);
-  state_.hear(frame_of(heartbeat(4), 102), 3.0);
+  state_.hear(make_frame(heartbeat(9), 102), 2.0);
+  state_.hear(make_frame(heartbeat(4), 101), 3.0);
+  state_.hear(make_frame(heartbeat(4), 102), 3.0);
   EXPECT_EQ(state_.heartbeat()->mode, 9U);
   EXPECT_EQ(state_.heartbeat()->time, 2.0);
 }
 
 TEST_F(HeardVehicle, IsHeardAgainAfterItsCountHasGoneRound) {
   for (int i = 101; i < 700; i += 50) {
-    state_.hear(frame_of(heartbeat(static_cast<std::uint32_t>(i)), static_cast<std::uint8_t>(i)),
+    state_.hear(make_frame(heartbeat(static_cast<std::uint32_t>(i)), static_cast<std::uint8_t>(i)),
                 i);
     EXPECT_EQ(state_.heartbeat()->mode, static_cast<std::uint32_t>(i));
   }
@@ -71,23 +71,23 @@ TEST_F(HeardVehicle, IsHeardAgainAfterItsCountHasGoneRound) {
 TEST_F(HeardVehicle, IsNotBelievedNonsense) {
   GlobalPosition beyond;
   beyond.latitude = 900'000'001;
-  state_.hear(frame_of(beyond, 101), 2.0);
+  state_.hear(make_frame(beyond, 101), 2.0);
   EXPECT_FALSE(state_.position());
   Attitude attitude;
   attitude.yaw = std::numeric_limits<float>::quiet_NaN();
-  state_.hear(frame_of(attitude, 102), 2.0);
+  state_.hear(make_frame(attitude, 102), 2.0);
   EXPECT_FALSE(state_.yaw());
   SystemStatus status;
   status.battery_remaining = 101;
-  state_.hear(frame_of(status, 103), 2.0);
+  state_.hear(make_frame(status, 103), 2.0);
   EXPECT_FALSE(state_.battery());
   GimbalAttitude broken;
   broken.turn = {std::numeric_limits<float>::infinity(), 0.0F, 0.0F, 0.0F};
-  state_.hear(frame_of(broken, 0, gimbal), 2.0);
+  state_.hear(make_frame(broken, 0, gimbal), 2.0);
   EXPECT_FALSE(state_.gimbal_pitch());
   StatusText text;
   text.text.fill('\033');
-  state_.hear(frame_of(text, 104), 2.0);
+  state_.hear(make_frame(text, 104), 2.0);
   EXPECT_EQ(state_.warning(), std::string(50, '?'));
 }
 
@@ -98,11 +98,11 @@ TEST_F(HeardVehicle, GrowsOldWhereItsPositionStandsStill) {
   position.height_above_home = 1500;
   position.north_speed = 100;
   position.down_speed = -50;
-  state_.hear(frame_of(position, 101), 2.0);
+  state_.hear(make_frame(position, 101), 2.0);
   EXPECT_DOUBLE_EQ(state_.position()->latitude_deg, 47.0);
   EXPECT_DOUBLE_EQ(state_.position()->height_above_home, 1.5);
   EXPECT_EQ(state_.position()->velocity, Eigen::Vector3d(0.0, 1.0, 0.5));
-  state_.hear(frame_of(position, 102), 3.0);
+  state_.hear(make_frame(position, 102), 3.0);
   EXPECT_EQ(state_.position()->time, 2.0);
 }
 
@@ -112,7 +112,7 @@ TEST_F(HeardVehicle, LooksWhereItsGimbalDoes) {
   const Eigen::Quaternionf turn = Eigen::AngleAxisf(2.0F, Eigen::Vector3f::UnitZ()) *
                                   Eigen::AngleAxisf(-2.0F * half, Eigen::Vector3f::UnitY());
   message.turn = {turn.w(), turn.x(), turn.y(), turn.z()};
-  state_.hear(frame_of(message, 0, gimbal), 2.0);
+  state_.hear(make_frame(message, 0, gimbal), 2.0);
   EXPECT_NEAR(state_.gimbal_pitch().value(), -0.5, 1e-6);
 }
 

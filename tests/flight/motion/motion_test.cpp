@@ -80,8 +80,8 @@ TEST(Motion, AccelerationsAreLimitedByTheSlowerAxis) {
   EXPECT_DOUBLE_EQ(motion.leg_acceleration({1, 0, 0}), 2.5);
   EXPECT_DOUBLE_EQ(motion.leg_acceleration({0, 0, -1}), 1.0);
   for (double slope = 0.02; slope < 1.6; slope += 0.02) {
-    const Vector3d way(std::cos(slope), 0.0, std::sin(slope));
-    const Vector3d acceleration = motion.leg_acceleration(way) * way;
+    const Vector3d displacement(std::cos(slope), 0.0, std::sin(slope));
+    const Vector3d acceleration = motion.leg_acceleration(displacement) * displacement;
     EXPECT_LE(acceleration.x(), 2.5 + 1e-12);
     EXPECT_LE(acceleration.z(), 1.0 + 1e-12);
     EXPECT_TRUE(acceleration.x() > 2.5 - 1e-12 || acceleration.z() > 1.0 - 1e-12) << slope;
@@ -92,12 +92,14 @@ TEST(Motion, AccelerationsAreLimitedByTheSlowerAxis) {
 TEST(Motion, NoLawIsFasterThanTheSevenPhases) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});
-    for (const Vector3d& way : {Vector3d(0.05, 0, 0), Vector3d(0, 0.7, 0.1), Vector3d(3, 0, -2),
-                                Vector3d(0, 0, 12), Vector3d(40, 30, 5)}) {
-      const Vector3d direction = way.normalized();
-      const double least = rest_to_rest_time(way.norm(), motion.leg_speed(direction),
-                                             motion.leg_acceleration(direction), vehicle.mode.jerk);
-      EXPECT_GE(motion.leg_time(way), least + vehicle.mode.settle_time - 1e-9) << vehicle.name;
+    for (const Vector3d& displacement :
+         {Vector3d(0.05, 0, 0), Vector3d(0, 0.7, 0.1), Vector3d(3, 0, -2), Vector3d(0, 0, 12),
+          Vector3d(40, 30, 5)}) {
+      const Vector3d direction = displacement.normalized();
+      const double min = rest_to_rest_time(displacement.norm(), motion.leg_speed(direction),
+                                           motion.leg_acceleration(direction), vehicle.mode.jerk);
+      EXPECT_GE(motion.leg_time(displacement), min + vehicle.mode.settle_time - 1e-9)
+          << vehicle.name;
     }
     EXPECT_EQ(motion.leg_time(Vector3d::Zero()), 0.0);
   }
@@ -120,7 +122,7 @@ TEST(Motion, AimsOnTheWay) {
   EXPECT_DOUBLE_EQ(other.aimed_time(9.0, 2.0, 1.0), 9.0);
   EXPECT_DOUBLE_EQ(other.aimed_time(1.0, 3.0, 1.0), 3.5);
   EXPECT_DOUBLE_EQ(other.aimed_time(1.0, 0.0, -1.0), 2.0);
-  vehicle.dialect = Dialect::dji;
+  vehicle.autopilot = AutopilotType::dji;
   EXPECT_DOUBLE_EQ(Motion(vehicle, {}).aimed_time(9.0, 2.0, -1.0), 11.0);
 }
 
@@ -147,12 +149,12 @@ TEST(Motion, HoversAsLongAsTheDataSheetSays) {
 TEST(Motion, ForwardFlightSavesALittleAndThenCosts) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});
-    double least = motion.hover_power();
+    double min = motion.hover_power();
     for (double speed = 0; speed <= 15; speed += 0.5) {
-      least = std::min(least, motion.forward_power(speed));
+      min = std::min(min, motion.forward_power(speed));
     }
-    EXPECT_LT(least, 0.99 * motion.hover_power()) << vehicle.name;
-    EXPECT_GT(least, 0.5 * motion.hover_power()) << vehicle.name;
+    EXPECT_LT(min, 0.99 * motion.hover_power()) << vehicle.name;
+    EXPECT_GT(min, 0.5 * motion.hover_power()) << vehicle.name;
     EXPECT_GT(motion.forward_power(30.0), motion.hover_power()) << vehicle.name;
   }
 }
@@ -176,23 +178,23 @@ TEST(Motion, ColdAndReserveLeaveLess) {
   EXPECT_LT(Motion(unsure, {.reserve = 0.0}).usable_energy(), warm);
 }
 
-std::string complaint(const Vehicle& vehicle, const Conditions& conditions) {
-  return testing_support::complaint_of([&] { const Motion motion(vehicle, conditions); });
+std::string error_message(const Vehicle& vehicle, const Conditions& conditions) {
+  return testing_support::thrown_message([&] { const Motion motion(vehicle, conditions); });
 }
 
 TEST(Motion, AbsurdLimitsAreNamed) {
   const Vehicle good;
-  EXPECT_EQ(complaint(good, {}), "");
-  EXPECT_THAT(complaint(good, {.wind = {20, 0}}), HasSubstr("the wind is 20"));
-  EXPECT_THAT(complaint(good, {.cruise_speed = 50}), HasSubstr("the cruise speed is 50"));
-  EXPECT_THAT(complaint(good, {.cruise_speed = std::nan("")}), HasSubstr("cruise speed"));
-  EXPECT_THAT(complaint(good, {.reserve = 1.0}), HasSubstr("reserve"));
+  EXPECT_EQ(error_message(good, {}), "");
+  EXPECT_THAT(error_message(good, {.wind = {20, 0}}), HasSubstr("the wind is 20"));
+  EXPECT_THAT(error_message(good, {.cruise_speed = 50}), HasSubstr("the cruise speed is 50"));
+  EXPECT_THAT(error_message(good, {.cruise_speed = std::nan("")}), HasSubstr("cruise speed"));
+  EXPECT_THAT(error_message(good, {.reserve = 1.0}), HasSubstr("reserve"));
   Vehicle heavy = good;
   heavy.mass = 20;
-  EXPECT_THAT(complaint(heavy, {}), HasSubstr("less than its mass needs to hover"));
+  EXPECT_THAT(error_message(heavy, {}), HasSubstr("less than its mass needs to hover"));
   Vehicle still = good;
   still.mode.acceleration = 0;
-  EXPECT_THAT(complaint(still, {}), HasSubstr("acceleration is 0"));
+  EXPECT_THAT(error_message(still, {}), HasSubstr("acceleration is 0"));
 }
 
 }  // namespace

@@ -22,14 +22,14 @@ geometry::Camera wide_camera() {
 }
 
 // At the middle of the image: 0.2 m/s at 10 m and 0.03 rad/s turn the line of sight by 0.05 rad/s.
-TEST(PictureBounds, OfANarrowCameraAreThoseOfItsMiddle) {
+TEST(ImageMotionBounds, OfANarrowCameraAreThoseOfItsMiddle) {
   geometry::CameraConfig config;
   config.width = 1000;
   config.height = 1000;
   config.horizontal_fov = config.vertical_fov = 0.002;
   const geometry::Camera camera(config);
   const Vehicle vehicle{.sway_speed = 0.2, .sway_rate = 0.03};
-  const PictureBounds bounds = picture_bounds(vehicle, camera, {0.001, 0.02}, 10.0);
+  const ImageMotionBounds bounds = image_motion_bounds(vehicle, camera, {0.001, 0.02}, 10.0);
   const double focal = 500.0 / std::tan(0.001);
   EXPECT_NEAR(bounds.blur_px, focal * 0.05 * 0.001, 1e-4 * bounds.blur_px);
   EXPECT_NEAR(bounds.shear_px, focal * 0.05 * 0.02, 1e-4 * bounds.shear_px);
@@ -37,11 +37,11 @@ TEST(PictureBounds, OfANarrowCameraAreThoseOfItsMiddle) {
 }
 
 // Random small motions of that size move no pixel farther, and some nearly as far.
-TEST(PictureBounds, HoldForAnyMotionAndPixel) {
+TEST(ImageMotionBounds, HoldForAnyMotionAndPixel) {
   const geometry::Camera camera = wide_camera();
   const Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.02};
   constexpr double exposure = 0.01, distance = 8.0;
-  const double bound = picture_bounds(vehicle, camera, {exposure, 0.0}, distance).blur_px;
+  const double bound = image_motion_bounds(vehicle, camera, {exposure, 0.0}, distance).blur_px;
   const Vector2d focal = camera.focal_length_px();
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -64,7 +64,7 @@ TEST(PictureBounds, HoldForAnyMotionAndPixel) {
 }
 
 // At that speed the image moves by a pixel while it is exposed, or from the first row to the last.
-TEST(PictureBounds, ArePixelsAtTheSharpSpeed) {
+TEST(ImageMotionBounds, ArePixelsAtTheSharpSpeed) {
   const geometry::Camera camera = wide_camera();
   Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.002};
   for (const geometry::Shutter& shutter :
@@ -73,17 +73,17 @@ TEST(PictureBounds, ArePixelsAtTheSharpSpeed) {
     ASSERT_GT(speed, 0.5);
     Vehicle moving = vehicle;
     moving.sway_speed += speed;
-    const PictureBounds bounds = picture_bounds(moving, camera, shutter, 12.0);
-    EXPECT_NEAR(std::max(bounds.blur_px, bounds.shear_px), PictureBounds::sharp_px, 1e-9);
+    const ImageMotionBounds bounds = image_motion_bounds(moving, camera, shutter, 12.0);
+    EXPECT_NEAR(std::max(bounds.blur_px, bounds.shear_px), ImageMotionBounds::sharp_px, 1e-9);
   }
   EXPECT_TRUE(std::isinf(sharp_speed(vehicle, camera, {0.0, 0.0}, 12.0)));
   EXPECT_EQ(sharp_speed(vehicle, camera, {10.0, 0.0}, 12.0), 0.0) << "not even at rest";
 }
 
-TEST(PictureBounds, AreSharpUpToAPixel) {
-  EXPECT_TRUE((PictureBounds{1.0, 0.0, 5.0}).is_sharp());
-  EXPECT_FALSE((PictureBounds{1.01, 0.0, 5.0}).is_sharp());
-  EXPECT_FALSE((PictureBounds{0.0, 1.01, 5.0}).is_sharp());
+TEST(ImageMotionBounds, AreSharpUpToAPixel) {
+  EXPECT_TRUE((ImageMotionBounds{1.0, 0.0, 5.0}).is_sharp());
+  EXPECT_FALSE((ImageMotionBounds{1.01, 0.0, 5.0}).is_sharp());
+  EXPECT_FALSE((ImageMotionBounds{0.0, 1.01, 5.0}).is_sharp());
 }
 
 }  // namespace

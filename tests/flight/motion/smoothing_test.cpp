@@ -76,7 +76,7 @@ TEST(Curve, APieceBetweenStatesOfACubicIsTheCubic) {
     return {Vector3d(1, 2, 3) + t * Vector3d(1, 0, -1) + t * t * t / 6.0 * jerk,
             Vector3d(1, 0, -1) + t * t / 2.0 * jerk, t * jerk};
   };
-  const Curve curve{piece_between(cubic(0.0), cubic(2.0), 2.0)};
+  const Curve curve{segment_between(cubic(0.0), cubic(2.0), 2.0)};
   for (double t = 0.0; t < 2.0; t += 0.1) {
     EXPECT_LT((state_at(curve, t).position - cubic(t).position).norm(), 1e-12);
     EXPECT_LT((state_at(curve, t).velocity - cubic(t).velocity).norm(), 1e-12);
@@ -88,25 +88,25 @@ TEST(Curve, APieceBetweenStatesOfACubicIsTheCubic) {
 // 10 / sqrt(3) L / T^2 of acceleration, 60 L / T^3 of jerk.
 TEST(Curve, SlowdownIsThatOfTheMinimumJerkMotion) {
   const Motion motion = calm();
-  const Curve curve{piece_between({Vector3d::Zero()}, {Vector3d(10, 0, 0)}, 1.0)};
+  const Curve curve{segment_between({Vector3d::Zero()}, {Vector3d(10, 0, 0)}, 1.0)};
   const double by_speed = 10.0 * 15.0 / 8.0 / motion.conditions().cruise_speed;
   const double by_acceleration =
       std::sqrt(100.0 / std::sqrt(3.0) / motion.vehicle().mode.acceleration);
   const double by_jerk = std::cbrt(600.0 / motion.vehicle().mode.jerk);
-  const double least = std::max({by_speed, by_acceleration, by_jerk});
+  const double min = std::max({by_speed, by_acceleration, by_jerk});
   const double bound = needed_slowdown(curve, motion);
-  EXPECT_GE(bound, least * (1 - 1e-12));
-  EXPECT_LE(bound, 1.05 * least);  // what two halvings promise
+  EXPECT_GE(bound, min * (1 - 1e-12));
+  EXPECT_LE(bound, 1.05 * min);  // what two halvings promise
   EXPECT_LE(needed_slowdown(slowed(curve, bound), motion), 1.0 + 1e-12);
 }
 
 TEST(Curve, LengthIsTheChordsOnALineAndTheArcsOnABend) {
-  EXPECT_NEAR(length({piece_between({Vector3d::Zero()}, {Vector3d(3, 4, 12)}, 5.0)}), 13.0, 1e-6);
+  EXPECT_NEAR(length({segment_between({Vector3d::Zero()}, {Vector3d(3, 4, 12)}, 5.0)}), 13.0, 1e-6);
   // A quarter of a circle of radius 4 at 1 m/s is nearly a quintic between its end states.
   const double quarter = 2.0 * M_PI;
-  const Curve arc{piece_between({Vector3d(4, 0, 0), Vector3d(0, 1, 0), Vector3d(-0.25, 0, 0)},
-                                {Vector3d(0, 4, 0), Vector3d(-1, 0, 0), Vector3d(0, -0.25, 0)},
-                                quarter)};
+  const Curve arc{segment_between({Vector3d(4, 0, 0), Vector3d(0, 1, 0), Vector3d(-0.25, 0, 0)},
+                                  {Vector3d(0, 4, 0), Vector3d(-1, 0, 0), Vector3d(0, -0.25, 0)},
+                                  quarter)};
   EXPECT_NEAR(length(arc), quarter, 2e-3);
 }
 
@@ -119,9 +119,9 @@ TEST(Curve, ProofHalvesAHullUntilItFits) {
     nearest = std::min(nearest, (state_at(bend, t).position - inside).norm() - 0.1);
   }
   const KnownSpace air = air_with({inside});
-  EXPECT_TRUE(prove(air, bend, nearest - 1e-3).is_proven);
-  EXPECT_FALSE(prove(air, bend, nearest + 1e-3).is_proven);
-  EXPECT_LE(prove(air, bend, 0.5 * nearest).clearance, nearest);
+  EXPECT_TRUE(verify(air, bend, nearest - 1e-3).is_verified);
+  EXPECT_FALSE(verify(air, bend, nearest + 1e-3).is_verified);
+  EXPECT_LE(verify(air, bend, 0.5 * nearest).clearance, nearest);
 }
 
 // ---- blends ----------------------------------------------------------------------------------
@@ -187,9 +187,10 @@ TEST(Smooth, IsNoSlowerThanTheBlendAndMostlyFaster) {
   ASSERT_TRUE(blend && curve);
   EXPECT_LT(curve->duration, 0.95 * blend->duration);
   // No motion within the limits is faster than straight on.
-  const Vector3d way = zigzag.back() - zigzag.front(), direction = way.normalized();
+  const Vector3d displacement = zigzag.back() - zigzag.front(),
+                 direction = displacement.normalized();
   EXPECT_GE(curve->duration,
-            rest_to_rest_time(way.norm(), motion.leg_speed(direction),
+            rest_to_rest_time(displacement.norm(), motion.leg_speed(direction),
                               motion.leg_acceleration(direction), motion.vehicle().mode.jerk) -
                 1e-6);
   expect_flyable(curve->curve, motion);
@@ -234,8 +235,8 @@ TEST(Smooth, NoAcceptedCurveIsRefusedByDenseExactDistances) {
     const KnownSpace space(obstacles);
     PathFinder finder(space, clearance);
     const Eigen::AlignedBox3d box(Vector3d(0, 0, 5), Vector3d(60, 60, 40));
-    for (const Segment& way : scenes::legs(random, 8, box)) {
-      const Path path = finder.find(way.from, way.to);
+    for (const Segment& displacement : scenes::legs(random, 8, box)) {
+      const Path path = finder.find(displacement.from, displacement.to);
       if (path.status != PathStatus::found || path.points.size() < 3) continue;
       ++with_corners;
       const FlightStyle style = with_corners % 2 == 0 ? FlightStyle::blend : FlightStyle::smooth;

@@ -16,15 +16,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-KnownSpace space_of(geometry::Mesh mesh) {
+KnownSpace make_space(geometry::Mesh mesh) {
   Obstacles obstacles;
   obstacles.mesh = std::move(mesh);
   return KnownSpace(obstacles);
 }
 
-void expect_certified(const FreeSpace& space, const Path& path, double clearance) {
+void expect_verified(const FreeSpace& space, const Path& path, double clearance) {
   for (std::size_t i = 1; i < path.points.size(); ++i) {
-    EXPECT_TRUE(prove(space, {path.points[i - 1], path.points[i]}, clearance).is_proven)
+    EXPECT_TRUE(verify(space, {path.points[i - 1], path.points[i]}, clearance).is_verified)
         << "piece " << i;
   }
 }
@@ -42,7 +42,7 @@ double round_corner(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
 }
 
 TEST(Path, IsTheStraightLineWhereThatIsFree) {
-  const KnownSpace space = space_of(scenes::box({0, 0, 0}, {10, 10, 10}));
+  const KnownSpace space = make_space(scenes::box({0, 0, 0}, {10, 10, 10}));
   PathFinder finder(space, 2.0);
   const Path path = finder.find({-5, -5, 5}, {20, -5, 5});
   EXPECT_EQ(path.status, PathStatus::found);
@@ -53,7 +53,7 @@ TEST(Path, IsTheStraightLineWhereThatIsFree) {
 // A high box, from one face to the neighbouring one: tangent, arc of the clearance round the edge,
 // tangent. Within 2 % of it (the bar).
 TEST(Path, RoundTheEdgeOfABoxIsWithinTwoPercentOfTheShortest) {
-  const KnownSpace space = space_of(scenes::box({0, 0, -300}, {40, 40, 300}));
+  const KnownSpace space = make_space(scenes::box({0, 0, -300}, {40, 40, 300}));
   for (const double clearance : {0.5, 2.0, 5.0}) {
     PathFinder finder(space, clearance);
     const Path path = finder.find({20, -8, 0}, {48, 20, 0});
@@ -61,13 +61,13 @@ TEST(Path, RoundTheEdgeOfABoxIsWithinTwoPercentOfTheShortest) {
     ASSERT_EQ(path.status, PathStatus::found);
     EXPECT_GE(path.length, shortest - 1e-3);
     EXPECT_LE(path.length, 1.02 * shortest) << "clearance " << clearance;
-    expect_certified(space, path, clearance);
+    expect_verified(space, path, clearance);
   }
 }
 
 // Symmetric to the far face: two edges to go round.
 TEST(Path, ToTheFarSideOfABoxIsWithinTwoPercentOfTheShortest) {
-  const KnownSpace space = space_of(scenes::box({0, 0, -300}, {40, 40, 300}));
+  const KnownSpace space = make_space(scenes::box({0, 0, -300}, {40, 40, 300}));
   const double clearance = 2.0;
   PathFinder finder(space, clearance);
   const Path path = finder.find({20, -10, 0}, {20, 50, 0});
@@ -76,7 +76,7 @@ TEST(Path, ToTheFarSideOfABoxIsWithinTwoPercentOfTheShortest) {
   ASSERT_EQ(path.status, PathStatus::found);
   EXPECT_GE(path.length, shortest - 1e-3);
   EXPECT_LE(path.length, 1.02 * shortest);
-  expect_certified(space, path, clearance);
+  expect_verified(space, path, clearance);
 }
 
 // A wall too large to go round, 1 m thick, with a window 6 m wide, flown through at 2 m. The path
@@ -86,12 +86,12 @@ TEST(Path, FindsTheWindowInAWall) {
   geometry::append(wall, scenes::box({6, 0, -200}, {200, 1, 200}));
   geometry::append(wall, scenes::box({0, 0, -200}, {6, 1, -3}));
   geometry::append(wall, scenes::box({0, 0, 3}, {6, 1, 200}));
-  const KnownSpace space = space_of(wall);
+  const KnownSpace space = make_space(wall);
   const double clearance = 2.0;
   PathFinder finder(space, clearance);
   const Path path = finder.find({-12, -15, 0}, {-12, 16, 0});
   ASSERT_EQ(path.status, PathStatus::found);
-  expect_certified(space, path, clearance);
+  expect_verified(space, path, clearance);
   const double shortest = 2.0 * round_corner({-12, -15}, {2, 0.5}, {0, 0}, clearance);
   EXPECT_GE(path.length, shortest - 1e-3);
   EXPECT_LE(path.length, 1.02 * shortest);
@@ -106,12 +106,12 @@ TEST(Path, FollowsABentCorridor) {
   geometry::append(walls, scenes::box({-1, -2, -1}, {32, 31, 0}));  // floor
   geometry::append(walls, scenes::box({-1, -2, 0}, {0, 31, 5}));    // both ends closed
   geometry::append(walls, scenes::box({0, 30, 0}, {32, 31, 5}));
-  const KnownSpace space = space_of(walls);
+  const KnownSpace space = make_space(walls);
   PathFinder finder(space, 2.0);
   const Vector3d from(3, 2.5, 2.5), to(27.5, 27, 2.5);
   const Path path = finder.find(from, to);
   ASSERT_EQ(path.status, PathStatus::found);
-  expect_certified(space, path, 2.0);
+  expect_verified(space, path, 2.0);
   const double shortest = round_corner({3, 2.5}, {27.5, 27}, {25, 5}, 2.0);
   EXPECT_GE(path.length, shortest - 1e-3);
   EXPECT_LE(path.length, 1.02 * shortest);
@@ -120,7 +120,7 @@ TEST(Path, FollowsABentCorridor) {
 
 TEST(Path, IsTheSameEveryTimeAndWhateverWasAskedBefore) {
   std::mt19937_64 random(3);
-  const KnownSpace space = space_of(scenes::boxes(random, 40));
+  const KnownSpace space = make_space(scenes::boxes(random, 40));
   const Eigen::AlignedBox3d around(Vector3d::Zero(), Vector3d::Constant(60));
   PathFinder used(space, 1.0);
   int found = 0;
@@ -128,18 +128,18 @@ TEST(Path, IsTheSameEveryTimeAndWhateverWasAskedBefore) {
     const Vector3d from = scenes::point_in(random, around), to = scenes::point_in(random, around);
     const Path path = used.find(from, to);
     EXPECT_EQ(PathFinder(space, 1.0).find(from, to).points, path.points);
-    expect_certified(space, path, 1.0);
+    expect_verified(space, path, 1.0);
     found += path.status == PathStatus::found ? 1 : 0;
   }
   EXPECT_GT(found, 10);
 }
 
-TEST(Path, NoWayIsANormalAnswer) {
+TEST(Path, ReturnsNotFoundWithoutPath) {
   geometry::Mesh cage = scenes::box({-5, -5, -5}, {5, 5, 5});
   Obstacles obstacles;
   obstacles.mesh = cage;
   obstacles.mesh_is_solid = false;
-  const KnownSpace hollow(obstacles), full(space_of(cage));
+  const KnownSpace hollow(obstacles), full(make_space(cage));
   EXPECT_EQ(PathFinder(hollow, 1.0).find({0, 0, 0}, {20, 0, 0}).status, PathStatus::unreachable);
   EXPECT_EQ(PathFinder(full, 1.0).find({0, 0, 0}, {20, 0, 0}).status, PathStatus::start_not_free);
   EXPECT_EQ(PathFinder(full, 1.0).find({20, 0, 0}, {0, 0, 0}).status, PathStatus::goal_not_free);
@@ -155,7 +155,7 @@ TEST(Path, AFenceThatExcludesEverythingLeavesNoStart) {
 
 TEST(Path, PullingTightKeepsTheEndsAndNeverLengthens) {
   std::mt19937_64 random(5);
-  const KnownSpace space = space_of(scenes::box({0, 0, -50}, {10, 10, 50}));
+  const KnownSpace space = make_space(scenes::box({0, 0, -50}, {10, 10, 50}));
   const std::vector<Vector3d> detour{
       {-10, -10, 0}, {-15, 5, 3}, {-10, 30, -2}, {5, 25, 8}, {20, 20, 0}};
   const std::vector<Vector3d> tight = pull_tight(space, 1.0, detour, 0.002);
@@ -165,14 +165,14 @@ TEST(Path, PullingTightKeepsTheEndsAndNeverLengthens) {
 }
 
 TEST(Path, AbsurdOptionsAreNamed) {
-  const KnownSpace space = space_of(scenes::box({0, 0, 0}, {1, 1, 1}));
-  EXPECT_THAT(testing_support::complaint_of([&] { PathFinder(space, -1.0); }),
+  const KnownSpace space = make_space(scenes::box({0, 0, 0}, {1, 1, 1}));
+  EXPECT_THAT(testing_support::thrown_message([&] { PathFinder(space, -1.0); }),
               testing::HasSubstr("the clearance is -1.0"));
-  EXPECT_THAT(testing_support::complaint_of([&] { PathFinder(space, std::nan("")); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { PathFinder(space, std::nan("")); }),
               testing::HasSubstr("the clearance is nan"));
   PathOptions options;
   options.max_expansions = 0;
-  EXPECT_THAT(testing_support::complaint_of([&] { PathFinder(space, 1.0, options); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { PathFinder(space, 1.0, options); }),
               testing::HasSubstr("path.max_expansions is 0"));
 }
 

@@ -25,7 +25,7 @@ void expect_agreement(const Obstacles& obstacles, const Vector3d& from, const Ve
   EXPECT_LE(grid.length, 1.01 * path.length);
   EXPECT_LE(path.length, 1.05 * grid.length);
   for (std::size_t i = 1; i < path.points.size(); ++i) {
-    EXPECT_TRUE(prove(space, {path.points[i - 1], path.points[i]}, clearance).is_proven);
+    EXPECT_TRUE(verify(space, {path.points[i - 1], path.points[i]}, clearance).is_verified);
   }
 }
 
@@ -69,13 +69,13 @@ TEST(SamplingPath, IsTheSameWhateverWasAskedBefore) {
   const std::vector<Vector3d> first = find();
   find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, brief);
   EXPECT_EQ(find(), first);
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, {.seed = 0});
               }),
               testing::HasSubstr("the seed of a sampling search is 0"));
 }
 
-TEST(SamplingPath, NoWayIsANormalAnswer) {
+TEST(SamplingPath, ReturnsNotFoundWithoutPath) {
   Obstacles cage;
   cage.mesh = scenes::box({-5, -5, -5}, {5, 5, 5});
   cage.mesh_is_solid = false;

@@ -17,7 +17,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using geometry::radians_per_degree;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 const Vector3d pad(12.0, -7.0, 3.0);
 
@@ -32,70 +32,70 @@ struct Plane {
   }
 };
 
-std::vector<Vector3d> places_of(const Plane& plane) {
-  std::vector<Vector3d> places;
-  for (const Vector2d& at : places_on(pad, 0.6)) {
-    places.emplace_back(at.x(), at.y(), plane.height(at));
+std::vector<Vector3d> read_positions(const Plane& plane) {
+  std::vector<Vector3d> positions;
+  for (const Vector2d& at : landing_points(pad, 0.6)) {
+    positions.emplace_back(at.x(), at.y(), plane.height(at));
   }
-  return places;
+  return positions;
 }
 
-TEST(PadGround, FindsThePlaneThatItIsGiven) {
+TEST(LandingSurface, FindsThePlaneThatItIsGiven) {
   for (const Plane& plane : {Plane{0.0, 0.0}, {7.0, 0.1}, {35.0, -0.8}}) {
-    const auto ground = pad_ground(pad, places_of(plane), GroundSource::terrain);
+    const auto ground = pad_ground(pad, read_positions(plane), GroundSource::terrain);
     ASSERT_TRUE(ground);
     EXPECT_NEAR(ground->slope, plane.slope_deg * radians_per_degree, 1e-12);
     EXPECT_NEAR(ground->rise, plane.rise, 1e-12);
     EXPECT_NEAR(ground->unevenness, 0.0, 1e-12);
-    EXPECT_EQ(ground->place, pad);
+    EXPECT_EQ(ground->position, pad);
   }
 }
 
 // A chequered ground of steps of 2 h is h off its plane everywhere.
-TEST(PadGround, IsAsUnevenAsItsSteps) {
-  std::vector<Vector3d> places;
+TEST(LandingSurface, IsAsUnevenAsItsSteps) {
+  std::vector<Vector3d> positions;
   for (int x = -4; x < 4; ++x) {
     for (int y = -4; y < 4; ++y) {
       const double step = (x + y) % 2 == 0 ? 0.05 : -0.05;
-      places.emplace_back(pad + Vector3d(0.5 + x, 0.5 + y, step));
+      positions.emplace_back(pad + Vector3d(0.5 + x, 0.5 + y, step));
     }
   }
-  const auto ground = pad_ground(pad, places, GroundSource::terrain);
+  const auto ground = pad_ground(pad, positions, GroundSource::terrain);
   ASSERT_TRUE(ground);
   EXPECT_NEAR(ground->unevenness, 0.05, 1e-3);
 }
 
-TEST(PadGround, IsNotKnownFromFewPlacesOrALineOrNoise) {
-  std::vector<Vector3d> places = places_of({5.0, 0.0});
-  EXPECT_FALSE(pad_ground(pad, std::span(places).first(5), GroundSource::measured));
-  for (Vector3d& place : places) place.y() = pad.y() + 2.0 * (place.x() - pad.x());
-  EXPECT_FALSE(pad_ground(pad, places, GroundSource::measured));
+TEST(LandingSurface, IsNotKnownFromFewPlacesOrALineOrNoise) {
+  std::vector<Vector3d> positions = read_positions({5.0, 0.0});
+  EXPECT_FALSE(pad_ground(pad, std::span(positions).first(5), GroundSource::measured));
+  for (Vector3d& position : positions) position.y() = pad.y() + 2.0 * (position.x() - pad.x());
+  EXPECT_FALSE(pad_ground(pad, positions, GroundSource::measured));
 
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0.0, 0.2);
-  places = places_of({5.0, 0.0});
-  for (Vector3d& place : places) place.z() += noise(random);
-  EXPECT_FALSE(pad_ground(pad, places, GroundSource::measured));
+  positions = read_positions({5.0, 0.0});
+  for (Vector3d& position : positions) position.z() += noise(random);
+  EXPECT_FALSE(pad_ground(pad, positions, GroundSource::measured));
 }
 
-TEST(PadGround, IsUnfitWhereItIsSteepUnevenOrElsewhere) {
+TEST(LandingSurface, IsUnfitWhereItIsSteepUnevenOrElsewhere) {
   const PadLimits limits{10.0 * radians_per_degree, 0.0};
-  const auto why = [&](const PadGround& ground, const PadLimits& most) {
-    return why_unfit(ground, most);
+  const auto reason = [&](const LandingSurface& ground, const PadLimits& max) {
+    return unfit_reason(ground, max);
   };
-  PadGround ground{pad, 9.9 * radians_per_degree, 0.1, -0.29, GroundSource::measured};
-  EXPECT_EQ(why(ground, limits), "");
+  LandingSurface ground{pad, 9.9 * radians_per_degree, 0.1, -0.29, GroundSource::measured};
+  EXPECT_EQ(reason(ground, limits), "");
   ground.slope = 10.1 * radians_per_degree;
-  EXPECT_THAT(why(ground, limits),
+  EXPECT_THAT(reason(ground, limits),
               HasSubstr("has a slope of 10.1 degrees as measured; the maximum is 10.0"));
   ground.slope = 0.0;
   ground.unevenness = 0.31;
-  EXPECT_THAT(why(ground, limits), HasSubstr("has an unevenness of 0.310 m"));
+  EXPECT_THAT(reason(ground, limits), HasSubstr("has an unevenness of 0.310 m"));
   ground.unevenness = 0.0;
   ground.rise = -0.5;
-  EXPECT_THAT(why(ground, limits), HasSubstr("has ground 0.500 m below it as measured"));
-  EXPECT_EQ(why(ground, {limits.steepest, 0.25}), "");
-  EXPECT_THAT(complaint_of([&] { check_grounds(std::vector{ground}, limits); }),
+  EXPECT_THAT(reason(ground, limits), HasSubstr("has ground 0.500 m below it as measured"));
+  EXPECT_EQ(reason(ground, {limits.max_slope, 0.25}), "");
+  EXPECT_THAT(thrown_message([&] { check_landing_surfaces(std::vector{ground}, limits); }),
               HasSubstr("the landing point at (12.00, -7.00, 3.00) has ground"));
 }
 
@@ -116,7 +116,7 @@ TEST(PadScan, MeasuresTheSlopeUnderNoiseAndLeavesTheRestOut) {
       points.push_back(Vector3d(at.x(), at.y(), height).cast<float>());
       points.push_back(Vector3d(at.x(), at.y(), pad.z() + 1.7).cast<float>());
     }
-    scan.take_in(points);
+    scan.add_points(points);
   }
   const auto ground = scan.ground();
   ASSERT_TRUE(ground);

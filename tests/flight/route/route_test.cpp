@@ -29,14 +29,15 @@ Obstacles site() {
 }
 
 /// Views on a ring around the building, in an order that goes round it.
-std::vector<Station> ring(int count, double distance, double height) {
-  std::vector<Station> stations;
+std::vector<CapturePoint> ring(int count, double distance, double height) {
+  std::vector<CapturePoint> capture_points;
   for (int i = 0; i < count; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / count;
-    const Vector3d place(distance * std::cos(angle), distance * std::sin(angle), height);
-    stations.push_back({look_at(place, {0, 0, height}), 2.0, 1, static_cast<std::uint32_t>(i)});
+    const Vector3d position(distance * std::cos(angle), distance * std::sin(angle), height);
+    capture_points.push_back(
+        {look_at(position, {0, 0, height}), 2.0, 1, static_cast<std::uint32_t>(i)});
   }
-  return stations;
+  return capture_points;
 }
 
 RouteOptions options() {
@@ -45,26 +46,26 @@ RouteOptions options() {
   return result;
 }
 
-Route plan(const std::vector<Station>& stations, const Obstacles& obstacles,
+Route plan(const std::vector<CapturePoint>& capture_points, const Obstacles& obstacles,
            const RouteOptions& how = options(), const Vehicle& vehicle = {}) {
   const KnownSpace space(obstacles);
   const KnownSpace pad_space(without_ground(obstacles));
-  return plan_route(stations, vehicle, space, &pad_space, how);
+  return plan_route(capture_points, vehicle, space, &pad_space, how);
 }
 
 TEST(Route, VisitsAllStationsOnCertifiedLegs) {
   const Obstacles obstacles = site();
   const Route route = plan(ring(12, 16, 8), obstacles);
-  EXPECT_EQ(route.stations.size(), 12U);
+  EXPECT_EQ(route.capture_points.size(), 12U);
   EXPECT_TRUE(route.unreached.empty());
   ASSERT_EQ(route.sorties.size(), 1U);
   EXPECT_DOUBLE_EQ(route.clearance, 2.0);
   EXPECT_GE(route.min_clearance, 2.0);
   const KnownSpace space(obstacles);
   EXPECT_THAT(check_route(sortie_points(route, route.sorties[0]), space, 2.0), testing::IsEmpty());
-  EXPECT_LE(route.straight_length, route.station_length + 1e-9);
-  EXPECT_LE(route.station_length, 1.25 * route.straight_length);
-  EXPECT_GE(route.length, route.station_length);
+  EXPECT_LE(route.straight_length, route.capture_leg_length + 1e-9);
+  EXPECT_LE(route.capture_leg_length, 1.25 * route.straight_length);
+  EXPECT_GE(route.length, route.capture_leg_length);
 }
 
 Obstacles open_ground() {
@@ -97,15 +98,15 @@ TEST(Route, LeavesOutLegsThatAreNotProven) {
   const UnprovableGate space;
   // From the pad at (-30, -30) the ways to the first two pass below the gate, to the third through
   // it; so does the straight line from the first to the second.
-  const std::vector<Station> stations{{look_at({-20, 10, 20}, {0, 0, 20}), 2.0, 1, 0},
-                                      {look_at({20, 10, 20}, {0, 0, 20}), 2.0, 1, 1},
-                                      {look_at({5, 60, 20}, {0, 0, 20}), 2.0, 1, 2}};
+  const std::vector<CapturePoint> capture_points{{look_at({-20, 10, 20}, {0, 0, 20}), 2.0, 1, 0},
+                                                 {look_at({20, 10, 20}, {0, 0, 20}), 2.0, 1, 1},
+                                                 {look_at({5, 60, 20}, {0, 0, 20}), 2.0, 1, 2}};
   RouteOptions how = options();
   how.order_is_free = false;
-  const Route route = plan_route(stations, {}, space, nullptr, how);
-  ASSERT_EQ(route.stations.size(), 2U);
+  const Route route = plan_route(capture_points, {}, space, nullptr, how);
+  ASSERT_EQ(route.capture_points.size(), 2U);
   ASSERT_EQ(route.unreached.size(), 1U);
-  EXPECT_EQ(route.unreached[0].station.view_index, 2U);
+  EXPECT_EQ(route.unreached[0].capture_point.view_index, 2U);
   EXPECT_EQ(route.unreached[0].reason,
             "the path to it cannot be verified with a clearance of 2.000 m");
   for (const Sortie& sortie : route.sorties) {
@@ -116,9 +117,9 @@ TEST(Route, LeavesOutLegsThatAreNotProven) {
 // Corner stations make straight legs cut through the building: the complaint that views stand off
 // and legs do not.
 TEST(Route, LegsGoRoundWhatTheStraightLineWouldHit) {
-  std::vector<Station> stations{{look_at({0, -14, 8}, {0, 0, 8})},
-                                {look_at({0, 14, 8}, {0, 0, 8})}};
-  const Route route = plan(stations, site());
+  std::vector<CapturePoint> capture_points{{look_at({0, -14, 8}, {0, 0, 8})},
+                                           {look_at({0, 14, 8}, {0, 0, 8})}};
+  const Route route = plan(capture_points, site());
   ASSERT_EQ(route.legs.size(), 1U);
   EXPECT_GT(route.legs[0].points.size(), 2U);
   EXPECT_GE(route.legs[0].clearance, 2.0);
@@ -137,33 +138,35 @@ TEST(Route, PassagesTooNarrowForTheGridAreFoundBySampling) {
             PathStatus::unreachable);
 
   const Route route = plan_route({{look_at(behind, {-8, 20, 20})}}, {}, space, nullptr, how);
-  ASSERT_EQ(route.stations.size(), 1U);
+  ASSERT_EQ(route.capture_points.size(), 1U);
   EXPECT_THAT(check_route(sortie_points(route, route.sorties[0]), space, clearance),
               testing::IsEmpty());
 }
 
 /// Before the wall and behind it, and how a survey came there through the window.
-std::vector<Station> flown_through_window() {
+std::vector<CapturePoint> window_stations() {
   const Vector3d home(-8, -6, 20), before(-8, -7, 22), in_window(0, 0, 20), behind(-8, 7, 20);
-  std::vector<Station> stations{{look_at(before, {-8, -20, 22})}, {look_at(behind, {-8, 20, 20})}};
-  stations[0].way = {home, before};
-  stations[1].way = {before, in_window + Vector3d(0, -6, 0), in_window + Vector3d(0, 6, 0), behind};
-  stations[1].view_index = 1;
-  return stations;
+  std::vector<CapturePoint> capture_points{{look_at(before, {-8, -20, 22})},
+                                           {look_at(behind, {-8, 20, 20})}};
+  capture_points[0].approach_path = {home, before};
+  capture_points[1].approach_path = {before, in_window + Vector3d(0, -6, 0),
+                                     in_window + Vector3d(0, 6, 0), behind};
+  capture_points[1].view_index = 1;
+  return capture_points;
 }
 
 // In the survey's order legs are those of the survey; in another one they are the shortest found.
-TEST(Route, KeepsTheWaysOfTheSurveyInItsOrder) {
+TEST(Route, KeepsSurveyPathsInSurveyOrder) {
   const KnownSpace space(scenes::wall_with_window());
   RouteOptions how = options();
   how.takeoff = {-8, -6, 15};
-  const std::vector<Station> stations = flown_through_window();
-  const Route route = plan_route(stations, {}, space, nullptr, how);
-  ASSERT_EQ(route.stations.size(), 2U);
-  EXPECT_EQ(route.sorties[0].out.points, stations[0].way);
-  EXPECT_EQ(route.legs[0].points, stations[1].way);
+  const std::vector<CapturePoint> capture_points = window_stations();
+  const Route route = plan_route(capture_points, {}, space, nullptr, how);
+  ASSERT_EQ(route.capture_points.size(), 2U);
+  EXPECT_EQ(route.sorties[0].out.points, capture_points[0].approach_path);
+  EXPECT_EQ(route.legs[0].points, capture_points[1].approach_path);
   how.order_is_free = true;
-  const Route shortest = plan_route(stations, {}, space, nullptr, how);
+  const Route shortest = plan_route(capture_points, {}, space, nullptr, how);
   ASSERT_EQ(shortest.legs.size(), 1U);
   EXPECT_LT(shortest.legs[0].length, route.legs[0].length);
 }
@@ -172,11 +175,12 @@ TEST(Route, FindsAnotherWayToAStationWhoseOwnIsNotFree) {
   const KnownSpace space(scenes::wall_with_window());
   RouteOptions how = options();
   how.takeoff = {-8, -6, 15};
-  std::vector<Station> stations = flown_through_window();
-  stations.erase(stations.begin());
-  stations[0].way = {{-8, -6, 20}, stations[0].view.position};  // through the wall
-  const Route route = plan_route(stations, {}, space, nullptr, how);
-  ASSERT_EQ(route.stations.size(), 1U);
+  std::vector<CapturePoint> capture_points = window_stations();
+  capture_points.erase(capture_points.begin());
+  capture_points[0].approach_path = {{-8, -6, 20},
+                                     capture_points[0].view.position};  // through the wall
+  const Route route = plan_route(capture_points, {}, space, nullptr, how);
+  ASSERT_EQ(route.capture_points.size(), 1U);
   EXPECT_GT(route.sorties[0].out.points.size(), 2U);
 }
 
@@ -184,7 +188,7 @@ TEST(Route, FindsAnotherWayToAStationWhoseOwnIsNotFree) {
 TEST(Route, RallyPointsLieUnderNothingThatTheClimbWouldMeet) {
   Obstacles obstacles = site();
   RouteOptions how = options();
-  how.returns = ReturnOptions{{Dialect::px4}, 60.0, {Vector3d(30, 30, 0)}};
+  how.returns = ReturnOptions{{AutopilotType::px4}, 60.0, {Vector3d(30, 30, 0)}};
   EXPECT_NO_THROW(plan(ring(3, 16, 8), obstacles, how));
   PriorObstacleConfig tree;
   tree.name = "the tree";
@@ -208,15 +212,15 @@ TEST(Route, ReachesWhatOnlyTheSurveyFoundAWayTo) {
   how.takeoff = {-8, -6, 15};
   how.path.finest_cell = 9.0;
   how.order_is_free = true;
-  const std::vector<Station> stations = flown_through_window();
-  const Vector3d home(-8, -6, 20), behind = stations[1].view.position;
+  const std::vector<CapturePoint> capture_points = window_stations();
+  const Vector3d home(-8, -6, 20), behind = capture_points[1].view.position;
   const double clearance = how.clearance.total();
   ASSERT_EQ(PathFinder(space, clearance, how.path).find(home, behind).status,
             PathStatus::unreachable);
   ASSERT_EQ(find_path_by_sampling(space, home, behind, clearance).status, PathStatus::unreachable);
 
-  const Route route = plan_route(stations, {}, space, nullptr, how);
-  EXPECT_EQ(route.stations.size(), 2U);
+  const Route route = plan_route(capture_points, {}, space, nullptr, how);
+  EXPECT_EQ(route.capture_points.size(), 2U);
   EXPECT_THAT(check_route(sortie_points(route, route.sorties.at(0)), space, clearance),
               testing::IsEmpty());
 }
@@ -226,9 +230,10 @@ TEST(Route, DoesNotTrustTheWaysOfTheSurvey) {
   const KnownSpace space(scenes::wall_with_window());
   RouteOptions how = options();
   how.takeoff = {-8, -6, 15};
-  std::vector<Station> stations = flown_through_window();
-  stations[1].way = {stations[1].way.front(), stations[1].way.back()};  // through the wall
-  const Route route = plan_route(stations, {}, space, nullptr, how);
+  std::vector<CapturePoint> capture_points = window_stations();
+  capture_points[1].approach_path = {capture_points[1].approach_path.front(),
+                                     capture_points[1].approach_path.back()};  // through the wall
+  const Route route = plan_route(capture_points, {}, space, nullptr, how);
   for (const Sortie& sortie : route.sorties) {
     EXPECT_THAT(check_route(sortie_points(route, sortie), space, route.clearance),
                 testing::IsEmpty());
@@ -239,13 +244,13 @@ TEST(Route, DoesNotTrustTheWaysOfTheSurvey) {
 
 // Sorties are split for stops; a curve must fit into what they have set aside for its leg.
 TEST(Route, CurvesTakeNoMoreTimeAndEnergyThanTheStopsTheyReplace) {
-  const std::vector<Station> stations{{look_at({0, -14, 8}, {0, 0, 8})},
-                                      {look_at({0, 14, 8}, {0, 0, 8})}};
-  const Route stops = plan(stations, site());
+  const std::vector<CapturePoint> capture_points{{look_at({0, -14, 8}, {0, 0, 8})},
+                                                 {look_at({0, 14, 8}, {0, 0, 8})}};
+  const Route stops = plan(capture_points, site());
   for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {
     RouteOptions how = options();
     how.style = style;
-    const Route route = plan(stations, site(), how);
+    const Route route = plan(capture_points, site(), how);
     ASSERT_TRUE(route.legs[0].smooth);
     EXPECT_EQ(route.legs[0].points, stops.legs[0].points);
     EXPECT_EQ(route.duration, stops.duration);
@@ -259,19 +264,21 @@ TEST(Route, CurvesTakeNoMoreTimeAndEnergyThanTheStopsTheyReplace) {
 TEST(Route, SortiesLastAsLongAsTheirPlans) {
   const Route route = plan(ring(8, 16, 8), site());
   ASSERT_EQ(route.sorties.size(), 1U);
-  const FlightPlan flown = flight_plan(route, 0, "ring", {{51.75, -1.25, 100.0}, {}}, site());
-  EXPECT_NEAR(route.sorties[0].duration, flight_time(flown), 1e-6);
+  const FlightPlan exported = flight_plan(route, 0, "ring", {{51.75, -1.25, 100.0}, {}}, site());
+  EXPECT_NEAR(route.sorties[0].duration, flight_time(exported), 1e-6);
 }
 
 TEST(Route, AViewThatCannotBeReachedIsReportedAndTheRestIsFlown) {
-  std::vector<Station> stations = ring(6, 16, 8);
-  stations.insert(stations.begin() + 2, {look_at({0, 0, 5}, {1, 0, 5}), 2, 1, 77});   // inside
-  stations.insert(stations.begin() + 4, {look_at({11, 0, 5}, {0, 0, 5}), 2, 1, 78});  // too near
-  stations.push_back({look_at({20, 0, 5}, {20, 0, 50}), 2, 1, 79});                   // straight up
-  const Route route = plan(stations, site());
-  EXPECT_EQ(route.stations.size(), 6U);
+  std::vector<CapturePoint> capture_points = ring(6, 16, 8);
+  capture_points.insert(capture_points.begin() + 2,
+                        {look_at({0, 0, 5}, {1, 0, 5}), 2, 1, 77});  // inside
+  capture_points.insert(capture_points.begin() + 4,
+                        {look_at({11, 0, 5}, {0, 0, 5}), 2, 1, 78});       // too near
+  capture_points.push_back({look_at({20, 0, 5}, {20, 0, 50}), 2, 1, 79});  // straight up
+  const Route route = plan(capture_points, site());
+  EXPECT_EQ(route.capture_points.size(), 6U);
   ASSERT_EQ(route.unreached.size(), 3U);
-  EXPECT_EQ(route.unreached[0].station.view_index, 77U);
+  EXPECT_EQ(route.unreached[0].capture_point.view_index, 77U);
   EXPECT_THAT(route.unreached[1].reason, HasSubstr("it is 1.0"));
   EXPECT_THAT(route.unreached[2].reason, HasSubstr("gimbal"));
 }
@@ -281,7 +288,7 @@ TEST(Route, SplitsIntoSortiesThatKeepTheirReserve) {
   Vehicle small;
   small.battery_wh = 12.0, small.endurance_min = 3.6;
   const Route route = plan(ring(60, 18, 8), site(), options(), small);
-  EXPECT_EQ(route.stations.size(), 60U);
+  EXPECT_EQ(route.capture_points.size(), 60U);
   EXPECT_GT(route.sorties.size(), 2U);
   std::uint32_t next = 0;
   double duration = 0.0;
@@ -304,24 +311,24 @@ TEST(Route, WaypointLimitsSplitToo) {
 }
 
 TEST(Route, AStationBeyondTheBatteryIsReported) {
-  std::vector<Station> stations = ring(3, 18, 8);
-  stations.push_back({look_at({40000, 0, 50}, {0, 0, 8}), 1, 1, 9});
-  const Route route = plan(stations, site());
+  std::vector<CapturePoint> capture_points = ring(3, 18, 8);
+  capture_points.push_back({look_at({40000, 0, 50}, {0, 0, 8}), 1, 1, 9});
+  const Route route = plan(capture_points, site());
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_THAT(route.unreached[0].reason, HasSubstr("Wh above its reserve"));
 }
 
 TEST(Route, AFreeOrderIsShorterAndItsBoundHolds) {
-  std::vector<Station> shuffled;
-  for (const Station& station : ring(20, 18, 8)) {
+  std::vector<CapturePoint> shuffled;
+  for (const CapturePoint& capture_point : ring(20, 18, 8)) {
     shuffled.insert(
         shuffled.begin() + static_cast<std::ptrdiff_t>(7 * shuffled.size() % (shuffled.size() + 1)),
-        station);
+        capture_point);
   }
   RouteOptions free_order = options();
   free_order.order_is_free = true;
-  const Route as_given = plan(shuffled, site()), ordered = plan(shuffled, site(), free_order);
-  EXPECT_LT(ordered.length, as_given.length);
+  const Route input_order = plan(shuffled, site()), ordered = plan(shuffled, site(), free_order);
+  EXPECT_LT(ordered.length, input_order.length);
   EXPECT_LE(ordered.order_bound, ordered.order_length + 1e-9);
   EXPECT_LE(ordered.order_length, 1.1 * ordered.order_bound);
 }
@@ -329,7 +336,7 @@ TEST(Route, AFreeOrderIsShorterAndItsBoundHolds) {
 TEST(Route, ABlockedPadIsRefusedWithAReason) {
   RouteOptions inside = options();
   inside.takeoff = {0, 0, 0};
-  EXPECT_THAT(testing_support::complaint_of([&] { plan(ring(3, 18, 8), site(), inside); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { plan(ring(3, 18, 8), site(), inside); }),
               testing::HasSubstr("is 0.000 m from"));
   Obstacles with_roof = site();
   geometry::append(with_roof.mesh, scenes::box({-33, -33, 2}, {-31.5, -27, 2.5}));
@@ -343,16 +350,16 @@ TEST(Route, ABlockedPadIsRefusedWithAReason) {
 
 // Above the pad's own ground the climb is certified as legs are, in what is known of the air.
 TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
-  const auto plan_beside = [](double distance) {
+  const auto plan_at_distance = [](double distance) {
     Obstacles with_tree = site();
     const double west = -30.0 - distance;
     geometry::append(with_tree.mesh, scenes::box({west - 0.3, -30.2, 0}, {west, -29.8, 3}));
     const KnownSpace space(with_tree);
     return plan_route(ring(3, 18, 8), {}, space, nullptr, options());
   };
-  EXPECT_NO_THROW(plan_beside(2.5));
+  EXPECT_NO_THROW(plan_at_distance(2.5));
   try {
-    plan_beside(1.5);
+    plan_at_distance(1.5);
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.what(),
@@ -363,11 +370,11 @@ TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
 TEST(Route, AbsurdOptionsAreNamed) {
   RouteOptions negative = options();
   negative.clearance.margin = -1;
-  EXPECT_THAT(testing_support::complaint_of([&] { plan({}, site(), negative); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { plan({}, site(), negative); }),
               testing::HasSubstr("clearance.margin is -1"));
   RouteOptions nowhere = options();
   nowhere.takeoff.x() = std::nan("");
-  EXPECT_THAT(testing_support::complaint_of([&] { plan({}, site(), nowhere); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { plan({}, site(), nowhere); }),
               testing::HasSubstr("the take-off point is not a finite position"));
   EXPECT_TRUE(plan({}, site()).sorties.empty());  // nothing to do is fine
 }
@@ -381,19 +388,19 @@ TEST(CheckRoute, ListsLegPlaceAndDistance) {
   EXPECT_THAT(describe(violations[0]), HasSubstr("leg 2: 0.000 m from triangle"));
   EXPECT_EQ(check_route({{0, 0, 5}}, space, 1.0).size(), 1U);
   EXPECT_TRUE(check_route({}, space, 1.0).empty());
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 check_route({{0, 0, std::nan("")}}, space, 1.0);
               }),
               testing::HasSubstr("point 0 of the route is not a finite position"));
 }
 
-TEST(Station, YawIsClockwiseFromNorthAndPitchFromTheHorizon) {
+TEST(CapturePoint, YawIsClockwiseFromNorthAndPitchFromTheHorizon) {
   const Vector3d eye = Vector3d::Zero();
-  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {0, 5, 0})), 0.0);
-  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {5, 0, 0})), std::numbers::pi / 2);
-  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {-5, 0, 0})), 1.5 * std::numbers::pi);
-  EXPECT_DOUBLE_EQ(pitch_of(look_at(eye, {0, 1, -1})), -std::numbers::pi / 4);
-  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {0, 0, -1})), 0.0);
+  EXPECT_DOUBLE_EQ(compute_yaw(look_at(eye, {0, 5, 0})), 0.0);
+  EXPECT_DOUBLE_EQ(compute_yaw(look_at(eye, {5, 0, 0})), std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(compute_yaw(look_at(eye, {-5, 0, 0})), 1.5 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(compute_pitch(look_at(eye, {0, 1, -1})), -std::numbers::pi / 4);
+  EXPECT_DOUBLE_EQ(compute_yaw(look_at(eye, {0, 0, -1})), 0.0);
 }
 
 }  // namespace

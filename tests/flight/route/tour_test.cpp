@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::vector<Vector3d> places(std::uint64_t seed, int count) {
+std::vector<Vector3d> positions(std::uint64_t seed, int count) {
   std::mt19937_64 random(seed);
   std::vector<Vector3d> result;
   result.reserve(static_cast<std::size_t>(count));
@@ -25,12 +25,12 @@ std::vector<Vector3d> places(std::uint64_t seed, int count) {
   return result;
 }
 
-Tour tour_of(const std::vector<Vector3d>& where) {
+Tour compute_tour(const std::vector<Vector3d>& where) {
   return plan_tour(static_cast<std::uint32_t>(where.size()),
                    [&](std::uint32_t a, std::uint32_t b) { return (where[a] - where[b]).norm(); });
 }
 
-double cost_of(const std::vector<Vector3d>& where, const std::vector<std::uint32_t>& order) {
+double compute_cost(const std::vector<Vector3d>& where, const std::vector<std::uint32_t>& order) {
   double sum = 0.0;
   std::uint32_t at = 0;
   for (const std::uint32_t next : order)
@@ -39,29 +39,29 @@ double cost_of(const std::vector<Vector3d>& where, const std::vector<std::uint32
 }
 
 TEST(Tour, VisitsEveryPlaceOnceAtTheCostItSays) {
-  const auto where = places(1, 100);
-  const Tour tour = tour_of(where);
+  const auto where = positions(1, 100);
+  const Tour tour = compute_tour(where);
   std::vector<std::uint32_t> sorted = tour.order;
   std::sort(sorted.begin(), sorted.end());
   std::vector<std::uint32_t> all(99);
   std::iota(all.begin(), all.end(), 1U);
   EXPECT_EQ(sorted, all);
-  EXPECT_NEAR(tour.cost, cost_of(where, tour.order), 1e-9);
-  EXPECT_EQ(tour_of(where).order, tour.order);
+  EXPECT_NEAR(tour.cost, compute_cost(where, tour.order), 1e-9);
+  EXPECT_EQ(compute_tour(where).order, tour.order);
 }
 
 // Against all 40,320 orders of nine places: the bound is one, and the tour is close to the best.
 TEST(Tour, IsNearTheOptimumOfSmallCasesAndItsBoundHolds) {
   double worst = 1.0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const auto where = places(seed, 9);
+    const auto where = positions(seed, 9);
     std::vector<std::uint32_t> order(8);
     std::iota(order.begin(), order.end(), 1U);
-    double best = cost_of(where, order);
+    double best = compute_cost(where, order);
     while (std::next_permutation(order.begin(), order.end())) {
-      best = std::min(best, cost_of(where, order));
+      best = std::min(best, compute_cost(where, order));
     }
-    const Tour tour = tour_of(where);
+    const Tour tour = compute_tour(where);
     EXPECT_GE(tour.cost, best - 1e-9);
     EXPECT_LE(tour.lower_bound, best + 1e-9);
     EXPECT_GT(tour.lower_bound, 0.95 * best);  // Held-Karp's bound is within 1 % as a rule
@@ -71,25 +71,25 @@ TEST(Tour, IsNearTheOptimumOfSmallCasesAndItsBoundHolds) {
 }
 
 TEST(Tour, GapToTheBoundIsSmallForAHundredPlaces) {
-  const Tour tour = tour_of(places(5, 150));
+  const Tour tour = compute_tour(positions(5, 150));
   EXPECT_LE(tour.cost, 1.08 * tour.lower_bound);  // 2-opt with Or-opt is 5 % above the optimum
 }
 
 TEST(Tour, OfHardlyAnyPlacesIsTrivial) {
-  EXPECT_TRUE(tour_of(places(1, 1)).order.empty());
-  EXPECT_EQ(tour_of(places(1, 2)).order, std::vector<std::uint32_t>{1});
-  EXPECT_EQ(tour_of(places(1, 3)).order.size(), 2U);
+  EXPECT_TRUE(compute_tour(positions(1, 1)).order.empty());
+  EXPECT_EQ(compute_tour(positions(1, 2)).order, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(compute_tour(positions(1, 3)).order.size(), 2U);
 }
 
 /// The least time of stations first to last in one sortie; infinite if no pad has the energy.
 double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t last) {
   double best = std::numeric_limits<double>::infinity();
   for (const SplitProblem::Pad& pad : problem.pads) {
-    bool is_possible = last - first + 1 <= problem.stations_per_sortie;
+    bool is_possible = last - first + 1 <= problem.capture_points_per_sortie;
     double energy = pad.out[first].energy, time = pad.out[first].time;
     for (std::size_t i = first; i <= last; ++i) {
       if (i > first) energy += problem.leg[i - 1].energy, time += problem.leg[i - 1].time;
-      energy += problem.station[i].energy, time += problem.station[i].time;
+      energy += problem.capture_point[i].energy, time += problem.capture_point[i].time;
       is_possible &= energy + pad.back[i].energy <= problem.energy_per_sortie;
     }
     if (is_possible) best = std::min(best, time + pad.back[last].time);
@@ -99,7 +99,7 @@ double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t l
 
 /// Exhaustive twin of the split: every subset of the gaps between stations.
 double best_by_trying_all(const SplitProblem& problem) {
-  const std::size_t count = problem.station.size();
+  const std::size_t count = problem.capture_point.size();
   if (count == 0) return 0.0;
   double best = std::numeric_limits<double>::infinity();
   for (std::uint32_t cuts = 0; cuts < 1U << (count - 1); ++cuts) {
@@ -129,12 +129,12 @@ TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
         pad.out.push_back({home, home});
         pad.back.push_back({home, home});
       }
-      problem.station.push_back({1, 1});
+      problem.capture_point.push_back({1, 1});
       const double time = uniform(random);
       if (i > 0) problem.leg.push_back({time, uniform(random)});
     }
     problem.energy_per_sortie = 26;
-    problem.stations_per_sortie = 4;
+    problem.capture_points_per_sortie = 4;
     const double best = best_by_trying_all(problem);
     const SortieSplit split = split_into_sorties(problem);
     ASSERT_FALSE(split.sorties.empty());
@@ -159,9 +159,9 @@ TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
 TEST(SortieSplit, SaysWhenAStationIsOutOfReach) {
   SplitProblem problem;
   problem.pads = {{.out = {{1, 20}}, .back = {{1, 20}}}};
-  problem.station = {{1, 1}};
+  problem.capture_point = {{1, 1}};
   problem.energy_per_sortie = 30;
-  problem.stations_per_sortie = 10;
+  problem.capture_points_per_sortie = 10;
   EXPECT_TRUE(split_into_sorties(problem).sorties.empty());
 }
 

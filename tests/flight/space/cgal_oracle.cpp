@@ -23,15 +23,15 @@ struct CgalOracle::Impl {
   Triangles triangles;
   Tree tree;
 
-  Verdict judge(const Segment& piece, double from, double to, double clearance) const {
-    const double length = piece.length();
+  Verdict classify(const Segment& segment, double from, double to, double clearance) const {
+    const double length = segment.length();
     if ((from + to - length) / 2.0 >= clearance) return Verdict::clear;
     if (from < clearance || to < clearance) return Verdict::violated;
     if (length < 1e-8) return Verdict::grazing;
-    const Eigen::Vector3d middle = piece.at(0.5);
+    const Eigen::Vector3d middle = segment.at(0.5);
     const double between = std::sqrt(tree.squared_distance(to_cgal(middle)));
-    const Verdict first = judge({piece.from, middle}, from, between, clearance);
-    return first == Verdict::clear ? judge({middle, piece.to}, between, to, clearance) : first;
+    const Verdict first = classify({segment.from, middle}, from, between, clearance);
+    return first == Verdict::clear ? classify({middle, segment.to}, between, to, clearance) : first;
   }
 };
 
@@ -51,8 +51,8 @@ double CgalOracle::distance(const Eigen::Vector3d& point) const {
   return std::sqrt(impl_->tree.squared_distance(to_cgal(point)));
 }
 
-Verdict CgalOracle::judge(const Segment& leg, double clearance) const {
-  return impl_->judge(leg, distance(leg.from), distance(leg.to), clearance);
+Verdict CgalOracle::classify(const Segment& leg, double clearance) const {
+  return impl_->classify(leg, distance(leg.from), distance(leg.to), clearance);
 }
 
 }  // namespace skycap::flight

@@ -22,7 +22,7 @@ class CgalOracle {
   double distance(const Eigen::Vector3d& point) const;
 
   /// `grazing`: undecided when the pieces are shorter than 10 nm.
-  Verdict judge(const Segment& leg, double clearance) const;
+  Verdict classify(const Segment& leg, double clearance) const;
 
  private:
   struct Impl;

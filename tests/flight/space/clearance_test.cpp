@@ -47,23 +47,23 @@ TEST_P(RandomScene, CertificateAgreesWithTheOracle) {
   around.min() -= Vector3d::Constant(5);
   around.max() += Vector3d::Constant(5);
 
-  int accepted_by_oracle = 0, refused_by_us = 0, violations = 0;
+  int accepted_by_oracle = 0, rejected_by_skycap = 0, violations = 0;
   for (const Segment& leg : scenes::legs(random, 5000, around)) {
-    const Verdict verdict = oracle.judge(leg, scene.clearance);
-    const LegProof proof = prove(space, leg, scene.clearance);
-    EXPECT_EQ(proof.is_proven, proof.clearance >= scene.clearance);
-    EXPECT_EQ(space.is_free(leg, scene.clearance), proof.is_proven);
+    const Verdict verdict = oracle.classify(leg, scene.clearance);
+    const LegVerification verification = verify(space, leg, scene.clearance);
+    EXPECT_EQ(verification.is_verified, verification.clearance >= scene.clearance);
+    EXPECT_EQ(space.is_free(leg, scene.clearance), verification.is_verified);
     if (verdict == Verdict::violated) {
       ++violations;
-      EXPECT_FALSE(proof.is_proven) << "accepted a leg with a witness of violation";
+      EXPECT_FALSE(verification.is_verified) << "accepted a leg with a witness of violation";
     } else if (verdict == Verdict::clear) {
       ++accepted_by_oracle;
-      refused_by_us += proof.is_proven ? 0 : 1;
+      rejected_by_skycap += verification.is_verified ? 0 : 1;
     }
   }
   EXPECT_GT(violations, 100);  // the scene is worth testing on
   EXPECT_GT(accepted_by_oracle, 100);
-  EXPECT_LE(refused_by_us, accepted_by_oracle / 1000);
+  EXPECT_LE(rejected_by_skycap, accepted_by_oracle / 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -109,12 +109,12 @@ TEST(Clearance, ALegInsideASolidIsRefusedWhicheverWayTheSolidFaces) {
       for (auto& triangle : box.triangles) std::swap(triangle[0], triangle[1]);
     }
     const KnownSpace space(solid(box));
-    EXPECT_FALSE(prove(space, deep_inside, 1.0).is_proven);
+    EXPECT_FALSE(verify(space, deep_inside, 1.0).is_verified);
     EXPECT_FALSE(space.is_free(deep_inside, 1.0));
-    EXPECT_TRUE(prove(space, outside, 1.0).is_proven);
+    EXPECT_TRUE(verify(space, outside, 1.0).is_verified);
     Obstacles shell = solid(box);
     shell.mesh_is_solid = false;
-    EXPECT_TRUE(prove(KnownSpace(shell), deep_inside, 1.0).is_proven);
+    EXPECT_TRUE(verify(KnownSpace(shell), deep_inside, 1.0).is_verified);
   }
 }
 
@@ -157,12 +157,12 @@ TEST(Clearance, ALegThroughANoFlyVolumeIsRefusedThoughItsEndsAreOutside) {
   Obstacles obstacles;
   obstacles.no_fly = {{"heliport", {{10, -5}, {20, -5}, {20, 5}, {10, 5}}, 0.0, 50.0}};
   const KnownSpace space(obstacles);
-  const LegProof through = prove(space, {{0, 0, 20}, {30, 0, 20}}, 2.0);
-  EXPECT_FALSE(through.is_proven);
+  const LegVerification through = verify(space, {{0, 0, 20}, {30, 0, 20}}, 2.0);
+  EXPECT_FALSE(through.is_verified);
   EXPECT_THAT(space.name(through.closest), HasSubstr("heliport"));
-  EXPECT_TRUE(prove(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).is_proven);  // over its ceiling
-  EXPECT_NEAR(prove(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).clearance, 3.0, 2e-6);
-  EXPECT_FALSE(prove(space, {{14, 0, 20}, {16, 0, 20}}, 1.0).is_proven);  // wholly inside
+  EXPECT_TRUE(verify(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).is_verified);  // over its ceiling
+  EXPECT_NEAR(verify(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).clearance, 3.0, 2e-6);
+  EXPECT_FALSE(verify(space, {{14, 0, 20}, {16, 0, 20}}, 1.0).is_verified);  // wholly inside
 }
 
 TEST(Clearance, AnUnboundedNoFlyVolumeCannotBeFlownOver) {
@@ -196,8 +196,8 @@ TEST(Clearance, JointSpaceIsFreeWhereAllAre) {
   Obstacles building = solid(scenes::box({0, 0, 0}, {10, 10, 10}));
   Obstacles rules;
   rules.ground_height = 0.0;
-  const KnownSpace scene(building), law(rules);
-  const JointSpace both({&scene, &law});
+  const KnownSpace scene(building), no_fly(rules);
+  const JointSpace both({&scene, &no_fly});
   EXPECT_EQ(both.closest({{20, 0, 3}, {30, 0, 3}}, 99).kind, ObstacleKind::ground);
   EXPECT_EQ(both.closest({{12, 0, 9}, {30, 0, 9}}, 99).kind, ObstacleKind::mesh);
   EXPECT_FALSE(both.continues_free({{20, 0, 3}, {30, 0, 3}}, 4.0));

@@ -36,7 +36,7 @@ geometry::Mesh room() {
   return mesh;
 }
 
-KnownSpace truth_of(const geometry::Mesh& mesh) {
+KnownSpace make_truth(const geometry::Mesh& mesh) {
   Obstacles obstacles;
   obstacles.mesh = mesh;
   obstacles.mesh_is_solid = false;
@@ -45,18 +45,18 @@ KnownSpace truth_of(const geometry::Mesh& mesh) {
 
 /// The property that everything rests on: whatever counts as free keeps the true distance.
 void expect_truly_free(const FreeSpace& measured, const FreeSpace& truth, const AlignedBox3d& where,
-                       double clearance, int least) {
+                       double clearance, int min) {
   std::mt19937_64 random(11);
   int free = 0;
   for (int i = 0; i < 4000; ++i) {
     const Segment leg{scenes::point_in(random, where), scenes::point_in(random, where)};
-    const LegProof proof = prove(measured, leg, clearance, clearance);
-    if (!proof.is_proven) continue;
+    const LegVerification verification = verify(measured, leg, clearance, clearance);
+    if (!verification.is_verified) continue;
     ++free;
-    EXPECT_TRUE(prove(truth, leg, clearance).is_proven)
+    EXPECT_TRUE(verify(truth, leg, clearance).is_verified)
         << leg.from.transpose() << " to " << leg.to.transpose();
   }
-  EXPECT_GT(free, least);  // it does prove something
+  EXPECT_GT(free, min);  // it does prove something
 }
 
 TEST(MeasuredSpace, NothingIsFreeBeforeItIsMeasured) {
@@ -96,11 +96,11 @@ TEST(MeasuredSpace, WhatCountsAsFreeKeepsItsDistanceFromTheTruth) {
     space.insert(depth_image(scene, small_camera, look_at({-7, -7, 5}, target)), small_camera);
     space.insert(depth_image(scene, small_camera, look_at({7, -7, 4}, -target)), small_camera);
   }
-  expect_truly_free(space, truth_of(scene), AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)),
+  expect_truly_free(space, make_truth(scene), AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)),
                     0.5, 30);
 }
 
-TEST(MeasuredSpace, DoesNotDependOnTheNumberOfThreads) {
+TEST(MeasuredSpace, DoesNotDependOnThreadCount) {
   const geometry::Mesh scene = room();
   const auto known_on = [&](unsigned threads) {
     MeasuredSpace space({.voxel = 0.1});
@@ -108,7 +108,7 @@ TEST(MeasuredSpace, DoesNotDependOnTheNumberOfThreads) {
       space.insert(depth_image(scene, small_camera, look_at({-7, -7, 5}, target)), small_camera,
                    threads);
     }
-    space.insert(look_around(scene, {5, -5, 5}, 0.01), SweepRays{.spacing = 0.02}, threads);
+    space.insert(scan_around(scene, {5, -5, 5}, 0.01), SweepRays{.spacing = 0.02}, threads);
     std::ostringstream file;
     space.write(file);
     return file.str();
@@ -122,8 +122,8 @@ TEST(MeasuredSpace, ASensorThatLooksAroundProvesFreeSpaceToo) {
   const geometry::Mesh scene = room();
   MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});
   constexpr double spacing = 0.02;
-  space.insert(look_around(scene, {-5, -5, 5}, spacing * 0.99), spacing);
-  const KnownSpace truth = truth_of(scene);
+  space.insert(scan_around(scene, {-5, -5, 5}, spacing * 0.99), spacing);
+  const KnownSpace truth = make_truth(scene);
   expect_truly_free(space, truth, AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)), 0.5, 30);
   // Behind the column, as seen from the sensor, nothing is known; beside it there is.
   EXPECT_FALSE(space.is_free({{8, 8, 5}, {8, 8, 5}}, 0.1));
@@ -137,12 +137,12 @@ TEST(MeasuredSpace, RaysThatBeginBesideTheScansPlaceProveNothingThatIsNotFree) {
   MeasuredSpace spread_out({.voxel = 0.2, .depth_margin = 0.0}),
       exact = MeasuredSpace({.voxel = 0.2, .depth_margin = 0.0});
   for (const Vector3d& beside : {Vector3d(spread, 0, 0), Vector3d(0, -spread, 0)}) {
-    geometry::Scan scan = look_around(scene, Vector3d(-5, -5, 5) + beside, spacing * 0.9);
+    geometry::Scan scan = scan_around(scene, Vector3d(-5, -5, 5) + beside, spacing * 0.9);
     exact.insert(scan, spacing);
     scan.world_from_sensor.translation() = Vector3d(-5, -5, 5);
     spread_out.insert(scan, SweepRays{.spacing = spacing, .origin_spread = spread});
   }
-  expect_truly_free(spread_out, truth_of(scene),
+  expect_truly_free(spread_out, make_truth(scene),
                     AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)), 0.5, 30);
   EXPECT_LT(spread_out.free_volume(), exact.free_volume());
 }
@@ -153,9 +153,9 @@ TEST(MeasuredSpace, WhatASweepProvesIsTrulyFreeWhicheverWayItsAxisLies) {
   const geometry::Mesh scene = room();
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), Vector3d(1, 2, -2)}) {
     MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});
-    space.insert(look_around(scene, {-5, -5, 5}, 0.01), SweepRays{.spacing = 0.02, .axis = axis});
-    expect_truly_free(space, truth_of(scene), AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)),
-                      0.5, 30);
+    space.insert(scan_around(scene, {-5, -5, 5}, 0.01), SweepRays{.spacing = 0.02, .axis = axis});
+    expect_truly_free(space, make_truth(scene),
+                      AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)), 0.5, 30);
     EXPECT_FALSE(space.is_free({{8, 8, 5}, {8, 8, 5}}, 0.1));
   }
 }
@@ -216,30 +216,30 @@ TEST(MeasuredSpace, PathsNeverTouchTheUnseenSideOfABuilding) {
   geometry::Mesh building = scenes::box({-5, -5, 0}, {5, 5, 10});
   geometry::append(building, scenes::box({-9, 5, 0}, {9, 16, 10}));  // the surprise
   geometry::append(building, scenes::box({-60, -60, -1}, {60, 60, 0}));
-  const KnownSpace truth = truth_of(building);
+  const KnownSpace truth = make_truth(building);
   MeasuredSpace space({.voxel = 0.3, .free_without_return = 25.0});
   constexpr double clearance = 1.0;
-  Vector3d place(0, -20, 6);
-  space.declare_free(place, 4.0);
+  Vector3d position(0, -20, 6);
+  space.declare_free(position, 4.0);
 
   int reached = 0;
   std::mt19937_64 random(2);
   for (int step = 0; step < 16; ++step) {
     // Look ahead, around a ring about the building, then try to go to a random place.
     for (const double turn : {-1.2, 0.0, 1.2}) {
-      const double bearing = std::atan2(-place.y(), -place.x()) + turn;
-      const Vector3d target = place + Vector3d(std::cos(bearing), std::sin(bearing), 0);
-      space.insert(depth_image(building, small_camera, look_at(place, target)), small_camera);
+      const double bearing = std::atan2(-position.y(), -position.x()) + turn;
+      const Vector3d target = position + Vector3d(std::cos(bearing), std::sin(bearing), 0);
+      space.insert(depth_image(building, small_camera, look_at(position, target)), small_camera);
     }
     PathFinder finder(space, clearance);
     const Vector3d goal =
         scenes::point_in(random, AlignedBox3d(Vector3d(-25, -25, 3), Vector3d(25, 25, 9)));
-    const Path path = finder.find(place, goal);
+    const Path path = finder.find(position, goal);
     if (path.status != PathStatus::found) continue;
     for (std::size_t i = 1; i < path.points.size(); ++i) {
-      EXPECT_TRUE(prove(truth, {path.points[i - 1], path.points[i]}, clearance).is_proven);
+      EXPECT_TRUE(verify(truth, {path.points[i - 1], path.points[i]}, clearance).is_verified);
     }
-    place = goal;
+    position = goal;
     ++reached;
   }
   EXPECT_GT(reached, 3);
@@ -251,8 +251,8 @@ MeasuredSpace space_with_region() {
                        .region = AlignedBox3d(Vector3d(-6.1, -6, -1), Vector3d(6, 6, 11))});
   geometry::Mesh building = scenes::box({-5, -5, 0}, {5, 5, 10});
   geometry::append(building, scenes::box({-1, -21, 0}, {1, -20, 10}));  // outside of the region
-  for (const Vector3d& place : {Vector3d(-15, -9, 5), Vector3d(12, -12, 6)}) {
-    space.insert(depth_image(building, small_camera, look_at(place, Vector3d(0, -8, 5))),
+  for (const Vector3d& position : {Vector3d(-15, -9, 5), Vector3d(12, -12, 6)}) {
+    space.insert(depth_image(building, small_camera, look_at(position, Vector3d(0, -8, 5))),
                  small_camera);
   }
   return space;
@@ -262,9 +262,10 @@ TEST(MeasuredSpace, OutsideOfItsRegionEverythingIsFreeButMeasuredPoints) {
   const MeasuredSpace space = space_with_region();
   // Around the region, on the side that nobody has seen.
   EXPECT_TRUE(space.is_free({{-20, 20, 5}, {20, 20, 5}}, 10.0));
-  const Closest unseen = space.closest({{-20, 10, 5}, {20, 10, 5}}, 9.0);
-  EXPECT_EQ(unseen.kind, ObstacleKind::unknown_space);
-  EXPECT_NEAR(unseen.distance, 4.0, 1e-9);  // to the region's face at y = 6, a whole voxel's edge
+  const Closest unobserved = space.closest({{-20, 10, 5}, {20, 10, 5}}, 9.0);
+  EXPECT_EQ(unobserved.kind, ObstacleKind::unknown_space);
+  EXPECT_NEAR(unobserved.distance, 4.0,
+              1e-9);  // to the region's face at y = 6, a whole voxel's edge
   const Closest grown = space.closest({{-10, 3, 5}, {-10, 4, 5}}, 9.0);
   EXPECT_NEAR(grown.distance, 10 - 6.25, 1e-9);  // x = -6.1 grows to the next voxel's edge
   const Closest pillar = space.closest({{-3, -19, 5}, {3, -19, 5}}, 3.0);
@@ -286,7 +287,7 @@ TEST(MeasuredSpace, KeepsNoPointsBelowItsFloor) {
   EXPECT_GT(space.closest({{0, 0, 1}, {0, 0, 1}}, 20).distance, 2.0);
 }
 
-std::vector<Eigen::Vector3f> boundary_of(const MeasuredSpace& space) {
+std::vector<Eigen::Vector3f> collect_boundary(const MeasuredSpace& space) {
   std::stringstream file;
   space.write(file);
   return free_boundary(file, "file");
@@ -306,27 +307,27 @@ std::map<std::array<int, 3>, int> counted(const std::vector<Eigen::Vector3f>& fa
 // zero; a voxel that is measured inside adds its six.
 TEST(MeasuredSpace, EndsAtEachFaceOfWhatIsFreeOnce) {
   MeasuredSpace space({.voxel = 0.5});
-  EXPECT_TRUE(boundary_of(space).empty());
+  EXPECT_TRUE(collect_boundary(space).empty());
   space.declare_free(AlignedBox3d(Vector3d(-2, -1, 3), Vector3d(2.5, 4, 11.5)));
-  const auto faces = counted(boundary_of(space), 0.5);
+  const auto faces = counted(collect_boundary(space), 0.5);
   EXPECT_EQ(faces.size(), 826U);
-  for (const auto& [place, count] : faces) {
+  for (const auto& [position, count] : faces) {
     EXPECT_EQ(count, 1);
-    const bool is_outer = place[0] == -8 || place[0] == 10 || place[1] == -4 || place[1] == 16 ||
-                          place[2] == 12 || place[2] == 46;
-    EXPECT_TRUE(is_outer) << place[0] << " " << place[1] << " " << place[2];
+    const bool is_outer = position[0] == -8 || position[0] == 10 || position[1] == -4 ||
+                          position[1] == 16 || position[2] == 12 || position[2] == 46;
+    EXPECT_TRUE(is_outer) << position[0] << " " << position[1] << " " << position[2];
   }
   geometry::Scan scan;
   scan.points = {{0.2F, 0.2F, 7.2F}};
   space.insert(scan, 0.1);
-  EXPECT_EQ(counted(boundary_of(space), 0.5).size(), 832U);
+  EXPECT_EQ(counted(collect_boundary(space), 0.5).size(), 832U);
 }
 
 // Beside the region everything is free, so nothing ends there.
 TEST(MeasuredSpace, DoesNotEndWhereItsRegionDoes) {
   MeasuredSpace space({.voxel = 0.5, .region = AlignedBox3d(Vector3d(0, 0, 0), Vector3d(4, 4, 4))});
   space.declare_free(AlignedBox3d(Vector3d(0, 0, 0), Vector3d(2, 4, 4)));
-  const std::vector<Eigen::Vector3f> faces = boundary_of(space);
+  const std::vector<Eigen::Vector3f> faces = collect_boundary(space);
   EXPECT_EQ(faces.size(), 64U);
   for (const Eigen::Vector3f& face : faces) EXPECT_EQ(face.x(), 2.0F);
 }
@@ -374,7 +375,7 @@ TEST(MeasuredSpace, FilesOfBlocksOutOfTheWorldAreRefused) {
     std::memcpy(&hostile[16], &voxel, sizeof voxel);
     hostile.replace(112, 8, 8, '\0');  // the first block: as far off as a key can say
     std::istringstream stream(hostile);
-    EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace::read(stream, "free.bin"); }),
+    EXPECT_THAT(testing_support::thrown_message([&] { MeasuredSpace::read(stream, "free.bin"); }),
                 testing::StartsWith("free.bin: "))
         << voxel;
   }
@@ -384,20 +385,20 @@ TEST(MeasuredSpace, BadScansAndConfigurationsAreNamed) {
   MeasuredSpace space;
   geometry::Scan scan;
   scan.points = {{1, 0, 0}};
-  EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, small_camera); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { space.insert(scan, small_camera); }),
               testing::HasSubstr("1 points but 0 pixels"));  // no pixels
   scan.pixels = {96 * 64};
-  EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, small_camera); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { space.insert(scan, small_camera); }),
               testing::HasSubstr("a scan has pixel 6144"));  // one too far
-  EXPECT_THAT(testing_support::complaint_of([&] { space.insert(scan, 0.0); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { space.insert(scan, 0.0); }),
               testing::HasSubstr("the ray spacing is 0.0"));
-  EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace({.voxel = 0.0}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { MeasuredSpace({.voxel = 0.0}); }),
               testing::HasSubstr("measured_space.voxel is 0"));
-  EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace({.max_depth = std::nan("")}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { MeasuredSpace({.max_depth = std::nan("")}); }),
               testing::HasSubstr("measured_space.max_depth is nan"));
   for (const double coordinate : {std::nan(""), -1e9}) {
     const Eigen::AlignedBox3d region(Eigen::Vector3d(-1, -1, coordinate), Eigen::Vector3d(1, 1, 1));
-    EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace({.region = region}); }),
+    EXPECT_THAT(testing_support::thrown_message([&] { MeasuredSpace({.region = region}); }),
                 testing::HasSubstr("measured_space.region is "));
   }
 }

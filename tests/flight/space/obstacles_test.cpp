@@ -17,41 +17,41 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-std::string complaint(const Obstacles& obstacles) {
-  return testing_support::complaint_of([&] { validate(obstacles); });
+std::string error_message(const Obstacles& obstacles) {
+  return testing_support::thrown_message([&] { validate(obstacles); });
 }
 
 const std::vector<Vector2d> square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
 const std::vector<Vector2d> l_shape{{0, 0}, {40, 0}, {40, 10}, {10, 10}, {10, 40}, {0, 40}};
 
-TEST(Obstacles, NothingAtAllIsValid) { EXPECT_EQ(complaint({}), ""); }
+TEST(Obstacles, NothingAtAllIsValid) { EXPECT_EQ(error_message({}), ""); }
 
 TEST(Obstacles, ValidateNamesThePartThatIsWrong) {
   Obstacles two_corners;
   two_corners.no_fly = {{"pad", {{0, 0}, {1, 0}}}};
-  EXPECT_THAT(complaint(two_corners), HasSubstr("no-fly volume \"pad\" has 2 corners"));
+  EXPECT_THAT(error_message(two_corners), HasSubstr("no-fly volume \"pad\" has 2 corners"));
   Obstacles bow_tie;
   bow_tie.no_fly = {{"tie", {{0, 0}, {10, 10}, {10, 0}, {0, 10}}}};
-  EXPECT_THAT(complaint(bow_tie), HasSubstr("crosses itself"));
+  EXPECT_THAT(error_message(bow_tie), HasSubstr("crosses itself"));
   Obstacles flat;
   flat.fence = Prism{"line", {{0, 0}, {5, 0}, {10, 0}}};
-  EXPECT_THAT(complaint(flat), HasSubstr("fence \"line\" has no area"));
+  EXPECT_THAT(error_message(flat), HasSubstr("fence \"line\" has no area"));
   Obstacles upside_down;
   upside_down.fence = Prism{"site", square, 50, 20};
-  EXPECT_THAT(complaint(upside_down), HasSubstr("must be below its ceiling"));
+  EXPECT_THAT(error_message(upside_down), HasSubstr("must be below its ceiling"));
   Obstacles buried;
   buried.fence = Prism{"site", square, 0, 20};
   buried.ground_height = 30.0;
-  EXPECT_THAT(complaint(buried), HasSubstr("must be above the ground"));
+  EXPECT_THAT(error_message(buried), HasSubstr("must be above the ground"));
   Obstacles bad_point;
   bad_point.cloud.points = {{0, 0, std::numeric_limits<float>::quiet_NaN()}};
-  EXPECT_THAT(complaint(bad_point), HasSubstr("obstacle point 0"));
+  EXPECT_THAT(error_message(bad_point), HasSubstr("obstacle point 0"));
   Obstacles bad_radius;
   bad_radius.cloud.radius = -1;
-  EXPECT_THAT(complaint(bad_radius), HasSubstr("zero or more"));
+  EXPECT_THAT(error_message(bad_radius), HasSubstr("zero or more"));
   Obstacles no_triangles;
   no_triangles.mesh.vertices = {{0, 0, 0}};
-  EXPECT_THAT(complaint(no_triangles), HasSubstr("no triangle"));
+  EXPECT_THAT(error_message(no_triangles), HasSubstr("no triangle"));
 }
 
 // Both ways of asking agree: parity in the plane, and the winding number of the closed surface.

@@ -18,14 +18,14 @@ using testing::HasSubstr;
 
 const AlignedBox3d house{Vector3d(0, 0, 0), Vector3d(10, 10, 8)};
 
-PriorObstacleConfig model_of_house(double uncertainty) {
+PriorObstacleConfig house_model(double uncertainty) {
   PriorObstacleConfig config{.name = "the prior town.obj", .uncertainty = uncertainty};
   config.surfaces = {{"house 7", scenes::box(house.min(), house.max())}};
   return config;
 }
 
 TEST(PriorObstacle, IsNearerByWhatItMayBeOff) {
-  const PriorObstacle obstacle(model_of_house(0.5));
+  const PriorObstacle obstacle(house_model(0.5));
   const Segment leg{{15, 2, 4}, {15, 8, 4}};
   const Closest closest = obstacle.closest(leg, 100);
   EXPECT_NEAR(closest.distance, 4.5, 1e-9);
@@ -37,7 +37,7 @@ TEST(PriorObstacle, IsNearerByWhatItMayBeOff) {
 }
 
 TEST(PriorObstacle, IsInTheWayInsideOfIt) {
-  const PriorObstacle obstacle(model_of_house(0.1));
+  const PriorObstacle obstacle(house_model(0.1));
   EXPECT_EQ(obstacle.distance({5, 5, 4}, 100), 0.0);
   EXPECT_FALSE(obstacle.is_free({{5, 5, 3}, {5, 5, 4}}, 0.5));
   EXPECT_EQ(obstacle.distance({10.05, 5, 4}, 100), 0.0) << "within what it may be off";
@@ -65,8 +65,8 @@ TEST(PriorObstacle, ColumnsAreSolidToTheBottomOfTheWorld) {
 }
 
 TEST(PriorObstacle, IsTheGroundOfPadsUnlessItIsAModel) {
-  EXPECT_FALSE(PriorObstacle(model_of_house(0.1)).is_ground());
-  PriorObstacleConfig terrain = model_of_house(0.1);
+  EXPECT_FALSE(PriorObstacle(house_model(0.1)).is_ground());
+  PriorObstacleConfig terrain = house_model(0.1);
   terrain.is_ground = true;
   EXPECT_TRUE(PriorObstacle(terrain).is_ground());
   PriorObstacleConfig cloud{.name = "cloud"};
@@ -75,35 +75,35 @@ TEST(PriorObstacle, IsTheGroundOfPadsUnlessItIsAModel) {
 
   Obstacles site;
   site.priors = {std::make_shared<const PriorObstacle>(cloud),
-                 std::make_shared<const PriorObstacle>(model_of_house(0.1))};
+                 std::make_shared<const PriorObstacle>(house_model(0.1))};
   EXPECT_EQ(without_ground(site).priors.size(), 1U);
 }
 
 TEST(PriorObstacle, SaysWhatItCannotWorkWith) {
-  const auto complaint = [](const PriorObstacleConfig& config) {
-    return testing_support::complaint_of([&] { PriorObstacle{config}; });
+  const auto error_message = [](const PriorObstacleConfig& config) {
+    return testing_support::thrown_message([&] { PriorObstacle{config}; });
   };
-  PriorObstacleConfig config = model_of_house(-1.0);
-  EXPECT_THAT(complaint(config), HasSubstr("the prior town.obj has an uncertainty of -1"));
+  PriorObstacleConfig config = house_model(-1.0);
+  EXPECT_THAT(error_message(config), HasSubstr("the prior town.obj has an uncertainty of -1"));
   config = {.name = "x"};
   config.points = {{0, 0, std::numeric_limits<float>::infinity()}};
-  EXPECT_THAT(complaint(config), HasSubstr("x has a point that is not finite"));
+  EXPECT_THAT(error_message(config), HasSubstr("x has a point that is not finite"));
   config = {.name = "x"};
   config.columns.emplace_back();
-  EXPECT_THAT(complaint(config), HasSubstr("x has a column that is not finite, or empty"));
+  EXPECT_THAT(error_message(config), HasSubstr("x has a column that is not finite, or empty"));
 }
 
 // Beside all else that is known: the nearest counts, and is called by its own name.
 TEST(KnownSpace, TakesPriorsIn) {
   Obstacles site;
   site.ground_height = 0.0;
-  site.priors = {std::make_shared<const PriorObstacle>(model_of_house(0.5))};
+  site.priors = {std::make_shared<const PriorObstacle>(house_model(0.5))};
   PriorObstacleConfig tree{.name = "the prior trees.las"};
   tree.points = {{30, 5, 4}};
   site.priors.push_back(std::make_shared<const PriorObstacle>(tree));
   const KnownSpace space(site);
-  const auto nearest_to = [&](const Vector3d& place) {
-    return space.name(space.closest({place, place}, 100));
+  const auto nearest_to = [&](const Vector3d& position) {
+    return space.name(space.closest({position, position}, 100));
   };
   EXPECT_EQ(nearest_to({14, 5, 6}), "house 7 of the prior town.obj");
   EXPECT_EQ(nearest_to({27, 5, 6}), "the prior trees.las");
@@ -146,16 +146,16 @@ struct RandomTown {
   /// From a leg to the surface of the nearest ball: the distance of a point from a line, by its
   /// height over the leg, or from an end.
   double nearest_ball(const Segment& leg) const {
-    double least = 1e9;
+    double min = 1e9;
     const Vector3d along = (leg.to - leg.from).normalized();
     for (const Eigen::Vector3f& point : config.points) {
       const Vector3d from = point.cast<double>() - leg.from;
       const double at = std::clamp(from.dot(along), 0.0, leg.length());
-      least = std::min(least, (from - at * along).norm() - config.point_radius);
+      min = std::min(min, (from - at * along).norm() - config.point_radius);
     }
-    return least;
+    return min;
   }
-  bool holds(const Vector3d& point) const {
+  bool contains(const Vector3d& point) const {
     return std::ranges::any_of(boxes, [&](const auto& box) { return box.contains(point); });
   }
 };
@@ -165,7 +165,7 @@ struct RandomTown {
 TEST(PriorObstacle, CertifiesNoLegThatExactGeometryRefuses) {
   std::mt19937_64 random(19);
   std::uniform_real_distribution<double> clearances(0.0, 4.0);
-  std::size_t certified = 0, refused = 0, needlessly = 0;
+  std::size_t verified = 0, rejected = 0, needlessly = 0;
   for (int town_number = 0; town_number < 20; ++town_number) {
     const RandomTown town(random);
     const PriorObstacle obstacle(town.config);
@@ -174,22 +174,22 @@ TEST(PriorObstacle, CertifiesNoLegThatExactGeometryRefuses) {
     for (const Segment& leg : scenes::legs(random, 5000, around)) {
       const double clearance = clearances(random);
       const bool is_free = obstacle.is_free(leg, clearance);
-      EXPECT_EQ(is_free, prove(obstacle, leg, clearance).is_proven);
-      const Verdict verdict = oracle.judge(leg, clearance + town.config.uncertainty);
-      const bool is_clear = verdict == Verdict::clear && !town.holds(leg.from) &&
+      EXPECT_EQ(is_free, verify(obstacle, leg, clearance).is_verified);
+      const Verdict verdict = oracle.classify(leg, clearance + town.config.uncertainty);
+      const bool is_clear = verdict == Verdict::clear && !town.contains(leg.from) &&
                             town.nearest_ball(leg) > clearance + town.config.uncertainty;
       if (is_free) {
-        ++certified;
+        ++verified;
         ASSERT_TRUE(is_clear) << "town " << town_number << ", clearance " << clearance;
       } else {
-        ++refused;
+        ++rejected;
         needlessly += is_clear ? 1 : 0;
       }
     }
   }
-  EXPECT_EQ(certified + refused, 100'000U);
-  EXPECT_GT(certified, 10'000U);
-  EXPECT_GT(refused, 10'000U);
+  EXPECT_EQ(verified + rejected, 100'000U);
+  EXPECT_GT(verified, 10'000U);
+  EXPECT_GT(rejected, 10'000U);
   EXPECT_LT(needlessly, 5U) << "but for the guard against rounding";
 }
 

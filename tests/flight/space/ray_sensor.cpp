@@ -47,7 +47,7 @@ geometry::Scan depth_image(const geometry::Mesh& scene, const geometry::Camera& 
   return scan;
 }
 
-geometry::Scan look_around(const geometry::Mesh& scene, const Vector3d& position, double spacing) {
+geometry::Scan scan_around(const geometry::Mesh& scene, const Vector3d& position, double spacing) {
   geometry::Scan scan;
   scan.world_from_sensor.translation() = position;
   for (double elevation = -std::numbers::pi / 2; elevation <= std::numbers::pi / 2;

@@ -14,7 +14,7 @@ geometry::Scan depth_image(const geometry::Mesh& scene, const geometry::Camera& 
                            const geometry::View& view);
 
 /// One noise-free ray every `spacing` [rad] of azimuth and elevation, all around.
-geometry::Scan look_around(const geometry::Mesh& scene, const Eigen::Vector3d& position,
+geometry::Scan scan_around(const geometry::Mesh& scene, const Eigen::Vector3d& position,
                            double spacing);
 
 }  // namespace skycap::flight

@@ -19,8 +19,9 @@ using testing::HasSubstr;
 
 constexpr double clearance = 2.0;
 
-ReturnLaw law_of(std::vector<Dialect> dialects, double level, const Vector3d& pad = {0, 0, 0}) {
-  return {.dialects = std::move(dialects), .level = level, .landings = {pad}};
+RtlProfile make_rtl_profile(std::vector<AutopilotType> autopilots, double level,
+                            const Vector3d& pad = {0, 0, 0}) {
+  return {.autopilots = std::move(autopilots), .level = level, .landings = {pad}};
 }
 
 /// A free-standing upright slab, whose face toward -x is at `x`.
@@ -32,82 +33,83 @@ Obstacles wall_at(double x, double height = 60.0) {
 
 // The column over a place beside a wall keeps the distance that the place has; so does the whole
 // return to a pad farther off.
-TEST(ReturnProof, KeepsTheDistanceOfAColumnBesideAWall) {
-  const ReturnLaw law = law_of({Dialect::px4}, 30.0, {-40, 0, 0});
-  const Segment place{{0, 0, 10}, {0, 0, 10}};
+TEST(ReturnVerification, KeepsTheDistanceOfAColumnBesideAWall) {
+  const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4}, 30.0, {-40, 0, 0});
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
   const KnownSpace enough(wall_at(2.0 + 1e-3, 20.0)), too_near(wall_at(2.0 - 1e-3, 20.0));
-  const ReturnProof proof = prove_returns(enough, place, law, clearance);
-  EXPECT_TRUE(proof.is_proven);
-  EXPECT_NEAR(proof.clearance, 2.0 + 1e-3, 1e-5);
-  EXPECT_FALSE(prove_returns(too_near, place, law, clearance).is_proven);
+  const ReturnVerification verification = verify_returns(enough, position, rtl_profile, clearance);
+  EXPECT_TRUE(verification.is_verified);
+  EXPECT_NEAR(verification.clearance, 2.0 + 1e-3, 1e-5);
+  EXPECT_FALSE(verify_returns(too_near, position, rtl_profile, clearance).is_verified);
 }
 
 // A leg along a wall is proven to within the slack, and refused at less than the clearance.
-TEST(ReturnProof, ProvesALegBesideAWallToWithinTheSlack) {
-  const ReturnLaw law = law_of({Dialect::ardupilot}, 30.0, {-40, 0, 0});
+TEST(ReturnVerification, ProvesALegBesideAWallToWithinTheSlack) {
+  const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::ardupilot}, 30.0, {-40, 0, 0});
   const Segment leg{{0, -20, 10}, {0, 20, 12}};
   const KnownSpace enough(wall_at(2.0 + return_slack + 1e-3, 20.0));
   const KnownSpace too_near(wall_at(2.0 - 1e-3, 20.0));
-  const ReturnProof proof = prove_returns(enough, leg, law, clearance);
-  EXPECT_TRUE(proof.is_proven);
-  EXPECT_GE(proof.clearance, 2.0 - 1e-9);
-  EXPECT_LE(proof.clearance, 2.0 + return_slack + 1e-3);
-  EXPECT_FALSE(prove_returns(too_near, leg, law, clearance).is_proven);
+  const ReturnVerification verification = verify_returns(enough, leg, rtl_profile, clearance);
+  EXPECT_TRUE(verification.is_verified);
+  EXPECT_GE(verification.clearance, 2.0 - 1e-9);
+  EXPECT_LE(verification.clearance, 2.0 + return_slack + 1e-3);
+  EXPECT_FALSE(verify_returns(too_near, leg, rtl_profile, clearance).is_verified);
 }
 
-TEST(ReturnProof, NamesThePieceThePlaceAndTheObstacle) {
+TEST(ReturnVerification, NamesThePieceThePlaceAndTheObstacle) {
   const KnownSpace space(wall_at(-20.0, 20.0));  // between the place and the pad
-  const Segment place{{0, 0, 10}, {0, 0, 10}};
-  const ReturnProof low =
-      prove_returns(space, place, law_of({Dialect::px4}, 15.0, {-40, 0, 0}), clearance);
-  ASSERT_FALSE(low.is_proven);
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
+  const ReturnVerification low = verify_returns(
+      space, position, make_rtl_profile({AutopilotType::px4}, 15.0, {-40, 0, 0}), clearance);
+  ASSERT_FALSE(low.is_verified);
   EXPECT_THAT(describe(low, space),
               AllOf(HasSubstr("the level flight of the return from (0.00, 0.00, 10.00)"),
                     HasSubstr("within 0.000 m"), HasSubstr("triangle"), HasSubstr("14.60)")));
-  EXPECT_TRUE(
-      prove_returns(space, place, law_of({Dialect::px4}, 23.0, {-40, 0, 0}), clearance).is_proven);
+  EXPECT_TRUE(verify_returns(space, position,
+                             make_rtl_profile({AutopilotType::px4}, 23.0, {-40, 0, 0}), clearance)
+                  .is_verified);
 }
 
 // DJI's vehicles fly home level when near; with the wall between, no height of return helps them.
-TEST(ReturnProof, RefusesALevelReturnOfDjiThroughAWallAtAnyHeight) {
+TEST(ReturnVerification, RefusesALevelReturnOfDjiThroughAWallAtAnyHeight) {
   const KnownSpace space(wall_at(-20.0, 20.0));
-  const Segment place{{0, 0, 10}, {0, 0, 10}};
-  const ReturnLaw law = law_of({Dialect::dji}, 40.0, {-40, 0, 0});
-  const ReturnProof near = prove_returns(space, place, law, clearance);
-  EXPECT_FALSE(near.is_proven);
-  EXPECT_EQ(near.piece.part, ReturnPart::level_as_it_is);
-  const ReturnLaw far = law_of({Dialect::dji}, 40.0, {-60, 0, 0});
-  EXPECT_TRUE(prove_returns(space, place, far, clearance).is_proven);
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
+  const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::dji}, 40.0, {-40, 0, 0});
+  const ReturnVerification near = verify_returns(space, position, rtl_profile, clearance);
+  EXPECT_FALSE(near.is_verified);
+  EXPECT_EQ(near.segment.part, ReturnPart::level_as_it_is);
+  const RtlProfile far = make_rtl_profile({AutopilotType::dji}, 40.0, {-60, 0, 0});
+  EXPECT_TRUE(verify_returns(space, position, far, clearance).is_verified);
 }
 
 // Unknown is never free: over a place from which nobody has looked up there is no return.
-TEST(ReturnProof, RefusesToClimbThroughWhatWasNeverSeen) {
+TEST(ReturnVerification, RefusesToClimbThroughWhatWasNeverSeen) {
   MeasuredSpaceConfig config;
   config.region = {Vector3d(-10, -10, 0), Vector3d(10, 10, 40)};
   MeasuredSpace space(config);
   space.declare_free(Eigen::AlignedBox3d(Vector3d(-10, -10, 0), Vector3d(10, 10, 20)));
-  const Segment place{{0, 0, 10}, {0, 0, 10}};
-  const ReturnLaw high = law_of({Dialect::px4}, 50.0, {-40, 0, 0});
-  const ReturnProof proof = prove_returns(space, place, high, clearance);
-  EXPECT_FALSE(proof.is_proven);
-  EXPECT_EQ(proof.closest.kind, ObstacleKind::unknown_space);
-  EXPECT_EQ(proof.piece.part, ReturnPart::climb);
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
+  const RtlProfile high = make_rtl_profile({AutopilotType::px4}, 50.0, {-40, 0, 0});
+  const ReturnVerification verification = verify_returns(space, position, high, clearance);
+  EXPECT_FALSE(verification.is_verified);
+  EXPECT_EQ(verification.closest.kind, ObstacleKind::unknown_space);
+  EXPECT_EQ(verification.segment.part, ReturnPart::climb);
   // Level through what was seen, and out of the box.
-  const ReturnLaw low = law_of({Dialect::px4}, 15.0, {-40, 0, 0});
-  EXPECT_TRUE(prove_returns(space, place, low, clearance).is_proven);
+  const RtlProfile low = make_rtl_profile({AutopilotType::px4}, 15.0, {-40, 0, 0});
+  EXPECT_TRUE(verify_returns(space, position, low, clearance).is_verified);
 }
 
 /// The distance of a return by brute force: a point every 20 cm, each asked for its own distance.
-double sampled_distance(const FreeSpace& space, const std::vector<ReturnPiece>& pieces) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const ReturnPiece& piece : pieces) {
-    const int steps = 1 + static_cast<int>(piece.line.length() / 0.2);
+double sampled_distance(const FreeSpace& space, const std::vector<ReturnSegment>& segments) {
+  double min = std::numeric_limits<double>::infinity();
+  for (const ReturnSegment& segment : segments) {
+    const int steps = 1 + static_cast<int>(segment.line.length() / 0.2);
     for (int i = 0; i <= steps; ++i) {
-      const double distance = space.distance(piece.line.at(static_cast<double>(i) / steps), 20.0);
-      least = std::min(least, distance - piece.spread);
+      const double distance = space.distance(segment.line.at(static_cast<double>(i) / steps), 20.0);
+      min = std::min(min, distance - segment.spread);
     }
   }
-  return least;
+  return min;
 }
 
 /// The pieces that an autopilot flies: of DJI's two ways home, either.
@@ -122,31 +124,34 @@ TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
   obstacles.ground_height = -40.0;
   const KnownSpace space(obstacles);
   std::uniform_real_distribution<double> share(0.0, 1.0);
-  int proven = 0, refused = 0;
+  int verified = 0, rejected = 0;
   for (const Segment& leg :
        scenes::legs(random, 60, {Vector3d(-35, -35, -30), Vector3d(35, 35, 35)})) {
-    const ReturnLaw law = law_of({Dialect::ardupilot, Dialect::px4, Dialect::dji},
-                                 5.0 + 35.0 * share(random), {-55, -45, -40});
-    const ReturnProof proof = prove_returns(space, leg, law, clearance);
-    if (!proof.is_proven) {
-      ++refused;
-      const double near = sampled_distance(space, return_pieces(law, proof.from, return_slack));
+    const RtlProfile rtl_profile =
+        make_rtl_profile({AutopilotType::ardupilot, AutopilotType::px4, AutopilotType::dji},
+                         5.0 + 35.0 * share(random), {-55, -45, -40});
+    const ReturnVerification verification = verify_returns(space, leg, rtl_profile, clearance);
+    if (!verification.is_verified) {
+      ++rejected;
+      const double near =
+          sampled_distance(space, return_segments(rtl_profile, verification.from, return_slack));
       EXPECT_LE(near, clearance + return_slack + 0.11);  // samples are 20 cm apart
       continue;
     }
-    ++proven;
-    EXPECT_GE(proof.clearance, clearance - 1e-9);
+    ++verified;
+    EXPECT_GE(verification.clearance, clearance - 1e-9);
     for (int i = 0; i < 20; ++i) {
-      const Vector3d place = leg.at(share(random));
-      ASSERT_GE(sampled_distance(space, return_pieces(law, place)), proof.clearance - 1e-6)
-          << place.transpose();
+      const Vector3d position = leg.at(share(random));
+      ASSERT_GE(sampled_distance(space, return_segments(rtl_profile, position)),
+                verification.clearance - 1e-6)
+          << position.transpose();
     }
   }
-  EXPECT_GT(proven, 5);
-  EXPECT_GT(refused, 2);
+  EXPECT_GT(verified, 5);
+  EXPECT_GT(rejected, 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(ReturnProof, RandomScenes, testing::Range(1, 6));
+INSTANTIATE_TEST_SUITE_P(ReturnVerification, RandomScenes, testing::Range(1, 6));
 
 }  // namespace
 }  // namespace skycap::flight

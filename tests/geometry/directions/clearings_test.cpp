@@ -31,12 +31,12 @@ enum class Spread {
   denser_north,  // one half of the sphere has ten times as many
   rows,          // of latitude: many on common planes, many equal caps, crowds at the poles
   spiral,        // nearly all caps equal
-  faces_of_cube,
+  make_cube_faces,
   thrice,       // each three times
   off_by_1e_6,  // of lengths as far from 1 as they may be
 };
 constexpr Spread all_spreads[] = {Spread::random, Spread::jittered,   Spread::denser_north,
-                                  Spread::rows,   Spread::spiral,     Spread::faces_of_cube,
+                                  Spread::rows,   Spread::spiral,     Spread::make_cube_faces,
                                   Spread::thrice, Spread::off_by_1e_6};
 
 Directions spiral(int count) {
@@ -62,7 +62,7 @@ Directions rows(int count) {
   return directions;
 }
 
-Directions faces_of_cube(int edge) {
+Directions make_cube_faces(int edge) {
   Directions directions;
   for (int axis = 0; axis < 3; ++axis) {
     for (int u = 0; u <= edge; ++u) {
@@ -83,7 +83,7 @@ Directions spread_out(Spread spread, std::mt19937_64& random) {
   Directions directions;
   if (spread == Spread::rows) return rows(30);
   if (spread == Spread::spiral) return spiral(1500);
-  if (spread == Spread::faces_of_cube) return faces_of_cube(16);
+  if (spread == Spread::make_cube_faces) return make_cube_faces(16);
   if (spread == Spread::jittered) {
     directions = spiral(1500);
     for (Vector3d& q : directions) q = (q + 0.02 * random_direction(random)).normalized();
@@ -179,7 +179,7 @@ TEST_P(EvenSphere, TheLargestCapIsThatOfTheFullHull) {
 
 // Among all that tie with the largest: none of the hull's facets is nearer to the clear direction
 // than the one found, by more than the tolerance.
-TEST_P(EvenSphere, OfEqualCapsTheOneNearestToTheClearDirectionWins) {
+TEST_P(EvenSphere, SelectsCapNearestToClearDirectionWhenEqual) {
   std::mt19937_64 random(3);
   const Directions occluded = spread_out(GetParam(), random);
   const auto facets = hull_facets(occluded);
@@ -223,9 +223,9 @@ TEST(Clearings, MeetTheCapsThatReachThem) {
     return Vector3d(std::cos(angle), std::sin(angle), 0.0);  // of radius 0.2, from the first part
   };
   const double cosine = 1.0 - 0.5 * 0.2 * 0.2;
-  const auto angle_of = [](double chord) { return 2.0 * std::asin(0.5 * chord); };
-  EXPECT_TRUE(clearings.meet(cap_at(angle_of(0.299)), cosine));
-  EXPECT_FALSE(clearings.meet(cap_at(angle_of(0.301)), cosine));
+  const auto chord_angle = [](double chord) { return 2.0 * std::asin(0.5 * chord); };
+  EXPECT_TRUE(clearings.meet(cap_at(chord_angle(0.299)), cosine));
+  EXPECT_FALSE(clearings.meet(cap_at(chord_angle(0.301)), cosine));
   EXPECT_TRUE(clearings.meet(Vector3d(0.0, 0.2, 1.0).normalized(), cosine));
 }
 

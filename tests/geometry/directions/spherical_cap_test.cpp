@@ -276,7 +276,7 @@ TEST(GlobalCap, EqualsTheFullHullAndIsNeverWorseThanADenseSearch) {
   }
 }
 
-TEST(GlobalCap, OfEqualCapsTheOneNearestToTheClearDirectionWins) {
+TEST(GlobalCap, SelectsCapNearestToClearDirectionWhenEqual) {
   for (const Vector3d& corner : tetrahedron()) {
     const auto found = clearest_direction(tetrahedron(), Vector3d(-corner), {CapPolicy::global});
     EXPECT_LT((found->direction + corner).norm(), rounding);

@@ -32,7 +32,7 @@ TEST(CloudIo, RoundTripKeepsEveryAttribute) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
   const AttributedCloud cloud = three_points();
-  write_cloud(path, columns_of(cloud));
+  write_cloud(path, make_columns(cloud));
   const AttributedCloud again = read_cloud(path);
   EXPECT_EQ(again.positions, cloud.positions);
   EXPECT_EQ(again.normals, cloud.normals);
@@ -43,12 +43,12 @@ TEST(CloudIo, RoundTripKeepsEveryAttribute) {
 TEST(CloudIo, TellsFormatsByEndingsInAnyCase) {
   const TemporaryFolder folder;
   const AttributedCloud cloud = three_points();
-  write_cloud(folder.path() / "cloud.ply", columns_of(cloud));
+  write_cloud(folder.path() / "cloud.ply", make_columns(cloud));
   std::filesystem::rename(folder.path() / "cloud.ply", folder.path() / "CLOUD.PLY");
   EXPECT_EQ(read_cloud(folder.path() / "CLOUD.PLY").positions, cloud.positions);
-  EXPECT_EQ(ending_of("A.B.Las"), ".las");
-  EXPECT_EQ(ending_of("a.LAZ.GZ"), ".laz");
-  EXPECT_EQ(ending_of("folder.d/a"), "");
+  EXPECT_EQ(lower_extension("A.B.Las"), ".las");
+  EXPECT_EQ(lower_extension("a.LAZ.GZ"), ".laz");
+  EXPECT_EQ(lower_extension("folder.d/a"), "");
 }
 
 TEST(CloudIo, AbsentAttributesStayAbsent) {
@@ -67,7 +67,7 @@ TEST(CloudIo, IsReadByCgal) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
   const AttributedCloud cloud = three_points();
-  write_cloud(path, columns_of(cloud));
+  write_cloud(path, make_columns(cloud));
   using Read = std::tuple<Kernel::Point_3, Kernel::Vector_3, std::uint32_t, std::uint8_t>;
   std::vector<Read> points;
   std::ifstream stream(path, std::ios::binary);
@@ -120,11 +120,11 @@ TEST(CloudIo, ReadsPcdTextWithFieldsInAnyOrder) {
 }
 
 /// The bytes of LAS 1.4 with points of a format, all at (1.5, -2, 3).
-std::string las_bytes(int format, std::size_t points, std::size_t said) {
+std::string las_bytes(int format, std::size_t points, std::size_t declared) {
   const std::size_t point_size = format == 7 ? 36 : 30;
   std::string bytes(375 + points * point_size, '\0');
-  const auto put = [&](std::size_t place, auto value) {
-    std::memcpy(bytes.data() + place, &value, sizeof value);
+  const auto put = [&](std::size_t offset, auto value) {
+    std::memcpy(bytes.data() + offset, &value, sizeof value);
   };
   bytes.replace(0, 4, "LASF");
   put(24, std::uint8_t{1});
@@ -134,13 +134,13 @@ std::string las_bytes(int format, std::size_t points, std::size_t said) {
   put(105, static_cast<std::uint16_t>(point_size));
   for (std::size_t axis = 0; axis < 3; ++axis) put(131 + 8 * axis, 0.5);
   put(155, 1.0);  // offset of x
-  put(247, static_cast<std::uint64_t>(said));
+  put(247, static_cast<std::uint64_t>(declared));
   for (std::size_t i = 0; i < points; ++i) {
-    const std::size_t place = 375 + i * point_size;
-    put(place, std::int32_t{1});
-    put(place + 4, std::int32_t{-4});
-    put(place + 8, std::int32_t{6});
-    if (format == 7) put(place + 32, std::uint16_t{0xAB12});
+    const std::size_t offset = 375 + i * point_size;
+    put(offset, std::int32_t{1});
+    put(offset + 4, std::int32_t{-4});
+    put(offset + 8, std::int32_t{6});
+    if (format == 7) put(offset + 32, std::uint16_t{0xAB12});
   }
   return bytes;
 }
@@ -167,8 +167,8 @@ TEST(CloudIo, ReadsLasOfOldVersionsAndFormats) {
     SCOPED_TRACE(old.format);
     const std::size_t header = old.minor == 4 ? 375 : 227;
     std::string bytes = las_bytes(6, 0, 0).substr(0, header) + std::string(old.point_size, '\0');
-    const auto put = [&](std::size_t place, auto value) {
-      std::memcpy(bytes.data() + place, &value, sizeof value);
+    const auto put = [&](std::size_t offset, auto value) {
+      std::memcpy(bytes.data() + offset, &value, sizeof value);
     };
     put(25, static_cast<std::uint8_t>(old.minor));
     put(96, static_cast<std::uint32_t>(header));
@@ -190,9 +190,9 @@ TEST(CloudIo, ReadsLasOfOldVersionsAndFormats) {
 
 TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
   const TemporaryFolder folder;
-  const auto with = [](std::size_t place, int value) {
+  const auto with = [](std::size_t offset, int value) {
     std::string bytes = las_bytes(6, 2, 2);
-    bytes[place] = static_cast<char>(value);
+    bytes[offset] = static_cast<char>(value);
     return bytes;
   };
   const struct {
@@ -292,8 +292,8 @@ TEST(ReadPositions, OfLasFilesAreThoseOfTheCloud) {
   bytes[375 + 2 * 30 + 15] = 4;
   const auto path = folder.file("a.las", bytes);
   std::vector<Eigen::Vector3f> positions;
-  read_positions(path, [&](std::span<const Eigen::Vector3f> piece, double share) {
-    positions.insert(positions.end(), piece.begin(), piece.end());
+  read_positions(path, [&](std::span<const Eigen::Vector3f> chunk, double share) {
+    positions.insert(positions.end(), chunk.begin(), chunk.end());
     EXPECT_EQ(share, 1.0);
   });
   EXPECT_EQ(positions.size(), 4U);
@@ -305,12 +305,12 @@ TEST(ReadPositions, HandsOutTheCloudInPieces) {
   const TemporaryFolder folder;
   AttributedCloud cloud;
   for (int i = 0; i < 1'200'000; ++i) cloud.positions.emplace_back(0.001F * float(i), 0.0F, 1.0F);
-  write_cloud(folder.path() / "long.ply", columns_of(cloud));
+  write_cloud(folder.path() / "long.ply", make_columns(cloud));
   std::vector<Eigen::Vector3f> positions;
   std::vector<double> shares;
   read_positions(folder.path() / "long.ply",
-                 [&](std::span<const Eigen::Vector3f> piece, double share) {
-                   positions.insert(positions.end(), piece.begin(), piece.end());
+                 [&](std::span<const Eigen::Vector3f> chunk, double share) {
+                   positions.insert(positions.end(), chunk.begin(), chunk.end());
                    shares.push_back(share);
                  });
   EXPECT_EQ(positions, cloud.positions);
@@ -326,9 +326,9 @@ TEST(ReadPositions, HandsOutTextInPieces) {
   std::vector<std::size_t> sizes;
   std::vector<double> shares;
   read_positions(folder.file("long.xyz", text),
-                 [&](std::span<const Eigen::Vector3f> piece, double share) {
-                   EXPECT_EQ(piece.back(), Eigen::Vector3f(1, 2, 3));
-                   sizes.push_back(piece.size());
+                 [&](std::span<const Eigen::Vector3f> chunk, double share) {
+                   EXPECT_EQ(chunk.back(), Eigen::Vector3f(1, 2, 3));
+                   sizes.push_back(chunk.size());
                    shares.push_back(share);
                  });
   EXPECT_THAT(sizes, ElementsAre(1'000'000, 200'000));
@@ -342,10 +342,10 @@ TEST(ReadPositions, CountsThePointsOfAllPieces) {
   cloud.positions.assign(1'200'000, Vector3f::Zero());
   cloud.positions[5].x() = std::numeric_limits<float>::infinity();
   cloud.positions[1'100'000].y() = std::numeric_limits<float>::quiet_NaN();
-  write_cloud(folder.path() / "long.ply", columns_of(cloud));
+  write_cloud(folder.path() / "long.ply", make_columns(cloud));
   EXPECT_EQ(read_positions(folder.path() / "long.ply", [](auto&&...) {}), 2U);
   cloud.positions[1'100'001].y() = 20'000.0F;
-  write_cloud(folder.path() / "far.ply", columns_of(cloud));
+  write_cloud(folder.path() / "far.ply", make_columns(cloud));
   EXPECT_THAT([&] { read_positions(folder.path() / "far.ply", [](auto&&...) {}); },
               testing::ThrowsMessage<Error>(HasSubstr("point 1100001 is 20000")));
 }

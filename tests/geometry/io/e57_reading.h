@@ -28,11 +28,11 @@ class E57 : public testing::Test {
     std::vector<std::array<std::uint8_t, 3>> colours;
     std::vector<std::uint32_t> scans;
   };
-  Read read(const std::string& bytes, std::size_t most = 1 << 16) const {
+  Read read(const std::string& bytes, std::size_t max = 1 << 16) const {
     geometry::E57Reader reader(folder_.file("a.e57", bytes));
     Read all;
     geometry::E57Points points;
-    while (reader.next(points, most)) {
+    while (reader.next(points, max)) {
       all.positions.insert(all.positions.end(), points.positions.begin(), points.positions.end());
       all.normals.insert(all.normals.end(), points.normals.begin(), points.normals.end());
       all.colours.insert(all.colours.end(), points.colours.begin(), points.colours.end());
@@ -41,7 +41,7 @@ class E57 : public testing::Test {
     return all;
   }
   /// The message of the refusal; empty if it is read.
-  std::string refusal(const std::string& bytes) const {
+  std::string rejection(const std::string& bytes) const {
     try {
       read(bytes);
       return {};
@@ -57,7 +57,7 @@ class E57 : public testing::Test {
 };
 
 /// XML of a pose: w x y z, and x y z.
-inline std::string pose_of(const std::string& rotation, const std::string& translation) {
+inline std::string make_pose(const std::string& rotation, const std::string& translation) {
   const auto numbers = [](const char* names, const std::string& text) {
     std::string xml;
     std::istringstream stream(text);

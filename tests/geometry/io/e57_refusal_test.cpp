@@ -16,37 +16,38 @@ using namespace testing_support;
 
 TEST_F(E57, WhoseByteOfAPageIsDamagedIsRefused) {
   E57Triples points(500, {1.0, 2.0, 3.0});
-  const std::string whole = e57_of_points(points);
+  const std::string whole = make_e57_from_points(points);
   ASSERT_GT(whole.size(), 10 * e57_page);
   for (std::size_t page = 0; page * e57_page < whole.size(); ++page) {
-    for (const std::size_t place : {page == 0 ? 300UL : 0UL, 1019UL, 1020UL, 1023UL}) {
+    for (const std::size_t offset : {page == 0 ? 300UL : 0UL, 1019UL, 1020UL, 1023UL}) {
       std::string bytes = whole;
-      bytes[page * e57_page + place] = static_cast<char>(bytes[page * e57_page + place] ^ 0x10);
-      EXPECT_THAT(refusal(bytes), HasSubstr("its page at byte " + std::to_string(page * e57_page) +
-                                            " has a wrong checksum"));
+      bytes[page * e57_page + offset] = static_cast<char>(bytes[page * e57_page + offset] ^ 0x10);
+      EXPECT_THAT(rejection(bytes),
+                  HasSubstr("its page at byte " + std::to_string(page * e57_page) +
+                            " has a wrong checksum"));
     }
   }
 }
 
 /// A whole file with something else in its place, once, and checksums that agree.
 std::string with(const std::string& bytes, const std::string& old, const std::string& now) {
-  std::string content = e57_content_of(bytes);
-  const std::size_t place = content.find(old);
-  EXPECT_NE(place, std::string::npos) << old;
-  content.replace(place, old.size(), now);
+  std::string content = extract_e57_content(bytes);
+  const std::size_t offset = content.find(old);
+  EXPECT_NE(offset, std::string::npos) << old;
+  content.replace(offset, old.size(), now);
   const std::size_t begin = content.find("<?xml"), end = content.find("</e57Root>") + 11;
   return e57_with_xml(content.substr(0, begin), content.substr(begin, end - begin));
 }
 
 /// The same for a byte and those behind it.
-std::string with_bytes(const std::string& bytes, std::size_t place, const std::string& now) {
-  std::string content = e57_content_of(bytes);
-  content.replace(place, now.size(), now);
+std::string with_bytes(const std::string& bytes, std::size_t offset, const std::string& now) {
+  std::string content = extract_e57_content(bytes);
+  content.replace(offset, now.size(), now);
   return e57_pages(content);
 }
 
 TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
-  const std::string whole = e57_of_points(three_points);
+  const std::string whole = make_e57_from_points(three_points);
   const std::string eight(8, '\xFF');
   // Header of the file, of the records at 48, of the first packet at 80.
   const struct {
@@ -91,8 +92,9 @@ TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
       {with(whole, "type=\"Float\"", "type=\"ScaledInteger\" scale=\"inf\""), "is not finite"},
       {with(whole, "type=\"Float\"", "type=\"Integer\" maximum=\"many\""),
        "the maximum of 'cartesianX' 'many', which is not a valid number"},
-      {with(whole, "<points", pose_of("2 0 0 0", "") + "<points"), "quaternion of length 2.000000"},
-      {with(whole, "<points", pose_of("", "nan 0 0") + "<points"),
+      {with(whole, "<points", make_pose("2 0 0 0", "") + "<points"),
+       "quaternion of length 2.000000"},
+      {with(whole, "<points", make_pose("", "nan 0 0") + "<points"),
        "x of a translation that is not"},
       {with_bytes(whole, 48, "\x02"), "has no records at byte 48"},
       {with_bytes(whole, 56, eight), "at byte 48 (not counting checksums) that does not end"},
@@ -107,10 +109,10 @@ TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
   };
   for (const auto& broken : cases) {
     if (broken.message == "E57 is refused for its packets") {
-      EXPECT_FALSE(refusal(broken.bytes).empty());  // the header's letters are no packet
+      EXPECT_FALSE(rejection(broken.bytes).empty());  // the header's letters are no packet
       continue;
     }
-    EXPECT_THAT(refusal(broken.bytes), HasSubstr(broken.message));
+    EXPECT_THAT(rejection(broken.bytes), HasSubstr(broken.message));
   }
 }
 
@@ -121,20 +123,20 @@ TEST_F(E57, CannotTellOfMorePointsThanItHasBits) {
     scan.streams.push_back(e57_integers(name, 5, 5, {}));
   }
   scan.records = 2;
-  EXPECT_THAT(read(e57_of({scan})).positions,
+  EXPECT_THAT(read(make_e57({scan})).positions,
               testing::ElementsAre(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(5, 5, 5)));
   scan.records = std::uint64_t{1} << 60;
-  EXPECT_THAT(refusal(e57_of({scan})), HasSubstr("says to have 1152921504606846976 points"));
+  EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("says to have 1152921504606846976 points"));
   // Nor of so many more than it has bytes that they fill the memory.
   scan.streams[0] = e57_integers("cartesianX", 0, 1, std::vector<std::int64_t>(80'000, 1));
   scan.records = 65'536;
-  EXPECT_EQ(read(e57_of({scan})).positions.size(), 65'536U);
+  EXPECT_EQ(read(make_e57({scan})).positions.size(), 65'536U);
   scan.records = 80'000;
-  EXPECT_THAT(refusal(e57_of({scan})), HasSubstr("which is room for 65536"));
+  EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("which is room for 65536"));
 }
 
 TEST_F(E57, HasNoUseForEntitiesAndDepth) {
-  const std::string whole = e57_of_points(three_points);
+  const std::string whole = make_e57_from_points(three_points);
   std::string bomb = "<!DOCTYPE e57Root [<!ENTITY a \"ha\">";
   for (char c = 'b'; c < 'z'; ++c) {
     const std::string before(1, static_cast<char>(c - 1));
@@ -147,41 +149,42 @@ TEST_F(E57, HasNoUseForEntitiesAndDepth) {
             3U);
   std::string deep;
   for (int i = 0; i < 200'000; ++i) deep += "<a>";
-  EXPECT_THAT(refusal(with(whole, "<data3D", deep + "<data3D")), HasSubstr("XML that is damaged"));
+  EXPECT_THAT(rejection(with(whole, "<data3D", deep + "<data3D")),
+              HasSubstr("XML that is damaged"));
   for (int i = 0; i < 200'000; ++i) deep += "</a>";
   EXPECT_EQ(read(with(whole, "<data3D", deep + "<data3D")).positions.size(), 3U);
 }
 
-TEST_F(E57, ThatIsCutShortIsRefused) {
-  const std::string whole = e57_of_points(E57Triples(300, {1, 2, 3}));
+TEST_F(E57, RejectsTruncatedFiles) {
+  const std::string whole = make_e57_from_points(E57Triples(300, {1, 2, 3}));
   ASSERT_FALSE(whole.empty());
   for (std::size_t size = 0; size < whole.size(); size += 101) {
-    EXPECT_NE(refusal(whole.substr(0, size)), "") << size;
+    EXPECT_NE(rejection(whole.substr(0, size)), "") << size;
   }
 }
 
 // With checksums that agree, so that more than they is put to the test.
-TEST_F(E57, WithChangedBytesIsReadOrRefused) {
+TEST_F(E57, ReadsOrRejectsChangedBytes) {
   E57Scan scan{
       {e57_integers("cartesianX", -9, 9, {1, 2, 3, 4, 5}),
        e57_singles("cartesianY", {1, 2, 3, 4, 5}),
        e57_integers("cartesianZ", 0, 1000, {1, 2, 3, 4, 5}, "ScaledInteger", "scale=\"2\""),
        e57_integers("cartesianInvalidState", 0, 2, {0, 0, 1, 0, 0})},
       5,
-      pose_of("1 0 0 0", "1 2 3"),
+      make_pose("1 0 0 0", "1 2 3"),
       3,
       true};
-  const std::string content = e57_content_of(e57_of({scan}));
+  const std::string content = extract_e57_content(make_e57({scan}));
   std::mt19937_64 random(1);
-  int refused = 0, read_whole = 0;
+  int rejected = 0, read_whole = 0;
   for (int change = 0; change < 1000; ++change) {
     std::string bytes = content;
     // What is not XML is a tenth of the file: half of the changes.
     const std::size_t end = change % 2 == 0 ? 300 : bytes.size();
     for (int i = 0; i < 2; ++i) bytes[random() % end] = static_cast<char>(random());
-    ++(refusal(e57_pages(bytes)).empty() ? read_whole : refused);
+    ++(rejection(e57_pages(bytes)).empty() ? read_whole : rejected);
   }
-  EXPECT_GE(refused, 100);
+  EXPECT_GE(rejected, 100);
   EXPECT_GE(read_whole, 100);
 }
 

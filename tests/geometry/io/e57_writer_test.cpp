@@ -49,7 +49,7 @@ TEST_F(E57, IsReadAsItWasWritten) {
   for (const std::size_t count : {1U, 2U, 43U, 10'000U}) {
     const AttributedCloud cloud = some_cloud(count);
     const auto path = folder_.path() / "written.e57";
-    write_cloud(path, columns_of(cloud));
+    write_cloud(path, make_columns(cloud));
     AttributedCloud read = read_cloud(path);
     EXPECT_EQ(read.positions, cloud.positions) << count;
     EXPECT_EQ(read.normals, cloud.normals) << count;
@@ -63,17 +63,18 @@ TEST_F(E57, IsReadAsItWasWritten) {
 
 TEST_F(E57, IsWrittenInPagesThatAgreeWithTheirChecksums) {
   const auto path = folder_.path() / "written.e57";
-  write_cloud(path, columns_of(some_cloud(10'000)));
+  write_cloud(path, make_columns(some_cloud(10'000)));
   const std::string bytes = read_file(path);
   EXPECT_EQ(bytes.size() % e57_page, 0U);
-  EXPECT_EQ(e57_pages(e57_content_of(bytes)), bytes);
+  EXPECT_EQ(e57_pages(extract_e57_content(bytes)), bytes);
 }
 
-std::vector<std::string> identifiers_of(const std::filesystem::path& path) {
-  const std::string content = e57_content_of(read_file(path));
+std::vector<std::string> read_guids(const std::filesystem::path& path) {
+  const std::string content = extract_e57_content(read_file(path));
   std::vector<std::string> found;
-  for (std::size_t place = 0; (place = content.find(">{", place)) != std::string::npos; ++place) {
-    found.push_back(content.substr(place + 1, 38));
+  for (std::size_t offset = 0; (offset = content.find(">{", offset)) != std::string::npos;
+       ++offset) {
+    found.push_back(content.substr(offset + 1, 38));
     EXPECT_EQ(found.back().back(), '}');
   }
   return found;
@@ -83,14 +84,14 @@ std::vector<std::string> identifiers_of(const std::filesystem::path& path) {
 TEST_F(E57, IsWrittenTheSameEachTime) {
   AttributedCloud cloud = some_cloud(100);
   const auto write = [&](const std::string& name) {
-    write_cloud(folder_.path() / name, columns_of(cloud));
+    write_cloud(folder_.path() / name, make_columns(cloud));
     return folder_.path() / name;
   };
   const auto first = write("first.e57");
   EXPECT_EQ(read_file(first), read_file(write("second.e57")));
   cloud.colours[50][1] = 8;
-  std::vector<std::string> all = identifiers_of(first);
-  for (const std::string& other : identifiers_of(write("third.e57"))) all.push_back(other);
+  std::vector<std::string> all = read_guids(first);
+  for (const std::string& other : read_guids(write("third.e57"))) all.push_back(other);
   EXPECT_EQ(all.size(), 4U);
   std::ranges::sort(all);
   EXPECT_EQ(std::ranges::adjacent_find(all), all.end());

@@ -31,17 +31,17 @@ std::vector<Vector3f> corners() {
 }
 
 /// A line for each point; `order` says which coordinate is in which column.
-std::string lines(const std::string& apart, const std::string& behind = "",
+std::string lines(const std::string& apart, const std::string& after = "",
                   const std::string& order = "xyz", char point = '.') {
   std::string text;
-  for (const Vector3f& place : corners()) {
+  for (const Vector3f& corner : corners()) {
     std::string line;
     for (const char axis : order) {
-      std::string number = std::to_string(place[axis - 'x']);
+      std::string number = std::to_string(corner[axis - 'x']);
       number.replace(number.find('.'), 1, 1, point);
       line += (line.empty() ? "" : apart) + number;
     }
-    text += line + behind + "\n";
+    text += line + after + "\n";
   }
   return text;
 }
@@ -64,8 +64,8 @@ class ForeignCloud : public testing::Test {
       EXPECT_EQ(cloud.skipped, skipped) << bytes.substr(0, 80);
       std::vector<Vector3f> positions;
       EXPECT_EQ(read_positions(path,
-                               [&](std::span<const Vector3f> piece, double) {
-                                 positions.insert(positions.end(), piece.begin(), piece.end());
+                               [&](std::span<const Vector3f> chunk, double) {
+                                 positions.insert(positions.end(), chunk.begin(), chunk.end());
                                }),
                 skipped);
       EXPECT_EQ(positions, corners());
@@ -73,8 +73,8 @@ class ForeignCloud : public testing::Test {
       ADD_FAILURE() << error.what() << "\n" << bytes.substr(0, 200);
     }
   }
-  std::string complaint(const std::string& name, const std::string& bytes) {
-    return testing_support::complaint_of([&] { read_cloud(folder_.file(name, bytes)); });
+  std::string error_message(const std::string& name, const std::string& bytes) {
+    return testing_support::thrown_message([&] { read_cloud(folder_.file(name, bytes)); });
   }
   TemporaryFolder folder_;
 };
@@ -89,7 +89,7 @@ TEST_F(ForeignCloud, ReadsTextWithMarksAndAnyEndsOfLines) {
   std::string wide = "\xFE\xFF";
   for (const char c : text) wide += std::string{'\0', c};
   expect_corners("a.xyz", wide);
-  EXPECT_THAT(complaint("a.xyz", replaced(lines(" "), "\n", " ")),
+  EXPECT_THAT(error_message("a.xyz", replaced(lines(" "), "\n", " ")),
               HasSubstr("has 24 numbers in its only line; write one point in a line"));
 }
 
@@ -117,15 +117,17 @@ TEST_F(ForeignCloud, ReadsTextWithHeadersAndOtherSeparators) {
 }
 
 TEST_F(ForeignCloud, RefusesTextThatItDoesNotUnderstand) {
-  EXPECT_THAT(complaint("a.csv", "lat,lon,alt\n1,2,3\n"),
+  EXPECT_THAT(error_message("a.csv", "lat,lon,alt\n1,2,3\n"),
               HasSubstr("line 1: is a header that does not name the columns x, y and z"));
-  EXPECT_THAT(complaint("a.pts", "9\n" + lines(" ")), HasSubstr("ends after 8 of its 9 points"));
-  EXPECT_THAT(complaint("a.xyz", "4\n2\n0 0 0\n"), HasSubstr("line 2: is a second number alone"));
-  EXPECT_THAT(complaint("a.csv", "1,2\n"),
+  EXPECT_THAT(error_message("a.pts", "9\n" + lines(" ")),
+              HasSubstr("ends after 8 of its 9 points"));
+  EXPECT_THAT(error_message("a.xyz", "4\n2\n0 0 0\n"),
+              HasSubstr("line 2: is a second number alone"));
+  EXPECT_THAT(error_message("a.csv", "1,2\n"),
               HasSubstr("line 1: ends where a coordinate is expected"));
-  EXPECT_THAT(complaint("a.csv", "1,2,3\n1,,3\n"),
+  EXPECT_THAT(error_message("a.csv", "1,2,3\n1,,3\n"),
               HasSubstr("line 2: ends where a coordinate is expected"));
-  EXPECT_THAT(complaint("a.xyz", "1 2 3\n1 2,5 3\n"),
+  EXPECT_THAT(error_message("a.xyz", "1 2 3\n1 2,5 3\n"),
               HasSubstr("line 2: '2,5' has a comma for the decimal point"));
 }
 
@@ -139,7 +141,7 @@ TEST_F(ForeignCloud, SkipsAndCountsWhatIsNotFinite) {
       "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\n"
       "property float z\nend_header\n";
   expect_corners("a.ply", ply + "nan 0 0\n" + lines(" "), 1);
-  EXPECT_THAT(complaint("a.xyz", "nan nan nan\n"),
+  EXPECT_THAT(error_message("a.xyz", "nan nan nan\n"),
               HasSubstr("contains no points but 1 that are NaN or infinite"));
 }
 
@@ -154,14 +156,14 @@ TEST_F(ForeignCloud, ReadsPcdOfOldVersionsAndOtherSystems) {
 }
 
 /// A PLY file whose vertices are a byte and three floats, or with colours.
-std::string binary_ply(const std::string& properties, const std::string& of_point,
+std::string binary_ply(const std::string& properties, const std::string& point_bytes,
                        const std::string& line_end) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex 8\n" + properties +
                       "property float x\nproperty float y\nproperty float z\nend_header\n";
   bytes = replaced(bytes, "\n", line_end);
-  for (const Vector3f& place : corners()) {
-    bytes += of_point;
-    bytes.append(reinterpret_cast<const char*>(place.data()), 12);
+  for (const Vector3f& corner : corners()) {
+    bytes += point_bytes;
+    bytes.append(reinterpret_cast<const char*>(corner.data()), 12);
   }
   return bytes;
 }
@@ -174,7 +176,7 @@ TEST_F(ForeignCloud, ReadsBinaryPlyBehindAHeaderOfAnyLineEnds) {
 }
 
 TEST_F(ForeignCloud, TakesColoursInTheScaleOfTheirTypeOrNone) {
-  const auto colour_of = [&](const char* type, auto red, auto green, auto blue) {
+  const auto make_colour = [&](const char* type, auto red, auto green, auto blue) {
     std::string properties, values;
     for (const auto& [name, value] : {std::pair{"red", red}, {"green", green}, {"blue", blue}}) {
       properties += "property " + std::string(type) + " " + name + "\n";
@@ -187,22 +189,22 @@ TEST_F(ForeignCloud, TakesColoursInTheScaleOfTheirTypeOrNone) {
     return cloud.colours.empty() ? std::optional<Bytes>() : cloud.colours.at(7);
   };
   using Colour = std::array<std::uint8_t, 3>;
-  EXPECT_EQ(colour_of("uchar", std::uint8_t{200}, std::uint8_t{60}, std::uint8_t{20}),
+  EXPECT_EQ(make_colour("uchar", std::uint8_t{200}, std::uint8_t{60}, std::uint8_t{20}),
             (Colour{200, 60, 20}));
-  EXPECT_EQ(colour_of("ushort", std::uint16_t{51200}, std::uint16_t{15360}, std::uint16_t{5120}),
+  EXPECT_EQ(make_colour("ushort", std::uint16_t{51200}, std::uint16_t{15360}, std::uint16_t{5120}),
             (Colour{200, 60, 20}));
-  EXPECT_EQ(colour_of("float", 1.0F, 0.2F, 0.0F), (Colour{255, 51, 0}));
-  EXPECT_EQ(colour_of("float", 200.0F, 60.0F, 20.0F), std::nullopt);
-  EXPECT_EQ(colour_of("int", 300, 0, 0), std::nullopt);
-  EXPECT_EQ(colour_of("int", -1, 0, 0), std::nullopt);
+  EXPECT_EQ(make_colour("float", 1.0F, 0.2F, 0.0F), (Colour{255, 51, 0}));
+  EXPECT_EQ(make_colour("float", 200.0F, 60.0F, 20.0F), std::nullopt);
+  EXPECT_EQ(make_colour("int", 300, 0, 0), std::nullopt);
+  EXPECT_EQ(make_colour("int", -1, 0, 0), std::nullopt);
 }
 
 /// LAS 1.4 of format 2, with the counts of old and new versions, and a colour.
-std::string las_of(std::uint32_t old_count, std::uint64_t count, std::uint16_t scale) {
+std::string make_las(std::uint32_t old_count, std::uint64_t count, std::uint16_t scale) {
   const std::size_t size = las::point_size(2);
   std::string bytes(las::header::end + 8 * size, '\0');
-  const auto put = [&](std::size_t place, auto value) {
-    std::memcpy(bytes.data() + place, &value, sizeof value);
+  const auto put = [&](std::size_t corner, auto value) {
+    std::memcpy(bytes.data() + corner, &value, sizeof value);
   };
   bytes.replace(0, 4, "LASF");
   put(las::header::major, std::uint8_t{1});
@@ -216,27 +218,27 @@ std::string las_of(std::uint32_t old_count, std::uint64_t count, std::uint16_t s
   for (std::size_t axis = 0; axis < 3; ++axis) put(las::header::scale + 8 * axis, 0.5);
   const std::vector<Vector3f> points = corners();
   for (std::size_t i = 0; i < 8; ++i) {
-    const std::size_t place = las::header::end + i * size;
+    const std::size_t corner = las::header::end + i * size;
     for (int axis = 0; axis < 3; ++axis) {
-      put(place + 4UL * axis, static_cast<std::int32_t>(2.0F * points[i][axis]));
+      put(corner + 4UL * axis, static_cast<std::int32_t>(2.0F * points[i][axis]));
     }
     for (std::size_t channel = 0; channel < 3; ++channel) {
       constexpr std::array<int, 3> colour{200, 60, 20};
-      put(place + 20 + 2 * channel, static_cast<std::uint16_t>(colour[channel] * scale));
+      put(corner + 20 + 2 * channel, static_cast<std::uint16_t>(colour[channel] * scale));
     }
   }
   return bytes;
 }
 
 TEST_F(ForeignCloud, ReadsLasWhoseNewCountIsNotFilledIn) {
-  expect_corners("a.las", las_of(8, 0, 256));
-  expect_corners("a.las", las_of(0, 8, 256));
-  expect_corners("a.las", las_of(5, 8, 256));  // the new one counts
+  expect_corners("a.las", make_las(8, 0, 256));
+  expect_corners("a.las", make_las(0, 8, 256));
+  expect_corners("a.las", make_las(5, 8, 256));  // the new one counts
 }
 
 TEST_F(ForeignCloud, ReadsLasColoursOfEightBits) {
   for (const std::uint16_t scale : {std::uint16_t{1}, std::uint16_t{256}}) {
-    const AttributedCloud cloud = read_cloud(folder_.file("a.las", las_of(8, 8, scale)));
+    const AttributedCloud cloud = read_cloud(folder_.file("a.las", make_las(8, 8, scale)));
     EXPECT_THAT(cloud.colours.at(0), ElementsAre(200, 60, 20)) << scale;
   }
 }
@@ -248,7 +250,7 @@ std::string e57_with(const std::string& rotation, double last_x) {
                   testing_support::e57_doubles("cartesianY", {2.0, 0.0}),
                   testing_support::e57_doubles("cartesianZ", {3.0, 0.0})};
   scan.more = "<pose>" + rotation + "<translation><x>10</x></translation></pose>";
-  return testing_support::e57_of({scan});
+  return testing_support::make_e57({scan});
 }
 
 TEST_F(ForeignCloud, TakesAnE57RotationOfZerosForNone) {
@@ -257,7 +259,7 @@ TEST_F(ForeignCloud, TakesAnE57RotationOfZerosForNone) {
     const AttributedCloud cloud = read_cloud(folder_.file("a.e57", e57_with(rotation, 0.0)));
     EXPECT_THAT(cloud.positions, ElementsAre(Vector3f(11, 2, 3), Vector3f(10, 0, 0))) << rotation;
   }
-  EXPECT_THAT(complaint("a.e57", e57_with("<rotation><w>2</w></rotation>", 0.0)),
+  EXPECT_THAT(error_message("a.e57", e57_with("<rotation><w>2</w></rotation>", 0.0)),
               HasSubstr("of length 2.000000; it must be 1: save the scan again"));
 }
 

@@ -27,27 +27,28 @@ const std::vector<std::array<double, 3>> vertices = {{0, 0, 0}, {4, 0, 0}, {4, 3
 const std::vector<std::array<int, 4>> faces = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                                {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
-std::string text_of(double number) { return std::to_string(static_cast<int>(number)); }
+std::string format_number(double number) { return std::to_string(static_cast<int>(number)); }
 
 /// A line for each vertex.
-std::string vertex_lines(const std::string& before = "", const std::string& behind = "",
+std::string vertex_lines(const std::string& before = "", const std::string& after = "",
                          const std::string& apart = " ") {
   std::string text;
   for (const auto& [x, y, z] : vertices) {
-    text += before + text_of(x) + apart + text_of(y) + apart + text_of(z) + behind + "\n";
+    text += before + format_number(x) + apart + format_number(y) + apart + format_number(z) +
+            after + "\n";
   }
   return text;
 }
 
 /// A line for each face, its indices counted from `first`.
-std::string face_lines(const std::string& before, const std::string& behind, int first,
+std::string face_lines(const std::string& before, const std::string& after, int first,
                        const std::string& apart = " ") {
   std::string text;
   for (const auto& face : faces) {
     text += before;
     for (std::size_t i = 0; i < 4; ++i)
       text += (i == 0 ? "" : apart) + std::to_string(face[i] + first);
-    text += behind + "\n";
+    text += after + "\n";
   }
   return text;
 }
@@ -71,7 +72,8 @@ std::string ascii_stl() {
       for (const int corner : corners) {
         const auto& [x, y, z] =
             vertices[static_cast<std::size_t>(face[static_cast<std::size_t>(corner)])];
-        text += "vertex " + text_of(x) + " " + text_of(y) + " " + text_of(z) + "\n";
+        text +=
+            "vertex " + format_number(x) + " " + format_number(y) + " " + format_number(z) + "\n";
       }
       text += "endloop\nendfacet\n";
     }
@@ -113,8 +115,8 @@ class ForeignMesh : public testing::Test {
       ADD_FAILURE() << error.what() << "\n" << bytes.substr(0, 200);
     }
   }
-  std::string complaint(const std::string& name, const std::string& bytes) {
-    return testing_support::complaint_of([&] { read_mesh(folder_.file(name, bytes)); });
+  std::string error_message(const std::string& name, const std::string& bytes) {
+    return testing_support::thrown_message([&] { read_mesh(folder_.file(name, bytes)); });
   }
   TemporaryFolder folder_;
 };
@@ -155,7 +157,7 @@ TEST_F(ForeignMesh, ReadsBinaryStlByItsLengthWhereTheCountIsUnknown) {
     expect_box("a.stl", binary_stl(header, unknown, ""));
     expect_box("a.stl", binary_stl(header, unknown, "ab"));
   }
-  EXPECT_THAT(complaint("a.stl", binary_stl("solid box", 13, "")),
+  EXPECT_THAT(error_message("a.stl", binary_stl("solid box", 13, "")),
               HasSubstr("declares 13 triangles in binary STL"));
 }
 
@@ -174,12 +176,12 @@ TEST_F(ForeignMesh, NamesMaterialsByTheirWholeLine) {
 
 // The first of nine vertices is used by no face: a lost line would be another solid.
 TEST_F(ForeignMesh, LosesNoLineToAMarkOrABareReturn) {
-  const std::string spare = vertex_lines("v ") + "v 9 9 9\n" + face_lines("f ", "", 1);
-  expect_box("a.obj", "\xEF\xBB\xBF" + spare);
-  expect_box("a.obj", replaced(spare, "\n", "\r"));
-  expect_box("a.obj", replaced(spare, "\n", "\r\n"));
+  const std::string unused = vertex_lines("v ") + "v 9 9 9\n" + face_lines("f ", "", 1);
+  expect_box("a.obj", "\xEF\xBB\xBF" + unused);
+  expect_box("a.obj", replaced(unused, "\n", "\r"));
+  expect_box("a.obj", replaced(unused, "\n", "\r\n"));
   std::string wide = "\xFF\xFE";
-  for (const char c : spare) wide += std::string{c, '\0'};
+  for (const char c : unused) wide += std::string{c, '\0'};
   expect_box("a.obj", wide);
 }
 
@@ -194,11 +196,11 @@ TEST_F(ForeignMesh, ReadsObjOfCadPrograms) {
   std::string open_end = v + face_lines("f ", "", -8);
   open_end.back() = '\\';
   expect_box("a.obj", open_end);
-  EXPECT_THAT(complaint("a.obj", replaced(v, " 4", " 4,0")),
+  EXPECT_THAT(error_message("a.obj", replaced(v, " 4", " 4,0")),
               HasSubstr("line 2: '4,0' has a comma for the decimal point"));
-  EXPECT_THAT(complaint("a.obj", v + "surf 0 1 0 1 1 2 3 4\n"),
+  EXPECT_THAT(error_message("a.obj", v + "surf 0 1 0 1 1 2 3 4\n"),
               HasSubstr("line 9: free-form surfaces (surf) are not supported"));
-  EXPECT_THAT(complaint("a.obj", "call other.obj\n"), HasSubstr("includes another file"));
+  EXPECT_THAT(error_message("a.obj", "call other.obj\n"), HasSubstr("includes another file"));
 }
 
 std::string ply_header(const std::string& format, const std::string& face) {
@@ -218,15 +220,15 @@ TEST_F(ForeignMesh, ReadsPlyWithListsOfOtherNamesAndTypes) {
     expect_box("a.ply", "\xEF\xBB\xBF" + text);
   }
   EXPECT_THAT(
-      complaint("a.ply", ply_header("ascii",
-                                    "element face 6\nproperty list uchar int a\n"
-                                    "property list uchar int b\n") +
-                             body),
+      error_message("a.ply", ply_header("ascii",
+                                        "element face 6\nproperty list uchar int a\n"
+                                        "property list uchar int b\n") +
+                                 body),
       HasSubstr("has the lists a, b; the one of its corners must be called vertex_indices"));
-  EXPECT_THAT(complaint("a.ply", ply_header("ascii",
-                                            "element face 1\nproperty list uchar float "
-                                            "vertex_indices\n") +
-                                     vertex_lines() + "3 0 1 1.5\n"),
+  EXPECT_THAT(error_message("a.ply", ply_header("ascii",
+                                                "element face 1\nproperty list uchar float "
+                                                "vertex_indices\n") +
+                                         vertex_lines() + "3 0 1 1.5\n"),
               HasSubstr("face has a list with 1.5"));
 }
 
@@ -274,7 +276,7 @@ TEST_F(ForeignMesh, SkipsFacesThatAreNotFiniteAndCountsThemIfItCanSaySo) {
     EXPECT_EQ(mesh.triangles.size(), 6U) << name;
     EXPECT_NEAR(surface_area(mesh), 26.0, 1e-9) << name;
     EXPECT_THAT(notes, ElementsAre(HasSubstr("3 faces skipped"))) << name;
-    EXPECT_THAT(complaint(name, text), HasSubstr("coordinates must be finite")) << name;
+    EXPECT_THAT(error_message(name, text), HasSubstr("coordinates must be finite")) << name;
   }
 }
 

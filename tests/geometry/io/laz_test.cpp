@@ -22,22 +22,22 @@ using testing_support::TemporaryFolder;
 
 constexpr int point_count = 300;
 
-std::string file_of(const std::string& name) {
+std::string find_test_file(const std::string& name) {
   return std::string(LAZ_FILES) + "/" + name + ".laz";
 }
 
-std::string bytes_of(const std::string& name) {
-  std::ifstream stream(file_of(name), std::ios::binary);
+std::string read_bytes(const std::string& name) {
+  std::ifstream stream(find_test_file(name), std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-Eigen::Vector3d position_of(int i) {
+Eigen::Vector3d make_position(int i) {
   const int jump = i % 97 == 96 ? 1'500'000 : 0;
   return {(40 * i + i * i % 23 + jump) * 0.01, (i * 37 % 1001 - 500) * 0.01,
           (i / 10 * 3 + i % 4 * 150) * 0.001};
 }
 
-std::array<std::uint16_t, 3> colour_of(int i) {
+std::array<std::uint16_t, 3> make_colour(int i) {
   const int red = 256 * (i % 200) + i % 7;
   const int green = i % 3 == 0 ? red : 65535 - red;
   const int blue = i % 3 == 0 ? red : (green + i) % 65536;
@@ -46,17 +46,17 @@ std::array<std::uint16_t, 3> colour_of(int i) {
 }
 
 /// Reads in pieces of so many points, and compares with the formula; every 60th is withheld.
-void expect_formula(LasReader& reader, std::size_t piece) {
+void expect_formula(LasReader& reader, std::size_t chunk) {
   LasPoints points;
   int i = 0;
-  while (reader.next(points, piece)) {
+  while (reader.next(points, chunk)) {
     ASSERT_EQ(points.classes.size(), points.positions.size());
     for (std::size_t k = 0; k < points.positions.size(); ++k, ++i) {
       if (i % 60 == 59) ++i;
-      ASSERT_EQ(points.positions[k], position_of(i)) << i;
+      ASSERT_EQ(points.positions[k], make_position(i)) << i;
       ASSERT_EQ(points.classes[k], 2 + i / 50 % 4) << i;
       if (!reader.header().has_colours()) continue;
-      ASSERT_EQ(points.colours[k], colour_of(i)) << i;
+      ASSERT_EQ(points.colours[k], make_colour(i)) << i;
     }
   }
   EXPECT_EQ(i, point_count - 1);  // the last one is withheld
@@ -65,28 +65,28 @@ void expect_formula(LasReader& reader, std::size_t piece) {
 class Laz : public testing::TestWithParam<const char*> {};
 
 TEST_P(Laz, IsReadAsTheReferenceCompressorWroteIt) {
-  for (const std::size_t piece : {1, 7, 1000}) {
-    SCOPED_TRACE(piece);
-    LasReader reader(file_of(GetParam()));
+  for (const std::size_t chunk : {1, 7, 1000}) {
+    SCOPED_TRACE(chunk);
+    LasReader reader(find_test_file(GetParam()));
     EXPECT_TRUE(reader.header().is_compressed);
     ASSERT_EQ(reader.header().points, point_count);
-    expect_formula(reader, piece);
+    expect_formula(reader, chunk);
   }
 }
 
 TEST_P(Laz, IsReadAsACloud) {
-  const AttributedCloud cloud = read_cloud(file_of(GetParam()));
+  const AttributedCloud cloud = read_cloud(find_test_file(GetParam()));
   ASSERT_EQ(cloud.positions.size(), point_count - 5U);
-  EXPECT_TRUE(cloud.positions[7].isApprox(position_of(7).cast<float>()));
+  EXPECT_TRUE(cloud.positions[7].isApprox(make_position(7).cast<float>()));
   std::vector<Eigen::Vector3f> positions;
-  read_positions(file_of(GetParam()), [&](std::span<const Eigen::Vector3f> piece, double) {
-    positions.insert(positions.end(), piece.begin(), piece.end());
+  read_positions(find_test_file(GetParam()), [&](std::span<const Eigen::Vector3f> chunk, double) {
+    positions.insert(positions.end(), chunk.begin(), chunk.end());
   });
   EXPECT_EQ(positions, cloud.positions);
 }
 
 /// Points, or one line that names the file.
-bool is_refused(const TemporaryFolder& folder, const std::string& bytes) {
+bool is_rejected(const TemporaryFolder& folder, const std::string& bytes) {
   try {
     LasReader reader(folder.file("spoiled.laz", bytes));
     LasPoints points;
@@ -102,29 +102,29 @@ bool is_refused(const TemporaryFolder& folder, const std::string& bytes) {
   }
 }
 
-TEST_P(Laz, ThatIsCutShortIsRefused) {
+TEST_P(Laz, RejectsTruncatedFiles) {
   const TemporaryFolder folder;
-  const std::string whole = bytes_of(GetParam());
+  const std::string whole = read_bytes(GetParam());
   // Of the table of chunks, which is last, the end may be missing: it is padded.
   ASSERT_GT(whole.size(), 12U);
   for (std::size_t size = 0; size + 12 < whole.size(); size += 61) {
-    EXPECT_TRUE(is_refused(folder, whole.substr(0, size))) << size;
+    EXPECT_TRUE(is_rejected(folder, whole.substr(0, size))) << size;
   }
 }
 
-TEST_P(Laz, WithChangedBytesIsReadOrRefused) {
+TEST_P(Laz, ReadsOrRejectsChangedBytes) {
   const TemporaryFolder folder;
-  const std::string whole = bytes_of(GetParam());
+  const std::string whole = read_bytes(GetParam());
   std::mt19937_64 random(1);
-  int refused = 0, read = 0;
+  int rejected = 0, read = 0;
   for (int change = 0; change < 250; ++change) {
     std::string bytes = whole;
     for (int i = 0; i < 1 + change % 3; ++i) {
       bytes[random() % bytes.size()] = static_cast<char>(random());
     }
-    ++(is_refused(folder, bytes) ? refused : read);
+    ++(is_rejected(folder, bytes) ? rejected : read);
   }
-  EXPECT_GT(refused, 10);
+  EXPECT_GT(rejected, 10);
   EXPECT_GT(read, 3) << "else no change got past the first check";
 }
 
@@ -133,13 +133,13 @@ INSTANTIATE_TEST_SUITE_P(Formats, Laz,
                                          "format7", "format8", "various_chunks"),
                          [](const auto& file) { return std::string(file.param); });
 
-class SpoiledLaz : public testing::Test {
+class CorruptedLaz : public testing::Test {
  protected:
   /// What is said of the file with another value at a place.
   template <typename Value>
-  void expect_refusal(std::size_t place, Value value, const std::string& message) const {
+  void expect_rejection(std::size_t offset, Value value, const std::string& message) const {
     std::string bytes = whole_;
-    std::memcpy(bytes.data() + place, &value, sizeof value);
+    std::memcpy(bytes.data() + offset, &value, sizeof value);
     EXPECT_THAT(
         [&] {
           LasReader reader(folder_.file("a.laz", bytes));
@@ -151,42 +151,42 @@ class SpoiledLaz : public testing::Test {
   }
 
   const TemporaryFolder folder_;
-  const std::string whole_ = bytes_of("format7");
+  const std::string whole_ = read_bytes("format7");
   // Where LASzip puts the content of its record, the points, and the table of chunks.
   const std::size_t record_ = whole_.find("laszip encoded") + 52;
   const std::size_t points_ = record_ + 34 + 2 * 6;
   const std::size_t table_ = [this] {
-    std::uint64_t place = 0;
-    std::memcpy(&place, whole_.data() + points_, sizeof place);
-    return place;
+    std::uint64_t offset = 0;
+    std::memcpy(&offset, whole_.data() + points_, sizeof offset);
+    return offset;
   }();
 };
 
-TEST_F(SpoiledLaz, SaysWhatCannotBeRead) {
+TEST_F(CorruptedLaz, SaysWhatCannotBeRead) {
   for (const int format : {4, 5, 9, 10}) {
-    expect_refusal(104, static_cast<std::uint8_t>(0x80 | format),
-                   "points of format " + std::to_string(format) + ", compressed (LAZ); only");
+    expect_rejection(104, static_cast<std::uint8_t>(0x80 | format),
+                     "points of format " + std::to_string(format) + ", compressed (LAZ); only");
   }
-  expect_refusal(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); only");
-  expect_refusal(record_ - 54 + 18, std::uint16_t{1}, "the record of its compression is missing");
-  expect_refusal(record_ - 54 + 20, std::uint16_t{40}, "it ends too early");
-  expect_refusal(record_, std::uint16_t{1}, "is compressed by method 1 of LAZ");
-  expect_refusal(record_ + 2, std::uint16_t{1}, "is compressed by method 3 of LAZ");
-  expect_refusal(record_ + 12, std::uint32_t{0}, "its chunks have no points");
-  expect_refusal(record_ + 32, std::uint16_t{1}, "LAZ items do not match point format 7");
-  expect_refusal(record_ + 34, std::uint16_t{11}, "LAZ items do not match point format 7");
-  expect_refusal(record_ + 38, std::uint16_t{2}, "by version 2 of LAZ's items");
-  expect_refusal(105, std::uint16_t{37}, "LAZ items do not match point format 7 and 37");
+  expect_rejection(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); only");
+  expect_rejection(record_ - 54 + 18, std::uint16_t{1}, "the record of its compression is missing");
+  expect_rejection(record_ - 54 + 20, std::uint16_t{40}, "it ends too early");
+  expect_rejection(record_, std::uint16_t{1}, "is compressed by method 1 of LAZ");
+  expect_rejection(record_ + 2, std::uint16_t{1}, "is compressed by method 3 of LAZ");
+  expect_rejection(record_ + 12, std::uint32_t{0}, "its chunks have no points");
+  expect_rejection(record_ + 32, std::uint16_t{1}, "LAZ items do not match point format 7");
+  expect_rejection(record_ + 34, std::uint16_t{11}, "LAZ items do not match point format 7");
+  expect_rejection(record_ + 38, std::uint16_t{2}, "by version 2 of LAZ's items");
+  expect_rejection(105, std::uint16_t{37}, "LAZ items do not match point format 7 and 37");
 }
 
-TEST_F(SpoiledLaz, SaysWhereItsChunksAreNot) {
-  expect_refusal(points_, std::uint64_t{7}, "has no table of its compressed chunks: byte 7");
-  expect_refusal(points_, std::uint64_t{1} << 60, "has no table of its compressed chunks");
-  expect_refusal(table_, std::uint32_t{1}, "its version is not 0");
-  expect_refusal(table_ + 4, std::uint32_t{2}, "has fewer chunks of compressed points");
-  expect_refusal(table_ + 4, std::uint32_t{0}, "has fewer chunks of compressed points");
-  expect_refusal(247, std::uint64_t{1} << 62, "has fewer chunks of compressed points");
-  expect_refusal(points_ + 8 + 36 + 4, std::uint32_t{1} << 31, "does not end within its chunk");
+TEST_F(CorruptedLaz, SaysWhereItsChunksAreNot) {
+  expect_rejection(points_, std::uint64_t{7}, "has no table of its compressed chunks: byte 7");
+  expect_rejection(points_, std::uint64_t{1} << 60, "has no table of its compressed chunks");
+  expect_rejection(table_, std::uint32_t{1}, "its version is not 0");
+  expect_rejection(table_ + 4, std::uint32_t{2}, "has fewer chunks of compressed points");
+  expect_rejection(table_ + 4, std::uint32_t{0}, "has fewer chunks of compressed points");
+  expect_rejection(247, std::uint64_t{1} << 62, "has fewer chunks of compressed points");
+  expect_rejection(points_ + 8 + 36 + 4, std::uint32_t{1} << 31, "does not end within its chunk");
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ class MeshIo : public testing::Test {
   }
 
   /// The message that reading such a file ends with, without the folder's name.
-  std::string complaint(std::string_view name, std::string_view bytes) {
+  std::string error_message(std::string_view name, std::string_view bytes) {
     try {
       read(name, bytes);
     } catch (const Error& error) {
@@ -343,7 +343,7 @@ TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
       {"mesh.xyz", "0 0 0\n", "a mesh file must end in .ply, .obj, .stl, .off or .drc"},
   };
   for (const auto& [name, bytes, message] : cases) {
-    EXPECT_THAT(complaint(name, bytes), HasSubstr(message)) << name;
+    EXPECT_THAT(error_message(name, bytes), HasSubstr(message)) << name;
   }
   EXPECT_THAT([&] { read_mesh(folder_.path() / "absent.ply"); },
               testing::ThrowsMessage<Error>(HasSubstr("does not exist")));
@@ -365,7 +365,7 @@ TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
   }
   int read_anyway = 0;
   for (const auto& [name, original] : originals) {
-    int refused = 0;
+    int rejected = 0;
     for (int trial = 0; trial < 300; ++trial) {
       std::string bytes = original;
       for (int i = 0; i < 3; ++i) bytes[random() % bytes.size()] = static_cast<char>(random());
@@ -375,13 +375,13 @@ TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
         mesh = read(name, bytes);
       } catch (const Error& error) {
         EXPECT_THAT(error.what(), HasSubstr(name));  // which file it is
-        ++refused;
+        ++rejected;
         continue;
       }
       EXPECT_NO_THROW(validate(*mesh)) << name << ", trial " << trial;
       ++read_anyway;
     }
-    EXPECT_GT(refused, 50) << name;  // a cut file
+    EXPECT_GT(rejected, 50) << name;  // a cut file
   }
   EXPECT_GT(read_anyway, 50);  // a changed coordinate of a binary file
 }

@@ -81,7 +81,7 @@ TEST(TextScanner, CountsLinesWhateverEndsThem) {
   }
   TextScanner scanner("file", "usemtl  Curtain Wall \t\r\nf");
   scanner.word_in_line();
-  EXPECT_EQ(scanner.rest_of_line(), "Curtain Wall");
+  EXPECT_EQ(scanner.remaining_line(), "Curtain Wall");
   EXPECT_TRUE(scanner.next_line());
 }
 

@@ -81,7 +81,7 @@ TEST_F(RecordLogFile, EveryChangedByteBeforeTheLastRecordIsFound) {
     std::string changed = whole;
     changed[at] ^= 1;
     put(changed);
-    EXPECT_THAT(testing_support::complaint_of([&] { read_records(file_); }),
+    EXPECT_THAT(testing_support::thrown_message([&] { read_records(file_); }),
                 testing::HasSubstr("log: line "))
         << at;
   }
@@ -114,7 +114,7 @@ TEST_F(RecordLogFile, HasOneWriter) {
 }
 
 TEST(RecordLog, InAFolderThatIsNotThereIsRefused) {
-  EXPECT_THAT(testing_support::complaint_of([&] { RecordLog("/nowhere/to/be/found/log"); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { RecordLog("/nowhere/to/be/found/log"); }),
               testing::HasSubstr("/nowhere/to/be/found/log: "));
 }
 

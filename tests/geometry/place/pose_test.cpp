@@ -17,8 +17,8 @@ TEST(CameraPose, IsARotationWhoseAxisIsTheViewingDirection) {
     const Eigen::Isometry3d pose = camera_pose(view);
     EXPECT_TRUE(pose.linear().isUnitary(1e-12));
     EXPECT_NEAR(pose.linear().determinant(), 1.0, 1e-12);
-    EXPECT_TRUE(view_of(pose).position.isApprox(view.position));
-    EXPECT_TRUE(view_of(pose).direction.isApprox(view.direction));
+    EXPECT_TRUE(to_view(pose).position.isApprox(view.position));
+    EXPECT_TRUE(to_view(pose).direction.isApprox(view.direction));
   }
 }
 

@@ -25,8 +25,8 @@ TEST(SpaceCurve, SortsAllPoints) {
   std::uniform_int_distribution<int> coordinate(0, 40);
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3i place{coordinate(random), coordinate(random), coordinate(random)};
-    points.push_back(place.cast<float>());
+    const Eigen::Vector3i cell{coordinate(random), coordinate(random), coordinate(random)};
+    points.push_back(cell.cast<float>());
   }
   const std::vector<CurveEntry> entries = along_curve(points, {{1, 1, 1}, 4.0});
   const auto before = [](const CurveEntry& a, const CurveEntry& b) {

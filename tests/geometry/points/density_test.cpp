@@ -16,10 +16,10 @@ using Eigen::Vector3f;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// The definition, from scratch. Points in `given_up` are never frontiers.
+/// The definition, from scratch. Points in `discarded` are never frontiers.
 std::vector<PointLabel> labels_by_definition(const std::vector<Vector3f>& points, double radius,
                                              int core_threshold,
-                                             const std::set<std::uint32_t>& given_up = {}) {
+                                             const std::set<std::uint32_t>& discarded = {}) {
   const auto near = [&](std::size_t a, std::size_t b) {
     return squared_distance(points[a], points[b]) <= static_cast<float>(radius * radius);
   };
@@ -38,7 +38,7 @@ std::vector<PointLabel> labels_by_definition(const std::vector<Vector3f>& points
       (core[j] ? has_core : has_other) = true;
     }
     const bool frontier =
-        has_core && has_other && !given_up.contains(static_cast<std::uint32_t>(i));
+        has_core && has_other && !discarded.contains(static_cast<std::uint32_t>(i));
     labels[i] = frontier ? PointLabel::frontier : PointLabel::outlier;
   }
   return labels;
@@ -131,7 +131,7 @@ TEST(DensityMap, RemembersGivenUpFrontiersUntilSomethingNewIsNear) {
                                        {0.3F, 0, 0}, {1.25F, 0, 0}, {2.2F, 0, 0}};
   map.insert(first, 0);
   ASSERT_THAT(map.relabel().new_frontiers, ElementsAre(5));
-  map.give_up(5);
+  map.discard(5);
   EXPECT_EQ(map.label(5), PointLabel::outlier);
 
   map.insert(std::vector<Vector3f>{{1.9F, 0.9F, 0}}, 1);  // in a cell beside, but not within r

@@ -28,10 +28,10 @@ Vector3d drawn(Distribution& distribution, std::mt19937_64& random) {
 
 /// A square of two metres in a corner of space, across an axis.
 void add_square(int across, std::mt19937_64& random, double noise, std::vector<Vector3f>& points) {
-  std::uniform_real_distribution<double> place(0.0, 2.0);
+  std::uniform_real_distribution<double> coordinate(0.0, 2.0);
   std::normal_distribution<double> error(0.0, 1.0);
   for (int i = 0; i < 12'000; ++i) {
-    Vector3d point = drawn(place, random);
+    Vector3d point = drawn(coordinate, random);
     point[across] = 0.0;
     points.emplace_back((point + noise * drawn(error, random)).cast<float>());
   }
@@ -46,14 +46,14 @@ std::vector<Vector3f> squares(const std::vector<int>& across, std::uint64_t seed
 }
 
 /// A pose that is off by 10 cm and 1 degree, some way or other.
-Isometry3d error_of(std::uint64_t seed) {
+Isometry3d make_error(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> number;
   const Vector3d axis = drawn(number, random).normalized(),
-                 way = drawn(number, random).normalized();
+                 direction = drawn(number, random).normalized();
   Isometry3d error = Isometry3d::Identity();
   error.linear() = Eigen::AngleAxisd(radians_per_degree, axis).toRotationMatrix();
-  error.translation() = sensor + 0.1 * way - error.linear() * sensor;
+  error.translation() = sensor + 0.1 * direction - error.linear() * sensor;
   return error;
 }
 
@@ -88,7 +88,7 @@ int observable(const Registration& found) {
 TEST(Registration, FindsEveryErrorInACorner) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     for (const double noise : {0.0, 0.01, 0.02}) {
-      const Outcome outcome = registered({0, 1, 2}, error_of(seed), seed, noise);
+      const Outcome outcome = registered({0, 1, 2}, make_error(seed), seed, noise);
       EXPECT_EQ(observable(outcome.found), 6);
       EXPECT_LT(outcome.shift(), 0.01) << "seed " << seed << ", noise " << noise;
       EXPECT_LT(outcome.turn_deg(), noise < 0.02 ? 0.1 : 0.2) << seed << ", noise " << noise;
@@ -100,7 +100,7 @@ TEST(Registration, FindsEveryErrorInACorner) {
 /// One wall shows how far it is away and how it is turned, and no more.
 TEST(Registration, CorrectsNothingThatAPlaneDoesNotShow) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const Outcome outcome = registered({2}, error_of(seed), seed, 0.01);
+    const Outcome outcome = registered({2}, make_error(seed), seed, 0.01);
     ASSERT_EQ(observable(outcome.found), 3) << seed;
     const Isometry3d& rest = outcome.rest;
     // The plane is where it was: its middle is at the same height, its normal upright.
@@ -119,7 +119,7 @@ TEST(Registration, CorrectsNothingThatAPlaneDoesNotShow) {
 
 /// In a gutter of two planes a scan slides along the edge.
 TEST(Registration, SaysWhichWayAnEdgeLetsSlide) {
-  const Outcome outcome = registered({0, 2}, error_of(3), 3, 0.01);
+  const Outcome outcome = registered({0, 2}, make_error(3), 3, 0.01);
   ASSERT_EQ(observable(outcome.found), 5);
   EXPECT_GT(std::abs(outcome.found.directions[0].displacement.y()), 0.95);
 }

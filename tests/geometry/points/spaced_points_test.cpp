@@ -21,11 +21,11 @@ TEST(SpacedPoints, KeepsWhatAComparisonWithAllOfThemWouldKeep) {
   const std::vector<Vector3f> points = random_points(5'000, 0.3, 5);
   std::vector<Vector3f> expected;
   for (const Vector3f& p : points) {
-    bool has_room = true;
+    bool is_spaced = true;
     for (const Vector3f& other : expected) {
-      has_room = has_room && squared_distance(p, other) > static_cast<float>(spacing * spacing);
+      is_spaced = is_spaced && squared_distance(p, other) > static_cast<float>(spacing * spacing);
     }
-    if (has_room) expected.push_back(p);
+    if (is_spaced) expected.push_back(p);
   }
   ASSERT_GT(expected.size(), 100U);
   ASSERT_LT(expected.size(), points.size());
@@ -39,10 +39,11 @@ TEST(SpacedPoints, KeepsWhatAComparisonWithAllOfThemWouldKeep) {
   }
 }
 
-/// What is kept of scans in parts, taken up one after the other; in `told`, what it says of them.
-std::vector<Vector3f> kept_of_scans(const std::vector<std::vector<Vector3f>>& scans,
-                                    std::size_t columns, unsigned threads,
-                                    std::vector<Vector3f>& told) {
+/// What is kept of scans in parts, taken up one after the other; in `reported`, what it says of
+/// them.
+std::vector<Vector3f> filter_scans(const std::vector<std::vector<Vector3f>>& scans,
+                                   std::size_t columns, unsigned threads,
+                                   std::vector<Vector3f>& reported) {
   constexpr std::size_t part_size = 300;  // more parts than are compared at once
   SpacedPoints kept(0.05);
   for (const std::vector<Vector3f>& scan : scans) {
@@ -54,7 +55,7 @@ std::vector<Vector3f> kept_of_scans(const std::vector<std::vector<Vector3f>>& sc
             visit(static_cast<std::uint32_t>(i), i % columns);
           }
         },
-        [&](std::uint32_t number) { told.push_back(scan[number]); });
+        [&](std::uint32_t number) { reported.push_back(scan[number]); });
   }
   std::vector<Vector3f> points;
   for (std::uint32_t i = 0; i < kept.grid().size(); ++i) points.push_back(kept.grid().point(i));
@@ -86,9 +87,9 @@ TEST(SpacedPoints, KeepsOfScansWhatOnePointAfterTheOtherWouldKeep) {
   ASSERT_GT(expected.size(), 500U);
   for (const unsigned threads : {1U, 2U, 4U}) {
     for (const std::size_t columns : {1U, 2U, 90U}) {
-      std::vector<Vector3f> told;
-      EXPECT_EQ(kept_of_scans(scans, columns, threads, told), expected);
-      EXPECT_EQ(told, expected);
+      std::vector<Vector3f> reported;
+      EXPECT_EQ(filter_scans(scans, columns, threads, reported), expected);
+      EXPECT_EQ(reported, expected);
     }
   }
 }

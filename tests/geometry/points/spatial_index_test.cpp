@@ -25,16 +25,16 @@ std::vector<Neighbour> brute_force_within(const std::vector<Vector3f>& points,
   return found;
 }
 
-std::vector<std::uint32_t> indices_of(const std::vector<Neighbour>& neighbours) {
+std::vector<std::uint32_t> collect_indices(const std::vector<Neighbour>& neighbours) {
   std::vector<std::uint32_t> indices;
   for (const Neighbour& neighbour : neighbours) indices.push_back(neighbour.index);
   return indices;
 }
 
 /// Each query beside brute force, while the cloud grows through several sizes of the forest.
-class SpatialIndexTwin : public testing::TestWithParam<double> {};
+class SpatialIndexReference : public testing::TestWithParam<double> {};
 
-TEST_P(SpatialIndexTwin, AgreesWithBruteForceAsItGrows) {
+TEST_P(SpatialIndexReference, AgreesWithBruteForceAsItGrows) {
   const double cell = GetParam();
   SpatialIndex index(cell);
   const auto points = random_points(20'000, 1.0, 1);
@@ -48,7 +48,7 @@ TEST_P(SpatialIndexTwin, AgreesWithBruteForceAsItGrows) {
     for (const Vector3f& query : queries) {
       for (const double radius : {0.03, 0.1, 0.5, 2.0}) {
         const auto expected = brute_force_within(inserted, query, radius);
-        EXPECT_EQ(index.within(query, radius), indices_of(expected));
+        EXPECT_EQ(index.within(query, radius), collect_indices(expected));
         EXPECT_EQ(index.count_within(query, radius), expected.size());
         EXPECT_EQ(index.any_within(query, radius), !expected.empty());
       }
@@ -64,7 +64,7 @@ TEST_P(SpatialIndexTwin, AgreesWithBruteForceAsItGrows) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(CellSizes, SpatialIndexTwin, testing::Values(0.02, 0.1, 0.7));
+INSTANTIATE_TEST_SUITE_P(CellSizes, SpatialIndexReference, testing::Values(0.02, 0.1, 0.7));
 
 TEST(SpatialIndex, IsEmptyAtFirst) {
   const SpatialIndex index(0.1);

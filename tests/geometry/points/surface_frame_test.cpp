@@ -22,11 +22,11 @@ void expect_orthonormal(const SurfaceFrame& frame) {
 }
 
 // The edge of a strip in the plane z = 0: the surface is at x < 0, so outwards is +x.
-const std::vector<Vector3f> edge_of_a_plane = {
+const std::vector<Vector3f> plane_edge = {
     {0, 0, 0}, {-1, 0.5F, 0}, {-1, -0.5F, 0}, {-2, 0.1F, 0}, {-2, -0.1F, 0}};
 
 TEST(SurfaceFrame, PointsToTheSensorAndOutOfTheMeasuredSide) {
-  const SurfaceFrame frame = surface_frame({0, 0, 0}, edge_of_a_plane, {3, 0, 9});
+  const SurfaceFrame frame = surface_frame({0, 0, 0}, plane_edge, {3, 0, 9});
   expect_orthonormal(frame);
   EXPECT_TRUE(frame.normal.isApprox(Vector3d::UnitZ(), single_precision));
   EXPECT_TRUE(frame.outward.isApprox(Vector3d::UnitX(), single_precision));
@@ -34,7 +34,7 @@ TEST(SurfaceFrame, PointsToTheSensorAndOutOfTheMeasuredSide) {
 
 // Trap T6: the normal is on the free side.
 TEST(SurfaceFrame, FlipsTheNormalWithTheSensor) {
-  const SurfaceFrame frame = surface_frame({0, 0, 0}, edge_of_a_plane, {3, 0, -9});
+  const SurfaceFrame frame = surface_frame({0, 0, 0}, plane_edge, {3, 0, -9});
   EXPECT_TRUE(frame.normal.isApprox(-Vector3d::UnitZ(), single_precision));
 }
 
@@ -42,9 +42,8 @@ TEST(SurfaceFrame, TurnsWithTheScene) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(1.1, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   std::vector<Vector3f> turned;
-  for (const Vector3f& p : edge_of_a_plane)
-    turned.push_back((turn * p.cast<double>()).cast<float>());
-  const SurfaceFrame straight = surface_frame({0, 0, 0}, edge_of_a_plane, {3, 0, 9});
+  for (const Vector3f& p : plane_edge) turned.push_back((turn * p.cast<double>()).cast<float>());
+  const SurfaceFrame straight = surface_frame({0, 0, 0}, plane_edge, {3, 0, 9});
   const SurfaceFrame frame = surface_frame({0, 0, 0}, turned, turn * Vector3d(3, 0, 9));
   EXPECT_TRUE(frame.normal.isApprox(turn * straight.normal, single_precision));
   EXPECT_TRUE(frame.outward.isApprox(turn * straight.outward, single_precision));

@@ -79,7 +79,7 @@ TEST(MeshDistance, OfPointsEqualsBruteForce) {
 }
 
 /// Holds distances of many at once against those of each, with every instruction set.
-void expect_those_of_each(const Mesh& mesh, const std::vector<Eigen::Vector3f>& points) {
+void expect_single_point_distances(const Mesh& mesh, const std::vector<Eigen::Vector3f>& points) {
   const MeshDistance surface(mesh);
   for (const InstructionSet widest : instruction_sets()) {
     const InstructionSetLimit limit(widest);
@@ -101,7 +101,7 @@ TEST(MeshDistance, OfManyPointsEqualsThatOfEach) {
   for (int i = 0; i < 500; ++i) points.emplace_back(0.01F * float(i) - 2.5F, 0.3F, 0.1F);
   for (int i = 0; i < 500; ++i) points.push_back(random_point(random, 200.0).cast<float>());
   for (const Vector3d& vertex : mesh.vertices) points.push_back(vertex.cast<float>());
-  expect_those_of_each(mesh, points);
+  expect_single_point_distances(mesh, points);
 }
 
 TEST(MeshDistance, OfFewPointsEqualsThatOfEach) {
@@ -111,7 +111,7 @@ TEST(MeshDistance, OfFewPointsEqualsThatOfEach) {
     std::vector<Eigen::Vector3f> points;
     points.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) points.push_back(random_point(random, 3.0).cast<float>());
-    expect_those_of_each(mesh, points);
+    expect_single_point_distances(mesh, points);
   }
 }
 
@@ -153,7 +153,7 @@ TEST(MeshDistance, HasTheAnswersOfNeedles) {
     EXPECT_NEAR(surface.distance(p), nearest, 1e-8);
     points.push_back(p.cast<float>());
   }
-  expect_those_of_each(needles, points);
+  expect_single_point_distances(needles, points);
 }
 
 TEST(MeshDistance, NamesTheFirstOfEquallyNearTriangles) {
@@ -168,7 +168,7 @@ TEST(MeshDistance, TellsWhichWaysKeepADistance) {
   std::mt19937_64 random(5);
   const Mesh mesh = random_soup(random, 60);
   const MeshDistance surface(mesh);
-  int kept = 0, refused = 0;
+  int kept = 0, rejected = 0;
   for (int i = 0; i < 300; ++i) {
     const Vector3d from = random_point(random, 3.0), to = random_point(random, 3.0);
     double nearest = std::numeric_limits<double>::infinity();
@@ -182,12 +182,12 @@ TEST(MeshDistance, TellsWhichWaysKeepADistance) {
       ++kept;
       EXPECT_GE(nearest, distance);
     } else {
-      ++refused;
+      ++rejected;
       EXPECT_LE(nearest - between, distance * 1.002);
     }
   }
   EXPECT_GT(kept, 20);
-  EXPECT_GT(refused, 20);
+  EXPECT_GT(rejected, 20);
 }
 
 TEST(MeshDistance, HasTheAnswersOfASquare) {
@@ -217,7 +217,7 @@ TEST(MeshDistance, EndsWithCoordinatesThatNoFloatHolds) {
 }
 
 TEST(MeshDistance, RefusesAMeshWithoutSurface) {
-  EXPECT_THAT(testing_support::complaint_of([&] { MeshDistance(Mesh{}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { MeshDistance(Mesh{}); }),
               testing::HasSubstr("there is no triangle with a positive area"));
 }
 

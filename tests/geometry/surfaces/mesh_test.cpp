@@ -22,8 +22,8 @@ Mesh two_triangles() {
           {{0, 1, 2}, {3, 4, 5}}};
 }
 
-std::string complaint(const Mesh& mesh) {
-  return testing_support::complaint_of([&] { validate(mesh); });
+std::string error_message(const Mesh& mesh) {
+  return testing_support::thrown_message([&] { validate(mesh); });
 }
 
 TEST(Mesh, MeasuresAreaAndBoxOfWhatTrianglesUse) {
@@ -34,14 +34,14 @@ TEST(Mesh, MeasuresAreaAndBoxOfWhatTrianglesUse) {
 }
 
 TEST(Mesh, ValidateNamesWhatIsWrong) {
-  EXPECT_EQ(complaint(two_triangles()), "");
+  EXPECT_EQ(error_message(two_triangles()), "");
   Mesh bad_index = two_triangles();
   bad_index.triangles[1][2] = 6;
-  EXPECT_THAT(complaint(bad_index), HasSubstr("triangle 1 has vertex 6"));
+  EXPECT_THAT(error_message(bad_index), HasSubstr("triangle 1 has vertex 6"));
   Mesh not_finite = two_triangles();
   not_finite.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(complaint(not_finite), HasSubstr("vertex 3"));
-  EXPECT_THAT(complaint(Mesh{}), HasSubstr("no triangle"));
+  EXPECT_THAT(error_message(not_finite), HasSubstr("vertex 3"));
+  EXPECT_THAT(error_message(Mesh{}), HasSubstr("no triangle"));
 }
 
 TEST(Mesh, AReflectionKeepsTrianglesFacingOutward) {

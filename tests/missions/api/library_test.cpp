@@ -53,17 +53,17 @@ TEST_F(Library, SurveysAsTheProgramDoesByteForByte) {
     ASSERT_EQ(
         tests::run_skycap({"plan", file, "--planner", planner, "--quiet", "--out", by_program}).err,
         "");
-    std::size_t told = 0;
+    std::size_t reported = 0;
     const Survey survey =
         plan(Mission::load(file, {{"planner.name", planner}}),
-             {.folder = by_library, .report = [&](const auto&, double) { ++told; }});
+             {.folder = by_library, .report = [&](const auto&, double) { ++reported; }});
     for (const char* name : {"cloud.ply", "coverage.ply", "views.csv", "trajectory.tum"}) {
-      EXPECT_EQ(tests::content_of(by_library + "/" + name),
-                tests::content_of(by_program + "/" + name))
+      EXPECT_EQ(tests::read_content(by_library + "/" + name),
+                tests::read_content(by_program + "/" + name))
           << planner << ": " << name;
     }
-    EXPECT_EQ(survey.summary, tests::content_of(by_library + "/summary.json"));
-    EXPECT_EQ(told, survey.views.size());
+    EXPECT_EQ(survey.summary, tests::read_content(by_library + "/summary.json"));
+    EXPECT_EQ(reported, survey.views.size());
     EXPECT_GT(survey.coverage(), 0.0);
   }
 }
@@ -78,12 +78,12 @@ TEST_F(Library, PlansFromScansOfOthersAsItsOwnSurveyDoes) {
   const sim::DepthCamera camera(config);
   const sim::Scene scene(mission.model());
   std::uint64_t frame = 0;
-  const survey::SurveyPorts ports{.sense = [&](const geometry::View& view, geometry::Scan) {
+  const survey::SurveyCallbacks callbacks{.sense = [&](const geometry::View& view, geometry::Scan) {
     return camera.scan(scene, view, frame++);
   }};
   const std::unique_ptr<survey::Planner> planner = mission.planner();
   const survey::SurveyResult own =
-      survey::run_survey(*planner, survey.views.front().view, {.max_views = 3}, ports);
+      survey::run_survey(*planner, survey.views.front().view, {.max_views = 3}, callbacks);
   ASSERT_EQ(own.views.size(), survey.views.size());
   for (std::size_t i = 0; i < own.views.size(); ++i) {
     EXPECT_EQ(own.views[i].view.position, survey.views[i].view.position) << "view " << i;
@@ -123,9 +123,9 @@ TEST_F(Library, EvaluatesACloudByDistanceAndShare) {
   // The distance reaches sqrt(0.01^2 - 0.003^2) beyond the half.
   EXPECT_NEAR(evaluation.coverage, 0.5 + 0.0095, 0.002);
   EXPECT_NEAR(evaluation.density, static_cast<double>(points.size()), 1e-6);
-  EXPECT_THAT(testing_support::complaint_of([&] { evaluate({}, sheet); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { evaluate({}, sheet); }),
               testing::HasSubstr("the cloud has no points"));
-  EXPECT_THAT(testing_support::complaint_of([&] { evaluate(points, sheet, {.distance = 0.0}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { evaluate(points, sheet, {.distance = 0.0}); }),
               testing::HasSubstr("distance is 0.0"));
 }
 
@@ -135,12 +135,12 @@ TEST_F(Library, FindsSensorsByName) {
         name.starts_with("intel_") || name.starts_with("see_") || name == "dji_zenmuse_p1";
     if (is_camera) {
       EXPECT_NO_THROW(depth_camera(name)) << name;
-      EXPECT_THAT(testing_support::complaint_of([&] { laser_scanner(name); }),
+      EXPECT_THAT(testing_support::thrown_message([&] { laser_scanner(name); }),
                   testing::HasSubstr(" is a camera"))
           << name;
     } else {
       EXPECT_NO_THROW(laser_scanner(name)) << name;
-      EXPECT_THAT(testing_support::complaint_of([&] { depth_camera(name); }),
+      EXPECT_THAT(testing_support::thrown_message([&] { depth_camera(name); }),
                   testing::HasSubstr(" is a laser scanner"))
           << name;
     }

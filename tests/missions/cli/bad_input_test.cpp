@@ -31,14 +31,16 @@ struct BadInput {
 void PrintTo(const BadInput& input, std::ostream* stream) { *stream << input.name; }
 
 const std::string model = "scene: {model: 'builtin:teapot'}\n";
-const std::string judged = "evaluation: {coverage_distance: 0.005}\n";
-const std::string whole = model + judged;  // lines 1 and 2
+const std::string evaluated = "evaluation: {coverage_distance: 0.005}\n";
+const std::string whole = model + evaluated;  // lines 1 and 2
 
-std::string with_mesh(const std::string& file) { return "scene: {model: " + file + "}\n" + judged; }
+std::string with_mesh(const std::string& file) {
+  return "scene: {model: " + file + "}\n" + evaluated;
+}
 
 /// A flight section, on one line.
 const std::string around = "min: [-20, -20, 0], max: [20, 20, 20]";
-std::string flown(const std::string& box, const std::string& more = "hold: 1") {
+std::string flight_mission(const std::string& box, const std::string& more = "hold: 1") {
   return "flight: {vehicle: generic, unknown_box: {" + box + "}, " + more + "}\n";
 }
 
@@ -50,7 +52,7 @@ std::vector<BadInput> bad_inputs() {
       {"BrokenYaml", "scene: {model: x\n", "is not valid YAML"},
       {"TabIndent", "scene:\n\tmodel: x\n", "MISSION:2: is not valid YAML"},
       {"TwoDocuments", whole + "---\n" + whole, "contains more than one YAML document"},
-      {"DetailOfAFile", "scene: {model: a.ply, detail: fine}\n" + judged,
+      {"DetailOfAFile", "scene: {model: a.ply, detail: fine}\n" + evaluated,
        "MISSION:1: key scene.detail requires a builtin model; a.ply has the detail of its file"},
       {"DuplicateKey", whole + "seed: 1\nseed: 2\n",
        "MISSION:4: key seed is given twice, first in line 3; keep one"},
@@ -63,7 +65,7 @@ std::vector<BadInput> bad_inputs() {
                    6),
        "MISSION: is not text"},
       {"HugeFile", std::string((1 << 20) + 1, '#'), "MISSION: is larger than 1 MiB"},
-      {"MissingModel", judged, "MISSION:1: key scene.model is missing; set a model"},
+      {"MissingModel", evaluated, "MISSION:1: key scene.model is missing; set a model"},
       {"MissingDistance", model,
        "MISSION:1: key evaluation.coverage_distance is missing; it must be a number from "
        "1e-06"},
@@ -99,11 +101,12 @@ std::vector<BadInput> bad_inputs() {
        "key sensor.width: image of more than 1e8 pixels"},
       {"EmptyRange", whole + "sensor: {min_range: 5, max_range: 4}\n",
        "MISSION:3: key sensor.max_range must be greater than sensor.min_range"},
-      {"TwoScales", "scene: {model: 'builtin:teapot', scale: 2, longest_side: 1}\n" + judged,
+      {"TwoScales", "scene: {model: 'builtin:teapot', scale: 2, longest_side: 1}\n" + evaluated,
        "MISSION:1: key scene.scale conflicts with scene.longest_side"},
-      {"GroundWithoutBox", "scene: {model: 'builtin:teapot', ground: true}\n" + judged,
+      {"GroundWithoutBox", "scene: {model: 'builtin:teapot', ground: true}\n" + evaluated,
        "key scene.ground requires planner.scene_box"},
-      {"NeighboursWithoutAPrior", "scene: {model: 'builtin:teapot', neighbours: true}\n" + judged,
+      {"NeighboursWithoutAPrior",
+       "scene: {model: 'builtin:teapot', neighbours: true}\n" + evaluated,
        "key scene.neighbours requires prior data with role: obstacle"},
       {"EmptyBox", whole + "planner: {scene_box: {min: [0, 0, 0], max: [1, 0, 1]}}\n",
        "key planner.scene_box.max must be greater than planner.scene_box.min"},
@@ -121,8 +124,8 @@ std::vector<BadInput> bad_inputs() {
        "MISSION:3: key planner.core_threshold is 3; it must be at least 4"},
       {"SpacingAboveRadius", whole + "planner:\n  spacing: 0.5\n",
        "MISSION:4: key planner.spacing is 0.5; it must be less than planner.resolution_radius"},
-      {"UnknownBuiltin", "scene: {model: 'builtin:kettle'}\n" + judged, "kettle"},
-      {"UnknownModel", "scene: {model: 'model:kettle'}\n" + judged,
+      {"UnknownBuiltin", "scene: {model: 'builtin:kettle'}\n" + evaluated, "kettle"},
+      {"UnknownModel", "scene: {model: 'model:kettle'}\n" + evaluated,
        "model:kettle is not in $SKYCAP_MODELS"},
       {"MissingMesh", with_mesh("none.ply"), "FOLDER/none.ply: "},
       {"UnknownFormat", with_mesh("m.3ds"), "FOLDER/m.3ds: ", "m.3ds", "x"},
@@ -139,52 +142,54 @@ std::vector<BadInput> bad_inputs() {
       {"NoFaces", with_mesh("m.off"), "FOLDER/m.off", "m.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"},
       {"NoArea", with_mesh("m.off"), "FOLDER/m.off", "m.off",
        "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n"},
-      {"EmptyFirstScan", model + "start: {position: [9, 0, 0], direction: [1, 0, 0]}\n" + judged,
+      {"EmptyFirstScan", model + "start: {position: [9, 0, 0], direction: [1, 0, 0]}\n" + evaluated,
        "MISSION: the first scan contains no point of the scene; start from a view that sees it"},
       {"FlightWithoutABox", whole + "flight: {vehicle: generic}\n",
        "MISSION:3: key flight.vehicle requires flight.unknown_box"},
       {"UnknownVehicle", whole + "flight: {vehicle: kite}\n",
        "MISSION:3: key flight.vehicle: unknown vehicle kite; expected one of: generic, "},
       {"NoVehicleFile", whole + "flight: {vehicle: kite.yaml}\n", "kite.yaml"},
-      {"EmptyUnknownBox", whole + flown("min: [0, 0, 0], max: [0, 1, 1]"),
+      {"EmptyUnknownBox", whole + flight_mission("min: [0, 0, 0], max: [0, 1, 1]"),
        "key flight.unknown_box.max must be greater than flight.unknown_box.min"},
-      {"HalfABoxBeside", whole + flown(around, "extra_unknown_boxes: [[0, 0, 0]]"),
+      {"HalfABoxBeside", whole + flight_mission(around, "extra_unknown_boxes: [[0, 0, 0]]"),
        "key flight.extra_unknown_boxes has 1 corners; list the lower and the upper corner of each "
        "box"},
-      {"EmptyBoxBeside", whole + flown(around, "extra_unknown_boxes: [[0, 0, 0], [1, 1, 0]]"),
+      {"EmptyBoxBeside",
+       whole + flight_mission(around, "extra_unknown_boxes: [[0, 0, 0], [1, 1, 0]]"),
        "key flight.extra_unknown_boxes: an upper corner must be greater than its lower corner"},
-      {"ClearanceBelowItsTerms", whole + flown(around, "clearance: 0.5"),
+      {"ClearanceBelowItsTerms", whole + flight_mission(around, "clearance: 0.5"),
        "MISSION:3: key flight.clearance must be at least the sum of the vehicle's radius (0.5 m) "
        "and the position, tracking and map errors: 1 m"},
       {"MapErrorBelowTheNoise",
-       whole + flown(around, "map_error: 0.2") + "sensor: {noise: {sigma: 0.1}}\n",
+       whole + flight_mission(around, "map_error: 0.2") + "sensor: {noise: {sigma: 0.1}}\n",
        "MISSION:3: key flight.map_error must be at least three standard deviations of the sensor "
        "noise: 0.3 m"},
-      {"ClimbBelowTheClearance", whole + flown(around, "takeoff_climb: 1"),
+      {"ClimbBelowTheClearance", whole + flight_mission(around, "takeoff_climb: 1"),
        "MISSION:3: key flight.takeoff_climb: a climb of 1 m ends within the clearance of the "
        "ground"},
       {"RallyOfADji",
        whole + "flight: {vehicle: m350_rtk, unknown_box: {" + around + "}, rally: [[30, 0, 0]]}\n",
        "MISSION:3: key flight.rally conflicts with flight.vehicle m350_rtk: DJI vehicles return to "
        "their take-off point only"},
-      {"TooMuchWind", whole + flown(around, "wind_speed: 40"),
+      {"TooMuchWind", whole + flight_mission(around, "wind_speed: 40"),
        "MISSION:3: key flight.wind_speed must be less than the maximum wind of 10 m/s"},
       {"HalfAPlace", whole + "site: {longitude_deg: 3}\n",
        "MISSION:3: key site.longitude_deg: incomplete georeference"},
       {"FirstViewInTheBuilding",
-       whole + flown(around) + "start: {position: [1, 1, 9], look_at: [0, 0, 0]}\n",
+       whole + flight_mission(around) + "start: {position: [1, 1, 9], look_at: [0, 0, 0]}\n",
        "MISSION: the first view at (1, 1, 9) is 0 m from unobserved space"},
       {"FirstViewTooNear",
-       whole + flown(around) + "start: {position: [0, -21, 9], look_at: [0, 0, 0]}\n",
+       whole + flight_mission(around) + "start: {position: [0, -21, 9], look_at: [0, 0, 0]}\n",
        "MISSION: the first view at (0, -21, 9) is 1 m from unobserved space, with a clearance of 2 "
        "m"},
       {"PadInTheBuilding",
-       whole + flown(around, "takeoff: [3, 0, 0]") +
+       whole + flight_mission(around, "takeoff: [3, 0, 0]") +
            "start: {position: [0, -25, 9], look_at: [0, 0, 0]}\n",
        "MISSION: the point above the take-off point at (3, 0, 5) is 0 m from unobserved space"},
       {"NoRoomAboveTheGround", whole + "limits: {ground_clearance: 1000}\n",
        "no random start at the view distance"},
-      {"NowhereOutsideTheUnknownBox", whole + flown("min: [-99, -99, 0], max: [99, 99, 99]"),
+      {"NowhereOutsideTheUnknownBox",
+       whole + flight_mission("min: [-99, -99, 0], max: [99, 99, 99]"),
        "no random start at the view distance"},
       {"BadOption", whole, "--seed: key seed is x; it must be an integer", "", "", {"--seed", "x"}},
       {"UnknownOption", whole, "--sede", "", "", {"--sede", "1"}},
@@ -207,7 +212,7 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
   }
 }
 
-TEST_P(Program, RefusesInOneLineAndLeavesNothing) {
+TEST_P(Program, RejectsWithOneLineAndNoOutput) {
   const BadInput& input = GetParam();
   const TestFolder folder;
   const std::string mission = folder.write("mission.yaml", input.mission);

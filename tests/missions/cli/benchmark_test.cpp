@@ -16,13 +16,13 @@ namespace skycap::missions {
 namespace {
 
 using testing::HasSubstr;
-using tests::content_of;
 using tests::ProgramRun;
 using tests::quick_mission;
+using tests::read_content;
 using tests::run_skycap;
 using Json = nlohmann::json;
 
-class BenchmarkVerb : public testing::Test {
+class BenchmarkCommand : public testing::Test {
  protected:
   ProgramRun run(const std::string& planners, const std::vector<std::string>& more = {},
                  std::stop_token stop = {}) const {
@@ -36,11 +36,11 @@ class BenchmarkVerb : public testing::Test {
            ("seed_" + std::to_string(seed) + ".json");
   }
   Json trial(const std::string& planner, int seed) const {
-    return Json::parse(content_of(item(planner, seed)))["trial"];
+    return Json::parse(read_content(item(planner, seed)))["trial"];
   }
   /// trials.csv without its last column, the planning time.
   std::string trials_without_times() const {
-    std::istringstream lines(content_of(folder_.path() / "out" / "trials.csv"));
+    std::istringstream lines(read_content(folder_.path() / "out" / "trials.csv"));
     std::string text;
     for (std::string line; std::getline(lines, line);) {
       text += line.substr(0, line.rfind(',')) + "\n";
@@ -52,11 +52,11 @@ class BenchmarkVerb : public testing::Test {
   std::string mission_ = folder_.write("quick.yaml", quick_mission());
 };
 
-TEST_F(BenchmarkVerb, WritesTablesForEveryPlannerOfThePaper) {
+TEST_F(BenchmarkCommand, WritesTablesForEveryPlannerOfThePaper) {
   const ProgramRun result = run("all", {"--max-views", "5"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");  // no progress where there is no terminal
-  const Json json = Json::parse(content_of(folder_.path() / "out" / "results.json"));
+  const Json json = Json::parse(read_content(folder_.path() / "out" / "results.json"));
   EXPECT_EQ(json["results"].size(), 9U);
   for (const Json& cell : json["results"]) EXPECT_EQ(cell["trials"], 2) << cell["planner"];
   for (const char* title : {"SEE++", "SEE", "RSV", "RSE", "OA", "UV", "PC", "AF", "AE"}) {
@@ -64,7 +64,7 @@ TEST_F(BenchmarkVerb, WritesTablesForEveryPlannerOfThePaper) {
   }
 }
 
-TEST_F(BenchmarkVerb, StartsAllPlannersFromTheSameView) {
+TEST_F(BenchmarkCommand, StartsAllPlannersFromTheSameView) {
   ASSERT_EQ(run("see,see++,oa,skycap", {"--max-views", "3"}).exit_code, 0);
   for (const int seed : {1, 2}) {
     // The same pose and noise, and so the same first points and coverage.
@@ -76,18 +76,18 @@ TEST_F(BenchmarkVerb, StartsAllPlannersFromTheSameView) {
   EXPECT_NE(trial("see", 1)["coverage_after"][0], trial("see", 2)["coverage_after"][0]);
 }
 
-TEST_F(BenchmarkVerb, GivesTheSameTablesAfterItWasStopped) {
+TEST_F(BenchmarkCommand, GivesTheSameTablesAfterItWasStopped) {
   ASSERT_EQ(run("see++,oa", {"--max-views", "6"}).exit_code, 0);
   const std::string whole = trials_without_times();
   std::filesystem::remove(item("oa", 1));
-  std::ofstream(item("see++", 2)) << content_of(item("see++", 2)).substr(0, 50);  // cut off
+  std::ofstream(item("see++", 2)) << read_content(item("see++", 2)).substr(0, 50);  // cut off
   ASSERT_EQ(run("see++,oa", {"--max-views", "6"}).exit_code, 0);
   EXPECT_EQ(trials_without_times(), whole);
 }
 
-TEST_F(BenchmarkVerb, DoesNotRunAgainWhatIsFinished) {
+TEST_F(BenchmarkCommand, DoesNotRunAgainWhatIsFinished) {
   ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
-  Json stored = Json::parse(content_of(item("oa", 1)));
+  Json stored = Json::parse(read_content(item("oa", 1)));
   stored["trial"]["points"] = 123456789;
   std::ofstream(item("oa", 1)) << stored;
   ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
@@ -95,13 +95,13 @@ TEST_F(BenchmarkVerb, DoesNotRunAgainWhatIsFinished) {
   EXPECT_THAT(trials_without_times(), HasSubstr("123456789"));
 }
 
-TEST_F(BenchmarkVerb, RunsAgainWhatOtherSettingsMade) {
+TEST_F(BenchmarkCommand, RunsAgainWhatOtherSettingsMade) {
   ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
   ASSERT_EQ(run("oa", {"--max-views", "5"}).exit_code, 0);
   EXPECT_EQ(trial("oa", 1)["views"], 5);
 }
 
-TEST_F(BenchmarkVerb, IsTheSameForAnyNumberOfThreads) {
+TEST_F(BenchmarkCommand, IsSameForAnyThreadCount) {
   ASSERT_EQ(run("see,oa,pc", {"--max-views", "6", "--threads", "1"}).exit_code, 0);
   const std::string alone = trials_without_times();
   std::filesystem::remove_all(folder_.path() / "out");
@@ -110,15 +110,15 @@ TEST_F(BenchmarkVerb, IsTheSameForAnyNumberOfThreads) {
 }
 
 // Paper, section IV-B.
-TEST_F(BenchmarkVerb, LimitsVolumetricSurveysToTheMostViewsThatSeeNeeded) {
+TEST_F(BenchmarkCommand, LimitsVolumetricSurveysToTheMostViewsThatSeeNeeded) {
   ASSERT_EQ(run("see,oa").exit_code, 0);
-  const int most =
+  const int max =
       std::max(trial("see", 1)["views"].get<int>(), trial("see", 2)["views"].get<int>());
-  EXPECT_EQ(trial("oa", 1)["views"], most);
-  EXPECT_EQ(trial("oa", 2)["views"], most);
+  EXPECT_EQ(trial("oa", 1)["views"], max);
+  EXPECT_EQ(trial("oa", 2)["views"], max);
 }
 
-TEST_F(BenchmarkVerb, ReportsWhatThereIsWhenItIsInterrupted) {
+TEST_F(BenchmarkCommand, ReportsWhatThereIsWhenItIsInterrupted) {
   ASSERT_EQ(run("oa", {"--max-views", "3"}).exit_code, 0);
   std::stop_source stop;
   stop.request_stop();
@@ -128,50 +128,50 @@ TEST_F(BenchmarkVerb, ReportsWhatThereIsWhenItIsInterrupted) {
   EXPECT_FALSE(std::filesystem::exists(item("pc", 1)));
 }
 
-TEST_F(BenchmarkVerb, LeavesAPageThatReportWritesAnew) {
+TEST_F(BenchmarkCommand, ReportRegeneratesThePage) {
   const ProgramRun result = run("see,see++", {"--max-views", "4"});
   EXPECT_EQ(result.err, "");
-  const std::string page = content_of(folder_.path() / "out" / "benchmark.html");
+  const std::string page = read_content(folder_.path() / "out" / "benchmark.html");
   EXPECT_THAT(page, HasSubstr("\"kind\":\"comparison\""));
   std::filesystem::remove(folder_.path() / "out" / "benchmark.html");
   const ProgramRun again = run_skycap({"report", folder_ / "out"});
   EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_TRUE(content_of(folder_.path() / "out" / "benchmark.html") == page);
+  EXPECT_TRUE(read_content(folder_.path() / "out" / "benchmark.html") == page);
   ASSERT_EQ(run("see,see++", {"--max-views", "4", "--no-report"}).exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out" / "benchmark.html"));
 }
 
-TEST_F(BenchmarkVerb, RefusesPlannersThatItDoesNotKnow) {
+TEST_F(BenchmarkCommand, RefusesPlannersThatItDoesNotKnow) {
   const ProgramRun result = run("see,frontier");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("unknown planner 'frontier'; expected all or some of see++"));
 }
 
-TEST_F(BenchmarkVerb, DrawsASceneOfAFamilyForEachSeed) {
+TEST_F(BenchmarkCommand, DrawsASceneOfAFamilyForEachSeed) {
   const ProgramRun result =
       run("see", {"--scenes", "fences,statue", "--max-views", "1", "--set",
                   "evaluation.samples=1000", "--set", "scene.longest_side=1", "--no-report"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Json manifest = Json::parse(content_of(folder_.path() / "out" / "manifest.json"));
+  const Json manifest = Json::parse(read_content(folder_.path() / "out" / "manifest.json"));
   ASSERT_EQ(manifest["entries"].size(), 2U);
   EXPECT_EQ(manifest["entries"][0]["mission"], "fences");
   EXPECT_EQ(manifest["entries"][1]["mission"], "statue");
   // What can be seen of two scenes of a family differs, whatever the start.
   for (const char* family : {"fences", "statue"}) {
     const auto items = folder_.path() / "out" / "items" / family / "see";
-    const Json one = Json::parse(content_of(items / "seed_1.json"));
-    const Json two = Json::parse(content_of(items / "seed_2.json"));
+    const Json one = Json::parse(read_content(items / "seed_1.json"));
+    const Json two = Json::parse(read_content(items / "seed_2.json"));
     EXPECT_NE(one["fingerprint"], two["fingerprint"]) << family;
   }
 }
 
-TEST_F(BenchmarkVerb, RefusesFamiliesThatItDoesNotKnow) {
+TEST_F(BenchmarkCommand, RefusesFamiliesThatItDoesNotKnow) {
   const ProgramRun result = run("see", {"--scenes", "garage,castle"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--scenes: unknown family 'castle'; expected all or bridge"));
 }
 
-TEST_F(BenchmarkVerb, RefusesMissionsOfTheSameName) {
+TEST_F(BenchmarkCommand, RefusesMissionsOfTheSameName) {
   std::filesystem::create_directory(folder_.path() / "other");
   const std::string other = folder_.write("other/quick.yaml", quick_mission());
   const ProgramRun result = run("oa", {other});
@@ -181,11 +181,11 @@ TEST_F(BenchmarkVerb, RefusesMissionsOfTheSameName) {
 
 TEST(Contestants, HaveNamesOfTheirOwn) {
   std::set<std::string> names;
-  for (const batch::Contestant& contestant : batch::contestants()) {
-    EXPECT_TRUE(names.insert(contestant.name).second) << contestant.name;
-    EXPECT_EQ(batch::find_contestant(contestant.name), &contestant);
+  for (const batch::Method& method : batch::methods()) {
+    EXPECT_TRUE(names.insert(method.name).second) << method.name;
+    EXPECT_EQ(batch::find_method(method.name), &method);
   }
-  EXPECT_EQ(batch::find_contestant("frontier"), nullptr);
+  EXPECT_EQ(batch::find_method("frontier"), nullptr);
 }
 
 }  // namespace

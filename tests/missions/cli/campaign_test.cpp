@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using tests::content_of;
 using tests::ProgramRun;
+using tests::read_content;
 using tests::run_skycap;
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
@@ -40,7 +40,7 @@ std::string small_mission(const std::string& more = "") {
   return mission.replace(mission.find("longest_side"), 0, "detail: coarse, ");
 }
 
-class CampaignVerb : public testing::Test {
+class CampaignCommand : public testing::Test {
  protected:
   ProgramRun run(const std::string& out, const std::vector<std::string>& more = {}) const {
     return run_skycap(words(out, more));
@@ -63,7 +63,7 @@ class CampaignVerb : public testing::Test {
               0);
     return process;
   }
-  static int status_of(pid_t process) {
+  static int wait_for_status(pid_t process) {
     int status = 0;
     ::waitpid(process, &status, 0);
     return status;
@@ -72,7 +72,7 @@ class CampaignVerb : public testing::Test {
   std::map<std::string, std::string> tables(const std::string& out) const {
     std::map<std::string, std::string> contents;
     for (const char* name : {"manifest.jsonl", "trials.csv", "table1.csv", "report.md"}) {
-      contents[name] = content_of(folder_.path() / out / name);
+      contents[name] = read_content(folder_.path() / out / name);
     }
     return contents;
   }
@@ -84,7 +84,7 @@ class CampaignVerb : public testing::Test {
     if (!fs::exists(items)) return contents;
     for (const auto& entry : fs::recursive_directory_iterator(items)) {
       if (entry.path().filename() != "item.json") continue;
-      contents[fs::relative(entry.path(), items)] = content_of(entry.path());
+      contents[fs::relative(entry.path(), items)] = read_content(entry.path());
     }
     return contents;
   }
@@ -100,12 +100,12 @@ class CampaignVerb : public testing::Test {
                                         "variants: {plain: {}, short: {limits.max_views: 2}}\n");
 };
 
-TEST_F(CampaignVerb, MakesTheTablesOfAllItems) {
+TEST_F(CampaignCommand, MakesTheTablesOfAllItems) {
   const ProgramRun result = run("out");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   EXPECT_THAT(result.out, HasSubstr("8 of 8 runs\n"));
-  const Json json = Json::parse(content_of(folder_.path() / "out" / "results.json"));
+  const Json json = Json::parse(read_content(folder_.path() / "out" / "results.json"));
   ASSERT_EQ(json["results"].size(), 4U);
   std::set<std::string> missions;
   for (const Json& cell : json["results"]) {
@@ -119,7 +119,7 @@ TEST_F(CampaignVerb, MakesTheTablesOfAllItems) {
   EXPECT_TRUE(fs::exists(folder_.path() / "out" / "benchmark.html"));
 }
 
-TEST_F(CampaignVerb, GivesTheSameTablesByThreadsAndByIndex) {
+TEST_F(CampaignCommand, GivesTheSameTablesByThreadsAndByIndex) {
   ASSERT_EQ(run("one", {"--threads", "1"}).exit_code, 0);
   ASSERT_EQ(run("two", {"--threads", "2"}).exit_code, 0);
   for (int i = item_count - 1; i >= 0; --i) {
@@ -137,7 +137,7 @@ TEST_F(CampaignVerb, GivesTheSameTablesByThreadsAndByIndex) {
   EXPECT_EQ(tables("two"), tables("one"));
 }
 
-TEST_F(CampaignVerb, TakesItsIndexFromTheEngine) {
+TEST_F(CampaignCommand, TakesItsIndexFromTheEngine) {
   ::setenv("PARALLEL_SEQ", "8", 1);
   const ProgramRun last = run("out", {"--index", "parallel"});
   ::setenv("PARALLEL_SEQ", "9", 1);
@@ -150,14 +150,14 @@ TEST_F(CampaignVerb, TakesItsIndexFromTheEngine) {
   EXPECT_EQ(records("out").size(), 1U);
 }
 
-TEST_F(CampaignVerb, RunsNothingTwiceAndEverythingThatIsStale) {
+TEST_F(CampaignCommand, RunsNothingTwiceAndEverythingThatIsStale) {
   ASSERT_EQ(run("out").exit_code, 0);
   const auto before = records("out");
   ASSERT_EQ(run("out").exit_code, 0);
   EXPECT_EQ(records("out"), before);
   // A record that is damaged, and one that other settings made.
   const fs::path damaged = folder_.path() / "out/items/quick/plain/oa/seed_1/item.json";
-  std::ofstream(damaged) << content_of(damaged).substr(0, 70);
+  std::ofstream(damaged) << read_content(damaged).substr(0, 70);
   std::ofstream(campaign_, std::ios::app) << "results: figures\n";  // changes no item
   ASSERT_EQ(run("out").exit_code, 0);
   for (const auto& [path, text] : records("out")) {
@@ -172,7 +172,7 @@ TEST_F(CampaignVerb, RunsNothingTwiceAndEverythingThatIsStale) {
 }
 
 // What tasks keep for each other is not believed when it is damaged.
-TEST_F(CampaignVerb, MeasuresAgainWhatIsDamaged) {
+TEST_F(CampaignCommand, MeasuresAgainWhatIsDamaged) {
   ASSERT_EQ(run("whole").exit_code, 0);
   for (const char* damage : {"", "-\n", "2\n0101", "0.5"}) {
     ASSERT_EQ(run("out", {"--index", "0"}).exit_code, 0);
@@ -187,7 +187,7 @@ TEST_F(CampaignVerb, MeasuresAgainWhatIsDamaged) {
 }
 
 // The model's content counts, not its name.
-TEST_F(CampaignVerb, RunsAgainWhatAnotherModelMade) {
+TEST_F(CampaignCommand, RunsAgainWhatAnotherModelMade) {
   ASSERT_EQ(run_skycap({"model", "teapot", "--out", folder_ / "m.ply"}).exit_code, 0);
   const std::string mission = tests::quick_mission();
   folder_.write("quick.yaml",
@@ -201,7 +201,7 @@ TEST_F(CampaignVerb, RunsAgainWhatAnotherModelMade) {
   EXPECT_NE(records("out"), before);
 }
 
-TEST_F(CampaignVerb, GivesTheSameTablesAfterKills) {
+TEST_F(CampaignCommand, GivesTheSameTablesAfterKills) {
   ASSERT_EQ(run("whole").exit_code, 0);
   std::mt19937 random(1);
   std::map<std::string, std::string> complete;
@@ -210,7 +210,7 @@ TEST_F(CampaignVerb, GivesTheSameTablesAfterKills) {
     const pid_t process = started("part", {"--quiet", "--threads", "2"});
     std::this_thread::sleep_for(std::chrono::milliseconds(30 + random() % 250));
     ::kill(process, SIGKILL);
-    const int status = status_of(process);
+    const int status = wait_for_status(process);
     // What was complete before has not been made again.
     const auto now = records("part");
     for (const auto& [path, text] : complete) EXPECT_EQ(now.at(path), text) << path;
@@ -226,15 +226,15 @@ TEST_F(CampaignVerb, GivesTheSameTablesAfterKills) {
   }
 }
 
-TEST_F(CampaignVerb, EndsSoonAndWholeWhenItIsToldTo) {
+TEST_F(CampaignCommand, EndsSoonAndWholeWhenItIsToldTo) {
   std::ofstream(campaign_) << "missions: [quick.yaml]\nplanners: [rse]\nseeds: 500\n"
                               "set: {limits.max_views: 40}\n";
   const pid_t process = started("out", {"--quiet", "--threads", "2"});
   while (records("out").empty()) std::this_thread::sleep_for(20ms);
-  const auto told = Clock::now();
+  const auto reported = Clock::now();
   ::kill(process, SIGTERM);
-  const int status = status_of(process);
-  EXPECT_LT(Clock::now() - told, 2s);
+  const int status = wait_for_status(process);
+  EXPECT_LT(Clock::now() - reported, 2s);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 143);
   for (const auto& entry : fs::recursive_directory_iterator(folder_.path() / "out")) {
@@ -246,7 +246,7 @@ TEST_F(CampaignVerb, EndsSoonAndWholeWhenItIsToldTo) {
   EXPECT_FALSE(fs::exists(folder_.path() / "out" / "report.md"));
 }
 
-TEST_F(CampaignVerb, GoesOnWithoutWhatCannotBeRun) {
+TEST_F(CampaignCommand, GoesOnWithoutWhatCannotBeRun) {
   folder_.write("broken.yaml", "scene: {model: nothing.ply}\n");
   folder_.write(
       "lost.yaml",
@@ -263,7 +263,7 @@ TEST_F(CampaignVerb, GoesOnWithoutWhatCannotBeRun) {
   EXPECT_THAT(alone.err, HasSubstr("skycap: error: "));
 }
 
-TEST_F(CampaignVerb, LeavesPackagesWhereTheyAreWanted) {
+TEST_F(CampaignCommand, LeavesPackagesWhereTheyAreWanted) {
   std::ofstream(campaign_) << "missions: [quick.yaml]\nplanners: [see++]\nseeds: 1\n"
                               "first_seed: 3\nset: {limits.max_views: 3}\nresults: package\n";
   ASSERT_EQ(run("out").exit_code, 0);
@@ -273,11 +273,11 @@ TEST_F(CampaignVerb, LeavesPackagesWhereTheyAreWanted) {
                 .exit_code,
             0);
   for (const char* name : {"views.csv", "cloud.ply", "trajectory.tum"}) {
-    EXPECT_TRUE(content_of(item / name) == content_of(folder_.path() / "plan" / name)) << name;
+    EXPECT_TRUE(read_content(item / name) == read_content(folder_.path() / "plan" / name)) << name;
   }
-  EXPECT_EQ(Json::parse(content_of(item / "summary.json"))["seed"], 3);
+  EXPECT_EQ(Json::parse(read_content(item / "summary.json"))["seed"], 3);
   // Without packages the item is another one, and none is left that it has not made.
-  std::string figures = content_of(campaign_);
+  std::string figures = read_content(campaign_);
   figures = figures.substr(0, figures.find("results:"));
   std::ofstream(campaign_) << figures;
   ASSERT_EQ(run("out").exit_code, 0);
@@ -285,7 +285,7 @@ TEST_F(CampaignVerb, LeavesPackagesWhereTheyAreWanted) {
   EXPECT_FALSE(fs::exists(item / "summary.json"));
 }
 
-TEST_F(CampaignVerb, PrintsItsManifestAndRunsNothing) {
+TEST_F(CampaignCommand, PrintsItsManifestAndRunsNothing) {
   const ProgramRun result = run("out", {"--list"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(std::ranges::count(result.out, '\n'), item_count);
@@ -293,10 +293,10 @@ TEST_F(CampaignVerb, PrintsItsManifestAndRunsNothing) {
 }
 
 // Two tasks at one item: the second is told so, or finds it complete.
-TEST_F(CampaignVerb, TwoTasksNeverFillOneFolder) {
+TEST_F(CampaignCommand, TwoTasksNeverFillOneFolder) {
   const pid_t first = started("out", {"--quiet", "--index", "0"});
   const pid_t second = started("out", {"--quiet", "--index", "0"});
-  const int statuses[] = {status_of(first), status_of(second)};
+  const int statuses[] = {wait_for_status(first), wait_for_status(second)};
   EXPECT_TRUE(statuses[0] == 0 || statuses[1] == 0);
   for (const int status : statuses) {
     EXPECT_TRUE(WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 2));
@@ -305,13 +305,14 @@ TEST_F(CampaignVerb, TwoTasksNeverFillOneFolder) {
 }
 
 /// A program of that name that writes its words down and says something.
-void write_program(const fs::path& file, const std::string& says) {
-  std::ofstream(file) << "#!/bin/sh\necho \"$@\" >> \"$0.words\"\necho '" << says << "'\n";
+void write_program(const fs::path& file, const std::string& program_output) {
+  std::ofstream(file) << "#!/bin/sh\necho \"$@\" >> \"$0.words\"\necho '" << program_output
+                      << "'\n";
   fs::permissions(file, fs::perms::owner_all);
 }
 
 // The script that Slurm is given, run by a shell with Slurm's variable.
-TEST_F(CampaignVerb, SubmitsTasksThatSlurmCanRun) {
+TEST_F(CampaignCommand, SubmitsTasksThatSlurmCanRun) {
   ASSERT_EQ(run("here").exit_code, 0);
   fs::create_directory(folder_.path() / "bin");
   write_program(folder_.path() / "bin" / "sbatch", "42;cluster");
@@ -323,10 +324,10 @@ TEST_F(CampaignVerb, SubmitsTasksThatSlurmCanRun) {
   const auto result = support::run_external_program(submit, folder_.path());
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("Slurm job 42: 3 tasks of 3 runs"));
-  EXPECT_THAT(content_of(folder_.path() / "bin" / "sbatch.words"),
+  EXPECT_THAT(read_content(folder_.path() / "bin" / "sbatch.words"),
               HasSubstr("--dependency=afterany:42 "));
   const fs::path out = folder_.path() / "out";
-  EXPECT_THAT(content_of(out / "slurm.sh"), HasSubstr("#SBATCH --array=0-2\n"));
+  EXPECT_THAT(read_content(out / "slurm.sh"), HasSubstr("#SBATCH --array=0-2\n"));
   for (const char* task : {"2", "0", "1"}) {
     const auto done = support::run_external_program(
         {"env", std::string("SLURM_ARRAY_TASK_ID=") + task, "sh", (out / "slurm.sh").string()},
@@ -338,7 +339,7 @@ TEST_F(CampaignVerb, SubmitsTasksThatSlurmCanRun) {
   EXPECT_EQ(tables("out"), tables("here"));
 }
 
-TEST_F(CampaignVerb, SaysThatThereIsNoEngine) {
+TEST_F(CampaignCommand, SaysThatThereIsNoEngine) {
   std::vector<std::string> submit{"/usr/bin/env", "PATH=" + folder_ / "bin", SKYCAP_PROGRAM};
   for (const std::string& word : words("out", {"--submit", "parallel"})) submit.push_back(word);
   const auto result = support::run_external_program(submit, folder_.path());

@@ -26,11 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-using tests::content_of;
+using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-std::string refusal(const std::vector<std::string>& arguments) {
+std::string rejection(const std::vector<std::string>& arguments) {
   const tests::ProgramRun run = run_skycap(arguments);
   EXPECT_EQ(run.exit_code, 2) << run.err << run.out;
   return run.err;
@@ -39,10 +39,10 @@ std::string refusal(const std::vector<std::string>& arguments) {
 // Class 13: a name that is no UTF-8 reaches summary.json, the route files and the page.
 TEST(FaultClasses, NamesThatAreNoTextLoseNoSurvey) {
   const TestFolder folder;
-  const std::string mission = folder.write("\xff\xfe.yaml", tests::flown_mission());
+  const std::string mission = folder.write("\xff\xfe.yaml", tests::flight_mission());
   const auto run = run_skycap({"plan", mission, "--max-views", "2", "--out", folder / "out"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  const auto summary = nlohmann::json::parse(content_of(folder / "out/summary.json"));
+  const auto summary = nlohmann::json::parse(read_content(folder / "out/summary.json"));
   EXPECT_EQ(summary.at("views"), 2);
   EXPECT_TRUE(fs::exists(folder / "out/mission.plan"));
 }
@@ -55,31 +55,32 @@ TEST(FaultClasses, FoldersAndLoopsInPlaceOfFilesAreNamed) {
     fs::create_directories(folder / name);
   }
   fs::create_symlink(folder / "loop.plan", folder / "loop.plan");
-  EXPECT_THAT(refusal({"check", mission, "--route", folder / "a.plan"}),
+  EXPECT_THAT(rejection({"check", mission, "--route", folder / "a.plan"}),
               HasSubstr("a.plan: is a directory"));
-  EXPECT_THAT(refusal({"check", mission, "--route", folder / "loop.plan"}),
+  EXPECT_THAT(rejection({"check", mission, "--route", folder / "loop.plan"}),
               HasSubstr("loop.plan: cannot be opened"));
-  EXPECT_THAT(refusal({"scan", mission, "--sensor", folder / "s.yaml", "--out", folder / "out"}),
+  EXPECT_THAT(rejection({"scan", mission, "--sensor", folder / "s.yaml", "--out", folder / "out"}),
               HasSubstr("s.yaml: is a directory"));
-  EXPECT_THAT(refusal({"export", folder / "package", "--format", "csv"}),
+  EXPECT_THAT(rejection({"export", folder / "package", "--format", "csv"}),
               HasSubstr("summary.json: is a directory"));
   const std::string loops = "loop.plan: Too many levels";
-  EXPECT_THAT(refusal({"scan", mission, "--route", folder / "loop.plan", "--out", folder / "out"}),
-              HasSubstr(loops));
   EXPECT_THAT(
-      refusal({"next", mission, "--survey", folder / "live", "--dataset", folder / "loop.plan"}),
+      rejection({"scan", mission, "--route", folder / "loop.plan", "--out", folder / "out"}),
+      HasSubstr(loops));
+  EXPECT_THAT(
+      rejection({"next", mission, "--survey", folder / "live", "--dataset", folder / "loop.plan"}),
       HasSubstr(loops));
 }
 
 // Of the same kind: who opens a pipe waits for ever.
 TEST(FaultClasses, APipeInPlaceOfMeasuredSpaceIsRefused) {
   const TestFolder folder;
-  const std::string mission = folder.write("m.yaml", tests::flown_mission());
+  const std::string mission = folder.write("m.yaml", tests::flight_mission());
   ASSERT_EQ(run_skycap({"plan", mission, "--max-views", "2", "--out", folder / "out"}).exit_code,
             0);
   fs::remove(folder / "out/free_space.bin");
   ASSERT_EQ(::mkfifo((folder / "out/free_space.bin").c_str(), 0600), 0);
-  EXPECT_THAT(refusal({"export", folder / "out", "--format", "csv"}),
+  EXPECT_THAT(rejection({"export", folder / "out", "--format", "csv"}),
               HasSubstr("free_space.bin: is a device or a pipe"));
 }
 
@@ -115,7 +116,7 @@ TEST(FaultClasses, ACacheThatSaysNonsenseIsNotBelieved) {
     const auto run = run_skycap({"plan", mission, "--max-views", "2", "--set",
                                  "evaluation.attainable_views=5", "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    const auto summary = nlohmann::json::parse(content_of(folder / "out/summary.json"));
+    const auto summary = nlohmann::json::parse(read_content(folder / "out/summary.json"));
     return std::array{summary.at("attainable_coverage").get<double>(),
                       summary.at("coverage_visible").get<double>()};
   };
@@ -124,13 +125,13 @@ TEST(FaultClasses, ACacheThatSaysNonsenseIsNotBelieved) {
     EXPECT_GT(share, 0.0);
     EXPECT_LE(share, 1.0);
   }
-  std::size_t spoiled = 0;
+  std::size_t corrupted = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "cache")) {
     if (!entry.is_regular_file()) continue;
-    geometry::write_file(entry.path(), std::string(content_of(entry.path()).size(), '5'));
-    ++spoiled;
+    geometry::write_file(entry.path(), std::string(read_content(entry.path()).size(), '5'));
+    ++corrupted;
   }
-  ASSERT_EQ(spoiled, 2U);  // what is visible, and what attainable
+  ASSERT_EQ(corrupted, 2U);  // what is visible, and what attainable
   EXPECT_EQ(could_be_covered(), first);
 }
 
@@ -153,17 +154,17 @@ TEST(FaultClasses, TwoWritersOfOneFileBothSucceed) {
   write(two);
   other.join();
   EXPECT_EQ(failures, 0);
-  const std::string content = content_of(file);
+  const std::string content = read_content(file);
   EXPECT_TRUE(content == one || content == two);
 }
 
 /// A file of so many blanks, compressed.
 std::string blanks(const TestFolder& folder, const std::string& name, std::size_t mebibytes) {
   const gzFile file = gzopen((folder / name).c_str(), "wb1");
-  const std::string piece(std::size_t{1} << 20, ' ');
+  const std::string chunk(std::size_t{1} << 20, ' ');
   for (std::size_t i = 0; i < mebibytes; ++i) {
-    EXPECT_EQ(gzwrite(file, piece.data(), static_cast<unsigned>(piece.size())),
-              static_cast<int>(piece.size()));
+    EXPECT_EQ(gzwrite(file, chunk.data(), static_cast<unsigned>(chunk.size())),
+              static_cast<int>(chunk.size()));
   }
   EXPECT_EQ(gzclose(file), Z_OK);
   return folder / name;
@@ -172,18 +173,18 @@ std::string blanks(const TestFolder& folder, const std::string& name, std::size_
 // What is made of a file takes a multiple of its bytes: 4 GB of a cloud of 1 GiB, once.
 TEST(FaultClasses, WhatWouldTakeMoreMemoryThanAProgramMayIsRefused) {
   const TestFolder folder;
-  EXPECT_THAT(refusal({"model", blanks(folder, "m.obj.gz", 257)}),
+  EXPECT_THAT(rejection({"model", blanks(folder, "m.obj.gz", 257)}),
               HasSubstr("larger than 256 MiB"));
-  EXPECT_THAT(refusal({"evaluate", "--cloud", blanks(folder, "c.xyz.gz", 385), "--model",
-                       "builtin:teapot", "--distance", "0.1"}),
+  EXPECT_THAT(rejection({"evaluate", "--cloud", blanks(folder, "c.xyz.gz", 385), "--model",
+                         "builtin:teapot", "--distance", "0.1"}),
               HasSubstr("larger than 384 MiB"));
-  EXPECT_THAT(refusal({"report", fs::path(blanks(folder, "summary.json", 65)).parent_path()}),
+  EXPECT_THAT(rejection({"report", fs::path(blanks(folder, "summary.json", 65)).parent_path()}),
               HasSubstr("larger than 64 MiB"));
   const geometry::DepthImage image{5001, 5000,
                                    std::vector<std::uint16_t>(std::size_t{5001} * 5000)};
   geometry::write_depth_png(image, folder / "d.png");
-  EXPECT_THAT(refusal({"next", folder.write("m.yaml", tests::quick_mission()), "--survey",
-                       folder / "live", "--scan", folder / "d.png", "--pose", "0 0 2 1 0 0 0"}),
+  EXPECT_THAT(rejection({"next", folder.write("m.yaml", tests::quick_mission()), "--survey",
+                         folder / "live", "--scan", folder / "d.png", "--pose", "0 0 2 1 0 0 0"}),
               HasSubstr("more than 2.5e7 pixels"));
 }
 

@@ -21,8 +21,8 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-using tests::content_of;
 using tests::former_mission;
+using tests::read_content;
 using tests::run_skycap;
 
 TEST(FormerNames, GiveTheSameResults) {
@@ -37,12 +37,12 @@ TEST(FormerNames, GiveTheSameResults) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
   for (const char* file : {"views.csv", "cloud.ply", "trajectory.tum"}) {
-    EXPECT_EQ(content_of(folder / ("former/out/" + std::string(file))),
-              content_of(folder / ("current/out/" + std::string(file))));
+    EXPECT_EQ(read_content(folder / ("former/out/" + std::string(file))),
+              read_content(folder / ("current/out/" + std::string(file))));
   }
   using Json = nlohmann::ordered_json;
-  EXPECT_EQ(Json::parse(content_of(folder / "former/out/summary.json"))["settings"],
-            Json::parse(content_of(folder / "current/out/summary.json"))["settings"]);
+  EXPECT_EQ(Json::parse(read_content(folder / "former/out/summary.json"))["settings"],
+            Json::parse(read_content(folder / "current/out/summary.json"))["settings"]);
 }
 
 TEST(FormerNames, AreWarnedOfOnceForAFile) {
@@ -63,8 +63,8 @@ TEST(FormerNames, AreRewrittenByTheProgram) {
   const std::string mission = folder.write("m.yaml", former_mission);
   const auto run = run_skycap({"check", mission, "--rewrite", folder / "new.yaml"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(content_of(folder / "new.yaml"), config::with_current_names(former_mission, "m"));
-  EXPECT_EQ(content_of(mission), former_mission);
+  EXPECT_EQ(read_content(folder / "new.yaml"), config::with_current_names(former_mission, "m"));
+  EXPECT_EQ(read_content(mission), former_mission);
   EXPECT_THAT(run_skycap({"check", folder / "new.yaml", "--setup"}).err, Not(HasSubstr("warning")));
   folder.write("broken.yaml", "evaluation: {registration_distance: -1}\n");
   EXPECT_EQ(
@@ -96,7 +96,7 @@ TEST(FormerNames, OfCampaignsAndDistrictsAreRead) {
       batch::parse_district("map: a.json\ntogether: 2\nplanner: omniscient\n", "d.yaml");
   EXPECT_EQ(district.merge_distance, 2.0);
   EXPECT_EQ(district.planner, "oracle");
-  EXPECT_EQ(batch::find_contestant("omniscient"), batch::find_contestant("oracle"));
+  EXPECT_EQ(batch::find_method("omniscient"), batch::find_method("oracle"));
 }
 
 }  // namespace

@@ -28,13 +28,13 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-using tests::content_of;
 using tests::quick_mission;
+using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
 /// The one line that the program refuses its arguments with.
-std::string refusal(const std::vector<std::string>& arguments) {
+std::string rejection(const std::vector<std::string>& arguments) {
   const tests::ProgramRun run = run_skycap(arguments);
   EXPECT_EQ(run.exit_code, 2) << run.err << run.out;
   EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
@@ -52,10 +52,11 @@ TEST(HostileInput, DeeplyNestedJsonIsRefused) {
   const std::string deep(200'000, '[');
   const std::string mission = folder.write("m.yaml", quick_mission());
   for (const char* name : {"deep.plan", "deep.geojson"}) {
-    EXPECT_THAT(refusal({"check", mission, "--route", folder.write(name, deep)}), HasSubstr(name));
+    EXPECT_THAT(rejection({"check", mission, "--route", folder.write(name, deep)}),
+                HasSubstr(name));
   }
   folder.write("summary.json", deep);
-  EXPECT_THAT(refusal({"export", folder.path().string(), "--format", "csv"}),
+  EXPECT_THAT(rejection({"export", folder.path().string(), "--format", "csv"}),
               HasSubstr("summary.json: is not a package's summary"));
 }
 
@@ -63,7 +64,7 @@ TEST(HostileInput, PackagesWithPlacesOutOfTheWorldAreRefused) {
   const TestFolder folder;
   const auto message = [&](const std::string& summary) {
     folder.write("summary.json", summary);
-    return refusal({"export", folder.path().string(), "--format", "csv"});
+    return rejection({"export", folder.path().string(), "--format", "csv"});
   };
   EXPECT_THAT(message(summary_with("", "\"flight\": {\"pad\": [1e300, 0, 0]}, \"per_view\": []")),
               HasSubstr("summary.json: flight.pad is (1e+300, 0, 0)"));
@@ -83,7 +84,7 @@ TEST(HostileInput, RoutesOutOfTheWorldAreRefused) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const std::string tum = folder.write("far.tum", "0 0 0 1e19 0 0 0 1\n1 0 0 1e19 0 0 0 1\n");
-  EXPECT_THAT(refusal({"scan", mission, "--route", tum, "--out", folder / "out"}),
+  EXPECT_THAT(rejection({"scan", mission, "--route", tum, "--out", folder / "out"}),
               HasSubstr("trajectory pose 0 is (0, 0, 1e+19)"));
 }
 
@@ -96,7 +97,7 @@ TEST(HostileInput, SensorsBeyondAnyInstrumentAreRefused) {
         "name: S\nkind: spinning\nchannels: {count: 2, lowest_deg: -1, highest_deg: 1}\n"
         "range: {min: 0.1, max: 50}\n" +
             more);
-    return refusal({"scan", mission, "--sensor", sensor, "--out", folder / "out"});
+    return rejection({"scan", mission, "--sensor", sensor, "--out", folder / "out"});
   };
   const std::string rate = "rotation_rate_hz: 10\n", columns = "columns_per_turn: 100\n";
   EXPECT_THAT(message(rate + columns + "radial_offset_mm: 1e300\n"), HasSubstr("radial_offset"));
@@ -104,22 +105,22 @@ TEST(HostileInput, SensorsBeyondAnyInstrumentAreRefused) {
   EXPECT_THAT(message(rate + "firing_period_us: 1e-9\n"), HasSubstr("firing_period"));
   EXPECT_THAT(message(rate + columns + "errors: {angle_sigma_deg: 1e300}\n"),
               HasSubstr("errors.angle_sigma"));
-  EXPECT_THAT(refusal({"scan", mission, "--sensor", "/dev/zero.yaml"}),
+  EXPECT_THAT(rejection({"scan", mission, "--sensor", "/dev/zero.yaml"}),
               HasSubstr("does not exist"));
   std::filesystem::create_directory(folder.path() / "folder.yaml");
-  EXPECT_THAT(refusal({"scan", mission, "--sensor", folder / "folder.yaml"}),
+  EXPECT_THAT(rejection({"scan", mission, "--sensor", folder / "folder.yaml"}),
               HasSubstr("folder.yaml: is a directory"));
 }
 
 TEST(HostileInput, MeshesBeyondSinglePrecisionAreRefused) {
   const TestFolder folder;
   const std::string mesh = folder.write("far.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_THAT(refusal({"model", mesh}), HasSubstr("far.obj: face 0: vertex 1 is (1e+39, 0, 0)"));
+  EXPECT_THAT(rejection({"model", mesh}), HasSubstr("far.obj: face 0: vertex 1 is (1e+39, 0, 0)"));
   EXPECT_THAT(
-      refusal({"evaluate", "--mesh", mesh, "--model", "builtin:teapot", "--distance", "0.1"}),
+      rejection({"evaluate", "--mesh", mesh, "--model", "builtin:teapot", "--distance", "0.1"}),
       HasSubstr("far.obj: face 0: vertex 1"));
   EXPECT_THAT(
-      refusal({"evaluate", "--mesh", mesh, "--model", "builtin:teapot", "--distance", "nan"}),
+      rejection({"evaluate", "--mesh", mesh, "--model", "builtin:teapot", "--distance", "nan"}),
       HasSubstr("nan is not a number"));
 }
 
@@ -129,14 +130,14 @@ TEST(HostileInput, WorkWithoutEndIsRefusedBeforeItBegins) {
   const auto message = [&](const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"scan", mission, "--out", folder / "out"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    return refusal(arguments);
+    return rejection(arguments);
   };
   EXPECT_THAT(message({"--set", "scan.orbit.speed=1e-6"}), HasSubstr("scan.orbit.speed: "));
   EXPECT_THAT(message({"--sensor", "see_d435", "--set", "scan.frame_period=1e-6"}),
               HasSubstr("scan.frame_period: "));
   const std::string gap = folder.write("gap.tum", "0 0 0 1 0 0 0 1\n1e9 0 0 1 0 0 0 1\n");
   EXPECT_THAT(message({"--route", gap}), HasSubstr("firings"));
-  EXPECT_THAT(refusal({"plan", mission, "--set", "evaluation.coverage_distance=1e-300"}),
+  EXPECT_THAT(rejection({"plan", mission, "--set", "evaluation.coverage_distance=1e-300"}),
               HasSubstr("coverage_distance"));
 }
 
@@ -156,7 +157,7 @@ TEST(HostileInput, PlacesOfEveryRouteAreWithinTheWorld) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto message = [&](const std::string& name, const std::string& content) {
-    return refusal({"check", mission, "--route", folder.write(name, content)});
+    return rejection({"check", mission, "--route", folder.write(name, content)});
   };
   EXPECT_THAT(message("far.tum", "0 0 0 1e308 0 0 0 1\n1 0 0 -1e308 0 0 0 1\n"),
               HasSubstr("far.tum: place 1 is (0, 0, 1e+308)"));
@@ -169,12 +170,13 @@ TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
   const TestFolder folder;
   const std::string mission = folder.write(
       "m.yaml", "scene: {model: 'builtin:nope'}\nevaluation: {coverage_distance: 1}\n");
-  EXPECT_THAT(refusal({"check", mission}),
+  EXPECT_THAT(rejection({"check", mission}),
               HasSubstr("m.yaml:1: key scene.model: unknown model builtin:nope; expected one of: "
                         "builtin:bridge, "));
   const std::string cloud = folder.write("c.xyz", "0 0 0\n");
-  EXPECT_THAT(refusal({"evaluate", "--cloud", cloud, "--model", "builtin:nope", "--distance", "1"}),
-              HasSubstr("--model: unknown builtin model 'nope'"));
+  EXPECT_THAT(
+      rejection({"evaluate", "--cloud", cloud, "--model", "builtin:nope", "--distance", "1"}),
+      HasSubstr("--model: unknown builtin model 'nope'"));
 }
 
 TEST(HostileInput, CopiesThatNoMemoryHoldsAreRefused) {
@@ -185,7 +187,7 @@ TEST(HostileInput, CopiesThatNoMemoryHoldsAreRefused) {
       folder.write("m.yaml", "scene: {model: 'builtin:teapot', copies: [" + copies +
                                  "[1, 1, 1]]}\nevaluation: {coverage_distance: 1}\n");
   EXPECT_THAT(
-      refusal({"check", mission}),
+      rejection({"check", mission}),
       HasSubstr("m.yaml: scene.copies: 1002 times 16256 triangles exceed the limit of 1e+07"));
 }
 
@@ -202,8 +204,9 @@ TEST(HostileInput, PointsOnALineAreNoSurface) {
   for (const double step : {0.0, 0.001}) {
     std::string line;
     for (int i = 0; i < 500; ++i) line += std::to_string(step * i) + " 1 2\n";
-    EXPECT_THAT(refusal({"reconstruct", folder.write("line.xyz", line), "--out", folder / "m.ply"}),
-                HasSubstr("line.xyz: all points are on one line"));
+    EXPECT_THAT(
+        rejection({"reconstruct", folder.write("line.xyz", line), "--out", folder / "m.ply"}),
+        HasSubstr("line.xyz: all points are on one line"));
   }
 }
 
@@ -270,14 +273,14 @@ TEST(HostileInput, TrialsThatAreDoneAreNotRunAgain) {
         false, stop);
   };
   ASSERT_EQ(trials("2", "1").exit_code, 0);
-  const std::string before = content_of(folder / "out/trials.csv");  // with planning times
+  const std::string before = read_content(folder / "out/trials.csv");  // with planning times
   ASSERT_EQ(trials("3", "1").exit_code, 0);
-  EXPECT_TRUE(content_of(folder / "out/trials.csv").starts_with(before));
+  EXPECT_TRUE(read_content(folder / "out/trials.csv").starts_with(before));
   std::stop_source stopped;
   stopped.request_stop();
-  const std::string all = content_of(folder / "out/trials.csv");
+  const std::string all = read_content(folder / "out/trials.csv");
   EXPECT_EQ(trials("3", "7", stopped.get_token()).exit_code, 1);
-  EXPECT_EQ(content_of(folder / "out/trials.csv"), all);
+  EXPECT_EQ(read_content(folder / "out/trials.csv"), all);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/interrupted/trials.csv"));
 }
 
@@ -286,12 +289,12 @@ TEST(HostileInput, AnInterruptedSurveyDoesNotReplaceACompleteOne) {
   const std::string mission = folder.write("m.yaml", quick_mission());
   const std::vector<std::string> plan{"plan", mission, "--quiet", "--out", folder / "out"};
   ASSERT_EQ(run_skycap(plan).exit_code, 0);
-  const std::string whole = content_of(folder / "out/summary.json");
+  const std::string whole = read_content(folder / "out/summary.json");
   std::stop_source stopped;
   stopped.request_stop();
   EXPECT_EQ(run_skycap(plan, false, stopped.get_token()).exit_code, 1);
   ASSERT_THAT(whole, HasSubstr("\"complete\": true"));
-  EXPECT_EQ(content_of(folder / "out/summary.json"), whole);
+  EXPECT_EQ(read_content(folder / "out/summary.json"), whole);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/interrupted/summary.json"));
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-using tests::content_of;
+using tests::read_content;
 using tests::run_skycap;
 
 TEST(Init, WritesAMissionThatCheckAccepts) {
@@ -28,7 +28,7 @@ TEST(Init, WritesAMissionThatCheckAccepts) {
   const auto made = run_skycap({"init", "builtin:teapot", "--out", mission});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("skycap check " + mission));
-  EXPECT_THAT(content_of(mission), HasSubstr("#"));
+  EXPECT_THAT(read_content(mission), HasSubstr("#"));
   const auto check = run_skycap({"check", mission, "--set", "evaluation.attainable_views=0"});
   EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
 }
@@ -41,7 +41,7 @@ TEST(Init, WritesMissionsForEverySensorAndVehicle) {
     const auto made = run_skycap({"init", "builtin:radcliffe-camera", "--sensor", sensor,
                                   "--vehicle", vehicle, "--out", mission});
     ASSERT_EQ(made.exit_code, 0) << sensor << " " << vehicle << ": " << made.err;
-    EXPECT_EQ(config::read_mission(mission).flight().is_flown(), true);
+    EXPECT_EQ(config::read_mission(mission).flight().has_vehicle(), true);
   };
   for (const std::string_view sensor : config::sensor_presets()) {
     make(std::string(sensor), "generic");
@@ -56,7 +56,7 @@ TEST(Init, WritesALiveMissionForARoom) {
   const std::string room = folder / "room.yaml", hall = folder / "hall.yaml";
   ASSERT_EQ(run_skycap({"init", "room", "--size", "5", "4", "3", "--out", room}).exit_code, 0);
   const config::MissionSetup setup = config::read_live_mission(room);
-  EXPECT_EQ(setup.survey().planner.limits.most_height, 3.0);
+  EXPECT_EQ(setup.survey().planner.limits.max_height, 3.0);
   EXPECT_EQ(setup.sensor().camera.camera.width, 848);
   EXPECT_THAT(run_skycap({"next", room, "--survey", folder / "s"}).out, HasSubstr("first scan"));
   const auto narrow = run_skycap({"init", "room", "--vehicle", "generic", "--out", hall});
@@ -65,14 +65,14 @@ TEST(Init, WritesALiveMissionForARoom) {
   const auto wide = run_skycap(
       {"init", "room", "--vehicle", "generic", "--size", "20", "30", "9", "--out", hall});
   ASSERT_EQ(wide.exit_code, 0) << wide.err;
-  EXPECT_TRUE(config::read_live_mission(hall).flight().is_flown());
+  EXPECT_TRUE(config::read_live_mission(hall).flight().has_vehicle());
 }
 
 TEST(Init, RefusesToOverwriteAndUnknownNames) {
   const tests::TestFolder folder;
   const std::string mission = folder.write("m.yaml", "keep\n");
   EXPECT_EQ(run_skycap({"init", "builtin:teapot", "--out", mission}).exit_code, 2);
-  EXPECT_EQ(content_of(mission), "keep\n");
+  EXPECT_EQ(read_content(mission), "keep\n");
   for (const std::vector<std::string>& wrong :
        std::vector<std::vector<std::string>>{{"builtin:nothing"},
                                              {"builtin:teapot", "--sensor", "nothing"},

@@ -17,9 +17,9 @@ namespace skycap::missions::cli {
 namespace {
 
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
-config::MissionSetup setup_of(const std::string& text) {
+config::MissionSetup make_setup(const std::string& text) {
   return config::parse_mission(text, "m.yaml");
 }
 
@@ -30,7 +30,7 @@ nlohmann::ordered_json identity_in(const tests::TestFolder& folder) {
 
 TEST(OpenSurvey, BeginsWherePlanDoesInAScene) {
   const tests::TestFolder folder;
-  const config::MissionSetup setup = setup_of(tests::quick_mission("seed: 7\n"));
+  const config::MissionSetup setup = make_setup(tests::quick_mission("seed: 7\n"));
   const evaluation::SurveyScene scene(setup.simulation, "", setup.run.threads);
   const auto survey = open_survey(setup, "", folder.path());
   const geometry::View first = scene.first_view(7);
@@ -43,7 +43,7 @@ TEST(OpenSurvey, BeginsWherePlanDoesInAScene) {
 /// So that a survey is not continued in another scene.
 TEST(OpenSurvey, KeepsTheSphereOfTheSceneInTheJournal) {
   const tests::TestFolder folder, other;
-  const config::MissionSetup setup = setup_of(tests::quick_mission());
+  const config::MissionSetup setup = make_setup(tests::quick_mission());
   const survey::ViewSphere sphere =
       evaluation::SurveyScene(setup.simulation, "", setup.run.threads).view_sphere();
   open_survey(setup, "", folder.path());
@@ -53,7 +53,8 @@ TEST(OpenSurvey, KeepsTheSphereOfTheSceneInTheJournal) {
   const auto centre = identity["volumetric.sphere_centre"].get<std::string>();
   EXPECT_NEAR(std::stod(centre.substr(1)), sphere.centre.x(), 1e-10);
 
-  open_survey(setup_of(tests::quick_mission("volumetric: {sphere_radius: 3}\n")), "", other.path());
+  open_survey(make_setup(tests::quick_mission("volumetric: {sphere_radius: 3}\n")), "",
+              other.path());
   EXPECT_EQ(identity_in(other)["volumetric.sphere_radius"], "3");
 }
 
@@ -64,31 +65,32 @@ TEST(OpenSurvey, BeginsWithTheGivenViewWithoutAScene) {
       "evaluation: {coverage_distance: 0.03}\n";
   const tests::TestFolder given, left_open;
   const auto survey = open_survey(
-      setup_of(rest + "start: {position: [3, 0, 0], look_at: [0, 0, 0]}\n"), "", given.path());
+      make_setup(rest + "start: {position: [3, 0, 0], look_at: [0, 0, 0]}\n"), "", given.path());
   ASSERT_TRUE(survey->proposal().view);
   EXPECT_EQ(survey->proposal().view->position, Eigen::Vector3d(3, 0, 0));
   EXPECT_EQ(survey->proposal().view->direction, Eigen::Vector3d(-1, 0, 0));
   EXPECT_EQ(identity_in(given)["volumetric.sphere_radius"], "-");
-  EXPECT_FALSE(open_survey(setup_of(rest), "", left_open.path())->proposal().view);
+  EXPECT_FALSE(open_survey(make_setup(rest), "", left_open.path())->proposal().view);
 }
 
 /// Not where the view was wanted, and with the noise of the scan's number.
 TEST(SimulatedSensor, MeasuresTheSceneFromWhereTheVehicleIs) {
-  const config::MissionSetup setup = setup_of(tests::quick_mission());
-  const geometry::View wanted{{3, 0, 0}, {-1, 0, 0}}, taken{{0, 2, 0.5}, {0, -1, 0}};
-  const geometry::Scan scan = simulated_sensor(setup.simulation, "", setup.run)(wanted, taken, 5);
+  const config::MissionSetup setup = make_setup(tests::quick_mission());
+  const geometry::View requested{{3, 0, 0}, {-1, 0, 0}}, actual_view{{0, 2, 0.5}, {0, -1, 0}};
+  const geometry::Scan scan =
+      simulated_sensor(setup.simulation, "", setup.run)(requested, actual_view, 5);
   const evaluation::SurveyScene scene(setup.simulation, "", setup.run.threads);
   const geometry::Scan expected =
-      sim::SurveySensor(setup.sensor(), setup.run.seed).scan(scene.scene(), taken, 5, 1);
+      sim::SurveySensor(setup.sensor(), setup.run.seed).scan(scene.scene(), actual_view, 5, 1);
   EXPECT_FALSE(scan.points.empty());
   EXPECT_TRUE(scan.points == expected.points);
-  EXPECT_TRUE(scan.world_from_sensor.isApprox(geometry::camera_pose(taken)));
+  EXPECT_TRUE(scan.world_from_sensor.isApprox(geometry::camera_pose(actual_view)));
 }
 
 TEST(SimulatedSensor, NeedsAScene) {
-  evaluation::SimulationOptions options = setup_of(tests::quick_mission()).simulation;
+  evaluation::SimulationOptions options = make_setup(tests::quick_mission()).simulation;
   options.scene.model.clear();
-  EXPECT_THAT(complaint_of([&] { simulated_sensor(options, "", {}); }), HasSubstr("scene.model"));
+  EXPECT_THAT(thrown_message([&] { simulated_sensor(options, "", {}); }), HasSubstr("scene.model"));
 }
 
 }  // namespace

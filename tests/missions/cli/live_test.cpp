@@ -41,15 +41,15 @@ geometry::Mesh small_teapot() {
 
 /// What a page shows.
 json page_data(const fs::path& page) {
-  const std::string text = tests::content_of(page), begin = "id=\"data\">";
+  const std::string text = tests::read_content(page), begin = "id=\"data\">";
   const std::size_t at = text.find(begin) + begin.size();
   return json::parse(text.substr(at, text.find("</script>", at) - at));
 }
 
-class LiveVerbs : public testing::Test {
+class LiveCommands : public testing::Test {
  protected:
-  std::vector<std::string> verb(const std::string& name,
-                                const std::vector<std::string>& more = {}) const {
+  std::vector<std::string> command(const std::string& name,
+                                   const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments{name, folder_ / "barn.yaml", "--survey", folder_ / "survey"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
@@ -58,7 +58,7 @@ class LiveVerbs : public testing::Test {
   json answer(const std::vector<std::string>& more, int exit_code = 0) const {
     std::vector<std::string> all = more;
     all.emplace_back("--json");
-    const ProgramRun run = run_skycap(verb("next", all));
+    const ProgramRun run = run_skycap(command("next", all));
     EXPECT_EQ(run.exit_code, exit_code) << run.err;
     return json::parse(run.out);
   }
@@ -84,7 +84,7 @@ class LiveVerbs : public testing::Test {
   sim::Scene scene_ = sim::Scene(small_teapot(), 1);
 };
 
-TEST_F(LiveVerbs, SurveyAPlaceThatNobodyHasModelled) {
+TEST_F(LiveCommands, SurveyAPlaceThatNobodyHasModelled) {
   EXPECT_EQ(answer({})["state"], "first_scan");
   const fs::path page = folder_.path() / "survey" / "report.html";
   EXPECT_FALSE(fs::exists(page));  // there is nothing to show
@@ -105,9 +105,9 @@ TEST_F(LiveVerbs, SurveyAPlaceThatNobodyHasModelled) {
     EXPECT_EQ(data["live"]["position"], at);
     EXPECT_EQ(data["clouds"]["measured"]["of"], next["points"]);
   }
-  const ProgramRun finished = run_skycap(verb("finish"));
+  const ProgramRun finished = run_skycap(command("finish"));
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
-  const json summary = json::parse(tests::content_of(folder_.path() / "survey" / "summary.json"));
+  const json summary = json::parse(tests::read_content(folder_.path() / "survey" / "summary.json"));
   EXPECT_EQ(summary["views"], 4);
   EXPECT_TRUE(summary["coverage"].is_null());
   EXPECT_EQ(summary["stop_reason"], "interrupted");
@@ -117,14 +117,14 @@ TEST_F(LiveVerbs, SurveyAPlaceThatNobodyHasModelled) {
   EXPECT_EQ(data["summary"], summary);
 }
 
-TEST_F(LiveVerbs, TakeTheSameCallTwice) {
+TEST_F(LiveCommands, TakeTheSameCallTwice) {
   const std::vector<std::string> call =
       measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
   EXPECT_EQ(answer(call), answer(call));
-  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("known already"));
+  EXPECT_THAT(run_skycap(command("next", call)).err, HasSubstr("known already"));
 }
 
-TEST_F(LiveVerbs, WarnOfAWrongPose) {
+TEST_F(LiveCommands, WarnOfAWrongPose) {
   const geometry::View view = geometry::look_at({1.6, 0.7, 0.8}, {0.0, 0.0, 0.3});
   answer(measured(view, 0));
   std::vector<std::string> call = measured(view, 1);
@@ -133,39 +133,39 @@ TEST_F(LiveVerbs, WarnOfAWrongPose) {
   EXPECT_EQ(wrong["warning"], "pose");
   EXPECT_EQ(wrong["scans"], 1);
   EXPECT_GT(wrong["pose"]["shift_m"].get<double>(), 0.03);
-  const ProgramRun run = run_skycap(verb("next"));
+  const ProgramRun run = run_skycap(command("next"));
   EXPECT_EQ(run.exit_code, 12);
   EXPECT_THAT(run.out, HasSubstr("warning: scan rejected: pose inconsistent with the map"));
   call.insert(call.end(), {"--pose-sigma", "0.1"});
-  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("metres degrees"));
+  EXPECT_THAT(run_skycap(command("next", call)).err, HasSubstr("metres degrees"));
   call.back() = "0.1 1";
   call.insert(call.end(), {"--pose-covariance", "0.01"});
-  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("conflicts with"));
+  EXPECT_THAT(run_skycap(command("next", call)).err, HasSubstr("conflicts with"));
   call.erase(call.end() - 4, call.end() - 2);
-  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("--pose-covariance: has 1 numbers"));
+  EXPECT_THAT(run_skycap(command("next", call)).err, HasSubstr("--pose-covariance: has 1 numbers"));
   call.back() = "0.01 0 0 0 0 0  0.01 0 0 0 0  0.01 0 0 0  1e-4 0 0  1e-4 0  1e-4";
   EXPECT_FALSE(answer(call).contains("warning"));
 }
 
-TEST_F(LiveVerbs, SayWhatIsMissing) {
-  const auto refusal = [&](const std::vector<std::string>& arguments) {
+TEST_F(LiveCommands, SayWhatIsMissing) {
+  const auto rejection = [&](const std::vector<std::string>& arguments) {
     const ProgramRun run = run_skycap(arguments);
     EXPECT_EQ(run.exit_code, 2) << run.out;
     return run.err;
   };
-  EXPECT_THAT(refusal({"plan", mission_}), HasSubstr("scene.model is missing"));
-  EXPECT_THAT(refusal({"scan", mission_}), HasSubstr("scene.model is missing"));
-  EXPECT_THAT(refusal(verb("finish")), HasSubstr("contains no scan yet"));
-  EXPECT_THAT(refusal(verb("next", {"--scan", "x.ply"})), HasSubstr("--pose"));
-  EXPECT_THAT(refusal(verb("next", {"--refuse", "no"})), HasSubstr("no view to reject"));
-  EXPECT_THAT(refusal(verb("next", {"--en-route"})), HasSubstr("--en-route requires --scan"));
-  std::vector<std::string> on_way =
+  EXPECT_THAT(rejection({"plan", mission_}), HasSubstr("scene.model is missing"));
+  EXPECT_THAT(rejection({"scan", mission_}), HasSubstr("scene.model is missing"));
+  EXPECT_THAT(rejection(command("finish")), HasSubstr("contains no scan yet"));
+  EXPECT_THAT(rejection(command("next", {"--scan", "x.ply"})), HasSubstr("--pose"));
+  EXPECT_THAT(rejection(command("next", {"--refuse", "no"})), HasSubstr("no view to reject"));
+  EXPECT_THAT(rejection(command("next", {"--en-route"})), HasSubstr("--en-route requires --scan"));
+  std::vector<std::string> en_route =
       measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
-  on_way.emplace_back("--en-route");
-  EXPECT_THAT(refusal(verb("next", on_way)),
+  en_route.emplace_back("--en-route");
+  EXPECT_THAT(rejection(command("next", en_route)),
               HasSubstr("en-route scans require sensor.capture: moving"));
   const std::string bare = folder_.write("bare.yaml", "evaluation: {coverage_distance: 1}\n");
-  EXPECT_THAT(refusal({"next", bare, "--survey", folder_ / "s"}), HasSubstr("planner.scene_box"));
+  EXPECT_THAT(rejection({"next", bare, "--survey", folder_ / "s"}), HasSubstr("planner.scene_box"));
 }
 
 }  // namespace

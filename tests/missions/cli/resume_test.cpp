@@ -22,10 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using tests::content_of;
 using tests::CtrlC;
-using tests::flown_mission;
+using tests::flight_mission;
 using tests::quick_mission;
+using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
@@ -58,7 +58,7 @@ class ResumedPlan : public testing::Test {
 
 /// One that measures between its views, too.
 std::string moving_mission() {
-  std::string text = flown_mission();
+  std::string text = flight_mission();
   const std::string sensor = "sensor: {";
   return text.insert(text.find(sensor) + sensor.size(), "capture: moving, ");
 }
@@ -70,7 +70,7 @@ TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
   };
   for (const auto& [mission, planner, views] : {Case{quick_mission(), "see++", 3},
                                                 {quick_mission(), "oa", 4},
-                                                {flown_mission(), "skycap", 2},
+                                                {flight_mission(), "skycap", 2},
                                                 {moving_mission(), "skycap", 2}}) {
     folder_.write("m.yaml", mission);
     const std::vector<std::string> more{"--planner", planner, "--max-views",
@@ -95,7 +95,7 @@ TEST_F(ResumedPlan, GoesOnFromAnyPartOfAJournal) {
   const std::vector<std::string> more{"--max-views", "6"};
   ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0);
   interrupt_after(5, more);
-  const std::string journal = content_of(journal_);
+  const std::string journal = read_content(journal_);
   for (std::size_t part = 0; part <= 7; ++part) {
     std::ofstream(journal_, std::ios::binary) << journal.substr(0, part * journal.size() / 7);
     ASSERT_EQ(run_skycap(plan("part", {"--max-views", "6", "--resume", "--quiet"})).exit_code, 0);
@@ -124,23 +124,23 @@ TEST_F(ResumedPlan, WithoutAJournalBegins) {
 TEST_F(ResumedPlan, OfAnotherSurveyIsRefused) {
   folder_.write("m.yaml", quick_mission());
   interrupt_after(2);
-  const std::string journal = content_of(journal_);
-  const auto refusal = [&](const std::vector<std::string>& more) {
+  const std::string journal = read_content(journal_);
+  const auto rejection = [&](const std::vector<std::string>& more) {
     const tests::ProgramRun run = run_skycap(plan("part", more));
     EXPECT_EQ(run.exit_code, 2);
-    EXPECT_EQ(content_of(journal_), journal);
+    EXPECT_EQ(read_content(journal_), journal);
     return run.err;
   };
-  EXPECT_THAT(refusal({"--resume", "--seed", "2"}), HasSubstr("seed changed from 1 to 2"));
-  EXPECT_THAT(refusal({"--resume", "--set", "planner.density=5300"}),
+  EXPECT_THAT(rejection({"--resume", "--seed", "2"}), HasSubstr("seed changed from 1 to 2"));
+  EXPECT_THAT(rejection({"--resume", "--set", "planner.density=5300"}),
               HasSubstr("planner.density changed from \"5200\" to \"5300\""));
-  EXPECT_THAT(refusal({"--resume", "--set", "scene.longest_side=1.01"}), HasSubstr("surface"));
+  EXPECT_THAT(rejection({"--resume", "--set", "scene.longest_side=1.01"}), HasSubstr("surface"));
 }
 
-TEST_F(ResumedPlan, FromADamagedJournalIsRefusedAndABeginningIsNot) {
+TEST_F(ResumedPlan, RejectsADamagedJournalAndAcceptsAPrefix) {
   folder_.write("m.yaml", quick_mission());
   interrupt_after(3);
-  std::string journal = content_of(journal_);
+  std::string journal = read_content(journal_);
   journal[journal.find("\"position\"") + 15] ^= 1;
   std::ofstream(journal_, std::ios::binary) << journal;
   const tests::ProgramRun run = run_skycap(plan("part", {"--resume"}));

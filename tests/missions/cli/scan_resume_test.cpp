@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-using tests::content_of;
+using tests::read_content;
 using tests::run_skycap;
 
 class ResumedScan : public tests::CubeScan {
@@ -33,7 +33,7 @@ class ResumedScan : public tests::CubeScan {
                                     {out, err, true, keys.token()}),
               1);
     ASSERT_TRUE(fs::exists(journal_));
-    ASSERT_THAT(content_of(folder_ / "part/scan.json"), HasSubstr("\"complete\": false"));
+    ASSERT_THAT(read_content(folder_ / "part/scan.json"), HasSubstr("\"complete\": false"));
   }
 
   fs::path journal_ = folder_.path() / "part" / "unfinished" / "scan.journal";
@@ -59,18 +59,18 @@ TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
 TEST_F(ResumedScan, CutsOffWhatItsJournalDoesNotKnow) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   interrupt_at("% flown", clouds_);
-  const std::string partial = content_of(folder_ / "part/scan.las");
+  const std::string partial = read_content(folder_ / "part/scan.las");
   for (const char* name : {"scan.las", "scan.ply", "scan.rawlog", "preview.ply"}) {
     // As a kill would: not through the name that shares its bytes with the results.
     const fs::path file = journal_.parent_path() / name;
-    const std::string content = content_of(file);
+    const std::string content = read_content(file);
     fs::remove(file);
     std::ofstream(file, std::ios::binary) << content << std::string(1000, 'x');
   }
   std::ofstream(journal_, std::ios::binary | std::ios::app) << "0123abcd 3 {\"fir";
   EXPECT_EQ(run_skycap(scan("part", with(clouds_, {"--resume"}))).exit_code, 0);
   expect_same_results();
-  EXPECT_NE(partial, content_of(folder_ / "part/scan.las"));
+  EXPECT_NE(partial, read_content(folder_ / "part/scan.las"));
 }
 
 TEST_F(ResumedScan, OfACameraEndsAsIfNothingHadHappened) {
@@ -87,7 +87,7 @@ TEST_F(ResumedScan, OfACameraCutsOffWhatItsJournalDoesNotKnow) {
   ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
   interrupt_at("image 2 of 4", images_);
   const fs::path log = journal_.parent_path() / "frames.rawlog";
-  const std::string content = content_of(log);
+  const std::string content = read_content(log);
   fs::remove(log);
   std::ofstream(log, std::ios::binary) << content << std::string(1000, 'x');
   std::ofstream(journal_.parent_path() / "depth_000002.png", std::ios::binary) << "\x89PNG";
@@ -102,7 +102,7 @@ TEST_F(ResumedScan, WhoseFilesHaveShrunkIsRefused) {
         std::tuple{images_, "image 2 of 4", "frames.rawlog"}}) {
     interrupt_at(until, options);
     const fs::path file = journal_.parent_path() / name;
-    const std::string content = content_of(file);
+    const std::string content = read_content(file);
     fs::remove(file);
     std::ofstream(file, std::ios::binary) << content.substr(0, content.size() - 1);
     const auto run = run_skycap(scan("part", with(options, {"--resume"})));
@@ -118,14 +118,14 @@ TEST_F(ResumedScan, ThatIsInterruptedAgainKeepsWhatWasThere) {
   interrupt_at("% flown", clouds_);
   const fs::path kept = folder_ / "kept.las";
   fs::create_hard_link(folder_ / "part/scan.las", kept);
-  const std::string partial = content_of(kept);
-  const auto shots = [&] {
-    return nlohmann::json::parse(content_of(folder_ / "part/scan.json")).at("shots").get<int>();
+  const std::string partial = read_content(kept);
+  const auto pulses = [&] {
+    return nlohmann::json::parse(read_content(folder_ / "part/scan.json")).at("shots").get<int>();
   };
-  const int shots_before = shots();
+  const int pulses_before = pulses();
   interrupt_at("% flown", with(clouds_, {"--resume"}));
-  EXPECT_EQ(content_of(kept), partial);
-  EXPECT_GT(shots(), shots_before);
+  EXPECT_EQ(read_content(kept), partial);
+  EXPECT_GT(pulses(), pulses_before);
   ASSERT_EQ(run_skycap(scan("part", with(clouds_, {"--resume"}))).exit_code, 0);
   expect_same_results();
 }
@@ -133,27 +133,27 @@ TEST_F(ResumedScan, ThatIsInterruptedAgainKeepsWhatWasThere) {
 TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
   interrupt_at("% flown", clouds_);
   const auto before = tests::scan_results_in(folder_ / "part");
-  const auto refusal = [&](const std::vector<std::string>& more) {
+  const auto rejection = [&](const std::vector<std::string>& more) {
     const auto run = run_skycap(scan("part", with(more, {"--resume"})));
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_TRUE(tests::scan_results_in(folder_ / "part") == before);
     return run.err;
   };
-  EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed changed from 1 to 2"));
-  EXPECT_THAT(refusal({"--format", "las"}), HasSubstr("formats changed from "));
-  EXPECT_THAT(refusal(with(clouds_, {"--set", "scan.orbit.speed=21"})),
+  EXPECT_THAT(rejection(with(clouds_, {"--seed", "2"})), HasSubstr("seed changed from 1 to 2"));
+  EXPECT_THAT(rejection({"--format", "las"}), HasSubstr("formats changed from "));
+  EXPECT_THAT(rejection(with(clouds_, {"--set", "scan.orbit.speed=21"})),
               HasSubstr("cannot resume: "));
   folder_.write("cube.obj",
-                content_of(folder_ / "cube.obj") + "v 2 2 0\nv 2 3 0\nv 2 3 3\n" + "f 9 10 11\n");
-  EXPECT_THAT(refusal(clouds_), HasSubstr("scene_digest changed from "));
+                read_content(folder_ / "cube.obj") + "v 2 2 0\nv 2 3 0\nv 2 3 3\n" + "f 9 10 11\n");
+  EXPECT_THAT(rejection(clouds_), HasSubstr("scene_digest changed from "));
 }
 
 // Of files that a key names, what they hold counts.
 TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
   interrupt_at("image 2 of 4", images_);
-  const auto refusal_with = [&](const std::string& file, const std::string& from,
-                                const std::string& to) {
-    const std::string kept = content_of(folder_ / file);
+  const auto rejection_with = [&](const std::string& file, const std::string& from,
+                                  const std::string& to) {
+    const std::string kept = read_content(folder_ / file);
     std::string changed = kept;
     changed.replace(changed.find(from), from.size(), to);
     folder_.write(file, changed);
@@ -162,16 +162,16 @@ TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
     folder_.write(file, kept);
     return run.err;
   };
-  EXPECT_THAT(refusal_with("camera.yaml", "_deg: 5", "_deg: 5.1"),
+  EXPECT_THAT(rejection_with("camera.yaml", "_deg: 5", "_deg: 5.1"),
               HasSubstr("sensor_digest changed from "));
-  EXPECT_THAT(refusal_with("views.csv", "2,3,0,1", "2,3,0,1.001"),
+  EXPECT_THAT(rejection_with("views.csv", "2,3,0,1", "2,3,0,1.001"),
               HasSubstr("route_digest changed from "));
   EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
 }
 
-TEST_F(ResumedScan, FromADamagedJournalIsRefusedAndABeginningIsNot) {
+TEST_F(ResumedScan, RejectsADamagedJournalAndAcceptsAPrefix) {
   interrupt_at("% flown", clouds_);
-  std::string journal = content_of(journal_);
+  std::string journal = read_content(journal_);
   journal[journal.find("\"seed\"") + 1] ^= 1;
   std::ofstream(journal_, std::ios::binary) << journal;
   const auto run = run_skycap(scan("part", with(clouds_, {"--resume"})));

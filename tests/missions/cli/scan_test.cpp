@@ -26,9 +26,9 @@ using tests::run_skycap;
 using tests::TestFolder;
 
 /// A tenth of a second's flight round a cube of 2 m that stands on the ground.
-class ScanVerb : public testing::Test {
+class ScanCommand : public testing::Test {
  protected:
-  ScanVerb() {
+  ScanCommand() {
     folder.write("cube.obj",
                  "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\n"
                  "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
@@ -49,7 +49,7 @@ class ScanVerb : public testing::Test {
     return run_skycap(options, false, std::move(stop));
   }
   nlohmann::json summary() const {
-    return nlohmann::json::parse(tests::content_of(folder / "out/scan.json"));
+    return nlohmann::json::parse(tests::read_content(folder / "out/scan.json"));
   }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
@@ -75,7 +75,7 @@ class ScanVerb : public testing::Test {
 };
 
 // A name may be as long as a folder's; what comes after it must not be lost.
-TEST_F(ScanVerb, SaysAllOfTheSummaryWhateverTheNamesLength) {
+TEST_F(ScanCommand, SaysAllOfTheSummaryWhateverTheNamesLength) {
   const std::string name(250, 'n');
   const ProgramRun run = scan({"--set", "name=" + name});
   EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -83,7 +83,7 @@ TEST_F(ScanVerb, SaysAllOfTheSummaryWhateverTheNamesLength) {
   EXPECT_THAT(run.out, HasSubstr(" M pulses/s\n  results   "));
 }
 
-TEST_F(ScanVerb, LeavesTheCloudBothTrajectoriesAndASummary) {
+TEST_F(ScanCommand, LeavesTheCloudBothTrajectoriesAndASummary) {
   const ProgramRun run = scan();
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
@@ -97,7 +97,7 @@ TEST_F(ScanVerb, LeavesTheCloudBothTrajectoriesAndASummary) {
   EXPECT_EQ(json["files"][0]["bytes"], std::filesystem::file_size(folder / "out/scan.las"));
 }
 
-TEST_F(ScanVerb, WritesMeasuredAndTruePointsSideBySide) {
+TEST_F(ScanCommand, WritesMeasuredAndTruePointsSideBySide) {
   const ProgramRun run =
       scan({"--format", "ply", "--with-truth", "--set", "scan.navigation.horizontal_sigma=0.2"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -108,22 +108,22 @@ TEST_F(ScanVerb, WritesMeasuredAndTruePointsSideBySide) {
   ASSERT_GT(truth.size(), 1000U);
   EXPECT_LT(largest_error(truth), 1e-5F);    // single precision at 5 m
   EXPECT_GT(largest_error(measured), 0.1F);  // the position is wrong by some 0.2 m
-  EXPECT_NE(tests::content_of(folder / "out/trajectory.tum"),
-            tests::content_of(folder / "out/trajectory_estimated.tum"));
+  EXPECT_NE(tests::read_content(folder / "out/trajectory.tum"),
+            tests::read_content(folder / "out/trajectory_estimated.tum"));
 }
 
 // Without errors of the carrier, what is left is the noise of the range: 0.01 m.
-TEST_F(ScanVerb, AFaultlessCarrierLeavesTheSensorsNoiseOnly) {
+TEST_F(ScanCommand, AFaultlessCarrierLeavesTheSensorsNoiseOnly) {
   ASSERT_EQ(scan({"--format", "ply"}).exit_code, 0);
   const auto measured = geometry::read_cloud(folder / "out/scan.ply").positions;
   EXPECT_LT(largest_error(measured), 0.067F);  // no normal is beyond 6.7 sigma
   EXPECT_GT(largest_error(measured), 0.02F);
-  EXPECT_EQ(tests::content_of(folder / "out/trajectory.tum"),
-            tests::content_of(folder / "out/trajectory_estimated.tum"));
+  EXPECT_EQ(tests::read_content(folder / "out/trajectory.tum"),
+            tests::read_content(folder / "out/trajectory_estimated.tum"));
 }
 
 // So few shots are all in the preview; the flight of 0.314 s has six turns of 50 ms and a part.
-TEST_F(ScanVerb, ThePreviewHasThePointsAndTheirPieces) {
+TEST_F(ScanCommand, ThePreviewHasThePointsAndTheirPieces) {
   ASSERT_EQ(scan({"--format", "ply"}).exit_code, 0);
   const auto preview = geometry::read_cloud(folder / "out/preview.ply");
   EXPECT_EQ(preview.positions, geometry::read_cloud(folder / "out/scan.ply").positions);
@@ -133,14 +133,14 @@ TEST_F(ScanVerb, ThePreviewHasThePointsAndTheirPieces) {
   EXPECT_EQ(summary()["preview"]["piece_s"], 0.05);
 }
 
-TEST_F(ScanVerb, LeavesAPageThatReportWritesAnew) {
+TEST_F(ScanCommand, ReportRegeneratesThePage) {
   ASSERT_EQ(scan().exit_code, 0);
-  const std::string page = tests::content_of(folder / "out/scan.html");
+  const std::string page = tests::read_content(folder / "out/scan.html");
   EXPECT_THAT(page, HasSubstr("\"kind\":\"scan\""));
   std::filesystem::remove(folder / "out/scan.html");
   const ProgramRun again = run_skycap({"report", folder / "out"});
   EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_TRUE(tests::content_of(folder / "out/scan.html") == page);
+  EXPECT_TRUE(tests::read_content(folder / "out/scan.html") == page);
   ASSERT_EQ(scan({"--no-report"}).exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder / "out/scan.html"));
   for (const char* text : {"", "[]", "{}", "{\"mission\": 3}"}) {
@@ -165,7 +165,7 @@ TEST(Preview, ChoosesAShareOfEachChannel) {
   EXPECT_DOUBLE_EQ(scan::preview_share(15e6), 0.1);
 }
 
-TEST_F(ScanVerb, FliesAGivenRouteWithAGivenSensor) {
+TEST_F(ScanCommand, FliesAGivenRouteWithAGivenSensor) {
   const std::string route = folder.write("route.tum",
                                          "0.0 5 0 1 0 0 0 1\n"
                                          "0.1 5 1 1 0 0 0 1\n");
@@ -177,7 +177,7 @@ TEST_F(ScanVerb, FliesAGivenRouteWithAGivenSensor) {
 }
 
 // The cube's lid is of lead, its sides of chalk; the ground has what the mission says.
-TEST_F(ScanVerb, IntensitiesAreThoseOfTheMaterials) {
+TEST_F(ScanCommand, IntensitiesAreThoseOfTheMaterials) {
   folder.write("chalk.obj",
                "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\n"
                "f 4 3 2 1\nusemtl lead\nf 5 6 7 8\nusemtl chalk\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n"
@@ -192,7 +192,7 @@ TEST_F(ScanVerb, IntensitiesAreThoseOfTheMaterials) {
                                             "--set",    "scene.reflectance=0.3",
                                             "--set",    "scan.mount.rotation_deg=[0, 25, 0]"};
   ASSERT_EQ(scan(options).exit_code, 0);
-  std::istringstream lines(tests::content_of(folder / "out/scan.xyz"));
+  std::istringstream lines(tests::read_content(folder / "out/scan.xyz"));
   std::string line;
   std::getline(lines, line);
   float brightest_lid = 0.0F, brightest_side = 0.0F;
@@ -219,7 +219,7 @@ TEST_F(ScanVerb, IntensitiesAreThoseOfTheMaterials) {
 }
 
 // Facing the cube's side at x = 1 from x = 5 and then x = 3: all depths there are 4 and 2 m.
-TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
+TEST_F(ScanCommand, ACameraLeavesADatasetOfDepthImages) {
   folder.write("camera.yaml",
                "name: Test camera\nkind: camera\nwidth_px: 20\nheight_px: 10\n"
                "horizontal_fov_deg: 10\nvertical_fov_deg: 5\n");
@@ -232,7 +232,7 @@ TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
   EXPECT_THAT(files(), testing::ElementsAre("camera.json", "depth.txt", "depth_000000.png",
                                             "depth_000001.png", "estimated.txt", "groundtruth.txt",
                                             "preview.ply", "scan.html", "scan.json"));
-  EXPECT_THAT(tests::content_of(folder / "out/depth.txt"),
+  EXPECT_THAT(tests::read_content(folder / "out/depth.txt"),
               HasSubstr("0.000000 depth_000000.png\n0.500000 depth_000001.png\n"));
   EXPECT_THAT(geometry::read_depth_png(folder / "out/depth_000000.png").values,
               testing::Each(2000));
@@ -240,13 +240,13 @@ TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
   EXPECT_EQ(near.width, 20);
   EXPECT_EQ(near.height, 10);
   EXPECT_THAT(near.values, testing::Each(1000));
-  const auto json = nlohmann::json::parse(tests::content_of(folder / "out/camera.json"));
+  const auto json = nlohmann::json::parse(tests::read_content(folder / "out/camera.json"));
   EXPECT_NEAR(json["focal_length_px"][0], 10 / std::tan(5 * 3.14159265 / 180), 1e-6);
   EXPECT_EQ(json["depth_unit_m"], 0.002);
 }
 
 // Beside the picture, with the rawlog that was asked for, the dataset is the same.
-TEST_F(ScanVerb, ACameraLeavesARawlogOnDemand) {
+TEST_F(ScanCommand, ACameraLeavesARawlogOnDemand) {
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z\n0,5,0,1,-1,0,0\n1,3,0,1,-1,0,0\n");
   const ProgramRun run =
@@ -259,12 +259,12 @@ TEST_F(ScanVerb, ACameraLeavesARawlogOnDemand) {
 
 // Known: EPSG 32630, Oxford's zone. East and north there are turned by 1.4 degrees and shrunk by
 // 0.03 % at most, so the cube stays a cube of 2 m to 0.1 m.
-TEST_F(ScanVerb, LasFilesAreOnTheMapOnDemand) {
-  const std::vector<std::string> place = {"--set", "site.latitude_deg=51.7534",
-                                          "--set", "site.longitude_deg=-1.254",
-                                          "--set", "site.ellipsoid_height=110"};
+TEST_F(ScanCommand, LasFilesAreOnTheMapOnDemand) {
+  const std::vector<std::string> georeference = {"--set", "site.latitude_deg=51.7534",
+                                                 "--set", "site.longitude_deg=-1.254",
+                                                 "--set", "site.ellipsoid_height=110"};
   std::vector<std::string> options = {"--set", "scan.crs=utm", "--format", "las,xyz"};
-  options.insert(options.end(), place.begin(), place.end());
+  options.insert(options.end(), georeference.begin(), georeference.end());
   ASSERT_EQ(scan(options).exit_code, 0);
   const LasFile las(folder / "out/scan.las");
   EXPECT_THAT(las.crs, HasSubstr("AUTHORITY[\"EPSG\",\"32630\"]"));
@@ -280,15 +280,15 @@ TEST_F(ScanVerb, LasFilesAreOnTheMapOnDemand) {
     ASSERT_LT((las.points[i].position - expected).norm(), 2e-4);  // steps of 0.1 mm in both files
   }
   // The reader of clouds wants local coordinates, and says so.
-  const ProgramRun judged = run_skycap({"evaluate", "--cloud", folder / "out/scan.las", "--model",
-                                        folder / "cube.obj", "--distance", "0.1"});
-  EXPECT_EQ(judged.exit_code, 2);
-  EXPECT_THAT(judged.err, HasSubstr("scan.las: point 0 is 573"));
-  EXPECT_THAT(judged.err, HasSubstr("coordinates must be local"));
+  const ProgramRun evaluated = run_skycap({"evaluate", "--cloud", folder / "out/scan.las",
+                                           "--model", folder / "cube.obj", "--distance", "0.1"});
+  EXPECT_EQ(evaluated.exit_code, 2);
+  EXPECT_THAT(evaluated.err, HasSubstr("scan.las: point 0 is 573"));
+  EXPECT_THAT(evaluated.err, HasSubstr("coordinates must be local"));
 }
 
 // A second cube, 6 m to the east and turned, is scanned and is part of what is evaluated.
-TEST_F(ScanVerb, AModelCanStandAtSeveralPlaces) {
+TEST_F(ScanCommand, AModelCanStandAtSeveralPlaces) {
   const std::string both =
       folder.write("both.yaml",
                    "scene: {model: cube.obj, copies: [[6, 1, 45]]}\n"
@@ -314,10 +314,10 @@ TEST_F(ScanVerb, AModelCanStandAtSeveralPlaces) {
   // What covers a share of one cube covers half of that of two.
   ASSERT_EQ(scan({"--format", "las"}).exit_code, 0);
   const auto coverage = [&](const std::string& of) {
-    const ProgramRun judged =
+    const ProgramRun evaluated =
         run_skycap({"evaluate", "--cloud", folder / "out/scan.las", "--model", of, "--json"});
-    EXPECT_EQ(judged.exit_code, 0) << judged.err;
-    return nlohmann::json::parse(judged.out)["coverage"].get<double>();
+    EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
+    return nlohmann::json::parse(evaluated.out)["coverage"].get<double>();
   };
   EXPECT_GT(coverage(mission), 0.2);
   EXPECT_NEAR(coverage(both), 0.5 * coverage(mission), 0.01);  // of 100,000 samples
@@ -329,18 +329,18 @@ TEST_F(ScanVerb, AModelCanStandAtSeveralPlaces) {
   EXPECT_NEAR(geometry::bounding_box(mesh).max().x(), 6 + std::sqrt(2.0), 1e-6);
 }
 
-TEST_F(ScanVerb, CtrlCLeavesWholeFilesOfTheBeginning) {
+TEST_F(ScanCommand, CtrlCLeavesWholeFilesOfTheBeginning) {
   std::stop_source stop;
   stop.request_stop();
   const ProgramRun run = scan({"--format", "ply"}, stop.get_token());
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.out, HasSubstr("interrupted"));
   EXPECT_EQ(summary()["complete"], false);
-  EXPECT_THAT(tests::content_of(folder / "out/scan.ply"), HasSubstr("element vertex 0\n"));
+  EXPECT_THAT(tests::read_content(folder / "out/scan.ply"), HasSubstr("element vertex 0\n"));
   EXPECT_THAT(run.err, HasSubstr("no report after Ctrl-C; skycap report writes it"));
 }
 
-TEST_F(ScanVerb, ARawlogOfNothingIsNotWritten) {
+TEST_F(ScanCommand, ARawlogOfNothingIsNotWritten) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_EQ(scan({"--format", "rawlog,ply"}, stop.get_token()).exit_code, 1);
@@ -349,24 +349,24 @@ TEST_F(ScanVerb, ARawlogOfNothingIsNotWritten) {
   for (const auto& file : written["files"]) EXPECT_NE(file["name"], "scan.rawlog");
 }
 
-TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {
-  const auto refused = [&](const std::vector<std::string>& options) {
+TEST_F(ScanCommand, RejectsWithOneLineAndNoOutput) {
+  const auto rejected = [&](const std::vector<std::string>& options) {
     const ProgramRun run = scan(options);
     EXPECT_EQ(run.exit_code, 2) << run.out;
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1);
     EXPECT_THAT(files(), testing::IsEmpty());
     return run.err;
   };
-  EXPECT_THAT(refused({"--format", "zip"}),
+  EXPECT_THAT(rejected({"--format", "zip"}),
               HasSubstr("unknown point format 'zip'; expected one of: las"));
-  EXPECT_THAT(refused({"--format", "las,las7"}),
+  EXPECT_THAT(rejected({"--format", "las,las7"}),
               HasSubstr("two formats have the file name scan.las"));
-  EXPECT_THAT(refused({"--sensor", "sonar"}), HasSubstr("unknown sensor sonar"));
-  EXPECT_THAT(refused({"--route", folder / "none.tum"}), HasSubstr("none.tum"));
-  EXPECT_THAT(refused({"--set", "scan.orbit.radius=0"}), HasSubstr("key scan.orbit.radius"));
-  EXPECT_THAT(refused({"--set", "scan.crs=utm"}),
+  EXPECT_THAT(rejected({"--sensor", "sonar"}), HasSubstr("unknown sensor sonar"));
+  EXPECT_THAT(rejected({"--route", folder / "none.tum"}), HasSubstr("none.tum"));
+  EXPECT_THAT(rejected({"--set", "scan.orbit.radius=0"}), HasSubstr("key scan.orbit.radius"));
+  EXPECT_THAT(rejected({"--set", "scan.crs=utm"}),
               HasSubstr("scan.crs: utm requires a georeference"));
-  EXPECT_THAT(refused({"--set", "scene.copies=[[6, 1]]"}), HasSubstr("key scene.copies"));
+  EXPECT_THAT(rejected({"--set", "scene.copies=[[6, 1]]"}), HasSubstr("key scene.copies"));
 }
 
 }  // namespace

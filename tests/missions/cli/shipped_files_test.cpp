@@ -31,13 +31,13 @@ namespace {
 using flight::Problems;
 
 /// Of each file.
-int spoilings() { return std::getenv("SKYCAP_PACKAGES") == nullptr ? 60 : 200; }
+int corruptions() { return std::getenv("SKYCAP_PACKAGES") == nullptr ? 60 : 200; }
 
 /// Those that are named; without any, one that is made in the folder.
 std::vector<std::filesystem::path> packages(const tests::TestFolder& folder) {
   const char* const named = std::getenv("SKYCAP_PACKAGES");
   if (named == nullptr) {
-    const auto run = tests::run_skycap({"plan", folder.write("m.yaml", tests::flown_mission()),
+    const auto run = tests::run_skycap({"plan", folder.write("m.yaml", tests::flight_mission()),
                                         "--no-report", "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     // plan writes only what the vehicle reads.
@@ -54,7 +54,7 @@ std::vector<std::filesystem::path> packages(const tests::TestFolder& folder) {
 }
 
 /// Whether a message says which item, waypoint or part of the file is meant.
-bool says_where(const std::string& problem) {
+bool names_location(const std::string& problem) {
   for (const char* where : {"item ", "waypoint ", "line ", "mission.", "geoFence", "template.kml",
                             "waylines.wpml", "doJumpId", "the mission ends in the air"}) {
     if (problem.find(where) != std::string::npos) return true;
@@ -77,32 +77,33 @@ class Shipped {
             site.undulation_for("the test"), *summary_.pad};
   }
 
-  flight::FlightFacts facts(flight::Dialect dialect) const {
+  flight::FlightFacts facts(flight::AutopilotType autopilot) const {
     flight::FlightFacts facts = flight().facts();
     facts.pad = *summary_.pad;
     facts.is_pad_known = true;
     facts.views = summary_.views;
-    facts.vehicle = flight().flown_by(flight().flown(), dialect);
+    facts.vehicle = flight().vehicle_for(flight().required_vehicle(), autopilot);
     return facts;
   }
 
-  flight::Dialect dialect_of(const std::filesystem::path& file) const {
-    return *package::dialect_of(file, flight().flown());
+  flight::AutopilotType autopilot_for_file(const std::filesystem::path& file) const {
+    return *package::autopilot_for_file(file, flight().required_vehicle());
   }
 
   /// All that `check --route` would say, but returns.
-  Problems problems_of(const flight::FlownRoute& route) const {
+  Problems find_problems(const flight::InterpretedRoute& route) const {
     Problems problems = route.problems;
     const double clearance = flight().clearance;
-    const flight::FlownProof proof = prove(route, space_.everywhere, space_.over_pad,
-                                           clearance - flight::rounding_bound, clearance + 1.0);
-    problems.insert(problems.end(), proof.problems.begin(), proof.problems.end());
+    const flight::RouteVerification verification =
+        verify(route, space_.everywhere, space_.over_pad, clearance - flight::rounding_bound,
+               clearance + 1.0);
+    problems.insert(problems.end(), verification.problems.begin(), verification.problems.end());
     return problems;
   }
 
-  bool keeps_clear(const std::vector<Eigen::Vector3d>& places) const {
+  bool keeps_clear(const std::vector<Eigen::Vector3d>& positions) const {
     const double clearance = flight().clearance - 3.0 * flight::rounding_bound;
-    return flight::keeps_clear(oracle_, places, clearance);
+    return flight::keeps_clear(oracle_, positions, clearance);
   }
 
  private:
@@ -114,59 +115,59 @@ class Shipped {
   flight::CgalOracle oracle_;
 };
 
-struct Spoiled {
+struct CorruptedMission {
   Problems problems;
-  std::vector<Eigen::Vector3d> places;  ///< of an independent flight
+  std::vector<Eigen::Vector3d> positions;  ///< of an independent flight
 };
 
-void expect_refused_or_harmless(const Shipped& shipped, const std::filesystem::path& file,
-                                const std::function<Spoiled()>& spoil) {
-  int refused = 0;
-  for (int i = 0; i < spoilings(); ++i) {
-    const Spoiled spoiled = spoil();
-    if (spoiled.problems.empty()) {
-      EXPECT_TRUE(shipped.keeps_clear(spoiled.places)) << file << ", spoiling " << i;
+void expect_rejected_or_harmless(const Shipped& shipped, const std::filesystem::path& file,
+                                 const std::function<CorruptedMission()>& corrupt) {
+  int rejected = 0;
+  for (int i = 0; i < corruptions(); ++i) {
+    const CorruptedMission corrupted = corrupt();
+    if (corrupted.problems.empty()) {
+      EXPECT_TRUE(shipped.keeps_clear(corrupted.positions)) << file << ", spoiling " << i;
       continue;
     }
-    ++refused;
-    for (const std::string& problem : spoiled.problems) {
-      EXPECT_TRUE(says_where(problem)) << file << ", spoiling " << i << ": " << problem;
+    ++rejected;
+    for (const std::string& problem : corrupted.problems) {
+      EXPECT_TRUE(names_location(problem)) << file << ", spoiling " << i << ": " << problem;
     }
   }
-  std::cout << file.string() << ": " << refused << " of " << spoilings() << " refused, "
-            << spoilings() - refused << " harmless\n";
-  EXPECT_GT(refused, spoilings() / 4);
+  std::cout << file.string() << ": " << rejected << " of " << corruptions() << " refused, "
+            << corruptions() - rejected << " harmless\n";
+  EXPECT_GT(rejected, corruptions() / 4);
 }
 
-void spoil_items(const Shipped& shipped, const std::filesystem::path& path) {
+void corrupt_items(const Shipped& shipped, const std::filesystem::path& path) {
   const std::string content = geometry::read_file(path);
-  const flight::MissionFile good =
+  const flight::MavlinkMission good =
       path.extension() == ".plan" ? flight::read_plan(content) : flight::read_waypoints(content);
-  const flight::FlightFacts facts = shipped.facts(shipped.dialect_of(path));
-  ASSERT_TRUE(shipped.problems_of(interpret(good, facts)).empty()) << path;
+  const flight::FlightFacts facts = shipped.facts(shipped.autopilot_for_file(path));
+  ASSERT_TRUE(shipped.find_problems(interpret(good, facts)).empty()) << path;
   const flight::Ground ground = shipped.ground();
   std::mt19937_64 random(11);
-  expect_refused_or_harmless(shipped, path, [&]() -> Spoiled {
-    flight::MissionFile file = good;
-    spoil(file, random, ground.around(40, 40));
-    return {shipped.problems_of(interpret(file, facts)), flight_of(file.items, ground)};
+  expect_rejected_or_harmless(shipped, path, [&]() -> CorruptedMission {
+    flight::MavlinkMission file = good;
+    corrupt(file, random, ground.around(40, 40));
+    return {shipped.find_problems(interpret(file, facts)), make_flight(file.items, ground)};
   });
 }
 
-void spoil_wpml(const Shipped& shipped, const std::filesystem::path& path) {
+void corrupt_wpml(const Shipped& shipped, const std::filesystem::path& path) {
   const flight::KmzContent good = flight::unpack_kmz(geometry::read_file(path));
-  const flight::FlightFacts facts = shipped.facts(flight::Dialect::dji);
-  ASSERT_TRUE(shipped.problems_of(interpret(good, facts)).empty()) << path;
+  const flight::FlightFacts facts = shipped.facts(flight::AutopilotType::dji);
+  ASSERT_TRUE(shipped.find_problems(interpret(good, facts)).empty()) << path;
   const flight::Ground ground = shipped.ground();
   std::mt19937_64 random(12);
   int number = 0;
-  expect_refused_or_harmless(shipped, path, [&]() -> Spoiled {
+  expect_rejected_or_harmless(shipped, path, [&]() -> CorruptedMission {
     flight::KmzContent kmz = good;
     std::string& text = number++ % 4 == 0 ? kmz.template_kml : kmz.waylines_wpml;
-    text = flight::spoiled(text, random);
+    text = flight::corrupted(text, random);
     Problems problems = flight::validate_kmz(flight::pack_kmz(kmz));
-    if (problems.empty()) problems = shipped.problems_of(interpret(kmz, facts));
-    return {problems, flight_of(kmz.waylines_wpml, ground)};
+    if (problems.empty()) problems = shipped.find_problems(interpret(kmz, facts));
+    return {problems, make_flight(kmz.waylines_wpml, ground)};
   });
 }
 
@@ -176,20 +177,20 @@ TEST(ShippedFiles, AreRefusedOrHarmlessWhenSpoiled) {
   ASSERT_FALSE(folders.empty());
   for (const std::filesystem::path& folder : folders) {
     const Shipped shipped(folder);
-    std::set<std::string> endings;
+    std::set<std::string> extensions;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
       const std::filesystem::path& path = entry.path();
       if (path.extension() == ".plan" || path.extension() == ".waypoints") {
-        spoil_items(shipped, path);
+        corrupt_items(shipped, path);
       } else if (path.extension() == ".kmz") {
-        spoil_wpml(shipped, path);
+        corrupt_wpml(shipped, path);
       } else {
         continue;
       }
-      endings.insert(path.extension().string());
+      extensions.insert(path.extension().string());
     }
     const bool is_made = std::getenv("SKYCAP_PACKAGES") == nullptr;
-    EXPECT_GE(endings.size(), is_made ? 3U : 1U) << folder;
+    EXPECT_GE(extensions.size(), is_made ? 3U : 1U) << folder;
   }
 }
 

@@ -27,7 +27,7 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing_support::Cube;
-using tests::content_of;
+using tests::read_content;
 using tests::TestFolder;
 
 tests::ProgramRun run_skycap(const std::string& line) {
@@ -40,13 +40,13 @@ const std::vector<Vector3d> in_a_row{{0, 0, 0}, {25, 0, 0}, {50, 0, 0}};
 
 /// Buildings of 10 m in UTM 32, feet at 380 m and so much elsewhere; the second one has an address.
 /// One file, as an authority gives it.
-std::string tile(const std::vector<Vector3d>& places = in_a_row,
+std::string tile(const std::vector<Vector3d>& positions = in_a_row,
                  const std::string& crs = "EPSG:25832") {
   std::string text;
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     Cube cube;
-    cube.low += places[i];
-    std::string one = citygml_of(cube, crs);
+    cube.low += positions[i];
+    std::string one = make_citygml(cube, crs);
     const std::string name = "DEBY_" + std::to_string(i);
     one.replace(one.find("\"cube\""), 6, "\"" + name + "\"");
     if (i == 1) {
@@ -90,7 +90,7 @@ TEST_F(Site, IsACertifiedMissionInTwoCommands) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "house.html"));
   const auto plan = run_skycap("plan " + path_ + "/house.yaml --out " + path_ + "/out");
   ASSERT_EQ(plan.exit_code, 0) << plan.err << plan.out;
-  const json summary = json::parse(content_of(folder_.path() / "out" / "summary.json"));
+  const json summary = json::parse(read_content(folder_.path() / "out" / "summary.json"));
   ASSERT_EQ(summary.at("targets").size(), 1U);
   EXPECT_EQ(summary.at("targets")[0].at("name"), "DEBY_1");
   EXPECT_GT(summary.at("targets")[0].at("coverage").get<double>(), 0.9);
@@ -105,7 +105,7 @@ TEST_F(Site, IsACertifiedMissionInTwoCommands) {
 TEST_F(Site, IsFlownBelowTheHillsOfItsTile) {
   write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}, {900, 0, 150}}));
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
-  ASSERT_LT(mission().flight().airspace.highest_height.value(), 150.0);
+  ASSERT_LT(mission().flight().airspace.max_height.value(), 150.0);
   const auto plan = run_skycap("plan " + path_ + "/house.yaml --out " + path_ + "/out");
   EXPECT_EQ(plan.exit_code, 0) << plan.err << plan.out;
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "mission.plan"));
@@ -123,10 +123,10 @@ TEST_F(Site, BeginsOutsideOfTheNeighbours) {
   const evaluation::SurveyScene scene(mission.simulation, folder_.path(), 0);
   std::set<double> heights;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const Vector3d place = scene.first_view(seed).position;
-    heights.insert(place.z());
+    const Vector3d position = scene.first_view(seed).position;
+    heights.insert(position.z());
     for (const site_data::Object& object : mission.scene().priors->priors[1].objects) {
-      EXPECT_GE(geometry::bounding_box(object.mesh).exteriorDistance(place),
+      EXPECT_GE(geometry::bounding_box(object.mesh).exteriorDistance(position),
                 mission.flight().clearance)
           << seed << " in " << object.id;
     }
@@ -161,7 +161,7 @@ TEST_F(Site, IsProposedAboutItsTarget) {
 // Each value has a word on it, beside it or over it.
 TEST_F(Site, IsCommentedValueByValue) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
-  std::istringstream text(content_of(folder_.path() / "house.yaml"));
+  std::istringstream text(read_content(folder_.path() / "house.yaml"));
   std::size_t values = 0;
   bool is_under_comment = false;
   for (std::string line; std::getline(text, line);) {
@@ -178,22 +178,22 @@ TEST_F(Site, IsCommentedValueByValue) {
 
 TEST_F(Site, IsPickedByNameAddressOrClick) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
-  const std::string by_name = content_of(folder_.path() / "house.yaml");
+  const std::string by_name = read_content(folder_.path() / "house.yaml");
   for (const char* pick : {"--at 48.76318391,11.39953620", "--at 48.76304965,11.39950258"}) {
     remove_proposal();
     const auto run = propose(pick);
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(content_of(folder_.path() / "house.yaml"), by_name);
+    EXPECT_EQ(read_content(folder_.path() / "house.yaml"), by_name);
   }
   remove_proposal();
   const auto run =
       tests::run_skycap({"site", path_ + "/tile.gml", "--vertical", "ellipsoid", "--out",
                          path_ + "/house.yaml", "--attribute", "ThoroughfareName=Am Ring"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(content_of(folder_.path() / "house.yaml"), by_name);
+  EXPECT_EQ(read_content(folder_.path() / "house.yaml"), by_name);
 }
 
-TEST_F(Site, SaysWhatIsMissing) {
+TEST_F(Site, ReportsWhatIsMissing) {
   EXPECT_THAT(propose("").err, AllOf(HasSubstr("contains 3 objects, DEBY_0, DEBY_1, DEBY_2"),
                                      HasSubstr("--id, --at or --attribute")));
   EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with id DEBY_7"));
@@ -203,10 +203,10 @@ TEST_F(Site, SaysWhatIsMissing) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
   std::ofstream(folder_.path() / "house.yaml") << "mine";
   EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml exists"));
-  EXPECT_EQ(content_of(folder_.path() / "house.yaml"), "mine");
+  EXPECT_EQ(read_content(folder_.path() / "house.yaml"), "mine");
   std::filesystem::rename(folder_.path() / "house.yaml", folder_.path() / "house.html");
   EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html exists"));
-  EXPECT_EQ(content_of(folder_.path() / "house.html"), "mine");
+  EXPECT_EQ(read_content(folder_.path() / "house.html"), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
 }
 
@@ -217,7 +217,7 @@ TEST_F(Site, TakesWordsForFilesThatDoNotSayIt) {
   Cube ground;
   ground.size = {400.0, 400.0, 1.0};
   ground.low = {676130.0, 5403705.0, 379.0 - undulation};
-  write("ground.gml", citygml_of(ground, "EPSG:25832+5773"));
+  write("ground.gml", make_citygml(ground, "EPSG:25832+5773"));
   const auto run = propose("--id DEBY_1 --terrain " + path_ + "/ground.gml");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NEAR(mission().flight().takeoff.value().z(), 0.0, 0.05);
@@ -242,14 +242,14 @@ TEST_F(Site, LetsEgm96StandInWhereThatIsAskedFor) {
 TEST_F(Site, IsAsHighAsAnybodySays) {
   Cube low, high;
   high.low.x() += 30.0;
-  std::string map = geojson_of(low);
-  std::string other = geojson_of(high);
+  std::string map = make_geojson(low);
+  std::string other = make_geojson(high);
   other.replace(other.find("\"cube\""), 6, "\"tower\",\"height\":20");
-  const auto feature_of = [](const std::string& text) {
+  const auto find_feature = [](const std::string& text) {
     const auto begin = text.find("{\"type\":\"Feature\",");
     return text.substr(begin, text.rfind("]}") - begin);
   };
-  map.insert(map.rfind("]}"), "," + feature_of(other));
+  map.insert(map.rfind("]}"), "," + find_feature(other));
   write("map.geojson", map);
   const auto run = run_skycap("site " + path_ + "/map.geojson --id cube --height 12 --base 380 " +
                               "--out " + path_ + "/house.yaml");
@@ -280,7 +280,7 @@ TEST_F(Site, HasNoPadUnderACrown) {
   Cube crown;
   crown.size.setConstant(3.0);
   crown.low = Vector3d(676330.0, 5403905.0, 385.0) + free_pad - Vector3d(1.5, 1.5, 0.0);
-  write("tree.las", las_of(crown, 4, 6));
+  write("tree.las", make_las(crown, 4, 6));
   const auto run = propose("--id DEBY_1 --crs EPSG:25832 --obstacle " + path_ + "/tree.las");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Vector3d pad = mission().flight().takeoff.value();

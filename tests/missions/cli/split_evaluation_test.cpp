@@ -52,7 +52,7 @@ class SplitEvaluation : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return run_skycap(words);
   }
-  tests::ProgramRun pieces(std::size_t count, const std::vector<std::string>& more) const {
+  tests::ProgramRun shards(std::size_t count, const std::vector<std::string>& more) const {
     std::vector<std::string> words{"--out", folder_ / "out", "--pieces", std::to_string(count)};
     words.insert(words.end(), more.begin(), more.end());
     return evaluate(words);
@@ -69,14 +69,14 @@ TEST_F(SplitEvaluation, HasTheFiguresOfTheWholeToTheLastDigit) {
   EXPECT_NEAR(figures.at("coverage").get<double>(), 0.5, 0.03);  // half of the sphere
   for (const std::size_t count : {1, 2, 4}) {
     for (std::size_t i = count; i-- > 0;) {
-      const auto run = pieces(count, {"--index", std::to_string(i), "--threads", "1"});
+      const auto run = shards(count, {"--index", std::to_string(i), "--threads", "1"});
       ASSERT_EQ(run.exit_code, 0) << run.err;
       EXPECT_EQ(run.out, "");
     }
-    const auto run = pieces(count, {"--collect"});
+    const auto run = shards(count, {"--collect"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.out, whole);
-    EXPECT_THAT(tests::content_of(folder_ / "out/evaluation.json"),
+    EXPECT_THAT(tests::read_content(folder_ / "out/evaluation.json"),
                 HasSubstr("\"complete\": true"));
     EXPECT_FALSE(fs::exists(folder_ / "out/pieces"));
     fs::remove_all(folder_ / "out");
@@ -100,56 +100,56 @@ TEST_F(SplitEvaluation, TellsGroundFromTheModel) {
                 "evaluation: {coverage_distance: 0.1, visible_directions: 20}\n");
   const std::vector<std::string> words{"evaluate", "--cloud", folder_ / "cloud.ply", "--model",
                                        folder_ / "m.yaml"};
-  const auto json_of = [&](const std::vector<std::string>& more) {
+  const auto run_evaluate = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = words;
     all.insert(all.end(), more.begin(), more.end());
     const auto run = run_skycap(all);
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return run.out;
   };
-  const std::string whole = json_of({"--json"});
+  const std::string whole = run_evaluate({"--json"});
   const auto figures = nlohmann::json::parse(whole);
   EXPECT_EQ(figures.at("points"), 500);
   EXPECT_EQ(figures.at("points_beside"), 500);
   EXPECT_NEAR(figures.at("distance_to_model_m").at("mean").get<double>(), 0.01, 0.02);
-  EXPECT_THAT(json_of({}), HasSubstr("500 more on the ground"));
-  EXPECT_EQ(json_of({"--json", "--out", folder_ / "out", "--pieces", "2"}), whole);
+  EXPECT_THAT(run_evaluate({}), HasSubstr("500 more on the ground"));
+  EXPECT_EQ(run_evaluate({"--json", "--out", folder_ / "out", "--pieces", "2"}), whole);
 }
 
 TEST_F(SplitEvaluation, SkipsWhatIsCompleteAndSaysWhatIsMissing) {
   write_cloud(1000);
-  ASSERT_EQ(pieces(2, {"--index", "1"}).exit_code, 0);
-  const fs::path piece = folder_.path() / "out" / "pieces" / "1_of_2" / "piece.json";
-  const auto written = fs::last_write_time(piece);
-  ASSERT_EQ(pieces(2, {"--index", "1"}).exit_code, 0);
-  EXPECT_EQ(fs::last_write_time(piece), written);
-  const auto early = pieces(2, {"--collect"});
+  ASSERT_EQ(shards(2, {"--index", "1"}).exit_code, 0);
+  const fs::path shard = folder_.path() / "out" / "pieces" / "1_of_2" / "piece.json";
+  const auto written = fs::last_write_time(shard);
+  ASSERT_EQ(shards(2, {"--index", "1"}).exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(shard), written);
+  const auto early = shards(2, {"--collect"});
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.err, HasSubstr("1 of 2 pieces are complete; missing 0"));
-  ASSERT_EQ(pieces(2, {"--index", "1", "--distance", "0.06"}).exit_code, 2);  // given twice
-  ASSERT_EQ(pieces(2, {"--index", "0"}).exit_code, 0);
+  ASSERT_EQ(shards(2, {"--index", "1", "--distance", "0.06"}).exit_code, 2);  // given twice
+  ASSERT_EQ(shards(2, {"--index", "0"}).exit_code, 0);
   fs::resize_file(folder_.path() / "out" / "pieces" / "0_of_2" / "distances.bin", 4);
-  const auto damaged = pieces(2, {"--collect"});
+  const auto damaged = shards(2, {"--collect"});
   EXPECT_EQ(damaged.exit_code, 2);
   EXPECT_THAT(damaged.err, HasSubstr("distances.bin: is truncated"));
 }
 
-TEST_F(SplitEvaluation, SaysWhatItCannotSplit) {
-  const auto refusal = [&](const std::vector<std::string>& words) {
+TEST_F(SplitEvaluation, ReportsWhatItCannotSplit) {
+  const auto rejection = [&](const std::vector<std::string>& words) {
     const auto run = run_skycap(words);
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
     return run.err;
   };
   const std::string model = folder_ / "sphere.ply", out = folder_ / "out";
-  EXPECT_THAT(refusal({"evaluate", "--mesh", model, "--model", model, "--distance", "0.1",
-                       "--pieces", "2", "--out", out}),
+  EXPECT_THAT(rejection({"evaluate", "--mesh", model, "--model", model, "--distance", "0.1",
+                         "--pieces", "2", "--out", out}),
               HasSubstr("--pieces requires --cloud and --out"));
   EXPECT_THAT(
-      refusal({"evaluate", "--cloud", model, "--model", model, "--distance", "0.1", "--collect"}),
+      rejection({"evaluate", "--cloud", model, "--model", model, "--distance", "0.1", "--collect"}),
       HasSubstr("require --pieces"));
-  EXPECT_THAT(refusal({"evaluate", "--cloud", folder_ / "none.las", "--model", model, "--distance",
-                       "0.1", "--pieces", "2", "--out", out}),
+  EXPECT_THAT(rejection({"evaluate", "--cloud", folder_ / "none.las", "--model", model,
+                         "--distance", "0.1", "--pieces", "2", "--out", out}),
               HasSubstr("none.las: does not exist"));
 }
 

@@ -19,21 +19,21 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-using tests::content_of;
+using tests::read_content;
 using tests::run_skycap;
 
 class SplitScan : public tests::CubeScan {
  protected:
   /// Measures one piece, as a task does.
-  tests::ProgramRun task(std::size_t piece, std::size_t pieces,
+  tests::ProgramRun task(std::size_t shard, std::size_t shards,
                          const std::vector<std::string>& more = {}) const {
-    return run_skycap(scan("part", with(more, {"--pieces", std::to_string(pieces), "--index",
-                                               std::to_string(piece), "--quiet"})));
+    return run_skycap(scan("part", with(more, {"--pieces", std::to_string(shards), "--index",
+                                               std::to_string(shard), "--quiet"})));
   }
-  tests::ProgramRun collect(std::size_t pieces, const std::vector<std::string>& more = {}) const {
-    return run_skycap(scan("part", with(more, {"--pieces", std::to_string(pieces), "--collect"})));
+  tests::ProgramRun collect(std::size_t shards, const std::vector<std::string>& more = {}) const {
+    return run_skycap(scan("part", with(more, {"--pieces", std::to_string(shards), "--collect"})));
   }
-  fs::path piece_folder(const std::string& name) const {
+  fs::path own_shard_folder(const std::string& name) const {
     return folder_.path() / "part" / "pieces" / name;
   }
 
@@ -42,13 +42,13 @@ class SplitScan : public tests::CubeScan {
 
 TEST_F(SplitScan, GivesTheBytesOfTheWholeWhoeverMeasuresWhichPiece) {
   ASSERT_EQ(run_skycap(scan("whole", all_)).exit_code, 0);
-  for (const std::size_t pieces : {1, 2, 4}) {
-    for (std::size_t i = 0; i < pieces; ++i) {  // not in their order
+  for (const std::size_t shards : {1, 2, 4}) {
+    for (std::size_t i = 0; i < shards; ++i) {  // not in their order
       const auto run =
-          task((3 * i + 2) % pieces, pieces, with(all_, {"--threads", i % 2 == 0 ? "1" : "2"}));
+          task((3 * i + 2) % shards, shards, with(all_, {"--threads", i % 2 == 0 ? "1" : "2"}));
       ASSERT_EQ(run.exit_code, 0) << run.err;
     }
-    const auto run = collect(pieces, all_);
+    const auto run = collect(shards, all_);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     expect_same_results();
     fs::remove_all(folder_ / "part");
@@ -66,8 +66,8 @@ TEST_F(SplitScan, HasPiecesWithoutFiringsWhereThereAreMoreThanCanBe) {
 TEST_F(SplitScan, MeasuresSeveralPiecesInATask) {
   ASSERT_EQ(run_skycap(scan("whole", {})).exit_code, 0);
   ASSERT_EQ(task(1, 5, {"--chunk", "3"}).exit_code, 0);
-  EXPECT_TRUE(fs::exists(piece_folder("3_of_5")));
-  EXPECT_TRUE(fs::exists(piece_folder("4_of_5")));
+  EXPECT_TRUE(fs::exists(own_shard_folder("3_of_5")));
+  EXPECT_TRUE(fs::exists(own_shard_folder("4_of_5")));
   const auto beyond = task(2, 5, {"--chunk", "3"});
   EXPECT_EQ(beyond.exit_code, 0);
   EXPECT_THAT(beyond.err, HasSubstr("task 2 has no runs; there are 5"));
@@ -85,13 +85,13 @@ TEST_F(SplitScan, MeasuresSeveralPiecesInATask) {
 
 TEST_F(SplitScan, SkipsWhatIsCompleteAndMeasuresAnewWhatIsOfAnotherScan) {
   ASSERT_EQ(task(1, 2).exit_code, 0);
-  const fs::path cloud = piece_folder("1_of_2") / "scan.las";
+  const fs::path cloud = own_shard_folder("1_of_2") / "scan.las";
   const auto written = fs::last_write_time(cloud);
   ASSERT_EQ(task(1, 2).exit_code, 0);
   EXPECT_EQ(fs::last_write_time(cloud), written);
-  const std::string before = content_of(cloud);
+  const std::string before = read_content(cloud);
   ASSERT_EQ(task(1, 2, {"--seed", "2"}).exit_code, 0);
-  EXPECT_NE(content_of(cloud), before);
+  EXPECT_NE(read_content(cloud), before);
   EXPECT_EQ(collect(2).exit_code, 1);  // that piece is of another seed
 }
 
@@ -102,9 +102,9 @@ TEST_F(SplitScan, GoesOnWithAPieceThatWasInterrupted) {
   std::ostream err(&keys);
   const auto second = with(clouds_, {"--pieces", "2", "--index", "1", "--threads", "1"});
   ASSERT_EQ(cli::run_command_line(scan("part", second), {out, err, true, keys.token()}), 1);
-  EXPECT_FALSE(fs::exists(piece_folder("1_of_2") / "piece.json"));
+  EXPECT_FALSE(fs::exists(own_shard_folder("1_of_2") / "piece.json"));
   // As a kill leaves it: more in a file than the journal knows of.
-  const fs::path grown = piece_folder("1_of_2") / "unfinished" / "scan.las";
+  const fs::path grown = own_shard_folder("1_of_2") / "unfinished" / "scan.las";
   ASSERT_TRUE(fs::exists(grown));
   std::ofstream(grown, std::ios::binary | std::ios::app) << std::string(1000, 'x');
   const auto run = run_skycap(scan("part", second));
@@ -117,25 +117,25 @@ TEST_F(SplitScan, GoesOnWithAPieceThatWasInterrupted) {
 
 TEST_F(SplitScan, TakesNoDamagedPieceForComplete) {
   ASSERT_EQ(run_skycap(scan("part", {"--pieces", "1", "--index", "0"})).exit_code, 0);
-  std::ofstream(piece_folder("0_of_1") / "piece.json") << "{";
+  std::ofstream(own_shard_folder("0_of_1") / "piece.json") << "{";
   EXPECT_THAT(collect(1).err, HasSubstr("0 of 1 pieces are complete; missing 0"));
   ASSERT_EQ(task(0, 1).exit_code, 0);
   EXPECT_EQ(collect(1).exit_code, 0);
 }
 
-TEST_F(SplitScan, SaysWhatItCannotSplit) {
-  const auto refusal = [&](const std::vector<std::string>& options) {
+TEST_F(SplitScan, ReportsWhatItCannotSplit) {
+  const auto rejection = [&](const std::vector<std::string>& options) {
     const auto run = run_skycap(scan("part", options));
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
     return run.err;
   };
-  EXPECT_THAT(refusal({"--index", "1"}), HasSubstr("require --pieces"));
-  EXPECT_THAT(refusal({"--pieces", "2", "--index", "one"}),
+  EXPECT_THAT(rejection({"--index", "1"}), HasSubstr("require --pieces"));
+  EXPECT_THAT(rejection({"--pieces", "2", "--index", "one"}),
               HasSubstr("--index is 'one'; it must be an integer of at least 0"));
-  EXPECT_THAT(refusal({"--pieces", "2", "--sensor", folder_ / "camera.yaml"}),
+  EXPECT_THAT(rejection({"--pieces", "2", "--sensor", folder_ / "camera.yaml"}),
               HasSubstr("Test camera is a camera; only scans of laser scanners can be split"));
-  EXPECT_THAT(refusal({"--pieces", "2", "--resume"}), HasSubstr("--resume excludes --pieces"));
+  EXPECT_THAT(rejection({"--pieces", "2", "--resume"}), HasSubstr("--resume excludes --pieces"));
 }
 
 }  // namespace

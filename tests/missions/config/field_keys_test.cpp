@@ -20,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string text_of(const std::string& source) {
+std::string read_source(const std::string& source) {
   std::ifstream file(std::filesystem::path(SKYCAP_SOURCE_DIR) / source);
   std::ostringstream text;
   text << file.rdbuf();
@@ -29,9 +29,9 @@ std::string text_of(const std::string& source) {
 
 /// The fields that the validate() functions of a source complain of: names in quotes, and the first
 /// word of sentences.
-std::set<std::string> fields_of(const std::string& source) {
+std::set<std::string> find_fields(const std::string& source) {
   static const std::regex field(R"re("([a-z]+(?:[_.][a-z]+)*)(?:"|(?= (?:is|has|must)\b)))re");
-  const std::string text = text_of(source);
+  const std::string text = read_source(source);
   std::set<std::string> fields;
   for (std::sregex_iterator found(text.begin(), text.end(), field), end; found != end; ++found) {
     fields.insert((*found)[1]);
@@ -58,9 +58,9 @@ TEST(FieldKeys, KnowEveryFieldThatLibrariesComplainOf) {
        {"geometry/place/camera.cpp", "sim/sensors/depth_camera_config.cpp", "sim/sensors/noise.cpp",
         "survey/view_limits.cpp", "survey/see/see_config.cpp", "survey/skycap/skycap_config.cpp",
         "survey/volumetric/volumetric_config.cpp"}) {
-    for (const std::string& field : fields_of(source)) {
+    for (const std::string& field : find_fields(source)) {
       if (not_from_missions.contains(field)) continue;
-      EXPECT_NE(config::key_of_field(field), "") << source << " complains of " << field;
+      EXPECT_NE(config::find_field_key(field), "") << source << " complains of " << field;
       ++fields;
     }
   }
@@ -68,7 +68,7 @@ TEST(FieldKeys, KnowEveryFieldThatLibrariesComplainOf) {
 }
 
 TEST(FieldKeys, PutTheKeyAndItsLineIntoTheMessage) {
-  const std::string message = testing_support::complaint_of([] {
+  const std::string message = testing_support::thrown_message([] {
     config::parse_mission(
         "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.005}\n"
         "planner:\n  name: skycap\n  ablation: {coverage_model: true}\n  min_gain: 1\n",

@@ -29,11 +29,11 @@ const std::string smallest =
     "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.03}\n";
 const std::filesystem::path former_missions = source / "tests/missions/former_names/missions";
 
-std::string content_of(const std::filesystem::path& file) {
+std::string read_content(const std::filesystem::path& file) {
   return geometry::read_file(file, 1 << 24);
 }
 
-config::MissionSetup setup_of(const std::string& text) {
+config::MissionSetup make_setup(const std::string& text) {
   return config::parse_mission(text, "m.yaml");
 }
 
@@ -52,14 +52,15 @@ TEST(FormerNames, OfShippedMissionsMeanTheSame) {
 TEST(FormerNames, OfShippedMissionsAreRewrittenToTheShippedFiles) {
   for (const auto& entry : std::filesystem::directory_iterator(former_missions)) {
     const std::string name = entry.path().filename().string();
-    EXPECT_EQ(config::with_current_names(content_of(entry.path()), name),
-              content_of(source / "missions" / name));
+    EXPECT_EQ(config::with_current_names(read_content(entry.path()), name),
+              read_content(source / "missions" / name));
   }
 }
 
 TEST(FormerNames, AreAllRewrittenAndNothingElse) {
   const std::string current = config::with_current_names(former_mission, "m.yaml");
-  EXPECT_EQ(config::setup_text(setup_of(current)), config::setup_text(setup_of(former_mission)));
+  EXPECT_EQ(config::setup_text(make_setup(current)),
+            config::setup_text(make_setup(former_mission)));
   EXPECT_EQ(config::with_current_names(current, "m.yaml"), current);
   EXPECT_THAT(current, HasSubstr("  target_coverage: 0.9   # least_gain: 0.5 is not it\n"
                                  "  'min_gain' : 0.01\n"
@@ -91,17 +92,17 @@ TEST(FormerNames, OfValuesAreRead) {
 }
 
 TEST(FormerNames, AreRefusedBesideTheCurrentOnes) {
-  const auto complaint = [](const std::string& section) {
-    return testing_support::complaint_of(
-        [&] { setup_of("scene: {model: 'builtin:teapot'}\nevaluation:\n" + section); });
+  const auto error_message = [](const std::string& section) {
+    return testing_support::thrown_message(
+        [&] { make_setup("scene: {model: 'builtin:teapot'}\nevaluation:\n" + section); });
   };
-  EXPECT_THAT(complaint("  coverage_distance: 0.03\n  registration_distance: 0.03\n"),
+  EXPECT_THAT(error_message("  coverage_distance: 0.03\n  registration_distance: 0.03\n"),
               HasSubstr("m.yaml:4: key evaluation.registration_distance is now "
                         "evaluation.coverage_distance, which is set, too; remove one of them"));
 }
 
 TEST(FormerNames, ThatCannotBeToldApartAreNotRewritten) {
-  EXPECT_THAT(testing_support::complaint_of([] {
+  EXPECT_THAT(testing_support::thrown_message([] {
                 config::with_current_names(
                     "{scan: {orbit: {radius: 3}}, evaluation: {radius: 1}}\n", "m.yaml");
               }),
@@ -111,9 +112,9 @@ TEST(FormerNames, ThatCannotBeToldApartAreNotRewritten) {
 // A summary that version 0.1 wrote, as the corpora of the readers keep it.
 TEST(FormerFields, OfPackagesAreRead) {
   const std::filesystem::path file = source / "tests/fuzz/corpus/summary/package.json";
-  ASSERT_THAT(content_of(file), HasSubstr("\"version\": \"0.1.0\""));
+  ASSERT_THAT(read_content(file), HasSubstr("\"version\": \"0.1.0\""));
   const package::PackageSummary summary =
-      package::parse_package_summary(content_of(file), file.string());
+      package::parse_package_summary(read_content(file), file.string());
   EXPECT_FALSE(summary.views.empty());
   EXPECT_GT(summary.mission.evaluation().registration_distance, 0.0);
 }

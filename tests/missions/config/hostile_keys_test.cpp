@@ -113,7 +113,7 @@ const std::vector<std::string> hostile = {
 std::vector<std::string> numbers_about(const config::KeyRange& range) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   std::vector<std::string> texts;
-  for (const double edge : {range.least, range.most}) {
+  for (const double edge : {range.min, range.max}) {
     for (const double number : {edge, std::nextafter(edge, -inf), std::nextafter(edge, inf),
                                 std::round(edge), std::round(edge) - 1.0, std::round(edge) + 1.0}) {
       if (std::isfinite(number)) texts.push_back(support::exact_text(number));
@@ -142,16 +142,16 @@ std::vector<std::string> values_for(const Key& key) {
   return values;
 }
 
-bool is_refusal_of_a_key(const std::string& message) {
+bool is_key_error(const std::string& message) {
   const std::string file = "m.yaml:";
   if (!message.starts_with(file)) return false;
   const std::size_t digits = message.find_first_not_of("0123456789", file.size());
   if (digits == file.size() || message.substr(digits, 2) != ": ") return false;
   const std::string what = message.substr(digits + 2);
-  const bool is_of_yaml = what.starts_with("is not valid YAML") || what.starts_with("anchors") ||
-                          what.starts_with("aliases") || what.starts_with("tags") ||
-                          what.starts_with("lists and maps are nested deeper");
-  if (is_of_yaml) return true;
+  const bool is_yaml_error = what.starts_with("is not valid YAML") || what.starts_with("anchors") ||
+                             what.starts_with("aliases") || what.starts_with("tags") ||
+                             what.starts_with("lists and maps are nested deeper");
+  if (is_yaml_error) return true;
   if (!what.starts_with("key ")) return false;
   const std::string named = what.substr(4, what.find_first_of(" :", 4) - 4);
   return config::find_key(named) != nullptr || named.find_first_of(".[") != std::string::npos;
@@ -160,7 +160,7 @@ bool is_refusal_of_a_key(const std::string& message) {
 /// Numbers as taken: finite, and in the key's range up to the rounding of degrees.
 void expect_in_range(const Key& key, double number, const std::string& value) {
   const double slack = 1e-12 * std::abs(number);
-  EXPECT_TRUE(number >= key.range.least - slack && number <= key.range.most + slack)
+  EXPECT_TRUE(number >= key.range.min - slack && number <= key.range.max + slack)
       << key.path << ": " << value.substr(0, 60) << " is taken as " << number;
 }
 
@@ -177,14 +177,13 @@ void expect_sane(const config::MissionDocument& document, const std::string& val
 
 /// Whether they are taken; a finding if they are taken out of their ranges, or if what refuses them
 /// is not one line that names a key. `what` names them in findings.
-bool are_taken(const Values& values, const std::string& what) {
+bool are_accepted(const Values& values, const std::string& what) {
   try {
     expect_sane(*config::parse_mission(mission_text(values), "m.yaml").document, what);
     return true;
   } catch (const Error& error) {
     const std::string message = error.what();
-    EXPECT_TRUE(is_refusal_of_a_key(message))
-        << what << " is refused by " << message.substr(0, 300);
+    EXPECT_TRUE(is_key_error(message)) << what << " is refused by " << message.substr(0, 300);
     EXPECT_LT(message.size(), 2000U) << what;
     EXPECT_EQ(message.find_first_of("\n\x1b"), std::string::npos) << what;
     return false;
@@ -192,15 +191,15 @@ bool are_taken(const Values& values, const std::string& what) {
 }
 
 TEST(HostileKeys, AreRefusedByTheirNameOrTakenWithinTheirRange) {
-  std::size_t refused = 0, taken = 0;
+  std::size_t rejected = 0, taken = 0;
   for (const Key& key : config::mission_keys()) {
     for (const std::string& value : values_for(key)) {
       Values values = around(key);
       values[key.path] = value;
-      ++(are_taken(values, key.path + ": " + value.substr(0, 60)) ? taken : refused);
+      ++(are_accepted(values, key.path + ": " + value.substr(0, 60)) ? taken : rejected);
     }
   }
-  EXPECT_GT(refused, 5000U);
+  EXPECT_GT(rejected, 5000U);
   EXPECT_GT(taken, 500U);
 }
 
@@ -225,7 +224,7 @@ TEST(HostileKeys, DrawnTogetherAreRefusedByANameOrTakenWithinTheirRanges) {
       values[key.path] = random() % 2 == 0 ? number_drawn(random) : known[random() % known.size()];
       what += key.path + ": " + values[key.path].substr(0, 60) + "; ";
     }
-    are_taken(values, what);
+    are_accepted(values, what);
   }
 }
 
@@ -248,9 +247,9 @@ TEST(HostileKeys, ManyOrLongOnesAreReadInProportionToTheirNumber) {
   const std::string base = "scene: {model: 'builtin:teapot'}\n";
   std::string many = base;
   for (int i = 0; i < 90'000; ++i) many += "k" + std::to_string(i) + ": 1\n";
-  EXPECT_THAT(testing_support::complaint_of([&] { config::parse_mission(many, "m.yaml"); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { config::parse_mission(many, "m.yaml"); }),
               testing::HasSubstr("m.yaml:"));
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 config::parse_mission(base + "? " + std::string(900'000, 'k') + "\n: 1\n",
                                       "m.yaml");
               }),

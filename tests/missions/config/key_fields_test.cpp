@@ -60,7 +60,7 @@ KeyValue value_for(const config::Key& key, bool is_second) {
   return {};
 }
 
-std::string text_of(const config::Key& key, const Document& document) {
+std::string value_text(const config::Key& key, const Document& document) {
   const auto value = key.get(document);
   return value ? config::to_text(*value) : "-";
 }
@@ -74,16 +74,16 @@ const std::map<std::string, std::string> means_nothing_without = {
 void expect_own_fields(std::span<const config::Key> keys, Document document) {
   for (const config::Key& key : keys) key.set(document, value_for(key, true));
   for (const config::Key& key : keys) {
-    EXPECT_EQ(text_of(key, document), config::to_text(value_for(key, true))) << key.path;
+    EXPECT_EQ(value_text(key, document), config::to_text(value_for(key, true))) << key.path;
     Document changed = document;
     key.set(changed, value_for(key, false));
-    EXPECT_EQ(text_of(key, changed), config::to_text(value_for(key, false))) << key.path;
-    EXPECT_NE(text_of(key, changed), text_of(key, document)) << key.path << " is not changed";
+    EXPECT_EQ(value_text(key, changed), config::to_text(value_for(key, false))) << key.path;
+    EXPECT_NE(value_text(key, changed), value_text(key, document)) << key.path << " is not changed";
     for (const config::Key& other : keys) {
       const auto needed = means_nothing_without.find(other.path);
       if (&other == &key) continue;
       if (needed != means_nothing_without.end() && needed->second == key.path) continue;
-      EXPECT_EQ(text_of(other, changed), text_of(other, document))
+      EXPECT_EQ(value_text(other, changed), value_text(other, document))
           << other.path << " changes with " << key.path;
     }
   }
@@ -126,12 +126,12 @@ KeyValue in_degrees(std::vector<Vector3d> copies) {
   return copies;
 }
 
-struct FieldOfKey {
+struct KeyField {
   std::string_view key;
   KeyValue (*value)(const Document&);
 };
 
-constexpr FieldOfKey fields[] = {
+constexpr KeyField fields[] = {
     {"scene.copies", [](const Document& d) { return in_degrees(d.scene.copies); }},
     {"scene.detail", [](const Document& d) { return value(d.scene.detail); }},
     {"scene.seed", [](const Document& d) { return value(d.scene.seed); }},
@@ -228,22 +228,21 @@ constexpr FieldOfKey fields[] = {
     {"planner.frontier_spacing",
      [](const Document& d) { return value(d.planner.see.frontier_spacing); }},
     {"planner.target_coverage",
-     [](const Document& d) { return value(d.planner.skycap_stop.wanted_coverage); }},
-    {"planner.min_gain", [](const Document& d) { return value(d.planner.skycap_stop.least_gain); }},
+     [](const Document& d) { return value(d.planner.surfel_stop.target_coverage); }},
+    {"planner.min_gain", [](const Document& d) { return value(d.planner.surfel_stop.min_gain); }},
     {"planner.ablation.coverage_model",
-     [](const Document& d) { return value(d.planner.skycap_ideas.dose); }},
+     [](const Document& d) { return value(d.planner.ablation.coverage_model); }},
     {"planner.ablation.unseen_surface",
-     [](const Document& d) { return value(d.planner.skycap_ideas.unseen_surface); }},
+     [](const Document& d) { return value(d.planner.ablation.surface_prediction); }},
     {"planner.ablation.free_space",
-     [](const Document& d) { return value(d.planner.skycap_ideas.free_space); }},
+     [](const Document& d) { return value(d.planner.ablation.free_space); }},
     {"planner.ablation.learned_rates",
-     [](const Document& d) { return value(d.planner.skycap_ideas.learned_rates); }},
+     [](const Document& d) { return value(d.planner.ablation.learned_rates); }},
     {"planner.ablation.targeted_views",
-     [](const Document& d) { return value(d.planner.skycap_ideas.targeted_views); }},
+     [](const Document& d) { return value(d.planner.ablation.targeted_views); }},
     {"planner.ablation.refinement",
-     [](const Document& d) { return value(d.planner.skycap_ideas.refinement); }},
-    {"planner.ablation.batch",
-     [](const Document& d) { return value(d.planner.skycap_ideas.batch); }},
+     [](const Document& d) { return value(d.planner.ablation.refinement); }},
+    {"planner.ablation.batch", [](const Document& d) { return value(d.planner.ablation.batch); }},
     {"volumetric.view_limit",
      [](const Document& d) { return value(d.planner.volumetric.view_limit); }},
     {"volumetric.candidates_per_view",
@@ -271,7 +270,8 @@ constexpr FieldOfKey fields[] = {
      [](const Document& d) { return value(d.planner.volumetric.ray_depth); }},
     {"volumetric.shadow_length",
      [](const Document& d) { return value(d.planner.volumetric.shadow_length); }},
-    {"volumetric.thinned", [](const Document& d) { return value(d.planner.volumetric.thinned); }},
+    {"volumetric.thinned",
+     [](const Document& d) { return value(d.planner.volumetric.downsampled); }},
     {"volumetric.carve_no_returns",
      [](const Document& d) { return value(d.planner.volumetric.carve_no_returns); }},
     {"start.position", [](const Document& d) { return value(d.start.position); }},
@@ -280,9 +280,9 @@ constexpr FieldOfKey fields[] = {
     {"limits.max_views", [](const Document& d) { return value(d.limits.options.max_views); }},
     {"limits.max_distance", [](const Document& d) { return value(d.limits.options.max_distance); }},
     {"limits.ground_clearance", [](const Document& d) { return value(d.limits.ground_clearance); }},
-    {"limits.stand_off", [](const Document& d) { return value(d.limits.stand_off); }},
-    {"limits.min_pitch_deg", [](const Document& d) { return degrees(d.limits.lowest_pitch); }},
-    {"limits.max_pitch_deg", [](const Document& d) { return degrees(d.limits.highest_pitch); }},
+    {"limits.stand_off", [](const Document& d) { return value(d.limits.min_standoff); }},
+    {"limits.min_pitch_deg", [](const Document& d) { return degrees(d.limits.min_pitch); }},
+    {"limits.max_pitch_deg", [](const Document& d) { return degrees(d.limits.max_pitch); }},
     {"limits.max_minutes", [](const Document& d) { return value(d.limits.max_minutes); }},
     {"limits.speed", [](const Document& d) { return value(d.limits.options.speed); }},
     {"limits.time_per_view",
@@ -293,7 +293,7 @@ constexpr FieldOfKey fields[] = {
     {"evaluation.visible_directions",
      [](const Document& d) { return value(d.evaluation.visible_directions); }},
     {"evaluation.attainable_views",
-     [](const Document& d) { return value(d.evaluation.ceiling_views); }},
+     [](const Document& d) { return value(d.evaluation.attainable_views); }},
     {"evaluation.passage_radius", [](const Document& d) { return value(d.evaluation.radius); }},
     {"paper.views", [](const Document& d) { return value(d.paper.views); }},
     {"paper.coverage", [](const Document& d) { return value(d.paper.coverage); }},
@@ -308,7 +308,7 @@ constexpr FieldOfKey fields[] = {
     {"flight.timing_tolerance",
      [](const Document& d) { return value(d.flight.options.fleet.timing_tolerance); }},
     {"flight.extra_unknown_boxes",
-     [](const Document& d) { return value(d.flight.unknown_beside); }},
+     [](const Document& d) { return value(d.flight.extra_unknown_boxes); }},
     {"flight.vehicle", [](const Document& d) { return value(d.flight.options.vehicle_name); }},
     {"flight.clearance", [](const Document& d) { return value(d.flight.options.clearance); }},
     {"flight.position_error",
@@ -327,7 +327,7 @@ constexpr FieldOfKey fields[] = {
      [](const Document& d) { return value(d.flight.options.takeoff_climb); }},
     {"flight.pad_slope_deg", [](const Document& d) { return degrees(d.flight.options.pad_slope); }},
     {"flight.max_pad_slope_deg",
-     [](const Document& d) { return degrees(d.flight.options.steepest_pad); }},
+     [](const Document& d) { return degrees(d.flight.options.max_pad_slope); }},
     {"flight.cruise_speed", [](const Document& d) { return value(d.flight.options.cruise_speed); }},
     {"flight.hold", [](const Document& d) { return value(d.flight.options.hold); }},
     {"flight.hold_after", [](const Document& d) { return value(d.flight.options.hold_after); }},
@@ -336,14 +336,14 @@ constexpr FieldOfKey fields[] = {
     {"flight.battery_temperature",
      [](const Document& d) { return value(d.flight.options.temperature); }},
     {"flight.reserve", [](const Document& d) { return value(d.flight.options.reserve); }},
-    {"flight.initial_pattern", [](const Document& d) { return value(d.flight.opening); }},
+    {"flight.initial_pattern", [](const Document& d) { return value(d.flight.initial_pattern); }},
     {"flight.views", [](const Document& d) { return value(d.flight.options.views); }},
     {"flight.order", [](const Document& d) { return value(d.flight.options.order); }},
     {"flight.style", [](const Document& d) { return value(d.flight.options.style); }},
     {"site.geofence", [](const Document& d) { return value(d.site.geofence); }},
     {"site.no_fly", [](const Document& d) { return value(d.site.no_fly); }},
-    {"site.min_height", [](const Document& d) { return value(d.site.lowest_height); }},
-    {"site.max_height", [](const Document& d) { return value(d.site.highest_height); }},
+    {"site.min_height", [](const Document& d) { return value(d.site.min_height); }},
+    {"site.max_height", [](const Document& d) { return value(d.site.max_height); }},
     {"site.latitude_deg", [](const Document& d) { return value(d.georeference.latitude_deg); }},
     {"site.longitude_deg", [](const Document& d) { return value(d.georeference.longitude_deg); }},
     {"site.ellipsoid_height",
@@ -358,8 +358,8 @@ constexpr FieldOfKey fields[] = {
      [](const Document& d) { return value(d.live.removes_flying_pixels); }},
     {"scan.orbit.centre", [](const Document& d) { return value(d.scan.orbit.centre); }},
     {"scan.orbit.radius", [](const Document& d) { return value(d.scan.orbit.radius); }},
-    {"scan.orbit.min_height", [](const Document& d) { return value(d.scan.orbit.lowest); }},
-    {"scan.orbit.max_height", [](const Document& d) { return value(d.scan.orbit.highest); }},
+    {"scan.orbit.min_height", [](const Document& d) { return value(d.scan.orbit.min_height); }},
+    {"scan.orbit.max_height", [](const Document& d) { return value(d.scan.orbit.max_height); }},
     {"scan.orbit.circles", [](const Document& d) { return value(d.scan.orbit.circles); }},
     {"scan.orbit.speed", [](const Document& d) { return value(d.scan.orbit.speed); }},
     {"scan.orbit.start_deg", [](const Document& d) { return degrees(d.scan.orbit.start); }},
@@ -390,7 +390,7 @@ TEST(MissionKeys, StandForTheFieldsThatAreNamedForThem) {
   EXPECT_EQ(std::size(fields), config::mission_keys().size() - 1) << "all but the list of sources";
   for (const config::Key& key : config::mission_keys()) {
     if (key.type == config::KeyType::sources) continue;
-    const auto field = std::ranges::find(fields, std::string_view(key.path), &FieldOfKey::key);
+    const auto field = std::ranges::find(fields, std::string_view(key.path), &KeyField::key);
     ASSERT_NE(field, std::end(fields)) << key.path;
     for (const bool is_second : {false, true}) {
       Document document;

@@ -21,9 +21,9 @@ config::MissionDocument parsed(const std::string& more,
   return config::parse_mission_document(smallest + more, "some/folder/vase.yaml", overrides);
 }
 
-std::string complaint(const std::string& text,
-                      const std::vector<config::KeyOverride>& overrides = {}) {
-  return testing_support::complaint_of(
+std::string error_message(const std::string& text,
+                          const std::vector<config::KeyOverride>& overrides = {}) {
+  return testing_support::thrown_message(
       [&] { config::parse_mission_document(text, "m.yaml", overrides); });
 }
 
@@ -54,16 +54,16 @@ TEST(MissionReader, TakesPresetsFirstWhereverTheyStand) {
 TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
   const config::MissionDocument mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
   EXPECT_EQ(mission.seed, 8U);
-  EXPECT_EQ(complaint(smallest, {{"--seed", "seed", "many"}}),
+  EXPECT_EQ(error_message(smallest, {{"--seed", "seed", "many"}}),
             "--seed: key seed is many; it must be an integer from 0 to 1e+15");
-  EXPECT_THAT(complaint(smallest, {{"--set", "planner.densty", "1"}}),
+  EXPECT_THAT(error_message(smallest, {{"--set", "planner.densty", "1"}}),
               HasSubstr("did you mean planner.density?"));
 }
 
 TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
-  EXPECT_EQ(complaint(smallest + "sensor:\n  sigma: 0.1\n"),
+  EXPECT_EQ(error_message(smallest + "sensor:\n  sigma: 0.1\n"),
             "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
-  EXPECT_THAT(complaint(smallest + "colour_of_the_sky: blue\n"),
+  EXPECT_THAT(error_message(smallest + "colour_of_the_sky: blue\n"),
               HasSubstr("expected one of: name, seed, threads, scene, sensor, planner, volumetric, "
                         "start, limits, evaluation, paper, site, flight, scan"));
 }
@@ -74,11 +74,11 @@ TEST(MissionReader, RefusesDamagedFilesInOneLine) {
   const std::string whole =
       "scene:\n  model: builtin:teapot  # a comment\n  position: [1, 2.5, -3e1]\n"
       "evaluation: {coverage_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";
-  std::size_t refused = 0;
+  std::size_t rejected = 0;
   const auto try_text = [&](const std::string& text) {
-    const std::string message = complaint(text);
+    const std::string message = error_message(text);
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    refused += message.empty() ? 0 : 1;
+    rejected += message.empty() ? 0 : 1;
   };
   for (std::size_t length = 0; length < whole.size(); ++length) try_text(whole.substr(0, length));
   for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -88,14 +88,14 @@ TEST(MissionReader, RefusesDamagedFilesInOneLine) {
       try_text(damaged);
     }
   }
-  EXPECT_GT(refused, whole.size());
+  EXPECT_GT(rejected, whole.size());
 }
 
 TEST(MissionReader, SurvivesDeepNesting) {
   for (const char* bracket : {"[", "{a: ", "- ", "? "}) {
     std::string deep;
     for (int i = 0; i < 20'000; ++i) deep += bracket;
-    EXPECT_THAT(complaint(deep), HasSubstr("m.yaml:1: ")) << bracket;
+    EXPECT_THAT(error_message(deep), HasSubstr("m.yaml:1: ")) << bracket;
   }
 }
 

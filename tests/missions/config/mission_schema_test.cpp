@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 const std::filesystem::path source = SKYCAP_SOURCE_DIR;
 
 Json shipped_schema() {
-  return Json::parse(tests::content_of(source / "missions" / "mission.schema.json"));
+  return Json::parse(tests::read_content(source / "missions" / "mission.schema.json"));
 }
 
 /// Paths of all properties of a schema that are not sections.
@@ -38,7 +38,7 @@ void collect_paths(const Json& section, const std::string& prefix, std::set<std:
   }
 }
 
-const Json& property_of(const Json& schema, const std::string& path) {
+const Json& find_property(const Json& schema, const std::string& path) {
   const Json* property = &schema;
   std::istringstream parts(path);
   for (std::string part; std::getline(parts, part, '.');) {
@@ -70,12 +70,12 @@ TEST(MissionKeys, StandInTheirSectionAndOnce) {
 TEST(MissionSchema, HasTheReadersTypesAndRanges) {
   const Json schema = shipped_schema();
   for (const config::Key& key : testing_support::not_empty(config::mission_keys())) {
-    const Json& property = property_of(schema, key.path);
+    const Json& property = find_property(schema, key.path);
     const Json& number = key.type == config::KeyType::vector ? property["items"] : property;
     if (key.type == config::KeyType::choice) {
       EXPECT_EQ(property["enum"], Json(key.choices)) << key.path;
     }
-    const auto is_refused = [&](const std::string& value) {
+    const auto is_rejected = [&](const std::string& value) {
       const std::string text = key.type == config::KeyType::vector
                                    ? "[" + value + ", " + value + ", " + value + "]"
                                    : value;
@@ -90,23 +90,22 @@ TEST(MissionSchema, HasTheReadersTypesAndRanges) {
     const auto beyond = [](double limit, double sign) {
       return std::to_string(limit + sign * std::max(1.0, 1e-3 * std::abs(limit)));
     };
-    for (const char* least : {"minimum", "exclusiveMinimum"}) {
-      if (!number.contains(least)) continue;
-      EXPECT_TRUE(is_refused(std::to_string(static_cast<long long>(number[least]) - 1)))
-          << key.path;
+    for (const char* min : {"minimum", "exclusiveMinimum"}) {
+      if (!number.contains(min)) continue;
+      EXPECT_TRUE(is_rejected(std::to_string(static_cast<long long>(number[min]) - 1))) << key.path;
     }
     if (number.contains("exclusiveMinimum")) {
-      EXPECT_TRUE(is_refused("0")) << key.path;
+      EXPECT_TRUE(is_rejected("0")) << key.path;
     }
     if (number.contains("maximum")) {
-      EXPECT_TRUE(is_refused(beyond(number["maximum"], 1.0))) << key.path;
+      EXPECT_TRUE(is_rejected(beyond(number["maximum"], 1.0))) << key.path;
     }
-    EXPECT_TRUE(is_refused("{a: 1}")) << key.path;
+    EXPECT_TRUE(is_rejected("{a: 1}")) << key.path;
   }
 }
 
 TEST(MissionSchema, IsTheFileThatIsShipped) {
-  EXPECT_EQ(tests::content_of(source / "missions" / "mission.schema.json"),
+  EXPECT_EQ(tests::read_content(source / "missions" / "mission.schema.json"),
             config::mission_json_schema())
       << "run: build/release/skycap check --schema > missions/mission.schema.json";
 }
@@ -135,7 +134,7 @@ TEST(MissionReference, ListsEveryKeyOnceAsTheProgramPrintsIt) {
   const std::filesystem::path page = source / "docs" / "reference" / "mission-file.md";
   const auto printed = key_rows(config::mission_key_table());
   EXPECT_GE(printed.size(), config::mission_keys().size());
-  EXPECT_EQ(key_rows(generated_parts(tests::content_of(page))), printed)
+  EXPECT_EQ(key_rows(generated_parts(tests::read_content(page))), printed)
       << "run: docs/generate_reference.py --program build/release";
 }
 
@@ -149,7 +148,7 @@ TEST(ShippedMissions, AreValid) {
   EXPECT_GE(count, 4U);
 }
 
-const survey::see::SeeConfig& see_of(const config::MissionSetup& setup) {
+const survey::see::SeeConfig& see_config(const config::MissionSetup& setup) {
   return std::get<survey::see::SeeConfig>(setup.survey().planner.method);
 }
 
@@ -158,22 +157,22 @@ TEST(ShippedMissions, HaveThePapersParameters) {
   for (const char* name : {"teapot", "bunny", "dragon"}) {
     const config::MissionSetup mission =
         config::read_mission(source / "missions" / (std::string(name) + ".yaml"));
-    EXPECT_EQ(see_of(mission).density, 146'000.0);
-    EXPECT_EQ(see_of(mission).resolution_radius, 0.017);
-    EXPECT_EQ(see_of(mission).effective_core_threshold(), 4);
+    EXPECT_EQ(see_config(mission).density, 146'000.0);
+    EXPECT_EQ(see_config(mission).resolution_radius, 0.017);
+    EXPECT_EQ(see_config(mission).effective_core_threshold(), 4);
     EXPECT_EQ(mission.evaluation().registration_distance, 0.005);
     EXPECT_EQ(mission.scene().longest_side, 1.0);
   }
   const config::MissionSetup radcliffe =
       config::read_mission(source / "missions" / "radcliffe_camera.yaml");
-  EXPECT_EQ(see_of(radcliffe).density, 213.0);
-  EXPECT_EQ(see_of(radcliffe).resolution_radius, 0.15);
+  EXPECT_EQ(see_config(radcliffe).density, 213.0);
+  EXPECT_EQ(see_config(radcliffe).resolution_radius, 0.15);
   EXPECT_EQ(radcliffe.sensor().camera.camera.width, 2400);
   EXPECT_EQ(radcliffe.evaluation().registration_distance, 0.05);
   const config::MissionSetup published = config::read_mission(
       source / "missions" / "radcliffe_camera.yaml", {{"--set", "planner.preset", "paper"}});
-  EXPECT_EQ(see_of(published).occlusion_search_distance, 1.0);
-  EXPECT_EQ(see_of(published).visibility_update_limit, 100U);
+  EXPECT_EQ(see_config(published).occlusion_search_distance, 1.0);
+  EXPECT_EQ(see_config(published).visibility_update_limit, 100U);
 }
 
 }  // namespace

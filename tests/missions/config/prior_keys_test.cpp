@@ -23,8 +23,8 @@ config::MissionDocument parsed(const std::string& more) {
   return config::parse_mission_document(mission + more, "m.yaml");
 }
 
-std::string complaint(const std::string& more) {
-  return testing_support::complaint_of([&] { parsed(more); });
+std::string error_message(const std::string& more) {
+  return testing_support::thrown_message([&] { parsed(more); });
 }
 
 TEST(PriorKeys, SayAllThatASourceHas) {
@@ -60,13 +60,13 @@ TEST(PriorKeys, SayAllThatASourceHas) {
   EXPECT_THAT(sources[2].select.classes, ElementsAre(2, 5));
   EXPECT_EQ(sources[2].spacing, 0.5);
   EXPECT_EQ(sources[2].offset, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(sources[3].place.value().position, Eigen::Vector3d(4, 5, 6));
-  EXPECT_NEAR(sources[3].place.value().heading, 90 * geometry::radians_per_degree, 1e-12);
+  EXPECT_EQ(sources[3].pose.value().position, Eigen::Vector3d(4, 5, 6));
+  EXPECT_NEAR(sources[3].pose.value().heading, 90 * geometry::radians_per_degree, 1e-12);
   EXPECT_EQ(sources[3].is_y_up, true);
   EXPECT_EQ(sources[3].unit, 0.3048);
   EXPECT_EQ(sources[3].base, 2.5);
   EXPECT_EQ(sources[3].min_height, 1.0);
-  EXPECT_EQ(given.places.at("prior[1].height"), "m.yaml:8");
+  EXPECT_EQ(given.locations.at("prior[1].height"), "m.yaml:8");
 }
 
 // What a package keeps of a mission is read back as the same sources.
@@ -84,21 +84,21 @@ TEST(PriorKeys, AreReadBackFromSettings) {
 }
 
 TEST(PriorKeys, AreNamedWithTheirLineWhenTheyAreWrong) {
-  EXPECT_EQ(complaint("prior: {file: a.obj}\n"),
+  EXPECT_EQ(error_message("prior: {file: a.obj}\n"),
             "m.yaml:3: key prior is a map; it must be a list of maps, each with file, role and "
             "further keys");
-  EXPECT_EQ(complaint("prior: [a.obj]\n"), "m.yaml:3: key prior[0] is a.obj; it must be a map");
-  EXPECT_THAT(complaint("prior:\n  - {file: a.obj, role: target}\n  - {role: target}\n"),
+  EXPECT_EQ(error_message("prior: [a.obj]\n"), "m.yaml:3: key prior[0] is a.obj; it must be a map");
+  EXPECT_THAT(error_message("prior:\n  - {file: a.obj, role: target}\n  - {role: target}\n"),
               StartsWith("m.yaml:5: key prior[1].file is missing; it must be a string"));
   EXPECT_THAT(
-      complaint("prior:\n  - file: a.obj\n    role: wall\n"),
+      error_message("prior:\n  - file: a.obj\n    role: wall\n"),
       StartsWith(
           "m.yaml:5: key prior[0].role is wall; it must be target, obstacle, terrain or truth"));
-  EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, hight: 3}]\n"),
+  EXPECT_THAT(error_message("prior: [{file: a.obj, role: target, hight: 3}]\n"),
               HasSubstr("key prior[0].hight is unknown; did you mean height?"));
-  EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, base: sea}]\n"),
+  EXPECT_THAT(error_message("prior: [{file: a.obj, role: target, base: sea}]\n"),
               HasSubstr("key prior[0].base is sea; it must be terrain or a number"));
-  EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, select: all}]\n"),
+  EXPECT_THAT(error_message("prior: [{file: a.obj, role: target, select: all}]\n"),
               HasSubstr("key prior[0].select is a section"));
 }
 
@@ -128,7 +128,7 @@ TEST(PriorKeys, RefuseHostileValues) {
                                             "[999999999999]",
                                             "[~]",
                                             "{1: [2]}"};
-  std::size_t refused = 0;
+  std::size_t rejected = 0;
   for (const config::Key& key : config::find_key("prior")->items) {
     for (const std::string& value : hostile) {
       std::string path = key.path, open;
@@ -144,16 +144,16 @@ TEST(PriorKeys, RefuseHostileValues) {
         const config::MissionDocument taken = parsed(text);
         const auto number = key.get(taken);
         if (!number || !std::holds_alternative<double>(*number)) continue;
-        EXPECT_GE(std::get<double>(*number), key.range.least) << text;
-        EXPECT_LE(std::get<double>(*number), key.range.most) << text;
+        EXPECT_GE(std::get<double>(*number), key.range.min) << text;
+        EXPECT_LE(std::get<double>(*number), key.range.max) << text;
       } catch (const Error& error) {
-        ++refused;
+        ++rejected;
         EXPECT_THAT(error.what(), StartsWith("m.yaml:")) << text;
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << text;
       }
     }
   }
-  EXPECT_GT(refused, 200U);
+  EXPECT_GT(rejected, 200U);
 }
 
 }  // namespace

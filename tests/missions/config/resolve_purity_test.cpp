@@ -26,14 +26,14 @@ using config::MissionSetup;
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using survey::see::SeeConfig;
-using survey::skycap::SkycapConfig;
+using survey::surfel::SurfelConfig;
 using survey::volumetric::VolumetricConfig;
 using testing::HasSubstr;
 
 using Texts = std::map<std::string, std::string>;
 using Numbers = std::map<std::string, double>;
 
-Texts texts_of(const MissionSetup& setup) {
+Texts make_texts(const MissionSetup& setup) {
   Texts texts;
   for (const config::Key& key : config::mission_keys()) texts[key.path] = setup.text(key.path);
   return texts;
@@ -45,7 +45,7 @@ class DerivedValues {
   explicit DerivedValues(const MissionSetup& setup) {
     add_planner(setup.survey().planner);
     add_survey(setup.survey());
-    if (setup.flight().is_flown()) add_flight(setup.flight());
+    if (setup.flight().has_vehicle()) add_flight(setup.flight());
   }
 
   Numbers numbers;
@@ -75,21 +75,21 @@ class DerivedValues {
     add("camera horizontal", planner.camera.horizontal_fov);
     add("camera vertical", planner.camera.vertical_fov);
     add("camera max range", planner.camera.max_range);
-    add("least height", planner.limits.least_height);
-    add("most height", planner.limits.most_height);
-    add("stand-off", planner.limits.stand_off);
-    add("least pitch", planner.limits.least_pitch);
-    add("most pitch", planner.limits.most_pitch);
+    add("least height", planner.limits.min_height);
+    add("most height", planner.limits.max_height);
+    add("stand-off", planner.limits.min_standoff);
+    add("least pitch", planner.limits.min_pitch);
+    add("most pitch", planner.limits.max_pitch);
     if (const auto* see = std::get_if<SeeConfig>(&planner.method)) {
       add("core threshold", see->effective_core_threshold());
       add("occlusion search distance", see->occlusion_search_distance);
       add("frontier spacing", see->frontier_spacing);
       add("occluder spacing", see->occluder_spacing);
-      add("see least height", see->least_height);
-    } else if (const auto* skycap = std::get_if<SkycapConfig>(&planner.method)) {
+      add("see least height", see->min_height);
+    } else if (const auto* skycap = std::get_if<SurfelConfig>(&planner.method)) {
       add("view price", skycap->view_price);
       add("frame spacing", skycap->frame_spacing);
-      add("counts ways", skycap->counts_ways ? 1.0 : 0.0);
+      add("counts ways", skycap->counts_en_route ? 1.0 : 0.0);
       add("sees lines", skycap->sees_lines ? 1.0 : 0.0);
     } else {
       const auto& volumetric = std::get<VolumetricConfig>(planner.method);
@@ -102,9 +102,9 @@ class DerivedValues {
     add("max distance", survey.limits.max_distance);
     add("max time", survey.limits.max_time);
     if (survey.start.view) add("first view", survey.start.view->position);
-    const auto opening = session::opening_views(survey.start, 3);
-    for (std::size_t i = 0; i < opening.size(); ++i) {
-      add("opening " + std::to_string(i), opening[i].position);
+    const auto initial_pattern = session::initial_pattern_views(survey.start, 3);
+    for (std::size_t i = 0; i < initial_pattern.size(); ++i) {
+      add("opening " + std::to_string(i), initial_pattern[i].position);
     }
   }
 
@@ -122,7 +122,7 @@ class DerivedValues {
     add("wind x", route.conditions.wind.x());
     add("wind y", route.conditions.wind.y());
     add("order is free", route.order_is_free ? 1.0 : 0.0);
-    add("highest return", route.returns->highest);
+    add("highest return", route.returns->max_height);
     add("rest before", flight.rest_before());
     add("rest after", flight.rest_after());
     add("frame period", flight.capture.frame_period);
@@ -131,7 +131,7 @@ class DerivedValues {
     const flight::MeasuredSpaceConfig space = flight.measured_space();
     add("voxel", space.voxel);
     add("max depth", space.max_depth);
-    if (flight.capture.mount) add("look pitch", flight.capture.mount->look_pitch);
+    if (flight.capture.mount) add("look pitch", flight.capture.mount->view_pitch);
     if (flight.capture.rays) {
       add("ray spacing", flight.capture.rays->spacing);
       add("origin spread", flight.capture.rays->origin_spread);
@@ -175,10 +175,10 @@ class ResolvePurity : public testing::Test {
         "scene: {model: 'builtin:teapot', longest_side: 10}\n"
         "evaluation: {coverage_distance: 0.2}\n";
     const std::string sparse = "planner: {density: 100, resolution_radius: 0.2}\n";
-    const std::string flown =
+    const std::string flight_mission =
         sparse + "flight: {vehicle: m350_rtk, unknown_box: {min: [-8, -8, 0], max: [8, 8, 9]}}\n";
     const std::string prior =
-        "evaluation: {coverage_distance: 0.2}\n" + flown +
+        "evaluation: {coverage_distance: 0.2}\n" + flight_mission +
         "prior: [{file: house.obj, role: target, place: {heading_deg: 30}}]\n";
     return {
         {"camera", scene + sparse},
@@ -188,11 +188,11 @@ class ResolvePurity : public testing::Test {
         {"volumetric", scene + "planner: {name: rsv, density: 100, resolution_radius: 0.2}\n"},
         {"spinning", scene + sparse + "sensor: {lidar: velodyne_vlp16}\n"},
         {"rosette", scene + sparse + "sensor: {lidar: livox_avia}\n"},
-        {"flown camera", scene + flown + "limits: {max_minutes: 12}\n"},
-        {"flown, moving", scene + flown + "sensor: {capture: moving}\n"},
-        {"flown spinning", scene + flown + "sensor: {lidar: velodyne_vlp16}\n"},
-        {"flown line", scene + flown + "sensor: {lidar: riegl_vux_1uav}\n"},
-        {"flown rosette", scene + flown + "sensor: {lidar: livox_avia}\n"},
+        {"flown camera", scene + flight_mission + "limits: {max_minutes: 12}\n"},
+        {"flown, moving", scene + flight_mission + "sensor: {capture: moving}\n"},
+        {"flown spinning", scene + flight_mission + "sensor: {lidar: velodyne_vlp16}\n"},
+        {"flown line", scene + flight_mission + "sensor: {lidar: riegl_vux_1uav}\n"},
+        {"flown rosette", scene + flight_mission + "sensor: {lidar: livox_avia}\n"},
         {"fleet", scene + sparse +
                       "flight: {vehicles: [m350_rtk, generic], pads: [[-30, 0, 0], [-30, 20, 0]],\n"
                       "         unknown_box: {min: [-8, -8, 0], max: [8, 8, 9]}}\n"
@@ -217,7 +217,7 @@ TEST_F(ResolvePurity, GivesTheSameForTheSameArguments) {
         "scene: {model: 'builtin:teapot', scale: 3}\nevaluation: {coverage_distance: 0.01}\n",
         "other.yaml");
     const MissionSetup second = inputs.resolved();
-    EXPECT_THAT(texts_of(second), testing::ContainerEq(texts_of(first)));
+    EXPECT_THAT(make_texts(second), testing::ContainerEq(make_texts(first)));
     EXPECT_THAT(DerivedValues(second).numbers, testing::ContainerEq(DerivedValues(first).numbers));
     EXPECT_EQ(second.simulation.attainable_inputs, first.simulation.attainable_inputs);
   }
@@ -231,7 +231,7 @@ TEST_F(ResolvePurity, ChangesNothingOfWhatItHasCompleted) {
     const MissionSetup setup = inputs.resolved();
     const MissionSetup again =
         config::resolve(*setup.document, inputs.profiles, inputs.priors, inputs.geoid);
-    EXPECT_THAT(texts_of(again), testing::ContainerEq(texts_of(setup)));
+    EXPECT_THAT(make_texts(again), testing::ContainerEq(make_texts(setup)));
     EXPECT_THAT(DerivedValues(again).numbers, testing::ContainerEq(DerivedValues(setup).numbers));
     EXPECT_EQ(again.simulation.attainable_inputs, setup.simulation.attainable_inputs);
   }
@@ -239,13 +239,13 @@ TEST_F(ResolvePurity, ChangesNothingOfWhatItHasCompleted) {
 
 /// The document that says every key as the setup has it. Beside a scanner those of the camera, in
 /// whose place it is, are refused.
-config::MissionDocument document_of(const MissionSetup& setup, const std::string& file) {
+config::MissionDocument make_document(const MissionSetup& setup, const std::string& file) {
   std::vector<config::KeyOverride> keys;
-  for (const auto& [path, text] : texts_of(setup)) {
-    const bool is_of_flight = path == "sensor.capture" || path == "sensor.frame_period";
-    const bool is_of_camera = path.starts_with("sensor.") && path != "sensor.lidar" &&
-                              !(is_of_flight && setup.sensor().mount);
-    if (text == "-" || (setup.lidar && is_of_camera)) continue;
+  for (const auto& [path, text] : make_texts(setup)) {
+    const bool is_flight_key = path == "sensor.capture" || path == "sensor.frame_period";
+    const bool is_camera_key = path.starts_with("sensor.") && path != "sensor.lidar" &&
+                               !(is_flight_key && setup.sensor().mount);
+    if (text == "-" || (setup.lidar && is_camera_key)) continue;
     keys.push_back({"the setup", path, text});
   }
   return config::parse_mission_document("seed: 1\n", file, keys);
@@ -257,8 +257,8 @@ TEST_F(ResolvePurity, GivesTheSameForTheTextsOfItsKeys) {
     SCOPED_TRACE(name);
     const MissionSetup setup = Inputs(document(text)).resolved();
     const std::string file = (folder_.path() / "m.yaml").string();
-    const MissionSetup again = Inputs(document_of(setup, file)).resolved();
-    EXPECT_THAT(texts_of(again), testing::ContainerEq(texts_of(setup)));
+    const MissionSetup again = Inputs(make_document(setup, file)).resolved();
+    EXPECT_THAT(make_texts(again), testing::ContainerEq(make_texts(setup)));
     const Numbers before = DerivedValues(setup).numbers, after = DerivedValues(again).numbers;
     ASSERT_EQ(before.size(), after.size());
     for (const auto& [value, number] : before) {
@@ -285,18 +285,18 @@ TEST_F(ResolvePurity, WithKeysIsTheMissionOfAnotherFile) {
     EXPECT_EQ(changed.scene().priors, setup.scene().priors) << "is read again";
     const MissionSetup given =
         Inputs(config::parse_mission_document(text, inputs.document.file, changes)).resolved();
-    EXPECT_THAT(texts_of(changed), testing::ContainerEq(texts_of(given)));
+    EXPECT_THAT(make_texts(changed), testing::ContainerEq(make_texts(given)));
     EXPECT_THAT(DerivedValues(changed).numbers, testing::ContainerEq(DerivedValues(given).numbers));
   }
 }
 
 TEST_F(ResolvePurity, WithKeysNamesTheOriginOfWhatIsWrong) {
   const MissionSetup setup = Inputs(document(missions().at("camera"))).resolved();
-  EXPECT_EQ(testing_support::complaint_of([&] {
+  EXPECT_EQ(testing_support::thrown_message([&] {
               config::with_keys(setup, {{"--views", "limits.max_views", "0"}});
             }),
             "--views: key limits.max_views is 0; it must be an integer from 1 to 1000000");
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 config::with_keys(setup, {{"--set", "planner.densty", "1"}});
               }),
               HasSubstr("did you mean planner.density?"));

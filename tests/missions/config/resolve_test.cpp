@@ -15,7 +15,7 @@ namespace skycap::missions {
 namespace {
 
 using survey::see::SeeConfig;
-using survey::skycap::SkycapConfig;
+using survey::surfel::SurfelConfig;
 using testing::HasSubstr;
 
 const std::string smallest =
@@ -25,26 +25,27 @@ config::MissionSetup parsed(const std::string& more) {
   return config::parse_mission(smallest + more, "some/folder/vase.yaml");
 }
 
-const SeeConfig& see_of(const config::MissionSetup& setup) {
+const SeeConfig& see_config(const config::MissionSetup& setup) {
   return std::get<SeeConfig>(setup.survey().planner.method);
 }
 
-std::string complaint(const std::string& text) {
-  return testing_support::complaint_of([&] { config::parse_mission(text, "m.yaml"); });
+std::string error_message(const std::string& text) {
+  return testing_support::thrown_message([&] { config::parse_mission(text, "m.yaml"); });
 }
 
 // echo 51.7534 -1.254 0 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
 TEST(Resolve, TakesEgm96WhereAGeoidIsAskedForAndNoneIsGiven) {
-  const std::string place = "site: {latitude_deg: 51.7534, longitude_deg: -1.254";
+  const std::string location = "site: {latitude_deg: 51.7534, longitude_deg: -1.254";
   const auto undulation = [&](const std::string& text) {
     return parsed(text).flight().site.geoid_undulation;
   };
   const std::string flight =
       "}\nflight: {vehicle: generic, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
-  EXPECT_NEAR(undulation(place + flight).value(), 47.760744, 1e-6);
-  EXPECT_EQ(undulation(place + ", geoid_undulation: 40" + flight), 40.0);
-  EXPECT_FALSE(undulation(place + "}\n")) << "nobody asks";
-  EXPECT_FALSE(undulation(place + "}\nscan: {crs: utm}\n")) << "maps have ellipsoid heights, too";
+  EXPECT_NEAR(undulation(location + flight).value(), 47.760744, 1e-6);
+  EXPECT_EQ(undulation(location + ", geoid_undulation: 40" + flight), 40.0);
+  EXPECT_FALSE(undulation(location + "}\n")) << "nobody asks";
+  EXPECT_FALSE(undulation(location + "}\nscan: {crs: utm}\n"))
+      << "maps have ellipsoid heights, too";
   EXPECT_FALSE(undulation("flight: {vehicle: none}\n"));
 }
 
@@ -54,22 +55,22 @@ TEST(Resolve, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
   const std::string building =
       "sensor: {preset: high_resolution}\n"
       "planner: {preset: building, density: 213, spacing: 0.0685, resolution_radius: 0.15";
-  const SeeConfig see = see_of(parsed(building + "}"));
+  const SeeConfig see = see_config(parsed(building + "}"));
   EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // d, as published
   EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
   EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
   EXPECT_EQ(see.visibility_update_limit, 1000U);
-  EXPECT_EQ(see.still_occluded, survey::see::StillOccluded::put_off);
+  EXPECT_EQ(see.still_occluded, survey::see::StillOccluded::deferred);
   EXPECT_EQ(see.core_threshold, 5);  // 10.5 on a disc of points so far apart
 
   const SeeConfig overridden =
-      see_of(parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}"));
+      see_config(parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}"));
   EXPECT_EQ(overridden.occlusion_search_distance, 10.0);
   EXPECT_EQ(overridden.visibility_update_limit, 5U);
   EXPECT_NEAR(overridden.frontier_spacing, 2.0645, 5e-4);
-  EXPECT_EQ(see_of(parsed(building + ", core_threshold: 4}")).core_threshold, 4);
+  EXPECT_EQ(see_config(parsed(building + ", core_threshold: 4}")).core_threshold, 4);
   const config::MissionSetup published = parsed("planner: {density: 213, resolution_radius: 0.15}");
-  EXPECT_EQ(see_of(published).core_threshold, std::nullopt);
+  EXPECT_EQ(see_config(published).core_threshold, std::nullopt);
 }
 
 // Points as far apart as the paper's would leave gaps that do not count as covered.
@@ -109,15 +110,15 @@ TEST(ViewPrice, IsOfDistancesOrOfTheStop) {
   const auto price = [](const std::string& more) {
     const config::MissionSetup setup =
         parsed("planner: {name: skycap, view_distance: 20, goal: " + more);
-    return std::get<SkycapConfig>(setup.survey().planner.method).view_price;
+    return std::get<SurfelConfig>(setup.survey().planner.method).view_price;
   };
   EXPECT_EQ(price("views}\n"), std::nullopt);
   EXPECT_EQ(price("minutes}\n"), 20.0);
-  const std::string flown =
+  const std::string flight_mission =
       "}\nflight: {vehicle: m350_rtk, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
-  EXPECT_EQ(price("views" + flown), std::nullopt);
-  EXPECT_GE(price("minutes" + flown), 26.0);
-  EXPECT_LE(price("minutes" + flown), 34.0);
+  EXPECT_EQ(price("views" + flight_mission), std::nullopt);
+  EXPECT_GE(price("minutes" + flight_mission), 26.0);
+  EXPECT_LE(price("minutes" + flight_mission), 34.0);
 }
 
 TEST(Resolve, ReadsTheSitesAirspace) {
@@ -136,26 +137,29 @@ TEST(Resolve, ReadsTheSitesAirspace) {
   ASSERT_EQ(limits.no_fly.size(), 1U);
   EXPECT_EQ(limits.no_fly[0].footprint[1], Eigen::Vector2d(5.0, 0.0));
   EXPECT_EQ(limits.no_fly[0].ceiling, 30.0);
-  EXPECT_EQ(limits.least_height, 5.0);  // the higher of the two
-  EXPECT_EQ(limits.most_height, 120.0);
-  EXPECT_EQ(limits.stand_off, 2.0);
-  EXPECT_NEAR(limits.most_pitch, 0.5235988, 1e-6);
+  EXPECT_EQ(limits.min_height, 5.0);  // the higher of the two
+  EXPECT_EQ(limits.max_height, 120.0);
+  EXPECT_EQ(limits.min_standoff, 2.0);
+  EXPECT_NEAR(limits.max_pitch, 0.5235988, 1e-6);
   EXPECT_NO_THROW(limits.validate());
 }
 
 TEST(Resolve, RefusesAirspacesThatCannotBe) {
-  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0]]}"), HasSubstr("three or more corners"));
-  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0], [1, x]]}"), HasSubstr("site.geofence"));
+  EXPECT_THAT(error_message("site: {geofence: [[0, 0], [1, 0]]}"),
+              HasSubstr("three or more corners"));
+  EXPECT_THAT(error_message("site: {geofence: [[0, 0], [1, 0], [1, x]]}"),
+              HasSubstr("site.geofence"));
   const std::string corners = "corners: [[0, 0], [1, 0], [0, 1]]";
-  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", floor: 3, ceiling: 3}]}"),
+  EXPECT_THAT(error_message("site: {no_fly: [{" + corners + ", floor: 3, ceiling: 3}]}"),
               HasSubstr("site.no_fly"));
-  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", floor: 0, roof: 3}]}"),
+  EXPECT_THAT(error_message("site: {no_fly: [{" + corners + ", floor: 0, roof: 3}]}"),
               HasSubstr("a list of {corners, floor, ceiling}"));
   EXPECT_THAT(parsed("site: {no_fly: []}").flight().airspace.no_fly, testing::IsEmpty());
-  EXPECT_THAT(complaint(std::string(smallest) + "site: {min_height: 5, max_height: 5}"),
+  EXPECT_THAT(error_message(std::string(smallest) + "site: {min_height: 5, max_height: 5}"),
               HasSubstr("site.max_height must be greater than"));
-  EXPECT_THAT(complaint(std::string(smallest) + "limits: {min_pitch_deg: 9, max_pitch_deg: -9}"),
-              HasSubstr("limits.max_pitch_deg must be greater than"));
+  EXPECT_THAT(
+      error_message(std::string(smallest) + "limits: {min_pitch_deg: 9, max_pitch_deg: -9}"),
+      HasSubstr("limits.max_pitch_deg must be greater than"));
 }
 
 TEST(Resolve, MeasuresTheGroundClearanceFromTheScenesBase) {
@@ -163,30 +167,31 @@ TEST(Resolve, MeasuresTheGroundClearanceFromTheScenesBase) {
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
       "evaluation: {coverage_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
       "m.yaml");
-  EXPECT_EQ(see_of(mission).least_height, 62.0);
-  EXPECT_EQ(mission.survey().planner.limits.least_height, 62.0);
+  EXPECT_EQ(see_config(mission).min_height, 62.0);
+  EXPECT_EQ(mission.survey().planner.limits.min_height, 62.0);
 }
 
 TEST(Resolve, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
-  const std::string flown = smallest +
-                            "flight: {vehicle: generic, unknown_box: {min: [0, 0, 0], "
-                            "max: [1, 1, 1]}}\n";
+  const std::string flight_mission = smallest +
+                                     "flight: {vehicle: generic, unknown_box: {min: [0, 0, 0], "
+                                     "max: [1, 1, 1]}}\n";
   const auto planner = [](const std::string& text) {
     return config::parse_mission(text, "m.yaml").survey().planner.name;
   };
   EXPECT_EQ(planner(smallest), survey::PlannerName::see_plus_plus);
-  EXPECT_EQ(planner(flown), survey::PlannerName::skycap);
-  EXPECT_EQ(planner(flown + "planner: {name: see}\n"), survey::PlannerName::see);
+  EXPECT_EQ(planner(flight_mission), survey::PlannerName::skycap);
+  EXPECT_EQ(planner(flight_mission + "planner: {name: see}\n"), survey::PlannerName::see);
 }
 
 // k = 1 admits no frontier: SEE cannot work with it, and no other planner looks at k.
 TEST(Resolve, ChecksSeesDensityOnlyForSee) {
   const std::string sparse = smallest + "planner: {density: 1000, resolution_radius: 0.05, name: ";
   for (const char* name : {"see", "see++"}) {
-    EXPECT_THAT(complaint(sparse + name + "}\n"), HasSubstr("which admits no frontier")) << name;
+    EXPECT_THAT(error_message(sparse + name + "}\n"), HasSubstr("which admits no frontier"))
+        << name;
   }
   for (const char* name : {"skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"}) {
-    EXPECT_EQ(complaint(sparse + name + "}\n"), "") << name;
+    EXPECT_EQ(error_message(sparse + name + "}\n"), "") << name;
   }
 }
 
@@ -204,14 +209,14 @@ TEST(Resolve, KeepsThePlaceAsItIsWritten) {
 }
 
 /// A setting that its own planner refuses, and others do not look at.
-struct RefusedSetting {
+struct RejectedSetting {
   const char* planner;
   const char* more;
   const char* message;  ///< how it begins
 };
 
 TEST(Resolve, ChecksEachPlannersOwnSettingsWithTheirPlace) {
-  const std::vector<RefusedSetting> settings{
+  const std::vector<RejectedSetting> settings{
       {"see", "planner:\n  core_threshold: 3\n",
        "m.yaml:4: key planner.core_threshold is 3; it must be at least 4"},
       {"skycap", "planner:\n  min_gain: 1\n",
@@ -228,7 +233,7 @@ TEST(Resolve, ChecksEachPlannersOwnSettingsWithTheirPlace) {
        "m.yaml:4: key volumetric.sphere_radius is 2; the sphere must reach above the minimum "
        "height of 3 m"},
   };
-  for (const RefusedSetting& setting : settings) {
+  for (const RejectedSetting& setting : settings) {
     const std::string mission = smallest + setting.more;
     for (const char* name : {"see", "skycap", "oa"}) {
       const bool is_volumetric = std::string(setting.more).find("volumetric:") != std::string::npos;

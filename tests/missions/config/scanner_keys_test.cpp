@@ -13,7 +13,8 @@ namespace {
 using testing::HasSubstr;
 
 TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
-  const auto message_of = [](const std::string& sensor, const std::string& more) -> std::string {
+  const auto validation_error = [](const std::string& sensor,
+                                   const std::string& more) -> std::string {
     try {
       config::parse_mission("scene: {model: builtin:teapot}\nsensor: " + sensor +
                                 "\nplanner: {density: 100, resolution_radius: 0.2}\n"
@@ -26,29 +27,30 @@ TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
     }
     return "accepted";
   };
-  EXPECT_EQ(message_of("{lidar: velodyne_vlp16}", ""), "accepted");
-  EXPECT_EQ(message_of("{lidar: livox_avia}", ""), "accepted");
-  EXPECT_THAT(message_of("{lidar: riegl_vux_1uav}", ""),
+  EXPECT_EQ(validation_error("{lidar: velodyne_vlp16}", ""), "accepted");
+  EXPECT_EQ(validation_error("{lidar: livox_avia}", ""), "accepted");
+  EXPECT_THAT(validation_error("{lidar: riegl_vux_1uav}", ""),
               HasSubstr("m.yaml:2: key sensor.lidar: a single-line LiDAR requires flight.vehicle"));
-  EXPECT_THAT(message_of("{lidar: see_d435}", ""), HasSubstr("is a camera"));
-  EXPECT_THAT(message_of("{lidar: os1}", ""), HasSubstr("expected one of"));
-  EXPECT_THAT(message_of("{lidar: velodyne_vlp16, width: 100}", ""),
+  EXPECT_THAT(validation_error("{lidar: see_d435}", ""), HasSubstr("is a camera"));
+  EXPECT_THAT(validation_error("{lidar: os1}", ""), HasSubstr("expected one of"));
+  EXPECT_THAT(validation_error("{lidar: velodyne_vlp16, width: 100}", ""),
               HasSubstr("key sensor.width conflicts with sensor.lidar"));
-  const std::string flown =
+  const std::string flight_mission =
       "flight: {vehicle: m350_rtk, unknown_box: {min: [-1, -1, 0], max: [1, 1, 1]}}\n";
-  EXPECT_EQ(message_of("{lidar: velodyne_vlp16}", flown), "accepted");
-  EXPECT_THAT(message_of("{lidar: velodyne_vlp16, width: 100}", flown),
+  EXPECT_EQ(validation_error("{lidar: velodyne_vlp16}", flight_mission), "accepted");
+  EXPECT_THAT(validation_error("{lidar: velodyne_vlp16, width: 100}", flight_mission),
               HasSubstr("key sensor.width conflicts with sensor.lidar"));
+  EXPECT_THAT(validation_error("{lidar: velodyne_vlp16}",
+                               flight_mission + "scan: {mount: {rotation_deg: [0, 0, 30]}}\n"),
+              HasSubstr("key scan.mount.rotation_deg: the scanner's axis must be level"));
+  EXPECT_EQ(validation_error("{lidar: livox_avia}", flight_mission), "accepted");
   EXPECT_THAT(
-      message_of("{lidar: velodyne_vlp16}", flown + "scan: {mount: {rotation_deg: [0, 0, 30]}}\n"),
-      HasSubstr("key scan.mount.rotation_deg: the scanner's axis must be level"));
-  EXPECT_EQ(message_of("{lidar: livox_avia}", flown), "accepted");
-  EXPECT_THAT(
-      message_of("{lidar: livox_avia}", flown + "scan: {mount: {rotation_deg: [0, 90, 0]}}\n"),
+      validation_error("{lidar: livox_avia}",
+                       flight_mission + "scan: {mount: {rotation_deg: [0, 90, 0]}}\n"),
       HasSubstr(
           "key scan.mount.rotation_deg: the scanner must not look up or down by more than 75"));
-  EXPECT_EQ(message_of("{lidar: riegl_vux_1uav}", flown), "accepted");
-  EXPECT_THAT(message_of("{lidar: riegl_vux_1uav, capture: stops}", flown),
+  EXPECT_EQ(validation_error("{lidar: riegl_vux_1uav}", flight_mission), "accepted");
+  EXPECT_THAT(validation_error("{lidar: riegl_vux_1uav, capture: stops}", flight_mission),
               HasSubstr("key sensor.capture: stops conflicts with a single-line LiDAR"));
 }
 

@@ -23,7 +23,7 @@ const LidarConfig& lidar(const config::SensorDescription& description) {
   return std::get<LidarConfig>(description.sensor);
 }
 
-double shots_per_second(const char* preset) {
+double pulses_per_second(const char* preset) {
   const config::SensorDescription description = config::find_sensor(preset);
   const LidarConfig& config = lidar(description);
   return static_cast<double>(config.channels.size()) / config.firing_period;
@@ -38,16 +38,16 @@ TEST(SensorPresets, AllAreValid) {
 
 // The data sheets' rates, each the number of lasers over the firing period.
 TEST(SensorPresets, ShootAsOftenAsTheDataSheetsSay) {
-  EXPECT_NEAR(shots_per_second("velodyne_vlp16"), 289'352, 1);
-  EXPECT_NEAR(shots_per_second("velodyne_vlp32c"), 578'704, 1);
-  EXPECT_NEAR(shots_per_second("ouster_os1_64"), 655'360, 1);
-  EXPECT_NEAR(shots_per_second("ouster_os1_128"), 2'621'440, 1);
-  EXPECT_NEAR(shots_per_second("livox_mid70"), 100'000, 1);
-  EXPECT_NEAR(shots_per_second("livox_avia"), 240'000, 1);
-  EXPECT_NEAR(shots_per_second("dji_zenmuse_l1"), 240'000, 1);
-  EXPECT_NEAR(shots_per_second("dji_zenmuse_l2"), 240'000, 1);
-  EXPECT_NEAR(shots_per_second("riegl_minivux_1uav"), 100'000, 1);
-  EXPECT_NEAR(shots_per_second("riegl_vux_1uav"), 550'000, 1);
+  EXPECT_NEAR(pulses_per_second("velodyne_vlp16"), 289'352, 1);
+  EXPECT_NEAR(pulses_per_second("velodyne_vlp32c"), 578'704, 1);
+  EXPECT_NEAR(pulses_per_second("ouster_os1_64"), 655'360, 1);
+  EXPECT_NEAR(pulses_per_second("ouster_os1_128"), 2'621'440, 1);
+  EXPECT_NEAR(pulses_per_second("livox_mid70"), 100'000, 1);
+  EXPECT_NEAR(pulses_per_second("livox_avia"), 240'000, 1);
+  EXPECT_NEAR(pulses_per_second("dji_zenmuse_l1"), 240'000, 1);
+  EXPECT_NEAR(pulses_per_second("dji_zenmuse_l2"), 240'000, 1);
+  EXPECT_NEAR(pulses_per_second("riegl_minivux_1uav"), 100'000, 1);
+  EXPECT_NEAR(pulses_per_second("riegl_vux_1uav"), 550'000, 1);
 }
 
 // The widest angle off the axis that a rosette reaches, against half its sold field of view.
@@ -125,7 +125,7 @@ TEST(FindSensor, SaysWhichSensorsThereAre) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("expected one of: dji_zenmuse_l1"));
   }
-  EXPECT_THAT(testing_support::complaint_of([&] { config::find_sensor("no/such/file.yaml"); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { config::find_sensor("no/such/file.yaml"); }),
               testing::HasSubstr("no/such/file.yaml: "));
 }
 

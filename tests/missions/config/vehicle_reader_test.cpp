@@ -16,14 +16,14 @@
 namespace skycap::missions {
 namespace {
 
-using flight::Dialect;
-using flight::LegLaw;
+using flight::AutopilotType;
+using flight::LegProfile;
 using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-std::string complaint(const std::string& text) {
-  return testing_support::complaint_of([&] { config::read_vehicle(text, "kite.yaml"); });
+std::string error_message(const std::string& text) {
+  return testing_support::thrown_message([&] { config::read_vehicle(text, "kite.yaml"); });
 }
 
 TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
@@ -32,7 +32,7 @@ TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     EXPECT_EQ(vehicle.name, preset);
     EXPECT_NO_THROW(vehicle.validate()) << preset;
-    EXPECT_EQ(vehicle.dialect == Dialect::dji, vehicle.wpml.drone > 0) << preset;
+    EXPECT_EQ(vehicle.autopilot == AutopilotType::dji, vehicle.wpml.drone > 0) << preset;
   }
 }
 
@@ -50,8 +50,8 @@ TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
 // ArduPilot's documentation: WP_SPD_UP, WP_SPD_DN, WP_ACC, WP_ACC_Z, WP_JERK, LAND_SPD_MS.
 TEST(VehiclePresets, ArduCopterFliesByItsDefaults) {
   const flight::Vehicle vehicle = config::find_vehicle("generic_ardupilot");
-  EXPECT_EQ(vehicle.dialect, Dialect::ardupilot);
-  EXPECT_EQ(vehicle.mode.law, LegLaw::s_curve);
+  EXPECT_EQ(vehicle.autopilot, AutopilotType::ardupilot);
+  EXPECT_EQ(vehicle.mode.leg_profile, LegProfile::s_curve);
   EXPECT_EQ(vehicle.mode.max_ascent, 2.5);
   EXPECT_EQ(vehicle.mode.max_descent, 1.5);
   EXPECT_EQ(vehicle.mode.acceleration, 2.5);
@@ -62,7 +62,7 @@ TEST(VehiclePresets, ArduCopterFliesByItsDefaults) {
 }
 
 TEST(VehicleReader, ADescriptionMaySayWhatIsDifferent) {
-  const flight::Vehicle like = config::find_vehicle("m350_rtk");
+  const flight::Vehicle base_vehicle = config::find_vehicle("m350_rtk");
   const flight::Vehicle vehicle = config::read_vehicle(
       "name: mine\nlike: m350_rtk\nmass: 8\ngimbal_rate_deg: 45\nwpml: {payload: 65534}\n"
       "mode: {max_ascent: 4}\n",
@@ -71,30 +71,32 @@ TEST(VehicleReader, ADescriptionMaySayWhatIsDifferent) {
   EXPECT_EQ(vehicle.mass, 8.0);
   EXPECT_NEAR(vehicle.gimbal_rate, 45 * degree, 1e-12);
   EXPECT_EQ(vehicle.wpml.payload, 65534);
-  EXPECT_EQ(vehicle.wpml.drone, like.wpml.drone);
+  EXPECT_EQ(vehicle.wpml.drone, base_vehicle.wpml.drone);
   EXPECT_EQ(vehicle.mode.max_ascent, 4.0);
-  EXPECT_EQ(vehicle.mode.max_descent, like.mode.max_descent);
-  EXPECT_EQ(vehicle.battery_wh, like.battery_wh);
+  EXPECT_EQ(vehicle.mode.max_descent, base_vehicle.mode.max_descent);
+  EXPECT_EQ(vehicle.battery_wh, base_vehicle.battery_wh);
 }
 
 TEST(VehicleReader, WhatIsWrongIsNamedByLine) {
   const std::string base = "name: kite\nlike: generic\n";
-  EXPECT_THAT(complaint(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss is unknown"));
-  EXPECT_THAT(complaint(base + "mass: heavy\n"), HasSubstr("kite.yaml:3: key mass must be a num"));
-  EXPECT_THAT(complaint(base + "mass: -1\n"),
+  EXPECT_THAT(error_message(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss is unknown"));
+  EXPECT_THAT(error_message(base + "mass: heavy\n"),
+              HasSubstr("kite.yaml:3: key mass must be a num"));
+  EXPECT_THAT(error_message(base + "mass: -1\n"),
               HasSubstr("kite.yaml:3: key mass is -1; it must be from 0.01 to 1000"));
-  EXPECT_THAT(complaint(base + "mode:\n  jerk: 0\n"),
+  EXPECT_THAT(error_message(base + "mode:\n  jerk: 0\n"),
               HasSubstr("kite.yaml:4: key mode.jerk is 0; it must be from"));
-  EXPECT_THAT(complaint(base + "mode: {law: straight}\n"), HasSubstr("it must be one of s_curve"));
-  EXPECT_THAT(complaint(base + "rotors: 4.5\n"), HasSubstr("key rotors must be an integer"));
-  EXPECT_THAT(complaint(base + "gimbal_max_deg: -90\n"),
+  EXPECT_THAT(error_message(base + "mode: {law: straight}\n"),
+              HasSubstr("it must be one of s_curve"));
+  EXPECT_THAT(error_message(base + "rotors: 4.5\n"), HasSubstr("key rotors must be an integer"));
+  EXPECT_THAT(error_message(base + "gimbal_max_deg: -90\n"),
               HasSubstr("must be greater than gimbal_min_deg"));
-  EXPECT_THAT(complaint(base + "mass: 20\n"), HasSubstr("less than its mass needs to hover"));
+  EXPECT_THAT(error_message(base + "mass: 20\n"), HasSubstr("less than its mass needs to hover"));
   EXPECT_THAT(
-      complaint("name: kite\nlike: dragon\n"),
+      error_message("name: kite\nlike: dragon\n"),
       HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: generic, "));
-  EXPECT_THAT(complaint("name: kite\n"), HasSubstr("key dialect is missing"));
-  EXPECT_THAT(complaint("like: generic\n"), HasSubstr("key name is missing"));
+  EXPECT_THAT(error_message("name: kite\n"), HasSubstr("key dialect is missing"));
+  EXPECT_THAT(error_message("like: generic\n"), HasSubstr("key name is missing"));
 }
 
 TEST(VehicleReader, ReadsFiles) {
@@ -103,7 +105,7 @@ TEST(VehicleReader, ReadsFiles) {
   std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";
   EXPECT_EQ(config::find_vehicle(path).max_speed, 12.0);
   EXPECT_EQ(config::find_vehicle(path).position_error, 1.5);
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { config::find_vehicle((folder.path() / "none.yaml").string()); }),
               testing::HasSubstr("none.yaml: "));
 }

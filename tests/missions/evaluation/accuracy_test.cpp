@@ -57,12 +57,12 @@ TEST(AccuracyMeter, HasTheAnswersOfFivePoints) {
 
 TEST(AccuracyMeter, DependsNeitherOnPiecesNorOnThreads) {
   const std::vector<Vector3f> points = noisy_points(10'000, 0.1F);
-  evaluation::AccuracyMeter whole(square, 1), pieces(square, 3);
+  evaluation::AccuracyMeter whole(square, 1), chunks(square, 3);
   whole.add(points);
   for (std::size_t begin = 0; begin < points.size(); begin += 2500) {
-    pieces.add(std::span(points).subspan(begin, 2500));
+    chunks.add(std::span(points).subspan(begin, 2500));
   }
-  const evaluation::CloudAccuracy one = whole.accuracy(), other = pieces.accuracy();
+  const evaluation::CloudAccuracy one = whole.accuracy(), other = chunks.accuracy();
   EXPECT_EQ(one.mean, other.mean);
   EXPECT_EQ(one.root_mean_square, other.root_mean_square);
   EXPECT_EQ(one.percentile_95, other.percentile_95);
@@ -79,7 +79,7 @@ TEST(AccuracyMeter, LeavesOutPointsOfWhatStandsBeside) {
   evaluation::AccuracyMeter meter(wall, 1, ground);
   meter.add(points);
   EXPECT_EQ(meter.points(), 3U);
-  EXPECT_EQ(meter.beside(), 2U);
+  EXPECT_EQ(meter.surroundings(), 2U);
   EXPECT_DOUBLE_EQ(meter.accuracy().mean, 0.25);
   EXPECT_DOUBLE_EQ(meter.accuracy().largest, 0.5);
   evaluation::AccuracyMeter alone(wall, 1);

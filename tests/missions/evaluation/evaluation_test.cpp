@@ -73,58 +73,58 @@ TEST(VisibleSamples, AreTheSameForAnyNumberOfThreads) {
             evaluation::visible_samples(samples.points, scene, from_anywhere, 3));
 }
 
-evaluation::TakeScan quick_scans(const sim::Scene& scene) {
+evaluation::CaptureScan quick_scans(const sim::Scene& scene) {
   sim::DepthCameraConfig config = sim::d435();
   config.camera.width = 212;
   config.camera.height = 120;
   config.noise.sigma = 0.0;
   return [&scene, camera = sim::DepthCamera(config)](const geometry::View& view,
-                                                     std::uint64_t frame, geometry::Scan recycled) {
-    return camera.scan(scene, view, frame, 1, std::move(recycled));
+                                                     std::uint64_t frame, geometry::Scan buffer) {
+    return camera.scan(scene, view, frame, 1, std::move(buffer));
   };
 }
 
 // With a spacing well below r_d and no noise, all that can be seen can be covered; the cube inside
 // (its share of the area is 0.09 / 1.09) cannot.
-TEST(CoverageCeiling, IsTheVisibleShareWhenNothingElseLimits) {
+TEST(AttainableCoverage, IsTheVisibleShareWhenNothingElseLimits) {
   const geometry::Mesh mesh = cube_in_a_cube();
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
   const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
-  const evaluation::CeilingConfig config{
+  const evaluation::AttainableConfig config{
       .views = 60, .spacing = 0.02, .registration_distance = 0.1, .box = {}};
-  const double ceiling = evaluation::marked_share(evaluation::attainable_samples(
+  const double attainable_coverage = evaluation::marked_share(evaluation::attainable_samples(
       samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
-  EXPECT_NEAR(ceiling, 1.0 / 1.09, 1e-3);  // one sample is 3e-4
+  EXPECT_NEAR(attainable_coverage, 1.0 / 1.09, 1e-3);  // one sample is 3e-4
 }
 
 // Where the spacing exceeds r_d, holes stay between the stored points: one disc of radius r_d at
 // most every spacing^2 sqrt(3)/2, the densest packing.
-TEST(CoverageCeiling, IsLimitedByTheSpacingOfStoredPoints) {
+TEST(AttainableCoverage, IsLimitedByTheSpacingOfStoredPoints) {
   const geometry::Mesh mesh = cube(1.0);
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
   const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
-  const evaluation::CeilingConfig config{
+  const evaluation::AttainableConfig config{
       .views = 40, .spacing = 0.2, .registration_distance = 0.1, .box = {}};
-  const double ceiling = evaluation::marked_share(evaluation::attainable_samples(
+  const double attainable_coverage = evaluation::marked_share(evaluation::attainable_samples(
       samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
-  EXPECT_LT(ceiling, std::numbers::pi * 0.01 / (0.04 * std::sqrt(3.0) / 2.0));
-  EXPECT_GT(ceiling, 0.5);  // random packings reach 0.55 of the plane
+  EXPECT_LT(attainable_coverage, std::numbers::pi * 0.01 / (0.04 * std::sqrt(3.0) / 2.0));
+  EXPECT_GT(attainable_coverage, 0.5);  // random packings reach 0.55 of the plane
 }
 
-TEST(CoverageCeiling, LeavesOutWhatLiesOutsideTheBox) {
+TEST(AttainableCoverage, LeavesOutWhatLiesOutsideTheBox) {
   const geometry::Mesh mesh = cube(1.0);
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
   const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
-  evaluation::CeilingConfig config{
+  evaluation::AttainableConfig config{
       .views = 60, .spacing = 0.02, .registration_distance = 0.05, .box = {}};
   config.box = Eigen::AlignedBox3d(Vector3d(-2, -2, 0), Vector3d(2, 2, 2));
-  const double ceiling = evaluation::marked_share(evaluation::attainable_samples(
+  const double attainable_coverage = evaluation::marked_share(evaluation::attainable_samples(
       samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
   // The upper half, and a rim of r_d below z = 0 on four sides of width 2: 0.4 / 24 of the area.
-  EXPECT_NEAR(ceiling, 0.5 + 0.4 / 24.0, 4e-3);
+  EXPECT_NEAR(attainable_coverage, 0.5 + 0.4 / 24.0, 4e-3);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::vector<double> numbers(std::size_t count) {
   return all;
 }
 
-evaluation::ExactSum sum_of(const std::vector<double>& all) {
+evaluation::ExactSum compute_sum(const std::vector<double>& all) {
   evaluation::ExactSum sum;
   for (const double number : all) sum.add(number);
   return sum;
@@ -50,21 +50,22 @@ TEST(ExactSum, LosesNothing) {
 // Property: any order and any parts give the same digits.
 TEST(ExactSum, DependsNeitherOnOrderNorOnParts) {
   std::vector<double> all = numbers(10'000);
-  const evaluation::ExactSum::Digits digits = sum_of(all).all_digits();
+  const evaluation::ExactSum::Digits digits = compute_sum(all).all_digits();
   std::shuffle(all.begin(), all.end(), std::mt19937_64(2));
-  EXPECT_EQ(sum_of(all).all_digits(), digits);
-  evaluation::ExactSum of_parts;
+  EXPECT_EQ(compute_sum(all).all_digits(), digits);
+  evaluation::ExactSum parts_sum;
   for (std::size_t first = 0; first < all.size(); first += 1234) {
     const std::size_t end = std::min(all.size(), first + 1234);
-    const auto part = sum_of({all.begin() + static_cast<std::ptrdiff_t>(first),
-                              all.begin() + static_cast<std::ptrdiff_t>(end)});
-    of_parts.add(evaluation::ExactSum(part.all_digits()));
+    const auto part = compute_sum({all.begin() + static_cast<std::ptrdiff_t>(first),
+                                   all.begin() + static_cast<std::ptrdiff_t>(end)});
+    parts_sum.add(evaluation::ExactSum(part.all_digits()));
   }
-  EXPECT_EQ(of_parts.all_digits(), digits);
-  long double twin = 0.0L;
+  EXPECT_EQ(parts_sum.all_digits(), digits);
+  long double reference = 0.0L;
   std::ranges::sort(all);
-  for (const double number : all) twin += static_cast<long double>(number);
-  EXPECT_NEAR(of_parts.value(), static_cast<double>(twin), 1e-13 * static_cast<double>(twin));
+  for (const double number : all) reference += static_cast<long double>(number);
+  EXPECT_NEAR(parts_sum.value(), static_cast<double>(reference),
+              1e-13 * static_cast<double>(reference));
 }
 
 TEST(ExactSum, HoldsTheLeastAndTheGreatestNumbers) {

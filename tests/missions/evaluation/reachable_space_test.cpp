@@ -26,11 +26,11 @@ ReachableSpace::Joins keeping(double radius, const geometry::MeshDistance& dista
 }
 
 bool leads_inside(const geometry::Mesh& mesh, const ReachableSpace::Config& config,
-                  const Vector3d& place = {0, 0, 5}) {
+                  const Vector3d& node_position = {0, 0, 5}) {
   const geometry::MeshDistance distance(mesh);
   const auto joins = keeping(std::max(config.radius, 1e-9), distance);
   return ReachableSpace(distance, geometry::bounding_box(mesh), config, joins)
-      .leads_to(place, joins);
+      .leads_to(node_position, joins);
 }
 
 TEST(ReachableSpace, HasNoSealedRooms) {
@@ -91,10 +91,10 @@ TEST(ReachableSpace, KeepsToTheHeights) {
   }
   const Vector3d inside(0, 0, 15);
   EXPECT_TRUE(leads_inside(bell, {.radius = 1.0}, inside));
-  EXPECT_TRUE(leads_inside(bell, {.radius = 1.0, .least_height = 5.0}, inside));
-  EXPECT_FALSE(leads_inside(bell, {.radius = 1.0, .least_height = 10.5}, inside));
-  EXPECT_FALSE(leads_inside(bell, {.radius = 1.0, .most_height = 9.5}, inside));
-  EXPECT_TRUE(leads_inside(bell, {.radius = 1.0, .least_height = 10.5}, {0, 0, 40}));
+  EXPECT_TRUE(leads_inside(bell, {.radius = 1.0, .min_height = 5.0}, inside));
+  EXPECT_FALSE(leads_inside(bell, {.radius = 1.0, .min_height = 10.5}, inside));
+  EXPECT_FALSE(leads_inside(bell, {.radius = 1.0, .max_height = 9.5}, inside));
+  EXPECT_TRUE(leads_inside(bell, {.radius = 1.0, .min_height = 10.5}, {0, 0, 40}));
 }
 
 /// Blocks at random in a room with a door: passages of all widths.
@@ -138,7 +138,7 @@ class GridFlood {
     }
   }
 
-  static Vector3d place(int node) {
+  static Vector3d node_position(int node) {
     const Eigen::Vector3i cell(node % count - count / 2, node / count % count - count / 2,
                                node / (count * count) - count / 4);
     return step * cell.cast<double>();
@@ -158,7 +158,7 @@ TEST(ReachableSpace, LiesBetweenAStricterAndALooserGrid) {
     constexpr int nodes = GridFlood::count * GridFlood::count * GridFlood::count;
     distances.reserve(nodes);
     for (int i = 0; i < nodes; ++i) {
-      distances.push_back(distance.distance(GridFlood::place(i)));
+      distances.push_back(distance.distance(GridFlood::node_position(i)));
     }
     const auto joins = keeping(radius, distance);
     const ReachableSpace space(distance, geometry::bounding_box(mesh), {.radius = radius}, joins);
@@ -166,10 +166,10 @@ TEST(ReachableSpace, LiesBetweenAStricterAndALooserGrid) {
     const GridFlood looser(distances, radius - 0.87 * GridFlood::step);
     std::size_t inside = 0, kept_out = 0;
     for (int i = 0; i < static_cast<int>(distances.size()); ++i) {
-      const bool is_reached = space.leads_to(GridFlood::place(i), joins);
-      ASSERT_TRUE(is_reached || !stricter.is_reached[i]) << GridFlood::place(i).transpose();
-      ASSERT_TRUE(!is_reached || looser.is_reached[i]) << GridFlood::place(i).transpose();
-      ASSERT_TRUE(!is_reached || distances[i] >= radius) << GridFlood::place(i).transpose();
+      const bool is_reached = space.leads_to(GridFlood::node_position(i), joins);
+      ASSERT_TRUE(is_reached || !stricter.is_reached[i]) << GridFlood::node_position(i).transpose();
+      ASSERT_TRUE(!is_reached || looser.is_reached[i]) << GridFlood::node_position(i).transpose();
+      ASSERT_TRUE(!is_reached || distances[i] >= radius) << GridFlood::node_position(i).transpose();
       inside += is_reached;
       kept_out += !is_reached && distances[i] >= radius;
     }
@@ -178,7 +178,7 @@ TEST(ReachableSpace, LiesBetweenAStricterAndALooserGrid) {
   }
 }
 
-TEST(ReachableSpace, IsTheSameForAnyNumberOfThreads) {
+TEST(ReachableSpace, IsSameForAnyThreadCount) {
   const geometry::Mesh mesh = cluttered_room(5);
   const geometry::MeshDistance distance(mesh);
   const auto joins = keeping(0.8, distance);
@@ -190,19 +190,19 @@ TEST(ReachableSpace, IsTheSameForAnyNumberOfThreads) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-15.0, 15.0);
   for (int i = 0; i < 2000; ++i) {
-    const Vector3d place{uniform(random), uniform(random), uniform(random)};
-    EXPECT_EQ(one.leads_to(place, joins), three.leads_to(place, joins));
+    const Vector3d node_position{uniform(random), uniform(random), uniform(random)};
+    EXPECT_EQ(one.leads_to(node_position, joins), three.leads_to(node_position, joins));
   }
 }
 
-ReachableSpace of_a_room(const geometry::MeshDistance& distance, const geometry::Mesh& mesh) {
+ReachableSpace room_space(const geometry::MeshDistance& distance, const geometry::Mesh& mesh) {
   return {distance, geometry::bounding_box(mesh), {.radius = 1.0}, keeping(1.0, distance)};
 }
 
 TEST(ReachableSpace, IsTheSameFromAFile) {
   const geometry::Mesh mesh = room_mesh({.door_width = 5.0, .door_height = 5.0});
   const geometry::MeshDistance distance(mesh);
-  const ReachableSpace space = of_a_room(distance, mesh);
+  const ReachableSpace space = room_space(distance, mesh);
   const auto again = ReachableSpace::read(space.bytes());
   ASSERT_TRUE(again);
   EXPECT_EQ(again->bytes(), space.bytes());
@@ -219,7 +219,7 @@ TEST(ReachableSpace, IsTheSameFromAFile) {
 TEST(ReachableSpace, IsNotReadFromAFileThatIsSpoiled) {
   const geometry::Mesh mesh = room_mesh({.door_width = 5.0, .door_height = 5.0});
   const geometry::MeshDistance distance(mesh);
-  const std::string whole = of_a_room(distance, mesh).bytes();
+  const std::string whole = room_space(distance, mesh).bytes();
   EXPECT_FALSE(ReachableSpace::read(""));
   EXPECT_FALSE(ReachableSpace::read(whole.substr(0, whole.size() - 4)));
   EXPECT_FALSE(ReachableSpace::read(whole + "more"));

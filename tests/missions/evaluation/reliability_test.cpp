@@ -7,16 +7,16 @@
 namespace skycap::missions::evaluation {
 namespace {
 
-using survey::skycap::BelievedPatch;
-using survey::skycap::MissingReason;
+using survey::surfel::EstimatedPatch;
+using survey::surfel::MissingReason;
 
-BelievedPatch patch_at(float x, float z_of_normal, float covered_share) {
-  return {{x, 0, 0}, {0, 0, z_of_normal}, 1.0F, covered_share, MissingReason::none};
+EstimatedPatch patch_at(float x, float normal_z, float covered_share) {
+  return {{x, 0, 0}, {0, 0, normal_z}, 1.0F, covered_share, MissingReason::none};
 }
 
-geometry::SurfaceSamples samples_at(std::initializer_list<float> places) {
+geometry::SurfaceSamples samples_at(std::initializer_list<float> positions) {
   geometry::SurfaceSamples samples;
-  for (const float x : places) {
+  for (const float x : positions) {
     samples.points.emplace_back(x, 0.0F, 0.0F);
     samples.normals.emplace_back(0.0F, 0.0F, 1.0F);
   }
@@ -26,16 +26,16 @@ geometry::SurfaceSamples samples_at(std::initializer_list<float> places) {
 // A thin wall: its other side is believed something else. One sample is beyond all patches, one
 // does not count.
 TEST(Reliability, AsksTheNearestPatchThatFacesTheSameWay) {
-  const std::vector<BelievedPatch> belief{patch_at(0.0F, 1.0F, 0.25F), patch_at(0.0F, -1.0F, 0.95F),
-                                          patch_at(4.0F, 1.0F, 0.95F)};
+  const std::vector<EstimatedPatch> estimate{
+      patch_at(0.0F, 1.0F, 0.25F), patch_at(0.0F, -1.0F, 0.95F), patch_at(4.0F, 1.0F, 0.95F)};
   const auto samples = samples_at({0.0F, 0.1F, 0.2F, 0.3F, 4.1F, 9.0F, 4.2F});
   const std::vector<std::uint8_t> is_covered{1, 0, 0, 0, 1, 1, 0}, counts{1, 1, 1, 1, 1, 1, 0};
-  const Reliability found = reliability(belief, samples, is_covered, counts, 0.5);
+  const Reliability found = reliability(estimate, samples, is_covered, counts, 0.5);
 
-  EXPECT_NEAR(found.bands[2].believed, 0.25, 1e-6);
+  EXPECT_NEAR(found.bands[2].estimated, 0.25, 1e-6);
   EXPECT_NEAR(found.bands[2].covered, 0.25, 1e-12);
   EXPECT_NEAR(found.bands[2].share, 4.0 / 6.0, 1e-12);
-  EXPECT_NEAR(found.bands[9].believed, 0.95, 1e-6);
+  EXPECT_NEAR(found.bands[9].estimated, 0.95, 1e-6);
   EXPECT_EQ(found.bands[9].covered, 1.0);
   EXPECT_NEAR(found.unknown_share, 1.0 / 6.0, 1e-12);
   EXPECT_EQ(found.unknown_covered, 1.0);
@@ -44,19 +44,19 @@ TEST(Reliability, AsksTheNearestPatchThatFacesTheSameWay) {
 
 // Whoever is right of each probability has no error, whoever is sure of all has what it is off by.
 TEST(Reliability, IsWithoutErrorWhereProbabilitiesComeTrue) {
-  std::vector<BelievedPatch> belief, sure;
+  std::vector<EstimatedPatch> estimate, sure;
   geometry::SurfaceSamples samples;
   std::vector<std::uint8_t> is_covered;
-  for (int place = 0; place < 1000; ++place) {
-    const auto x = static_cast<float>(place);
-    const int tenth = place % 10;  // covered in (place / 10) % 10 < tenth: a share of tenth / 10
-    belief.push_back(patch_at(x, 1.0F, static_cast<float>(tenth) / 10.0F + 1e-4F));
+  for (int position = 0; position < 1000; ++position) {
+    const auto x = static_cast<float>(position);
+    const int tenth = position % 10;  // covered in (place / 10) % 10 < tenth: a share of tenth / 10
+    estimate.push_back(patch_at(x, 1.0F, static_cast<float>(tenth) / 10.0F + 1e-4F));
     sure.push_back(patch_at(x, 1.0F, 1.0F));
     samples.points.emplace_back(x, 0.0F, 0.0F);
     samples.normals.emplace_back(0.0F, 0.0F, 1.0F);
-    is_covered.push_back((place / 10) % 10 < tenth ? 1 : 0);
+    is_covered.push_back((position / 10) % 10 < tenth ? 1 : 0);
   }
-  EXPECT_NEAR(reliability(belief, samples, is_covered, {}, 0.4).error, 0.0, 2e-4);
+  EXPECT_NEAR(reliability(estimate, samples, is_covered, {}, 0.4).error, 0.0, 2e-4);
   EXPECT_NEAR(reliability(sure, samples, is_covered, {}, 0.4).error, 0.55, 1e-6);
 }
 

@@ -16,7 +16,7 @@ namespace skycap::missions {
 namespace {
 
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 using tests::TestFolder;
 
 /// A room of 20 m with a window into it; its planners look from 6 m. No place that is looked from
@@ -109,7 +109,7 @@ TEST(SurveyScene, RefusesAStartInsideOfAWall) {
   const evaluation::SurveyScene scene = room.scene({{"--set", "start.position", "[10.25, 0, 5]"},
                                                     {"--set", "start.look_at", "[0, 0, 5]"},
                                                     {"--set", "evaluation.passage_radius", "1"}});
-  EXPECT_THAT(complaint_of([&] { scene.first_view(1); }),
+  EXPECT_THAT(thrown_message([&] { scene.first_view(1); }),
               HasSubstr("start.position is inside the model"));
 }
 
@@ -146,26 +146,26 @@ std::string two_cubes(const TestFolder& folder, const char* neighbours) {
 // Rays end on what stands beside the target, the sensor keeps off it, and none of it is judged.
 TEST(SurveyScene, HasNeighboursThatAreNotJudged) {
   const TestFolder folder;
-  const auto mission_of = [&](const char* neighbours) {
+  const auto make_mission = [&](const char* neighbours) {
     return config::parse_mission(two_cubes(folder, neighbours), "m.yaml");
   };
-  const auto scene_of = [&](const char* neighbours) {
-    return evaluation::SurveyScene(mission_of(neighbours).simulation, "", 0);
+  const auto make_scene = [&](const char* neighbours) {
+    return evaluation::SurveyScene(make_mission(neighbours).simulation, "", 0);
   };
-  const evaluation::SurveyScene alone = scene_of("false"), beside = scene_of("true");
-  EXPECT_EQ(beside.model().triangles.size(), 12U);
-  EXPECT_EQ(beside.samples().points, alone.samples().points);
+  const evaluation::SurveyScene alone = make_scene("false"), with_surroundings = make_scene("true");
+  EXPECT_EQ(with_surroundings.model().triangles.size(), 12U);
+  EXPECT_EQ(with_surroundings.samples().points, alone.samples().points);
   EXPECT_FALSE(alone.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
-  EXPECT_TRUE(beside.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
+  EXPECT_TRUE(with_surroundings.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
   // The target, which is in the way as well, is not there twice.
-  EXPECT_EQ(scene::prior_neighbours(mission_of("true").scene()).triangles.size(), 12U);
-  EXPECT_TRUE(scene::prior_neighbours(mission_of("false").scene()).triangles.empty());
+  EXPECT_EQ(scene::prior_neighbours(make_mission("true").scene()).triangles.size(), 12U);
+  EXPECT_TRUE(scene::prior_neighbours(make_mission("false").scene()).triangles.empty());
   const auto allows = [](const evaluation::SurveyScene& scene, double x) {
     return scene.admissible().allows(geometry::look_at({x, 0, 2}, {0, 0, 2}));
   };
   EXPECT_TRUE(allows(alone, 7.8));
-  EXPECT_FALSE(allows(beside, 7.8));
-  EXPECT_TRUE(allows(beside, 5.0));
+  EXPECT_FALSE(allows(with_surroundings, 7.8));
+  EXPECT_TRUE(allows(with_surroundings, 5.0));
 }
 
 }  // namespace

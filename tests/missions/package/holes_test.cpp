@@ -10,15 +10,15 @@
 namespace skycap::missions::package {
 namespace {
 
-using survey::skycap::BelievedPatch;
-using survey::skycap::MissingReason;
+using survey::surfel::EstimatedPatch;
+using survey::surfel::MissingReason;
 
-/// A floor of unit patches with holes where `reason_of(x, y)` says so.
-std::vector<BelievedPatch> floor_of(int size, const auto& reason_of) {
-  std::vector<BelievedPatch> patches;
+/// A floor of unit patches with holes where `find_reason(x, y)` says so.
+std::vector<EstimatedPatch> make_floor(int size, const auto& find_reason) {
+  std::vector<EstimatedPatch> patches;
   for (int x = 0; x < size; ++x) {
     for (int y = 0; y < size; ++y) {
-      const MissingReason reason = reason_of(x, y);
+      const MissingReason reason = find_reason(x, y);
       const float covered = reason == MissingReason::none ? 1.0F : 0.0F;
       patches.push_back({Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), 0.0F),
                          Eigen::Vector3f::UnitZ(), 1.0F, covered, reason});
@@ -36,7 +36,7 @@ MissingReason two_holes(int x, int y) {
 TEST(Holes, AreConnectedPiecesLargestFirst) {
   const std::vector<geometry::View> views = {{{19.0, 19.0, 5.0}, {0, 0, -1}},
                                              {{1.5, 1.5, 4.0}, {0, 0, -1}}};
-  const MissingSurface missing = missing_surface(floor_of(20, two_holes), views);
+  const MissingSurface missing = missing_surface(make_floor(20, two_holes), views);
   EXPECT_DOUBLE_EQ(missing.area, 400.0);
   ASSERT_EQ(missing.holes.size(), 2U);
   EXPECT_EQ(missing.holes[0].reason, MissingReason::unreachable);
@@ -55,10 +55,10 @@ TEST(Holes, AreConnectedPiecesLargestFirst) {
 // What hangs together for different reasons is told apart.
 TEST(Holes, HaveOneReasonEach) {
   const MissingSurface missing = missing_surface(
-      floor_of(10,
-               [](int x, int) {
-                 return x < 5 ? MissingReason::never_seen : MissingReason::unreachable;
-               }),
+      make_floor(10,
+                 [](int x, int) {
+                   return x < 5 ? MissingReason::never_seen : MissingReason::unreachable;
+                 }),
       {});
   ASSERT_EQ(missing.holes.size(), 2U);
   EXPECT_DOUBLE_EQ(missing.holes[0].area, 50.0);
@@ -68,7 +68,8 @@ TEST(Holes, HaveOneReasonEach) {
 // Guessed pieces of 4 m lie 5 m apart and make one hole; of pieces of half a metre, 2 m apart, each
 // is for itself. Most pieces have a side of one metre.
 TEST(Holes, LinkPiecesByTheirOwnSize) {
-  std::vector<BelievedPatch> patches = floor_of(20, [](int, int) { return MissingReason::none; });
+  std::vector<EstimatedPatch> patches =
+      make_floor(20, [](int, int) { return MissingReason::none; });
   for (int i = 0; i < 4; ++i) {
     const auto step = static_cast<float>(i);
     patches.push_back({{5.0F * step, 0.0F, 50.0F},
@@ -92,13 +93,13 @@ TEST(Holes, LinkPiecesByTheirOwnSize) {
 // Whatever the pieces are: nothing that is missing is lost or counted twice.
 TEST(Holes, SumToWhatIsMissing) {
   std::mt19937_64 random(7);
-  std::uniform_real_distribution<float> place(0.0F, 20.0F), share(0.0F, 1.0F);
-  std::vector<BelievedPatch> patches;
+  std::uniform_real_distribution<float> coordinate(0.0F, 20.0F), share(0.0F, 1.0F);
+  std::vector<EstimatedPatch> patches;
   double area = 0.0, covered = 0.0;
   for (int i = 0; i < 3000; ++i) {
     const auto reason = static_cast<MissingReason>(i % 4);
     const float size = 0.1F + share(random), part = share(random);
-    patches.push_back({{place(random), place(random), place(random)},
+    patches.push_back({{coordinate(random), coordinate(random), coordinate(random)},
                        Eigen::Vector3f::UnitX(),
                        size,
                        part,
@@ -117,7 +118,7 @@ TEST(Holes, OfNothingAreNone) {
   const MissingSurface missing = missing_surface({}, {});
   EXPECT_TRUE(missing.holes.empty());
   EXPECT_EQ(missing.area, 0.0);
-  EXPECT_EQ(missing_surface(floor_of(5, [](int, int) { return MissingReason::none; }), {}).rest,
+  EXPECT_EQ(missing_surface(make_floor(5, [](int, int) { return MissingReason::none; }), {}).rest,
             0.0);
 }
 

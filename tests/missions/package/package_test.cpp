@@ -33,7 +33,7 @@ session::SurveyRecord two_views() {
   session::SurveyRecord record;
   record.seed = 9;
   record.stop_reason = survey::StopReason::view_limit;
-  session::JudgedView first, second;
+  session::EvaluatedView first, second;
   first.surveyed.view = geometry::look_at({1.0 / 3.0, -2, 0.1}, {0, 0, 0});
   first.surveyed.step = {.points_new = 2, .frontiers = 5, .times = {{"insert", 0.25}}};
   first.surveyed.points = 2;
@@ -54,12 +54,12 @@ session::SurveyRecord two_views() {
 }
 
 /// A mission of few words.
-config::MissionSetup mission_of(const std::string& model = "builtin:teapot") {
+config::MissionSetup make_mission(const std::string& model = "builtin:teapot") {
   return config::parse_mission(
       "scene: {model: '" + model + "'}\nevaluation: {coverage_distance: 0.01}\n", "m.yaml");
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> split_lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -76,7 +76,7 @@ std::vector<double> numbers_in(std::string line) {
 
 TEST(Package, ViewsReadBackExactly) {
   const session::SurveyRecord record = two_views();
-  const auto lines = lines_of(package::views_csv(record));
+  const auto lines = split_lines(package::views_csv(record));
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0],
             "view,x,y,z,direction_x,direction_y,direction_z,returns,points_new,points,frontiers,"
@@ -91,7 +91,7 @@ TEST(Package, ViewsReadBackExactly) {
 
 TEST(Package, TrajectoryHoldsTheCamerasPoses) {
   const session::SurveyRecord record = two_views();
-  const auto lines = lines_of(package::trajectory_tum(record));
+  const auto lines = split_lines(package::trajectory_tum(record));
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0], "# timestamp tx ty tz qx qy qz qw");
   for (std::size_t i = 0; i < 2; ++i) {
@@ -108,7 +108,7 @@ TEST(Package, TrajectoryHoldsTheCamerasPoses) {
 TEST(Package, SummaryHasTheContractsFields) {
   const package::CoverageFigures coverage{2.0 / 7.0, 0.5, {}};
   const auto summary =
-      nlohmann::json::parse(package::summary_json(mission_of(), two_views(), coverage));
+      nlohmann::json::parse(package::summary_json(make_mission(), two_views(), coverage));
   for (const char* field :
        {"mission", "planner", "preset", "seed", "threads", "version", "views", "points", "coverage",
         "coverage_visible", "attainable_coverage", "planning_time_s", "sensing_time_s",
@@ -133,14 +133,14 @@ TEST(Package, SummaryHasTheContractsFields) {
 TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
   const auto settings = [](const std::string& model) {
     return nlohmann::json::parse(
-        package::summary_json(mission_of(model), two_views(), {}))["settings"];
+        package::summary_json(make_mission(model), two_views(), {}))["settings"];
   };
   EXPECT_EQ(settings("builtin:teapot")["scene.detail"], "standard");
   EXPECT_FALSE(settings("house.ply").contains("scene.detail"));
 }
 
 TEST(Package, SummaryShowsNamesThatAreNotUtf8) {
-  config::MissionSetup mission = mission_of();
+  config::MissionSetup mission = make_mission();
   mission.name = "vase\xff";
   EXPECT_THAT(package::summary_json(mission, two_views(), {}), HasSubstr("vase\xef\xbf\xbd"));
 }
@@ -149,7 +149,7 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
   const tests::TestFolder folder;
   {
     geometry::OutputFolder out(folder.path());
-    package::stage_package(mission_of(), two_views(), {}, 1, out);
+    package::stage_package(make_mission(), two_views(), {}, 1, out);
     EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));  // not before commit()
     out.commit();
   }
@@ -173,26 +173,27 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
   package::stage_package(mission, record, {}, 1, out);
   out.commit();
 
-  const Json belief = Json::parse(tests::content_of(folder.path() / "summary.json"))["estimate"];
+  const Json estimate =
+      Json::parse(tests::read_content(folder.path() / "summary.json"))["estimate"];
   double missing = 0.0;
-  for (const auto& [reason, share] : belief["missing"].items()) {
+  for (const auto& [reason, share] : estimate["missing"].items()) {
     EXPECT_GE(share, 0.0) << reason;
     missing += share.get<double>();
   }
-  EXPECT_NEAR(missing + belief["estimated_coverage"].get<double>(), 1.0, 1e-5);  // float areas
-  EXPECT_EQ(belief["stop"], "view_limit");
-  EXPECT_GT(belief["next_gain"], 0.0);
-  EXPECT_EQ(belief["noise_m"], record.belief->noise);
+  EXPECT_NEAR(missing + estimate["estimated_coverage"].get<double>(), 1.0, 1e-5);  // float areas
+  EXPECT_EQ(estimate["stop"], "view_limit");
+  EXPECT_GT(estimate["next_gain"], 0.0);
+  EXPECT_EQ(estimate["noise_m"], record.estimate->noise);
 
   const geometry::AttributedCloud map = geometry::read_cloud(folder / "coverage.ply");
   ASSERT_EQ(map.colours.size(), map.positions.size());
   const auto is_red = [](const auto& colour) { return colour[0] > 200 && colour[1] < 100; };
-  std::size_t guessed = 0;
-  for (const survey::skycap::BelievedPatch& patch : record.belief->patches) {
-    guessed += patch.reason == survey::skycap::MissingReason::never_seen;
+  std::size_t predicted = 0;
+  for (const survey::surfel::EstimatedPatch& patch : record.estimate->patches) {
+    predicted += patch.reason == survey::surfel::MissingReason::never_seen;
   }
-  EXPECT_GT(guessed, 0U);
-  EXPECT_EQ(std::ranges::count_if(map.colours, is_red), guessed);
+  EXPECT_GT(predicted, 0U);
+  EXPECT_EQ(std::ranges::count_if(map.colours, is_red), predicted);
 }
 
 // One sample of each kind, read back by the reader of any properties.
@@ -206,10 +207,10 @@ TEST(Package, HasTheTruthBesideTheBelief) {
       .is_attainable = {1, 1, 0, 0}};
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
-  package::stage_package(mission_of(), two_views(), {.truth = truth}, 1, out);
+  package::stage_package(make_mission(), two_views(), {.truth = truth}, 1, out);
   out.commit();
 
-  const std::string bytes = tests::content_of(folder / "true_coverage.ply");
+  const std::string bytes = tests::read_content(folder / "true_coverage.ply");
   geometry::PlyReader reader("true_coverage.ply", bytes);
   const std::vector<std::string_view> names{"x", "nz", "covered", "visible", "attainable"};
   const geometry::PlyTable table = reader.read_element(names);
@@ -225,10 +226,11 @@ TEST(Package, HasTheTruthBesideTheBelief) {
 TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
-  package::stage_package(mission_of(), two_views(), {}, 1, out);
+  package::stage_package(make_mission(), two_views(), {}, 1, out);
   out.commit();
   EXPECT_FALSE(std::filesystem::exists(folder / "coverage.ply"));
-  EXPECT_TRUE(Json::parse(tests::content_of(folder.path() / "summary.json"))["estimate"].is_null());
+  EXPECT_TRUE(
+      Json::parse(tests::read_content(folder.path() / "summary.json"))["estimate"].is_null());
 }
 
 // On a sphere the normal at a point is the point itself; on its inside, seen from the centre, the
@@ -285,7 +287,7 @@ TEST(OutputFolder, LeavesNothingBehindUnlessCommitted) {
     out.write("b.txt", "b");
     out.commit();
   }
-  EXPECT_EQ(tests::content_of(results / "a.txt"), "a");
+  EXPECT_EQ(tests::read_content(results / "a.txt"), "a");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(results), {}), 2);
 }
 

@@ -29,7 +29,7 @@ std::size_t count(const std::string& text, const std::string& word) {
 }
 
 /// What the page says, as a browser's JSON.parse() would read it.
-Json data_of(const std::string& page) {
+Json extract_data(const std::string& page) {
   const std::string begin = "<script type=\"application/json\" id=\"data\">";
   const std::size_t at = page.find(begin) + begin.size();
   return Json::parse(page.substr(at, page.find("</script>", at) - at));
@@ -44,7 +44,7 @@ struct Planned {
     arguments.insert(arguments.end(), more.begin(), more.end());
     run = tests::run_skycap(arguments, false, std::move(stop));
   }
-  std::string page() const { return tests::content_of(folder.path() / "out" / "report.html"); }
+  std::string page() const { return tests::read_content(folder.path() / "out" / "report.html"); }
 
   tests::TestFolder folder;
   tests::ProgramRun run;
@@ -57,13 +57,13 @@ TEST(SurveyReport, IsWrittenByPlanAndAnewByReportWithTheSameBytes) {
   const auto run =
       tests::run_skycap({"report", survey.folder / "out", "--out", survey.folder / "again.html"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(tests::content_of(survey.folder / "again.html") == page);
+  EXPECT_TRUE(tests::read_content(survey.folder / "again.html") == page);
 }
 
 TEST(SurveyReport, SaysWhatTheSummarySaysAndNothingElse) {
   const Planned survey(tests::quick_mission(), {"--planner", "skycap"});
-  const Json data = data_of(survey.page());
-  EXPECT_EQ(data["summary"], Json::parse(tests::content_of(survey.folder / "out/summary.json")));
+  const Json data = extract_data(survey.page());
+  EXPECT_EQ(data["summary"], Json::parse(tests::read_content(survey.folder / "out/summary.json")));
   EXPECT_EQ(data["clouds"]["measured"]["of"], data["summary"]["points"]);
   for (const Json& light : data["verdict"]["lights"]) {
     std::string path = "/" + light["figure"].get<std::string>();
@@ -79,14 +79,15 @@ TEST(SurveyReport, SaysWhatTheSummarySaysAndNothingElse) {
 TEST(SurveyReport, HolesSumToTheMissingShare) {
   for (const char* planner : {"skycap", "see++"}) {
     const Planned survey(tests::quick_mission(), {"--planner", planner});
-    const Json summary = data_of(survey.page())["summary"];
+    const Json summary = extract_data(survey.page())["summary"];
     const Json& surface = summary["surface"];
     double missing = surface["smaller"]["area_m2"].get<double>() + surface["rest_m2"].get<double>();
     for (const Json& hole : surface["holes"]) missing += hole["area_m2"].get<double>();
-    const bool believes = std::string(planner) == "skycap";
-    EXPECT_EQ(surface["known_by"], believes ? "planner" : "simulator");
+    const bool has_estimate = std::string(planner) == "skycap";
+    EXPECT_EQ(surface["known_by"], has_estimate ? "planner" : "simulator");
     const double coverage =
-        (believes ? summary["estimate"]["estimated_coverage"] : summary["coverage"]).get<double>();
+        (has_estimate ? summary["estimate"]["estimated_coverage"] : summary["coverage"])
+            .get<double>();
     EXPECT_NEAR(missing / surface["area_m2"].get<double>(), 1.0 - coverage, 1e-5) << planner;
   }
 }
@@ -106,7 +107,7 @@ TEST(SurveyReport, OfAnInterruptedSurveyIsMadeWhenAskedFor) {
   EXPECT_TRUE(std::filesystem::exists(survey.folder.path() / "out" / "summary.json"));
   EXPECT_FALSE(std::filesystem::exists(survey.folder.path() / "out" / "report.html"));
   EXPECT_EQ(tests::run_skycap({"report", survey.folder / "out"}).exit_code, 0);
-  const Json data = data_of(survey.page());
+  const Json data = extract_data(survey.page());
   EXPECT_EQ(data["verdict"]["light"], "red");
   EXPECT_EQ(data["summary"]["stop_reason"], "interrupted");
 }
@@ -122,7 +123,7 @@ TEST(SurveyReport, OfALidarIsWrittenToo) {
       {"--max-views", "1"});
   const std::string page = survey.page();
   ASSERT_FALSE(page.empty()) << survey.run.err;
-  const Json settings = data_of(page)["summary"]["settings"];
+  const Json settings = extract_data(page)["summary"]["settings"];
   EXPECT_EQ(settings["sensor.lidar"], "velodyne_vlp16");
   EXPECT_FALSE(settings.contains("sensor.width"));
 }
@@ -132,7 +133,7 @@ TEST(SurveyReport, OfALidarIsWrittenToo) {
 TEST(SurveyReport, TakesNamesForText) {
   const Planned survey(tests::quick_mission());
   const std::string plain = survey.page(), file = survey.folder / "out/summary.json";
-  Json summary = Json::parse(tests::content_of(file));
+  Json summary = Json::parse(tests::read_content(file));
   summary["mission"] =
       "</script><img src=x onerror=alert(1)><!--\n\"'\u2028" + std::string(10'000, 'x');
   std::ofstream(file) << summary;
@@ -141,7 +142,7 @@ TEST(SurveyReport, TakesNamesForText) {
   for (const char* mark : {"<script", "</script", "<img", "<!--"}) {
     EXPECT_EQ(count(page, mark), count(plain, mark)) << mark;
   }
-  EXPECT_EQ(data_of(page)["title"], summary["mission"]);
+  EXPECT_EQ(extract_data(page)["title"], summary["mission"]);
 }
 
 // Nothing but our own scripts may run, and nothing may be fetched.
@@ -160,7 +161,7 @@ TEST(SurveyReport, GoesWithoutACloud) {
   std::filesystem::remove(survey.folder.path() / "out" / "cloud.ply");
   const auto run = tests::run_skycap({"report", survey.folder / "out"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(data_of(survey.page())["clouds"]["measured"]["points"], 0);
+  EXPECT_EQ(extract_data(survey.page())["clouds"]["measured"]["points"], 0);
 }
 
 // Trials and a survey in the same folder have a page each.
@@ -171,17 +172,17 @@ TEST(TrialsPage, StandsBesideTheSurveys) {
                          "--quiet", "--out", survey.folder / "out"});
   ASSERT_EQ(trials.exit_code, 0) << trials.err;
   const auto file = survey.folder.path() / "out" / "trials.html";
-  const std::string page = tests::content_of(file);
-  const Json data = data_of(page);
+  const std::string page = tests::read_content(file);
+  const Json data = extract_data(page);
   EXPECT_EQ(data["kind"], "trials");
-  EXPECT_EQ(data["summary"], Json::parse(tests::content_of(survey.folder / "out/trials.json")));
+  EXPECT_EQ(data["summary"], Json::parse(tests::read_content(survey.folder / "out/trials.json")));
   EXPECT_EQ(data["summary"]["each_trial"].size(), 2U);
   std::filesystem::remove(file);
   std::filesystem::remove(survey.folder.path() / "out" / "report.html");
   const auto run = tests::run_skycap({"report", survey.folder / "out"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(tests::content_of(file) == page);
-  EXPECT_EQ(data_of(survey.page())["kind"], "survey");
+  EXPECT_TRUE(tests::read_content(file) == page);
+  EXPECT_EQ(extract_data(survey.page())["kind"], "survey");
   // Which of the two should the page be?
   const auto one = tests::run_skycap({"report", survey.folder / "out", "--out", "x.html"});
   EXPECT_EQ(one.exit_code, 2);
@@ -219,7 +220,8 @@ TEST(View, WritesAPageOfACloudAndSaysWhere) {
       {"view", folder.write("c.xyz", "0 0 0\n1 0 0\n0 1 0\n"), "--out", folder / "c.html"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("c.html"));
-  EXPECT_EQ(data_of(tests::content_of(folder / "c.html"))["clouds"]["measured"]["points"], 3);
+  EXPECT_EQ(extract_data(tests::read_content(folder / "c.html"))["clouds"]["measured"]["points"],
+            3);
 }
 
 TEST(View, ShowsAMissionBeforeItsSurvey) {
@@ -229,7 +231,7 @@ TEST(View, ShowsAMissionBeforeItsSurvey) {
   const auto run =
       tests::run_skycap({"view", folder.write("m.yaml", mission), "--out", folder / "m.html"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Json data = data_of(tests::content_of(folder / "m.html"));
+  const Json data = extract_data(tests::read_content(folder / "m.html"));
   EXPECT_EQ(data["kind"], "mission");
   EXPECT_EQ(data["scene"]["volumes"][0]["role"], "no_fly");
   EXPECT_EQ(data["scene"]["volumes"][0]["top"], 30.0);

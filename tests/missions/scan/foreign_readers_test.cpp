@@ -55,7 +55,7 @@ class ForeignReader : public testing::Test {
 
   std::string written(const std::string& format) const {
     const scan::CloudFormatInfo& info = scan::cloud_format_named(format);
-    const std::string path = folder.path() / ("scan" + info.ending);
+    const std::string path = folder.path() / ("scan" + info.extension);
     std::vector<scan::CloudFile> files;
     files.emplace_back(path, info.make({"test", config, lidar_flight, Vector3d::Zero()}));
     EXPECT_TRUE(scan::run_scan(scene, sim::Lidar(config), lidar_flight, files, {}).is_complete);
@@ -86,19 +86,20 @@ class ForeignReader : public testing::Test {
       ASSERT_EQ(value(4, 0.0), returns.times[i]);
       ASSERT_EQ(value(5, std::uint16_t{}), returns.channels[i]);
       ASSERT_EQ(value(6, std::uint8_t{}), returns.return_numbers[i]);
-      ASSERT_EQ(value(7, std::uint8_t{}), returns.returns_of_shots[i]);
+      ASSERT_EQ(value(7, std::uint8_t{}), returns.number_of_returns[i]);
     }
   }
 
   const testing_support::TemporaryFolder folder;
   const sim::Scene scene{sim::sphere({1, 2, 3}, 20.0, 6), 1};
-  const sim::Trajectory flown{{{5.0, {0, 0, 0}, Quaterniond::Identity()},
-                               {5.1, {1, 0, 0}, Quaterniond(AngleAxisd(0.05, Vector3d::UnitZ()))}}};
-  const sim::Trajectory believed{
+  const sim::Trajectory ground_truth{
+      {{5.0, {0, 0, 0}, Quaterniond::Identity()},
+       {5.1, {1, 0, 0}, Quaterniond(AngleAxisd(0.05, Vector3d::UnitZ()))}}};
+  const sim::Trajectory estimated{
       {{5.0, {0.5, 0, 0}, Quaterniond(AngleAxisd(0.01, Vector3d::UnitX()))},
        {5.1, {1.5, 0, 0}, Quaterniond(AngleAxisd(0.05, Vector3d::UnitZ()))}}};
   const Isometry3d mount{Eigen::Translation3d(0.2, 0.0, -0.1) * AngleAxisd(0.3, Vector3d::UnitY())};
-  const sim::LidarFlight lidar_flight{flown, believed, mount, mount};
+  const sim::LidarFlight lidar_flight{ground_truth, estimated, mount, mount};
   sim::LidarConfig config;
   sim::LidarReturns returns;
 };
@@ -131,10 +132,10 @@ double scatter(const std::vector<Vector3d>& points) {
 // 11 degrees of its normal. Its triangles are at most 2 mm inside of it. Four standard deviations
 // of the estimate from 8000 points, and 2 % for the angle.
 TEST_F(ForeignReader, EveryFormatHasTheNoiseOnce) {
-  const sim::LidarFlight faultless{flown, flown, mount, mount};
-  const auto path_of = [&](const std::string& format) {
+  const sim::LidarFlight faultless{ground_truth, ground_truth, mount, mount};
+  const auto cloud_path = [&](const std::string& format) {
     const scan::CloudFormatInfo& info = scan::cloud_format_named(format);
-    const std::string path = folder.path() / ("noise" + info.ending);
+    const std::string path = folder.path() / ("noise" + info.extension);
     std::vector<scan::CloudFile> files;
     files.emplace_back(path, info.make({"test", config, faultless, Vector3d::Zero()}));
     EXPECT_TRUE(scan::run_scan(scene, sim::Lidar(config), faultless, files, {}).is_complete);
@@ -143,15 +144,15 @@ TEST_F(ForeignReader, EveryFormatHasTheNoiseOnce) {
   };
   std::map<std::string, std::vector<Vector3d>> clouds;
   for (const std::string format : {"e57", "ply", "xyz"}) {
-    for (const auto& point : geometry::read_cloud(path_of(format)).positions) {
+    for (const auto& point : geometry::read_cloud(cloud_path(format)).positions) {
       clouds[format].push_back(point.cast<double>());
     }
   }
   pcl::PointCloud<pcl::PointXYZ> pcd;
-  ASSERT_EQ(pcl::io::loadPCDFile(path_of("pcd"), pcd), 0);
+  ASSERT_EQ(pcl::io::loadPCDFile(cloud_path("pcd"), pcd), 0);
   for (const auto& point : pcd) clouds["pcd"].push_back(point.getVector3fMap().cast<double>());
   for (const std::string format : {"las", "las7"}) {
-    for (const LasPoint& point : LasFile(path_of(format), format == "las7" ? 7 : 6).points) {
+    for (const LasPoint& point : LasFile(cloud_path(format), format == "las7" ? 7 : 6).points) {
       clouds[format].push_back(point.position);
     }
   }
@@ -174,11 +175,11 @@ TEST_F(ForeignReader, MrptLoadsTheRawlogAndFindsThePointsWhereTheyWereReported) 
   ASSERT_TRUE(rawlog.loadFromRawLogFile(written("rawlog")));
   ASSERT_EQ(rawlog.size() % 3, 0U);
   std::size_t next = 0;
-  for (std::size_t piece = 0; piece < rawlog.size(); piece += 3) {
+  for (std::size_t chunk = 0; chunk < rawlog.size(); chunk += 3) {
     const auto pose =
-        std::dynamic_pointer_cast<mrpt::obs::CObservationRobotPose>(rawlog.getAsObservation(piece));
+        std::dynamic_pointer_cast<mrpt::obs::CObservationRobotPose>(rawlog.getAsObservation(chunk));
     const auto cloud = std::dynamic_pointer_cast<mrpt::obs::CObservationPointCloud>(
-        rawlog.getAsObservation(piece + 2));
+        rawlog.getAsObservation(chunk + 2));
     ASSERT_TRUE(pose && cloud);
     EXPECT_NEAR(mrpt::Clock::toDouble(cloud->timestamp), returns.times[next], 1e-4);
     const Isometry3d world_from_sensor =
@@ -200,9 +201,9 @@ TEST_F(ForeignReader, TheRangeImageOfARawlogIsThatOfTheSensor) {
   mrpt::obs::CRawlog rawlog;
   ASSERT_TRUE(rawlog.loadFromRawLogFile(written("rawlog")));
   std::size_t pixels = 0, next = 0;
-  for (std::size_t piece = 0; piece < rawlog.size(); piece += 3) {
+  for (std::size_t chunk = 0; chunk < rawlog.size(); chunk += 3) {
     const auto scan = std::dynamic_pointer_cast<mrpt::obs::CObservationRotatingScan>(
-        rawlog.getAsObservation(piece + 1));
+        rawlog.getAsObservation(chunk + 1));
     ASSERT_TRUE(scan);
     EXPECT_EQ(scan->rowCount, 8);
     EXPECT_EQ(scan->rangeResolution, 1e-3);
@@ -218,7 +219,7 @@ TEST_F(ForeignReader, TheRangeImageOfARawlogIsThatOfTheSensor) {
         const Vector3d point(range * std::cos(elevation) * std::cos(angle) + 0.03 * std::cos(angle),
                              range * std::cos(elevation) * std::sin(angle) + 0.03 * std::sin(angle),
                              range * std::sin(elevation) + 0.04);
-        const Vector3d world = believed.pose(time) * mount * point;
+        const Vector3d world = estimated.pose(time) * mount * point;
         const Vector3d expected = returns.origin + returns.points[next].cast<double>();
         ASSERT_LT((world - expected).norm(), 0.6e-3) << row << ", " << column;
         ++pixels;
@@ -238,10 +239,10 @@ TEST_F(ForeignReader, PclsOwnFilesAreRead) {
     cloud.emplace_back(x, std::round(any(random)), 3.0F, 0.0F, 0.6F, 0.8F);
   }
   const std::string path = folder.path() / "pcl.pcd";
-  for (int way = 0; way < 3; ++way) {
-    const int error = way == 0   ? pcl::io::savePCDFileASCII(path, cloud)
-                      : way == 1 ? pcl::io::savePCDFileBinary(path, cloud)
-                                 : pcl::io::savePCDFileBinaryCompressed(path, cloud);
+  for (int variant = 0; variant < 3; ++variant) {
+    const int error = variant == 0   ? pcl::io::savePCDFileASCII(path, cloud)
+                      : variant == 1 ? pcl::io::savePCDFileBinary(path, cloud)
+                                     : pcl::io::savePCDFileBinaryCompressed(path, cloud);
     ASSERT_EQ(error, 0);
     const geometry::AttributedCloud read = geometry::read_cloud(path);
     ASSERT_EQ(read.positions.size(), 1980U);
@@ -250,7 +251,8 @@ TEST_F(ForeignReader, PclsOwnFilesAreRead) {
     for (const pcl::PointNormal& point : testing_support::not_empty(cloud)) {
       if (std::isnan(point.x)) continue;
       // PCL writes eight digits of text.
-      ASSERT_LT((read.positions[next] - point.getVector3fMap()).norm(), way == 0 ? 1e-5F : 1e-30F);
+      ASSERT_LT((read.positions[next] - point.getVector3fMap()).norm(),
+                variant == 0 ? 1e-5F : 1e-30F);
       ASSERT_LT((read.normals[next++] - Eigen::Vector3f(0.0F, 0.6F, 0.8F)).norm(), 1e-6F);
     }
   }
@@ -277,7 +279,7 @@ TEST_F(ForeignReader, MrptProjectsTheDepthImagesOfARawlogOntoTheSurface) {
   std::vector<scan::Frame> frames;
   for (int i = 0; i < 3; ++i) {
     const double time = 5.0 + 0.05 * i;
-    const Isometry3d pose = flown.pose(time) * mount * scan::body_from_camera();
+    const Isometry3d pose = ground_truth.pose(time) * mount * scan::body_from_camera();
     frames.push_back({time, pose, pose});
   }
   const std::string out = folder.path() / "frames";

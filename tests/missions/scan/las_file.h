@@ -16,16 +16,16 @@
 
 namespace skycap::missions {
 
-inline std::vector<char> bytes_of(const std::filesystem::path& path) {
+inline std::vector<char> read_bytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
 template <typename Value>
-Value value_at(const std::vector<char>& bytes, std::size_t place) {
+Value value_at(const std::vector<char>& bytes, std::size_t offset) {
   Value value;
-  EXPECT_LE(place + sizeof value, bytes.size());
-  std::memcpy(&value, bytes.data() + place, sizeof value);
+  EXPECT_LE(offset + sizeof value, bytes.size());
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
   return value;
 }
 
@@ -41,7 +41,7 @@ struct LasFile {
   std::string crs;
 
   explicit LasFile(const std::filesystem::path& path, int point_format = 6) {
-    const std::vector<char> bytes = bytes_of(path);
+    const std::vector<char> bytes = read_bytes(path);
     EXPECT_EQ(std::string(bytes.data(), 4), "LASF");
     EXPECT_EQ(value_at<std::uint16_t>(bytes, 6), 0b10001);  // WKT, adjusted GPS time
     EXPECT_EQ(bytes[24], 1);
@@ -52,8 +52,8 @@ struct LasFile {
     EXPECT_EQ(bytes[104], point_format);
     const std::size_t size = point_format == 7 ? 36 : 30;
     EXPECT_EQ(value_at<std::uint16_t>(bytes, 105), size);
-    for (std::size_t place = 107; place < 131; place += 4) {
-      EXPECT_EQ(value_at<std::uint32_t>(bytes, place), 0U);
+    for (std::size_t offset = 107; offset < 131; offset += 4) {
+      EXPECT_EQ(value_at<std::uint32_t>(bytes, offset), 0U);
     }
     const auto count = value_at<std::uint64_t>(bytes, 247);
     EXPECT_EQ(bytes.size(), first_point + size * count);

@@ -25,8 +25,8 @@ constexpr double pi = std::numbers::pi;
 TEST(OrbitTrajectory, KeepsRadiusSpeedAndHeading) {
   const scan::OrbitOptions orbit{.centre = {5, -3, 2},
                                  .radius = 20,
-                                 .lowest = 10,
-                                 .highest = 40,
+                                 .min_height = 10,
+                                 .max_height = 40,
                                  .circles = 4,
                                  .speed = 5,
                                  .start = 0.5};
@@ -55,8 +55,8 @@ TEST(OrbitTrajectory, KeepsRadiusSpeedAndHeading) {
 }
 
 TEST(OrbitTrajectory, ASingleCircleIsTheLowest) {
-  const sim::Trajectory trajectory =
-      scan::orbit_trajectory({.radius = 10, .lowest = 3, .highest = 9, .circles = 1, .speed = 2});
+  const sim::Trajectory trajectory = scan::orbit_trajectory(
+      {.radius = 10, .min_height = 3, .max_height = 9, .circles = 1, .speed = 2});
   EXPECT_NEAR(trajectory.end(), 2 * pi * 10 / 2, 1e-9);
   EXPECT_NEAR(trajectory.pose(5).translation().z(), 3, 1e-12);
 }
@@ -64,14 +64,14 @@ TEST(OrbitTrajectory, ASingleCircleIsTheLowest) {
 class ScanRouteFile : public testing::Test {
  protected:
   // A camera on a carrier at a view looks where the view does.
-  static void expect_view(const sim::Trajectory& carrier, double time, const View& view) {
-    const View seen = geometry::view_of(carrier.pose(time) * scan::body_from_camera());
+  static void expect_view(const sim::Trajectory& platform, double time, const View& view) {
+    const View seen = geometry::to_view(platform.pose(time) * scan::body_from_camera());
     EXPECT_TRUE(seen.position.isApprox(view.position, 1e-5)) << seen.position.transpose();
     EXPECT_TRUE(seen.direction.isApprox(view.direction, 1e-5)) << seen.direction.transpose();
   }
 
   const tests::TestFolder folder{};
-  scan::FlownScanOptions options;
+  scan::ScanFlightOptions options;
   const View first = geometry::look_at({10, 0, 5}, {0, 0, 3});
   const View second = geometry::look_at({10, 8, 5}, {0, 0, 9});
 };
@@ -80,12 +80,12 @@ TEST_F(ScanRouteFile, ATumTrajectoryKeepsItsTimesAndPoses) {
   const std::string file =
       folder.write("flight.tum", flight::write_tum({{2.0, geometry::camera_pose(first)},
                                                     {3.5, geometry::camera_pose(second)}}));
-  const scan::ScanRoute route = scan::read_scan_route(file, options, scan::Carrier::airframe);
-  EXPECT_EQ(route.carrier.start(), 2.0);
-  EXPECT_EQ(route.carrier.end(), 3.5);
+  const scan::ScanRoute route = scan::read_scan_route(file, options, scan::Platform::airframe);
+  EXPECT_EQ(route.platform.start(), 2.0);
+  EXPECT_EQ(route.platform.end(), 3.5);
   EXPECT_TRUE(route.image_times.empty());
-  expect_view(route.carrier, 2.0, first);
-  expect_view(route.carrier, 3.5, second);
+  expect_view(route.platform, 2.0, first);
+  expect_view(route.platform, 3.5, second);
 }
 
 TEST_F(ScanRouteFile, ViewsAreFlownInAStraightLineAtTheGivenSpeed) {
@@ -94,12 +94,12 @@ TEST_F(ScanRouteFile, ViewsAreFlownInAStraightLineAtTheGivenSpeed) {
                "view,x,y,z,direction_x,direction_y,direction_z,points\n"
                "0,10,0,5,-1,0,0,7\n1,10,8,5,-1,0,0,9\n2,10,8,5,0,-1,0,9\n");
   const scan::ScanRoute route =
-      scan::read_scan_route(folder.path(), options, scan::Carrier::gimbal);
+      scan::read_scan_route(folder.path(), options, scan::Platform::gimbal);
   // 8 m at 4 m/s, then a quarter turn at 1 rad/s.
   EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-9),
                                                     std::vector<double>{0.0, 2.0, 2.0 + 0.5 * pi}));
-  EXPECT_TRUE(route.carrier.pose(1.0).translation().isApprox(Vector3d(10, 4, 5), 1e-9));
-  expect_view(route.carrier, 2.0, {{10, 8, 5}, {-1, 0, 0}});
+  EXPECT_TRUE(route.platform.pose(1.0).translation().isApprox(Vector3d(10, 4, 5), 1e-9));
+  expect_view(route.platform, 2.0, {{10, 8, 5}, {-1, 0, 0}});
 }
 
 TEST_F(ScanRouteFile, TheAirframeStaysLevelWhereTheGimbalLooksDown) {
@@ -109,14 +109,14 @@ TEST_F(ScanRouteFile, TheAirframeStaysLevelWhereTheGimbalLooksDown) {
   states[0].pitch = -0.8;
   states[1] = states[0];
   states[1].time = 4.0;
-  states[1].is_shot = true;
+  states[1].is_capture = true;
   const std::string file =
       folder.write("trajectory.csv", flight::write_trajectory_csv(states, flight::Frame::enu));
-  const scan::ScanRoute gimbal = scan::read_scan_route(file, options, scan::Carrier::gimbal);
-  expect_view(gimbal.carrier, 1.0, {{1, 2, 30}, {std::cos(0.8), 0, -std::sin(0.8)}});
+  const scan::ScanRoute gimbal = scan::read_scan_route(file, options, scan::Platform::gimbal);
+  expect_view(gimbal.platform, 1.0, {{1, 2, 30}, {std::cos(0.8), 0, -std::sin(0.8)}});
   EXPECT_THAT(gimbal.image_times, testing::ElementsAre(testing::DoubleNear(4.0, 1e-6)));
-  const scan::ScanRoute airframe = scan::read_scan_route(file, options, scan::Carrier::airframe);
-  EXPECT_TRUE(airframe.carrier.pose(1.0).linear().isApprox(Eigen::Matrix3d::Identity(), 1e-5));
+  const scan::ScanRoute airframe = scan::read_scan_route(file, options, scan::Platform::airframe);
+  EXPECT_TRUE(airframe.platform.pose(1.0).linear().isApprox(Eigen::Matrix3d::Identity(), 1e-5));
 }
 
 /// A trajectory of two seconds from one place to another, a picture taken at its end.
@@ -126,7 +126,7 @@ std::string sortie(const Vector3d& from, const Vector3d& to, double start) {
   states[0].position = from;
   states[1].time = start + 2.0;
   states[1].position = to;
-  states[1].is_shot = true;
+  states[1].is_capture = true;
   return flight::write_trajectory_csv(states, flight::Frame::enu);
 }
 
@@ -137,13 +137,13 @@ TEST_F(ScanRouteFile, OfAPackageAllSortiesAreFlownOneAfterTheOther) {
   folder.write("mission-2.csv", sortie({0, 0, 10}, {0, 8, 10}, 6.5));
   options.speed = 2.0;
   const scan::ScanRoute route =
-      scan::read_scan_route(folder.path(), options, scan::Carrier::airframe);
+      scan::read_scan_route(folder.path(), options, scan::Platform::airframe);
   // From the first one's end to the second one's begin it is 4 m.
   EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-6),
                                                     std::vector<double>{8.5, 8.5 + 2.0 + 2.0}));
-  EXPECT_TRUE(route.carrier.pose(7.5).translation().isApprox(Vector3d(2, 0, 10), 1e-6));
-  EXPECT_TRUE(route.carrier.pose(11.5).translation().isApprox(Vector3d(0, 4, 10), 1e-6));
-  EXPECT_NEAR(route.carrier.end(), 12.5, 1e-6);
+  EXPECT_TRUE(route.platform.pose(7.5).translation().isApprox(Vector3d(2, 0, 10), 1e-6));
+  EXPECT_TRUE(route.platform.pose(11.5).translation().isApprox(Vector3d(0, 4, 10), 1e-6));
+  EXPECT_NEAR(route.platform.end(), 12.5, 1e-6);
 }
 
 // Straight lines between the views of a flown survey lead through what stands there.
@@ -151,9 +151,10 @@ TEST_F(ScanRouteFile, AFlownPackageWithoutATrajectoryIsRefused) {
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
   folder.write("free_space.bin", "");
-  const std::string complaint = testing_support::complaint_of(
-      [&] { scan::read_scan_route(folder.path(), options, scan::Carrier::airframe); });
-  EXPECT_THAT(complaint, testing::HasSubstr("contains a flight, but no mission.csv; export one"));
+  const std::string error_message = testing_support::thrown_message(
+      [&] { scan::read_scan_route(folder.path(), options, scan::Platform::airframe); });
+  EXPECT_THAT(error_message,
+              testing::HasSubstr("contains a flight, but no mission.csv; export one"));
 }
 
 // 2e-5 degrees of longitude at the equator: 2.2264 m on WGS84.
@@ -167,7 +168,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
                    "3\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0010200\t12.000000\t1\n"
                    "4\t0\t3\t21\t0\t0\t0\t0\t0.0000000\t0.0010200\t0.000000\t1\n");
   try {
-    scan::read_scan_route(file, options, scan::Carrier::airframe);
+    scan::read_scan_route(file, options, scan::Platform::airframe);
     FAIL() << "read without a georeference";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("set site.latitude_deg and site.longitude_deg"));
@@ -175,11 +176,11 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
   options.site = flight::Site{};
   options.site->origin.longitude_deg = 1e-3;
   options.speed = 2.0;
-  const scan::ScanRoute route = scan::read_scan_route(file, options, scan::Carrier::airframe);
-  const double way = 2e-5 * pi / 180.0 * 6378137.0;
-  EXPECT_NEAR(route.carrier.end() - route.carrier.start(), (way + 2.0) / 2.0, 0.01);
-  const Isometry3d last = route.carrier.pose(route.carrier.end());
-  EXPECT_TRUE(last.translation().isApprox(Vector3d(way, 0, 12), 1e-3));
+  const scan::ScanRoute route = scan::read_scan_route(file, options, scan::Platform::airframe);
+  const double distance = 2e-5 * pi / 180.0 * 6378137.0;
+  EXPECT_NEAR(route.platform.end() - route.platform.start(), (distance + 2.0) / 2.0, 0.01);
+  const Isometry3d last = route.platform.pose(route.platform.end());
+  EXPECT_TRUE(last.translation().isApprox(Vector3d(distance, 0, 12), 1e-3));
   EXPECT_TRUE(last.linear().isApprox(Eigen::Matrix3d::Identity(), 1e-6));  // still eastward
   EXPECT_TRUE(route.image_times.empty());
 }
@@ -187,7 +188,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
 TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
   const auto message = [&](const std::string& name, const std::string& content) -> std::string {
     try {
-      scan::read_scan_route(folder.write(name, content), options, scan::Carrier::gimbal);
+      scan::read_scan_route(folder.write(name, content), options, scan::Platform::gimbal);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::bad_file);
       return error.what();

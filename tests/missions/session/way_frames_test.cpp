@@ -26,42 +26,42 @@ namespace {
 using Eigen::Vector3d;
 using geometry::View;
 using testing::HasSubstr;
-using tests::flown_mission;
+using tests::flight_mission;
 
 config::MissionSetup mission_with(const std::string& key = "", const std::string& value = "") {
   std::vector<config::KeyOverride> overrides{{"--set", "sensor.capture", "moving"}};
   if (!key.empty()) overrides.push_back({"--set", key, value});
-  return config::parse_mission(flown_mission(), "m.yaml", overrides);
+  return config::parse_mission(flight_mission(), "m.yaml", overrides);
 }
 
 /// How far a place is from a way.
-double off_way(const Vector3d& place, const std::vector<Vector3d>& way) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const Vector3d along = way[i] - way[i - 1];
+double cross_track_error(const Vector3d& position, const std::vector<Vector3d>& path) {
+  double min = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vector3d along = path[i] - path[i - 1];
     const double share =
-        std::clamp((place - way[i - 1]).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (place - way[i - 1] - share * along).norm());
+        std::clamp((position - path[i - 1]).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    min = std::min(min, (position - path[i - 1] - share * along).norm());
   }
-  return least;
+  return min;
 }
 
 const View west{{0, 0, 10}, -Vector3d::UnitX()};
 const View north_down{{20, 20, 10}, Vector3d(0, 1, -1).normalized()};
 
-TEST(WayFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
+TEST(EnRouteFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
   const config::MissionSetup mission = mission_with();
-  const session::WayMotion motion(mission.flight());
-  const session::FlownLeg way{{{0, 0, 10}, {20, 0, 10}, {20, 20, 10}}, 2.0};
+  const session::LegMotion motion(mission.flight());
+  const session::ExecutedLeg path{{{0, 0, 10}, {20, 0, 10}, {20, 20, 10}}, 2.0};
   for (const double period : {0.25, 1.0, 2.5}) {
-    const auto frames = motion.frames(way, west, north_down, period);
-    const double time = motion.time(way, west, north_down);
+    const auto frames = motion.frames(path, west, north_down, period);
+    const double time = motion.time(path, west, north_down);
     EXPECT_NEAR(static_cast<double>(frames.size()), time / period, 2.0) << period;
     double travelled = 0.0;
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      const Vector3d& place = frames[i].view.position;
-      EXPECT_LT(off_way(place, way.points), 1e-9);
-      const double now = place.x() + place.y();  // along the corner
+      const Vector3d& position = frames[i].view.position;
+      EXPECT_LT(cross_track_error(position, path.points), 1e-9);
+      const double now = position.x() + position.y();  // along the corner
       EXPECT_GT(now, travelled);
       EXPECT_LE(now - travelled, mission.flight().cruise_speed * period + 1e-9);
       travelled = now;
@@ -73,14 +73,14 @@ TEST(WayFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
   }
 }
 
-TEST(WayFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
-  const session::WayMotion motion(mission_with().flight());
-  const session::FlownLeg way{{{0, 0, 10}, {40, 0, 10}}, 2.0};
+TEST(EnRouteFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
+  const session::LegMotion motion(mission_with().flight());
+  const session::ExecutedLeg path{{{0, 0, 10}, {40, 0, 10}}, 2.0};
   const View south_east{{0, 0, 10}, Vector3d(1, -1, 0).normalized()};
   const View north_east_down{{40, 0, 10}, Vector3d(1, 1, -std::numbers::sqrt2).normalized()};
-  const auto frames = motion.frames(way, south_east, north_east_down, 0.5);
+  const auto frames = motion.frames(path, south_east, north_east_down, 0.5);
   ASSERT_GT(frames.size(), 10U);
-  const double time = motion.time(way, south_east, north_east_down);
+  const double time = motion.time(path, south_east, north_east_down);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double share = 0.5 * static_cast<double>(i + 1) / time;
     const Vector3d& direction = frames[i].view.direction;
@@ -91,21 +91,21 @@ TEST(WayFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
   }
 }
 
-TEST(WayFrames, LookAtTheSceneWhereBothViewsDo) {
-  const session::WayMotion motion(mission_with().flight());
+TEST(EnRouteFrames, LookAtTheSceneWhereBothViewsDo) {
+  const session::LegMotion motion(mission_with().flight());
   const Vector3d scene(50, 60, 5);
   const View from = geometry::look_at({0, 0, 20}, scene),
              to = geometry::look_at({0, 30, 20}, scene);
   for (const auto& [frame, velocity, time, stretch] : testing_support::not_empty(
            motion.frames({{from.position, to.position}, 2.0}, from, to, 1.0))) {
-    const Vector3d wanted = (scene - frame.position).normalized();
-    EXPECT_LT(std::acos(wanted.dot(frame.direction)), 0.1);
+    const Vector3d expected = (scene - frame.position).normalized();
+    EXPECT_LT(std::acos(expected.dot(frame.direction)), 0.1);
   }
 }
 
 // Between frames a tenth of a second apart the place changes as the velocities say.
-TEST(WayFrames, MoveAsTheirVelocitiesSay) {
-  const session::WayMotion motion(mission_with().flight());
+TEST(EnRouteFrames, MoveAsTheirVelocitiesSay) {
+  const session::LegMotion motion(mission_with().flight());
   const auto frames = motion.frames({{{0, 0, 10}, {30, 0, 20}}, 2.0}, west, west, 0.1);
   ASSERT_GT(frames.size(), 50U);
   for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -115,19 +115,19 @@ TEST(WayFrames, MoveAsTheirVelocitiesSay) {
   }
 }
 
-TEST(WayFrames, AreNoneOnAWayThatIsOverBeforeTheFirst) {
-  const session::WayMotion motion(mission_with().flight());
+TEST(EnRouteFrames, AreNoneOnAWayThatIsOverBeforeTheFirst) {
+  const session::LegMotion motion(mission_with().flight());
   EXPECT_TRUE(motion.frames({{{0, 0, 10}, {0.5, 0, 10}}, 2.0}, west, west, 60.0).empty());
   EXPECT_TRUE(motion.frames({{{0, 0, 10}, {0, 0, 10}}, 2.0}, west, west, 1.0).empty());
 }
 
 // Distance over speed, a ramp at both ends, a stop in the corner; then rests, the pad's climb.
-TEST(WayFrames, TimesAreThoseOfTheVehicle) {
+TEST(EnRouteFrames, TimesAreThoseOfTheVehicle) {
   const config::MissionSetup mission = mission_with();
-  const session::WayMotion motion(mission.flight());
-  const flight::Motion vehicle(mission.flight().flown(),
+  const session::LegMotion motion(mission.flight());
+  const flight::Motion vehicle(mission.flight().required_vehicle(),
                                mission.flight().route(Vector3d::Zero()).conditions);
-  const session::FlownLeg corner{{{0, 0, 10}, {20, 0, 10}, {20, 20, 10}}, 2.0};
+  const session::ExecutedLeg corner{{{0, 0, 10}, {20, 0, 10}, {20, 20, 10}}, 2.0};
   const View same{{20, 20, 10}, west.direction};
   const double one = vehicle.leg_time({20, 0, 0});
   EXPECT_NEAR(motion.time(corner, west, same), 2.0 * one + flight::corner_hold, 1e-9);
@@ -138,7 +138,7 @@ TEST(WayFrames, TimesAreThoseOfTheVehicle) {
 }
 
 TEST(MovingSurvey, CoversAsMuchInLessTime) {
-  const config::MissionSetup stops = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup stops = config::parse_mission(flight_mission(), "m.yaml");
   // At a stop less is left to gain: the way has shown much of it.
   const config::MissionSetup moving = mission_with("planner.min_gain", "0.01");
   const evaluation::SurveyScene scene(moving.simulation, "", 0);
@@ -147,10 +147,10 @@ TEST(MovingSurvey, CoversAsMuchInLessTime) {
   for (const std::uint64_t seed : seeds) {
     const session::SurveyRecord standing = simulation::run_survey(stops.simulation, scene, seed, 2),
                                 passing = simulation::run_survey(moving.simulation, scene, seed, 2);
-    EXPECT_EQ(standing.frames_on_way(), 0U);
-    EXPECT_GT(passing.frames_on_way(), 10U);
-    standing_time += standing.flown->time();
-    moving_time += passing.flown->time();
+    EXPECT_EQ(standing.en_route_frames(), 0U);
+    EXPECT_GT(passing.en_route_frames(), 10U);
+    standing_time += standing.flight_record->time();
+    moving_time += passing.flight_record->time();
     standing_coverage += standing.coverage();
     moving_coverage += passing.coverage();
   }
@@ -165,26 +165,26 @@ TEST(MovingSurvey, DoesNotDependOnThreads) {
                               two = simulation::run_survey(mission.simulation, scene, 1, 2);
   EXPECT_EQ(package::views_csv(one), package::views_csv(two));
   EXPECT_EQ(one.cloud.positions, two.cloud.positions);
-  EXPECT_EQ(one.flown->measured->free_volume(), two.flown->measured->free_volume());
+  EXPECT_EQ(one.flight_record->measured->free_volume(), two.flight_record->measured->free_volume());
 }
 
 TEST(MovingSurvey, KnowsOfEachPointWhereItWasMeasuredFrom) {
   const config::MissionSetup mission = mission_with("limits.max_views", "4");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, 1, 2);
-  ASSERT_EQ(record.scans.size(), record.views.size() + record.frames_on_way());
+  ASSERT_EQ(record.scans.size(), record.views.size() + record.en_route_frames());
   ASSERT_EQ(record.cloud.views.size(), record.cloud.positions.size());
   std::vector<bool> brought(record.scans.size(), false);
   for (const std::uint32_t scan : record.cloud.views) brought.at(scan) = true;
   std::size_t scan = 0;
   for (std::size_t i = 0; i < record.views.size(); ++i) {
-    const survey::SurveyedView& taken = record.views[i].surveyed;
-    for (const View& frame : taken.on_way.views) {
-      EXPECT_LT(off_way(frame.position, record.flown->legs[i].points), 1e-9);
+    const survey::SurveyedView& surveyed_view = record.views[i].surveyed;
+    for (const View& frame : surveyed_view.en_route.views) {
+      EXPECT_LT(cross_track_error(frame.position, record.flight_record->legs[i].points), 1e-9);
       EXPECT_EQ(record.scans[scan].view, i);
       EXPECT_EQ(record.scans[scan++].position, frame.position);
     }
-    EXPECT_EQ(record.scans[scan].position, taken.view.position);
+    EXPECT_EQ(record.scans[scan].position, surveyed_view.view.position);
     EXPECT_EQ(record.scans[scan++].view, i);
   }
   EXPECT_TRUE(brought.front());
@@ -193,12 +193,12 @@ TEST(MovingSurvey, KnowsOfEachPointWhereItWasMeasuredFrom) {
 
 TEST(MovingSurvey, PackageNamesTheViewThatEachPointWasTakenOnTheWayTo) {
   const tests::TestFolder folder;
-  const std::string mission = folder.write("m.yaml", flown_mission());
+  const std::string mission = folder.write("m.yaml", flight_mission());
   const auto run = tests::run_skycap({"plan", mission, "--set", "sensor.capture=moving", "--set",
                                       "limits.max_views=3", "--out", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr(" en-route frames, motion blur up to "));
-  const auto summary = nlohmann::json::parse(tests::content_of(folder / "out/summary.json"));
+  const auto summary = nlohmann::json::parse(tests::read_content(folder / "out/summary.json"));
   EXPECT_EQ(summary["per_view"][0]["en_route_frames"], 0);
   EXPECT_GT(summary["per_view"][1]["en_route_frames"], 0);
   EXPECT_GT(summary["flight"]["survey"]["duration_s"],
@@ -208,19 +208,20 @@ TEST(MovingSurvey, PackageNamesTheViewThatEachPointWasTakenOnTheWayTo) {
   EXPECT_EQ(*std::ranges::max_element(cloud.views), summary["views"].get<unsigned>() - 1);
 }
 
-std::string refusal_of(const std::string& text, const std::vector<config::KeyOverride>& keys) {
-  return testing_support::complaint_of([&] { config::parse_mission(text, "m.yaml", keys); });
+std::string rejection_message(const std::string& text,
+                              const std::vector<config::KeyOverride>& keys) {
+  return testing_support::thrown_message([&] { config::parse_mission(text, "m.yaml", keys); });
 }
 
 TEST(MovingSurvey, NeedsAVehicleAndAPlannerThatLearnsOnTheWay) {
   const config::KeyOverride moving{"--set", "sensor.capture", "moving"};
-  EXPECT_THAT(refusal_of(flown_mission(), {moving, {"--planner", "planner.name", "see++"}}),
+  EXPECT_THAT(rejection_message(flight_mission(), {moving, {"--planner", "planner.name", "see++"}}),
               HasSubstr("sensor.capture: moving requires a planner that uses"));
-  EXPECT_THAT(refusal_of("scene: {model: 'builtin:teapot'}\n"
-                         "evaluation: {coverage_distance: 0.005}\n",
-                         {moving}),
+  EXPECT_THAT(rejection_message("scene: {model: 'builtin:teapot'}\n"
+                                "evaluation: {coverage_distance: 0.005}\n",
+                                {moving}),
               HasSubstr("sensor.capture: moving requires a vehicle"));
-  EXPECT_THAT(refusal_of(flown_mission(), {{"--set", "sensor.frame_period", "2"}}),
+  EXPECT_THAT(rejection_message(flight_mission(), {{"--set", "sensor.frame_period", "2"}}),
               HasSubstr("sensor.frame_period requires sensor.capture: moving"));
 }
 

@@ -95,9 +95,8 @@ TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
   };
   survey::run_survey(planner, scene->first_view(mission.run.seed), {.max_views = 40},
                      {.sense =
-                          [&](const geometry::View& view, geometry::Scan recycled) {
-                            return camera.scan(scene->scene(), view, frame++, 1,
-                                               std::move(recycled));
+                          [&](const geometry::View& view, geometry::Scan buffer) {
+                            return camera.scan(scene->scene(), view, frame++, 1, std::move(buffer));
                           },
                       .report = check});
   EXPECT_GT(frame, 5U);

@@ -15,7 +15,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using tests::flown_mission;
+using tests::flight_mission;
 using tests::quick_mission;
 using tests::run_skycap;
 using tests::TestFolder;
@@ -35,7 +35,7 @@ simulation::Feasibility of(const std::string& text, const Settings& settings) {
 }
 
 TEST(Feasibility, FindsNothingInMissionsThatWork) {
-  for (const std::string& text : {quick_mission(), flown_mission()}) {
+  for (const std::string& text : {quick_mission(), flight_mission()}) {
     const simulation::Feasibility found = of(text, {});
     EXPECT_THAT(found.problems, IsEmpty());
     EXPECT_THAT(found.warnings, IsEmpty());
@@ -67,7 +67,7 @@ TEST(Feasibility, SaysWhatCannotWork) {
         << flaw.sentence;
   }
   const Settings small_box{{"flight.unknown_box.max", "[0, 11, 13]"}};
-  EXPECT_THAT(of(flown_mission(), small_box).problems,
+  EXPECT_THAT(of(flight_mission(), small_box).problems,
               Contains(HasSubstr("flight.unknown_box excludes")));
 }
 
@@ -112,12 +112,12 @@ TEST(Expectation, HoldsTheSurvey) {
   const simulation::Expectation expected =
       simulation::expectation(mission.simulation, scene, {.threads = 2});
   const std::size_t views = simulation::run_survey(mission.simulation, scene, 1, 2).views.size();
-  EXPECT_GE(2 * views, expected.least_views);
-  EXPECT_LE(views, 2 * expected.most_views);
-  EXPECT_LE(expected.known_views, expected.least_views);
-  EXPECT_LT(expected.least_views, expected.most_views);
-  EXPECT_GT(expected.least_minutes, 0.0);
-  EXPECT_GT(expected.most_time, 0.0);
+  EXPECT_GE(2 * views, expected.min_views);
+  EXPECT_LE(views, 2 * expected.max_views);
+  EXPECT_LE(expected.known_views, expected.min_views);
+  EXPECT_LT(expected.min_views, expected.max_views);
+  EXPECT_GT(expected.min_minutes, 0.0);
+  EXPECT_GT(expected.max_time, 0.0);
   EXPECT_GT(expected.memory, 1e7);
 
   const config::MissionSetup limited =
@@ -125,8 +125,8 @@ TEST(Expectation, HoldsTheSurvey) {
                             overrides({{"limits.max_views", "3"}, {"limits.max_minutes", "1"}}));
   const simulation::Expectation at_most =
       simulation::expectation(limited.simulation, scene, {.threads = 2});
-  EXPECT_EQ(at_most.most_views, 3U);
-  EXPECT_LE(at_most.most_minutes, 1.0);
+  EXPECT_EQ(at_most.max_views, 3U);
+  EXPECT_LE(at_most.max_minutes, 1.0);
 }
 
 TEST(Expectation, OfAVolumetricPlannerIsItsNumberOfViews) {
@@ -135,8 +135,8 @@ TEST(Expectation, OfAVolumetricPlannerIsItsNumberOfViews) {
                             overrides({{"planner.name", "oa"}, {"volumetric.view_limit", "8"}}));
   const simulation::Expectation expected = simulation::expectation(
       mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), {.threads = 2});
-  EXPECT_EQ(expected.least_views, 8U);
-  EXPECT_EQ(expected.most_views, 8U);
+  EXPECT_EQ(expected.min_views, 8U);
+  EXPECT_EQ(expected.max_views, 8U);
 }
 
 }  // namespace

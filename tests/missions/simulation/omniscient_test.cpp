@@ -16,7 +16,7 @@ namespace {
 using tests::quick_mission;
 
 constexpr simulation::OmniscientConfig quick{
-    .candidates = 200, .samples = 1500, .wanted_coverage = {}};
+    .candidates = 200, .samples = 1500, .target_coverage = {}};
 
 TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
   const config::MissionSetup mission = config::parse_mission(
@@ -26,16 +26,16 @@ TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
   // The last places are found by luck among so few candidates.
   simulation::OmniscientConfig config = quick;
   config.candidates = 600;
-  config.wanted_coverage = 0.95 * planned.coverage();
+  config.target_coverage = 0.95 * planned.coverage();
   const session::SurveyRecord known =
       simulation::survey_omnisciently(mission.simulation, scene, 3, 1, config);
-  const auto reached = std::ranges::find_if(planned.views, [&](const session::JudgedView& view) {
-    return view.coverage >= *config.wanted_coverage;
+  const auto reached = std::ranges::find_if(planned.views, [&](const session::EvaluatedView& view) {
+    return view.coverage >= *config.target_coverage;
   });
   EXPECT_LE(known.views.size(), reached - planned.views.begin() + 1);
   // The tour takes the views in another order, so that other points are left out as too near; and
   // the last view may show more than was wanted.
-  EXPECT_GE(known.coverage(), *config.wanted_coverage - 0.03);
+  EXPECT_GE(known.coverage(), *config.target_coverage - 0.03);
 }
 
 TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
@@ -45,8 +45,8 @@ TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
   const session::SurveyRecord record =
       simulation::survey_omnisciently(mission.simulation, scene, 1, 1, quick);
   EXPECT_EQ(record.views.front().surveyed.view.position, scene.first_view(1).position);
-  for (const session::JudgedView& judged : record.views) {
-    EXPECT_GE(judged.surveyed.view.position.z(), 0.3);
+  for (const session::EvaluatedView& evaluated : record.views) {
+    EXPECT_GE(evaluated.surveyed.view.position.z(), 0.3);
   }
   evaluation::CoverageMeter meter(scene.samples().points,
                                   mission.evaluation().registration_distance);
@@ -55,7 +55,7 @@ TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
   EXPECT_GT(record.coverage(), 0.5);
 }
 
-TEST(Omniscient, IsTheSameForAnyNumberOfThreads) {
+TEST(Omniscient, IsSameForAnyThreadCount) {
   const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord one =

@@ -27,8 +27,8 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using nlohmann::json;
 using testing::HasSubstr;
-using tests::content_of;
-using tests::flown_mission;
+using tests::flight_mission;
+using tests::read_content;
 using tests::TestFolder;
 
 /// The arguments have spaces between them.
@@ -37,57 +37,58 @@ tests::ProgramRun run_skycap(const std::string& line) {
   return tests::run_skycap(std::vector<std::string>(std::istream_iterator<std::string>(words), {}));
 }
 
-/// A mast between flown_mission()'s pad and its scene: where the first leg is else.
+/// A mast between flight_mission()'s pad and its scene: where the first leg is else.
 const AlignedBox3d mast{Vector3d(-66, -3, 0), Vector3d(-64, 3, 25)};
 constexpr double uncertainty = 0.7;
 
 std::string with_obstacle(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "mast.obj";
   geometry::write_mesh(file, flight::scenes::box(mast.min(), mast.max()));
-  return flown_mission("prior: [{file: '" + file.string() +
-                       "', role: obstacle, uncertainty: 0.7}]\n");
+  return flight_mission("prior: [{file: '" + file.string() +
+                        "', role: obstacle, uncertainty: 0.7}]\n");
 }
 
 /// Least distance of points a centimetre apart on the way to a box: at most the true one and that.
-double nearest(const std::vector<Vector3d>& way, const AlignedBox3d& box) {
-  double least = 1e9;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const auto steps = static_cast<int>((way[i] - way[i - 1]).norm() / 0.01) + 1;
+double nearest(const std::vector<Vector3d>& flown_path, const AlignedBox3d& box) {
+  double min = 1e9;
+  for (std::size_t i = 1; i < flown_path.size(); ++i) {
+    const auto steps = static_cast<int>((flown_path[i] - flown_path[i - 1]).norm() / 0.01) + 1;
     for (int k = 0; k <= steps; ++k) {
-      const Vector3d at = way[i - 1] + (way[i] - way[i - 1]) * (static_cast<double>(k) / steps);
-      least = std::min(least, box.exteriorDistance(at));
+      const Vector3d at = flown_path[i - 1] +
+                          (flown_path[i] - flown_path[i - 1]) * (static_cast<double>(k) / steps);
+      min = std::min(min, box.exteriorDistance(at));
     }
   }
-  return least;
+  return min;
 }
 
 TEST(PriorSurvey, KeepsEveryLegClearOfObstaclesNobodyMeasured) {
   const TestFolder folder;
   const config::MissionSetup mission =
       config::parse_mission(with_obstacle(folder.path()), "m.yaml");
-  const config::MissionSetup without = config::parse_mission(flown_mission(), "m.yaml");
-  bool was_in_the_way = false;
+  const config::MissionSetup without = config::parse_mission(flight_mission(), "m.yaml");
+  bool was_obstructed = false;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const session::SurveyRecord record = simulation::run_survey(
         mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), seed, 1);
     ASSERT_GT(record.views.size(), 3U);
-    for (const session::FlownLeg& leg : testing_support::not_empty(record.flown->legs)) {
+    for (const session::ExecutedLeg& leg : testing_support::not_empty(record.flight_record->legs)) {
       EXPECT_GE(nearest(leg.points, mast), mission.flight().clearance + uncertainty);
     }
     const session::SurveyRecord other = simulation::run_survey(
         without.simulation, evaluation::SurveyScene(without.simulation, "", 0), seed, 1);
-    for (const session::FlownLeg& leg : other.flown->legs) {
-      was_in_the_way |= nearest(leg.points, mast) < mission.flight().clearance + uncertainty;
+    for (const session::ExecutedLeg& leg : other.flight_record->legs) {
+      was_obstructed |= nearest(leg.points, mast) < mission.flight().clearance + uncertainty;
     }
   }
-  EXPECT_TRUE(was_in_the_way) << "else the test says nothing";
+  EXPECT_TRUE(was_obstructed) << "else the test says nothing";
 }
 
 // From the mission file to the exported route, and back through `check --route`.
 TEST(PriorSurvey, IsPlannedExportedAndCheckedWithItsObstacles) {
   const TestFolder folder;
   std::ofstream(folder.path() / "m.yaml") << with_obstacle(folder.path());
-  std::ofstream(folder.path() / "bare.yaml") << flown_mission();
+  std::ofstream(folder.path() / "bare.yaml") << flight_mission();
   const std::string path = folder.path().string();
   ASSERT_EQ(run_skycap("plan " + path + "/m.yaml --quiet --out " + path + "/with").exit_code, 0);
   ASSERT_EQ(run_skycap("plan " + path + "/bare.yaml --quiet --out " + path + "/bare").exit_code, 0);
@@ -107,23 +108,24 @@ TEST(PriorSurvey, IsPlannedExportedAndCheckedWithItsObstacles) {
 }
 
 TEST(PriorSurvey, SaysAtWhichKeyASourceIsWrong) {
-  const auto complaint = [](const std::string& prior) {
-    return testing_support::complaint_of(
-        [&] { config::parse_mission(flown_mission("prior: [" + prior + "]\n"), "m.yaml"); });
+  const auto error_message = [](const std::string& prior) {
+    return testing_support::thrown_message(
+        [&] { config::parse_mission(flight_mission("prior: [" + prior + "]\n"), "m.yaml"); });
   };
-  EXPECT_THAT(complaint("{file: none.obj, role: target}"),
+  EXPECT_THAT(error_message("{file: none.obj, role: target}"),
               testing::MatchesRegex("m.yaml:[0-9]+: key prior.0..file: .*none.obj.*"));
-  EXPECT_THAT(complaint("{file: a.obj, role: target, crs: 'EPSG:25832', place: {heading_deg: 1}}"),
-              HasSubstr("key prior[0].crs conflicts with place"));
-  EXPECT_THAT(complaint("{file: a.obj, role: terrain, base: terrain}"),
+  EXPECT_THAT(
+      error_message("{file: a.obj, role: target, crs: 'EPSG:25832', place: {heading_deg: 1}}"),
+      HasSubstr("key prior[0].crs conflicts with place"));
+  EXPECT_THAT(error_message("{file: a.obj, role: terrain, base: terrain}"),
               HasSubstr("the base of terrain must be a number"));
   const TestFolder folder;
   geometry::write_mesh(folder.path() / "a.obj", flight::scenes::box({0, 0, 0}, {1, 1, 1}));
   const std::string file = "{file: '" + (folder.path() / "a.obj").string() + "', role: obstacle, ";
-  EXPECT_THAT(complaint(file + "height: 3}"),
+  EXPECT_THAT(error_message(file + "height: 3}"),
               HasSubstr("a.obj: height does not apply to this file"));
-  EXPECT_THAT(complaint(file + "spacing: 0}"), HasSubstr("key prior[0].spacing is 0"));
-  EXPECT_THAT(complaint("{file: a.obj, role: truth}"),
+  EXPECT_THAT(error_message(file + "spacing: 0}"), HasSubstr("key prior[0].spacing is 0"));
+  EXPECT_THAT(error_message("{file: a.obj, role: truth}"),
               HasSubstr("key prior[0].role: truth conflicts with scene.model"));
 }
 
@@ -142,7 +144,7 @@ TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
   const std::filesystem::path file = folder.path() / "hill.obj";
   geometry::write_mesh(file, hillside());
   const config::MissionSetup mission = config::parse_mission(
-      flown_mission("prior: [{file: '" + file.string() + "', role: terrain, uncertainty: 0.2}]\n"),
+      flight_mission("prior: [{file: '" + file.string() + "', role: terrain, uncertainty: 0.2}]\n"),
       "m.yaml", {{"--set", "flight.takeoff", "[-75, 0, -3.75]"}});
   EXPECT_NEAR(mission.flight().ground_at({40, 10}), slope(40), 1e-9);
   EXPECT_EQ(mission.flight().ground_at({400, 10}), -3.75) << "beyond it, at the pad's height";
@@ -157,22 +159,22 @@ TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
   EXPECT_TRUE(allows(-40, slope(-40) + clearance + 0.01)) << "lower than the scene's base";
   // Wherever it is turned to, the view of a target stands high enough over its own place.
   for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.1) {
-    const auto view = limits.view_of_target(
+    const auto view = limits.make_target_view(
         {0, 0, 3}, Vector3d(std::cos(azimuth), std::sin(azimuth), -0.2).normalized(), 30);
     ASSERT_TRUE(view);
     EXPECT_GE(view->position.z(), slope(view->position.x()) + clearance);
   }
 
   const flight::KnownSpace space(mission.flight().rules());
-  const Vector3d place(50, 20, slope(50) + 6.0);
+  const Vector3d position(50, 20, slope(50) + 6.0);
   const double true_distance = 6.0 * std::cos(std::atan(0.05));
-  EXPECT_NEAR(space.distance(place, 100), true_distance - 0.2, 1e-6);
+  EXPECT_NEAR(space.distance(position, 100), true_distance - 0.2, 1e-6);
   EXPECT_EQ(space.distance({300, 0, -5}, 100), 0.0) << "beyond it, solid up to the pad's height";
 
   const session::SurveyRecord record = simulation::run_survey(
       mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), 1, 1);
   ASSERT_GT(record.views.size(), 3U);
-  for (const session::FlownLeg& leg : record.flown->legs) {
+  for (const session::ExecutedLeg& leg : record.flight_record->legs) {
     for (const Vector3d& point : leg.points) {
       EXPECT_GE((point.z() - slope(point.x())) * std::cos(std::atan(0.05)), 2.0 + 0.2);
     }
@@ -181,7 +183,7 @@ TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
 
 /// The mission without its scene and scene box.
 std::string live_mission(const std::string& prior) {
-  std::string text = flown_mission(prior);
+  std::string text = flight_mission(prior);
   const std::string scene = "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n";
   const std::string box = "  scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}\n";
   text.erase(text.find(scene), scene.size());
@@ -211,8 +213,8 @@ TEST(PriorSurvey, HeightsCountFromAPadThatIsGiven) {
   const std::filesystem::path file = folder.path() / "house.geojson";
   std::ofstream(file)
       << R"({"type":"Polygon","coordinates":[[[7,47],[7.0001,47],[7.0001,47.0001],[7,47]]]})";
-  std::string text = flown_mission("prior: [{file: '" + file.string() +
-                                   "', role: obstacle, vertical: takeoff, base: 0, height: 9}]\n");
+  std::string text = flight_mission("prior: [{file: '" + file.string() +
+                                    "', role: obstacle, vertical: takeoff, base: 0, height: 9}]\n");
   const std::string its_pad = "takeoff: [-75, 0, 0],";
   text.erase(text.find(its_pad), its_pad.size());
   const auto read = [&](const std::vector<config::KeyOverride>& overrides) {
@@ -221,7 +223,7 @@ TEST(PriorSurvey, HeightsCountFromAPadThatIsGiven) {
   const config::KeyOverride latitude{"--set", "site.latitude_deg", "47"},
       longitude{"--set", "site.longitude_deg", "7"},
       pad{"--set", "flight.takeoff", "[-75, 0, -3.75]"};
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 read({latitude, longitude});
               }),
               HasSubstr("vertical: takeoff requires flight.takeoff"));
@@ -236,16 +238,16 @@ TEST(PriorSurvey, ADryRunTakesTheTargetsForTheTruth) {
   std::ofstream(folder.path() / "m.yaml")
       << live_mission("prior: [{file: house.obj, role: target}]\n");
   const std::string path = folder.path().string();
-  const auto refused = run_skycap("plan " + path + "/m.yaml --quiet --out " + path + "/none");
-  EXPECT_NE(refused.exit_code, 0);
-  EXPECT_THAT(refused.err, HasSubstr("--use-prior-as-truth"));
+  const auto rejected = run_skycap("plan " + path + "/m.yaml --quiet --out " + path + "/none");
+  EXPECT_NE(rejected.exit_code, 0);
+  EXPECT_THAT(rejected.err, HasSubstr("--use-prior-as-truth"));
   const auto plan = run_skycap("plan " + path +
                                "/m.yaml --use-prior-as-truth --set flight.vehicle=none "
                                "--out " +
                                path + "/dry");
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
   EXPECT_THAT(plan.out, HasSubstr("the targets' prior data, used as ground truth"));
-  const json summary = json::parse(content_of(folder.path() / "dry" / "summary.json"));
+  const json summary = json::parse(read_content(folder.path() / "dry" / "summary.json"));
   EXPECT_EQ(summary.at("settings").at("scene.model"), "prior");
   ASSERT_EQ(summary.at("targets").size(), 1U);
   const json& target = summary.at("targets")[0];
@@ -261,7 +263,7 @@ TEST(TargetCoverage, TellsWhatOfAnObjectWasMeasured) {
   const std::filesystem::path file = folder.path() / "house.obj";
   geometry::write_mesh(file, flight::scenes::box({0, 0, 0}, {10, 10, 10}));
   const config::MissionSetup mission = config::parse_mission(
-      flown_mission("prior: [{file: '" + file.string() + "', role: target, uncertainty: 0.1}]\n"),
+      flight_mission("prior: [{file: '" + file.string() + "', role: target, uncertainty: 0.1}]\n"),
       "m.yaml");
   std::vector<Eigen::Vector3f> roof;
   for (float x = 0.0F; x <= 10.0F; x += 0.25F) {

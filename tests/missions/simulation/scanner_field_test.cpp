@@ -23,7 +23,7 @@ using geometry::View;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-config::MissionSetup mission_of(const std::string& lidar, const std::string& more = "") {
+config::MissionSetup make_mission(const std::string& lidar, const std::string& more = "") {
   return config::parse_mission(
       "scene: {model: builtin:teapot, longest_side: 20}\n"
       "sensor: {lidar: " +
@@ -37,23 +37,23 @@ config::MissionSetup mission_of(const std::string& lidar, const std::string& mor
       "m.yaml");
 }
 
-sim::LidarConfig scanner_of(const std::string& preset) {
+sim::LidarConfig make_scanner(const std::string& preset) {
   return std::get<sim::LidarConfig>(config::find_sensor(preset).sensor);
 }
 
 TEST(ScannerField, KindsAreTold) {
   using sim::ScannerKind;
-  EXPECT_EQ(sim::kind_of(scanner_of("ouster_os1_128")), ScannerKind::ring);
-  EXPECT_EQ(sim::kind_of(scanner_of("velodyne_vlp16")), ScannerKind::ring);
-  EXPECT_EQ(sim::kind_of(scanner_of("riegl_vux_1uav")), ScannerKind::line);
-  EXPECT_EQ(sim::kind_of(scanner_of("riegl_minivux_1uav")), ScannerKind::line);
-  EXPECT_EQ(sim::kind_of(scanner_of("livox_mid70")), ScannerKind::rosette);
-  EXPECT_EQ(sim::kind_of(scanner_of("dji_zenmuse_l1")), ScannerKind::rosette);
+  EXPECT_EQ(sim::find_scanner_kind(make_scanner("ouster_os1_128")), ScannerKind::ring);
+  EXPECT_EQ(sim::find_scanner_kind(make_scanner("velodyne_vlp16")), ScannerKind::ring);
+  EXPECT_EQ(sim::find_scanner_kind(make_scanner("riegl_vux_1uav")), ScannerKind::line);
+  EXPECT_EQ(sim::find_scanner_kind(make_scanner("riegl_minivux_1uav")), ScannerKind::line);
+  EXPECT_EQ(sim::find_scanner_kind(make_scanner("livox_mid70")), ScannerKind::rosette);
+  EXPECT_EQ(sim::find_scanner_kind(make_scanner("dji_zenmuse_l1")), ScannerKind::rosette);
 }
 
 // Data sheets: the Mid-70 sees a circle of 70.4 degrees; 100,000 shots a second.
 TEST(ScannerField, ARosettesCameraFitsIntoItsRoundField) {
-  const auto camera = sim::forward_camera(scanner_of("livox_mid70")).camera;
+  const auto camera = sim::forward_camera(make_scanner("livox_mid70")).camera;
   const double half_diagonal = std::atan(
       std::hypot(std::tan(0.5 * camera.horizontal_fov), std::tan(0.5 * camera.vertical_fov)));
   EXPECT_NEAR(half_diagonal, 35.2 * degree, 0.5 * degree);
@@ -64,7 +64,7 @@ TEST(ScannerField, ARosettesCameraFitsIntoItsRoundField) {
 
 // The longer it draws, the finer it fills its field.
 TEST(ScannerField, ARosettesGapsCloseWithTime) {
-  const sim::LidarConfig lidar = scanner_of("livox_avia");
+  const sim::LidarConfig lidar = make_scanner("livox_avia");
   Eigen::Matrix3d optical_from_scanner;
   optical_from_scanner << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   double last = 1.0;
@@ -77,14 +77,14 @@ TEST(ScannerField, ARosettesGapsCloseWithTime) {
 }
 
 TEST(ScannerField, ARosetteLooksToTheLeftAndDownUnlessItsMountSaysOtherwise) {
-  const config::MissionSetup usual = mission_of("livox_avia");
+  const config::MissionSetup usual = make_mission("livox_avia");
   const View nose{{1, 2, 30}, {0, 1, 0}};
   const View left = geometry::scanner_view(*usual.sensor().mount, nose);
   EXPECT_LT((left.direction - Vector3d(-std::sqrt(0.75), 0, -0.5)).norm(), 1e-9);
   EXPECT_LT((geometry::nose_view(*usual.sensor().mount, left).direction - nose.direction).norm(),
             1e-9);
   const config::MissionSetup ahead =
-      mission_of("livox_avia", "scan: {mount: {rotation_deg: [0, 45, 0]}}\n");
+      make_mission("livox_avia", "scan: {mount: {rotation_deg: [0, 45, 0]}}\n");
   EXPECT_LT((geometry::scanner_view(*ahead.sensor().mount, nose).direction -
              Vector3d(0, std::sqrt(0.5), -std::sqrt(0.5)))
                 .norm(),
@@ -112,10 +112,10 @@ geometry::Mesh room() {
   return mesh;
 }
 
-sim::Carriage on_stretch(const View& from, const View& to, double duration) {
-  sim::Carriage carriage;
-  carriage.stretch = {from, to, duration};
-  return carriage;
+sim::PlatformMotion on_stretch(const View& from, const View& to, double duration) {
+  sim::PlatformMotion platform_motion;
+  platform_motion.stretch = {from, to, duration};
+  return platform_motion;
 }
 
 // The property that everything rests on: no place of any surface counts as free, whatever was flown
@@ -125,7 +125,7 @@ TEST(ScannerField, WhatARosetteInFlightProvesFreeHoldsNothing) {
   const sim::Scene scene(mesh);
   const geometry::SurfaceSamples truth = geometry::sample_surface(mesh, 20'000, 3);
   for (const char* lidar : {"livox_avia", "livox_mid70"}) {
-    const config::MissionSetup mission = mission_of(lidar);
+    const config::MissionSetup mission = make_mission(lidar);
     const sim::SurveySensor sensor(mission.sensor(), 1);
     const flight::SweepRays rays = mission.flight().capture.rays.value();
     flight::MeasuredSpace space(
@@ -143,9 +143,9 @@ TEST(ScannerField, WhatARosetteInFlightProvesFreeHoldsNothing) {
     }
     EXPECT_GT(space.free_volume(), 1000.0) << lidar;  // of 32,000
     for (const Eigen::Vector3f& p : testing_support::not_empty(truth.points)) {
-      const Vector3d place = p.cast<double>();
-      ASSERT_NE(space.closest({place, place}, 0.01).kind, flight::ObstacleKind::none)
-          << lidar << " at " << place.transpose();
+      const Vector3d position = p.cast<double>();
+      ASSERT_NE(space.closest({position, position}, 0.01).kind, flight::ObstacleKind::none)
+          << lidar << " at " << position.transpose();
     }
   }
 }
@@ -153,7 +153,7 @@ TEST(ScannerField, WhatARosetteInFlightProvesFreeHoldsNothing) {
 // A line's scan in flight is all of the stretch, a line at a time.
 TEST(ScannerField, ALineInFlightMeasuresAllOfItsWay) {
   const sim::Scene scene(room());
-  const config::MissionSetup mission = mission_of("riegl_vux_1uav");
+  const config::MissionSetup mission = make_mission("riegl_vux_1uav");
   sim::SurveySensorOptions exact = mission.sensor();
   exact.scanner->errors = {};
   exact.scanner->beam = {};

@@ -13,10 +13,10 @@ namespace {
 using Eigen::Vector3d;
 
 /// Returns from the ground, and from fifty metres away up to some elevation.
-geometry::Scan far_returns(const geometry::View& from, double highest) {
+geometry::Scan far_returns(const geometry::View& from, double max_elevation) {
   geometry::Scan scan{.world_from_sensor = geometry::camera_pose(from)};
-  constexpr double step = 0.003, lowest = -0.8, widest = 1.2, farthest = 50.0;
-  for (double up = lowest; up < highest; up += step) {
+  constexpr double step = 0.003, min_elevation = -0.8, widest = 1.2, farthest = 50.0;
+  for (double up = min_elevation; up < max_elevation; up += step) {
     const double range = std::min(farthest, from.position.z() / std::max(-std::sin(up), 1e-9));
     for (double aside = -widest; aside < widest; aside += step) {
       const Vector3d direction(std::cos(up) * std::cos(aside), std::cos(up) * std::sin(aside),
@@ -41,14 +41,14 @@ TEST(ScannerFlight, GoesOnlyWhereItsAutopilotCanReturnFrom) {
   const geometry::View inside = geometry::look_at({0, 0, 10}, {0, 10, 10});
   session::SurveyFlight flight(mission.flight(), first, 0);
   EXPECT_TRUE(flight.can_reach(first.position, geometry::look_at({-20, 15, 20}, {0, 0, 20})));
-  EXPECT_FALSE(flight.find_way(first.position, inside.position));
-  flight.take_in(far_returns(first, 0.25));
-  EXPECT_TRUE(flight.find_way(first.position, inside.position));
+  EXPECT_FALSE(flight.find_path(first.position, inside.position));
+  flight.add_scan(far_returns(first, 0.25));
+  EXPECT_TRUE(flight.find_path(first.position, inside.position));
   EXPECT_FALSE(flight.may_be_at(inside.position));
   EXPECT_FALSE(flight.can_reach(first.position, inside));
   // All air above the way, up to the box's near upper edge, which is 76 degrees up from there:
   // this autopilot may also return without a climb, at any height that it has risen to.
-  flight.take_in(far_returns(first, 1.4));
+  flight.add_scan(far_returns(first, 1.4));
   EXPECT_TRUE(flight.may_be_at(inside.position));
   EXPECT_TRUE(flight.can_reach(first.position, inside));
 }

@@ -33,16 +33,16 @@ config::MissionSetup mission_by(const std::string& lidar) {
 
 /// What the planner believes of its coverage, against the share that is covered of what could be
 /// seen.
-void expect_survey(const std::string& lidar, double least_coverage) {
+void expect_survey(const std::string& lidar, double min_coverage) {
   const config::MissionSetup mission = mission_by(lidar);
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, 1, 1);
-  EXPECT_TRUE(record.is_complete()) << survey::name_of(record.stop_reason);
+  EXPECT_TRUE(record.is_complete()) << survey::to_string(record.stop_reason);
   EXPECT_LT(record.views.size(), 40U);
-  EXPECT_GE(record.flown.value().min_clearance(), mission.flight().clearance);
+  EXPECT_GE(record.flight_record.value().min_clearance(), mission.flight().clearance);
   const double share = evaluation::covered_share(record.is_covered, scene.visible(1)).value();
-  EXPECT_GT(share, least_coverage);
-  EXPECT_NEAR(record.belief.value().coverage, share, 0.06);
+  EXPECT_GT(share, min_coverage);
+  EXPECT_NEAR(record.estimate.value().coverage, share, 0.06);
 }
 
 TEST(ScannerSurvey, ByARosetteEndsByItselfAndKnowsWhatItCovered) {
@@ -58,8 +58,9 @@ TEST(ScannerSurvey, IsForetoldFromWhereItsOpeningBegins) {
   for (const char* lidar : {"livox_avia", "riegl_minivux_1uav", "ouster_os1_128"}) {
     const config::MissionSetup mission = mission_by(lidar);
     const evaluation::SurveyScene scene(mission.simulation, "", 0);
-    EXPECT_EQ(scene.first_view(mission.run.seed).position,
-              session::opening_views(mission.survey().start, mission.run.seed).front().position);
+    EXPECT_EQ(
+        scene.first_view(mission.run.seed).position,
+        session::initial_pattern_views(mission.survey().start, mission.run.seed).front().position);
     EXPECT_GT(simulation::expectation(mission.simulation, scene, {.threads = 2}).known_views, 0U)
         << lidar;
   }

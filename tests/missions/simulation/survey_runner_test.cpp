@@ -27,8 +27,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
-using tests::content_of;
 using tests::quick_mission;
+using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
@@ -124,8 +124,8 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
     const geometry::MeshDistance truth(scene.model());
     const survey::ViewLimits& limits = mission.survey().planner.limits;
     EXPECT_GE(record.views.size(), 2U) << name;
-    for (const session::JudgedView& judged : record.views) {
-      const geometry::View& view = judged.surveyed.view;
+    for (const session::EvaluatedView& evaluated : record.views) {
+      const geometry::View& view = evaluated.surveyed.view;
       EXPECT_TRUE(limits.allow(view)) << name << " at " << view.position.transpose();
       // Noise of 0.03 m brings measurements nearer to the sensor than the truth is, or farther.
       EXPECT_GT(truth.distance(view.position), 0.4 - 0.1) << name;
@@ -135,18 +135,18 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
 
 TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
   const config::KeyOverride name{"", "planner.name", "oa"};
-  const auto planner_of = [](const std::vector<config::KeyOverride>& keys,
-                             const survey::PlannerRun& run) {
+  const auto make_test_planner = [](const std::vector<config::KeyOverride>& keys,
+                                    const survey::PlannerRun& run) {
     const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml", keys);
     return survey::make_planner(mission.survey().planner, run);
   };
-  EXPECT_THAT(testing_support::complaint_of([&] { planner_of({name}, {}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { make_test_planner({name}, {}); }),
               HasSubstr("volumetric.sphere_centre"));
-  EXPECT_NE(planner_of({name}, {.sphere = survey::ViewSphere{.radius = 2.0}}), nullptr);
-  EXPECT_NE(planner_of({name,
-                        {"", "volumetric.sphere_centre", "[0, 0, 0]"},
-                        {"", "volumetric.sphere_radius", "2"}},
-                       {}),
+  EXPECT_NE(make_test_planner({name}, {.sphere = survey::ViewSphere{.radius = 2.0}}), nullptr);
+  EXPECT_NE(make_test_planner({name,
+                               {"", "volumetric.sphere_centre", "[0, 0, 0]"},
+                               {"", "volumetric.sphere_radius", "2"}},
+                              {}),
             nullptr);
 }
 
@@ -195,7 +195,7 @@ TEST(RunSurvey, JudgesEveryView) {
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   std::size_t reported = 0;
   const session::SurveyRecord record = simulation::run_survey(
-      mission.simulation, scene, 3, 1, {}, [&](const session::JudgedView&) { ++reported; });
+      mission.simulation, scene, 3, 1, {}, [&](const session::EvaluatedView&) { ++reported; });
   ASSERT_GT(record.views.size(), 2U);
   EXPECT_EQ(reported, record.views.size());
   EXPECT_EQ(record.views.back().surveyed.points, record.cloud.size());
@@ -220,7 +220,7 @@ TEST(RunSurvey, HoldsWhatItsViewsMeasuredWhenItIsStopped) {
     std::stop_source stop;
     std::jthread finger;
     const session::SurveyRecord record = simulation::run_survey(
-        mission.simulation, scene, 1, 1, stop.get_token(), [&](const session::JudgedView&) {
+        mission.simulation, scene, 1, 1, stop.get_token(), [&](const session::EvaluatedView&) {
           if (finger.joinable()) return;
           finger = std::jthread([&] {
             std::this_thread::sleep_for(std::chrono::milliseconds(delay));
@@ -243,10 +243,10 @@ TEST(Plan, RepeatsItselfByteByByteWithAnyNumberOfThreads) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
   for (const char* file : {"views.csv", "cloud.ply", "trajectory.tum"}) {
-    const std::string first = content_of(folder.path() / "1" / file);
+    const std::string first = read_content(folder.path() / "1" / file);
     EXPECT_GT(first.size(), 100U);
-    EXPECT_EQ(first, content_of(folder.path() / "2" / file)) << file;
-    EXPECT_EQ(first, content_of(folder.path() / "3" / file)) << file;
+    EXPECT_EQ(first, read_content(folder.path() / "2" / file)) << file;
+    EXPECT_EQ(first, read_content(folder.path() / "3" / file)) << file;
   }
 }
 
@@ -256,8 +256,8 @@ TEST(Plan, MakesAnotherSurveyOfAnotherSeed) {
   for (const char* seed : {"1", "2"}) {
     ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / seed, "--seed", seed}).exit_code, 0);
   }
-  EXPECT_NE(content_of(folder.path() / "1" / "views.csv"),
-            content_of(folder.path() / "2" / "views.csv"));
+  EXPECT_NE(read_content(folder.path() / "1" / "views.csv"),
+            read_content(folder.path() / "2" / "views.csv"));
 }
 
 // A stop that is requested during the first view: that view is finished and kept.
@@ -268,7 +268,7 @@ TEST(Plan, LeavesAWholeIncompletePackageWhenInterrupted) {
   stop.request_stop();
   const auto run = run_skycap({"plan", mission, "--out", folder / "out"}, false, stop.get_token());
   EXPECT_EQ(run.exit_code, 1);
-  const json summary = json::parse(content_of(folder.path() / "out" / "summary.json"));
+  const json summary = json::parse(read_content(folder.path() / "out" / "summary.json"));
   EXPECT_EQ(summary["complete"], false);
   EXPECT_EQ(summary["stop_reason"], "interrupted");
   EXPECT_EQ(summary["views"], 1);
@@ -276,7 +276,8 @@ TEST(Plan, LeavesAWholeIncompletePackageWhenInterrupted) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / file)) << file;
   }
   // Somebody waits: normals take as long as views.
-  EXPECT_THAT(content_of(folder.path() / "out" / "cloud.ply"), Not(HasSubstr("property float nx")));
+  EXPECT_THAT(read_content(folder.path() / "out" / "cloud.ply"),
+              Not(HasSubstr("property float nx")));
 }
 
 TEST(Plan, ShowsProgressOnATerminalOnlyAndNothingWhenQuiet) {
@@ -308,12 +309,12 @@ TEST(Plan, TrialsEqualSeparateSurveys) {
   const std::vector<std::string> trials{"plan", mission,  "--out", folder / "t", "--trials",
                                         "3",    "--seed", "5",     "--threads",  "2"};
   ASSERT_EQ(run_skycap(trials).exit_code, 0);
-  std::istringstream csv(content_of(folder.path() / "t" / "trials.csv"));
+  std::istringstream csv(read_content(folder.path() / "t" / "trials.csv"));
   std::string line;
   std::getline(csv, line);
   for (const char* seed : {"5", "6", "7"}) {
     ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "s", "--seed", seed}).exit_code, 0);
-    const json summary = json::parse(content_of(folder.path() / "s" / "summary.json"));
+    const json summary = json::parse(read_content(folder.path() / "s" / "summary.json"));
     ASSERT_TRUE(std::getline(csv, line));
     EXPECT_THAT(line, testing::StartsWith(std::string(seed) + "," +
                                           summary["stop_reason"].get<std::string>() + "," +
@@ -332,8 +333,8 @@ TEST(Plan, SeeIsSeePlusPlusWithoutOptimiserAndGraph) {
                         "planner.optimise_views=false", "--set", "planner.visibility_graph=false"})
                 .exit_code,
             0);
-  EXPECT_EQ(content_of(folder.path() / "see" / "cloud.ply"),
-            content_of(folder.path() / "without" / "cloud.ply"));
+  EXPECT_EQ(read_content(folder.path() / "see" / "cloud.ply"),
+            read_content(folder.path() / "without" / "cloud.ply"));
 }
 
 // evaluate, from files, must find the coverage that plan measured on the way.
@@ -341,7 +342,7 @@ TEST(Evaluate, AgreesWithThePlansOwnCoverage) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "out"}).exit_code, 0);
-  const json summary = json::parse(content_of(folder.path() / "out" / "summary.json"));
+  const json summary = json::parse(read_content(folder.path() / "out" / "summary.json"));
   const auto run =
       run_skycap({"evaluate", "--cloud", folder / "out/cloud.ply", "--model", mission, "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -358,7 +359,7 @@ TEST(Plan, SurveysCopiesOfTheModelAndKeepsThemInTheSettings) {
   const auto run = run_skycap({"plan", mission, "--set", "scene.copies=[[1.5, 0, 90]]",
                                "--max-views", "2", "--out", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json summary = json::parse(content_of(folder.path() / "out" / "summary.json"));
+  const json summary = json::parse(read_content(folder.path() / "out" / "summary.json"));
   EXPECT_EQ(summary["settings"]["scene.copies"], json::parse("[[1.5, 0.0, 90.0]]"));
 }
 
@@ -382,9 +383,10 @@ TEST(Model, HasLevelsOfDetailOfTheSameShape) {
   const std::string mission = folder.write("m.yaml", quick_mission());
   EXPECT_NE(printed(mission, "coarse").out, printed(mission, "fine").out);
 
-  const auto refused = printed("scan.ply", "fine");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("--detail requires a builtin model; scan.ply has the detail"));
+  const auto rejected = printed("scan.ply", "fine");
+  EXPECT_EQ(rejected.exit_code, 2);
+  EXPECT_THAT(rejected.err,
+              HasSubstr("--detail requires a builtin model; scan.ply has the detail"));
   EXPECT_EQ(printed("radcliffe-camera", "finest").exit_code, 2);
 }
 

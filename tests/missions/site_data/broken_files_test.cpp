@@ -23,18 +23,18 @@ struct Whole {
 
 std::vector<Whole> whole_files() {
   const Cube cube;
-  return {{"cube.gml", citygml_of(cube)},     {"cube.json", cityjson_of(cube)},
-          {"cube.geojson", geojson_of(cube)}, {"cube.obj", obj_of(cube)},
-          {"cube.glb", glb_of(cube)},         {"cube.asc", ascii_grid_of(cube)},
-          {"cube.las", las_of(cube, 4, 6)},   {"old.las", las_of(cube, 2, 3)},
-          {"cube.e57", e57_of(cube)}};
+  return {{"cube.gml", make_citygml(cube)},     {"cube.json", make_cityjson(cube)},
+          {"cube.geojson", make_geojson(cube)}, {"cube.obj", make_obj(cube)},
+          {"cube.glb", make_glb(cube)},         {"cube.asc", make_ascii_grid(cube)},
+          {"cube.las", make_las(cube, 4, 6)},   {"old.las", make_las(cube, 2, 3)},
+          {"cube.e57", make_e57(cube)}};
 }
 
 class BrokenFiles : public testing::Test {
  protected:
   /// Whether it was refused; a finding if the message is not one line that names the file.
-  bool is_refused(const std::string& name, const std::string& bytes, const std::string& what) {
-    Source source = source_of(folder_.file(name, bytes));
+  bool is_rejected(const std::string& name, const std::string& bytes, const std::string& what) {
+    Source source = make_source(folder_.file(name, bytes));
     if (name == "cube.geojson") {
       source.base = 380.0;
       source.height = 10.0;
@@ -58,83 +58,85 @@ class BrokenFiles : public testing::Test {
 
 TEST_F(BrokenFiles, AreReadWhole) {
   for (const Whole& whole : whole_files()) {
-    EXPECT_FALSE(is_refused(whole.name, whole.bytes, "whole")) << whole.name;
+    EXPECT_FALSE(is_rejected(whole.name, whole.bytes, "whole")) << whole.name;
   }
 }
 
 TEST_F(BrokenFiles, ThatAreCutShortAreRefusedInOneLine) {
-  std::size_t refused = 0;
+  std::size_t rejected = 0;
   for (const Whole& whole : whole_files()) {
     for (std::size_t i = 0; i < 20; ++i) {
       const std::size_t size = whole.bytes.size() * i / 20;
       const std::string what = std::string(whole.name) + " of " + std::to_string(size) + " bytes";
-      refused += is_refused(whole.name, whole.bytes.substr(0, size), what) ? 1 : 0;
+      rejected += is_rejected(whole.name, whole.bytes.substr(0, size), what) ? 1 : 0;
     }
   }
-  EXPECT_GE(refused, 100U);  // text of whole lines, such as an OBJ, may still be a mesh
+  EXPECT_GE(rejected, 100U);  // text of whole lines, such as an OBJ, may still be a mesh
 }
 
 TEST_F(BrokenFiles, WithChangedBytesAreReadOrRefusedInOneLine) {
   std::mt19937_64 random(1);
-  std::size_t refused = 0, read = 0;
+  std::size_t rejected = 0, read = 0;
   for (const Whole& whole : whole_files()) {
     for (int i = 0; i < 40; ++i) {
       std::string bytes = whole.bytes;
       for (int j = 0; j < 4; ++j) bytes[random() % bytes.size()] = static_cast<char>(random());
       const std::string what = std::string(whole.name) + ", change " + std::to_string(i);
-      ++(is_refused(whole.name, bytes, what) ? refused : read);
+      ++(is_rejected(whole.name, bytes, what) ? rejected : read);
     }
   }
-  EXPECT_GE(refused, 100U);
+  EXPECT_GE(rejected, 100U);
   EXPECT_GE(read, 10U) << "else no change got past the first check of a format";
 }
 
 // A tree takes many times the bytes of its text: 110 MB and 60 MB here.
 TEST_F(BrokenFiles, WhoseTreesWouldTakeMoreThanMemoryAreRefused) {
-  const auto expect_refused = [&](const std::string& name, const std::string& bytes) {
-    const Source source = source_of(folder_.file(name, bytes));
-    EXPECT_THAT(complaint_of([&] { read_prior(source, site_at_cube()); }),
+  const auto expect_rejected = [&](const std::string& name, const std::string& bytes) {
+    const Source source = make_source(folder_.file(name, bytes));
+    EXPECT_THAT(thrown_message([&] { read_prior(source, site_at_cube()); }),
                 testing::HasSubstr(name + ": requires more than 2 GiB"));
   };
   std::string gml = "<CityModel xmlns='http://www.opengis.net/citygml/2.0'>";
   for (int i = 0; i < 25'000'000; ++i) gml += "<a/>";
-  expect_refused("many.gml", gml + "</CityModel>");
+  expect_rejected("many.gml", gml + "</CityModel>");
   std::string json = R"({"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": [[])";
   for (int i = 0; i < 17'000'000; ++i) json += ",[]";
-  expect_refused("many.json", json + "]}");
+  expect_rejected("many.json", json + "]}");
 }
 
 TEST_F(BrokenFiles, OfNoFormatAreToldWhichThereAre) {
-  Source source = source_of(folder_.file("notes.doc", "dear surveyor"));
+  Source source = make_source(folder_.file("notes.doc", "dear surveyor"));
   EXPECT_THAT([&] { read_prior(source, site_at_cube()); },
               testing::ThrowsMessage<Error>(testing::AllOf(testing::HasSubstr("notes.doc: "),
                                                            testing::HasSubstr("CityGML"))));
   source.file = folder_.path() / "none.gml";
-  EXPECT_THAT(testing_support::complaint_of([&] { read_prior(source, site_at_cube()); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { read_prior(source, site_at_cube()); }),
               testing::HasSubstr("none.gml: "));
   source.file = folder_.path();
-  EXPECT_THAT(testing_support::complaint_of([&] { read_prior(source, site_at_cube()); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { read_prior(source, site_at_cube()); }),
               testing::HasSubstr(folder_.path().string() + ": "));
 }
 
 // The first crashes assimp 5.2 itself, the second has it take memory without end; it
 // therefore runs in a process of its own.
 TEST_F(BrokenFiles, ThatMakeTheirLibraryCrashOrLoopAreRefused) {
-  const auto complaint = [&](const std::string& name, const std::string& bytes) {
-    return complaint_of([&] { read_prior(source_of(folder_.file(name, bytes)), site_at_cube()); });
+  const auto error_message = [&](const std::string& name, const std::string& bytes) {
+    return thrown_message(
+        [&] { read_prior(make_source(folder_.file(name, bytes)), site_at_cube()); });
   };
   EXPECT_EQ(
-      complaint("cut.ifc",
-                "ISO-10303-21;\nFILE_SCHEMA(('IFC2X3'));\nDATA;\n"
-                "#6=IFCPROJECT('0YvctVUKr0kugbFTf53O9L',#11,'p',$,$,$,$,(#5),#2);\n"
-                "#8=IFCSITE"),
+      error_message("cut.ifc",
+                    "ISO-10303-21;\nFILE_SCHEMA(('IFC2X3'));\nDATA;\n"
+                    "#6=IFCPROJECT('0YvctVUKr0kugbFTf53O9L',#11,'p',$,$,$,$,(#5),#2);\n"
+                    "#8=IFCSITE"),
       (folder_.path() / "cut.ifc").string() + ": is damaged: assimp stopped while reading it");
   EXPECT_THAT(
-      complaint("loop.dae",
-                R"(<COLLADA version="1.4.1"><asset></asset><library_geometries><geometry id="g">)"
-                R"(<mesh><source id="p"><float_array count="3">0 0 0</float_array></source>)"
-                R"(<vertices id="v"></vertices><triangles count="12"><p>0 1e999 3</p></triangles>)"
-                R"(</mesh></geometry></library_geometries></COLLADA>)"),
+      error_message(
+          "loop.dae",
+          R"(<COLLADA version="1.4.1"><asset></asset><library_geometries><geometry id="g">)"
+          R"(<mesh><source id="p"><float_array count="3">0 0 0</float_array></source>)"
+          R"(<vertices id="v"></vertices><triangles count="12"><p>0 1e999 3</p></triangles>)"
+          R"(</mesh></geometry></library_geometries></COLLADA>)"),
       testing::StartsWith((folder_.path() / "loop.dae").string() + ": "));
 }
 

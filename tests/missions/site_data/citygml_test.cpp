@@ -46,7 +46,7 @@ class CityGml : public testing::Test {
   Prior read(const std::string& text, const std::function<void(Source&)>& change = {}) {
     Source source;
     source.file = folder_.file("city.gml", text);
-    source.place = Place{};
+    source.pose = SourcePose{};
     if (change) change(source);
     return read_prior(source, {});
   }
@@ -60,9 +60,9 @@ TEST_F(CityGml, TakesTheHighestLevelOfEachObjectUnlessToldOtherwise) {
       "</bldg:lod2MultiSurface><bldg:consistsOfBuildingPart>"
       "<bldg:BuildingPart gml:id=\"part\"><bldg:lod1Solid>" +
       square(30, 3) + "</bldg:lod1Solid></bldg:BuildingPart></bldg:consistsOfBuildingPart>"));
-  const Prior highest = read(text);
-  ASSERT_EQ(highest.objects.size(), 1U);
-  EXPECT_DOUBLE_EQ(geometry::surface_area(highest.objects[0].mesh), 400.0 + 900.0);
+  const Prior max_height_prior = read(text);
+  ASSERT_EQ(max_height_prior.objects.size(), 1U);
+  EXPECT_DOUBLE_EQ(geometry::surface_area(max_height_prior.objects[0].mesh), 400.0 + 900.0);
   const Prior first = read(text, [](Source& s) { s.select.lod = 1.0; });
   EXPECT_DOUBLE_EQ(geometry::surface_area(first.objects[0].mesh), 100.0 + 900.0);
 }
@@ -71,11 +71,11 @@ TEST_F(CityGml, OfTwoReferenceSystemsIsRefusedUnlessOneIsNamed) {
   const std::string text = model(building(
       "<gml:boundedBy><gml:Envelope srsName=\"EPSG:25832\"/></gml:boundedBy><bldg:lod2Solid>" +
       square(10, 1, "srsName=\"EPSG:31468\"") + "</bldg:lod2Solid>"));
-  const auto without_place = [](Source& s) {
-    s.place.reset();
+  const auto without_pose = [](Source& s) {
+    s.pose.reset();
     s.vertical = HeightDatum::ellipsoid;
   };
-  EXPECT_THAT([&] { read(text, without_place); },
+  EXPECT_THAT([&] { read(text, without_pose); },
               ThrowsMessage<Error>(
                   HasSubstr("two coordinate reference systems, EPSG:25832 and EPSG:31468")));
   EXPECT_EQ(read(text).objects.size(), 1U) << "a place puts all of it";
@@ -184,7 +184,7 @@ TEST_F(CityGml, DropsPolygonsWithoutAreaAndCountsThem) {
   EXPECT_DOUBLE_EQ(geometry::surface_area(prior.objects[0].mesh), 4.0);
 }
 
-TEST_F(CityGml, SaysWhatIsWrong) {
+TEST_F(CityGml, ReportsWhatIsWrong) {
   const struct {
     std::string text, message;
   } cases[] = {

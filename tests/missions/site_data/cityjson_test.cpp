@@ -21,7 +21,7 @@ class CityJson : public testing::Test {
   Prior read(const std::string& text, const std::function<void(Source&)>& change = {}) {
     Source source;
     source.file = folder_.file("city.json", text);
-    source.place = Place{};
+    source.pose = SourcePose{};
     if (change) change(source);
     return read_prior(source, {});
   }
@@ -30,23 +30,24 @@ class CityJson : public testing::Test {
 
 const std::string four_vertices = R"("vertices":[[0,0,0],[4,0,0],[4,4,0],[0,4,0]])";
 
-std::string surface_of(const std::string& type, const std::string& boundaries) {
+std::string make_surface(const std::string& type, const std::string& boundaries) {
   return R"({"type":"CityJSON","version":"1.0","CityObjects":{"a":{"type":"Building","geometry":[)"
          R"({"type":")" +
          type + R"(","lod":1,"boundaries":)" + boundaries + "}]}}," + four_vertices + "}";
 }
 
 TEST_F(CityJson, NestsBoundariesByType) {
-  EXPECT_EQ(read(surface_of("MultiSurface", "[[[0,1,2,3]]]")).objects[0].mesh.triangles.size(), 2U);
-  EXPECT_EQ(read(surface_of("Solid", "[[[[0,1,2,3]]]]")).objects[0].mesh.triangles.size(), 2U);
-  EXPECT_EQ(read(surface_of("MultiSolid", "[[[[[0,1,2,3]]]]]")).objects[0].mesh.triangles.size(),
+  EXPECT_EQ(read(make_surface("MultiSurface", "[[[0,1,2,3]]]")).objects[0].mesh.triangles.size(),
+            2U);
+  EXPECT_EQ(read(make_surface("Solid", "[[[[0,1,2,3]]]]")).objects[0].mesh.triangles.size(), 2U);
+  EXPECT_EQ(read(make_surface("MultiSolid", "[[[[[0,1,2,3]]]]]")).objects[0].mesh.triangles.size(),
             2U);
 }
 
 TEST_F(CityJson, IsParsedOnceWhileAReadOnceLives) {
   Source source;
-  source.file = folder_.file("city.json", surface_of("MultiSurface", "[[[0,1,2,3]]]"));
-  source.place = Place{};
+  source.file = folder_.file("city.json", make_surface("MultiSurface", "[[[0,1,2,3]]]"));
+  source.pose = SourcePose{};
   const SharedContents before = read_contents(source, {});
   EXPECT_NE(read_contents(source, {}), before);
   SharedContents kept;
@@ -103,7 +104,7 @@ TEST_F(CityJson, PutsTemplatesWhereTheirInstancesAre) {
   EXPECT_TRUE(prior.box.min().isApprox(Eigen::Vector3d(4, 4, 0)));
 }
 
-TEST_F(CityJson, SaysWhatIsWrong) {
+TEST_F(CityJson, ReportsWhatIsWrong) {
   const std::string deep(100'000, '[');
   const struct {
     std::string text, message;
@@ -111,9 +112,9 @@ TEST_F(CityJson, SaysWhatIsWrong) {
       {R"({"type":"CityJSON",)", "is not JSON"},
       {R"({"type":"CityJSON","x":)" + deep, "is not JSON"},
       {R"({"type":"CityJSON","version":"2.0"})", "violates the CityJSON specification"},
-      {surface_of("MultiSurface", "[[[0,1,9]]]"), "violates the CityJSON specification"},
-      {surface_of("MultiSurface", "[[[0,1,-1]]]"), "violates the CityJSON specification"},
-      {surface_of("MultiSurface", "7"), "violates the CityJSON specification"},
+      {make_surface("MultiSurface", "[[[0,1,9]]]"), "violates the CityJSON specification"},
+      {make_surface("MultiSurface", "[[[0,1,-1]]]"), "violates the CityJSON specification"},
+      {make_surface("MultiSurface", "7"), "violates the CityJSON specification"},
       {R"({"type":"CityJSON","version":"2.0","vertices":[],"CityObjects":{"a":{"type":"Building",)"
        R"("parents":["a"],"geometry":[{"type":"MultiSurface","boundaries":[[[]]]}]}}})",
        "contains itself"},
@@ -145,7 +146,7 @@ TEST_F(CityJson, OfMoreCornersThanItsTreeAllowsIsRefused) {
 
 /// By what is counted in the text, before any of it is read.
 TEST_F(CityJson, WhoseTreeWouldTakeTooMuchIsRefused) {
-  EXPECT_THAT([&] { parse_cityjson("city.json", std::string(most_tree_bytes / 65 + 1, '[')); },
+  EXPECT_THAT([&] { parse_cityjson("city.json", std::string(max_tree_bytes / 65 + 1, '[')); },
               ThrowsMessage<Error>(HasSubstr("city.json: requires more than 2 GiB")));
 }
 

@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 template <typename Value>
-void put(std::string& bytes, std::size_t place, Value value) {
-  std::memcpy(bytes.data() + place, &value, sizeof value);
+void put(std::string& bytes, std::size_t offset, Value value) {
+  std::memcpy(bytes.data() + offset, &value, sizeof value);
 }
 
 template <typename Value>
@@ -28,14 +28,14 @@ void pad(std::string& bytes, char filler) {
 
 }  // namespace
 
-std::string numbers(const Vector3d& place, const char* separator) {
+std::string numbers(const Vector3d& offset, const char* separator) {
   std::array<char, 128> text;
-  std::snprintf(text.data(), text.size(), "%.3f%s%.3f%s%.3f", place.x(), separator, place.y(),
-                separator, place.z());
+  std::snprintf(text.data(), text.size(), "%.3f%s%.3f%s%.3f", offset.x(), separator, offset.y(),
+                separator, offset.z());
   return text.data();
 }
 
-std::string citygml_of(const Cube& cube, const std::string& crs) {
+std::string make_citygml(const Cube& cube, const std::string& crs) {
   constexpr std::array<const char*, 3> kinds = {"GroundSurface", "RoofSurface", "WallSurface"};
   std::string text =
       "<?xml version=\"1.0\"?>\n<CityModel xmlns=\"http://www.opengis.net/citygml/2.0\""
@@ -59,7 +59,7 @@ std::string citygml_of(const Cube& cube, const std::string& crs) {
   return text + "</bldg:Building></cityObjectMember></CityModel>\n";
 }
 
-std::string cityjson_of(const Cube& cube, const std::string& crs) {
+std::string make_cityjson(const Cube& cube, const std::string& crs) {
   std::string text =
       R"({"type":"CityJSON","version":"2.0","metadata":{"referenceSystem":")" + crs +
       R"("},"transform":{"scale":[0.001,0.001,0.001],"translate":[)" + numbers(cube.low, ",") +
@@ -83,11 +83,11 @@ std::string cityjson_of(const Cube& cube, const std::string& crs) {
   return text + "]}";
 }
 
-std::string geojson_of(const Cube& cube) {
+std::string make_geojson(const Cube& cube) {
   std::string ring;
   for (const int corner : {0, 1, 3, 2, 0}) {
-    const std::string place = numbers(cube.corner(corner), ",");
-    ring += (ring.empty() ? "[" : ",[") + place.substr(0, place.rfind(',')) + "]";
+    const std::string offset = numbers(cube.corner(corner), ",");
+    ring += (ring.empty() ? "[" : ",[") + offset.substr(0, offset.rfind(',')) + "]";
   }
   return R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":)"
          R"("urn:ogc:def:crs:EPSG::25832"}},"features":[{"type":"Feature","properties":)"
@@ -95,7 +95,7 @@ std::string geojson_of(const Cube& cube) {
          ring + "]]}}]}";
 }
 
-std::string obj_of(const Cube& cube) {
+std::string make_obj(const Cube& cube) {
   std::string text;
   for (int i = 0; i < 8; ++i) text += "v " + numbers(cube.corner(i)) + "\n";
   for (const auto& face : Cube::faces) {
@@ -106,12 +106,12 @@ std::string obj_of(const Cube& cube) {
   return text;
 }
 
-std::string glb_of(const Cube& cube) {
+std::string make_glb(const Cube& cube) {
   std::string binary;
   for (int i = 0; i < 8; ++i) {
-    const Vector3d place = cube.corner(i) - cube.low;
+    const Vector3d offset = cube.corner(i) - cube.low;
     // East is x, up is y, and so north is -z.
-    for (const double coordinate : {place.x(), place.z(), -place.y()}) {
+    for (const double coordinate : {offset.x(), offset.z(), -offset.y()}) {
       append(binary, static_cast<float>(coordinate));
     }
   }
@@ -120,7 +120,7 @@ std::string glb_of(const Cube& cube) {
       append(binary, static_cast<std::uint16_t>(face[corner]));
     }
   }
-  const std::string most = std::to_string(cube.size.x()) + "," + std::to_string(cube.size.z());
+  const std::string max = std::to_string(cube.size.x()) + "," + std::to_string(cube.size.z());
   std::string json =
       R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
       R"("nodes":[{"mesh":0,"name":"cube"}],"meshes":[{"primitives":[)"
@@ -128,7 +128,7 @@ std::string glb_of(const Cube& cube) {
       R"("bufferViews":[{"buffer":0,"byteLength":96,"target":34962},)"
       R"({"buffer":0,"byteOffset":96,"byteLength":72,"target":34963}],"accessors":[)"
       R"({"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[0,0,)" +
-      std::to_string(-cube.size.y()) + R"(],"max":[)" + most + R"(,0]},)" +
+      std::to_string(-cube.size.y()) + R"(],"max":[)" + max + R"(,0]},)" +
       R"({"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}]})";
   pad(json, ' ');
   pad(binary, '\0');
@@ -142,14 +142,14 @@ std::string glb_of(const Cube& cube) {
   return bytes;
 }
 
-std::string ascii_grid_of(const Cube& cube) {
+std::string make_ascii_grid(const Cube& cube) {
   constexpr int around = 4, across = 20;
   constexpr double cell = 0.5;
   const Vector3d corner = cube.low - Vector3d::Constant(around * cell);
-  const std::string place = numbers(corner);
-  std::string text = "ncols 28\nnrows 28\nxllcorner " + place.substr(0, place.find(' ')) +
+  const std::string offset = numbers(corner);
+  std::string text = "ncols 28\nnrows 28\nxllcorner " + offset.substr(0, offset.find(' ')) +
                      "\nyllcorner " +
-                     place.substr(place.find(' ') + 1, place.rfind(' ') - place.find(' ') - 1) +
+                     offset.substr(offset.find(' ') + 1, offset.rfind(' ') - offset.find(' ') - 1) +
                      "\ncellsize 0.5\nNODATA_value -9999\n";
   for (int row = 0; row < 2 * around + across; ++row) {
     for (int column = 0; column < 2 * around + across; ++column) {
@@ -161,7 +161,7 @@ std::string ascii_grid_of(const Cube& cube) {
   return text;
 }
 
-std::string las_of(const Cube& cube, int minor, int format, const std::string& wkt) {
+std::string make_las(const Cube& cube, int minor, int format, const std::string& wkt) {
   namespace las = geometry::las;
   const std::size_t header = minor == 4 ? 375 : minor == 3 ? 235 : 227;
   const std::size_t record = wkt.empty() ? 0 : las::record::end + wkt.size() + 1;
@@ -193,13 +193,13 @@ std::string las_of(const Cube& cube, int minor, int format, const std::string& w
       put(bytes, header + record + static_cast<std::size_t>(i) * point + 4UL * axis,
           static_cast<std::int32_t>(std::lround(units[axis])));
     }
-    const std::size_t place = header + record + static_cast<std::size_t>(i) * point;
-    bytes[place + (format < 6 ? 15 : 16)] = static_cast<char>(i < 4 ? 2 : 6);  // ground, building
+    const std::size_t offset = header + record + static_cast<std::size_t>(i) * point;
+    bytes[offset + (format < 6 ? 15 : 16)] = static_cast<char>(i < 4 ? 2 : 6);  // ground, building
   }
   return bytes;
 }
 
-std::string e57_of(const Cube& cube, const std::string& reference_system) {
+std::string make_e57(const Cube& cube, const std::string& reference_system) {
   std::vector<E57Scan> scans;
   for (int first = 0; first < 8; first += 4) {  // bottom and top, each turned a quarter
     E57Scan& scan = scans.emplace_back();
@@ -221,11 +221,11 @@ std::string e57_of(const Cube& cube, const std::string& reference_system) {
         std::to_string(cube.low.x()) + "</x><y>" + std::to_string(cube.low.y()) + "</y><z>" +
         std::to_string(cube.low.z()) + "</z></translation></pose>";
   }
-  return testing_support::e57_of(scans, "<coordinateMetadata type=\"String\"><![CDATA[" +
-                                            reference_system + "]]></coordinateMetadata>");
+  return testing_support::make_e57(scans, "<coordinateMetadata type=\"String\"><![CDATA[" +
+                                              reference_system + "]]></coordinateMetadata>");
 }
 
-missions::site_data::Source source_of(const std::filesystem::path& file) {
+missions::site_data::Source make_source(const std::filesystem::path& file) {
   missions::site_data::Source source;
   source.file = file;
   source.crs = "EPSG:25832";

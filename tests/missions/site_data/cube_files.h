@@ -28,24 +28,24 @@ struct Cube {
 };
 
 /// x y z in millimetres' digits, apart by a separator.
-std::string numbers(const Eigen::Vector3d& place, const char* separator = " ");
+std::string numbers(const Eigen::Vector3d& offset, const char* separator = " ");
 
-std::string citygml_of(const Cube& cube, const std::string& crs = "EPSG:25832");
-std::string cityjson_of(const Cube& cube, const std::string& crs = "EPSG:25832");
-std::string geojson_of(const Cube& cube);  ///< its outline alone
-std::string obj_of(const Cube& cube);
+std::string make_citygml(const Cube& cube, const std::string& crs = "EPSG:25832");
+std::string make_cityjson(const Cube& cube, const std::string& crs = "EPSG:25832");
+std::string make_geojson(const Cube& cube);  ///< its outline alone
+std::string make_obj(const Cube& cube);
 /// With y up and its low corner at the origin: single precision holds no map's coordinates.
-std::string glb_of(const Cube& cube);
+std::string make_glb(const Cube& cube);
 /// Cells of half a metre around it at its top, and 20 m lower elsewhere.
-std::string ascii_grid_of(const Cube& cube);
+std::string make_ascii_grid(const Cube& cube);
 /// Its corners as a LAS file; the scale is 1 mm. Versions before 1.4 have formats below 6.
-std::string las_of(const Cube& cube, int minor, int format, const std::string& wkt = "");
+std::string make_las(const Cube& cube, int minor, int format, const std::string& wkt = "");
 
 /// Its corners as an E57 file: two scans of scaled integers whose poses put them on the map.
-std::string e57_of(const Cube& cube, const std::string& reference_system = "");
+std::string make_e57(const Cube& cube, const std::string& reference_system = "");
 
 /// A source of a file whose heights are ellipsoid heights in EPSG:25832.
-missions::site_data::Source source_of(const std::filesystem::path& file);
+missions::site_data::Source make_source(const std::filesystem::path& file);
 
 /// A site 60 m from the cube.
 missions::site_data::SiteFrame site_at_cube();

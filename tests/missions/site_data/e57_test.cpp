@@ -14,14 +14,14 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 using testing_support::Cube;
-using testing_support::e57_of;
+using testing_support::make_e57;
+using testing_support::make_source;
 using testing_support::site_at_cube;
-using testing_support::source_of;
 
 class E57File : public testing::Test {
  protected:
   Prior read(const std::string& bytes, const std::function<void(Source&)>& change = {}) {
-    Source source = source_of(folder_.file("scan.e57", bytes));
+    Source source = make_source(folder_.file("scan.e57", bytes));
     if (change) change(source);
     return read_prior(source, site_at_cube());
   }
@@ -30,15 +30,15 @@ class E57File : public testing::Test {
 };
 
 TEST_F(E57File, KnowsItsReferenceSystemByItsMetadata) {
-  const Prior by_file = read(e57_of(cube_, "EPSG:25832"), [](Source& s) { s.crs.clear(); });
-  const Prior by_key = read(e57_of(cube_));
+  const Prior by_file = read(make_e57(cube_, "EPSG:25832"), [](Source& s) { s.crs.clear(); });
+  const Prior by_key = read(make_e57(cube_));
   EXPECT_EQ(by_file.crs, "ETRS89 / UTM zone 32N");
   EXPECT_EQ(by_file.points, by_key.points);
-  EXPECT_THAT([&] { read(e57_of(cube_, "my garden"), [](Source& s) { s.crs.clear(); }); },
+  EXPECT_THAT([&] { read(make_e57(cube_, "my garden"), [](Source& s) { s.crs.clear(); }); },
               ThrowsMessage<Error>(HasSubstr("scan.e57: ")));
 }
 
-TEST_F(E57File, StaysWhereOurOwnScansSayTheyAre) {
+TEST_F(E57File, KeepsThePositionOfOwnScans) {
   Cube near;
   near.low = {1.0, 2.0, 3.0};
   const auto without_words = [](Source& s) {
@@ -46,7 +46,7 @@ TEST_F(E57File, StaysWhereOurOwnScansSayTheyAre) {
     s.vertical.reset();
   };
   for (const char* words : {"", "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"origin\",0]]"}) {
-    const Prior prior = read(e57_of(near, words), without_words);
+    const Prior prior = read(make_e57(near, words), without_words);
     EXPECT_TRUE(prior.points[0].isApprox(Eigen::Vector3f(1, 2, 3)));
     EXPECT_TRUE(prior.points[7].isApprox(Eigen::Vector3f(11, 12, 13)));
     // Who says nothing is told what is made of it.
@@ -56,26 +56,26 @@ TEST_F(E57File, StaysWhereOurOwnScansSayTheyAre) {
 
 TEST_F(E57File, IsNoGroundNoTargetAndNoTruth) {
   for (const Role role : {Role::terrain, Role::target, Role::truth}) {
-    EXPECT_THAT([&] { read(e57_of(cube_), [&](Source& s) { s.role = role; }); },
+    EXPECT_THAT([&] { read(make_e57(cube_), [&](Source& s) { s.role = role; }); },
                 ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.e57: contains no surfaces"),
                                                     HasSubstr("scan.e57: is a point cloud"))));
   }
 }
 
 TEST_F(E57File, KeepsOnePointACube) {
-  EXPECT_EQ(read(e57_of(cube_), [](Source& s) { s.spacing = 1e4; }).points.size(), 1U);
-  EXPECT_EQ(read(e57_of(cube_), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
+  EXPECT_EQ(read(make_e57(cube_), [](Source& s) { s.spacing = 1e4; }).points.size(), 1U);
+  EXPECT_EQ(read(make_e57(cube_), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
 }
 
 // It is read piece by piece, whatever its size; what follows the file on disk here is a hole.
 TEST_F(E57File, MayBeLargerThanTwoGigabytes) {
-  const std::filesystem::path file = folder_.file("large.e57", e57_of(cube_));
-  std::filesystem::resize_file(file, most_bytes + (std::size_t{1} << 20));
-  EXPECT_EQ(read_prior(source_of(file), site_at_cube()).points.size(), 8U);
+  const std::filesystem::path file = folder_.file("large.e57", make_e57(cube_));
+  std::filesystem::resize_file(file, max_bytes + (std::size_t{1} << 20));
+  EXPECT_EQ(read_prior(make_source(file), site_at_cube()).points.size(), 8U);
 }
 
 TEST_F(E57File, HasNoClasses) {
-  EXPECT_THAT([&] { read(e57_of(cube_), [](Source& s) { s.select.classes = {2}; }); },
+  EXPECT_THAT([&] { read(make_e57(cube_), [](Source& s) { s.select.classes = {2}; }); },
               ThrowsMessage<Error>(HasSubstr("select.classes does not apply")));
 }
 

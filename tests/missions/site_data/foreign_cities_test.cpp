@@ -23,7 +23,7 @@ using testing_support::Cube;
 class ForeignCity : public testing::Test {
  protected:
   Prior read(const std::string& name, const std::string& text) {
-    Source source = testing_support::source_of(folder_.file(name, text));
+    Source source = testing_support::make_source(folder_.file(name, text));
     source.crs.clear();
     return read_prior(source, testing_support::site_at_cube());
   }
@@ -32,15 +32,15 @@ class ForeignCity : public testing::Test {
       const Prior prior = read(name, text);
       ASSERT_EQ(prior.objects.size(), 1U);
       EXPECT_EQ(prior.objects[0].mesh.triangles.size(), 12U);
-      EXPECT_NEAR(prior.ellipsoid_heights->least, 380.0, 1e-3);
-      EXPECT_NEAR(prior.ellipsoid_heights->most, 390.0, 1e-3);
+      EXPECT_NEAR(prior.ellipsoid_heights->min, 380.0, 1e-3);
+      EXPECT_NEAR(prior.ellipsoid_heights->max, 390.0, 1e-3);
       notes_ = prior.notes;
     } catch (const Error& error) {
       ADD_FAILURE() << error.what();
     }
   }
-  std::string complaint(const std::string& name, const std::string& text) {
-    return testing_support::complaint_of([&] { read(name, text); });
+  std::string error_message(const std::string& name, const std::string& text) {
+    return testing_support::thrown_message([&] { read(name, text); });
   }
   testing_support::TemporaryFolder folder_;
   std::vector<std::string> notes_;  ///< of the last cube
@@ -77,18 +77,18 @@ TEST(ReferenceNames, AreThoseOfAuthorities) {
 TEST_F(ForeignCity, NamesItsSystemAsAuthoritiesDo) {
   for (const char* name : {"EPSG:25832", "http://www.opengis.net/gml/srs/epsg.xml#25832",
                            "urn:adv:crs:ETRS89_UTM32", "urn:ogc:def:crs:EPSG:6.9:25832"}) {
-    expect_cube("a.gml", testing_support::citygml_of(Cube(), name));
+    expect_cube("a.gml", testing_support::make_citygml(Cube(), name));
   }
-  EXPECT_THAT(complaint("a.gml", testing_support::citygml_of(
-                                     Cube(), "urn:adv:crs:ETRS89_UTM32*DE_DHHN2099_NH")),
+  EXPECT_THAT(error_message("a.gml", testing_support::make_citygml(
+                                         Cube(), "urn:adv:crs:ETRS89_UTM32*DE_DHHN2099_NH")),
               HasSubstr("; set crs: EPSG:25832 if that is meant"));
-  EXPECT_THAT(complaint("a.gml", testing_support::citygml_of(Cube(), "my own")),
+  EXPECT_THAT(error_message("a.gml", testing_support::make_citygml(Cube(), "my own")),
               HasSubstr("'my own'; set crs to its name in PROJ"));
 }
 
 /// The cube with the coordinates of each ring written in another way.
 std::string gml_with(const std::function<std::string(const std::vector<std::string>&)>& ring) {
-  std::string text = testing_support::citygml_of(Cube());
+  std::string text = testing_support::make_citygml(Cube());
   const std::string begin = "<gml:posList>", end = "</gml:posList>";
   for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
     const std::size_t close = text.find(end, at);
@@ -118,7 +118,8 @@ TEST_F(ForeignCity, ReadsCoordinatesWithSeparatorsOfTheirOwn) {
   expect_cube("a.gml", coordinates(" decimal=\",\" cs=\";\" ts=\" \"", ";", " ", ','));
   expect_cube("a.gml", coordinates(" decimal=\",\" cs=\" \" ts=\"|\"", " ", "|", ','));
   expect_cube("a.gml", coordinates(" cs=\";\"", ";", " ", '.'));
-  EXPECT_THAT(complaint("a.gml", coordinates("", ";", " ", '.')), HasSubstr("it must be a number"));
+  EXPECT_THAT(error_message("a.gml", coordinates("", ";", " ", '.')),
+              HasSubstr("it must be a number"));
 }
 
 TEST_F(ForeignCity, ReadsPointsOneByOne) {
@@ -136,7 +137,7 @@ TEST_F(ForeignCity, ReadsPointsOneByOne) {
 }
 
 TEST_F(ForeignCity, ReadsTextOfSixteenBits) {
-  const std::string gml = replaced(testing_support::citygml_of(Cube()), "<?xml version=\"1.0\"?>",
+  const std::string gml = replaced(testing_support::make_citygml(Cube()), "<?xml version=\"1.0\"?>",
                                    "<?xml version=\"1.0\" encoding=\"UTF-16\"?>");
   for (const bool is_big_endian : {false, true}) {
     std::string wide = is_big_endian ? "\xFE\xFF" : "\xFF\xFE";
@@ -146,12 +147,12 @@ TEST_F(ForeignCity, ReadsTextOfSixteenBits) {
     }
     expect_cube("a.gml", wide);
   }
-  expect_cube("a.json", "\xEF\xBB\xBF" + testing_support::cityjson_of(Cube()));
-  expect_cube("a.gml", "\xEF\xBB\xBF" + testing_support::citygml_of(Cube()));
+  expect_cube("a.json", "\xEF\xBB\xBF" + testing_support::make_cityjson(Cube()));
+  expect_cube("a.gml", "\xEF\xBB\xBF" + testing_support::make_citygml(Cube()));
 }
 
 TEST_F(ForeignCity, ReadsIncompleteSemanticsAsSurfacesWithoutAKind) {
-  const std::string json = testing_support::cityjson_of(Cube());
+  const std::string json = testing_support::make_cityjson(Cube());
   const std::size_t begin = json.find(R"("semantics":)"), end = json.find("]]}}]}}", begin) + 3;
   const auto with = [&](const std::string& semantics) {
     return json.substr(0, begin) + semantics + json.substr(end);
@@ -169,7 +170,7 @@ TEST_F(ForeignCity, ReadsIncompleteSemanticsAsSurfacesWithoutAKind) {
 }
 
 TEST_F(ForeignCity, TakesALevelThatIsNoNumberForAll) {
-  const std::string json = testing_support::cityjson_of(Cube());
+  const std::string json = testing_support::make_cityjson(Cube());
   for (const char* lod :
        {R"("lod":null)", R"("lod":"")", R"("lod":"high")", R"("lod":true)", R"("lod":-1)"}) {
     expect_cube("a.json", replaced(json, R"("lod":"2.2")", lod));
@@ -182,8 +183,8 @@ TEST_F(ForeignCity, TakesALevelThatIsNoNumberForAll) {
 }
 
 TEST_F(ForeignCity, NamesTheObjectThatIsBroken) {
-  const std::string json = testing_support::cityjson_of(Cube());
-  EXPECT_THAT(complaint("a.json", replaced(json, R"("boundaries":[[)", R"("bounds":[[)")),
+  const std::string json = testing_support::make_cityjson(Cube());
+  EXPECT_THAT(error_message("a.json", replaced(json, R"("boundaries":[[)", R"("bounds":[[)")),
               HasSubstr("violates the CityJSON specification in the object cube ("));
 }
 

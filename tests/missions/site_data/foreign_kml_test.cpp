@@ -37,8 +37,8 @@ std::string placemark(const std::string& geometry) {
 
 std::string corners(double altitude) {
   std::string text;
-  for (const char* place : {"9,48,", "9.0002,48,", "9.0002,48.0002,", "9,48.0002,", "9,48,"}) {
-    text += place + std::to_string(altitude) + " ";
+  for (const char* position : {"9,48,", "9.0002,48,", "9.0002,48.0002,", "9,48.0002,", "9,48,"}) {
+    text += position + std::to_string(altitude) + " ";
   }
   return "<coordinates>" + text + "</coordinates>";
 }
@@ -90,7 +90,7 @@ TEST_F(ForeignKml, HeightsAboveTheGroundAreThoseOfSolids) {
     EXPECT_NEAR(prior.box.min().z(), 0.0, 1e-3) << how;
     EXPECT_NEAR(prior.box.max().z(), 12.0, 1e-3) << how;
   }
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { read("a.kml", placemark(polygon(mode("clampToGround"), 12.0)), based); }),
               HasSubstr("contains no height of hall"));
 }
@@ -122,7 +122,7 @@ TEST_F(ForeignKml, OfSeveralPolygonsAllAreRead) {
 }
 
 /// A zip archive of one member, stored as it is.
-std::string zip_of(const std::string& name, const std::string& bytes) {
+std::string make_zip(const std::string& name, const std::string& bytes) {
   const auto sum = static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
   const auto number = [](std::uint64_t value, int size) {
@@ -143,10 +143,10 @@ std::string zip_of(const std::string& name, const std::string& bytes) {
 TEST_F(ForeignKml, IsReadFromKmz) {
   const double roof = roof_altitude();
   const std::string text = placemark(polygon(extruded + mode("absolute"), roof));
-  const Prior prior = read("hall.kmz", zip_of("doc.kml", text));
+  const Prior prior = read("hall.kmz", make_zip("doc.kml", text));
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_NEAR(prior.box.max().z(), 20.0, 0.1);
-  EXPECT_THAT(testing_support::complaint_of([&] { read("hall.zip", zip_of("doc.kml", text)); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { read("hall.zip", make_zip("doc.kml", text)); }),
               HasSubstr("is a zip archive; unpack it and use the file in it"));
 }
 

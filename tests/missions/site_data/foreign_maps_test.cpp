@@ -37,9 +37,9 @@ class ForeignMap : public testing::Test {
   Prior read(const std::string& name, const std::string& text, const Change& change = {}) {
     return read_file(folder_.file(name, text), change);
   }
-  std::string complaint(const std::string& name, const std::string& text,
-                        const Change& change = {}) {
-    return testing_support::complaint_of([&] { read(name, text, change); });
+  std::string error_message(const std::string& name, const std::string& text,
+                            const Change& change = {}) {
+    return testing_support::thrown_message([&] { read(name, text, change); });
   }
   testing_support::TemporaryFolder folder_;
 };
@@ -61,17 +61,17 @@ TEST(BuildingHeights, ReadsLengthsAsMappersWriteThem) {
       {"7 ft 4 in", 2.2352},  {"12.5;13", 13.0}, {"9 m; 40 ft", 12.192}, {"10-12", 12.0},
       {"10 - 12 ft", 3.6576}, {"1200 cm", 12.0}, {"-1", -1.0},           {"+3", 3.0}};
   for (const auto& [text, metres] : lengths) {
-    ASSERT_TRUE(metres_of(text).has_value()) << text;
-    EXPECT_NEAR(*metres_of(text), metres, 1e-9) << text;
+    ASSERT_TRUE(parse_metres(text).has_value()) << text;
+    EXPECT_NEAR(*parse_metres(text), metres, 1e-9) << text;
   }
   for (const char* text : {"", "high", "12 parsecs", "~12", "12 m?", "1.000,5", "12;tall"}) {
-    EXPECT_EQ(metres_of(text), std::nullopt) << text;
+    EXPECT_EQ(parse_metres(text), std::nullopt) << text;
   }
-  EXPECT_EQ(storeys_of("4"), 4.0);
-  EXPECT_EQ(storeys_of("2;5"), 5.0);
-  EXPECT_EQ(storeys_of("3+1"), 4.0);
-  EXPECT_EQ(storeys_of("2-3"), 3.0);
-  EXPECT_EQ(storeys_of("G+2"), std::nullopt);
+  EXPECT_EQ(parse_storeys("4"), 4.0);
+  EXPECT_EQ(parse_storeys("2;5"), 5.0);
+  EXPECT_EQ(parse_storeys("3+1"), 4.0);
+  EXPECT_EQ(parse_storeys("2-3"), 3.0);
+  EXPECT_EQ(parse_storeys("G+2"), std::nullopt);
 }
 
 TEST_F(ForeignMap, IsAsHighAsItsAttributesSay) {
@@ -108,9 +108,10 @@ TEST_F(ForeignMap, IsAsHighAsItsAttributesSay) {
 TEST_F(ForeignMap, ThatSaysAHeightNobodyUnderstandsIsRefused) {
   for (const char* properties : {R"("height":"12 parsecs")", R"("building:levels":"G+2")",
                                  R"("building:levels":"2","roof:height":"steep")"}) {
-    EXPECT_THAT(complaint("a.geojson", building(properties), [](Source& s) { s.height = 10.0; }),
-                AllOf(HasSubstr("a.geojson: way/1 has the "),
-                      HasSubstr("; correct it, or exclude the object with select")))
+    EXPECT_THAT(
+        error_message("a.geojson", building(properties), [](Source& s) { s.height = 10.0; }),
+        AllOf(HasSubstr("a.geojson: way/1 has the "),
+              HasSubstr("; correct it, or exclude the object with select")))
         << properties;
   }
 }
@@ -118,7 +119,7 @@ TEST_F(ForeignMap, ThatSaysAHeightNobodyUnderstandsIsRefused) {
 TEST_F(ForeignMap, TakesZeroAndLessForUnknown) {
   for (const char* height : {"-1", "0", "-1.0"}) {
     const std::string text = building(R"("height":)" + std::string(height));
-    EXPECT_THAT(complaint("a.geojson", text), HasSubstr("contains no height of way/1"));
+    EXPECT_THAT(error_message("a.geojson", text), HasSubstr("contains no height of way/1"));
     const Prior prior = read("a.geojson", text, [](Source& s) { s.height = 10.0; });
     EXPECT_NEAR(prior.box.max().z(), 10.0, 1e-3);
     EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines have a height of 0 or less")));
@@ -127,8 +128,8 @@ TEST_F(ForeignMap, TakesZeroAndLessForUnknown) {
 
 TEST_F(ForeignMap, NamesTheAttributesThatThereAreWhereNoneIsTheHeight) {
   const std::string text = building(R"("name":"hall","hauteur":17)");
-  EXPECT_THAT(complaint("a.geojson", text), HasSubstr("(it has the attributes "));
-  EXPECT_THAT(complaint("a.geojson", text), HasSubstr("hauteur, "));
+  EXPECT_THAT(error_message("a.geojson", text), HasSubstr("(it has the attributes "));
+  EXPECT_THAT(error_message("a.geojson", text), HasSubstr("hauteur, "));
   const Prior prior = read("a.geojson", text, [](Source& s) { s.height_attribute = "hauteur"; });
   EXPECT_NEAR(prior.box.max().z(), 17.0, 1e-3);
 }
@@ -136,21 +137,21 @@ TEST_F(ForeignMap, NamesTheAttributesThatThereAreWhereNoneIsTheHeight) {
 /// OSM with nodes 1 to 4 of the square, 5 to 8 of a smaller one in it, and more.
 std::string osm(const std::string& more) {
   std::string text = "<?xml version=\"1.0\"?><osm version=\"0.6\">";
-  const char* const places[] = {"lat='48' lon='9'",
-                                "lat='48' lon='9.0002'",
-                                "lat='48.0002' lon='9.0002'",
-                                "lat='48.0002' lon='9'",
-                                "lat='48.00005' lon='9.00005'",
-                                "lat='48.00005' lon='9.00015'",
-                                "lat='48.00015' lon='9.00015'",
-                                "lat='48.00015' lon='9.00005'"};
+  const char* const positions[] = {"lat='48' lon='9'",
+                                   "lat='48' lon='9.0002'",
+                                   "lat='48.0002' lon='9.0002'",
+                                   "lat='48.0002' lon='9'",
+                                   "lat='48.00005' lon='9.00005'",
+                                   "lat='48.00005' lon='9.00015'",
+                                   "lat='48.00015' lon='9.00015'",
+                                   "lat='48.00015' lon='9.00005'"};
   for (int i = 0; i < 8; ++i) {
-    text += "<node id='" + std::to_string(i + 1) + "' " + places[i] + " version='1'/>";
+    text += "<node id='" + std::to_string(i + 1) + "' " + positions[i] + " version='1'/>";
   }
   return text + more + "</osm>";
 }
 
-std::string way(int id, bool is_inner, const std::string& tags) {
+std::string osm_line(int id, bool is_inner, const std::string& tags) {
   std::string text = "<way id='" + std::to_string(id) + "' version='1'>";
   for (const int node : {1, 2, 3, 4, 1}) {
     text += "<nd ref='" + std::to_string(node + (is_inner ? 4 : 0)) + "'/>";
@@ -163,20 +164,21 @@ std::string tag(const std::string& key, const std::string& value) {
 }
 
 TEST_F(ForeignMap, HasThePartsOfItsBuildings) {
-  const std::string hall = way(101, false, tag("building", "yes") + tag("height", "12"));
+  const std::string hall = osm_line(101, false, tag("building", "yes") + tag("height", "12"));
   const std::string part =
       tag("building:part", "yes") + tag("height", "40") + tag("min_height", "12");
-  const std::string relation = way(102, true, "") +
+  const std::string relation = osm_line(102, true, "") +
                                "<relation id='103' version='1'><member type='way' ref='102' "
                                "role='outer'/>" +
                                tag("type", "multipolygon") + part + "</relation>";
-  for (const std::string& tower : {way(102, true, part), relation}) {
+  for (const std::string& tower : {osm_line(102, true, part), relation}) {
     const Prior prior = read("a.osm", osm(hall + tower));
     ASSERT_EQ(prior.objects.size(), 2U);
     EXPECT_NEAR(prior.box.max().z(), 40.0, 1e-2);
     EXPECT_THAT(prior.notes, Not(Contains(HasSubstr("points and lines ignored"))));
   }
-  const std::string tank = way(104, true, tag("man_made", "storage_tank") + tag("height", "20"));
+  const std::string tank =
+      osm_line(104, true, tag("man_made", "storage_tank") + tag("height", "20"));
   EXPECT_NEAR(read("a.osm", osm(hall + tank)).box.max().z(), 20.0, 1e-2);
 }
 
@@ -201,10 +203,10 @@ TEST_F(ForeignMap, HasMastsAndWallsThatStateAHeight) {
 }
 
 TEST_F(ForeignMap, LeavesOutWhatIsNoStructureAndCountsIt) {
-  const std::string hall = way(101, true, tag("building", "yes") + tag("height", "12"));
-  const std::string others = way(102, false, tag("landuse", "residential")) +
-                             way(103, false, tag("building", "no") + tag("height", "30")) +
-                             way(104, false, tag("natural", "water")) +
+  const std::string hall = osm_line(101, true, tag("building", "yes") + tag("height", "12"));
+  const std::string others = osm_line(102, false, tag("landuse", "residential")) +
+                             osm_line(103, false, tag("building", "no") + tag("height", "30")) +
+                             osm_line(104, false, tag("natural", "water")) +
                              "<way id='8' version='1'><nd ref='1'/><nd ref='3'/>" +
                              tag("power", "line") + "</way>";
   const Prior prior = read("a.osm", osm(hall + others), [](Source& s) { s.height = 10.0; });
@@ -212,7 +214,7 @@ TEST_F(ForeignMap, LeavesOutWhatIsNoStructureAndCountsIt) {
   EXPECT_NEAR(prior.box.max().z(), 12.0, 1e-2);
   EXPECT_THAT(prior.notes, Contains(HasSubstr("3 areas ignored: neither buildings")));
   EXPECT_THAT(prior.notes, Contains(HasSubstr("1 power lines and cableways ignored")));
-  EXPECT_THAT(complaint("a.osm", osm(way(102, false, tag("landuse", "forest")))),
+  EXPECT_THAT(error_message("a.osm", osm(osm_line(102, false, tag("landuse", "forest")))),
               HasSubstr("contains no outlines and nothing else with a height (1 areas ignored"));
 }
 
@@ -252,13 +254,13 @@ TEST_F(ForeignMap, OfADrawingIsInItsUnit) {
     EXPECT_LT((prior.box.sizes() - Eigen::Vector3d(8, 10, 12)).norm(), 1e-3);
     EXPECT_THAT(prior.notes, Contains(HasSubstr("missing unit ($INSUNITS)")));
   }
-  EXPECT_THAT(complaint("a.dxf", dxf(insunits(99), 1.0), here),
+  EXPECT_THAT(error_message("a.dxf", dxf(insunits(99), 1.0), here),
               HasSubstr("has the unknown unit $INSUNITS 99; set unit"));
-  const Prior told = read("a.dxf", dxf(insunits(99), 0.5), [&](Source& s) {
+  const Prior reported = read("a.dxf", dxf(insunits(99), 0.5), [&](Source& s) {
     here(s);
     s.unit = 0.5;
   });
-  EXPECT_LT((told.box.sizes() - Eigen::Vector3d(8, 10, 12)).norm(), 1e-3);
+  EXPECT_LT((reported.box.sizes() - Eigen::Vector3d(8, 10, 12)).norm(), 1e-3);
 }
 
 TEST_F(ForeignMap, WarnsOfASizeThatComesFromAWrongUnit) {
@@ -297,7 +299,7 @@ TEST_F(ForeignMap, WithoutAnIndexIsReadAndWithoutASystemRefused) {
   std::filesystem::remove(folder_.path() / "hall.prj");
   const auto nowhere = [](Source& s) { s.vertical.reset(); };
   EXPECT_THAT(
-      testing_support::complaint_of([&] { read_file(file, nowhere); }),
+      testing_support::thrown_message([&] { read_file(file, nowhere); }),
       HasSubstr("missing coordinate reference system, and its coordinates (9.0000, 48.0000) may be "
                 "degrees; set crs: EPSG:4326, or place if they are metres"));
   EXPECT_NEAR(read_file(file, [](Source& s) { s.crs = "EPSG:4326"; }).box.sizes().x(), 14.93, 0.01);
@@ -305,7 +307,7 @@ TEST_F(ForeignMap, WithoutAnIndexIsReadAndWithoutASystemRefused) {
     const auto other = folder_.path() / (std::string("a.") + (driver[0] == 'G' ? "gpkg" : "fgb"));
     testing_support::write_map(other,
                                {.driver = driver, .epsg = 0, .attributes = {{"height", "12"}}});
-    EXPECT_THAT(testing_support::complaint_of([&] { read_file(other, nowhere); }),
+    EXPECT_THAT(testing_support::thrown_message([&] { read_file(other, nowhere); }),
                 HasSubstr(other.string() + ": "))
         << driver;
   }

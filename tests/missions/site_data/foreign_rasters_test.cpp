@@ -72,7 +72,7 @@ TEST_F(ForeignRaster, IsInTheUnitOfItsBandOrRefused) {
     EXPECT_NEAR(prior.box.max().z(), 512.0 * metres - 500.0, 0.01) << unit;
     EXPECT_NEAR(prior.box.sizes().z(), 12.0 * metres, 0.01) << unit;
   }
-  EXPECT_THAT(testing_support::complaint_of([&] { read({.unit = "cubits"}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { read({.unit = "cubits"}); }),
               HasSubstr("has heights in the unknown unit 'cubits'; set unit"));
   EXPECT_NEAR(read({.unit = "cubits"}, [](Source& s) { s.unit = 1.0; }).box.sizes().z(), 12.0,
               0.01);
@@ -80,7 +80,7 @@ TEST_F(ForeignRaster, IsInTheUnitOfItsBandOrRefused) {
 }
 
 TEST_F(ForeignRaster, OfImpossibleHeightsAloneIsRefused) {
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { read({.hole = -9999.0}, [](Source& s) { s.unit = 1000.0; }); }),
               HasSubstr("heights must be from -500 to 9000 m; one is "));
 }
@@ -91,7 +91,7 @@ TEST_F(ForeignRaster, InDegreesWithoutASystemIsRefused) {
                              "ncols 2\nnrows 2\nxllcorner 9\nyllcorner 48\ncellsize 0.0001\n"
                              "500 500\n500 500\n");
   source.role = Role::terrain;
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 read_prior(source, {.origin = flight::GeodeticPoint{48.0, 9.0, 500.0}});
               }),
               HasSubstr("may be degrees; set crs: EPSG:4326, or place if they are metres"));

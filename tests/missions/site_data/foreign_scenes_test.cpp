@@ -29,8 +29,8 @@ class ForeignScene : public testing::Test {
   Prior read(const std::string& name, const std::string& bytes, std::optional<double> unit = {}) {
     return read_file(folder_.file(name, bytes), unit);
   }
-  std::string complaint(const std::string& name, const std::string& bytes) {
-    return testing_support::complaint_of([&] { read(name, bytes); });
+  std::string error_message(const std::string& name, const std::string& bytes) {
+    return testing_support::thrown_message([&] { read(name, bytes); });
   }
   testing_support::TemporaryFolder folder_;
 };
@@ -40,7 +40,7 @@ struct Glb {
   std::string json, binary;
 };
 
-Glb parts_of(const std::string& glb) {
+Glb split_glb(const std::string& glb) {
   std::uint32_t size = 0;
   std::memcpy(&size, glb.data() + 12, 4);
   return {glb.substr(20, size), glb.substr(28 + size)};
@@ -48,7 +48,7 @@ Glb parts_of(const std::string& glb) {
 
 /// The same as text that names a file of its buffer, with more members.
 std::string gltf(const std::string& uri, const std::string& more = "") {
-  std::string json = parts_of(testing_support::glb_of({})).json;
+  std::string json = split_glb(testing_support::make_glb({})).json;
   const std::string length = R"("byteLength":168})";
   json.replace(json.find(length), length.size(), R"("byteLength":168,"uri":")" + uri + R"("})");
   json.insert(json.find('{') + 1, more);
@@ -57,7 +57,7 @@ std::string gltf(const std::string& uri, const std::string& more = "") {
 
 void put(const std::filesystem::path& file) {
   std::filesystem::create_directories(file.parent_path());
-  std::ofstream(file, std::ios::binary) << parts_of(testing_support::glb_of({})).binary;
+  std::ofstream(file, std::ios::binary) << split_glb(testing_support::make_glb({})).binary;
 }
 
 TEST_F(ForeignScene, OpensBuffersByTheirAddresses) {
@@ -79,7 +79,7 @@ TEST_F(ForeignScene, OpensNothingOutsideOfItsFolder) {
   put(folder_.path() / "secret.bin");
   for (const char* uri : {"../secret.bin", "..%2Fsecret.bin", "%2e%2e/secret.bin"}) {
     const auto file = folder_.file("scene/scene.gltf", gltf(uri));
-    EXPECT_THAT(testing_support::complaint_of([&] { read_file(file); }),
+    EXPECT_THAT(testing_support::thrown_message([&] { read_file(file); }),
                 HasSubstr("could not open referenced file"))
         << uri;
   }
@@ -90,15 +90,15 @@ TEST_F(ForeignScene, ThatNeedsAnUnknownExtensionIsRefusedByName) {
   for (const std::string name :
        {"KHR_mesh_quantization", "EXT_meshopt_compression", "CESIUM_RTC", "ACME_rotated_houses"}) {
     const std::string member = R"("extensionsRequired":[")" + name + R"("],)";
-    EXPECT_THAT(complaint("scene.gltf", gltf("b.bin", member)),
+    EXPECT_THAT(error_message("scene.gltf", gltf("b.bin", member)),
                 AllOf(HasSubstr("scene.gltf: requires the glTF extension " + name),
                       HasSubstr("save the scene without it")));
     // The same of the binary form.
-    const Glb parts = parts_of(testing_support::glb_of({}));
+    const Glb parts = split_glb(testing_support::make_glb({}));
     std::string json = parts.json;
     json.insert(json.find('{') + 1, member);
     while (json.size() % 4 != 0) json += ' ';
-    std::string bytes = testing_support::glb_of({}).substr(0, 12);
+    std::string bytes = testing_support::make_glb({}).substr(0, 12);
     const auto append = [&](std::size_t number) {
       const auto value = static_cast<std::uint32_t>(number);
       bytes.append(reinterpret_cast<const char*>(&value), 4);
@@ -107,14 +107,15 @@ TEST_F(ForeignScene, ThatNeedsAnUnknownExtensionIsRefusedByName) {
     bytes += "JSON" + json;
     append(parts.binary.size());
     bytes += std::string("BIN\0", 4) + parts.binary;
-    EXPECT_THAT(complaint("scene.glb", bytes), HasSubstr("requires the glTF extension " + name));
+    EXPECT_THAT(error_message("scene.glb", bytes),
+                HasSubstr("requires the glTF extension " + name));
   }
-  EXPECT_THAT(
-      complaint("scene.gltf", gltf("b.bin", R"("extensionsUsed":["EXT_mesh_gpu_instancing"],)")),
-      HasSubstr("requires the glTF extension EXT_mesh_gpu_instancing"));
-  EXPECT_THAT(
-      complaint("scene.gltf", gltf("b.bin", R"("extensions":{"CESIUM_RTC":{"center":[1,2,3]}},)")),
-      HasSubstr("requires the glTF extension CESIUM_RTC"));
+  EXPECT_THAT(error_message("scene.gltf",
+                            gltf("b.bin", R"("extensionsUsed":["EXT_mesh_gpu_instancing"],)")),
+              HasSubstr("requires the glTF extension EXT_mesh_gpu_instancing"));
+  EXPECT_THAT(error_message("scene.gltf",
+                            gltf("b.bin", R"("extensions":{"CESIUM_RTC":{"center":[1,2,3]}},)")),
+              HasSubstr("requires the glTF extension CESIUM_RTC"));
 }
 
 TEST_F(ForeignScene, ThatNeedsAnExtensionOfLooksAloneIsRead) {
@@ -194,7 +195,7 @@ TEST_F(ForeignScene, OfIfcIsInTheUnitThatItSays) {
 TEST_F(ForeignScene, OfIfcWithoutAKnownUnitIsRefused) {
   const std::string unknown =
       "#10=IFCSIUNIT(*,.AREAUNIT.,$,.SQUARE_METRE.);\n#14=IFCUNITASSIGNMENT((#10));\n";
-  EXPECT_THAT(complaint("a.ifc", ifc(unknown, 1.0)), HasSubstr("has no linear unit; set unit"));
+  EXPECT_THAT(error_message("a.ifc", ifc(unknown, 1.0)), HasSubstr("has no linear unit; set unit"));
   EXPECT_LT((read("a.ifc", ifc(unknown, 0.5), 0.5).box.sizes() - Vector3d(8, 10, 12)).norm(), 1e-3);
 }
 

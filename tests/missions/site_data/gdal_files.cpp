@@ -24,7 +24,7 @@ GDALDriver& driver_named(const char* name) {
   return *driver;
 }
 
-OGRSpatialReference system_of(int epsg) {
+OGRSpatialReference make_reference_system(int epsg) {
   OGRSpatialReference system;
   system.importFromEPSG(epsg);
   system.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -37,7 +37,7 @@ void write_map(const std::filesystem::path& file, const WrittenMap& map) {
   const Dataset dataset(
       driver_named(map.driver).Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
   if (!dataset) throw std::runtime_error(file.string() + " cannot be made");
-  OGRSpatialReference system = system_of(map.epsg != 0 ? map.epsg : 4326);
+  OGRSpatialReference system = make_reference_system(map.epsg != 0 ? map.epsg : 4326);
   OGRLayer* const layer = dataset->CreateLayer(
       file.stem().c_str(), map.epsg != 0 ? &system : nullptr, wkbPolygon, nullptr);
   for (const auto& [name, value] : map.attributes) {
@@ -82,7 +82,7 @@ void write_raster(const std::filesystem::path& file, const WrittenRaster& raster
   if (!dataset) throw std::runtime_error(file.string() + " cannot be made");
   std::array<double, 6> affine{500000.0, 1.0, 0.0, 5316000.0, 0.0, -1.0};
   dataset->SetGeoTransform(affine.data());
-  const OGRSpatialReference system = system_of(25832);
+  const OGRSpatialReference system = make_reference_system(25832);
   dataset->SetSpatialRef(&system);
   std::array<float, side * side> heights{}, opaque{};
   std::array<std::uint8_t, side * side> mask{};

@@ -23,17 +23,17 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 /// Longitude, latitude, height.
-Vector3d geodetic(const ReferenceRequest& request, Vector3d place) {
-  geodetic_transform(request).apply({&place, 1});
-  return place;
+Vector3d geodetic(const ReferenceRequest& request, Vector3d position) {
+  geodetic_transform(request).apply({&position, 1});
+  return position;
 }
 
-Vector3d in_site(const std::string& crs, const flight::GeodeticPoint& origin, Vector3d place) {
+Vector3d in_site(const std::string& crs, const flight::GeodeticPoint& origin, Vector3d position) {
   Source source;
   source.crs = crs;
   source.vertical = HeightDatum::ellipsoid;
-  SiteTransform(source, {}, {.origin = origin}).to_site({&place, 1});
-  return place;
+  SiteTransform(source, {}, {.origin = origin}).to_site({&position, 1});
+  return position;
 }
 
 /// East, north of UTM by GeographicLib; convergence and scale with it.
@@ -51,9 +51,10 @@ OnMap utm(double latitude, double longitude, int zone) {
 
 /// A value of a file that was written with its highest byte first.
 template <typename Value>
-Value big_endian(const std::string& bytes, std::size_t place) {
+Value big_endian(const std::string& bytes, std::size_t position) {
   std::array<char, sizeof(Value)> turned;
-  std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(place), sizeof(Value), turned.rbegin());
+  std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(position), sizeof(Value),
+              turned.rbegin());
   return std::bit_cast<Value>(turned);
 }
 
@@ -98,10 +99,10 @@ TEST(Geodesy, FollowsTheMapsProjection) {
   for (double latitude = 1.0; latitude < 84.0; latitude += 9.0) {
     for (double longitude = 6.0; longitude <= 12.0; longitude += 1.3) {
       const OnMap map = utm(latitude, longitude, 32);
-      const Vector3d place = geodetic(request, {map.east, map.north, 380.0});
-      EXPECT_NEAR(place.y(), latitude, 1e-9);
-      EXPECT_NEAR(place.x(), longitude, 1e-9);
-      EXPECT_EQ(place.z(), 380.0);
+      const Vector3d position = geodetic(request, {map.east, map.north, 380.0});
+      EXPECT_NEAR(position.y(), latitude, 1e-9);
+      EXPECT_NEAR(position.x(), longitude, 1e-9);
+      EXPECT_EQ(position.z(), 380.0);
     }
   }
 }
@@ -109,12 +110,13 @@ TEST(Geodesy, FollowsTheMapsProjection) {
 TEST(Geodesy, CountsHeightsFromGeoidOrPad) {
   ReferenceRequest request{.crs = "EPSG:25832", .takeoff_height = 400.0};
   request.vertical = HeightDatum::geoid;
-  const Vector3d place(677863.1, 5402477.3, 100.0);  // echo 48.749889290871 11.419734136004 100 |
-  EXPECT_NEAR(geodetic(request, place).z(), 146.466455, 1e-6);  // cs2cs EPSG:4326+5773 EPSG:4979
+  const Vector3d position(677863.1, 5402477.3,
+                          100.0);  // echo 48.749889290871 11.419734136004 100 |
+  EXPECT_NEAR(geodetic(request, position).z(), 146.466455, 1e-6);  // cs2cs EPSG:4326+5773 EPSG:4979
   EXPECT_THAT(geodetic_transform(request).notes,
               testing::ElementsAre(AllOf(HasSubstr("EGM96"), HasSubstr("1 m"))));
   request.vertical = HeightDatum::takeoff;
-  EXPECT_NEAR(geodetic(request, place).z(), 500.0, 1e-9);
+  EXPECT_NEAR(geodetic(request, position).z(), 500.0, 1e-9);
   request.takeoff_height.reset();
   EXPECT_THAT([&] { geodetic_transform(request); },
               ThrowsMessage<Error>(HasSubstr("vertical: takeoff requires flight.takeoff")));
@@ -126,16 +128,16 @@ TEST(Geodesy, AddsUpWhatStandInsMayBeOff) {
   request.vertical = HeightDatum::ellipsoid;
   request.near = flight::GeodeticPoint{51.6965, -1.278, 0.0};
   const GeodeticTransform helmert = geodetic_transform(request);
-  EXPECT_EQ(helmert.stand_in_error, 2.0);  // projinfo -s EPSG:27700 -t EPSG:4326 --summary
+  EXPECT_EQ(helmert.substitution_error, 2.0);  // projinfo -s EPSG:27700 -t EPSG:4326 --summary
   EXPECT_THAT(helmert.notes, testing::ElementsAre(HasSubstr("is used instead of")));
-  const Vector3d place = geodetic(request, {450000.0, 200000.0, 0.0});
-  EXPECT_NEAR(place.y(), 51.696528816, 1e-8);  // echo 450000 200000 | cs2cs EPSG:27700 EPSG:4326
-  EXPECT_NEAR(place.x(), -1.277971385, 1e-8);
+  const Vector3d position = geodetic(request, {450000.0, 200000.0, 0.0});
+  EXPECT_NEAR(position.y(), 51.696528816, 1e-8);  // echo 450000 200000 | cs2cs EPSG:27700 EPSG:4326
+  EXPECT_NEAR(position.x(), -1.277971385, 1e-8);
   request.vertical = HeightDatum::geoid;
-  EXPECT_EQ(geodetic_transform(request).stand_in_error, 3.0);
-  EXPECT_EQ(
-      geodetic_transform({.crs = "EPSG:25832", .vertical = HeightDatum::ellipsoid}).stand_in_error,
-      0.0);
+  EXPECT_EQ(geodetic_transform(request).substitution_error, 3.0);
+  EXPECT_EQ(geodetic_transform({.crs = "EPSG:25832", .vertical = HeightDatum::ellipsoid})
+                .substitution_error,
+            0.0);
 }
 
 // echo 48.763 11.3985 330 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
@@ -153,13 +155,13 @@ TEST(Geodesy, RefusesAGeoidWhoseGridIsMissingUnlessToldOtherwise) {
       ThrowsMessage<Error>(AllOf(HasSubstr("DHHN2016"), testing::ContainsRegex("[Gg][Cc][Gg]2016"),
                                  HasSubstr("vertical: geoid"))));
   request.vertical = HeightDatum::geoid;
-  const Vector3d place = geodetic(request, {677863.1, 5402477.3, 100.0});
-  EXPECT_NEAR(place.z(), 146.466455, 1e-6);
+  const Vector3d position = geodetic(request, {677863.1, 5402477.3, 100.0});
+  EXPECT_NEAR(position.z(), 146.466455, 1e-6);
 }
 
 TEST(Geodesy, RefusesWhatIsNoReferenceSystem) {
   for (const char* crs : {"EPSG:1", "nonsense", "EPSG:4978", "EPSG:5773", "+proj=pipeline"}) {
-    EXPECT_THAT(testing_support::complaint_of(
+    EXPECT_THAT(testing_support::thrown_message(
                     [&] { geodetic_transform({.crs = crs, .vertical = HeightDatum::ellipsoid}); }),
                 testing::HasSubstr(crs))
         << crs;
@@ -195,17 +197,17 @@ TEST(Geodesy, UndoesScaleAndConvergenceOfTheGrid) {
 
 /// On a sphere's curve alone: a place 10 km away on the ellipsoid is d^2 / 2 R below the plane.
 TEST(Geodesy, CurvesWithTheEarth) {
-  const Vector3d place = in_site("EPSG:4326", {0.0, 0.0, 0.0}, {0.0, 0.09, 0.0});
+  const Vector3d position = in_site("EPSG:4326", {0.0, 0.0, 0.0}, {0.0, 0.09, 0.0});
   const double radius = 6378137.0 * (1.0 - 0.00669437999014);  // of the meridian at the equator
   const double angle = 0.09 * M_PI / 180.0;
-  EXPECT_NEAR(place.y(), radius * std::sin(angle), 1e-3);
-  EXPECT_NEAR(place.z(), -radius * (1.0 - std::cos(angle)), 1e-3);
+  EXPECT_NEAR(position.y(), radius * std::sin(angle), 1e-3);
+  EXPECT_NEAR(position.z(), -radius * (1.0 - std::cos(angle)), 1e-3);
 }
 
 TEST(Geodesy, CrossesTheAntimeridian) {
   const double metres = 6378137.0 * M_PI / 180.0;  // of a degree at the equator
-  const Vector3d place = in_site("EPSG:4326", {0.0, 179.9999, 0.0}, {-179.9999, 0.0, 0.0});
-  EXPECT_NEAR(place.x(), 0.0002 * metres, 1e-3);
+  const Vector3d position = in_site("EPSG:4326", {0.0, 179.9999, 0.0}, {-179.9999, 0.0, 0.0});
+  EXPECT_NEAR(position.x(), 0.0002 * metres, 1e-3);
   const Vector3d back = in_site("EPSG:4326", {0.0, -179.9999, 0.0}, {179.9999, 0.0, 0.0});
   EXPECT_NEAR(back.x(), -0.0002 * metres, 1e-3);
   // UTM zone 60 ends there; what lies beyond has eastings that go on.
@@ -234,9 +236,9 @@ TEST(Geodesy, CountsInFeet) {
   source.vertical = HeightDatum::ellipsoid;
   const flight::GeodeticPoint origin{44.05, -123.07, 0.0};
   const SiteTransform transform(source, {}, {.origin = origin});
-  std::array<Vector3d, 2> places = {Vector3d(636500, 849000, 0), Vector3d(636500, 849000, 1000)};
-  transform.to_site(places);
-  EXPECT_NEAR((places[1] - places[0]).norm(), 304.8, 1e-6);
+  std::array<Vector3d, 2> positions = {Vector3d(636500, 849000, 0), Vector3d(636500, 849000, 1000)};
+  transform.to_site(positions);
+  EXPECT_NEAR((positions[1] - positions[0]).norm(), 304.8, 1e-6);
   EXPECT_NEAR(transform.metres_per_unit().x(), 0.3048, 1e-12);
   EXPECT_THAT(transform.notes(), testing::Contains(HasSubstr("units of 0.304800 m")));
 }

@@ -16,14 +16,14 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 using testing_support::Cube;
-using testing_support::las_of;
+using testing_support::make_las;
+using testing_support::make_source;
 using testing_support::site_at_cube;
-using testing_support::source_of;
 
 class Las : public testing::Test {
  protected:
   Prior read(const std::string& bytes, const std::function<void(Source&)>& change = {}) {
-    Source source = source_of(folder_.file("scan.las", bytes));
+    Source source = make_source(folder_.file("scan.las", bytes));
     if (change) change(source);
     return read_prior(source, site_at_cube());
   }
@@ -33,7 +33,7 @@ class Las : public testing::Test {
 
 TEST_F(Las, KeepsTheClassesThatAreAskedFor) {
   for (const auto& [minor, format] : {std::pair(2, 3), {4, 6}}) {
-    const std::string bytes = las_of(cube_, minor, format);
+    const std::string bytes = make_las(cube_, minor, format);
     EXPECT_EQ(read(bytes, [](Source& s) { s.select.classes = {6}; }).points.size(), 4U);
     EXPECT_EQ(read(bytes, [](Source& s) { s.select.classes = {2, 6}; }).points.size(), 8U);
     EXPECT_THAT([&] { read(bytes, [](Source& s) { s.select.classes = {9}; }); },
@@ -43,15 +43,15 @@ TEST_F(Las, KeepsTheClassesThatAreAskedFor) {
 
 TEST_F(Las, IsNoGroundNoTargetAndNoTruth) {
   for (const Role role : {Role::terrain, Role::target, Role::truth}) {
-    EXPECT_THAT([&] { read(las_of(cube_, 4, 6), [&](Source& s) { s.role = role; }); },
+    EXPECT_THAT([&] { read(make_las(cube_, 4, 6), [&](Source& s) { s.role = role; }); },
                 ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.las: contains no surfaces"),
                                                     HasSubstr("scan.las: is a point cloud"))));
   }
 }
 
 TEST_F(Las, KeepsOnePointACube) {
-  EXPECT_EQ(read(las_of(cube_, 4, 6), [](Source& s) { s.spacing = 1e4; }).points.size(), 1U);
-  EXPECT_EQ(read(las_of(cube_, 4, 6), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
+  EXPECT_EQ(read(make_las(cube_, 4, 6), [](Source& s) { s.spacing = 1e4; }).points.size(), 1U);
+  EXPECT_EQ(read(make_las(cube_, 4, 6), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
 }
 
 TEST_F(Las, KnowsItsReferenceSystemByItsRecord) {
@@ -62,17 +62,17 @@ TEST_F(Las, KnowsItsReferenceSystemByItsRecord) {
       "Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",9],"
       "PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER["
       "\"false_northing\",0],UNIT[\"metre\",1],AUTHORITY[\"EPSG\",\"25832\"]]";
-  const Prior by_record = read(las_of(cube_, 4, 6, wkt), [](Source& s) { s.crs.clear(); });
-  const Prior by_key = read(las_of(cube_, 4, 6));
+  const Prior by_record = read(make_las(cube_, 4, 6, wkt), [](Source& s) { s.crs.clear(); });
+  const Prior by_key = read(make_las(cube_, 4, 6));
   EXPECT_EQ(by_record.crs, "ETRS89 / UTM zone 32N");
   EXPECT_LT((by_record.points[7] - by_key.points[7]).norm(), 1e-4F);
 }
 
-TEST_F(Las, StaysWhereOurOwnScansSayTheyAre) {
+TEST_F(Las, KeepsThePositionOfOwnScans) {
   Cube near;
   near.low = {1.0, 2.0, 3.0};
   const Prior prior = read(
-      las_of(near, 4, 6, "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"mission origin\",0]]"),
+      make_las(near, 4, 6, "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"mission origin\",0]]"),
       [](Source& s) {
         s.crs.clear();
         s.vertical.reset();
@@ -82,13 +82,13 @@ TEST_F(Las, StaysWhereOurOwnScansSayTheyAre) {
 
 // It is read piece by piece, whatever its size; the file here is mostly a hole on disk.
 TEST_F(Las, MayBeLargerThanTwoGigabytes) {
-  const std::filesystem::path file = folder_.file("large.las", las_of(cube_, 2, 3));
-  std::filesystem::resize_file(file, most_bytes + (std::size_t{1} << 20));
-  EXPECT_EQ(read_prior(source_of(file), site_at_cube()).points.size(), 8U);
+  const std::filesystem::path file = folder_.file("large.las", make_las(cube_, 2, 3));
+  std::filesystem::resize_file(file, max_bytes + (std::size_t{1} << 20));
+  EXPECT_EQ(read_prior(make_source(file), site_at_cube()).points.size(), 8U);
 }
 
 TEST_F(Las, RefusesWhatSaysToBeCompressedAndNotHow) {
-  std::string bytes = las_of(cube_, 2, 3);
+  std::string bytes = make_las(cube_, 2, 3);
   bytes[104] = static_cast<char>(0x83);
   EXPECT_THAT([&] { read(bytes); },
               ThrowsMessage<Error>(HasSubstr("the record of its compression is missing")));
@@ -109,8 +109,8 @@ TEST_F(Las, ReadsAnAirborneScanInFeet) {
   EXPECT_EQ(prior.points.size(), 110'000U);
   // The header's box is 1177.46 ft by 562.7 ft, from 406.26 to 520.51 ft high.
   EXPECT_NEAR(prior.box.sizes().x(), 1177.46 * 0.3048, 12.0);
-  EXPECT_NEAR(prior.ellipsoid_heights->least, 406.26 * 0.3048, 1e-2);
-  EXPECT_NEAR(prior.ellipsoid_heights->most, 520.51 * 0.3048, 1e-2);
+  EXPECT_NEAR(prior.ellipsoid_heights->min, 406.26 * 0.3048, 1e-2);
+  EXPECT_NEAR(prior.ellipsoid_heights->max, 520.51 * 0.3048, 1e-2);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ std::string feature(const std::string& properties, const std::string& rings) {
 }
 
 /// A polygon as Google Earth writes it.
-std::string kml_of(const std::string& mode, const std::string& coordinates) {
+std::string make_kml(const std::string& mode, const std::string& coordinates) {
   return "<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>"
          "<Placemark><name>court</name><Polygon>" +
          mode + "<outerBoundaryIs><LinearRing><coordinates>" + coordinates +
@@ -67,7 +67,7 @@ std::string ring_at(const std::string& height) {
 
 TEST_F(Map, ExtrudesAPolygonDrawnInGoogleEarth) {
   const Prior prior =
-      read("court.kml", kml_of("", ring_at("0")), [](Source& s) { s.height = 18.0; });
+      read("court.kml", make_kml("", ring_at("0")), [](Source& s) { s.height = 18.0; });
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_EQ(prior.objects[0].id, "court");
   EXPECT_NEAR(volume(prior.objects[0].mesh), ring_area * 18.0, 1.0);
@@ -82,12 +82,12 @@ TEST_F(Map, HeightsOfAPolygonInGoogleEarthCountOnlyIfTheyAreAbsolute) {
   };
   for (const char* mode : {"", "<altitudeMode>clampToGround</altitudeMode>",
                            "<extrude>1</extrude><altitudeMode>relativeToGround</altitudeMode>"}) {
-    EXPECT_THAT([&] { read("court.kml", kml_of(mode, ring_at("30")), unplaced); },
+    EXPECT_THAT([&] { read("court.kml", make_kml(mode, ring_at("30")), unplaced); },
                 ThrowsMessage<Error>(HasSubstr("set base")))
         << mode;
   }
-  const Prior prior =
-      read("court.kml", kml_of("<altitudeMode>absolute</altitudeMode>", ring_at("520")), unplaced);
+  const Prior prior = read(
+      "court.kml", make_kml("<altitudeMode>absolute</altitudeMode>", ring_at("520")), unplaced);
   EXPECT_NEAR(prior.box.min().z(), 20.0, 1e-3);
   EXPECT_NEAR(prior.box.max().z(), 38.0, 1e-3);
 }
@@ -184,14 +184,14 @@ TEST_F(Map, KeepsWhatIsWithinAPolygon) {
 
 TEST_F(Map, OpensNothingButTheFile) {
   // A VRT may name any other file: its driver is not among those that are asked.
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { read("a.tif", "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"/>"); }),
               testing::HasSubstr("a.tif: "));
-  EXPECT_THAT(testing_support::complaint_of([&] { read("a.gpkg", "<OGRVRTDataSource/>"); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { read("a.gpkg", "<OGRVRTDataSource/>"); }),
               testing::HasSubstr("a.gpkg: "));
   Source source;
   source.file = "/vsizip/a.zip";
-  EXPECT_THAT(testing_support::complaint_of([&] { read_prior(source, {}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { read_prior(source, {}); }),
               testing::HasSubstr("/vsizip/a.zip: "));
 }
 

@@ -17,8 +17,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 using testing_support::Cube;
+using testing_support::make_source;
 using testing_support::site_at_cube;
-using testing_support::source_of;
 
 /// The axes of the site on the ellipsoid, by the textbook (Torge & Mueller, Geodesy, 4.1): an
 /// independent way from geodetic coordinates to east, north, up.
@@ -60,7 +60,7 @@ class OneBox : public testing::Test {
  protected:
   Prior read(const std::string& name, const std::string& bytes,
              const std::function<void(Source&)>& change = {}) {
-    Source source = source_of(folder_.file(name, bytes));
+    Source source = make_source(folder_.file(name, bytes));
     if (change) change(source);
     return read_prior(source, site_at_cube());
   }
@@ -85,7 +85,7 @@ class OneBox : public testing::Test {
 };
 
 TEST_F(OneBox, OfCityGml) {
-  const Prior prior = read("cube.gml", citygml_of(cube_), [](Source& s) { s.crs.clear(); });
+  const Prior prior = read("cube.gml", make_citygml(cube_), [](Source& s) { s.crs.clear(); });
   expect_cube(prior, millimetre);
   EXPECT_EQ(prior.format, "CityGML 2.0");
   EXPECT_EQ(prior.crs, "ETRS89 / UTM zone 32N");
@@ -99,14 +99,14 @@ TEST_F(OneBox, OfCityGml) {
 }
 
 TEST_F(OneBox, OfCityJson) {
-  const Prior prior = read("cube.json", cityjson_of(cube_), [](Source& s) { s.crs.clear(); });
+  const Prior prior = read("cube.json", make_cityjson(cube_), [](Source& s) { s.crs.clear(); });
   expect_cube(prior, millimetre);
   EXPECT_EQ(prior.format, "CityJSON 2.0");
   EXPECT_EQ(prior.objects[0].surfaces[2], SurfaceKind::roof);
 }
 
 TEST_F(OneBox, OfAnOutlineWithAHeight) {
-  const Prior prior = read("cube.geojson", geojson_of(cube_), [](Source& s) {
+  const Prior prior = read("cube.geojson", make_geojson(cube_), [](Source& s) {
     s.crs.clear();
     s.base = 380.0;
     s.height = 10.0;
@@ -117,7 +117,7 @@ TEST_F(OneBox, OfAnOutlineWithAHeight) {
 }
 
 TEST_F(OneBox, OfAnOutlineOnTerrain) {
-  Source source = source_of(folder_.file("cube.geojson", geojson_of(cube_)));
+  Source source = make_source(folder_.file("cube.geojson", make_geojson(cube_)));
   source.vertical.reset();
   source.base_on_terrain = true;
   source.height = 10.0;
@@ -128,15 +128,16 @@ TEST_F(OneBox, OfAnOutlineOnTerrain) {
   EXPECT_NEAR(prior.box.min().x(), cube_box.min().x(), 0.01);
 }
 
-TEST_F(OneBox, OfAMesh) { expect_cube(read("cube.obj", obj_of(cube_)), millimetre); }
+TEST_F(OneBox, OfAMesh) { expect_cube(read("cube.obj", make_obj(cube_)), millimetre); }
 
 TEST_F(OneBox, OfAScene) {
-  const Prior prior = read("cube.glb", glb_of(cube_), [this](Source& s) { s.offset = cube_.low; });
+  const Prior prior =
+      read("cube.glb", make_glb(cube_), [this](Source& s) { s.offset = cube_.low; });
   expect_cube(prior, millimetre);
 }
 
 TEST_F(OneBox, OfARasterWithinACell) {
-  const Prior prior = read("cube.asc", ascii_grid_of(cube_));
+  const Prior prior = read("cube.asc", make_ascii_grid(cube_));
   EXPECT_EQ(prior.grid.columns, 28U);
   EXPECT_EQ(prior.grid.rows, 28U);
   AlignedBox3d roof;
@@ -166,7 +167,7 @@ TEST_F(OneBox, OfAScan) {
                                       {4, 9},
                                       {4, 10}}) {
     SCOPED_TRACE(format);
-    const Prior prior = read("cube.las", las_of(cube_, minor, format));
+    const Prior prior = read("cube.las", make_las(cube_, minor, format));
     ASSERT_EQ(prior.points.size(), 8U);
     EXPECT_LT((prior.points[0].cast<double>() - low_corner).norm(), millimetre);
     EXPECT_LT((prior.points[7].cast<double>() - high_corner).norm(), millimetre);
@@ -174,26 +175,26 @@ TEST_F(OneBox, OfAScan) {
 }
 
 TEST_F(OneBox, OfAnE57FileIsThatOfItsScans) {
-  const Prior prior = read("cube.e57", e57_of(cube_));
+  const Prior prior = read("cube.e57", make_e57(cube_));
   ASSERT_EQ(prior.points.size(), 8U);
   EXPECT_LT((prior.points[0].cast<double>() - low_corner).norm(), millimetre);
   EXPECT_LT((prior.points[7].cast<double>() - high_corner).norm(), millimetre);
 }
 
 TEST_F(OneBox, HasItsHeightsInAllDatums) {
-  const Prior prior = read("cube.gml", citygml_of(cube_));
-  EXPECT_NEAR(prior.ellipsoid_heights->least, 380.0, millimetre);
-  EXPECT_NEAR(prior.ellipsoid_heights->most, 390.0, millimetre);
+  const Prior prior = read("cube.gml", make_citygml(cube_));
+  EXPECT_NEAR(prior.ellipsoid_heights->min, 380.0, millimetre);
+  EXPECT_NEAR(prior.ellipsoid_heights->max, 390.0, millimetre);
   // echo 48.763 11.3985 0 | cs2cs EPSG:4326+5773 EPSG:4979
-  EXPECT_NEAR(prior.sea_level_heights->least, 380.0 - 46.490242, millimetre);
+  EXPECT_NEAR(prior.sea_level_heights->min, 380.0 - 46.490242, millimetre);
 }
 
 // EGM96 is off by up to a metre, as PROJ states it: that comes on top of what the file is off.
 TEST_F(OneBox, IsTheLessCertainTheMoreStandsIn) {
   const auto geoid = [](Source& s) { s.vertical = HeightDatum::geoid; };
-  EXPECT_EQ(read("cube.gml", citygml_of(cube_)).uncertainty, 0.3);
-  EXPECT_EQ(read("cube.gml", citygml_of(cube_), geoid).uncertainty, 1.3);
-  EXPECT_EQ(read("cube.gml", citygml_of(cube_),
+  EXPECT_EQ(read("cube.gml", make_citygml(cube_)).uncertainty, 0.3);
+  EXPECT_EQ(read("cube.gml", make_citygml(cube_), geoid).uncertainty, 1.3);
+  EXPECT_EQ(read("cube.gml", make_citygml(cube_),
                  [&](Source& s) {
                    geoid(s);
                    s.uncertainty = 0.5;
@@ -203,10 +204,10 @@ TEST_F(OneBox, IsTheLessCertainTheMoreStandsIn) {
 }
 
 TEST_F(OneBox, TurnsAsItIsToldWhateverTheFormatSays) {
-  const Prior prior = read("cube.glb", glb_of(cube_), [](Source& s) {
+  const Prior prior = read("cube.glb", make_glb(cube_), [](Source& s) {
     s.crs.clear();
     s.vertical.reset();
-    s.place = Place{};
+    s.pose = SourcePose{};
     s.is_y_up = false;
   });
   // In the file east is x, up is y and south is z.
@@ -216,7 +217,7 @@ TEST_F(OneBox, TurnsAsItIsToldWhateverTheFormatSays) {
 
 // A property's name is no mark of a format.
 TEST_F(OneBox, OfAnOutlineWithPropertiesOfOtherFormats) {
-  std::string text = geojson_of(cube_);
+  std::string text = make_geojson(cube_);
   text.insert(text.find("\"function\""), R"("asset":"CityJSON","glTF":{"asset":1},)");
   const Prior prior = read("cube.geojson", text, [](Source& s) {
     s.base = 380.0;
@@ -227,11 +228,11 @@ TEST_F(OneBox, OfAnOutlineWithPropertiesOfOtherFormats) {
 }
 
 TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
-  const auto complaint = [&](const std::string& name, const std::string& bytes,
-                             const std::function<void(Source&)>& change) {
-    return testing_support::complaint_of([&] { read(name, bytes, change); });
+  const auto error_message = [&](const std::string& name, const std::string& bytes,
+                                 const std::function<void(Source&)>& change) {
+    return testing_support::thrown_message([&] { read(name, bytes, change); });
   };
-  const std::string gml = citygml_of(cube_), las = las_of(cube_, 4, 6);
+  const std::string gml = make_citygml(cube_), las = make_las(cube_, 4, 6);
   using Change = std::function<void(Source&)>;
   for (const auto& [key, change] : std::initializer_list<std::pair<const char*, Change>>{
            {"base", [](Source& s) { s.base = 1.0; }},
@@ -242,37 +243,37 @@ TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
            {"select.classes", [](Source& s) { s.select.classes = {6}; }},
            {"select.layer", [](Source& s) { s.select.layer = "a"; }},
            {"up_axis", [](Source& s) { s.is_y_up = true; }}}) {
-    EXPECT_THAT(complaint("cube.gml", gml, change),
+    EXPECT_THAT(error_message("cube.gml", gml, change),
                 HasSubstr(key + std::string(" does not apply")));
   }
   for (const auto& [key, change] : std::initializer_list<std::pair<const char*, Change>>{
            {"select.id", [](Source& s) { s.select.ids = {"cube"}; }},
            {"select.attribute", [](Source& s) { s.select.attributes["a"] = "b"; }},
            {"select.lod", [](Source& s) { s.select.lod = 2.0; }}}) {
-    EXPECT_THAT(complaint("cube.las", las, change),
+    EXPECT_THAT(error_message("cube.las", las, change),
                 HasSubstr(key + std::string(" does not apply")));
   }
-  EXPECT_THAT(complaint("cube.obj", obj_of(cube_),
-                        [](Source& s) {
-                          s.crs.clear();
-                          s.place = Place{};
-                        }),
+  EXPECT_THAT(error_message("cube.obj", make_obj(cube_),
+                            [](Source& s) {
+                              s.crs.clear();
+                              s.pose = SourcePose{};
+                            }),
               HasSubstr("vertical requires a coordinate reference system"));
-  EXPECT_THAT(complaint("cube.geojson", geojson_of(cube_),
-                        [](Source& s) {
-                          s.base_on_terrain = true;
-                          s.height = 1.0;
-                        }),
+  EXPECT_THAT(error_message("cube.geojson", make_geojson(cube_),
+                            [](Source& s) {
+                              s.base_on_terrain = true;
+                              s.height = 1.0;
+                            }),
               HasSubstr("vertical does not apply to this file"));
 }
 
 TEST_F(OneBox, OfPlacesInTheSitesFrame) {
   Cube near;
   near.low = {0.0, 0.0, 0.0};
-  const Prior prior = read("cube.obj", obj_of(near), [](Source& s) {
+  const Prior prior = read("cube.obj", make_obj(near), [](Source& s) {
     s.crs.clear();
     s.vertical.reset();
-    s.place = Place{{12.0, -3.0, 1.0}, M_PI / 2.0};  // its y axis points east
+    s.pose = SourcePose{{12.0, -3.0, 1.0}, M_PI / 2.0};  // its y axis points east
   });
   EXPECT_LT((prior.box.min() - Vector3d(12, -13, 1)).norm(), 1e-9) << prior.box.min();
   EXPECT_LT((prior.box.max() - Vector3d(22, -3, 11)).norm(), 1e-9) << prior.box.max();
@@ -282,10 +283,10 @@ TEST_F(OneBox, InCentimetresWithYUp) {
   Cube near;
   near.low = {0.0, 0.0, 0.0};
   near.size = {1000.0, 500.0, 200.0};
-  const Prior prior = read("cube.obj", obj_of(near), [](Source& s) {
+  const Prior prior = read("cube.obj", make_obj(near), [](Source& s) {
     s.crs.clear();
     s.vertical.reset();
-    s.place = Place{};
+    s.pose = SourcePose{};
     s.unit = 0.01;
     s.is_y_up = true;
   });
@@ -295,7 +296,7 @@ TEST_F(OneBox, InCentimetresWithYUp) {
 TEST_F(OneBox, WithSwappedAxesIsRefusedWithBothPlaces) {
   Cube swapped;
   swapped.low = {5403900.0, 676300.0, 380.0};
-  EXPECT_THAT([&] { read("cube.gml", citygml_of(swapped)); },
+  EXPECT_THAT([&] { read("cube.gml", make_citygml(swapped)); },
               ThrowsMessage<Error>(AllOf(HasSubstr("cube.gml: "), HasSubstr("48.763"),
                                          HasSubstr("axes may be swapped"))));
 }
@@ -303,14 +304,14 @@ TEST_F(OneBox, WithSwappedAxesIsRefusedWithBothPlaces) {
 TEST_F(OneBox, FarFromTheSiteIsRefused) {
   Cube far;
   far.low.x() += 51'000.0;
-  EXPECT_THAT([&] { read("cube.json", cityjson_of(far)); },
+  EXPECT_THAT([&] { read("cube.json", make_cityjson(far)); },
               ThrowsMessage<Error>(AllOf(HasSubstr("more than 50 km from the site at latitude "
                                                    "48.763000, longitude 11.398500"),
                                          testing::Not(HasSubstr("swapped")))));
 }
 
 TEST_F(OneBox, WithoutADatumOfHeightsIsRefused) {
-  EXPECT_THAT([&] { read("cube.gml", citygml_of(cube_), [](Source& s) { s.vertical.reset(); }); },
+  EXPECT_THAT([&] { read("cube.gml", make_citygml(cube_), [](Source& s) { s.vertical.reset(); }); },
               ThrowsMessage<Error>(HasSubstr("set vertical: ellipsoid, geoid or takeoff")));
 }
 
@@ -319,7 +320,7 @@ TEST_F(OneBox, OfAMapWithoutACrsIsNotTakenForTheSitesFrame) {
     s.crs.clear();
     s.vertical.reset();
   };
-  EXPECT_THAT([&] { read("cube.obj", obj_of(cube_), nowhere); },
+  EXPECT_THAT([&] { read("cube.obj", make_obj(cube_), nowhere); },
               ThrowsMessage<Error>(HasSubstr("more than 50 km from the site")));
 }
 
@@ -327,7 +328,7 @@ TEST_F(OneBox, IsWhatSelectLetsThrough) {
   const auto select = [](const std::function<void(Selection&)>& change) {
     return [=](Source& s) { change(s.select); };
   };
-  const std::string text = citygml_of(cube_);
+  const std::string text = make_citygml(cube_);
   EXPECT_EQ(read("a.gml", text, select([](Selection& s) { s.ids = {"cube"}; })).objects.size(), 1U);
   EXPECT_EQ(
       read("a.gml", text, select([](Selection& s) { s.attributes["function"] = "31001_1000"; }))

@@ -62,7 +62,7 @@ class RandomSite {
   }
   /// In whole millimetres, as files have them.
   double length(double low, double high) { return std::round(1e3 * between(low, high)) / 1e3; }
-  Vector3d place(const AlignedBox3d& box) {
+  Vector3d pose(const AlignedBox3d& box) {
     return (flight::scenes::point_in(random_, box) * 1e3).array().round() / 1e3;
   }
 
@@ -73,21 +73,22 @@ class RandomSite {
                .normalized();
   }
 
-  Source& add_source(const std::string& ending, const std::string& bytes) {
+  Source& add_source(const std::string& extension, const std::string& bytes) {
     Source& source = sources_.emplace_back();
-    source.file = name_.string() + ending;
+    source.file = name_.string() + extension;
     std::ofstream(source.file, std::ios::binary) << bytes;
-    source.place = Place{};
+    source.pose = SourcePose{};
     source.uncertainty = between(0.0, 1.5);
     return source;
   }
 
   void write_blocks() {
     for (int i = 0; i < 4; ++i) {
-      Cube block{.low = place({Vector3d(-30, -30, 0), Vector3d(20, 20, 10)}),
+      Cube block{.low = pose({Vector3d(-30, -30, 0), Vector3d(20, 20, 10)}),
                  .size = {length(1, 9), length(1, 9), length(1, 9)}};
-      const Source& source = i % 2 == 0 ? add_source(std::to_string(i) + ".obj", obj_of(block))
-                                        : add_source(std::to_string(i) + ".gml", citygml_of(block));
+      const Source& source = i % 2 == 0
+                                 ? add_source(std::to_string(i) + ".obj", make_obj(block))
+                                 : add_source(std::to_string(i) + ".gml", make_citygml(block));
       const Vector3d off = error(*source.uncertainty);
       truth_.emplace_back(block.low + off, block.low + block.size + off);
     }
@@ -95,9 +96,9 @@ class RandomSite {
 
   /// Points of a surface; in the file they are thinned to one in a cube, which stands for the rest.
   void write_scan() {
-    Cube corners{.low = place({Vector3d(-30, -30, 5), Vector3d(20, 20, 25)}),
+    Cube corners{.low = pose({Vector3d(-30, -30, 5), Vector3d(20, 20, 25)}),
                  .size = {length(0.05, 1), length(0.05, 1), length(0.05, 1)}};
-    Source& source = add_source(".las", las_of(corners, 4, 6, local_wkt));
+    Source& source = add_source(".las", make_las(corners, 4, 6, local_wkt));
     source.spacing = between(0.1, 1.0);
     const Vector3d off = error(*source.uncertainty);
     for (int i = 0; i < 8; ++i)
@@ -106,7 +107,7 @@ class RandomSite {
 
   /// Cells of 2 m; what is under them reaches down without end.
   void write_height_model() {
-    const Vector3d corner = place({Vector3d(-30, -30, 0), Vector3d(0, 0, 0)});
+    const Vector3d corner = pose({Vector3d(-30, -30, 0), Vector3d(0, 0, 0)});
     std::string text = "ncols 6\nnrows 5\nxllcorner " + std::to_string(corner.x()) +
                        "\nyllcorner " + std::to_string(corner.y()) +
                        "\ncellsize 2\nNODATA_value -9999\n";
@@ -144,41 +145,41 @@ flight::KnownSpace known_space(const RandomSite& site) {
 }
 
 std::size_t legs_to_try() {
-  const char* const wanted = std::getenv("PRIOR_LEGS");  // NOLINT(concurrency-mt-unsafe)
-  return wanted == nullptr ? 10'000 : std::stoul(wanted);
+  const char* const enabled = std::getenv("PRIOR_LEGS");  // NOLINT(concurrency-mt-unsafe)
+  return enabled == nullptr ? 10'000 : std::stoul(enabled);
 }
 
 TEST(PriorLegs, NoneIsCertifiedThatWhatIsReallyThereRefuses) {
   std::mt19937_64 random(1019);
   const testing_support::TemporaryFolder folder;
-  constexpr std::size_t legs_of_a_site = 500;
-  std::size_t certified = 0, refused = 0, touching = 0;
-  for (std::size_t done = 0; done < legs_to_try(); done += legs_of_a_site) {
-    const RandomSite site(random, folder, static_cast<int>(done / legs_of_a_site));
+  constexpr std::size_t legs_per_site = 500;
+  std::size_t verified = 0, rejected = 0, touching = 0;
+  for (std::size_t done = 0; done < legs_to_try(); done += legs_per_site) {
+    const RandomSite site(random, folder, static_cast<int>(done / legs_per_site));
     const flight::KnownSpace space = known_space(site);
     std::uniform_real_distribution<double> clearances(0.2, 3.0);
     const AlignedBox3d around(Vector3d(-40, -40, 0), Vector3d(35, 35, 35));
-    for (const Segment& leg : flight::scenes::legs(random, legs_of_a_site, around)) {
+    for (const Segment& leg : flight::scenes::legs(random, legs_per_site, around)) {
       const double clearance = clearances(random);
-      double least = 1e9;
+      double min = 1e9;
       for (const AlignedBox3d& thing : site.truth()) {
-        least = std::min(least, distance(leg, thing));
+        min = std::min(min, distance(leg, thing));
       }
-      touching += least == 0.0 ? 1 : 0;
+      touching += min == 0.0 ? 1 : 0;
       if (!space.is_free(leg, clearance)) {
-        ++refused;
+        ++rejected;
         continue;
       }
-      ++certified;
+      ++verified;
       // Single precision rounds to less than a tenth of a millimetre.
-      ASSERT_GE(least, clearance - 1e-4) << "leg " << certified + refused;
+      ASSERT_GE(min, clearance - 1e-4) << "leg " << verified + rejected;
     }
   }
-  RecordProperty("legs", static_cast<int>(certified + refused));
-  RecordProperty("certified", static_cast<int>(certified));
+  RecordProperty("legs", static_cast<int>(verified + rejected));
+  RecordProperty("certified", static_cast<int>(verified));
   RecordProperty("really in the way", static_cast<int>(touching));
-  EXPECT_GT(certified, legs_to_try() / 10);
-  EXPECT_GT(refused, legs_to_try() / 20);
+  EXPECT_GT(verified, legs_to_try() / 10);
+  EXPECT_GT(rejected, legs_to_try() / 20);
   EXPECT_GT(touching, legs_to_try() / 50);
 }
 

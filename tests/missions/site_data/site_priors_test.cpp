@@ -19,7 +19,7 @@ using Eigen::Vector3f;
 
 /// Heights every metre on 0 to 4 east, 0 to 3 north; `z` of each node.
 template <typename Height>
-HeightGrid grid_of(Height z) {
+HeightGrid make_grid(Height z) {
   HeightGrid grid{.columns = 5, .rows = 4, .nodes = {}, .right = {1, 0}, .down = {0, -1}};
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 5; ++column) {
@@ -32,14 +32,14 @@ HeightGrid grid_of(Height z) {
 
 flight::PriorObstacle surface_model(const HeightGrid& grid) {
   const Prior prior{.role = Role::obstacle, .uncertainty = 0.0, .grid = grid};
-  return flight::PriorObstacle(obstacle_of({.file = "dsm.tif"}, prior));
+  return flight::PriorObstacle(make_obstacle({.file = "dsm.tif"}, prior));
 }
 
 // Above and between the nodes of a cell its highest one is in the way, half a cell beyond the grid
 // too.
 TEST(SitePriors, ASurfaceModelIsSolidUnderTheHighestNodeOfEachCell) {
   const auto obstacle =
-      surface_model(grid_of([](int x, int y) { return x == 2 && y == 1 ? 9.0 : 1.0; }));
+      surface_model(make_grid([](int x, int y) { return x == 2 && y == 1 ? 9.0 : 1.0; }));
   const auto height_over = [&](double x, double y) {
     return 20.0 - obstacle.distance({x, y, 20.0}, 100);
   };
@@ -55,7 +55,7 @@ TEST(SitePriors, ASurfaceModelIsSolidUnderTheHighestNodeOfEachCell) {
 
 TEST(SitePriors, NodesWithoutAHeightAreNoneOfIt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto obstacle = surface_model(grid_of([&](int x, int) { return x < 3 ? 1.0 : nan; }));
+  const auto obstacle = surface_model(make_grid([&](int x, int) { return x < 3 ? 1.0 : nan; }));
   EXPECT_EQ(obstacle.distance({1.5, 1.5, 0.0}, 100), 0.0);
   EXPECT_NEAR(obstacle.extent().max().x(), 2.5, 1e-6) << "the cells of the last nodes end there";
 }
@@ -81,7 +81,7 @@ TEST(SitePriors, AThinnedSurfaceModelHidesNoHeight) {
                               static_cast<float>(z));
     }
   }
-  const auto config = obstacle_of({.file = "dsm.tif"}, Prior{.grid = grid});
+  const auto config = make_obstacle({.file = "dsm.tif"}, Prior{.grid = grid});
   EXPECT_LT(config.columns.size(), 2'000'000U);
   const flight::PriorObstacle obstacle(config);
   ASSERT_FALSE(grid.nodes.empty());
@@ -92,7 +92,7 @@ TEST(SitePriors, AThinnedSurfaceModelHidesNoHeight) {
 
 TEST(Terrain, IsAsHighAsThePlaneThroughItsNodes) {
   Prior prior;
-  prior.grid = grid_of([](int x, int y) { return 0.5 * x - 0.25 * y; });
+  prior.grid = make_grid([](int x, int y) { return 0.5 * x - 0.25 * y; });
   const Terrain terrain({&prior});
   for (double x = 0.05; x < 4.0; x += 0.37) {
     for (double y = 0.05; y < 3.0; y += 0.29) {
@@ -108,7 +108,7 @@ TEST(Terrain, IsAsHighAsThePlaneThroughItsNodes) {
 TEST(Terrain, EndsHalfACellFromItsLastNodes) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Prior prior;
-  prior.grid = grid_of([](int, int) { return 2.0; });
+  prior.grid = make_grid([](int, int) { return 2.0; });
   prior.grid.nodes[1 * 5 + 2] = {nan, nan, nan};  // at 2, 2
   const Terrain terrain({&prior});
   EXPECT_NEAR(terrain.height({1.45, 2.0}).value(), 2.0, 1e-6);
@@ -211,7 +211,7 @@ TEST(SurfacePoints, CoverWhatCanBeSeenFacingOutward) {
     }
     const SurfacePoints points = spread_over(object, 100'000, 0.1);
     const double area = 2.0 * (2 * 4 + 3 * 4) + 2 * 3;
-    EXPECT_NEAR(points.area_of_each * static_cast<double>(points.positions.size()), area, 1e-6);
+    EXPECT_NEAR(points.area_per_point * static_cast<double>(points.positions.size()), area, 1e-6);
     EXPECT_NEAR(static_cast<double>(points.positions.size()), area / 0.01, 1.0);
     const Vector3f middle(1.0F, 1.5F, 2.0F);
     for (std::size_t i = 0; i < points.positions.size(); ++i) {

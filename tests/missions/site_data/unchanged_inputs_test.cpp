@@ -21,18 +21,18 @@ using testing::HasSubstr;
 
 namespace fs = std::filesystem;
 
-std::string bytes_of(const fs::path& file) {
+std::string read_bytes(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// All files of a folder with their sums and the times that they were written.
-std::map<std::string, std::pair<std::uint32_t, fs::file_time_type>> sums_of(
+std::map<std::string, std::pair<std::uint32_t, fs::file_time_type>> compute_checksums(
     const fs::path& folder) {
   std::map<std::string, std::pair<std::uint32_t, fs::file_time_type>> sums;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
-    sums[entry.path().string()] = {geometry::crc32_of(bytes_of(entry.path())),
+    sums[entry.path().string()] = {geometry::compute_crc32(read_bytes(entry.path())),
                                    entry.last_write_time()};
   }
   return sums;
@@ -42,7 +42,7 @@ class UnchangedInputs : public testing::Test {
  protected:
   /// Reads a file of the folder, which nobody may write to meanwhile.
   Prior read(const fs::path& file, const std::function<void(Source&)>& change = {}) {
-    const auto before = sums_of(folder_.path());
+    const auto before = compute_checksums(folder_.path());
     fs::permissions(file.parent_path(), fs::perms::owner_read | fs::perms::owner_exec);
     Source source;
     source.file = file;
@@ -55,13 +55,13 @@ class UnchangedInputs : public testing::Test {
       ADD_FAILURE() << error.what();
     }
     fs::permissions(file.parent_path(), fs::perms::owner_all);
-    EXPECT_EQ(sums_of(folder_.path()), before) << file;
+    EXPECT_EQ(compute_checksums(folder_.path()), before) << file;
     return prior;
   }
   testing_support::TemporaryFolder folder_;
 };
 
-void stand_at(Source& source) { source.base = 500.0; }
+void set_base(Source& source) { source.base = 500.0; }
 
 TEST_F(UnchangedInputs, OfEveryMap) {
   for (const auto& [driver, name] :
@@ -72,7 +72,7 @@ TEST_F(UnchangedInputs, OfEveryMap) {
                                                                   {"LIBKML", "a.kml"}}) {
     testing_support::write_map(folder_.path() / name,
                                {.driver = driver, .attributes = {{"height", "12"}}});
-    EXPECT_NEAR(read(folder_.path() / name, stand_at).box.max().z(), 12.0, 0.01) << name;
+    EXPECT_NEAR(read(folder_.path() / name, set_base).box.max().z(), 12.0, 0.01) << name;
   }
 }
 
@@ -91,19 +91,19 @@ TEST_F(UnchangedInputs, OfADatabaseWithALogWhoseChangesAreRead) {
         }
       });
   ASSERT_GT(fs::file_size(left / "hall.gpkg-wal"), 0U);
-  const Prior prior = read(left / "hall.gpkg", stand_at);
+  const Prior prior = read(left / "hall.gpkg", set_base);
   EXPECT_NEAR(prior.box.max().z(), 40.0, 0.01);
   EXPECT_THAT(prior.notes, Contains(HasSubstr("read from a copy, with the changes of its log")));
   // In that mode, but without a log, it is read where it is.
   fs::remove(left / "hall.gpkg-wal");
-  EXPECT_NEAR(read(left / "hall.gpkg", stand_at).box.max().z(), 12.0, 0.01);
+  EXPECT_NEAR(read(left / "hall.gpkg", set_base).box.max().z(), 12.0, 0.01);
 }
 
 TEST_F(UnchangedInputs, OfAShapefileWithoutAnIndex) {
   testing_support::write_map(folder_.path() / "a.shp",
                              {.driver = "ESRI Shapefile", .attributes = {{"height", "12"}}});
   fs::remove(folder_.path() / "a.shx");
-  EXPECT_NEAR(read(folder_.path() / "a.shp", stand_at).box.max().z(), 12.0, 0.01);
+  EXPECT_NEAR(read(folder_.path() / "a.shp", set_base).box.max().z(), 12.0, 0.01);
 }
 
 TEST_F(UnchangedInputs, OfARaster) {
@@ -115,26 +115,26 @@ TEST_F(UnchangedInputs, OfEverythingElse) {
   const testing_support::Cube cube;
   const auto on_map = [](Source& source) {
     source.crs = "EPSG:25832";
-    source.place.reset();
+    source.pose.reset();
   };
   const std::pair<const char*, std::string> files[] = {
-      {"cube.gml", testing_support::citygml_of(cube)},
-      {"cube.json", testing_support::cityjson_of(cube)},
-      {"cube.obj", testing_support::obj_of(cube)},
-      {"cube.asc", testing_support::ascii_grid_of(cube)},
-      {"cube.las", testing_support::las_of(cube, 4, 6)},
-      {"cube.e57", testing_support::e57_of(cube)},
-      {"cube.glb", testing_support::glb_of(cube)}};
+      {"cube.gml", testing_support::make_citygml(cube)},
+      {"cube.json", testing_support::make_cityjson(cube)},
+      {"cube.obj", testing_support::make_obj(cube)},
+      {"cube.asc", testing_support::make_ascii_grid(cube)},
+      {"cube.las", testing_support::make_las(cube, 4, 6)},
+      {"cube.e57", testing_support::make_e57(cube)},
+      {"cube.glb", testing_support::make_glb(cube)}};
   for (const auto& [name, bytes] : files) {
     const fs::path file = folder_.file(name, bytes);
-    const auto before = sums_of(folder_.path());
+    const auto before = compute_checksums(folder_.path());
     fs::permissions(file.parent_path(), fs::perms::owner_read | fs::perms::owner_exec);
-    Source source = testing_support::source_of(file);
+    Source source = testing_support::make_source(file);
     on_map(source);
     if (std::string(name) == "cube.glb") source.offset = cube.low;
     EXPECT_NO_THROW(read_prior(source, testing_support::site_at_cube())) << name;
     fs::permissions(file.parent_path(), fs::perms::owner_all);
-    EXPECT_EQ(sums_of(folder_.path()), before) << name;
+    EXPECT_EQ(compute_checksums(folder_.path()), before) << name;
   }
 }
 

@@ -13,9 +13,9 @@
 namespace skycap::missions::support {
 namespace {
 
-std::string complaint(const std::function<void(PipeWriter&)>& work) {
-  return testing_support::complaint_of([&] {
-    ChildProcess({"x.file", "their library", 1}, work).take<int>();
+std::string error_message(const std::function<void(PipeWriter&)>& work) {
+  return testing_support::thrown_message([&] {
+    ChildProcess({"x.file", "their library", 1}, work).read<int>();
   });
 }
 
@@ -26,15 +26,15 @@ TEST(ChildProcess, HandsOverWhatItFinds) {
     const std::vector<double> numbers(100'000, 0.5);
     pipe.put_row(numbers.data(), numbers.size());
   });
-  EXPECT_EQ(child.take<int>(), 7);
-  EXPECT_EQ(child.take_text(), "words");
-  EXPECT_EQ(child.take_row<std::vector<double>>(), std::vector<double>(100'000, 0.5));
+  EXPECT_EQ(child.read<int>(), 7);
+  EXPECT_EQ(child.read_text(), "words");
+  EXPECT_EQ(child.read_row<std::vector<double>>(), std::vector<double>(100'000, 0.5));
 }
 
 TEST(ChildProcess, ThatCrashesOrEndsEarlyIsAComplaint) {
   const std::string end = "x.file: is damaged: their library stopped while reading it";
-  EXPECT_EQ(complaint([](PipeWriter&) { std::raise(SIGKILL); }), end);
-  EXPECT_EQ(complaint([](PipeWriter&) {}), end);
+  EXPECT_EQ(error_message([](PipeWriter&) { std::raise(SIGKILL); }), end);
+  EXPECT_EQ(error_message([](PipeWriter&) {}), end);
 }
 
 TEST(ChildProcess, ThatNeverEndsIsEnded) {
@@ -43,7 +43,7 @@ TEST(ChildProcess, ThatNeverEndsIsEnded) {
     }
   };
   EXPECT_EQ(
-      complaint(loop),
+      error_message(loop),
       "x.file: timeout: their library took more than 1 s, too long for an intact file of its size");
   const ChildProcess left({"x.file", "their library"}, loop);  // goes with its owner
 }

@@ -14,41 +14,41 @@ namespace {
 const Identity run{7, {{"scene.model", "builtin:teapot"}, {"limits.max_views", "12"}}};
 const std::string cure = "start again without --resume";
 
-std::string identity_of(const Identity& given) {
+std::string make_identity(const Identity& given) {
   return identity_text(given, {{"format", journal_format}, {"surface", "abc"}});
 }
 
-std::string complaint(const std::string& found, const std::string& wanted) {
-  return testing_support::complaint_of([&] { require_same_survey("j", found, wanted, cure); });
+std::string error_message(const std::string& found, const std::string& expected) {
+  return testing_support::thrown_message([&] { require_same_survey("j", found, expected, cure); });
 }
 
 TEST(JournalText, TellsASurveyByVersionSeedAndKeys) {
-  const auto json = nlohmann::ordered_json::parse(identity_of(run));
+  const auto json = nlohmann::ordered_json::parse(make_identity(run));
   EXPECT_EQ(json.at("version"), version);
   EXPECT_EQ(json.at("seed"), 7);
   EXPECT_EQ(json.at("format"), journal_format);
   EXPECT_EQ(json.at("limits.max_views"), "12");
-  EXPECT_NO_THROW(require_same_survey("j", identity_of(run), identity_of(run), cure));
+  EXPECT_NO_THROW(require_same_survey("j", make_identity(run), make_identity(run), cure));
 }
 
 TEST(JournalText, NamesWhatIsDifferent) {
   Identity other = run;
   other.settings[1].value = "13";
   EXPECT_EQ(
-      complaint(identity_of(run), identity_of(other)),
+      error_message(make_identity(run), make_identity(other)),
       "j: cannot resume: limits.max_views changed from \"12\" to \"13\"; restore it, or " + cure);
 }
 
 // Earlier journals count what limits refuse as unreachable, and say nothing of a format.
 TEST(JournalText, SaysWhichVersionWroteAJournalOfAnotherFormat) {
   const std::string end = ", whose journals this version cannot continue; " + cure;
-  EXPECT_EQ(complaint(R"({"version": "0.1.0", "seed": 7})", identity_of(run)),
+  EXPECT_EQ(error_message(R"({"version": "0.1.0", "seed": 7})", make_identity(run)),
             "j: was written by version 0.1.0" + end);
-  EXPECT_EQ(complaint(R"({"version": "0.1.0", "seed": 7, "format": 2})", identity_of(run)),
+  EXPECT_EQ(error_message(R"({"version": "0.1.0", "seed": 7, "format": 2})", make_identity(run)),
             "j: was written by version 0.1.0" + end);
-  EXPECT_EQ(complaint(R"({"version": "9.0.0", "seed": 7, "format": 4})", identity_of(run)),
+  EXPECT_EQ(error_message(R"({"version": "9.0.0", "seed": 7, "format": 4})", make_identity(run)),
             "j: was written by version 9.0.0" + end);
-  EXPECT_EQ(complaint(R"({"version": 3, "seed": 7})", identity_of(run)),
+  EXPECT_EQ(error_message(R"({"version": 3, "seed": 7})", make_identity(run)),
             "j: was written by version (unknown)" + end);
 }
 
@@ -59,7 +59,7 @@ TEST(JournalText, AsksForAFormatOnlyWhereThereIsOne) {
 }
 
 TEST(JournalText, RejectsWhatIsNotAnIdentity) {
-  EXPECT_EQ(complaint("[1, 2]", identity_of(run)), "j: is not a journal");
+  EXPECT_EQ(error_message("[1, 2]", make_identity(run)), "j: is not a journal");
 }
 
 }  // namespace

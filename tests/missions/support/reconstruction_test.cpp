@@ -23,13 +23,13 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-/// Points of a sphere of 2 m, some 0.07 m apart, without those below `least_z`.
-geometry::AttributedCloud ball_cloud(float least_z = -10.0F) {
+/// Points of a sphere of 2 m, some 0.07 m apart, without those below `min_z`.
+geometry::AttributedCloud ball_cloud(float min_z = -10.0F) {
   const geometry::SurfaceSamples samples =
       geometry::sample_surface(sim::sphere({1, 2, 3}, 2.0, 5), 8000, 4);
   geometry::AttributedCloud cloud;
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
-    if (samples.points[i].z() < least_z) continue;
+    if (samples.points[i].z() < min_z) continue;
     cloud.positions.push_back(samples.points[i]);
     cloud.normals.push_back(samples.normals[i]);
   }
@@ -76,7 +76,7 @@ TEST(Reconstruct, HolesStayHoles) {
   for (const Vector3d& vertex : trimmed.mesh.vertices) EXPECT_GT(vertex.z(), 1.8);
 
   const support::Reconstruction closed =
-      support::reconstruct(cloud.positions, cloud.normals, {.least_density = 0.0});
+      support::reconstruct(cloud.positions, cloud.normals, {.min_density = 0.0});
   EXPECT_EQ(closed.trimmed_triangles, 0U);
   EXPECT_GT(geometry::surface_area(closed.mesh), geometry::surface_area(trimmed.mesh) + 1.0);
 }
@@ -91,37 +91,38 @@ TEST(Reconstruct, ThinsTheCloudToTheSpacing) {
 
 TEST(Reconstruct, RefusesWhatMakesNoSurface) {
   const std::vector<Vector3f> few(99, Vector3f::Zero());
-  EXPECT_THAT(testing_support::complaint_of([&] { support::reconstruct(few, {}, {}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { support::reconstruct(few, {}, {}); }),
               testing::HasSubstr("too few points: 99"));
-  EXPECT_THAT(testing_support::complaint_of([&] { support::reconstruct(few, {}, {.depth = 13}); }),
-              testing::HasSubstr("reconstruction.depth is 13"));
   EXPECT_THAT(
-      testing_support::complaint_of([&] { support::reconstruct(few, {}, {.spacing = -1.0}); }),
+      testing_support::thrown_message([&] { support::reconstruct(few, {}, {.depth = 13}); }),
+      testing::HasSubstr("reconstruction.depth is 13"));
+  EXPECT_THAT(
+      testing_support::thrown_message([&] { support::reconstruct(few, {}, {.spacing = -1.0}); }),
       testing::HasSubstr("reconstruction.spacing is -1.0"));
   EXPECT_THAT(
-      testing_support::complaint_of([&] { support::reconstruct(few, {}, {.least_density = 1.0}); }),
+      testing_support::thrown_message([&] { support::reconstruct(few, {}, {.min_density = 1.0}); }),
       testing::HasSubstr("reconstruction.least_density is 1.0"));
 }
 
-class ReconstructVerb : public testing::Test {
+class ReconstructCommand : public testing::Test {
  protected:
   const tests::TestFolder folder;
 };
 
-TEST_F(ReconstructVerb, WritesAMeshThatEvaluateComparesWithTheModel) {
-  geometry::write_cloud(folder / "ball.ply", columns_of(ball_cloud()));
+TEST_F(ReconstructCommand, WritesAMeshThatEvaluateComparesWithTheModel) {
+  geometry::write_cloud(folder / "ball.ply", make_columns(ball_cloud()));
   geometry::write_mesh(folder / "truth.ply", sim::sphere({1, 2, 3}, 2.0, 5));
   const tests::ProgramRun run = tests::run_skycap({"reconstruct", folder / "ball.ply"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, testing::HasSubstr("ball_mesh.ply"));
-  const tests::ProgramRun judged =
+  const tests::ProgramRun evaluated =
       tests::run_skycap({"evaluate", "--mesh", folder / "ball_mesh.ply", "--model",
                          folder / "truth.ply", "--distance", "0.02", "--samples", "2000"});
-  EXPECT_EQ(judged.exit_code, 0) << judged.err;
-  EXPECT_THAT(judged.out, testing::HasSubstr("coverage  100.00%"));
+  EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  EXPECT_THAT(evaluated.out, testing::HasSubstr("coverage  100.00%"));
 }
 
-TEST_F(ReconstructVerb, SaysWhichCloudHasTooFewPoints) {
+TEST_F(ReconstructCommand, SaysWhichCloudHasTooFewPoints) {
   const std::string cloud = folder.write("few.xyz", "0 0 0\n1 0 0\n0 1 0\n");
   const tests::ProgramRun run = tests::run_skycap({"reconstruct", cloud});
   EXPECT_EQ(run.exit_code, 2);
@@ -134,7 +135,7 @@ class MovedProgram : public testing::Test {
  protected:
   MovedProgram() {
     std::filesystem::copy_file(built_, folder_ / "skycap");
-    geometry::write_cloud(folder_ / "ball.ply", geometry::columns_of(ball_cloud()));
+    geometry::write_cloud(folder_ / "ball.ply", geometry::make_columns(ball_cloud()));
   }
   void add_module() {
     const char* module = "libskycap_reconstruction.so";

@@ -62,7 +62,7 @@ TEST(CityBlock, EveryPartIsClosedAndFacesOutwards) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for (const models::Part& part :
          testing_support::not_empty(models::city_block({seed, {0.02}}))) {
-      ASSERT_EQ(models::why_not_closed(part.mesh), "") << part.name << ", seed " << seed;
+      ASSERT_EQ(models::closedness_error(part.mesh), "") << part.name << ", seed " << seed;
     }
   }
 }
@@ -70,11 +70,11 @@ TEST(CityBlock, EveryPartIsClosedAndFacesOutwards) {
 TEST(CityBlock, NoRayFromAboveMeetsABackFace) {
   const Scene scene(builtin_model("city-block"));
   std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> place(-100.0, 100.0), height(0.5, 60.0);
+  std::uniform_real_distribution<double> coordinate(-100.0, 100.0), height(0.5, 60.0);
   int backs = 0, hits = 0;
   for (int i = 0; i < 100000; ++i) {
-    const Vector3d from{place(random), place(random), 80.0};
-    const Vector3d to{place(random), place(random), height(random) * 0.2};
+    const Vector3d from{coordinate(random), coordinate(random), 80.0};
+    const Vector3d to{coordinate(random), coordinate(random), height(random) * 0.2};
     const auto hit = scene.first_hit(from, (to - from).normalized());
     if (!hit) continue;
     ++hits;

@@ -14,7 +14,7 @@
 namespace skycap::sim::models {
 
 /// Why a mesh is not one closed, consistently oriented, outward-facing surface; empty if it is.
-inline std::string why_not_closed(const geometry::Mesh& mesh) {
+inline std::string closedness_error(const geometry::Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> sides, reversed;
   for (const auto& triangle : mesh.triangles) {
     const Eigen::Vector3d a = mesh.vertices.at(triangle[0]), b = mesh.vertices.at(triangle[1]),

@@ -23,7 +23,7 @@ constexpr Fineness coarse{0.02};
 
 class Families : public testing::TestWithParam<std::string_view> {
  protected:
-  static FamilyScene scene_of(std::uint64_t seed) {
+  static FamilyScene make_scene(std::uint64_t seed) {
     const auto all = families();
     geometry::RandomNumbers draw(seed);
     return std::ranges::find(all, GetParam(), &Family::name)->make(draw, coarse);
@@ -31,7 +31,7 @@ class Families : public testing::TestWithParam<std::string_view> {
 };
 
 /// Random numbers for the rays of a test.
-class Places {
+class Positions {
  public:
   Vector3d within(const AlignedBox3d& box) {
     std::uniform_real_distribution<double> share(0.0, 1.0);
@@ -42,9 +42,9 @@ class Places {
   Vector3d around() {
     std::normal_distribution<double> normal;
     const double x = normal(random_), y = normal(random_), z = normal(random_);
-    Vector3d place = 90.0 * Vector3d(x, y, z).normalized();
-    place.z() = 0.5 + std::abs(place.z());
-    return place;
+    Vector3d position = 90.0 * Vector3d(x, y, z).normalized();
+    position.z() = 0.5 + std::abs(position.z());
+    return position;
   }
 
  private:
@@ -53,15 +53,15 @@ class Places {
 
 TEST_P(Families, AreClosedSolidsThatFaceOutwards) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    for (const Part& part : testing_support::not_empty(scene_of(seed).parts)) {
-      ASSERT_EQ(why_not_closed(part.mesh), "") << part.name << ", seed " << seed;
+    for (const Part& part : testing_support::not_empty(make_scene(seed).parts)) {
+      ASSERT_EQ(closedness_error(part.mesh), "") << part.name << ", seed " << seed;
     }
   }
 }
 
 TEST_P(Families, StandOnTheGroundAroundTheOrigin) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const AlignedBox3d box = bounding_box(join(scene_of(seed).parts));
+    const AlignedBox3d box = bounding_box(join(make_scene(seed).parts));
     EXPECT_NEAR(box.min().z(), 0.0, 1e-9) << seed;
     EXPECT_LE(box.sizes().head<2>().maxCoeff(), 65.0) << seed;
     EXPECT_LE(box.max().z(), 55.0) << seed;
@@ -70,27 +70,28 @@ TEST_P(Families, StandOnTheGroundAroundTheOrigin) {
 }
 
 TEST_P(Families, AreDrawnFromTheSeedAlone) {
-  const geometry::Mesh one = join(scene_of(1).parts);
-  EXPECT_EQ(join(scene_of(1).parts).vertices, one.vertices);
-  EXPECT_NE(join(scene_of(2).parts).vertices, one.vertices);
+  const geometry::Mesh one = join(make_scene(1).parts);
+  EXPECT_EQ(join(make_scene(1).parts).vertices, one.vertices);
+  EXPECT_NE(join(make_scene(2).parts).vertices, one.vertices);
 }
 
 TEST_P(Families, LetNoRayIntoSealedRoomsAndSomeIntoOpenOnes) {
-  Places places;
+  Positions positions;
   std::size_t rooms = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const FamilyScene made = scene_of(seed);
+    const FamilyScene made = make_scene(seed);
     rooms += made.sealed_rooms.size() + made.open_rooms.size();
     const Scene scene(join(made.parts));
     for (const AlignedBox3d& room : made.sealed_rooms) {
       for (int i = 0; i < 2000; ++i) {
-        ASSERT_TRUE(scene.is_blocked(places.around(), places.within(room))) << "seed " << seed;
+        ASSERT_TRUE(scene.is_blocked(positions.around(), positions.within(room)))
+            << "seed " << seed;
       }
     }
     for (const AlignedBox3d& room : made.open_rooms) {
       int seen = 0;
       for (int i = 0; i < 20000; ++i) {
-        seen += scene.is_blocked(places.around(), places.within(room)) ? 0 : 1;
+        seen += scene.is_blocked(positions.around(), positions.within(room)) ? 0 : 1;
       }
       EXPECT_GT(seen, 5) << "seed " << seed << ", room at " << room.center().transpose();
     }
@@ -110,7 +111,7 @@ TEST(FamilyScenes, SomeHaveRooms) {
   EXPECT_GT(open, 0U);
 }
 
-std::string name_of(const testing::TestParamInfo<std::string_view>& family) {
+std::string param_name(const testing::TestParamInfo<std::string_view>& family) {
   std::string name(family.param);
   std::ranges::replace(name, '-', '_');
   return name;
@@ -118,10 +119,10 @@ std::string name_of(const testing::TestParamInfo<std::string_view>& family) {
 
 INSTANTIATE_TEST_SUITE_P(All, Families,
                          testing::ValuesIn(model_families().begin(), model_families().end()),
-                         name_of);
+                         param_name);
 
 /// How many parts have each name.
-std::map<std::string, int> counts_of(const FamilyScene& scene) {
+std::map<std::string, int> count_objects(const FamilyScene& scene) {
   std::map<std::string, int> counts;
   for (const Part& part : scene.parts) ++counts[part.name];
   return counts;
@@ -141,16 +142,16 @@ TEST(FamilyScenes, HaveWhatTheyAreNamedAfter) {
         EXPECT_GE(size.z(), 10.0 * size.x()) << "not slender";
       }
     }
-    auto tower = counts_of(drawn(lattice_tower, seed));
+    auto tower = count_objects(drawn(lattice_tower, seed));
     EXPECT_EQ(tower["brace"], 2 * tower["leg"]);
     EXPECT_EQ(tower["strut"], tower["leg"]);
-    EXPECT_EQ(counts_of(drawn(fences, seed))["wire"], 18);
+    EXPECT_EQ(count_objects(drawn(fences, seed))["wire"], 18);
     const FamilyScene decks = drawn(garage, seed);
-    EXPECT_EQ(decks.open_rooms.size() + 1, static_cast<std::size_t>(counts_of(decks)["deck"]));
-    EXPECT_EQ(counts_of(drawn(statue, seed))["staff"], 1);
-    EXPECT_EQ(counts_of(drawn(church, seed))["spire"], 1);
-    EXPECT_EQ(counts_of(drawn(hillside, seed))["hill"], 1);
-    EXPECT_GE(counts_of(drawn(grove, seed))["tree crown"], 7);
+    EXPECT_EQ(decks.open_rooms.size() + 1, static_cast<std::size_t>(count_objects(decks)["deck"]));
+    EXPECT_EQ(count_objects(drawn(statue, seed))["staff"], 1);
+    EXPECT_EQ(count_objects(drawn(church, seed))["spire"], 1);
+    EXPECT_EQ(count_objects(drawn(hillside, seed))["hill"], 1);
+    EXPECT_GE(count_objects(drawn(grove, seed))["tree crown"], 7);
   }
 }
 

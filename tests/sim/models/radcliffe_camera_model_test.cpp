@@ -32,8 +32,8 @@ const geometry::Mesh& building() {
 }
 
 const Scene& scene() {
-  static const Scene prepared(building());
-  return prepared;
+  static const Scene model_scene(building());
+  return model_scene;
 }
 
 /// The distance from the axis, at full size, at which a level ray towards the axis meets the
@@ -124,9 +124,9 @@ TEST(RadcliffeCamera, HasThirtyTwoColumnsInPairs) {
   EXPECT_EQ(count_beyond(13.6, 17.9), 32);
   EXPECT_EQ(count_beyond(13.6, 10.0), 32);
   // Three quarters of the shaft stand free: its front is an axis radius and its own from the axis.
-  double most = 0.0;
-  for (int i = 0; i < 2000; ++i) most = std::max(most, radius_at(2 * pi * i / 2000, 11.0));
-  EXPECT_NEAR(most, table.column_axis_radius + table.column_radius, 0.01);
+  double max = 0.0;
+  for (int i = 0; i < 2000; ++i) max = std::max(max, radius_at(2 * pi * i / 2000, 11.0));
+  EXPECT_NEAR(max, table.column_axis_radius + table.column_radius, 0.01);
 }
 
 TEST(RadcliffeCamera, HasWindowsAndNichesInTwoTiers) {
@@ -175,8 +175,8 @@ TEST(RadcliffeCamera, EveryPartIsClosedAndFacesOutwards) {
     for (const double chord_error : {0.1, 0.02, 0.004}) {
       std::set<std::string> failures;
       for (const models::Part& part : models::radcliffe_camera(table, {{chord_error}, is_fluted})) {
-        const std::string why = models::why_not_closed(part.mesh);
-        if (!why.empty()) failures.insert(part.name + ": " + why);
+        const std::string reason = models::closedness_error(part.mesh);
+        if (!reason.empty()) failures.insert(part.name + ": " + reason);
       }
       EXPECT_THAT(failures, testing::IsEmpty()) << "chord error " << chord_error;
     }
@@ -255,8 +255,8 @@ RayCounts cast_rays(const Scene& model, const Eigen::AlignedBox3d& box, long cou
 
 // SKYCAP_MODEL_RAYS=10000000 runs the long version.
 TEST(RadcliffeCamera, NoRayFromOutsideEntersItOrMeetsABackFace) {
-  const char* wanted = std::getenv("SKYCAP_MODEL_RAYS");
-  const long count = wanted != nullptr ? std::atol(wanted) : 300000;
+  const char* enabled = std::getenv("SKYCAP_MODEL_RAYS");
+  const long count = enabled != nullptr ? std::atol(enabled) : 300000;
   const RayCounts counts = cast_rays(scene(), bounding_box(building()), count);
   EXPECT_GT(counts.hits, count / 4);
   EXPECT_EQ(counts.backs, 0);

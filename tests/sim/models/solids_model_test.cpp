@@ -110,23 +110,23 @@ TEST(Triangulate, CoversArcadesOfAnyWidth) {
 
 TEST(Solids, HaveTheirVolumesAndAreClosed) {
   const Mesh cuboid = box({1, 2, 3}, {2, 4, 6});
-  EXPECT_EQ(why_not_closed(cuboid), "");
+  EXPECT_EQ(closedness_error(cuboid), "");
   EXPECT_NEAR(signed_volume(cuboid), 6.0, 1e-12);
 
   const Fineness fine{1e-4};
   const Mesh ball = revolve(Profile(fine, 0, -1).arc_to(0, 1, pi).points(), fine.circle(1));
-  EXPECT_EQ(why_not_closed(ball), "");
+  EXPECT_EQ(closedness_error(ball), "");
   EXPECT_NEAR(signed_volume(ball), 4 * pi / 3, 4e-3);  // a shell of up to 3e-4 is missing
 
   // Pappus: area of the section times the way of its centroid; 1 - 1e-5 for the polygon.
   const Mesh ring = revolve_ring({{3, 0}, {4, 0}, {4, 2}, {3, 2}}, 1000);
-  EXPECT_EQ(why_not_closed(ring), "");
+  EXPECT_EQ(closedness_error(ring), "");
   EXPECT_NEAR(signed_volume(ring), 2 * 2 * pi * 3.5, 1e-3);
 
   // A square moulding round a square: a frame, its corners mitred.
   const Mesh frame = sweep({{0, 0}, {1, 0}, {1, 1}, {0, 1}},
                            {{0, 0, 0}, {0, 4, 0}, {4, 4, 0}, {4, 0, 0}}, Vector3d::UnitZ(), true);
-  EXPECT_EQ(why_not_closed(frame), "");
+  EXPECT_EQ(closedness_error(frame), "");
   EXPECT_NEAR(signed_volume(frame), 6 * 6 - 4 * 4, 1e-12);
 }
 
@@ -157,7 +157,7 @@ double volume_with(Opening opening, Joint joint = {}) {
     start += length;
   }
   const Mesh mesh = Tower(0).add(build(wall)).close(3);
-  EXPECT_EQ(why_not_closed(mesh), "");
+  EXPECT_EQ(closedness_error(mesh), "");
   return signed_volume(mesh);
 }
 
@@ -182,7 +182,7 @@ TEST(Wall, JointsCutGroovesBetweenTheStones) {
   Wall wall{PlanCurve::circle(10), 0, 2, {}, {}, {0.03, 0.05}};
   add_ring_courses(0, 0.5, 4, 20, fine, wall);
   const Mesh mesh = Tower(0).add(build(wall)).close(2);
-  EXPECT_EQ(why_not_closed(mesh), "");
+  EXPECT_EQ(closedness_error(mesh), "");
   const double groove = 0.03 * 0.05;
   const double grooves = groove * (3 * 2 * pi * 10 + 4 * 20 * 0.5);
   // Crossings are counted twice, and grooves lie up to 5 cm inside the circumference: 1 percent.
@@ -194,7 +194,7 @@ TEST(CorinthianColumn, IsMadeOfClosedSolidsOfTheOrdersHeight) {
     const Parts parts = corinthian_column({11.3, 0.565, 0.475, flutes, pi + 0.1}, Fineness{0.005});
     int leaves = 0, volutes = 0;
     for (const Part& part : testing_support::not_empty(parts)) {
-      EXPECT_EQ(why_not_closed(part.mesh), "") << part.name;
+      EXPECT_EQ(closedness_error(part.mesh), "") << part.name;
       leaves += part.name == "acanthus leaf";
       volutes += part.name == "capital volute";
     }

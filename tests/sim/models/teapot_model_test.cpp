@@ -34,11 +34,11 @@ TEST(Teapot, WeldsPatchesAndDropsCollapsedTriangles) {
   const geometry::Mesh mesh = teapot(16);
   EXPECT_EQ(mesh.triangles.size(), 32U * 16 * 16 * 2 - 8 * 16);
   // Welded: no two vertices are at one place, none is left over.
-  std::set<std::array<double, 3>> places;
+  std::set<std::array<double, 3>> positions;
   for (const Vector3d& v : mesh.vertices) {
-    places.insert({std::round(1e7 * v.x()), std::round(1e7 * v.y()), std::round(1e7 * v.z())});
+    positions.insert({std::round(1e7 * v.x()), std::round(1e7 * v.y()), std::round(1e7 * v.z())});
   }
-  EXPECT_EQ(places.size(), mesh.vertices.size());
+  EXPECT_EQ(positions.size(), mesh.vertices.size());
   std::set<std::uint32_t> used;
   for (const auto& triangle : mesh.triangles) used.insert(triangle.begin(), triangle.end());
   EXPECT_EQ(used.size(), mesh.vertices.size());

@@ -22,7 +22,7 @@ geometry::Mesh unit_ball() {
   return models::revolve(models::Profile(fine, 0, -1).arc_to(0, 1, pi).points(), fine.circle(1));
 }
 
-RenderOptions small_picture() {
+RenderOptions small_image() {
   RenderOptions options;
   options.width = 120;
   options.height = 100;
@@ -65,7 +65,7 @@ std::vector<bool> covered(const geometry::Mesh& mesh, const RenderView& view,
 // From distance d a unit ball fills a cone with tan = 1 / sqrt(d^2 - 1); around the optical axis
 // its outline is a circle of that many focal lengths.
 TEST(Render, ASpheresOutlineHasItsAnalyticArea) {
-  const RenderOptions options = small_picture();
+  const RenderOptions options = small_image();
   const double fov = 0.6, distance = 5.0;
   const RenderView view{geometry::look_at({0, -distance, 0}, {0, 0, 0}), fov};
   const std::vector<bool> pixels = covered(unit_ball(), view, options);
@@ -79,7 +79,7 @@ TEST(Render, ASpheresOutlineHasItsAnalyticArea) {
 }
 
 TEST(Render, TheSideTowardsTheSunIsBrighter) {
-  RenderOptions options = small_picture();
+  RenderOptions options = small_image();
   options.sun_to_the_left = pi / 2;
   const RenderView view{geometry::look_at({0, -5, 0}, {0, 0, 0}), 0.6};
   const Image image = render(unit_ball(), {&view, 1}, options);
@@ -87,7 +87,7 @@ TEST(Render, TheSideTowardsTheSunIsBrighter) {
 }
 
 TEST(Render, DoesNotDependOnThreads) {
-  RenderOptions options = small_picture();
+  RenderOptions options = small_image();
   options.samples_per_side = 1;
   options.threads = 1;
   const Image one = render(unit_ball(), options);
@@ -96,7 +96,7 @@ TEST(Render, DoesNotDependOnThreads) {
 }
 
 TEST(Render, LaysViewsOutInRows) {
-  RenderOptions options = small_picture();
+  RenderOptions options = small_image();
   options.samples_per_side = 1;
   const Image image = render(unit_ball(), options);
   ASSERT_EQ(standard_views(unit_ball()).size(), 4U);
@@ -108,7 +108,7 @@ TEST(Render, LaysViewsOutInRows) {
 
 TEST(Render, StandardViewsShowAllOfTheScene) {
   for (const double aspect : {0.5, 1.0, 2.0}) {
-    RenderOptions options = small_picture();
+    RenderOptions options = small_image();
     options.width = static_cast<int>(100 * aspect);
     const std::vector<RenderView> views = standard_views(unit_ball(), aspect);
     for (int i = 0; i < 3; ++i) {  // the fourth is a detail
@@ -123,8 +123,8 @@ TEST(Render, StandardViewsShowAllOfTheScene) {
       }
       EXPECT_EQ(edge, 0);
       // The ball is as large as it can be: more than half of the largest circle.
-      const double most = 0.5 * std::min(options.width, options.height);
-      EXPECT_GT(inner, 0.5 * pi * most * most);
+      const double max = 0.5 * std::min(options.width, options.height);
+      EXPECT_GT(inner, 0.5 * pi * max * max);
     }
   }
 }

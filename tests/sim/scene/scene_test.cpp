@@ -98,8 +98,8 @@ TEST(Scene, AHoleLetsThroughExactlyTheRaysInsideIt) {
       const double y = 0.0101 * column, z = 0.0103 * row;  // no ray meets the rim
       const auto hit = scene.first_hit({0, 0, 0}, Vector3d(5, y, z));
       ASSERT_TRUE(hit);
-      const bool passes = std::abs(y) < 0.1 && std::abs(z) < 0.1;
-      EXPECT_NEAR(hit->distance, passes ? 1.6 : 1.0, 1e-6) << y << ", " << z;
+      const bool is_open = std::abs(y) < 0.1 && std::abs(z) < 0.1;
+      EXPECT_NEAR(hit->distance, is_open ? 1.6 : 1.0, 1e-6) << y << ", " << z;
     }
   }
 }
@@ -168,24 +168,23 @@ TEST(Scene, FarFromTheOriginRangesStayThoseNearIt) {
   }
 }
 
-Eigen::Isometry3d place(const Vector3d& position, double heading) {
+Eigen::Isometry3d make_pose(const Vector3d& position, double heading) {
   return Eigen::Translation3d(position) * Eigen::AngleAxisd(heading, Vector3d::UnitZ());
 }
 
 /// Three spheres and a cube under them, as copies and as one mesh.
 struct Copies {
   geometry::Mesh ball = sphere({0.5, 0, 2}, 1.5, 4), base = cube({0, 0, -1}, 2.0);
-  std::vector<Eigen::Isometry3d> places = {place({0, 0, 0}, 0.3), place({20, -7, 1}, 2.0),
-                                           place({-9, 11, 0.5}, -1.0)};
+  std::vector<Eigen::Isometry3d> poses = {make_pose({0, 0, 0}, 0.3), make_pose({20, -7, 1}, 2.0),
+                                          make_pose({-9, 11, 0.5}, -1.0)};
   std::vector<float> base_reflectances = std::vector<float>(base.triangles.size(), 0.9F);
 
   Scene scene() const {
-    return Scene(std::array{ScenePart{ball, {}, places}, ScenePart{base, base_reflectances, {}}},
-                 1);
+    return Scene(std::array{ScenePart{ball, {}, poses}, ScenePart{base, base_reflectances, {}}}, 1);
   }
   geometry::Mesh flattened() const {
     geometry::Mesh all;
-    for (const Eigen::Isometry3d& world_from_ball : places) {
+    for (const Eigen::Isometry3d& world_from_ball : poses) {
       geometry::Mesh moved = ball;
       geometry::transform(moved, Eigen::Affine3d(world_from_ball));
       geometry::append(all, moved);
@@ -200,7 +199,7 @@ struct Copies {
 TEST(Scene, OfCopiesIsMetWhereTheirOneMeshWouldBe) {
   const Copies copies;
   const geometry::Mesh mesh = copies.flattened();
-  const Scene scene = copies.scene(), twin(mesh, 1);
+  const Scene scene = copies.scene(), reference(mesh, 1);
   std::mt19937_64 random(5);
   std::uniform_int_distribution<std::size_t> any(0, mesh.vertices.size() - 1);
   int hits = 0, other_triangles = 0;
@@ -208,7 +207,7 @@ TEST(Scene, OfCopiesIsMetWhereTheirOneMeshWouldBe) {
     const Vector3d origin = 30.0 * random_direction(random);
     const Vector3d target = mesh.vertices[any(random)] + 0.3 * random_direction(random);
     const auto hit = scene.first_hit(origin, target - origin);
-    const auto expected = twin.first_hit(origin, target - origin);
+    const auto expected = reference.first_hit(origin, target - origin);
     if (expected.has_value() != hit.has_value()) {
       ++other_triangles;  // past a silhouette
       continue;
@@ -224,7 +223,7 @@ TEST(Scene, OfCopiesIsMetWhereTheirOneMeshWouldBe) {
     EXPECT_TRUE(hit->normal.isApprox(expected->normal, 1e-4));
     EXPECT_EQ(scene.reflectance(hit->triangle),
               hit->triangle < 3 * copies.ball.triangles.size() ? Scene::default_reflectance : 0.9F);
-    EXPECT_EQ(scene.is_blocked(origin, target), twin.is_blocked(origin, target));
+    EXPECT_EQ(scene.is_blocked(origin, target), reference.is_blocked(origin, target));
   }
   EXPECT_GT(hits, 3000);
   EXPECT_LT(other_triangles, 10);
@@ -236,18 +235,18 @@ TEST(Scene, TellsOfManySightsWhatItTellsOfEach) {
   const Scene scene(sphere({0, 0, 0}, 1.0, 3));
   std::size_t blocked = 0;
   for (int round = 0; round < 500; ++round) {
-    const std::size_t count = round % (Scene::most_sights + 1);
-    std::vector<Scene::Sight> sights;
+    const std::size_t count = round % (Scene::max_sight_lines + 1);
+    std::vector<Scene::SightLine> sight_lines;
     const Vector3d far = 20.0 * random_direction(random);
     for (std::size_t i = 0; i < count; ++i) {
       const Vector3d near = 1.2 * Vector3d{uniform(random), uniform(random), uniform(random)};
       // Side by side and as long, converging, and of no length.
-      sights.push_back({i % 5 == 4 ? near : i % 2 == 0 ? near + far : far, near});
+      sight_lines.push_back({i % 5 == 4 ? near : i % 2 == 0 ? near + far : far, near});
     }
-    const std::uint32_t answer = scene.blocked(sights);
+    const std::uint32_t answer = scene.blocked(sight_lines);
     EXPECT_EQ(answer >> count, 0U);
     for (std::size_t i = 0; i < count; ++i) {
-      const bool expected = scene.is_blocked(sights[i].from, sights[i].to);
+      const bool expected = scene.is_blocked(sight_lines[i].from, sight_lines[i].to);
       EXPECT_EQ((answer >> i & 1U) != 0, expected) << round << ", " << i;
       blocked += expected;
     }
@@ -259,7 +258,7 @@ TEST(Scene, TellsOfManySightsWhatItTellsOfEach) {
 TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfACopy) {
   const Copies copies;
   const Scene scene = copies.scene();
-  for (const Eigen::Isometry3d& world_from_ball : copies.places) {
+  for (const Eigen::Isometry3d& world_from_ball : copies.poses) {
     std::vector<Vector3d> targets;
     for (const auto& [a, b, c] : copies.ball.triangles) {
       const Vector3d& from = copies.ball.vertices[a];
@@ -282,11 +281,11 @@ TEST(Scene, CopiesTakeNoMemoryToSpeakOf) {
   };
   const geometry::Mesh ball = sphere({0, 0, 0}, 1.0, 7);
   ASSERT_EQ(ball.triangles.size(), 131'072U);
-  std::vector<Eigen::Isometry3d> places;
-  places.reserve(200);
-  for (int i = 0; i < 200; ++i) places.push_back(place({3.0 * i, 0, 0}, 0.1 * i));
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(200);
+  for (int i = 0; i < 200; ++i) poses.push_back(make_pose({3.0 * i, 0, 0}, 0.1 * i));
   const std::size_t before = resident_bytes();
-  const Scene scene(std::array{ScenePart{ball, {}, places}}, 1);
+  const Scene scene(std::array{ScenePart{ball, {}, poses}}, 1);
   EXPECT_LT(resident_bytes() - before, 100'000'000U);
   const auto hit = scene.first_hit({3.0 * 150, -10, 0}, {0, 1, 0});
   ASSERT_TRUE(hit);
@@ -295,12 +294,12 @@ TEST(Scene, CopiesTakeNoMemoryToSpeakOf) {
 }
 
 TEST(Scene, RejectsToHaveNoParts) {
-  EXPECT_THAT(testing_support::complaint_of([&] { Scene(std::span<const ScenePart>(), 1); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { Scene(std::span<const ScenePart>(), 1); }),
               testing::HasSubstr("the scene has no meshes"));
 }
 
 TEST(Scene, RejectsAMeshWithoutSurface) {
-  EXPECT_THAT(testing_support::complaint_of([&] { Scene(geometry::Mesh{}, 1); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { Scene(geometry::Mesh{}, 1); }),
               testing::HasSubstr("there is no triangle with a positive area"));
 }
 

@@ -40,13 +40,13 @@ TEST(Echoes, NearerSurfacesMixToOneAtTheEnergyWeightedRange) {
 
 TEST(Echoes, AreChosenByThePolicyOfTheSensor) {
   // Ranges 1..4 with energies 2, 4, 1, 3.
-  const auto chosen = [](EchoChoice choice, int most) {
+  const auto chosen = [](EchoChoice choice, int max) {
     std::vector<RayHit> hits = {
         {1, 1, 1, 0.2F, 0}, {2, 1, 1, 0.4F, 0}, {3, 1, 1, 0.1F, 0}, {4, 1, 1, 0.3F, 0}};
     Sensitivity sensitivity{.reference_range = 100.0};
     std::vector<float> ranges;
     Beam limited = beam;
-    limited.max_returns = most;
+    limited.max_returns = max;
     limited.choice = choice;
     for (const Echo& echo : form_echoes(hits, sensitivity, limited)) ranges.push_back(echo.range);
     return ranges;

@@ -33,7 +33,7 @@ class SurfaceBefore {
   std::vector<Surface> surfaces_;
 };
 
-geometry::Scan picture(const Scene& scene, double max_range = 100.0) {
+geometry::Scan capture(const Scene& scene, double max_range = 100.0) {
   const DepthCamera camera({.camera = {.width = 101,
                                        .height = 67,
                                        .horizontal_fov = 0.5,
@@ -47,7 +47,7 @@ geometry::Scan picture(const Scene& scene, double max_range = 100.0) {
 TEST(Glass, ReturnsNothingAndHidesWhatIsBehind) {
   const geometry::Mesh wall = square({20, 0, 0}, {-1, 0, 0}, 100.0);
   const SurfaceBefore before(Surface::glass, square({10, 0, 0}, {-1, 0, 0}, 2.0), wall);
-  const geometry::Scan scan = picture(before.scene());
+  const geometry::Scan scan = capture(before.scene());
   EXPECT_GT(scan.points.size(), 1000U);
   EXPECT_LT(scan.points.size(), 101U * 67U);
   for (const auto& point : scan.points) {
@@ -80,10 +80,10 @@ TEST(Mirror, ShowsTheWallBesideItStraightAhead) {
   const geometry::Mesh glass = square({10, 0, 0}, Vector3d(-1, 1, 0).normalized(), 40.0);
   const geometry::Mesh wall = square({10, 7, 0}, {0, -1, 0}, 60.0);
   const SurfaceBefore before(Surface::mirror, glass, wall);
-  const geometry::Scan scan = picture(before.scene());
+  const geometry::Scan scan = capture(before.scene());
   EXPECT_EQ(scan.points.size(), 101U * 67U);
   for (const auto& point : scan.points) EXPECT_NEAR(point.x(), 17.0F, 1e-3F);
-  EXPECT_TRUE(picture(before.scene(), 16.9).points.empty());  // the whole way counts
+  EXPECT_TRUE(capture(before.scene(), 16.9).points.empty());  // the whole way counts
 }
 
 TEST(Mirror, TwoThatFaceEachOtherLoseARay) {
@@ -93,7 +93,7 @@ TEST(Mirror, TwoThatFaceEachOtherLoseARay) {
   geometry::append(both, behind);
   const std::vector<Surface> surfaces(both.triangles.size(), Surface::mirror);
   const Scene scene(std::array{ScenePart{both, {}, {}, surfaces}}, 1);
-  EXPECT_TRUE(picture(scene, 1e4).points.empty());
+  EXPECT_TRUE(capture(scene, 1e4).points.empty());
 }
 
 TEST(Mirror, LimitsOfIncidenceAreThoseOfWhatIsMirrored) {

@@ -148,9 +148,9 @@ TEST(Lidar, PartsOfAScanAreTheScan) {
     parts.points.insert(parts.points.end(), some.points.begin(), some.points.end());
     parts.times.insert(parts.times.end(), some.times.begin(), some.times.end());
   }
-  const LidarReturns recycled = lidar.measure(scene, flight, {100, 150}, whole);
-  EXPECT_EQ(recycled.points, whole.points);
-  EXPECT_EQ(recycled.channels, whole.channels);
+  const LidarReturns buffer = lidar.measure(scene, flight, {100, 150}, whole);
+  EXPECT_EQ(buffer.points, whole.points);
+  EXPECT_EQ(buffer.channels, whole.channels);
   EXPECT_EQ(parts.points, whole.points);
   EXPECT_EQ(parts.times, whole.times);
 }
@@ -196,7 +196,7 @@ TEST(Lidar, AWideBeamBlursASmallHole) {
   EXPECT_NEAR(world(wide, wide.points[0]).x(), 10.0, 1e-3);
   EXPECT_NEAR(world(wide, wide.points[1]).x(), 20.0, 1e-5);
   EXPECT_THAT(wide.return_numbers, testing::ElementsAre(1, 2));
-  EXPECT_THAT(wide.returns_of_shots, testing::ElementsAre(2, 2));
+  EXPECT_THAT(wide.number_of_returns, testing::ElementsAre(2, 2));
   // Only the axis of 19 rays passes the hole, with its share of the Gaussian.
   const double axis = 1.0 / (1.0 + 6.0 * std::exp(-0.5) + 12.0 * std::exp(-2.0));
   EXPECT_NEAR(wide.intensities[1] / (wide.intensities[0] + wide.intensities[1]), axis, 1e-3);
@@ -331,7 +331,7 @@ TEST(Lidar, WhatIsTooNearHidesWhatIsBehind) {
 }
 
 TEST(Scene, RejectsReflectancesThatAreNotOneForEachTriangle) {
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 Scene(square({0, 0, 0}, {0, 0, 1}, 1.0), std::vector<float>{0.5F}, 1);
               }),
               testing::HasSubstr("there are 1 reflectances for 2 triangles"));

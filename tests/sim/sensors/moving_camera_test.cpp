@@ -68,8 +68,8 @@ TEST(MovingCamera, ARollingShutterReadsEachRowWhereTheCameraIsThen) {
   ASSERT_EQ(scan.points.size(), std::size_t{width} * height);
   for (std::size_t i = 0; i < scan.points.size(); i += 37) {
     const auto row = scan.pixels[i] / width;
-    const double flown = speed * readout * ((row + 0.5) / height - 0.5);
-    EXPECT_NEAR(scan.points[i].x(), 10.0 - flown, 1e-5) << row;
+    const double travelled = speed * readout * ((row + 0.5) / height - 0.5);
+    EXPECT_NEAR(scan.points[i].x(), 10.0 - travelled, 1e-5) << row;
   }
 }
 

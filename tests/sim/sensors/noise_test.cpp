@@ -128,7 +128,7 @@ TEST(NoiseConfig, RejectsANegativeSigma) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_config);
     EXPECT_THAT(error.what(), testing::HasSubstr("noise.sigma is -0.01"));
   }
-  EXPECT_THAT(testing_support::complaint_of([&] { NoiseConfig{.sigma = NAN}.validate(); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { NoiseConfig{.sigma = NAN}.validate(); }),
               testing::HasSubstr("noise.sigma is nan"));
 }
 

@@ -31,17 +31,17 @@ LidarConfig spinner() {
   return config;
 }
 
-Vector3d direction(const Shots& shots, std::size_t slot) {
-  return {shots.direction[0][slot], shots.direction[1][slot], shots.direction[2][slot]};
+Vector3d direction(const Pulses& pulses, std::size_t slot) {
+  return {pulses.direction[0][slot], pulses.direction[1][slot], pulses.direction[2][slot]};
 }
 
 // The direction at any time in closed form; a late block shows that time does not wear out.
 TEST(ScanPattern, SpinsByTheClosedForm) {
   const LidarConfig config = spinner();
   const ScanPattern pattern(config);
-  Shots shots;
+  Pulses pulses;
   for (const std::uint64_t block : {0ULL, 1ULL, 57ULL, 2'000'000'000ULL}) {
-    pattern.aim(block, shots);
+    pattern.aim(block, pulses);
     for (std::uint32_t firing = 0; firing < 32; ++firing) {
       for (std::size_t channel = 0; channel < 8; ++channel) {
         const Channel& laser = config.channels[channel];
@@ -53,9 +53,10 @@ TEST(ScanPattern, SpinsByTheClosedForm) {
                                 std::cos(laser.elevation) * std::sin(azimuth),
                                 std::sin(laser.elevation));
         const std::size_t slot = pattern.slot(firing, channel);
-        ASSERT_LT((direction(shots, slot) - expected).norm(), 3e-7);
-        ASSERT_NEAR(std::remainder(shots.azimuth[slot] - azimuth, 2.0 * std::numbers::pi), 0, 1e-5);
-        ASSERT_EQ(shots.origin[2][slot], static_cast<float>(laser.height));
+        ASSERT_LT((direction(pulses, slot) - expected).norm(), 3e-7);
+        ASSERT_NEAR(std::remainder(pulses.azimuth[slot] - azimuth, 2.0 * std::numbers::pi), 0,
+                    1e-5);
+        ASSERT_EQ(pulses.origin[2][slot], static_cast<float>(laser.height));
       }
     }
   }
@@ -78,14 +79,14 @@ TEST(ScanPattern, LasersSitOffTheAxis) {
   config.radial_offset = 0.02767;
   for (Channel& channel : config.channels) channel.delay = 0.0;
   const ScanPattern pattern(config);
-  Shots shots;
-  pattern.aim(3, shots);
+  Pulses pulses;
+  pattern.aim(3, pulses);
   for (std::uint32_t firing = 0; firing < 32; ++firing) {
     const double encoder =
         2.0 * std::numbers::pi * config.rotation_rate * (96 + firing) * config.firing_period;
     const std::size_t slot = pattern.slot(firing, 5);
-    EXPECT_NEAR(shots.origin[0][slot], 0.02767 * std::cos(encoder), 1e-8);
-    EXPECT_NEAR(shots.origin[1][slot], 0.02767 * std::sin(encoder), 1e-8);
+    EXPECT_NEAR(pulses.origin[0][slot], 0.02767 * std::cos(encoder), 1e-8);
+    EXPECT_NEAR(pulses.origin[1][slot], 0.02767 * std::sin(encoder), 1e-8);
   }
 }
 
@@ -96,14 +97,14 @@ TEST(ScanPattern, ShootsOnlyInsideTheFieldOfView) {
   config.rotation_rate = 100.0;  // 1000 shots a turn
   config.field_of_view = 100 * degree;
   const ScanPattern pattern(config);
-  Shots shots;
+  Pulses pulses;
   int emitted = 0;
   for (std::uint64_t block = 0; block < 125; ++block) {  // 4 turns
-    pattern.aim(block, shots);
+    pattern.aim(block, pulses);
     for (std::size_t slot = 0; slot < pattern.slots(); ++slot) {
-      emitted += shots.is_shot[slot];
-      const double off = std::acos(std::min(1.0, direction(shots, slot).x()));
-      ASSERT_EQ(shots.is_shot[slot] != 0, off <= 50 * degree + 1e-6);
+      emitted += pulses.is_emitted[slot];
+      const double off = std::acos(std::min(1.0, direction(pulses, slot).x()));
+      ASSERT_EQ(pulses.is_emitted[slot] != 0, off <= 50 * degree + 1e-6);
     }
   }
   EXPECT_NEAR(emitted, 4 * 1000 * 100.0 / 360.0, 4 * 2);  // up to two at the edges of a line
@@ -156,13 +157,13 @@ TEST(ScanPattern, ARosetteCoversMoreAndMoreOfItsField) {
   config.prisms = {{29.7 * degree, 1.51, -77.733, 0.0, false},
                    {29.7 * degree, 1.51, 121.567, 0.0, true}};
   const ScanPattern pattern(config);
-  Shots shots;
+  Pulses pulses;
   std::set<std::pair<int, int>> cells;
   std::vector<std::size_t> covered;
   for (std::uint64_t block = 0; block < 3125; ++block) {
-    pattern.aim(block, shots);
+    pattern.aim(block, pulses);
     for (std::size_t slot = 0; slot < pattern.slots(); ++slot) {
-      const Vector3d beam = direction(shots, slot);
+      const Vector3d beam = direction(pulses, slot);
       EXPECT_LT(std::acos(beam.x()), 35.3 * degree);
       cells.insert(
           {std::lround(100 * beam.y() / beam.x()), std::lround(100 * beam.z() / beam.x())});

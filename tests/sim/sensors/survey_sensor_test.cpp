@@ -41,7 +41,7 @@ geometry::Mesh room() {
   return mesh;
 }
 
-SurveySensor sensor_of(const LidarConfig& lidar) {
+SurveySensor make_sensor(const LidarConfig& lidar) {
   SurveySensorOptions config;
   config.scanner = lidar;
   return SurveySensor(config, 1);
@@ -50,10 +50,10 @@ SurveySensor sensor_of(const LidarConfig& lidar) {
 TEST(SurveySensor, AStandingScannerMeasuresAllAroundAndNamesNoPixels) {
   const Scene scene(room());
   const geometry::View view = geometry::look_at({1, 2, 3}, {9, 4, 1});
-  const geometry::Scan scan = sensor_of(scanner()).scan(scene, view, 0, 1);
+  const geometry::Scan scan = make_sensor(scanner()).scan(scene, view, 0, 1);
   EXPECT_EQ(scan.points.size(), 360U * 40U);
   EXPECT_TRUE(scan.pixels.empty());
-  EXPECT_LT((geometry::view_of(scan.world_from_sensor).direction - view.direction).norm(), 1e-12);
+  EXPECT_LT((geometry::to_view(scan.world_from_sensor).direction - view.direction).norm(), 1e-12);
   for (const Vector3f& point : scan.points) {
     EXPECT_NEAR(point.cwiseAbs().maxCoeff(), 10.0F, 1e-4F);
   }
@@ -63,27 +63,27 @@ TEST(SurveySensor, AStandingScannerMeasuresAllAroundAndNamesNoPixels) {
 TEST(SurveySensor, TheForwardCameraSeesWhatTheScannerMeasuresBeforeIt) {
   const Scene scene(room());
   const geometry::View view = geometry::look_at({1, 2, 3}, {9, 4, 1});
-  const geometry::Scan scan = sensor_of(scanner()).scan(scene, view, 0, 1);
+  const geometry::Scan scan = make_sensor(scanner()).scan(scene, view, 0, 1);
   const geometry::Camera camera(forward_camera(scanner()).camera);
   EXPECT_NEAR(camera.config().horizontal_fov, 90.0 * degree, 1e-12);
   EXPECT_NEAR(camera.config().vertical_fov, 40.0 * degree, 1e-12);
 
   const Eigen::Isometry3d camera_from_world = scan.world_from_sensor.inverse();
   int in_view = 0, in_middle = 0;
-  double highest = 0.0, lowest = 0.0;
+  double max_elevation = 0.0, min_elevation = 0.0;
   for (const Vector3f& point : scan.points) {
     const Vector3d in_camera = camera_from_world * point.cast<double>();
     const auto pixel = camera.project(in_camera);
     if (!pixel) continue;
     ++in_view;
-    highest = std::max(highest, std::atan2(-in_camera.y(), in_camera.z()));
-    lowest = std::min(lowest, std::atan2(-in_camera.y(), in_camera.z()));
+    max_elevation = std::max(max_elevation, std::atan2(-in_camera.y(), in_camera.z()));
+    min_elevation = std::min(min_elevation, std::atan2(-in_camera.y(), in_camera.z()));
     const Eigen::Vector2d off = (*pixel - camera.principal_point_px()).cwiseAbs();
     in_middle += off.x() < 0.125 * camera.width() && off.y() < 0.25 * camera.height() ? 1 : 0;
   }
   // Lasers from -19.5 to 19.5 degrees about the axis, on cones where the image has lines.
-  EXPECT_NEAR(highest, 20.0 * degree, 0.6 * degree);
-  EXPECT_NEAR(lowest, -20.0 * degree, 0.6 * degree);
+  EXPECT_NEAR(max_elevation, 20.0 * degree, 0.6 * degree);
+  EXPECT_NEAR(min_elevation, -20.0 * degree, 0.6 * degree);
   const double pixels = static_cast<double>(camera.width()) * camera.height();
   // An eighth of the image, where rays and pixels are equally dense but for the rounding of a
   // quarter of some 40 rows and columns.
@@ -103,7 +103,7 @@ TEST(SurveySensor, SweepsDependOnSeedAndFrameButNotOnThreads) {
   const geometry::View view{{0, 0, 0}, {1, 0, 0}};
   LidarConfig lidar = scanner();
   lidar.errors.sigma = 0.02;
-  const SurveySensor sensor = sensor_of(lidar);
+  const SurveySensor sensor = make_sensor(lidar);
   const geometry::Scan scan = sensor.scan(scene, view, 3, 1);
   EXPECT_EQ(scan.points, sensor.scan(scene, view, 3, 3, scan).points);
   EXPECT_NE(scan.points, sensor.scan(scene, view, 4, 1).points);

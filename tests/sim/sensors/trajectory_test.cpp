@@ -49,12 +49,12 @@ TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("pose 2 is not later"));
   }
-  EXPECT_THAT(testing_support::complaint_of([&] { Trajectory(std::vector<StampedPose>{}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { Trajectory(std::vector<StampedPose>{}); }),
               testing::HasSubstr("has no poses"));
   EXPECT_THAT(
-      testing_support::complaint_of([&] { Trajectory(std::vector<StampedPose>{{.time = NAN}}); }),
+      testing_support::thrown_message([&] { Trajectory(std::vector<StampedPose>{{.time = NAN}}); }),
       testing::HasSubstr("pose 0 has a value that is not a finite number"));
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 Trajectory(std::vector<StampedPose>{{.attitude = Quaterniond(0, 0, 0, 0)}});
               }),
               testing::HasSubstr("pose 0 has an attitude of length zero"));
@@ -63,20 +63,20 @@ TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
 // A Gauss-Markov process sampled every tau has correlation 1/e between neighbours; N = 40,000
 // samples with 1/e memory are as good as N (1 - 1/e^2) / (1 + 1/e^2) = 30,000 independent ones, so
 // four standard deviations of the variance are 4 sqrt(2 / 30,000) = 3.3 %.
-TEST(BelievedTrajectory, HasErrorsOfTheStatedSizeAndMemory) {
+TEST(EstimatedTrajectory, HasErrorsOfTheStatedSizeAndMemory) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 40'000; ++i) poses.push_back({5.0 * i, {1, 2, 3}, yaw(0.7)});
-  const Trajectory flown(poses);
+  const Trajectory ground_truth(poses);
   const NavigationErrors errors{.horizontal_sigma = 0.02,
                                 .vertical_sigma = 0.05,
                                 .tilt_sigma = 0.001,
                                 .heading_sigma = 0.004,
                                 .correlation_time = 5.0,
                                 .seed = 3};
-  const Trajectory believed = believed_trajectory(flown, errors);
+  const Trajectory estimated = estimated_trajectory(ground_truth, errors);
   Vector3d square = Vector3d::Zero(), turn_square = Vector3d::Zero();
   double neighbours = 0.0, before = 0.0;
-  for (const StampedPose& pose : believed.poses()) {
+  for (const StampedPose& pose : estimated.poses()) {
     const Vector3d error = pose.position - Vector3d(1, 2, 3);
     const AngleAxisd turned(yaw(0.7).conjugate() * pose.attitude);
     square += error.cwiseAbs2() / 40'000;
@@ -96,10 +96,10 @@ TEST(BelievedTrajectory, HasErrorsOfTheStatedSizeAndMemory) {
   EXPECT_NEAR(neighbours / square.x(), std::exp(-1.0), 0.03);
 }
 
-TEST(BelievedTrajectory, IsTheFlownOneWithoutErrors) {
-  const Trajectory flown({{0.0, {1, 2, 3}, yaw(0.7)}, {2.0, {2, 2, 3}, yaw(0.9)}});
-  const Trajectory believed = believed_trajectory(flown, {});
-  EXPECT_TRUE(believed.pose(1.3).isApprox(flown.pose(1.3), 1e-15));
+TEST(EstimatedTrajectory, IsTheFlownOneWithoutErrors) {
+  const Trajectory ground_truth({{0.0, {1, 2, 3}, yaw(0.7)}, {2.0, {2, 2, 3}, yaw(0.9)}});
+  const Trajectory estimated = estimated_trajectory(ground_truth, {});
+  EXPECT_TRUE(estimated.pose(1.3).isApprox(ground_truth.pose(1.3), 1e-15));
 }
 
 TEST(NavigationErrors, RejectsANegativeSigma) {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-geometry::PointGrid grid_of(const std::vector<Vector3f>& points, double radius) {
+geometry::PointGrid make_grid(const std::vector<Vector3f>& points, double radius) {
   geometry::PointGrid grid(radius);
   for (const Vector3f& p : points) grid.insert(p);
   return grid;
@@ -32,7 +32,7 @@ std::vector<Vector3f> wall(float height) {
 TEST(OcclusionTest, AgreesWithTheDefinitionSampleBySample) {
   const auto points = tests::random_points(400, 1.0, 11);
   const double radius = 0.05;
-  const geometry::PointGrid grid = grid_of(points, radius);
+  const geometry::PointGrid grid = make_grid(points, radius);
   const auto frontiers = tests::random_points(40, 1.0, 12),
              sensors = tests::random_points(40, 4.0, 13);
   int occluded = 0;
@@ -58,7 +58,7 @@ TEST(OcclusionTest, AgreesWithTheDefinitionSampleBySample) {
 }
 
 TEST(OcclusionTest, PointsBehindTheSensorDoNotOcclude) {
-  const geometry::PointGrid grid = grid_of(wall(3.0F), 0.1);
+  const geometry::PointGrid grid = make_grid(wall(3.0F), 0.1);
   const see::OcclusionTest test(grid, {.radius = 0.1, .search_distance = 10.0});
   EXPECT_FALSE(test.is_occluded({0, 0, 0}, 0.0, {0, 0, 2.5}));
   EXPECT_TRUE(test.is_occluded({0, 0, 0}, 0.0, {0, 0, 3.5}));
@@ -67,7 +67,7 @@ TEST(OcclusionTest, PointsBehindTheSensorDoNotOcclude) {
 // Trap T7: a wall farther away than psi is not noticed, so a target behind a building counts as
 // visible. With psi = d it is.
 TEST(OcclusionTest, SeesThroughWallsBeyondTheSearchDistance) {
-  const geometry::PointGrid grid = grid_of(wall(3.0F), 0.1);
+  const geometry::PointGrid grid = make_grid(wall(3.0F), 0.1);
   const Vector3d frontier(0, 0, 0), sensor(0, 0, 41);
   const see::OcclusionTest near_only(grid, {.radius = 0.1, .search_distance = 1.0});
   EXPECT_FALSE(near_only.is_occluded(frontier, 0.0, sensor));
@@ -76,7 +76,7 @@ TEST(OcclusionTest, SeesThroughWallsBeyondTheSearchDistance) {
 }
 
 TEST(OcclusionTest, TheReleasedMarchReachesFartherByTheOffset) {
-  const geometry::PointGrid grid = grid_of(wall(1.45F), 0.1);
+  const geometry::PointGrid grid = make_grid(wall(1.45F), 0.1);
   const Vector3d frontier(0, 0, 0), sensor(0, 0, 5);
   see::OcclusionConfig config{.radius = 0.1, .search_distance = 1.0};
   EXPECT_FALSE(see::OcclusionTest(grid, config).is_occluded(frontier, 0.5, sensor));
@@ -86,7 +86,7 @@ TEST(OcclusionTest, TheReleasedMarchReachesFartherByTheOffset) {
 
 // The frontier itself fills the balls at 0 and r; the first clear one is at 2r.
 TEST(ClearOffset, IsTheFirstStepThatHoldsNoPoint) {
-  const geometry::PointGrid grid = grid_of({{0, 0, 0}}, 0.125);  // exact in binary
+  const geometry::PointGrid grid = make_grid({{0, 0, 0}}, 0.125);  // exact in binary
   const see::OcclusionTest test(grid, {.radius = 0.125, .search_distance = 1.0});
   EXPECT_EQ(test.clear_offset({0, 0, 0}, {0, 0, 1}, 10.0), 0.25);
 }
@@ -94,7 +94,7 @@ TEST(ClearOffset, IsTheFirstStepThatHoldsNoPoint) {
 TEST(ClearOffset, EndsAtTheLimitWhereNothingIsClear) {
   std::vector<Vector3f> column;
   for (float z = 0; z < 5; z += 0.05F) column.emplace_back(0, 0, z);
-  const geometry::PointGrid grid = grid_of(column, 0.1);
+  const geometry::PointGrid grid = make_grid(column, 0.1);
   const see::OcclusionTest test(grid, {.radius = 0.1, .search_distance = 1.0});
   EXPECT_EQ(test.clear_offset({0, 0, 0}, {0, 0, 1}, 10.0), 1.0);
   EXPECT_EQ(test.clear_offset({0, 0, 0}, {0, 0, 1}, 0.35), 0.35);

@@ -36,13 +36,13 @@ struct Outcome {
   bool ended = false;
 };
 
-/// Surveys spheres until the planner is done, at most `most_views` views.
-Outcome survey(const see::SeeConfig& config, double sigma, std::size_t most_views = 200,
+/// Surveys spheres until the planner is done, at most `max_views` views.
+Outcome survey(const see::SeeConfig& config, double sigma, std::size_t max_views = 200,
                const std::vector<tests::Sphere>& spheres = {{}}, std::uint64_t seed = 1) {
   see::SeePlanner planner(config, small_camera);
   Outcome run;
   std::optional<View> next = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
-  while (next && run.views.size() < most_views) {
+  while (next && run.views.size() < max_views) {
     run.views.push_back(*next);
     next = planner.next_view(
         tests::scan_spheres(spheres, small_camera, *next, sigma, 1000 * seed + run.views.size()));
@@ -70,7 +70,7 @@ double coverage(const std::vector<Eigen::Vector3f>& cloud, double distance) {
   return covered / 1000.0;
 }
 
-std::vector<Vector3d> positions_of(const std::vector<View>& views) {
+std::vector<Vector3d> collect_positions(const std::vector<View>& views) {
   std::vector<Vector3d> positions;
   for (const View& view : views) positions.push_back(view.position);
   return positions;
@@ -108,7 +108,7 @@ TEST(SeePlanner, NeedsNoiseOrALargerThreshold) {
 
 // Trap T2, and what the user is told.
 TEST(SeePlanner, RefusesParametersThatAdmitNoFrontier) {
-  const auto complaint = [](const see::SeeConfig& config) -> std::string {
+  const auto error_message = [](const see::SeeConfig& config) -> std::string {
     try {
       config.validate();
       return "";
@@ -116,12 +116,12 @@ TEST(SeePlanner, RefusesParametersThatAdmitNoFrontier) {
       return error.what();
     }
   };
-  EXPECT_EQ(complaint(see::SeeConfig{}), "");
+  EXPECT_EQ(error_message(see::SeeConfig{}), "");
   EXPECT_EQ(see::SeeConfig{}.effective_core_threshold(), 4);  // the paper's 3.0046, rounded up
-  EXPECT_THAT(complaint({.resolution_radius = 0.01}), HasSubstr("admits no frontier"));
-  EXPECT_THAT(complaint({.core_threshold = 3}), HasSubstr("core_threshold"));
-  EXPECT_THAT(complaint({.spacing = 0.02}), HasSubstr("spacing"));
-  EXPECT_THAT(complaint({.density = NAN}), HasSubstr("density"));
+  EXPECT_THAT(error_message({.resolution_radius = 0.01}), HasSubstr("admits no frontier"));
+  EXPECT_THAT(error_message({.core_threshold = 3}), HasSubstr("core_threshold"));
+  EXPECT_THAT(error_message({.spacing = 0.02}), HasSubstr("spacing"));
+  EXPECT_THAT(error_message({.density = NAN}), HasSubstr("density"));
 }
 
 // SEE flies to the nearest proposal. Refusing one view after the other lists them all, each time
@@ -135,7 +135,7 @@ TEST(SeePlanner, WithoutOptimiserAndGraphTakesTheNearestView) {
       planner.next_view(tests::scan_spheres({{}}, small_camera, start, 0.02));
   std::size_t proposals = 0;
   double last = 0.0;
-  for (; next; next = planner.next_view_instead(), ++proposals) {
+  for (; next; next = planner.next_alternative_view(), ++proposals) {
     const double distance = (next->position - start.position).norm();
     EXPECT_GE(distance, last - 1e-8) << "proposal " << proposals;  // ties go by the first view
     last = distance;
@@ -208,11 +208,11 @@ TEST(SeePlanner, EndsWhenEveryLaterScanIsEmpty) {
   EXPECT_FALSE(next);  // each empty scan gave its frontier up
 }
 
-TEST(SeePlanner, StopsInTheMiddleOfAView) {
+TEST(SeePlanner, StopsWhilePlanningView) {
   see::SeePlanner planner(small_config(), small_camera);
   const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
   const auto scan = tests::scan_spheres({{}}, small_camera, first, 0.02);
-  tests::expect_to_stop_in_the_middle_of_a_view(planner, scan);
+  tests::expect_stop_while_planning(planner, scan);
 }
 
 TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
@@ -225,7 +225,7 @@ TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
   while (next && offered.size() <= frontiers) {
     EXPECT_THAT(offered, testing::Not(testing::Contains(next->position)));
     offered.push_back(next->position);
-    next = planner.next_view_instead();
+    next = planner.next_alternative_view();
   }
   EXPECT_FALSE(next);
   EXPECT_EQ(offered.size(), frontiers);
@@ -234,14 +234,14 @@ TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
 TEST(SeePlanner, LooksAgainFromTheViewDistanceOrFromWhereItSawIfThatIsNearerOrHigher) {
   see::Frontier frontier{};
   frontier.position = {1, 0, 0};
-  const auto again = [&](const Vector3d& seen_from, std::optional<double> least_height) {
+  const auto again = [&](const Vector3d& seen_from, std::optional<double> min_height) {
     frontier.observed_from = seen_from;
-    const View view = see::look_again(frontier, {.distance = 2.0, .least_height = least_height});
+    const View view = see::reobserve_view(frontier, {.distance = 2.0, .min_height = min_height});
     EXPECT_NEAR((view.direction + (seen_from - frontier.position).normalized()).norm(), 0, 1e-12);
     return view.position;
   };
-  const auto is_at = [](const Vector3d& at, const Vector3d& place) {
-    return (at - place).norm() < 1e-12;
+  const auto is_at = [](const Vector3d& at, const Vector3d& expected) {
+    return (at - expected).norm() < 1e-12;
   };
   EXPECT_TRUE(is_at(again({6, 0, 0}, {}), {3, 0, 0}));
   EXPECT_TRUE(is_at(again({2, 0, 0}, {}), {2, 0, 0}));
@@ -253,14 +253,14 @@ TEST(SeePlanner, LooksAgainFromTheViewDistanceOrFromWhereItSawIfThatIsNearerOrHi
 // What is put off comes back when nothing else is left, seen along the line that it was seen on.
 TEST(SeePlanner, OffersRefusedFrontiersAgainFromWhereTheyWereSeen) {
   see::SeeConfig config = small_config();
-  config.still_occluded = see::StillOccluded::put_off;
+  config.still_occluded = see::StillOccluded::deferred;
   see::SeePlanner planner(config, small_camera);
   const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});  // nearer than d to some
   std::optional<View> next =
       planner.next_view(tests::scan_spheres({{}}, small_camera, first, 0.02));
   const std::size_t frontiers = planner.last_step().frontiers;
   std::vector<View> offered;
-  for (; next && offered.size() <= 2 * frontiers; next = planner.next_view_instead()) {
+  for (; next && offered.size() <= 2 * frontiers; next = planner.next_alternative_view()) {
     offered.push_back(*next);
   }
   EXPECT_FALSE(next);
@@ -283,7 +283,7 @@ TEST(SeePlanner, DropsMeasurementsOutsideTheSceneBox) {
 
 TEST(SeePlanner, KeepsViewsAboveTheGroundClearance) {
   see::SeeConfig config = small_config();
-  config.least_height = -0.2;
+  config.min_height = -0.2;
   const Outcome run = survey(config, 0.02, 40);
   ASSERT_GT(run.views.size(), 1U);
   for (std::size_t i = 1; i < run.views.size(); ++i) {
@@ -309,7 +309,7 @@ TEST(SeePlanner, EveryAlternativeReadingWorks) {
       {"keep if still occluded",
        [](see::SeeConfig& c) { c.still_occluded = see::StillOccluded::keep; }},
       {"put off if still occluded",
-       [](see::SeeConfig& c) { c.still_occluded = see::StillOccluded::put_off; }},
+       [](see::SeeConfig& c) { c.still_occluded = see::StillOccluded::deferred; }},
       {"facing and field of view",
        [](see::SeeConfig& c) { c.facing_test = c.field_of_view_test = true; }},
       {"octree", [](see::SeeConfig& c) { c.nearest = see::NearestSearch::octree; }},
@@ -320,11 +320,11 @@ TEST(SeePlanner, EveryAlternativeReadingWorks) {
       {"frontier_spacing", [](see::SeeConfig& c) { c.frontier_spacing = 0.1; }},
   };
   // Three spheres that hide parts of each other, with noise that leaves frontiers unresolved.
-  const auto views_of = [](const see::SeeConfig& config) {
-    return positions_of(
+  const auto collect_views = [](const see::SeeConfig& config) {
+    return collect_positions(
         survey(config, 0.03, 60, {{}, {{0.8, 0.3, 0}, 0.3}, {{-0.2, 0.75, 0.1}, 0.25}}).views);
   };
-  const std::vector<Vector3d> published = views_of(small_config());
+  const std::vector<Vector3d> published = collect_views(small_config());
   for (const auto& [name, choose] : alternatives) {
     see::SeeConfig config = small_config();
     choose(config);
@@ -332,8 +332,8 @@ TEST(SeePlanner, EveryAlternativeReadingWorks) {
     EXPECT_TRUE(run.ended) << name;
     EXPECT_GT(coverage(run.cloud, 0.03), 0.9) << name;
     // What is put off is looked at when nothing else is left, long after this.
-    if (config.still_occluded == see::StillOccluded::put_off) continue;
-    EXPECT_NE(views_of(config), published) << name << " changes nothing";
+    if (config.still_occluded == see::StillOccluded::deferred) continue;
+    EXPECT_NE(collect_views(config), published) << name << " changes nothing";
   }
 }
 

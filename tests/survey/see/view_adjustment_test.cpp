@@ -31,7 +31,7 @@ TEST(PlaceView, StandsAtTheDistanceAndLooksBack) {
 }
 
 TEST(PlaceView, SlidesUpToTheLowestHeightKeepingAzimuthAndDistance) {
-  const see::ViewPlacement placement{.distance = 5.0, .least_height = 2.0};
+  const see::ViewPlacement placement{.distance = 5.0, .min_height = 2.0};
   const geometry::View view =
       see::place_view({0, 0, 0}, Vector3d(3, 4, -12).normalized(), placement);
   EXPECT_NEAR(view.position.z(), 2.0, 1e-12);

@@ -19,8 +19,8 @@ const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 about the origin
 
 TEST(BlockImage, ABlockCountsItsReturnsAndKnowsTheirMean) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, front);
-  const skycap::BlockImage image =
-      skycap::make_block_image(scan, camera, {.block_px = 4, .jump = 10.0F});
+  const surfel::BlockImage image =
+      surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 10.0F});
   std::vector<Vector3f> sums(image.blocks.size(), Vector3f::Zero());
   std::vector<std::uint32_t> counts(image.blocks.size());
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
@@ -42,10 +42,10 @@ TEST(BlockImage, ABlockCountsItsReturnsAndKnowsTheirMean) {
 
 TEST(BlockImage, NormalsOfASphereAreRadial) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, front);
-  const skycap::BlockImage image =
-      skycap::make_block_image(scan, camera, {.block_px = 4, .jump = 0.2F});
+  const surfel::BlockImage image =
+      surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 0.2F});
   int tested = 0;
-  for (const skycap::Block& block : testing_support::not_empty(image.blocks)) {
+  for (const surfel::Block& block : testing_support::not_empty(image.blocks)) {
     const Vector3f radial = block.mean.normalized();
     if (block.returns < 16 || radial.x() < 0.5F)
       continue;                                  // beyond 60 degrees windows are lopsided
@@ -59,10 +59,10 @@ TEST(BlockImage, NormalsOfASphereAreRadial) {
 TEST(BlockImage, ABlockOnAnEdgeKeepsTheNearerSurface) {
   const std::vector<tests::Sphere> two = {{{0.5, 0, 0}, 0.2}, {{-5, 0, 0}, 3.0}};
   const geometry::Scan scan = tests::scan_spheres(two, camera, front);
-  const skycap::BlockImage image =
-      skycap::make_block_image(scan, camera, {.block_px = 4, .jump = 1.0F});
+  const surfel::BlockImage image =
+      surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 1.0F});
   int edges = 0;
-  for (const skycap::Block& block : testing_support::not_empty(image.blocks)) {
+  for (const surfel::Block& block : testing_support::not_empty(image.blocks)) {
     if (!block.is_edge) continue;
     ++edges;
     EXPECT_LT((block.mean - Vector3f(0.5F, 0, 0)).norm(), 0.21F);
@@ -73,9 +73,9 @@ TEST(BlockImage, ABlockOnAnEdgeKeepsTheNearerSurface) {
 // On a surface across the optical axis at distance z, f_x f_y / z^2 rays meet a square metre.
 TEST(BlockImage, RayDensityIsThatOfThePinholeCamera) {
   const std::vector<tests::Sphere> wall = {{{-1000.0, 0, 0}, 1000.0}};
-  const skycap::BlockImage image =
-      skycap::make_block_image(tests::scan_spheres(wall, camera, front), camera, {.block_px = 4});
-  const skycap::Block& middle = image.blocks[15 * 53 + 26];
+  const surfel::BlockImage image =
+      surfel::make_block_image(tests::scan_spheres(wall, camera, front), camera, {.block_px = 4});
+  const surfel::Block& middle = image.blocks[15 * 53 + 26];
   const double expected = camera.focal_length_px().prod() / 4.0;
   EXPECT_NEAR(image.ray_density(middle, middle.mean, 1.0F), expected, 0.01 * expected);
 }
@@ -84,15 +84,15 @@ TEST(BlockImage, RayDensityIsThatOfThePinholeCamera) {
 // of rays, now counted rather than known, is the camera's.
 TEST(BlockImage, ASweepIsSortedIntoTheFacesOfACube) {
   geometry::Scan scan = tests::scan_spheres(ball, camera, front);
-  const skycap::BlockImage organised =
-      skycap::make_block_image(scan, camera, {.block_px = 8, .jump = 0.2F});
-  const skycap::Block& middle = organised.blocks[7 * 27 + 13];
+  const surfel::BlockImage organised =
+      surfel::make_block_image(scan, camera, {.block_px = 8, .jump = 0.2F});
+  const surfel::Block& middle = organised.blocks[7 * 27 + 13];
   scan.pixels.clear();
-  const auto faces = skycap::make_cube_images(scan, camera, 32, {.jump = 10.0F});
+  const auto faces = surfel::make_cube_images(scan, camera, 32, {.jump = 10.0F});
   std::size_t returns = 0;
   double density = 0.0, blocks = 0.0;
-  for (const skycap::BlockImage& face : faces) {
-    for (const skycap::Block& block : face.blocks) {
+  for (const surfel::BlockImage& face : faces) {
+    for (const surfel::Block& block : face.blocks) {
       returns += block.returns;
       if (block.returns == 0 || (block.mean - middle.mean).norm() > 0.15F) continue;
       density += face.ray_density(block, block.mean, 1.0F);
@@ -109,10 +109,10 @@ TEST(BlockImage, ASweepIsSortedIntoTheFacesOfACube) {
 TEST(BlockImage, ASweepsMissesAreKnownInFrontOnly) {
   geometry::Scan scan = tests::scan_spheres(ball, camera, front);
   scan.pixels.clear();
-  const auto faces = skycap::make_cube_images(scan, camera, 32, {.jump = 10.0F});
+  const auto faces = surfel::make_cube_images(scan, camera, 32, {.jump = 10.0F});
   ASSERT_EQ(faces.size(), 1U);  // all returns are in front
-  const skycap::BlockProjection& p = faces[0].projection;
-  int shot_at = 0;
+  const surfel::BlockProjection& p = faces[0].projection;
+  int scanned = 0;
   for (int row = 0; row < p.rows; ++row) {
     for (int column = 0; column < p.columns; ++column) {
       const auto is_in_view = [&](int right, int down) {
@@ -123,19 +123,19 @@ TEST(BlockImage, ASweepsMissesAreKnownInFrontOnly) {
       };
       const bool is_wholly_in_view =
           is_in_view(0, 0) && is_in_view(1, 0) && is_in_view(0, 1) && is_in_view(1, 1);
-      const skycap::Block& block =
+      const surfel::Block& block =
           faces[0].blocks[static_cast<std::size_t>(row * p.columns + column)];
-      EXPECT_EQ(block.is_shot_at, is_wholly_in_view) << "row " << row << ", column " << column;
-      shot_at += block.is_shot_at ? 1 : 0;
+      EXPECT_EQ(block.is_scanned, is_wholly_in_view) << "row " << row << ", column " << column;
+      scanned += block.is_scanned ? 1 : 0;
     }
   }
-  EXPECT_GT(shot_at, 100);
+  EXPECT_GT(scanned, 100);
 }
 
-TEST(BlockImage, DoesNotDependOnTheNumberOfThreads) {
+TEST(BlockImage, DoesNotDependOnThreadCount) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, front, 0.01);
-  const skycap::BlockImage one = skycap::make_block_image(scan, camera, {.threads = 1});
-  const skycap::BlockImage three = skycap::make_block_image(scan, camera, {.threads = 3});
+  const surfel::BlockImage one = surfel::make_block_image(scan, camera, {.threads = 1});
+  const surfel::BlockImage three = surfel::make_block_image(scan, camera, {.threads = 3});
   ASSERT_FALSE(one.blocks.empty());
   for (std::size_t b = 0; b < one.blocks.size(); ++b) {
     ASSERT_EQ(one.blocks[b].mean, three.blocks[b].mean);

@@ -20,56 +20,58 @@ const std::vector<tests::Sphere> ball = {{}};
 constexpr float spacing = 0.03F;
 const geometry::View from = geometry::look_at({2, 0, 0}, {0, 0, 0});
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const skycap::Admission anywhere = [](const geometry::View&) { return true; };
+const surfel::Admission anywhere = [](const geometry::View&) { return true; };
 
-/// What is known after one noisy scan from `station`.
+/// What is known after one noisy scan from `viewpoint`.
 struct Known {
-  explicit Known(const Vector3d& station) : dose(0.005, {.isotropic = 0.01}) {
-    const skycap::BlockImage image = skycap::make_block_image(
-        tests::scan_spheres(ball, camera, geometry::look_at(station, {0, 0, 0}), 0.01), camera,
+  explicit Known(const Vector3d& viewpoint) : coverage_model(0.005, {.isotropic = 0.01}) {
+    const surfel::BlockImage image = surfel::make_block_image(
+        tests::scan_spheres(ball, camera, geometry::look_at(viewpoint, {0, 0, 0}), 0.01), camera,
         {.block_px = 4, .jump = 0.1F});
     space.add(image, 0.01F);
-    map.add(image, dose, 0.1F, std::nullopt);
-    unseen.predict(map, space, std::nullopt);
+    map.add(image, coverage_model, 0.1F, std::nullopt);
+    predicted.predict(map, space, std::nullopt);
   }
-  skycap::GainField field() const {
-    return {map, unseen.patches(), camera, dose, {.view_distance = 2.0}};
+  surfel::GainField field() const {
+    return {map, predicted.patches(), camera, coverage_model, {.view_distance = 2.0}};
   }
 
-  skycap::DoseModel dose;
-  skycap::DoseMap map{spacing};
-  skycap::SpaceMemory space{0.6F * spacing, true};
-  skycap::UnseenSurface unseen{{}};
+  surfel::CoverageModel coverage_model;
+  surfel::SurfelMap map{spacing};
+  surfel::FreeSpaceHistory space{0.6F * spacing, true};
+  surfel::PredictedSurface predicted{{}};
 };
 
 TEST(GainField, SeesOnlyWhatFacesTheView) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const geometry::View front = geometry::look_at({2, 0, 0}, {0, 0, 0});
   int surfels = 0;
-  for (const skycap::Sight& sight : field.sights(front)) {
-    const auto& target = field.targets()[sight.target];
+  for (const surfel::VisibleTarget& visible_target : field.visible_targets(front)) {
+    const auto& target = field.targets()[visible_target.target];
     EXPECT_GT(target.normal.dot(Eigen::Vector3f(2, 0, 0) - target.position), 0.0F);
-    EXPECT_GT(sight.covered_share, 0.0F);
-    EXPECT_LT(sight.covered_share, 1.0F);
-    surfels += field.is_patch(sight.target) ? 0 : 1;
+    EXPECT_GT(visible_target.covered_share, 0.0F);
+    EXPECT_LT(visible_target.covered_share, 1.0F);
+    surfels += field.is_patch(visible_target.target) ? 0 : 1;
   }
   EXPECT_GT(surfels, 100);
   // From behind, the ball's measured half faces away.
-  for (const skycap::Sight& sight : field.sights(geometry::look_at({-2, 0, 0}, {0, 0, 0}))) {
-    EXPECT_TRUE(field.is_patch(sight.target) || field.targets()[sight.target].normal.x() < 0.0F);
+  for (const surfel::VisibleTarget& visible_target :
+       field.visible_targets(geometry::look_at({-2, 0, 0}, {0, 0, 0}))) {
+    EXPECT_TRUE(field.is_patch(visible_target.target) ||
+                field.targets()[visible_target.target].normal.x() < 0.0F);
   }
 }
 
 TEST(GainField, SeesNothingBeyondTheIncidence) {
   const Known known({2, 0, 0});
-  const skycap::GainField field(known.map, known.unseen.patches(), camera, known.dose,
+  const surfel::GainField field(known.map, known.predicted.patches(), camera, known.coverage_model,
                                 {.view_distance = 2.0, .max_incidence = 0.7F});
   const Eigen::Vector3f eye(2, 0, 0);
-  const auto sights = field.sights(geometry::look_at({2, 0, 0}, {0, 0, 0}));
-  EXPECT_GT(sights.size(), 50U);
-  for (const skycap::Sight& sight : sights) {
-    const auto& target = field.targets()[sight.target];
+  const auto visible_targets = field.visible_targets(geometry::look_at({2, 0, 0}, {0, 0, 0}));
+  EXPECT_GT(visible_targets.size(), 50U);
+  for (const surfel::VisibleTarget& visible_target : visible_targets) {
+    const auto& target = field.targets()[visible_target.target];
     const float cosine = target.normal.dot((eye - target.position).normalized());
     EXPECT_GT(cosine, std::cos(0.7F) - 1e-5F);
   }
@@ -79,14 +81,14 @@ TEST(GainField, SeesNothingBeyondTheIncidence) {
 // not.
 TEST(GainField, KnownSurfaceIsAllThatWasSeen) {
   for (const bool is_news : {true, false}) {
-    const skycap::BlockImage image = skycap::make_block_image(
+    const surfel::BlockImage image = surfel::make_block_image(
         tests::scan_spheres(ball, camera, from, 0.0), camera, {.block_px = 4, .jump = 0.1F});
-    skycap::DoseMap map{spacing};
-    const skycap::DoseModel dose(0.005, {});
-    map.add(image, dose, 0.1F, std::nullopt,
+    surfel::SurfelMap map{spacing};
+    const surfel::CoverageModel coverage_model(0.005, {});
+    map.add(image, coverage_model, 0.1F, std::nullopt,
             [is_news](const Eigen::Vector3f&) { return !is_news; });
-    const auto field =
-        skycap::GainField::of_known_surface(map, camera, dose, {.view_distance = 2.0}, 100'000);
+    const auto field = surfel::GainField::from_known_surface(map, camera, coverage_model,
+                                                             {.view_distance = 2.0}, 100'000);
     double area = 0.0;
     for (const auto& target : field.targets()) area += target.weight;
     EXPECT_NEAR(area, 1.2, 0.4) << is_news;
@@ -95,11 +97,11 @@ TEST(GainField, KnownSurfaceIsAllThatWasSeen) {
 
 TEST(GainField, TheGainIsTheSumOfItsSights) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const geometry::View view = geometry::look_at({1, 1.6, 0.4}, {0, 0, 0});
   double sum = 0.0;
-  for (const skycap::Sight& sight : field.sights(view)) {
-    sum += field.targets()[sight.target].weight * sight.covered_share;
+  for (const surfel::VisibleTarget& visible_target : field.visible_targets(view)) {
+    sum += field.targets()[visible_target.target].weight * visible_target.covered_share;
   }
   EXPECT_GT(sum, 0.0);
   EXPECT_NEAR(field.gain(view).area, sum, 1e-5 * sum);  // summed in single and double precision
@@ -108,13 +110,13 @@ TEST(GainField, TheGainIsTheSumOfItsSights) {
 // Seen from an empty cloud, what was measured already counts in full; the guesses do not count.
 TEST(GainField, OfTheKnownSurfaceWeighsAllOfIt) {
   const Known known({2, 0, 0});
-  const skycap::GainSettings settings{.view_distance = 2.0};
+  const surfel::GainSettings settings{.view_distance = 2.0};
   const double area = known.map.area();
-  for (const std::size_t most : {std::size_t{100}, std::size_t{1000000}}) {
-    const auto field =
-        skycap::GainField::of_known_surface(known.map, camera, known.dose, settings, most);
-    EXPECT_LE(field.targets().size(), most);
-    EXPECT_GT(field.targets().size(), most == 100 ? 50U : known.map.surfels().size() - 1);
+  for (const std::size_t max : {std::size_t{100}, std::size_t{1000000}}) {
+    const auto field = surfel::GainField::from_known_surface(known.map, camera,
+                                                             known.coverage_model, settings, max);
+    EXPECT_LE(field.targets().size(), max);
+    EXPECT_GT(field.targets().size(), max == 100 ? 50U : known.map.surfels().size() - 1);
     double weight = 0.0;
     for (const auto& target : field.targets()) weight += double{target.weight};
     EXPECT_NEAR(weight, area, 1e-4 * area);  // nothing has lost trust
@@ -123,59 +125,64 @@ TEST(GainField, OfTheKnownSurfaceWeighsAllOfIt) {
 
 TEST(GainField, LooksCarryTheHazardsOfTheirShares) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const geometry::View view = geometry::look_at({1, 1.6, 0.4}, {0, 0, 0});
-  const auto sights = field.sights(view);
-  const auto looks = field.looks(view);
-  ASSERT_EQ(looks.size(), sights.size());
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    EXPECT_EQ(looks[i].target, sights[i].target);
-    EXPECT_NEAR(1.0 - std::exp(-double{looks[i].hazard}), double{sights[i].covered_share}, 1e-6);
+  const auto visible_targets = field.visible_targets(view);
+  const auto observations = field.observations(view);
+  ASSERT_EQ(observations.size(), visible_targets.size());
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    EXPECT_EQ(observations[i].target, visible_targets[i].target);
+    EXPECT_NEAR(1.0 - std::exp(-double{observations[i].hazard}),
+                double{visible_targets[i].covered_share}, 1e-6);
   }
 }
 
 // What unknown space may hide counts for less, known surface in full.
 TEST(GainField, CountsGuessesByTheirClearness) {
   const Known known({2, 0, 0});
-  skycap::Clearness clearness(0.3F);
-  clearness.update(known.unseen.patches(), known.space);
-  const skycap::GainField careful(known.map, known.unseen.patches(), camera, known.dose,
-                                  {.view_distance = 2.0}, {}, &clearness);
-  const skycap::GainField hopeful = known.field();
+  surfel::LineOfSightModel line_of_sight_probability(0.3F);
+  line_of_sight_probability.update(known.predicted.patches(), known.space);
+  const surfel::GainField careful(known.map, known.predicted.patches(), camera,
+                                  known.coverage_model, {.view_distance = 2.0}, {},
+                                  &line_of_sight_probability);
+  const surfel::GainField hopeful = known.field();
   for (const Vector3d& eye : {Vector3d(2, 0, 0), Vector3d(0, 2, 0), Vector3d(-2, 0, 0)}) {
     const geometry::View view = geometry::look_at(eye, {0, 0, 0});
-    const auto sights = careful.sights(view), all = hopeful.sights(view);
-    ASSERT_EQ(sights.size(), all.size());
+    const auto visible_targets = careful.visible_targets(view), all = hopeful.visible_targets(view);
+    ASSERT_EQ(visible_targets.size(), all.size());
     double expected = 0.0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const skycap::Sight& sight = sights[i];
-      EXPECT_FLOAT_EQ(sight.covered_share, sight.clearness * all[i].covered_share);
-      EXPECT_TRUE(careful.is_patch(sight.target) || sight.clearness == 1.0F);
-      expected += double{careful.targets()[sight.target].weight} * double{sight.covered_share};
+      const surfel::VisibleTarget& visible_target = visible_targets[i];
+      EXPECT_FLOAT_EQ(visible_target.covered_share,
+                      visible_target.line_of_sight_probability * all[i].covered_share);
+      EXPECT_TRUE(careful.is_patch(visible_target.target) ||
+                  visible_target.line_of_sight_probability == 1.0F);
+      expected += double{careful.targets()[visible_target.target].weight} *
+                  double{visible_target.covered_share};
     }
     EXPECT_NEAR(careful.gain(view).area, expected, 1e-4 * expected);
   }
   const geometry::View behind = geometry::look_at({-2, 0, 0}, {0, 0, 0});
-  EXPECT_LT(careful.gain(behind).unseen, 0.8 * hopeful.gain(behind).unseen);
+  EXPECT_LT(careful.gain(behind).predicted, 0.8 * hopeful.gain(behind).predicted);
 }
 
 // A small ball in front hides a part of a large one, whose surfels it must not see.
 TEST(GainField, NearSurfacesHideFarOnes) {
   const std::vector<tests::Sphere> two = {{{0, 0, 0}, 0.5}, {{1.2, 0, 0}, 0.2}};
-  const skycap::DoseModel dose(0.005, {.isotropic = 0.01});
-  skycap::DoseMap map(spacing);
-  for (const Vector3d& station : {Vector3d(1, 1.7, 0), Vector3d(1, -1.7, 0), Vector3d(3, 0, 0)}) {
-    map.add(skycap::make_block_image(
-                tests::scan_spheres(two, camera, geometry::look_at(station, {0, 0, 0})), camera,
+  const surfel::CoverageModel coverage_model(0.005, {.isotropic = 0.01});
+  surfel::SurfelMap map(spacing);
+  for (const Vector3d& viewpoint : {Vector3d(1, 1.7, 0), Vector3d(1, -1.7, 0), Vector3d(3, 0, 0)}) {
+    map.add(surfel::make_block_image(
+                tests::scan_spheres(two, camera, geometry::look_at(viewpoint, {0, 0, 0})), camera,
                 {.block_px = 4, .jump = 0.1F}),
-            dose, 0.1F, std::nullopt);
+            coverage_model, 0.1F, std::nullopt);
   }
-  const skycap::GainField field(map, {}, camera, dose, {.view_distance = 2.0});
+  const surfel::GainField field(map, {}, camera, coverage_model, {.view_distance = 2.0});
   const Vector3d eye(3, 0, 0);
   int seen = 0;
-  for (const skycap::Sight& sight :
-       testing_support::not_empty(field.sights(geometry::look_at(eye, {0, 0, 0})))) {
-    const Vector3d p = field.targets()[sight.target].position.cast<double>();
+  for (const surfel::VisibleTarget& visible_target :
+       testing_support::not_empty(field.visible_targets(geometry::look_at(eye, {0, 0, 0})))) {
+    const Vector3d p = field.targets()[visible_target.target].position.cast<double>();
     if (p.x() > 0.8) continue;  // the small ball itself
     ++seen;
     // Rays at less than 0.2 / 1.8 from the axis meet the small ball; two splats of tolerance.
@@ -187,40 +194,41 @@ TEST(GainField, NearSurfacesHideFarOnes) {
 // Near a surface its surfels lie many pixels apart, and no ray passes between them for that.
 TEST(GainField, ASurfaceHidesWhatIsBehindItFromNearby) {
   const Known known({2, 0, 0});
-  std::vector<skycap::UnseenPatch> inside;
+  std::vector<surfel::PredictedPatch> inside;
   for (float y = -0.2F; y <= 0.2F; y += 0.02F) {
     for (float z = -0.2F; z <= 0.2F; z += 0.02F) {
       inside.push_back({{0.2F, y, z}, {1, 0, 0}, spacing, 1.0F, 0, inside.size()});
     }
   }
-  const skycap::GainField field(known.map, inside, camera, known.dose, {.view_distance = 2.0});
+  const surfel::GainField field(known.map, inside, camera, known.coverage_model,
+                                {.view_distance = 2.0});
   for (const double height : {1.5, 0.7, 0.3, 0.15, 0.08}) {
     int surfels = 0;
-    for (const skycap::Sight& sight :
-         field.sights(geometry::look_at({0.5 + height, 0, 0}, {0, 0, 0}))) {
-      EXPECT_FALSE(field.is_patch(sight.target)) << "from a height of " << height;
-      surfels += field.is_patch(sight.target) ? 0 : 1;
+    for (const surfel::VisibleTarget& visible_target :
+         field.visible_targets(geometry::look_at({0.5 + height, 0, 0}, {0, 0, 0}))) {
+      EXPECT_FALSE(field.is_patch(visible_target.target)) << "from a height of " << height;
+      surfels += field.is_patch(visible_target.target) ? 0 : 1;
     }
     EXPECT_GT(surfels, 0) << "from a height of " << height;
   }
 }
 
-std::optional<skycap::Choice> choose(const skycap::GainField& field,
-                                     const skycap::Admission& admits, double most_way,
-                                     const skycap::ChooserSettings& settings) {
-  skycap::ChoiceMemory nothing;
-  return skycap::choose_view(field, {}, admits, from, most_way, settings, nothing);
+std::optional<surfel::Choice> choose(const surfel::GainField& field,
+                                     const surfel::Admission& admits, double max_path_length,
+                                     const surfel::ViewSelectorSettings& settings) {
+  surfel::ViewGainCache nothing;
+  return surfel::choose_view(field, {}, admits, from, max_path_length, settings, nothing);
 }
 
-TEST(Chooser, GoesWhereSomethingIsMissing) {
+TEST(ViewSelector, GoesWhereSomethingIsMissing) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const auto choice = choose(field, anywhere, infinity, {});
   ASSERT_TRUE(choice);
   EXPECT_NEAR(field.gain(choice->view).area, choice->gain, 1e-9);
   // For the stop rule guesses count for less, what was seen too thinly in full.
-  const skycap::Gain gain = field.gain(choice->view);
-  EXPECT_GE(choice->best_gain, gain.area - gain.unseen);
+  const surfel::Gain gain = field.gain(choice->view);
+  EXPECT_GE(choice->best_gain, gain.area - gain.predicted);
   // Better than to look at the same half again from the same distance, 2 m before the surface.
   EXPECT_GT(choice->best_gain, field.gain(geometry::look_at({2.5, 0, 0}, {0, 0, 0})).area);
   EXPECT_EQ(choice->chances.size(), field.targets().size());
@@ -228,24 +236,24 @@ TEST(Chooser, GoesWhereSomethingIsMissing) {
 
 // Among the same candidates, wherever they are: who expects nothing of guesses takes the view that
 // covers most of what is known.
-TEST(Chooser, PrefersKnownSurfaceWhereGuessesCameToNothing) {
+TEST(ViewSelector, PrefersKnownSurfaceWhereGuessesCameToNothing) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const auto gain_at = [&](double yield) {
     const auto choice =
         choose(field, anywhere, infinity,
-               {.view_price = 1e6, .refinements = 0, .batch = 1, .unseen_yield = yield});
+               {.view_price = 1e6, .refinements = 0, .batch = 1, .prediction_yield = yield});
     return field.gain(choice.value().view);
   };
-  const skycap::Gain hopeful = gain_at(1.0), sober = gain_at(0.0), lucky = gain_at(6.0);
-  EXPECT_GT(sober.area - sober.unseen, 1.02 * (hopeful.area - hopeful.unseen));
+  const surfel::Gain hopeful = gain_at(1.0), sober = gain_at(0.0), lucky = gain_at(6.0);
+  EXPECT_GT(sober.area - sober.predicted, 1.02 * (hopeful.area - hopeful.predicted));
   EXPECT_GT(hopeful.area, 1.02 * sober.area);
   EXPECT_EQ(lucky.area, hopeful.area);
 }
 
-TEST(Chooser, DoesNotDependOnTheNumberOfThreads) {
+TEST(ViewSelector, DoesNotDependOnThreadCount) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const auto one = choose(field, anywhere, infinity, {.threads = 1});
   const auto four = choose(field, anywhere, infinity, {.threads = 4});
   ASSERT_TRUE(one && four);
@@ -255,42 +263,42 @@ TEST(Chooser, DoesNotDependOnTheNumberOfThreads) {
 
 // Every view is refused as soon as it is chosen, until there is none: with the memory of all
 // choices before, the same views and figures as with none.
-TEST(Chooser, ChoosesTheSameWhateverItRemembers) {
+TEST(ViewSelector, ChoosesTheSameWhateverItRemembers) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
-  skycap::ChooserSettings settings;
+  const surfel::GainField field = known.field();
+  surfel::ViewSelectorSettings settings;
   for (const double frame_spacing : {0.0, 0.4}) {
     settings.frame_spacing = frame_spacing;
-    std::vector<Vector3d> refused;
-    const skycap::Admission admits = [&](const geometry::View& view) {
+    std::vector<Vector3d> rejected;
+    const surfel::Admission admits = [&](const geometry::View& view) {
       return std::ranges::none_of(
-          refused, [&](const Vector3d& other) { return (view.position - other).norm() < 0.4; });
+          rejected, [&](const Vector3d& other) { return (view.position - other).norm() < 0.4; });
     };
-    skycap::ChoiceMemory memory;
+    surfel::ViewGainCache cache;
     for (;;) {
-      const auto anew = choose(field, admits, infinity, settings);
-      const auto again = skycap::choose_view(field, {}, admits, from, infinity, settings, memory);
-      ASSERT_EQ(anew.has_value(), again.has_value());
-      if (!anew) break;
-      EXPECT_EQ(anew->view.position, again->view.position);
-      EXPECT_EQ(anew->view.direction, again->view.direction);
-      EXPECT_EQ(anew->gain, again->gain);
-      EXPECT_EQ(anew->best_gain, again->best_gain);
-      EXPECT_EQ(anew->chances, again->chances);
-      EXPECT_EQ(anew->with_way.size(), again->with_way.size());
-      refused.push_back(anew->view.position);
+      const auto replanned = choose(field, admits, infinity, settings);
+      const auto again = surfel::choose_view(field, {}, admits, from, infinity, settings, cache);
+      ASSERT_EQ(replanned.has_value(), again.has_value());
+      if (!replanned) break;
+      EXPECT_EQ(replanned->view.position, again->view.position);
+      EXPECT_EQ(replanned->view.direction, again->view.direction);
+      EXPECT_EQ(replanned->gain, again->gain);
+      EXPECT_EQ(replanned->best_gain, again->best_gain);
+      EXPECT_EQ(replanned->chances, again->chances);
+      EXPECT_EQ(replanned->with_leg.size(), again->with_leg.size());
+      rejected.push_back(replanned->view.position);
     }
-    EXPECT_GT(refused.size(), 10U);
+    EXPECT_GT(rejected.size(), 10U);
   }
 }
 
-TEST(Chooser, StaysInReachAndWhereItIsAdmitted) {
+TEST(ViewSelector, StaysInReachAndWhereItIsAdmitted) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const auto near = choose(field, anywhere, 0.7, {});
   ASSERT_TRUE(near);
   EXPECT_LE((near->view.position - Vector3d(2, 0, 0)).norm(), 0.7);
-  const skycap::Admission above = [](const geometry::View& view) {
+  const surfel::Admission above = [](const geometry::View& view) {
     return view.position.z() > 0.5;
   };
   const auto high = choose(field, above, infinity, {});
@@ -299,10 +307,10 @@ TEST(Chooser, StaysInReachAndWhereItIsAdmitted) {
   EXPECT_FALSE(choose(field, [](const geometry::View&) { return false; }, infinity, {}));
 }
 
-TEST(Chooser, TurnsEvenlyOnTheWay) {
+TEST(ViewSelector, TurnsEvenlyOnTheWay) {
   const geometry::View east_down{{0, 0, 10}, Vector3d(1, 0, -1).normalized()};
   const geometry::View north{{6, 3, 4}, {0, 1, 0}};
-  const auto frames = skycap::views_between(east_down, north, 3);
+  const auto frames = surfel::views_between(east_down, north, 3);
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_TRUE(frames[1].position.isApprox(Vector3d(3, 1.5, 7)));
   EXPECT_NEAR(frames[1].direction.z(), -std::sin(std::numbers::pi / 8.0), 1e-12);
@@ -311,59 +319,63 @@ TEST(Chooser, TurnsEvenlyOnTheWay) {
   EXPECT_TRUE((frames[0].position + frames[2].position).isApprox(2.0 * frames[1].position));
 }
 
-TEST(Chooser, FramesOnTheWaySeeWhatAnyOfThemSees) {
+TEST(ViewSelector, FramesOnTheWaySeeWhatAnyOfThemSees) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   const geometry::View to = geometry::look_at({0.5, 2, 0.3}, {0, 0, 0});
-  const double way = (to.position - from.position).norm();
-  const auto alone = skycap::sights_with_way(field, from, to, 0.0);
-  EXPECT_EQ(alone.size(), field.sights(to).size());
+  const double distance = (to.position - from.position).norm();
+  const auto alone = surfel::visible_with_leg(field, from, to, 0.0);
+  EXPECT_EQ(alone.size(), field.visible_targets(to).size());
   std::vector<double> uncovered(field.targets().size(), 1.0);
-  const auto add = [&](const std::vector<skycap::Sight>& sights) {
-    for (const auto& sight : sights) uncovered[sight.target] *= 1.0 - sight.covered_share;
+  const auto add = [&](const std::vector<surfel::VisibleTarget>& visible_targets) {
+    for (const auto& visible_target : visible_targets)
+      uncovered[visible_target.target] *= 1.0 - visible_target.covered_share;
   };
-  add(field.sights(to));
-  for (const geometry::View& frame : skycap::views_between(from, to, 2)) add(field.sights(frame));
-  const auto with_way = skycap::sights_with_way(field, from, to, way / 2.0 - 1e-9);
-  EXPECT_GT(with_way.size(), alone.size());
-  for (const skycap::Sight& sight : with_way) {
-    EXPECT_NEAR(sight.covered_share, std::min(1.0 - uncovered[sight.target], 1.0), 1e-5);
+  add(field.visible_targets(to));
+  for (const geometry::View& frame : surfel::views_between(from, to, 2))
+    add(field.visible_targets(frame));
+  const auto with_leg = surfel::visible_with_leg(field, from, to, distance / 2.0 - 1e-9);
+  EXPECT_GT(with_leg.size(), alone.size());
+  for (const surfel::VisibleTarget& visible_target : with_leg) {
+    EXPECT_NEAR(visible_target.covered_share, std::min(1.0 - uncovered[visible_target.target], 1.0),
+                1e-5);
   }
 }
 
 // Of the best views by themselves it takes the one that yields most with its way.
-TEST(Chooser, CountsWhatTheWayShows) {
+TEST(ViewSelector, CountsWhatTheWayShows) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
-  skycap::ChooserSettings settings{.view_price = 0.5, .batch = 1};
+  const surfel::GainField field = known.field();
+  surfel::ViewSelectorSettings settings{.view_price = 0.5, .batch = 1};
   const auto yield = [&](const geometry::View& view, double frame_spacing) {
     double gain = 0.0;
-    for (const auto& sight : skycap::sights_with_way(field, from, view, frame_spacing)) {
-      gain += field.targets()[sight.target].weight * sight.covered_share;
+    for (const auto& visible_target : surfel::visible_with_leg(field, from, view, frame_spacing)) {
+      gain += field.targets()[visible_target.target].weight * visible_target.covered_share;
     }
     return gain / (settings.view_price + (view.position - from.position).norm());
   };
   const auto ends_alone = choose(field, anywhere, infinity, settings);
-  for (const double spacing_of_frames : {0.1, 0.4}) {
-    settings.frame_spacing = spacing_of_frames;
-    const auto with_ways = choose(field, anywhere, infinity, settings);
-    ASSERT_TRUE(ends_alone && with_ways);
-    EXPECT_GE(yield(with_ways->view, spacing_of_frames),
-              (1.0 - 1e-5) * yield(ends_alone->view, spacing_of_frames));
-    EXPECT_LE(yield(with_ways->view, 0.0), (1.0 + 1e-5) * yield(ends_alone->view, 0.0));
+  for (const double frame_spacing : {0.1, 0.4}) {
+    settings.frame_spacing = frame_spacing;
+    const auto with_legs = choose(field, anywhere, infinity, settings);
+    ASSERT_TRUE(ends_alone && with_legs);
+    EXPECT_GE(yield(with_legs->view, frame_spacing),
+              (1.0 - 1e-5) * yield(ends_alone->view, frame_spacing));
+    EXPECT_LE(yield(with_legs->view, 0.0), (1.0 + 1e-5) * yield(ends_alone->view, 0.0));
   }
 }
 
 // Known answer: a line that moves along itself sweeps nothing; one that moves across itself sweeps
 // as much, whichever way round; and so does one that turns on the spot, by the angle times d.
-TEST(Chooser, LinesSeeWhatTheySweep) {
+TEST(ViewSelector, LinesSeeWhatTheySweep) {
   const Known known({2, 0, 0});
-  const skycap::GainField field = known.field();
+  const surfel::GainField field = known.field();
   constexpr double frame_spacing = 0.05, d = 2.0;
   const auto gain = [&](const geometry::View& begin, const geometry::View& end) {
     double sum = 0.0;
-    for (const auto& sight : skycap::sights_of_lines(field, begin, end, frame_spacing, d)) {
-      sum += field.targets()[sight.target].weight * sight.covered_share;
+    for (const auto& visible_target :
+         surfel::visible_along_lines(field, begin, end, frame_spacing, d)) {
+      sum += field.targets()[visible_target.target].weight * visible_target.covered_share;
     }
     return sum;
   };

@@ -19,28 +19,29 @@ const std::vector<tests::Sphere> ball = {{}};
 constexpr float spacing = 0.02F;
 constexpr float jump = 0.06F;
 
-skycap::BlockImage image_from(const Vector3d& station, double sigma = 0.0, std::uint64_t seed = 1) {
-  return skycap::make_block_image(
-      tests::scan_spheres(ball, camera, geometry::look_at(station, {0, 0, 0}), sigma, seed), camera,
-      {.block_px = 4, .jump = jump});
+surfel::BlockImage image_from(const Vector3d& viewpoint, double sigma = 0.0,
+                              std::uint64_t seed = 1) {
+  return surfel::make_block_image(
+      tests::scan_spheres(ball, camera, geometry::look_at(viewpoint, {0, 0, 0}), sigma, seed),
+      camera, {.block_px = 4, .jump = jump});
 }
 
 // From all sides the surfels' areas add up to the sphere's; 15 % for packing and outlines.
-TEST(DoseMap, AreasAddUpToTheSurface) {
-  skycap::DoseMap map(spacing);
-  const skycap::DoseModel dose(0.005, {});
-  for (const Vector3d& station : {Vector3d(2, 0, 0), Vector3d(-2, 0, 0), Vector3d(0, 2, 0),
-                                  Vector3d(0, -2, 0), Vector3d(0, 0, 2), Vector3d(0, 0, -2)}) {
-    map.add(image_from(station), dose, jump, std::nullopt);
+TEST(SurfelMap, AreasAddUpToTheSurface) {
+  surfel::SurfelMap map(spacing);
+  const surfel::CoverageModel coverage_model(0.005, {});
+  for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(-2, 0, 0), Vector3d(0, 2, 0),
+                                    Vector3d(0, -2, 0), Vector3d(0, 0, 2), Vector3d(0, 0, -2)}) {
+    map.add(image_from(viewpoint), coverage_model, jump, std::nullopt);
   }
   EXPECT_NEAR(map.area(), pi, 0.15 * pi);
   EXPECT_GT(map.covered_area() / map.area(), 0.97);  // clean and dense
 }
 
-TEST(DoseMap, SurfelsKeepTheirDistanceAndFaceOutward) {
-  skycap::DoseMap map(spacing);
-  map.add(image_from({2, 0, 0}), skycap::DoseModel(0.005, {}), jump, std::nullopt);
-  const skycap::Surfels& surfels = map.surfels();
+TEST(SurfelMap, SurfelsKeepTheirDistanceAndFaceOutward) {
+  surfel::SurfelMap map(spacing);
+  map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, std::nullopt);
+  const surfel::Surfels& surfels = map.surfels();
   ASSERT_GT(surfels.size(), 500U);
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     EXPECT_GT(surfels.normals[i].dot(surfels.positions[i]), 0.0F);
@@ -51,13 +52,13 @@ TEST(DoseMap, SurfelsKeepTheirDistanceAndFaceOutward) {
 }
 
 // A second look from the same place adds as much hazard as the first, and coverage follows.
-TEST(DoseMap, LooksAddUp) {
-  const skycap::DoseModel dose(0.005, {.isotropic = 0.01});
-  skycap::DoseMap map(spacing);
-  map.add(image_from({2, 0, 0}, 0.01, 1), dose, jump, std::nullopt);
+TEST(SurfelMap, LooksAddUp) {
+  const surfel::CoverageModel coverage_model(0.005, {.isotropic = 0.01});
+  surfel::SurfelMap map(spacing);
+  map.add(image_from({2, 0, 0}, 0.01, 1), coverage_model, jump, std::nullopt);
   const std::vector<float> after_one = map.surfels().hazards;
   const double covered_after_one = map.covered_area();
-  map.add(image_from({2, 0, 0}, 0.01, 2), dose, jump, std::nullopt);
+  map.add(image_from({2, 0, 0}, 0.01, 2), coverage_model, jump, std::nullopt);
   int tested = 0, doubled = 0;
   for (std::size_t i = 0; i < after_one.size(); ++i) {
     if (map.surfels().positions[i].x() < 0.35F) continue;  // beyond 60 degrees of incidence
@@ -73,10 +74,10 @@ TEST(DoseMap, LooksAddUp) {
 }
 
 // Seen from one side, the surface is open exactly around its outline.
-TEST(DoseMap, OnlyTheOutlineOfWhatWasSeenIsOpen) {
-  skycap::DoseMap map(spacing);
-  map.add(image_from({2, 0, 0}), skycap::DoseModel(0.005, {}), jump, std::nullopt);
-  const skycap::Surfels& surfels = map.surfels();
+TEST(SurfelMap, OnlyTheOutlineOfWhatWasSeenIsOpen) {
+  surfel::SurfelMap map(spacing);
+  map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, std::nullopt);
+  const surfel::Surfels& surfels = map.surfels();
   int open_inside = 0, inside = 0, open_outside = 0;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     const bool is_open = surfels.open_directions[i] != 0;
@@ -93,13 +94,13 @@ TEST(DoseMap, OnlyTheOutlineOfWhatWasSeenIsOpen) {
 }
 
 // What was measured already stands for no area when surfels come to lie there, and stays so.
-TEST(DoseMap, GapsInWhatWasMeasuredAreNoNewSurface) {
+TEST(SurfelMap, GapsInWhatWasMeasuredAreNoNewSurface) {
   const auto is_upper = [](const Vector3f& p) { return p.z() > 0.0F; };
-  skycap::DoseMap map(spacing);
-  for (const Vector3d& station : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)}) {
-    map.add(image_from(station), skycap::DoseModel(0.005, {}), jump, std::nullopt, is_upper);
+  surfel::SurfelMap map(spacing);
+  for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)}) {
+    map.add(image_from(viewpoint), surfel::CoverageModel(0.005, {}), jump, std::nullopt, is_upper);
   }
-  const skycap::Surfels& surfels = map.surfels();
+  const surfel::Surfels& surfels = map.surfels();
   int upper = 0;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     EXPECT_EQ(surfels.areas[i] == 0.0F, surfels.positions[i].z() > 0.0F);
@@ -112,24 +113,24 @@ TEST(DoseMap, GapsInWhatWasMeasuredAreNoNewSurface) {
 
 // A second look from the same place finds no new territory; one from the other side as much as the
 // first, which knew nothing before.
-TEST(DoseMap, NewTerritoryIsWhatLiesBeyondTheKnown) {
-  const skycap::DoseModel dose(0.005, {});
-  skycap::DoseMap map(spacing);
-  map.add(image_from({2, 0, 0}, 0.0, 1), dose, jump, std::nullopt);
+TEST(SurfelMap, NewTerritoryIsWhatLiesBeyondTheKnown) {
+  const surfel::CoverageModel coverage_model(0.005, {});
+  surfel::SurfelMap map(spacing);
+  map.add(image_from({2, 0, 0}, 0.0, 1), coverage_model, jump, std::nullopt);
   EXPECT_DOUBLE_EQ(map.new_territory(0), map.covered_area());
   const double first_half = map.covered_area();
   std::size_t first = map.surfels().size();
-  map.add(image_from({2, 0, 0}, 0.01, 2), dose, jump, std::nullopt);
+  map.add(image_from({2, 0, 0}, 0.01, 2), coverage_model, jump, std::nullopt);
   EXPECT_LT(map.new_territory(first), 0.005 * first_half);
   first = map.surfels().size();
-  map.add(image_from({-2, 0, 0}), dose, jump, std::nullopt);
+  map.add(image_from({-2, 0, 0}), coverage_model, jump, std::nullopt);
   EXPECT_NEAR(map.new_territory(first), first_half, 0.05 * first_half);
 }
 
-TEST(DoseMap, LeavesOutWhatIsOutsideTheRegion) {
-  skycap::DoseMap map(spacing);
+TEST(SurfelMap, LeavesOutWhatIsOutsideTheRegion) {
+  surfel::SurfelMap map(spacing);
   const Eigen::AlignedBox3f upper(Vector3f(-1, -1, 0), Vector3f(1, 1, 1));
-  map.add(image_from({2, 0, 0}), skycap::DoseModel(0.005, {}), jump, upper);
+  map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, upper);
   for (const Vector3f& p : map.surfels().positions) EXPECT_GE(p.z(), -1e-3F);
   EXPECT_GT(map.surfels().size(), 100U);
 }

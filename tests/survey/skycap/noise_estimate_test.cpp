@@ -16,19 +16,19 @@ using Eigen::Vector3f;
 const geometry::Camera camera{geometry::CameraConfig{}};
 const std::vector<tests::Sphere> ball = {{}};
 
-skycap::BlockImage image_of(const geometry::Scan& scan) {
-  return skycap::make_block_image(scan, camera, {.block_px = 4, .jump = 0.1F});
+surfel::BlockImage make_image(const geometry::Scan& scan) {
+  return surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 0.1F});
 }
 
 TEST(NoiseEstimate, KnowsNothingBeforeTheFirstScan) {
-  EXPECT_FALSE(skycap::NoiseEstimate().noise(0.0, 2.0));
+  EXPECT_FALSE(surfel::NoiseEstimate().noise(0.0, 2.0));
 }
 
 // The lower quartile of estimates from 400 returns is 3 % low; curvature adds a little.
 TEST(NoiseEstimate, FindsIsotropicNoise) {
-  skycap::NoiseEstimate estimate;
+  surfel::NoiseEstimate estimate;
   estimate.add(
-      image_of(tests::scan_spheres(ball, camera, geometry::look_at({2, 0, 0}, {0, 0, 0}), 0.01)));
+      make_image(tests::scan_spheres(ball, camera, geometry::look_at({2, 0, 0}, {0, 0, 0}), 0.01)));
   const auto noise = estimate.noise(0.0, 2.0);
   ASSERT_TRUE(noise);
   EXPECT_NEAR(noise->across(1.0), 0.01, 0.001);
@@ -43,8 +43,8 @@ TEST(NoiseEstimate, TellsNoiseAlongTheRayFromIsotropicNoise) {
     const Vector3f ray = (point - Vector3f(2, 0, 0)).normalized();
     point += normal(random) * ray;
   }
-  skycap::NoiseEstimate estimate;
-  estimate.add(image_of(scan));
+  surfel::NoiseEstimate estimate;
+  estimate.add(make_image(scan));
   const auto noise = estimate.noise(0.0, 2.0);
   ASSERT_TRUE(noise);
   EXPECT_NEAR(noise->across(1.0), 0.01, 0.0015);
@@ -52,9 +52,9 @@ TEST(NoiseEstimate, TellsNoiseAlongTheRayFromIsotropicNoise) {
 }
 
 TEST(NoiseEstimate, CallsNegligibleNoiseNone) {
-  skycap::NoiseEstimate estimate;
+  surfel::NoiseEstimate estimate;
   estimate.add(
-      image_of(tests::scan_spheres(ball, camera, geometry::look_at({2, 0, 0}, {0, 0, 0}))));
+      make_image(tests::scan_spheres(ball, camera, geometry::look_at({2, 0, 0}, {0, 0, 0}))));
   const auto noise = estimate.noise(6e-4, 2.0);  // the sphere's curvature alone shows 0.2 mm
   ASSERT_TRUE(noise);
   EXPECT_EQ(noise->across(1.0), 0.0);
@@ -62,7 +62,7 @@ TEST(NoiseEstimate, CallsNegligibleNoiseNone) {
 
 /// Balls side by side, each as large in the image, from near to far, and noise along the ray of
 /// `constant` and of `growing` times the squared depth.
-skycap::BlockImage image_of_depths(double constant, double growing) {
+surfel::BlockImage make_depth_image(double constant, double growing) {
   std::vector<tests::Sphere> balls;
   for (const double depth : {1.0, 1.6, 2.5, 3.8}) {
     const double side = balls.size() % 2 == 0 ? 0.45 : -0.45;
@@ -78,13 +78,13 @@ skycap::BlockImage image_of_depths(double constant, double growing) {
     const double sigma = std::hypot(constant, growing * depth * depth);
     point += (sigma * normal(random) * point.cast<double>().normalized()).cast<float>();
   }
-  return image_of(scan);
+  return make_image(scan);
 }
 
 // 2 mm at a metre, 32 mm at four.
 TEST(NoiseEstimate, LearnsThatNoiseGrowsWithTheSquareOfTheRange) {
-  skycap::NoiseEstimate estimate;
-  estimate.add(image_of_depths(0.0, 0.002));
+  surfel::NoiseEstimate estimate;
+  estimate.add(make_depth_image(0.0, 0.002));
   const auto noise = estimate.noise(0.0, 2.0);
   ASSERT_TRUE(noise);
   EXPECT_GT(noise->growing, 0.8);
@@ -95,8 +95,8 @@ TEST(NoiseEstimate, LearnsThatNoiseGrowsWithTheSquareOfTheRange) {
 }
 
 TEST(NoiseEstimate, CallsConstantNoiseConstant) {
-  skycap::NoiseEstimate estimate;
-  estimate.add(image_of_depths(0.01, 0.0));
+  surfel::NoiseEstimate estimate;
+  estimate.add(make_depth_image(0.01, 0.0));
   const auto noise = estimate.noise(0.0, 2.0);
   ASSERT_TRUE(noise);
   EXPECT_EQ(noise->growing, 0.0);

@@ -11,8 +11,8 @@ namespace skycap::survey {
 namespace {
 
 using Eigen::Vector3d;
-using skycap::BatchView;
-using skycap::Stop;
+using surfel::BatchView;
+using surfel::Stop;
 
 struct Problem {
   std::vector<BatchView> views;
@@ -22,14 +22,14 @@ struct Problem {
 /// Views anywhere in a box, each of which sees some of 30 targets.
 Problem random_problem(std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> place(-5.0, 5.0);
+  std::uniform_real_distribution<double> coordinate(-5.0, 5.0);
   std::uniform_real_distribution<float> share(0.1F, 0.9F);
   Problem problem{std::vector<BatchView>(12), std::vector<float>(30)};
   for (float& weight : problem.weights) weight = share(random);
   for (BatchView& view : problem.views) {
-    for (int axis = 0; axis < 3; ++axis) view.position[axis] = place(random);
+    for (int axis = 0; axis < 3; ++axis) view.position[axis] = coordinate(random);
     for (std::uint32_t target = 0; target < problem.weights.size(); ++target) {
-      if (random() % 3 == 0) view.sights.push_back({target, share(random)});
+      if (random() % 3 == 0) view.visible_targets.push_back({target, share(random)});
     }
   }
   return problem;
@@ -41,7 +41,7 @@ double covered(const Problem& problem, const std::vector<std::size_t>& views) {
   for (std::uint32_t target = 0; target < problem.weights.size(); ++target) {
     double missed = 1.0;
     for (const std::size_t i : views) {
-      for (const skycap::Sight& s : problem.views[i].sights) {
+      for (const surfel::VisibleTarget& s : problem.views[i].visible_targets) {
         if (s.target == target) missed *= 1.0 - s.covered_share;
       }
     }
@@ -53,7 +53,7 @@ double covered(const Problem& problem, const std::vector<std::size_t>& views) {
 // Brute-force twin: every pick anew, from what all picks cover together.
 TEST(PickBatch, IsTheGreedyCoverComputedFromScratch) {
   const Vector3d position(1, 2, 3);
-  const skycap::BatchSettings settings{.size = 6, .view_price = 3.0, .least_share = 0.2};
+  const surfel::BatchSettings settings{.size = 6, .view_price = 3.0, .min_fraction = 0.2};
   std::size_t full = 0, cut_short = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const Problem problem = random_problem(seed);
@@ -63,24 +63,25 @@ TEST(PickBatch, IsTheGreedyCoverComputedFromScratch) {
       std::size_t best = 0;
       double best_score = -1.0, best_gain = 0.0;
       for (std::size_t i = 0; i < problem.views.size(); ++i) {
-        double way = (problem.views[i].position - position).norm();
+        double path_length = (problem.views[i].position - position).norm();
         for (const std::size_t j : expected) {
-          way = std::min(way, (problem.views[i].position - problem.views[j].position).norm());
+          path_length =
+              std::min(path_length, (problem.views[i].position - problem.views[j].position).norm());
         }
         std::vector<std::size_t> with = expected;
         with.push_back(i);
         const double gain = covered(problem, with) - covered(problem, expected);
-        if (gain / (settings.view_price + way) <= best_score) continue;
+        if (gain / (settings.view_price + path_length) <= best_score) continue;
         best = i;
-        best_score = gain / (settings.view_price + way);
+        best_score = gain / (settings.view_price + path_length);
         best_gain = gain;
       }
       if (expected.empty()) first_gain = best_gain;
-      if (best_gain < settings.least_share * first_gain) break;
+      if (best_gain < settings.min_fraction * first_gain) break;
       expected.push_back(best);
     }
     std::vector<std::size_t> picked;
-    for (const Stop& s : skycap::pick_batch(problem.views, problem.weights, position, settings)) {
+    for (const Stop& s : surfel::pick_batch(problem.views, problem.weights, position, settings)) {
       picked.push_back(s.view);
     }
     EXPECT_EQ(picked, expected) << seed;
@@ -94,7 +95,7 @@ TEST(PickBatch, GainsAddUpToWhatTheBatchCovers) {
   const Problem problem = random_problem(7);
   double sum = 0.0;
   std::vector<std::size_t> picked;
-  for (const Stop& s : skycap::pick_batch(problem.views, problem.weights, Vector3d::Zero(), {})) {
+  for (const Stop& s : surfel::pick_batch(problem.views, problem.weights, Vector3d::Zero(), {})) {
     sum += s.gain;
     picked.push_back(s.view);
   }
@@ -102,26 +103,26 @@ TEST(PickBatch, GainsAddUpToWhatTheBatchCovers) {
 }
 
 TEST(PickBatch, IsEmptyWhereNothingIsToBeSeen) {
-  EXPECT_THAT(skycap::pick_batch({}, {}, Vector3d::Zero(), {}), testing::IsEmpty());
+  EXPECT_THAT(surfel::pick_batch({}, {}, Vector3d::Zero(), {}), testing::IsEmpty());
   const std::vector<BatchView> blind = {{Vector3d::Zero(), {}}};
-  EXPECT_THAT(skycap::pick_batch(blind, {1.0F}, Vector3d::Zero(), {}), testing::IsEmpty());
+  EXPECT_THAT(surfel::pick_batch(blind, {1.0F}, Vector3d::Zero(), {}), testing::IsEmpty());
 }
 
 /// The least cost of a tour through `left`, by recursion over what comes next.
-double least_cost(const Problem& problem, const std::vector<Stop>& batch,
-                  std::vector<std::size_t> left, const Vector3d& at, double length,
-                  double impatience, double total_gain) {
+double min_cost(const Problem& problem, const std::vector<Stop>& batch,
+                std::vector<std::size_t> left, const Vector3d& at, double length, double impatience,
+                double total_gain) {
   if (left.empty()) return length;
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < left.size(); ++k) {
     const Stop& next = batch[left[k]];
     std::vector<std::size_t> rest = left;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
-    const Vector3d& place = problem.views[next.view].position;
-    const double reached = length + (place - at).norm();
-    best = std::min(best,
-                    impatience * reached * next.gain / total_gain +
-                        least_cost(problem, batch, rest, place, reached, impatience, total_gain));
+    const Vector3d& coordinate = problem.views[next.view].position;
+    const double reached = length + (coordinate - at).norm();
+    best = std::min(
+        best, impatience * reached * next.gain / total_gain +
+                  min_cost(problem, batch, rest, coordinate, reached, impatience, total_gain));
   }
   return best;
 }
@@ -131,20 +132,21 @@ TEST(FirstStop, BeginsATourThatIsAsCheapAsAny) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Problem problem = random_problem(seed);
     const std::vector<Stop> batch =
-        skycap::pick_batch(problem.views, problem.weights, position, {.least_share = 0.0});
+        surfel::pick_batch(problem.views, problem.weights, position, {.min_fraction = 0.0});
     double total_gain = 0.0;
     for (const Stop& s : batch) total_gain += s.gain;
     const auto cost_from = [&](std::vector<std::size_t> left, const Vector3d& at, double length) {
-      return least_cost(problem, batch, std::move(left), at, length, 0.15, total_gain);
+      return min_cost(problem, batch, std::move(left), at, length, 0.15, total_gain);
     };
     const std::vector<std::size_t> all = {0, 1, 2, 3, 4};
     ASSERT_EQ(batch.size(), all.size());
     const std::size_t first = first_stop(problem.views, batch, position, 0.15);
     std::vector<std::size_t> rest = all;
     std::erase(rest, first);
-    const Vector3d& place = problem.views[batch[first].view].position;
-    const double way = (place - position).norm();
-    const double cost = 0.15 * way * batch[first].gain / total_gain + cost_from(rest, place, way);
+    const Vector3d& coordinate = problem.views[batch[first].view].position;
+    const double path_length = (coordinate - position).norm();
+    const double cost = 0.15 * path_length * batch[first].gain / total_gain +
+                        cost_from(rest, coordinate, path_length);
     EXPECT_NEAR(cost, cost_from(all, position, 0.0), 1e-9) << seed;
   }
 }

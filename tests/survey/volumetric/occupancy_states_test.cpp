@@ -13,9 +13,9 @@ using Code = volumetric::OccupancyStates::Code;
 constexpr double single = 1e-6;
 
 /// Occupancy after `count` equal measurements, in closed form.
-double occupancy_after(int count, double each, double lowest, double highest) {
+double occupancy_after(int count, double each, double clamping_min, double clamping_max) {
   const double odds = std::pow(each / (1.0 - each), count);
-  return std::min(std::max(odds / (1.0 + odds), lowest), highest);
+  return std::min(std::max(odds / (1.0 + odds), clamping_min), clamping_max);
 }
 
 TEST(OccupancyStates, FollowTheSensorModelUpToItsClamps) {
@@ -75,8 +75,8 @@ TEST(OccupancyStates, ReplaceNewValuesByTheNearestWhenTheTableIsFull) {
         volumetric::OccupancyStates::is_measured(code) ? states.log_odds(code) : 0.0F;
     const bool is_hit = i % 3 == 0;
     code = is_hit ? states.after_hit(code) : states.after_miss(code);
-    const float wanted = std::clamp(before + (is_hit ? 0.8473F : -0.4055F), -1.99243F, 3.47610F);
-    ASSERT_NEAR(states.log_odds(code), wanted, 0.5) << "measurement " << i;
+    const float expected = std::clamp(before + (is_hit ? 0.8473F : -0.4055F), -1.99243F, 3.47610F);
+    ASSERT_NEAR(states.log_odds(code), expected, 0.5) << "measurement " << i;
   }
   EXPECT_EQ(states.size(), volumetric::OccupancyStates::deepest_shadow + 1 + values);
 }

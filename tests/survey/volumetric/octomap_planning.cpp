@@ -43,7 +43,7 @@ double rear_side_voxels(const std::vector<RayVoxel>& ray) {
   return count;
 }
 
-double rear_side_entropy_of(const std::vector<RayVoxel>& ray) {
+double compute_rear_side_entropy(const std::vector<RayVoxel>& ray) {
   if (!ray.back().is_occupied()) return 0.0;
   double sum = 0.0, visibility = 1.0;
   for (std::size_t i = 0; i + 1 < ray.size(); ++i) {
@@ -86,14 +86,14 @@ void vote(const std::vector<RayVoxel>& ray, ViewSums& view) {
   ++view.unobserved;
 }
 
-void add_ray(VolumetricMetric metric, const std::vector<RayVoxel>& ray, double shadow_ceiling,
+void add_ray(VolumetricMetric metric, const std::vector<RayVoxel>& ray, double max_shadow,
              ViewSums& view) {
   switch (metric) {
     case rear_side_voxel:
       view.sum += rear_side_voxels(ray);
       break;
     case rear_side_entropy:
-      view.sum += rear_side_entropy_of(ray);
+      view.sum += compute_rear_side_entropy(ray);
       break;
     case occlusion_aware:
       view.sum += visible_entropy(ray, false);
@@ -103,7 +103,7 @@ void add_ray(VolumetricMetric metric, const std::vector<RayVoxel>& ray, double s
       break;
     case proximity_count:
       for (const RayVoxel& voxel : ray) {
-        if (voxel.shadow_depth > 0) view.sum += shadow_ceiling - voxel.shadow_depth;
+        if (voxel.shadow_depth > 0) view.sum += max_shadow - voxel.shadow_depth;
       }
       break;
     case area_factor:
@@ -137,8 +137,9 @@ void ShadowTree::insert(const Eigen::Vector3f& origin, std::span<const Eigen::Ve
 
   octomap::KeyRay ray;
   for (const Eigen::Vector3f& point : points) {
-    const Eigen::Vector3f way = point - origin;
-    const Eigen::Vector3f end = point + way * (static_cast<float>(shadow_length_) / way.norm());
+    const Eigen::Vector3f displacement = point - origin;
+    const Eigen::Vector3f end =
+        point + displacement * (static_cast<float>(shadow_length_) / displacement.norm());
     computeRayKeys(octomap_point(point), octomap_point(end), ray);
     int depth = 0;
     for (const octomap::OcTreeKey& key : ray) {
@@ -171,8 +172,8 @@ double ShadowTree::gain(VolumetricMetric metric, const geometry::View& view,
                         bool aims_at_centres) const {
   const Eigen::Matrix3d world_from_camera = geometry::camera_pose(view).linear();
   const octomap::point3d origin = octomap_point(view.position.cast<float>());
-  const double shadow_ceiling = 2.0 * shadow_length_ / resolution;
-  const auto voxel_of = [&](const octomap::OcTreeKey& key) {
+  const double max_shadow = 2.0 * shadow_length_ / resolution;
+  const auto to_voxel = [&](const octomap::OcTreeKey& key) {
     const ShadowNode* node = search(key);
     if (!node) return RayVoxel{};
     if (!node->is_measured) return RayVoxel{0.5, true, false, node->shadow_depth};
@@ -192,13 +193,13 @@ double ShadowTree::gain(VolumetricMetric metric, const geometry::View& view,
     ray.clear();
     computeRayKeys(origin, end, keys);
     for (const octomap::OcTreeKey& key : keys) {
-      ray.push_back(voxel_of(key));
+      ray.push_back(to_voxel(key));
       if (!aims_at_centres && ray.back().is_measured && ray.back().p >= 0.5) break;
     }
     const bool has_met_surface =
         !aims_at_centres && !ray.empty() && ray.back().is_measured && ray.back().p >= 0.5;
-    if (!has_met_surface) ray.push_back(voxel_of(coordToKey(end)));
-    add_ray(metric, ray, shadow_ceiling, sums);
+    if (!has_met_surface) ray.push_back(to_voxel(coordToKey(end)));
+    add_ray(metric, ray, max_shadow, sums);
   }
   if (metric == average_entropy) return sums.voxels > 0.0 ? sums.sum / sums.voxels : 0.0;
   if (metric != area_factor) return sums.sum;

@@ -57,9 +57,9 @@ TEST(AreaReward, HasTheCheckValuesOfTheTwoCubics) {
   EXPECT_DOUBLE_EQ(volumetric::area_reward(0.6, 0.2), 0.5);
   EXPECT_DOUBLE_EQ(volumetric::area_reward(0.4, 0.8), 0.5);
   EXPECT_DOUBLE_EQ(volumetric::area_reward(0.9, 0.8), 0.5);
-  for (const double wanted : {0.2, 0.8}) {
-    EXPECT_DOUBLE_EQ(volumetric::area_reward(0.0, wanted), 0.0);
-    EXPECT_DOUBLE_EQ(volumetric::area_reward(1.0, wanted), 0.0);
+  for (const double target_area : {0.2, 0.8}) {
+    EXPECT_DOUBLE_EQ(volumetric::area_reward(0.0, target_area), 0.0);
+    EXPECT_DOUBLE_EQ(volumetric::area_reward(1.0, target_area), 0.0);
   }
 }
 
@@ -241,12 +241,12 @@ TEST(InformationGain, AgreesWithATwinOnOctoMap) {
   tests::ShadowTree tree(resolution, 18.0 * resolution);
   const Camera camera({.width = 212, .height = 120});
   const std::vector<tests::Sphere> spheres{{{0.0, 0.0, 0.0}, 0.4}, {{0.5, 0.2, 0.1}, 0.2}};
-  const std::vector<Vector3d> places{{2, 0, 0.3},     {1.9, 0.4, 0.2}, {1.8, 0.8, 0.1},
-                                     {0.3, 1.9, 0.5}, {1.9, 0.2, 0.4}, {0.4, 2.0, 0.3},
-                                     {1.7, 0.9, 0.6}};
-  for (const Vector3d& place : places) {
+  const std::vector<Vector3d> positions{{2, 0, 0.3},     {1.9, 0.4, 0.2}, {1.8, 0.8, 0.1},
+                                        {0.3, 1.9, 0.5}, {1.9, 0.2, 0.4}, {0.4, 2.0, 0.3},
+                                        {1.7, 0.9, 0.6}};
+  for (const Vector3d& position : positions) {
     const auto scan =
-        tests::scan_spheres(spheres, camera, look_at(place, Vector3d::Zero()), 0.005, 3);
+        tests::scan_spheres(spheres, camera, look_at(position, Vector3d::Zero()), 0.005, 3);
     map.insert(scan.sensor_position().cast<float>(), scan.points);
     tree.insert(scan.sensor_position().cast<float>(), scan.points);
   }

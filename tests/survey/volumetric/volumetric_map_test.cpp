@@ -106,10 +106,10 @@ std::vector<volumetric::VoxelIndex> passed(const Vector3f& origin, const Vector3
       [&](const auto& bricks) {
         volumetric::VoxelWalk walk(line, bricks.entered());
         for (; !walk.is_over() && !walk.left_brick(); walk.advance()) {
-          const auto place = static_cast<std::int32_t>(walk.place());
+          const auto child_index = static_cast<std::int32_t>(walk.child_index());
           const volumetric::VoxelIndex& brick = bricks.cell();
-          voxels.push_back(
-              {4 * brick[0] + place % 4, 4 * brick[1] + place / 4 % 4, 4 * brick[2] + place / 16});
+          voxels.push_back({4 * brick[0] + child_index % 4, 4 * brick[1] + child_index / 4 % 4,
+                            4 * brick[2] + child_index / 16});
         }
         return !walk.is_over();
       });
@@ -165,22 +165,22 @@ TEST(VoxelWalk, PassesFaceToFaceThroughVoxelsThatTheSegmentMeets) {
 TEST(VoxelWalk, PassesTheSameVoxelsAsAScan) {
   for (const double resolution : {0.1, 0.06}) {
     for (const auto& [origin, end] : segments()) {
-      const Vector3f way = end - origin;
-      const Vector3f turned(way.y(), way.z(), way.x());
-      const std::vector<Vector3f> ends{end,          origin + 0.5F * way, origin + turned,
-                                       origin - way, origin - 2 * turned, origin + way + turned};
+      const Vector3f ray = end - origin;
+      const Vector3f turned(ray.y(), ray.z(), ray.x());
+      const std::vector<Vector3f> ends{end,          origin + 0.5F * ray, origin + turned,
+                                       origin - ray, origin - 2 * turned, origin + ray + turned};
       std::set<volumetric::VoxelIndex> one_by_one;
       for (const Vector3f& each : ends) {
         const auto voxels = passed(origin, each, resolution);
         one_by_one.insert(voxels.begin(), voxels.end());
       }
-      std::set<volumetric::VoxelIndex> of_scan;
+      std::set<volumetric::VoxelIndex> scan_voxels;
       volumetric::ScanVoxels({origin}, {}, ends, resolution, resolution)
           .for_each([&](const volumetric::VoxelIndex& voxel, volumetric::ScanVoxels::Mark mark) {
             EXPECT_EQ(mark, volumetric::ScanVoxels::passed);
-            EXPECT_TRUE(of_scan.insert(voxel).second);
+            EXPECT_TRUE(scan_voxels.insert(voxel).second);
           });
-      EXPECT_EQ(one_by_one, of_scan);
+      EXPECT_EQ(one_by_one, scan_voxels);
     }
   }
 }
@@ -219,7 +219,7 @@ TEST(VoxelWalk, WithinOneVoxelPassesNothing) {
 
 TEST(ScanVoxels, RefusesMoreVoxelsThanMemoryHolds) {
   const std::vector<Vector3f> far_away{{9e3F, 9e3F, 9e3F}};
-  EXPECT_THAT(testing_support::complaint_of([&] {
+  EXPECT_THAT(testing_support::thrown_message([&] {
                 volumetric::ScanVoxels({0.0F, 0.0F, 0.0F}, far_away, {}, 0.01, 0.1);
               }),
               testing::HasSubstr("choose a larger planner.resolution_radius"));
@@ -247,7 +247,7 @@ const Vector3f ten_ahead(1.05F, 0.05F, 0.05F);
 TEST(VolumetricMap, MarksShadowsByTheirDepthInVoxels) {
   volumetric::VolumetricMap map(0.1, 0.5);
   map.insert(at_origin, std::vector{ten_ahead});
-  EXPECT_EQ(map.shadow_ceiling(), 10.0);
+  EXPECT_EQ(map.max_shadow(), 10.0);
   for (int depth = 1; depth <= 4; ++depth) {
     EXPECT_EQ(state_on_x(map, 10 + depth).kind, volumetric::VoxelKind::shadowed);
     EXPECT_EQ(state_on_x(map, 10 + depth).shadow_depth, depth);

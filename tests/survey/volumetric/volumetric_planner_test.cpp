@@ -49,7 +49,7 @@ std::vector<View> surveyed(const volumetric::VolumetricConfig& config) {
   return views;
 }
 
-double length_of(const std::vector<View>& views) {
+double compute_length(const std::vector<View>& views) {
   double length = 0.0;
   for (std::size_t i = 1; i < views.size(); ++i) {
     length += (views[i].position - views[i - 1].position).norm();
@@ -57,26 +57,26 @@ double length_of(const std::vector<View>& views) {
   return length;
 }
 
-TEST(MostUseful, WeighsSharesOfGainAgainstSharesOfTheWay) {
+TEST(SelectBest, WeighsSharesOfGainAgainstSharesOfTheWay) {
   const std::vector<double> gains{1.0, 3.0}, distances{1.0, 9.0};
-  EXPECT_EQ(volumetric::most_useful(gains, distances, 0.0, volumetric::TieRule::first),
+  EXPECT_EQ(volumetric::select_best(gains, distances, 0.0, volumetric::TieRule::first),
             1U);  // 0.25 and 0.75
-  EXPECT_EQ(volumetric::most_useful(gains, distances, 0.5, volumetric::TieRule::first),
+  EXPECT_EQ(volumetric::select_best(gains, distances, 0.5, volumetric::TieRule::first),
             1U);  // 0.20 and 0.30
-  EXPECT_EQ(volumetric::most_useful(gains, distances, 1.0, volumetric::TieRule::first),
+  EXPECT_EQ(volumetric::select_best(gains, distances, 1.0, volumetric::TieRule::first),
             0U);  // 0.15 and -0.15
 }
 
-TEST(MostUseful, WithoutGainOrWayLooksAtTheOther) {
+TEST(SelectBest, WithoutGainOrWayLooksAtTheOther) {
   const std::vector<double> none{0.0, 0.0}, some{2.0, 1.0};
-  EXPECT_EQ(volumetric::most_useful(none, some, 1.0, volumetric::TieRule::first), 1U);
-  EXPECT_EQ(volumetric::most_useful(some, none, 1.0, volumetric::TieRule::first), 0U);
+  EXPECT_EQ(volumetric::select_best(none, some, 1.0, volumetric::TieRule::first), 1U);
+  EXPECT_EQ(volumetric::select_best(some, none, 1.0, volumetric::TieRule::first), 0U);
 }
 
-TEST(MostUseful, BreaksTiesAsToldTo) {
+TEST(SelectBest, BreaksTiesAsToldTo) {
   const std::vector<double> gains{1.0, 1.0, 1.0}, distances{3.0, 2.0, 2.0};
-  EXPECT_EQ(volumetric::most_useful(gains, distances, 0.0, volumetric::TieRule::first), 0U);
-  EXPECT_EQ(volumetric::most_useful(gains, distances, 0.0, volumetric::TieRule::nearest), 1U);
+  EXPECT_EQ(volumetric::select_best(gains, distances, 0.0, volumetric::TieRule::first), 0U);
+  EXPECT_EQ(volumetric::select_best(gains, distances, 0.0, volumetric::TieRule::nearest), 1U);
 }
 
 TEST(SphereViews, LookAtTheCentreFromTheSphere) {
@@ -107,7 +107,7 @@ TEST(SphereViews, StayAboveTheLeastHeight) {
        testing_support::not_empty(volumetric::sphere_views(200, Vector3d::Zero(), 2.0, 0.5, 5))) {
     EXPECT_GE(view.position.z(), 0.5);
   }
-  EXPECT_THAT(testing_support::complaint_of(
+  EXPECT_THAT(testing_support::thrown_message(
                   [&] { volumetric::sphere_views(10, Vector3d::Zero(), 2.0, 3.0, 5); }),
               testing::HasSubstr("above the minimum height of 3 m"));
 }
@@ -129,9 +129,9 @@ TEST(VolumetricPlanner, WithTiedGainsGoesToTheNearestCandidate) {
   config.settings.rays = {1.0, 0.0, 0.01};  // one ray past the scene: no gain anywhere
   const std::vector<View> views = surveyed(config);
   for (std::size_t i = 1; i < views.size(); ++i) {
-    const double way = (views[i].position - views[i - 1].position).norm();
+    const double ray = (views[i].position - views[i - 1].position).norm();
     for (std::size_t later = i + 1; later < views.size(); ++later) {
-      EXPECT_LE(way, (views[later].position - views[i - 1].position).norm());
+      EXPECT_LE(ray, (views[later].position - views[i - 1].position).norm());
     }
   }
 }
@@ -151,18 +151,18 @@ TEST(VolumetricPlanner, ProposesTheSameViewsForAnyNumberOfThreads) {
   }
 }
 
-TEST(VolumetricPlanner, StopsInTheMiddleOfAView) {
+TEST(VolumetricPlanner, StopsWhilePlanningView) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
   const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
   const auto scan = tests::scan_spheres({{}}, camera, view, 0.01);
-  tests::expect_to_stop_in_the_middle_of_a_view(planner, scan);
+  tests::expect_stop_while_planning(planner, scan);
 }
 
 TEST(VolumetricPlanner, TravelsFartherWithoutACostOfTheWay) {
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
-  const double with_cost = length_of(surveyed(config));
+  const double with_cost = compute_length(surveyed(config));
   config.settings.cost_weight = 0.0;
-  EXPECT_GT(length_of(surveyed(config)), 1.5 * with_cost);
+  EXPECT_GT(compute_length(surveyed(config)), 1.5 * with_cost);
 }
 
 TEST(VolumetricPlanner, KeepsPointsAtTheSpacing) {
@@ -184,13 +184,13 @@ TEST(VolumetricPlanner, TakesThinnedScansIntoTheMapIfAsked) {
   const auto scan = tests::scan_spheres({{}}, camera, view);
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
   const Eigen::Vector3f surface(0.499F, 0.001F, 0.001F);
-  for (const bool thinned : {false, true}) {
-    config.settings.thinned = thinned;
+  for (const bool downsampled : {false, true}) {
+    config.settings.downsampled = downsampled;
     volumetric::VolumetricPlanner planner(config, camera);
     planner.next_view(scan);
     planner.next_view(scan);  // adds no kept point
     EXPECT_EQ(planner.map().state_at(surface).kind,
-              thinned ? volumetric::VoxelKind::uncertain : volumetric::VoxelKind::occupied);
+              downsampled ? volumetric::VoxelKind::uncertain : volumetric::VoxelKind::occupied);
   }
 }
 
@@ -222,16 +222,16 @@ TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {
   volumetric::VolumetricPlanner planner(config, camera);
   const auto scan = tests::scan_spheres({{}}, camera, look_at({2.0, 0.0, 0.0}, Vector3d::Zero()));
   const auto first = planner.next_view(scan);
-  const auto second = planner.next_view_instead();
+  const auto second = planner.next_alternative_view();
   ASSERT_TRUE(first && second);
   EXPECT_NE(first->position, second->position);
-  EXPECT_TRUE(planner.next_view_instead());
-  EXPECT_FALSE(planner.next_view_instead());
+  EXPECT_TRUE(planner.next_alternative_view());
+  EXPECT_FALSE(planner.next_alternative_view());
 }
 
 TEST(VolumetricPlanner, RefusesAFirstScanWithoutTheScene) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
-  EXPECT_THAT(testing_support::complaint_of([&] { planner.next_view(geometry::Scan{}); }),
+  EXPECT_THAT(testing_support::thrown_message([&] { planner.next_view(geometry::Scan{}); }),
               testing::HasSubstr("the first scan contains no point of the scene"));
 }
 

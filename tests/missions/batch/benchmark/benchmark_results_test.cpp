@@ -65,17 +65,19 @@ TEST(CoverageCurve, KeepsTheEndOfTrialsThatAreOver) {
 }
 
 TEST(CoverageCurve, OverTheTimeInTheAirIsOfFlights) {
-  batch::Trial flown = trial(0.2, 0.4, 0.8);
-  flown.flown_time_after = {60.0, 90.0, 180.0};
-  const auto curve = batch::coverage_curve({flown, flown}, batch::CurveAxis::flown_time, 5);
+  batch::Trial flight_trial = trial(0.2, 0.4, 0.8);
+  flight_trial.flight_time_after = {60.0, 90.0, 180.0};
+  const auto curve =
+      batch::coverage_curve({flight_trial, flight_trial}, batch::CurveAxis::flight_time, 5);
   ASSERT_EQ(curve.size(), 5U);
   EXPECT_DOUBLE_EQ(curve[0].x, 60.0);
   EXPECT_DOUBLE_EQ(curve[1].x, 90.0);
   EXPECT_DOUBLE_EQ(curve[1].mean, 0.4);
   EXPECT_DOUBLE_EQ(curve[3].mean, 0.4);
   EXPECT_DOUBLE_EQ(curve[4].mean, 0.8);
-  EXPECT_TRUE(batch::coverage_curve({flown, trial(0.2, 0.4, 0.8)}, batch::CurveAxis::flown_time, 5)
-                  .empty());
+  EXPECT_TRUE(
+      batch::coverage_curve({flight_trial, trial(0.2, 0.4, 0.8)}, batch::CurveAxis::flight_time, 5)
+          .empty());
 }
 
 TEST(CoverageCurve, WithoutTrialsIsEmpty) {
@@ -193,21 +195,21 @@ TEST(TrialText, GivesTheSameTrialBack) {
   before.stop_reason = survey::StopReason::view_limit;
   before.points = 7;
   before.targets = {{2, 1.0 / 7.0}};
-  before.coverage.ceiling = {};
+  before.coverage.attainable_coverage = {};
   const batch::Trial after = batch::parse_trial(batch::trial_json(before));
   EXPECT_EQ(batch::trial_json(after), batch::trial_json(before));
   EXPECT_EQ(after.seed, before.seed);
   EXPECT_EQ(after.coverage_after, before.coverage_after);
   EXPECT_EQ(after.stop_reason, before.stop_reason);
-  EXPECT_FALSE(after.coverage.ceiling);
+  EXPECT_FALSE(after.coverage.attainable_coverage);
 }
 
 TEST(TrialText, RefusesWhatIsNoTrial) {
-  const auto complaint = [](const std::string& text) {
-    return testing_support::complaint_of([&] { batch::parse_trial(text); });
+  const auto error_message = [](const std::string& text) {
+    return testing_support::thrown_message([&] { batch::parse_trial(text); });
   };
   for (const char* text : {"", "[1, 2]"}) {
-    EXPECT_THAT(complaint(text), HasSubstr("is not a trial: ")) << text;
+    EXPECT_THAT(error_message(text), HasSubstr("is not a trial: ")) << text;
   }
   // Of each field: that it is missing, and that it is of another type.
   const std::string whole = batch::trial_json(trial(0.5, 0.25, 0.7));
@@ -215,11 +217,11 @@ TEST(TrialText, RefusesWhatIsNoTrial) {
   ASSERT_GE(fields.size(), 15U);
   for (const auto& [name, value] : fields.items()) {
     if (name == "stop_reason" || name == "flown_s") continue;  // another message; not read
-    nlohmann::json spoiled = fields;
-    spoiled.erase(name);
-    EXPECT_THAT(complaint(spoiled.dump()), HasSubstr("'" + name + "'"));
-    spoiled[name] = "x";
-    EXPECT_THAT(complaint(spoiled.dump()), HasSubstr("is not a trial: ")) << name;
+    nlohmann::json corrupted = fields;
+    corrupted.erase(name);
+    EXPECT_THAT(error_message(corrupted.dump()), HasSubstr("'" + name + "'"));
+    corrupted[name] = "x";
+    EXPECT_THAT(error_message(corrupted.dump()), HasSubstr("is not a trial: ")) << name;
   }
 }
 

@@ -35,7 +35,7 @@ std::vector<batch::Trial> two_trials() {
   a.seed = 1, a.views = 2, a.distance = 3, a.coverage = {0.8, 0.9, 0.99};
   a.coverage_after = {0.5, 0.8}, a.distance_after = {0, 3};
   a.planning_time_after = {0.1, 0.2};
-  a.flown_length = 7, a.flown_time_after = {5, 12.5};
+  a.flight_length = 7, a.flight_time_after = {5, 12.5};
   b.seed = 2, b.views = 4, b.distance = 5, b.coverage = {1.0, {}, {}};
   b.stop_reason = survey::StopReason::view_limit;
   b.coverage_after = {0.3, 0.6, 0.9, 1.0}, b.distance_after = {0, 1, 2, 5};
@@ -103,8 +103,8 @@ TEST(Trials, CsvHasALineForEach) {
 TEST(Trials, AreReadBackAsTheyWereWritten) {
   for (const batch::Trial& trial : two_trials()) {
     const batch::Trial again = batch::parse_trial(batch::trial_json(trial));
-    EXPECT_EQ(again.flown_length, trial.flown_length);
-    EXPECT_EQ(again.flown_time_after, trial.flown_time_after);
+    EXPECT_EQ(again.flight_length, trial.flight_length);
+    EXPECT_EQ(again.flight_time_after, trial.flight_time_after);
     EXPECT_EQ(batch::trials_csv({again}), batch::trials_csv({trial}));
   }
 }

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string refusal_of(const std::string& text) {
+std::string rejection_message(const std::string& text) {
   try {
     parse_campaign(text, "c.yaml");
   } catch (const Error& error) {
@@ -86,7 +86,7 @@ TEST(Campaign, RangesAreSharedOutToEntries) {
     for (std::size_t end = first; end <= manifest.size(); ++end) {
       std::vector<std::size_t> numbers;
       for (std::size_t entry = 0; entry < manifest.entries(); ++entry) {
-        for (const std::size_t n : manifest.numbers_of_entry(entry, {first, end})) {
+        for (const std::size_t n : manifest.entry_run_numbers(entry, {first, end})) {
           EXPECT_EQ(n % manifest.entries(), entry);
           numbers.push_back(n);
         }
@@ -116,37 +116,38 @@ TEST(Campaign, HandsValuesOnAsTheyAre) {
 }
 
 TEST(Campaign, RefusesWhatItDoesNotUnderstandWhereItStands) {
-  EXPECT_THAT(refusal_of("[a]"), HasSubstr("c.yaml:1: is not a map"));
-  EXPECT_THAT(refusal_of("name: x\n"), HasSubstr("c.yaml:1: key missions is missing or empty"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nseed: 3\n"),
+  EXPECT_THAT(rejection_message("[a]"), HasSubstr("c.yaml:1: is not a map"));
+  EXPECT_THAT(rejection_message("name: x\n"),
+              HasSubstr("c.yaml:1: key missions is missing or empty"));
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nseed: 3\n"),
               HasSubstr("c.yaml:2: key seed is unknown; expected one of: first_seed, missions"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nseeds: 0\n"),
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nseeds: 0\n"),
               HasSubstr("c.yaml:2: key seeds is 0; it must be from 1 to 100000"));
   EXPECT_THAT(
-      refusal_of("missions: [a.yaml]\nplanners: [frontier]\n"),
+      rejection_message("missions: [a.yaml]\nplanners: [frontier]\n"),
       HasSubstr("c.yaml:2: key planners: unknown planner 'frontier'; expected all or some"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nset:\n  planner.densty: 3\n"),
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nset:\n  planner.densty: 3\n"),
               HasSubstr("c.yaml:3: key set.planner.densty is unknown"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  v: {seed: 3}\n"),
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nvariants:\n  v: {seed: 3}\n"),
               HasSubstr("c.yaml:3: key variants.v.seed follows from the campaign"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  ../v: {}\n"),
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nvariants:\n  ../v: {}\n"),
               HasSubstr("c.yaml:3: key variants.../v is not a valid folder name"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  v: 3\n"),
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nvariants:\n  v: 3\n"),
               HasSubstr("c.yaml:3: key variants.v must be a map"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml, b/a.yaml]\n"),
+  EXPECT_THAT(rejection_message("missions: [a.yaml, b/a.yaml]\n"),
               HasSubstr("a.yaml and b/a.yaml have the same name"));
-  EXPECT_THAT(refusal_of("missions: ['a,b.yaml']\n"), HasSubstr("cannot be used in tables"));
-  EXPECT_THAT(refusal_of("missions: ['..']\n"), HasSubstr("cannot be used in tables"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nname: ../../etc\n"),
+  EXPECT_THAT(rejection_message("missions: ['a,b.yaml']\n"), HasSubstr("cannot be used in tables"));
+  EXPECT_THAT(rejection_message("missions: ['..']\n"), HasSubstr("cannot be used in tables"));
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nname: ../../etc\n"),
               HasSubstr("c.yaml:2: key name is not a valid folder name"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nresults: all\n"),
+  EXPECT_THAT(rejection_message("missions: [a.yaml]\nresults: all\n"),
               HasSubstr("c.yaml:2: key results is all; it must be one of figures, package"));
 }
 
 TEST(Campaign, RefusesMoreItemsThanItsBound) {
   std::string missions = "m0.yaml";
   for (int i = 1; i < 12; ++i) missions += ", m" + std::to_string(i) + ".yaml";
-  EXPECT_THAT(refusal_of("missions: [" + missions + "]\nseeds: 100000\n"),
+  EXPECT_THAT(rejection_message("missions: [" + missions + "]\nseeds: 100000\n"),
               HasSubstr("more than 1000000 runs"));
 }
 

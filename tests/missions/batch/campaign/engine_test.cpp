@@ -16,14 +16,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Environment environment_of(const std::map<std::string, std::string>& variables) {
+Environment make_environment(const std::map<std::string, std::string>& variables) {
   return [variables](const std::string& name) -> std::optional<std::string> {
     const auto found = variables.find(name);
     return found == variables.end() ? std::nullopt : std::optional(found->second);
   };
 }
 
-std::string refusal_of(const std::string& index, const Environment& environment) {
+std::string rejection_message(const std::string& index, const Environment& environment) {
   try {
     task_index(index, environment);
   } catch (const Error& error) {
@@ -35,7 +35,7 @@ std::string refusal_of(const std::string& index, const Environment& environment)
 // The first and the eighth task of each, as its manual numbers them.
 TEST(TaskIndex, FollowsEachEnginesNumbers) {
   const auto task = [](const std::string& engine, const char* variable, const char* value) {
-    const Environment environment = environment_of({{variable, value}});
+    const Environment environment = make_environment({{variable, value}});
     EXPECT_EQ(task_index("auto", environment), task_index(engine, environment));
     return task_index(engine, environment);
   };
@@ -47,21 +47,21 @@ TEST(TaskIndex, FollowsEachEnginesNumbers) {
   EXPECT_EQ(task("kubernetes", "JOB_COMPLETION_INDEX", "7"), 7U);
   EXPECT_EQ(task("parallel", "PARALLEL_SEQ", "1"), 0U);
   EXPECT_EQ(task("parallel", "PARALLEL_SEQ", "8"), 7U);
-  EXPECT_EQ(task_index("7", environment_of({{"PARALLEL_SEQ", "1"}})), 7U);
+  EXPECT_EQ(task_index("7", make_environment({{"PARALLEL_SEQ", "1"}})), 7U);
 }
 
 TEST(TaskIndex, RefusesWhatSaysNoTask) {
-  const Environment none = environment_of({});
+  const Environment none = make_environment({});
   for (const char* wrong : {"-1", "1.5", "", "7 ", "0x3", "99999999999999999999", "all"}) {
-    EXPECT_THAT(refusal_of(wrong, none), HasSubstr("--index is")) << wrong;
+    EXPECT_THAT(rejection_message(wrong, none), HasSubstr("--index is")) << wrong;
   }
-  EXPECT_THAT(refusal_of("slurm", none), HasSubstr("SLURM_ARRAY_TASK_ID is not set"));
-  EXPECT_THAT(refusal_of("auto", none), HasSubstr("none of SLURM_ARRAY_TASK_ID"));
-  EXPECT_THAT(refusal_of("parallel", environment_of({{"PARALLEL_SEQ", "0"}})),
+  EXPECT_THAT(rejection_message("slurm", none), HasSubstr("SLURM_ARRAY_TASK_ID is not set"));
+  EXPECT_THAT(rejection_message("auto", none), HasSubstr("none of SLURM_ARRAY_TASK_ID"));
+  EXPECT_THAT(rejection_message("parallel", make_environment({{"PARALLEL_SEQ", "0"}})),
               HasSubstr("PARALLEL_SEQ is '0'; it must be an integer of at least 1"));
-  EXPECT_THAT(
-      refusal_of("auto", environment_of({{"PARALLEL_SEQ", "1"}, {"SLURM_ARRAY_TASK_ID", "4"}})),
-      HasSubstr("SLURM_ARRAY_TASK_ID and PARALLEL_SEQ are both set; use --index slurm"));
+  EXPECT_THAT(rejection_message(
+                  "auto", make_environment({{"PARALLEL_SEQ", "1"}, {"SLURM_ARRAY_TASK_ID", "4"}})),
+              HasSubstr("SLURM_ARRAY_TASK_ID and PARALLEL_SEQ are both set; use --index slurm"));
 }
 
 // Property: the tasks of a job together have each item once, whatever the chunk.
@@ -70,7 +70,7 @@ TEST(TaskIndex, TasksShareItemsOut) {
     for (std::size_t chunk = 1; chunk <= items + 2; ++chunk) {
       std::size_t next = 0;
       for (std::size_t task = 0; task < items + 3; ++task) {
-        const ItemRange range = items_of_task(task, chunk, items);
+        const ItemRange range = items_in_task(task, chunk, items);
         if (range.size() == 0) continue;
         EXPECT_EQ(range.first, next);
         EXPECT_LE(range.size(), chunk);
@@ -92,16 +92,16 @@ JobRequest request(std::size_t items, std::size_t chunk = 0, unsigned jobs = 4) 
 }
 
 TEST(EngineJob, SplitsAsTheEngineLikesIt) {
-  const auto split_of = [](EngineName engine, const JobRequest& wanted) {
-    const TaskSplit tasks = split(engine, wanted);
+  const auto describe_split = [](EngineName engine, const JobRequest& requested) {
+    const TaskSplit tasks = split(engine, requested);
     return std::vector<std::size_t>{tasks.tasks, tasks.chunk};
   };
-  EXPECT_THAT(split_of(EngineName::slurm, request(1000)), ElementsAre(1000, 1));
-  EXPECT_THAT(split_of(EngineName::slurm, request(1001)), ElementsAre(501, 2));
-  EXPECT_THAT(split_of(EngineName::slurm, request(100, 30)), ElementsAre(4, 30));
-  EXPECT_THAT(split_of(EngineName::mpi, request(10)), ElementsAre(4, 3));
-  EXPECT_THAT(split_of(EngineName::mpi, request(2)), ElementsAre(2, 1));
-  EXPECT_THAT(split_of(EngineName::parallel, request(7)), ElementsAre(7, 1));
+  EXPECT_THAT(describe_split(EngineName::slurm, request(1000)), ElementsAre(1000, 1));
+  EXPECT_THAT(describe_split(EngineName::slurm, request(1001)), ElementsAre(501, 2));
+  EXPECT_THAT(describe_split(EngineName::slurm, request(100, 30)), ElementsAre(4, 30));
+  EXPECT_THAT(describe_split(EngineName::mpi, request(10)), ElementsAre(4, 3));
+  EXPECT_THAT(describe_split(EngineName::mpi, request(2)), ElementsAre(2, 1));
+  EXPECT_THAT(describe_split(EngineName::parallel, request(7)), ElementsAre(7, 1));
 }
 
 // A shell is the oracle: it reads the words back.

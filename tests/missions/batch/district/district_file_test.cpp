@@ -16,17 +16,17 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
-std::string complaint(const std::string& text) {
-  return complaint_of([&] { parse_district(text, "town/quarter.yaml"); });
+std::string error_message(const std::string& text) {
+  return thrown_message([&] { parse_district(text, "town/quarter.yaml"); });
 }
 
 TEST(DistrictFile, OfAMapAloneHasDefaults) {
   const DistrictFile district = parse_district("map: town.gml\n", "town/quarter.yaml");
   EXPECT_EQ(district.name, "quarter");
-  EXPECT_EQ(district.wishes.map, "town/town.gml");
-  EXPECT_EQ(district.wishes.vehicle, "generic");
+  EXPECT_EQ(district.request.map, "town/town.gml");
+  EXPECT_EQ(district.request.vehicle, "generic");
   EXPECT_EQ(district.planner, "skycap");
   EXPECT_EQ(district.seed, 1U);
   EXPECT_EQ(district.merge_distance, 0.5);
@@ -45,12 +45,12 @@ TEST(DistrictFile, SaysWhatIsSurveyedAndHow) {
       "seed: 7\nset: {limits.max_views: 9, flight: {clearance: 3}}\n",
       "quarter.yaml");
   EXPECT_EQ(district.name, "old_town");
-  EXPECT_EQ(district.wishes.reading.crs, "EPSG:25832");
-  EXPECT_EQ(district.wishes.reading.vertical, site_data::HeightDatum::geoid);
-  EXPECT_EQ(district.wishes.reading.base, 380.0);
-  EXPECT_EQ(district.wishes.reading.height, 9.0);
-  EXPECT_EQ(district.wishes.terrain, "dtm.tif");
-  EXPECT_THAT(district.wishes.obstacles, ElementsAre("trees.las"));
+  EXPECT_EQ(district.request.import_options.crs, "EPSG:25832");
+  EXPECT_EQ(district.request.import_options.vertical, site_data::HeightDatum::geoid);
+  EXPECT_EQ(district.request.import_options.base, 380.0);
+  EXPECT_EQ(district.request.import_options.height, 9.0);
+  EXPECT_EQ(district.request.terrain, "dtm.tif");
+  EXPECT_THAT(district.request.obstacles, ElementsAre("trees.las"));
   const TargetChoice& targets = district.targets;
   EXPECT_THAT(targets.ids, ElementsAre("a", "b"));
   EXPECT_EQ(targets.attributes.at("use"), "school");
@@ -61,7 +61,7 @@ TEST(DistrictFile, SaysWhatIsSurveyedAndHow) {
   EXPECT_EQ(district.merge_distance, 0.0);
   ASSERT_EQ(district.pads.size(), 2U);
   EXPECT_EQ(district.pads[1].latitude_deg, 48.16);
-  EXPECT_EQ(district.wishes.vehicle, "m350_rtk");
+  EXPECT_EQ(district.request.vehicle, "m350_rtk");
   EXPECT_EQ(district.planner, "see++");
   EXPECT_EQ(district.seed, 7U);
   ASSERT_EQ(district.set.size(), 2U);
@@ -69,12 +69,12 @@ TEST(DistrictFile, SaysWhatIsSurveyedAndHow) {
   EXPECT_EQ(district.set[1].value, "3");
 }
 
-struct Complaint {
-  std::string text, says;
+struct ExpectedError {
+  std::string text, program_output;
 };
 
 TEST(DistrictFile, SaysWhatIsWrongAndWhatWouldBeRight) {
-  const std::vector<Complaint> complaints{
+  const std::vector<ExpectedError> expected_errors{
       {"pads: []\n", "key map is missing"},
       {"map: a\nvertical: takeoff\n", ":2: key vertical is takeoff; it must be one of ellipsoid"},
       {"map: a\nheight: -2\n", ":2: key height is -2 m; it must be from 0.01 to 10000"},
@@ -100,8 +100,9 @@ TEST(DistrictFile, SaysWhatIsWrongAndWhatWouldBeRight) {
       {"map: a\nset: {limits.most_views: 3}\n", ":2: key set.limits.most_views is unknown"},
       {"map: a\nfleet: 2\n", ":2: key fleet is unknown"},
       {"[a, b]\n", ":1: is not a map; a district is a list of 'key: value'"}};
-  for (const Complaint& one : complaints) {
-    EXPECT_THAT(complaint(one.text), AllOf(StartsWith("town/quarter.yaml:"), HasSubstr(one.says)))
+  for (const ExpectedError& one : expected_errors) {
+    EXPECT_THAT(error_message(one.text),
+                AllOf(StartsWith("town/quarter.yaml:"), HasSubstr(one.program_output)))
         << one.text;
   }
 }

@@ -25,22 +25,22 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing_support::Cube;
-using tests::content_of;
+using tests::read_content;
 
 /// Buildings of 10 m in UTM 32, feet at 380 m and so much elsewhere, as CityJSON.
-std::string town(const std::vector<Vector3d>& places) {
+std::string town(const std::vector<Vector3d>& positions) {
   json town = {{"type", "CityJSON"},
                {"version", "1.0"},
                {"metadata", {{"referenceSystem", "EPSG:25832"}}},
                {"CityObjects", json::object()},
                {"vertices", json::array()}};
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     Cube cube;
-    cube.low += places[i];
+    cube.low += positions[i];
     const std::size_t first = town["vertices"].size();
     for (int corner = 0; corner < 8; ++corner) {
-      const Vector3d place = cube.corner(corner);
-      town["vertices"].push_back({place.x(), place.y(), place.z()});
+      const Vector3d location = cube.corner(corner);
+      town["vertices"].push_back({location.x(), location.y(), location.z()});
     }
     json faces = json::array();
     for (const auto& face : Cube::faces) {
@@ -57,7 +57,7 @@ std::string town(const std::vector<Vector3d>& places) {
 }
 
 /// Two that share a wall, one by itself, and one that is no target.
-const std::vector<Vector3d> places{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 30, 0}};
+const std::vector<Vector3d> positions{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 30, 0}};
 
 constexpr const char* few_views =
     "set: {limits.max_views: 3, evaluation: {samples: 2000, visible_directions: 20, "
@@ -66,7 +66,7 @@ constexpr const char* few_views =
 class District : public testing::Test {
  protected:
   District() {
-    folder_.write("town.city.json", town(places));
+    folder_.write("town.city.json", town(positions));
     write("map: town.city.json\nvertical: ellipsoid\ntargets: {id: [house_0, house_1, house_2]}\n");
   }
 
@@ -77,7 +77,7 @@ class District : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return tests::run_skycap(words);
   }
-  json results() const { return json::parse(content_of(out() / "district.json")); }
+  json results() const { return json::parse(read_content(out() / "district.json")); }
   fs::path out() const { return folder_.path() / "out"; }
 
   const tests::TestFolder folder_;
@@ -101,9 +101,9 @@ TEST_F(District, IsSurveyedAndFlownWithOneCommand) {
   const json& flight = all.at("flight");
   EXPECT_GE(flight.at("min_clearance_m").get<double>(), 2.0);
   EXPECT_GE(flight.at("sorties").get<int>(), 1);
-  EXPECT_THAT(content_of(out() / "district.html"),
+  EXPECT_THAT(read_content(out() / "district.html"),
               AllOf(HasSubstr("quarter"), HasSubstr("house_2")));
-  EXPECT_THAT(content_of(out() / "targets.csv"), HasSubstr("house_0_and_1,2,3,"));
+  EXPECT_THAT(read_content(out() / "targets.csv"), HasSubstr("house_0_and_1,2,3,"));
 }
 
 // By the file as an autopilot reads it, in the space as it truly is: all buildings, the ground.
@@ -138,19 +138,19 @@ TEST_F(District, GoesOnWhereItWasLeft) {
   const auto written = fs::last_write_time(item / "item.json");
   ASSERT_EQ(run().exit_code, 0);
   EXPECT_EQ(fs::last_write_time(item / "item.json"), written);
-  const std::string table = content_of(out() / "targets.csv");
+  const std::string table = read_content(out() / "targets.csv");
   fs::remove_all(out());
   ASSERT_EQ(run({}, 2).exit_code, 0);
-  EXPECT_EQ(content_of(out() / "targets.csv"), table);
+  EXPECT_EQ(read_content(out() / "targets.csv"), table);
 }
 
 TEST_F(District, CutsOutWhatIsNearEachTarget) {
-  std::vector<Vector3d> far = places;
+  std::vector<Vector3d> far = positions;
   far.emplace_back(85, 0, 0);
   far.emplace_back(900, 0, 0);
   folder_.write("town.city.json", town(far));
   ASSERT_EQ(run({"--list"}).exit_code, 0);
-  const std::string site = content_of(out() / "sites" / "house_2.city.json");
+  const std::string site = read_content(out() / "sites" / "house_2.city.json");
   EXPECT_THAT(site, AllOf(HasSubstr("house_2"), HasSubstr("house_3"), HasSubstr("house_4")));
   EXPECT_THAT(site, testing::Not(HasSubstr("house_5")));
 }
@@ -161,16 +161,16 @@ TEST_F(District, KeepsWhatTargetsSeeOfEachOther) {
   folder_.write("town.city.json", town({{0, 0, 0}, {18, 0, 0}, {500, 0, 0}}));
   write("map: town.city.json\nvertical: ellipsoid\n");
   ASSERT_EQ(run({"--list"}).exit_code, 0);
-  const auto prepared = batch::read_prepared(out() / batch::prepared_name);
-  ASSERT_EQ(prepared.targets.size(), 3U);
+  const auto district_plan = batch::read_district_plan(out() / batch::district_plan_name);
+  ASSERT_EQ(district_plan.targets.size(), 3U);
   for (int house = 0; house < 3; ++house) {
     const fs::path file = out() / "missions" / ("house_" + std::to_string(house) + ".yaml");
     const config::MissionSetup mission = config::read_mission(file);
     EXPECT_TRUE(mission.scene().neighbours);
-    const std::vector<Eigen::AlignedBox3d>& boxes = mission.flight().unknown_beside;
+    const std::vector<Eigen::AlignedBox3d>& boxes = mission.flight().extra_unknown_boxes;
     ASSERT_EQ(boxes.size(), house < 2 ? 1U : 0U) << house;
     if (house == 2) continue;
-    const Eigen::AlignedBox3d& other = prepared.targets[1 - house].unknown;
+    const Eigen::AlignedBox3d& other = district_plan.targets[1 - house].unknown;
     EXPECT_EQ(boxes[0].min(), other.min());
     EXPECT_EQ(boxes[0].max(), other.max());
   }
@@ -180,10 +180,10 @@ TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {attribute: {number: '3'}}\n");
   EXPECT_THAT(run({"--list"}).out,
               AllOf(HasSubstr("house_3.yaml"), testing::Not(HasSubstr("house_2"))));
-  const auto prepared = batch::read_prepared(out() / batch::prepared_name);
-  ASSERT_EQ(prepared.targets.size(), 1U);
-  EXPECT_NEAR(prepared.targets[0].box.center().head<2>().norm(), 0.0, 0.02);
-  EXPECT_NEAR(prepared.targets[0].box.min().z(), 0.0, 0.02);
+  const auto district_plan = batch::read_district_plan(out() / batch::district_plan_name);
+  ASSERT_EQ(district_plan.targets.size(), 1U);
+  EXPECT_NEAR(district_plan.targets[0].box.center().head<2>().norm(), 0.0, 0.02);
+  EXPECT_NEAR(district_plan.targets[0].box.min().z(), 0.0, 0.02);
 }
 
 TEST_F(District, SaysWhyThereIsNothingToSurvey) {
@@ -195,9 +195,9 @@ TEST_F(District, SaysWhyThereIsNothingToSurvey) {
 
 TEST_F(District, OnASlopeNeedsATerrain) {
   folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}, {120, 0, 3}}));
-  const auto refused = run();
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("differ by 7.0 m, and the ground between them is unknown"));
+  const auto rejected = run();
+  EXPECT_EQ(rejected.exit_code, 2);
+  EXPECT_THAT(rejected.err, HasSubstr("differ by 7.0 m, and the ground between them is unknown"));
 }
 
 /// Cells of 6 m whose ground rises from 380 m in the west to 387 m in the east.
@@ -222,9 +222,9 @@ TEST_F(District, OnASlopeStandsOnItsTerrain) {
   write("map: town.city.json\nvertical: ellipsoid\ncrs: 'EPSG:25832'\nterrain: ground.asc\n");
   const auto surveyed = run({"--no-report"});
   ASSERT_EQ(surveyed.exit_code, 0) << surveyed.err << surveyed.out;
-  const auto prepared = batch::read_prepared(out() / batch::prepared_name);
-  EXPECT_NEAR(prepared.targets.at(0).box.min().z(), 0.0, 0.05);
-  EXPECT_NEAR(prepared.targets.at(1).box.min().z(), 7.0, 0.05);
+  const auto district_plan = batch::read_district_plan(out() / batch::district_plan_name);
+  EXPECT_NEAR(district_plan.targets.at(0).box.min().z(), 0.0, 0.05);
+  EXPECT_NEAR(district_plan.targets.at(1).box.min().z(), 7.0, 0.05);
   EXPECT_EQ(results().at("flight").at("views_flown"), results().at("flight").at("views"));
   const auto check = tests::run_skycap({"check", (out() / "flights" / "pad_1.yaml").string(),
                                         "--route", (out() / "flights" / "pad_1.plan").string()});
@@ -235,7 +235,7 @@ TEST_F(District, RefusesAPadInABuilding) {
   const std::string map = "map: town.city.json\nvertical: ellipsoid\n";
   write(map);
   ASSERT_EQ(run({"--list"}).exit_code, 0);
-  const std::string mission = content_of(out() / "flights" / "pad_1.yaml");
+  const std::string mission = read_content(out() / "flights" / "pad_1.yaml");
   const auto value = [&](const std::string& key) {
     const auto at = mission.find(key + ": ") + key.size() + 2;
     return mission.substr(at, mission.find(' ', at) - at);
@@ -243,19 +243,19 @@ TEST_F(District, RefusesAPadInABuilding) {
   // The middle of the district is beside everything; that of the first house is not.
   write(map + "targets: {id: [house_0]}\n");
   ASSERT_EQ(run({"--list"}).exit_code, 0);
-  const std::string house = content_of(out() / "flights" / "pad_1.yaml");
+  const std::string house = read_content(out() / "flights" / "pad_1.yaml");
   const auto at = house.find("latitude_deg: ") + 14, to = house.find("longitude_deg: ") + 15;
-  const std::string place =
+  const std::string location =
       house.substr(at, house.find(' ', at) - at) + "," + house.substr(to, house.find(' ', to) - to);
-  write(map + "pads: ['" + place + "']\n");
-  const auto refused = run();
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err,
+  write(map + "pads: ['" + location + "']\n");
+  const auto rejected = run();
+  EXPECT_EQ(rejected.exit_code, 2);
+  EXPECT_THAT(rejected.err,
               AllOf(HasSubstr("key pads: "), HasSubstr("is not free, level and even ground")));
   write(map + "pads: ['" + value("latitude_deg") + "," + value("longitude_deg") + "']\n");
   const auto given = run({"--list"});
   EXPECT_EQ(given.exit_code, 0) << given.err;
-  EXPECT_EQ(batch::read_prepared(out() / batch::prepared_name).pads.size(), 1U);
+  EXPECT_EQ(batch::read_district_plan(out() / batch::district_plan_name).pads.size(), 1U);
 }
 
 }  // namespace

@@ -31,12 +31,12 @@ site_data::Object object(const std::string& id, const geometry::Mesh& mesh) {
 
 std::vector<std::vector<double>> corners(const Ring& ring) {
   std::vector<std::vector<double>> list;
-  for (const Vector2d& place : ring) list.push_back({place.x(), place.y()});
+  for (const Vector2d& location : ring) list.push_back({location.x(), location.y()});
   return list;
 }
 
 TEST(Outline, OfABoxIsItsBase) {
-  const auto rings = outline_of(box({1, 2, 0}, {4, 6, 9}));
+  const auto rings = compute_outline(box({1, 2, 0}, {4, 6, 9}));
   ASSERT_EQ(rings.size(), 1U);
   EXPECT_THAT(corners(rings[0]), UnorderedElementsAre(ElementsAre(1, 2), ElementsAre(4, 2),
                                                       ElementsAre(4, 6), ElementsAre(1, 6)));
@@ -46,7 +46,7 @@ TEST(Outline, OfTwoBoxesIsTwoRings) {
   geometry::Mesh mesh = box({0, 0, 0}, {2, 2, 5});
   append(mesh, box({5, 0, 0.2}, {7, 2, 5}));
   append(mesh, box({9, 0, 3}, {11, 2, 5}));  // stands on nothing
-  EXPECT_EQ(outline_of(mesh).size(), 2U);
+  EXPECT_EQ(compute_outline(mesh).size(), 2U);
 }
 
 // A tent has no floor.
@@ -54,7 +54,7 @@ TEST(Outline, WithoutALevelFaceIsTheHull) {
   geometry::Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 3}};
   mesh.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
-  const auto rings = outline_of(mesh);
+  const auto rings = compute_outline(mesh);
   ASSERT_EQ(rings.size(), 1U);
   EXPECT_THAT(corners(rings[0]), ElementsAre(ElementsAre(0, 0), ElementsAre(4, 0),
                                              ElementsAre(4, 4), ElementsAre(0, 4)));

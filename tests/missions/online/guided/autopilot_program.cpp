@@ -26,11 +26,11 @@ int main(int argc, char** argv) {
     online::TestAutopilot autopilot(
         setup.flight(), setup.flight().pad(scene.first_view(setup.run.seed).position), {});
     online::NetworkPort port(online::parse_address(std::string("udpout:127.0.0.1:") + argv[2]));
-    double flown = 0.0;
+    double elapsed = 0.0;
     online::fly_in_real_time(autopilot, port, [&] {
       constexpr double farewell = 5.0;  // to say that it has landed [s]
-      if (!autopilot.has_landed()) flown = autopilot.time();
-      return autopilot.time() > flown + farewell;
+      if (!autopilot.has_landed()) elapsed = autopilot.time();
+      return autopilot.time() > elapsed + farewell;
     });
   } catch (const skycap::Error& error) {
     std::cerr << error.what() << "\n";

@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 
 std::string mission_text() {
-  std::string text = online::short_mission(tests::flown_mission());
+  std::string text = online::short_mission(tests::flight_mission());
   const std::string vehicle = "vehicle: generic";
   return text.insert(text.find(vehicle) + vehicle.size(), "_ardupilot");
 }
@@ -54,7 +54,7 @@ class FlySurvey : public testing::Test {
                       stop_.get_token());
   }
 
-  void begin_anew() {
+  void restart() {
     survey_.reset();
     folder_ = std::make_unique<tests::TestFolder>();
   }
@@ -72,16 +72,16 @@ class FlySurvey : public testing::Test {
   std::string notes_;
 };
 
-double nearest_of(const std::vector<Vector3d>& places, const scene::SceneOptions& scene) {
+double find_nearest(const std::vector<Vector3d>& positions, const scene::SceneOptions& scene) {
   const geometry::MeshDistance truth(evaluation::placed_model(scene, ""));
   double nearest = 1e9;
-  for (const Vector3d& place : places) nearest = std::min(nearest, truth.distance(place));
+  for (const Vector3d& position : positions) nearest = std::min(nearest, truth.distance(position));
   return nearest;
 }
 
 TEST_F(FlySurvey, IsWhatPlanDoesAndKeepsItsClearance) {
   const FlightEnd end = fly();
-  ASSERT_FALSE(end.trouble) << end.trouble->what << "\n" << notes_;
+  ASSERT_FALSE(end.failure) << end.failure->what << "\n" << notes_;
   EXPECT_TRUE(end.has_landed);
   EXPECT_FALSE(autopilot_->is_armed());
   const config::MissionSetup& setup = rehearsal_.setup();
@@ -89,9 +89,9 @@ TEST_F(FlySurvey, IsWhatPlanDoesAndKeepsItsClearance) {
   EXPECT_LT(off.norm(), setup.flight().tracking_error);
   const flight::ClearanceBudget clearance = setup.flight().budget();
   // A set point is rounded to 1e-7 degrees, 1.1 cm.
-  EXPECT_GT(nearest_of(autopilot_->set_points(), setup.scene()),
+  EXPECT_GT(find_nearest(autopilot_->set_points(), setup.scene()),
             clearance.total() - clearance.map_error - 0.02);
-  EXPECT_GT(nearest_of(autopilot_->track(), setup.scene()),
+  EXPECT_GT(find_nearest(autopilot_->track(), setup.scene()),
             clearance.total() - clearance.map_error - clearance.tracking_error);
   online::expect_same(survey_->finish(), rehearsal_.planned());
 }
@@ -99,37 +99,38 @@ TEST_F(FlySurvey, IsWhatPlanDoesAndKeepsItsClearance) {
 /// One frame in ten is lost, one in twenty damaged, others come twice or once more and late.
 TEST_F(FlySurvey, IsTheSameOverABadLink) {
   const FlightEnd end = fly({.lost = 0.1, .doubled = 0.1, .damaged = 0.05, .late = 0.1});
-  ASSERT_FALSE(end.trouble) << end.trouble->what << "\n" << notes_;
+  ASSERT_FALSE(end.failure) << end.failure->what << "\n" << notes_;
   EXPECT_TRUE(end.has_landed);
   online::expect_same(survey_->finish(), rehearsal_.planned());
 }
 
 TEST_F(FlySurvey, FliesHomeWhenItIsInterruptedAndGoesOnLater) {
   const Sensor exact = sensor_;
-  sensor_ = [&](const geometry::View& wanted, const geometry::View& taken, std::size_t number) {
+  sensor_ = [&](const geometry::View& requested, const geometry::View& actual_view,
+                std::size_t number) {
     if (number == 2) stop_.request_stop();
-    return exact(wanted, taken, number);
+    return exact(requested, actual_view, number);
   };
   const FlightEnd end = fly({}, {.returns_on_failure = true});
-  ASSERT_TRUE(end.trouble);
-  EXPECT_EQ(end.trouble->kind, TroubleKind::interrupted);
+  ASSERT_TRUE(end.failure);
+  EXPECT_EQ(end.failure->kind, FailureKind::interrupted);
   EXPECT_TRUE(end.has_landed);
   EXPECT_FALSE(autopilot_->is_armed());
 
   stop_ = {};
   sensor_ = exact;
   const FlightEnd second = fly();
-  ASSERT_FALSE(second.trouble) << second.trouble->what;
+  ASSERT_FALSE(second.failure) << second.failure->what;
   EXPECT_TRUE(second.has_landed);
   const session::SurveyRecord record = survey_->finish();
-  EXPECT_EQ(online::places(record.views), online::places(rehearsal_.planned().views));
+  EXPECT_EQ(online::positions(record.views), online::positions(rehearsal_.planned().views));
 }
 
 TEST_F(FlySurvey, LeavesControlToAPilotAtOnce) {
   const FlightEnd end = fly({.pilot_takes_over = 30.0}, {.returns_on_failure = true});
-  ASSERT_TRUE(end.trouble);
-  EXPECT_EQ(end.trouble->kind, TroubleKind::pilot);
-  EXPECT_THAT(end.trouble->what, HasSubstr("mode 5"));
+  ASSERT_TRUE(end.failure);
+  EXPECT_EQ(end.failure->kind, FailureKind::pilot);
+  EXPECT_THAT(end.failure->what, HasSubstr("mode 5"));
   EXPECT_FALSE(end.has_landed);
   EXPECT_EQ(autopilot_->mode(), 5U);
   // Modes are told once a second.
@@ -137,11 +138,11 @@ TEST_F(FlySurvey, LeavesControlToAPilotAtOnce) {
 }
 
 /// Whether each place is as near to one of the others as legs are flown.
-bool are_near(const std::vector<Vector3d>& places, const std::vector<Vector3d>& others,
+bool are_near(const std::vector<Vector3d>& positions, const std::vector<Vector3d>& others,
               double distance) {
-  return std::ranges::all_of(places, [&](const Vector3d& place) {
+  return std::ranges::all_of(positions, [&](const Vector3d& position) {
     return std::ranges::any_of(
-        others, [&](const Vector3d& other) { return (place - other).norm() < distance; });
+        others, [&](const Vector3d& other) { return (position - other).norm() < distance; });
   });
 }
 
@@ -152,14 +153,14 @@ TEST_F(FlySurvey, StaysOnItsLegsWhereverTheLinkIsLost) {
   const Vector3d above_pad = survey_->flight()->above_pad();
   const double near = rehearsal_.setup().flight().tracking_error + 0.25;
   for (int i = 0; i < 12; ++i) {
-    begin_anew();
+    restart();
     const double silent = 8.0 + 3.7 * i;
     const FlightEnd end = fly({.silent = silent}, {.returns_on_failure = true});
-    ASSERT_TRUE(end.trouble);
-    EXPECT_EQ(end.trouble->kind, TroubleKind::link) << end.trouble->what;
+    ASSERT_TRUE(end.failure);
+    EXPECT_EQ(end.failure->kind, FailureKind::link) << end.failure->what;
     std::vector<Vector3d> track;
-    for (const Vector3d& place : autopilot_->track()) {
-      if ((place - above_pad).head<2>().norm() > near) track.push_back(place);
+    for (const Vector3d& position : autopilot_->track()) {
+      if ((position - above_pad).head<2>().norm() > near) track.push_back(position);
     }
     EXPECT_TRUE(are_near(track, legs, near)) << "silent after " << silent << " s";
     const std::vector<Vector3d>& whole = autopilot_->track();
@@ -170,7 +171,7 @@ TEST_F(FlySurvey, StaysOnItsLegsWhereverTheLinkIsLost) {
 struct HeldFlight {
   const char* name;
   Faults faults;
-  TroubleKind kind;
+  FailureKind kind;
 };
 
 class HeldFlights : public FlySurvey, public testing::WithParamInterface<HeldFlight> {};
@@ -178,8 +179,8 @@ class HeldFlights : public FlySurvey, public testing::WithParamInterface<HeldFli
 /// Even where a return is asked for: nobody knows where the vehicle is.
 TEST_P(HeldFlights, HoldUntilAPilotComes) {
   const FlightEnd end = fly(GetParam().faults, {.returns_on_failure = true});
-  ASSERT_TRUE(end.trouble);
-  EXPECT_EQ(end.trouble->kind, GetParam().kind) << end.trouble->what;
+  ASSERT_TRUE(end.failure);
+  EXPECT_EQ(end.failure->kind, GetParam().kind) << end.failure->what;
   EXPECT_FALSE(end.has_landed);
   EXPECT_THAT(notes_, HasSubstr("holding position"));
   EXPECT_THAT(notes_, HasSubstr("another station or the pilot has control"));
@@ -191,13 +192,13 @@ INSTANTIATE_TEST_SUITE_P(
     All, HeldFlights,
     testing::Values(HeldFlight{"position_stops",
                                {.position_stops = 30.0, .pilot_takes_over = 60.0},
-                               TroubleKind::position},
+                               FailureKind::position},
                     HeldFlight{"estimate_lost",
                                {.estimate_lost = 30.0, .pilot_takes_over = 60.0},
-                               TroubleKind::position},
+                               FailureKind::position},
                     HeldFlight{"blown_away",
                                {.pilot_takes_over = 60.0, .blown_away = 30.0},
-                               TroubleKind::off_leg}),
+                               FailureKind::off_leg}),
     [](const auto& test) { return test.param.name; });
 
 TEST_F(FlySurvey, HoldsIfNoReturnIsAskedFor) {
@@ -205,8 +206,8 @@ TEST_F(FlySurvey, HoldsIfNoReturnIsAskedFor) {
     throw Error(ErrorKind::bad_file, "the camera does not answer");
   };
   const FlightEnd end = fly({.pilot_takes_over = 90.0});
-  EXPECT_EQ(end.trouble->kind, TroubleKind::sensor);
-  EXPECT_THAT(end.trouble->what, HasSubstr("the camera does not answer"));
+  EXPECT_EQ(end.failure->kind, FailureKind::sensor);
+  EXPECT_THAT(end.failure->what, HasSubstr("the camera does not answer"));
   EXPECT_FALSE(end.has_landed);
 }
 
@@ -216,21 +217,21 @@ TEST_F(FlySurvey, FliesHomeWithoutAPlanner) {
   int works = 0;
   launches_ = true;
   options.launch = [&](const std::function<void()>& work) {
-    constexpr int of_second_plan = 6;
-    return ++works < of_second_plan ? done_at_once(work) : never.emplace_back().get_future();
+    constexpr int second_plan_work = 6;
+    return ++works < second_plan_work ? done_at_once(work) : never.emplace_back().get_future();
   };
   const FlightEnd end = fly({}, options);
-  ASSERT_TRUE(end.trouble);
-  EXPECT_EQ(end.trouble->kind, TroubleKind::planner);
-  EXPECT_THAT(end.trouble->what, HasSubstr("planning the next view took more than 60 s"));
+  ASSERT_TRUE(end.failure);
+  EXPECT_EQ(end.failure->kind, FailureKind::planner);
+  EXPECT_THAT(end.failure->what, HasSubstr("planning the next view took more than 60 s"));
   EXPECT_TRUE(end.has_landed);
-  EXPECT_GT(nearest_of(autopilot_->set_points(), rehearsal_.setup().scene()), 1.88);
+  EXPECT_GT(find_nearest(autopilot_->set_points(), rehearsal_.setup().scene()), 1.88);
 }
 
 TEST_F(FlySurvey, FliesHomeWhileItsBatteryLasts) {
   const FlightEnd end = fly({.battery_fails = 30.0});
-  ASSERT_TRUE(end.trouble);
-  EXPECT_EQ(end.trouble->kind, TroubleKind::battery);
+  ASSERT_TRUE(end.failure);
+  EXPECT_EQ(end.failure->kind, FailureKind::battery);
   EXPECT_TRUE(end.has_landed);
 }
 
@@ -244,8 +245,8 @@ class GroundedFlights : public FlySurvey, public testing::WithParamInterface<Gro
 
 TEST_P(GroundedFlights, DoNotTakeOff) {
   const FlightEnd end = fly(GetParam().faults);
-  ASSERT_TRUE(end.trouble);
-  EXPECT_THAT(end.trouble->what, HasSubstr(GetParam().message));
+  ASSERT_TRUE(end.failure);
+  EXPECT_THAT(end.failure->what, HasSubstr(GetParam().message));
   EXPECT_TRUE(autopilot_->track().empty());
   EXPECT_TRUE(autopilot_->set_points().empty());
 }
@@ -253,16 +254,16 @@ TEST_P(GroundedFlights, DoNotTakeOff) {
 INSTANTIATE_TEST_SUITE_P(
     All, GroundedFlights,
     testing::Values(
-        GroundedFlight{"not_armed", {.refuses_arming = true}, "arm (result 4): PreArm: Compass"},
+        GroundedFlight{"not_armed", {.rejects_arming = true}, "arm (result 4): PreArm: Compass"},
         GroundedFlight{"armed", {.is_armed = true}, "is armed"},
         GroundedFlight{"px4", {.autopilot = 12}, "only ArduCopter is"},
-        GroundedFlight{"beside_the_pad", {.beside_pad = {3.0, 4.0, 0.0}}, "5.0 m beside"},
+        GroundedFlight{"beside_the_pad", {.pad_offset = {3.0, 4.0, 0.0}}, "5.0 m beside"},
         GroundedFlight{"flat_battery", {.battery = 0.265}, "battery at 26%"}),
     [](const auto& test) { return test.param.name; });
 
 TEST_F(FlySurvey, StandsBesideThePadsMiddle) {
-  const FlightEnd end = fly({.beside_pad = {1.0, -1.0, 0.0}});
-  ASSERT_FALSE(end.trouble) << end.trouble->what;
+  const FlightEnd end = fly({.pad_offset = {1.0, -1.0, 0.0}});
+  ASSERT_FALSE(end.failure) << end.failure->what;
   EXPECT_LT((autopilot_->position() - survey_->flight()->pad()).norm(), 0.3);
 }
 

@@ -29,7 +29,7 @@ const Vector3d pad(-75, 0, 0);
 
 const flight::FlightOptions& options() {
   static const flight::FlightOptions options = [] {
-    std::string text = tests::flown_mission();
+    std::string text = tests::flight_mission();
     const std::string vehicle = "vehicle: generic";
     text.insert(text.find(vehicle) + vehicle.size(), "_ardupilot");
     return config::parse_mission(text, "m.yaml").flight();
@@ -38,10 +38,10 @@ const flight::FlightOptions& options() {
 }
 
 /// Out over four stops; the first is above the pad.
-const std::vector<Vector3d>& way() {
-  static const std::vector<Vector3d> places = {
+const std::vector<Vector3d>& path() {
+  static const std::vector<Vector3d> positions = {
       {-75, 0, 8}, {-45, 0, 8}, {-45, 25, 14}, {-15, 25, 14}, {-15, 25, 30}};
-  return places;
+  return positions;
 }
 
 /// ArduCopter's guided mode (PSC_JERK_XY), and a vehicle that is slower to tilt [m/s^3].
@@ -50,45 +50,46 @@ constexpr double default_jerk = 5.0, heavy_jerk = 2.0;
 /// Calls something when a moment has come.
 class WatchedPort : public SteppedPort {
  public:
-  WatchedPort(TestAutopilot& autopilot, std::function<void()> look)
-      : SteppedPort(autopilot), look_(std::move(look)) {}
+  WatchedPort(TestAutopilot& autopilot, std::function<void()> observer)
+      : SteppedPort(autopilot), observer_(std::move(observer)) {}
 
   flight::mavlink::Bytes receive(double patience) override {
-    look_();
+    observer_();
     return SteppedPort::receive(patience);
   }
 
  private:
-  std::function<void()> look_;
+  std::function<void()> observer_;
 };
 
 struct Flight {
   explicit Flight(const Faults& faults) : autopilot(options(), pad, faults) {}
 
   /// Takes off and flies the way; what ended it.
-  MaybeTrouble fly(flight::mavlink::Port& port, std::stop_token stop) {
+  MaybeFailure fly(flight::mavlink::Port& port, std::stop_token stop) {
     const flight::GeodeticPoint origin = options().site.origin;
     link = std::make_unique<flight::mavlink::AutopilotLink>(port);
-    if (MaybeTrouble trouble = prepare(*link, {origin, pad}, pad, limits, stop)) return trouble;
+    if (MaybeFailure failure = prepare(*link, {origin, pad}, pad, limits, stop)) return failure;
     vehicle = std::make_unique<GuidedFlight>(*link, FlightFrame(origin, pad), motion, limits, stop);
-    if (MaybeTrouble trouble = vehicle->take_off(way().front())) return trouble;
+    if (MaybeFailure failure = vehicle->take_off(path().front())) return failure;
     has_climbed = true;
-    return vehicle->fly(way());
+    return vehicle->fly(path());
   }
 
   /// As a live flight goes home: back along what was flown, and down.
-  MaybeTrouble go_home() {
+  MaybeFailure return_to_home() {
     vehicle->begin_return();
-    if (MaybeTrouble trouble = vehicle->fly(vehicle->way_back())) return trouble;
+    if (MaybeFailure failure = vehicle->fly(vehicle->reversed_track())) return failure;
     return vehicle->land(pad);
   }
 
-  double off_the_way(const Vector3d& place) const {
-    double nearest = (place - pad).norm();
+  double cross_track_error(const Vector3d& position) const {
+    double nearest = (position - pad).norm();
     Vector3d from = pad;
-    for (const Vector3d& to : way()) {
+    for (const Vector3d& to : path()) {
       nearest = std::min(
-          nearest, std::sqrt(flight::nearest(flight::Segment{from, to}, place).squared_distance));
+          nearest,
+          std::sqrt(flight::nearest(flight::Segment{from, to}, position).squared_distance));
       from = to;
     }
     return nearest;
@@ -96,13 +97,13 @@ struct Flight {
 
   double farthest_off() const {
     double farthest = 0.0;
-    for (const Vector3d& place : autopilot.track()) {
-      farthest = std::max(farthest, off_the_way(place));
+    for (const Vector3d& position : autopilot.track()) {
+      farthest = std::max(farthest, cross_track_error(position));
     }
     return farthest;
   }
 
-  const flight::Motion motion{options().flown(), options().route(pad).conditions};
+  const flight::Motion motion{options().required_vehicle(), options().route(pad).conditions};
   GuidedLimits limits{.corridor = 1.3, .arrival = 0.3};
   TestAutopilot autopilot;
   std::unique_ptr<flight::mavlink::AutopilotLink> link;
@@ -114,8 +115,8 @@ struct Flight {
 double whole_time(const Faults& faults) {
   Flight flight(faults);
   SteppedPort port(flight.autopilot);
-  const MaybeTrouble trouble = flight.fly(port, {});
-  EXPECT_FALSE(trouble) << trouble->what;
+  const MaybeFailure failure = flight.fly(port, {});
+  EXPECT_FALSE(failure) << failure->what;
   return flight.autopilot.time() - flight.autopilot.taken_off();
 }
 
@@ -124,7 +125,7 @@ double whole_time(const Faults& faults) {
 TEST(GuidedFlight, TheTestAutopilotFliesPastItsSetPoints) {
   Flight flight({.jerk = heavy_jerk});
   std::stop_source stop;
-  double most = 0.0;
+  double max = 0.0;
   WatchedPort port(flight.autopilot, [&] {
     if (flight.autopilot.has_taken_off() &&
         flight.autopilot.time() - flight.autopilot.taken_off() > 13.0) {
@@ -132,10 +133,10 @@ TEST(GuidedFlight, TheTestAutopilotFliesPastItsSetPoints) {
     }
     const auto& sent = flight.autopilot.set_points();
     if (!stop.stop_requested() || sent.empty()) return;
-    most = std::max(most, (flight.autopilot.position() - sent.back()).norm());
+    max = std::max(max, (flight.autopilot.position() - sent.back()).norm());
   });
   ASSERT_TRUE(flight.fly(port, stop.get_token()));
-  EXPECT_GT(most, 1.3);
+  EXPECT_GT(max, 1.3);
 }
 
 struct Kind {
@@ -167,12 +168,12 @@ TEST_P(Interruptions, EndOnThePad) {
         stop.request_stop();
       }
     });
-    const MaybeTrouble trouble = flight.fly(port, stop.get_token());
-    if (!trouble) continue;  // drawn behind the last leg
-    ASSERT_EQ(trouble->kind, TroubleKind::interrupted)
-        << "after " << moment << " s: " << trouble->what;
-    const MaybeTrouble home = flight.go_home();
-    ASSERT_FALSE(home) << "after " << moment << " s: " << home->what;
+    const MaybeFailure failure = flight.fly(port, stop.get_token());
+    if (!failure) continue;  // drawn behind the last leg
+    ASSERT_EQ(failure->kind, FailureKind::interrupted)
+        << "after " << moment << " s: " << failure->what;
+    const MaybeFailure returned = flight.return_to_home();
+    ASSERT_FALSE(returned) << "after " << moment << " s: " << returned->what;
     EXPECT_FALSE(flight.autopilot.is_armed());
     EXPECT_LT((flight.autopilot.position() - pad).norm(), 0.6) << "after " << moment << " s";
     EXPECT_LT(flight.farthest_off(), flight.limits.corridor) << "after " << moment << " s";
@@ -191,9 +192,10 @@ TEST(GuidedFlight, HoldsAtRestOnItsLegWhenInterrupted) {
       }
     });
     ASSERT_TRUE(flight.fly(port, stop.get_token()));
-    const Vector3d& place = flight.autopilot.position();
-    EXPECT_LT((place - flight.autopilot.set_points().back()).norm(), flight.limits.arrival + 0.02);
-    EXPECT_LT(flight.off_the_way(place), flight.limits.arrival + 0.02);
+    const Vector3d& position = flight.autopilot.position();
+    EXPECT_LT((position - flight.autopilot.set_points().back()).norm(),
+              flight.limits.arrival + 0.02);
+    EXPECT_LT(flight.cross_track_error(position), flight.limits.arrival + 0.02);
   }
 }
 
@@ -215,17 +217,17 @@ INSTANTIATE_TEST_SUITE_P(GuidedFlight, Stalls,
 TEST_P(Stalls, EndWhereTheVehicleIs) {
   Flight flight({.jerk = default_jerk});
   StallingPort port(flight.autopilot, GetParam().begin, GetParam().duration);
-  const MaybeTrouble trouble = flight.fly(port, {});
+  const MaybeFailure failure = flight.fly(port, {});
   ASSERT_TRUE(port.woken_at());
-  if (!trouble) GTEST_SKIP() << "it fell between two legs";
-  EXPECT_EQ(trouble->kind, TroubleKind::stalled);
-  EXPECT_THAT(trouble->what,
+  if (!failure) GTEST_SKIP() << "it fell between two legs";
+  EXPECT_EQ(failure->kind, FailureKind::stalled);
+  EXPECT_THAT(failure->what,
               HasSubstr("this program was suspended; stopping at the current position"));
-  EXPECT_LT(flight.off_the_way(flight.autopilot.position()), 0.35);
+  EXPECT_LT(flight.cross_track_error(flight.autopilot.position()), 0.35);
   // From its top speed it comes to rest in less than 4 m.
   EXPECT_LT((flight.autopilot.position() - *port.woken_at()).norm(), 4.0);
-  const MaybeTrouble home = flight.go_home();
-  EXPECT_FALSE(home) << home->what;
+  const MaybeFailure returned = flight.return_to_home();
+  EXPECT_FALSE(returned) << returned->what;
   EXPECT_FALSE(flight.autopilot.is_armed());
 }
 
@@ -234,14 +236,14 @@ TEST(GuidedFlight, DoesNotFlyBackAfterAShortStall) {
   for (const double duration : {0.3, 0.6, 0.9}) {
     Flight flight({.jerk = default_jerk});
     StallingPort port(flight.autopilot, 9.0, duration);
-    const MaybeTrouble trouble = flight.fly(port, {});
-    ASSERT_FALSE(trouble) << trouble->what;
+    const MaybeFailure failure = flight.fly(port, {});
+    ASSERT_FALSE(failure) << failure->what;
     const std::vector<Vector3d>& track = flight.autopilot.track();
     double farthest = -75.0;
-    for (const Vector3d& place : testing_support::not_empty(track)) {
-      if (place.y() > 0.5) break;  // the first leg leads east
-      EXPECT_GT(place.x(), farthest - 0.3) << duration;
-      farthest = std::max(farthest, place.x());
+    for (const Vector3d& position : testing_support::not_empty(track)) {
+      if (position.y() > 0.5) break;  // the first leg leads east
+      EXPECT_GT(position.x(), farthest - 0.3) << duration;
+      farthest = std::max(farthest, position.x());
     }
   }
 }
@@ -249,25 +251,25 @@ TEST(GuidedFlight, DoesNotFlyBackAfterAShortStall) {
 // ---- gimbals ---------------------------------------------------------------------------------
 
 geometry::View view_at_the_end(double pitch) {
-  return {way()[1], {std::cos(pitch), 0.0, std::sin(pitch)}};
+  return {path()[1], {std::cos(pitch), 0.0, std::sin(pitch)}};
 }
 
-MaybeTrouble aimed(Flight& flight, SteppedPort& port, double pitch) {
+MaybeFailure aimed(Flight& flight, SteppedPort& port, double pitch) {
   const flight::GeodeticPoint origin = options().site.origin;
   flight.link = std::make_unique<flight::mavlink::AutopilotLink>(port);
-  if (MaybeTrouble trouble = prepare(*flight.link, {origin, pad}, pad, flight.limits, {}))
-    return trouble;
+  if (MaybeFailure failure = prepare(*flight.link, {origin, pad}, pad, flight.limits, {}))
+    return failure;
   flight.vehicle = std::make_unique<GuidedFlight>(*flight.link, FlightFrame(origin, pad),
                                                   flight.motion, flight.limits, std::stop_token());
-  if (MaybeTrouble trouble = flight.vehicle->take_off(way()[0])) return trouble;
-  if (MaybeTrouble trouble = flight.vehicle->aim(view_at_the_end(pitch))) return trouble;
-  if (MaybeTrouble trouble = flight.vehicle->fly({way()[0], way()[1]})) return trouble;
+  if (MaybeFailure failure = flight.vehicle->take_off(path()[0])) return failure;
+  if (MaybeFailure failure = flight.vehicle->aim(view_at_the_end(pitch))) return failure;
+  if (MaybeFailure failure = flight.vehicle->fly({path()[0], path()[1]})) return failure;
   return flight.vehicle->settle(view_at_the_end(pitch));
 }
 
 constexpr double degree = M_PI / 180.0;
 
-double pitch_of_view(const Flight& flight) {
+double compute_view_pitch(const Flight& flight) {
   return std::asin(flight.vehicle->view().direction.z());
 }
 
@@ -275,10 +277,10 @@ TEST(Gimbals, ThatReportAgainstTheVehicleAreCompensated) {
   for (const double wind_pitch : {0.0, 1.0, 3.8, -6.0, 12.0}) {
     Flight flight({.wind_pitch = wind_pitch * degree, .gimbal_against_vehicle = true});
     SteppedPort port(flight.autopilot);
-    const MaybeTrouble trouble = aimed(flight, port, -6.2 * degree);
-    ASSERT_FALSE(trouble) << trouble->what;
+    const MaybeFailure failure = aimed(flight, port, -6.2 * degree);
+    ASSERT_FALSE(failure) << failure->what;
     EXPECT_TRUE(flight.vehicle->reports_against_vehicle()) << wind_pitch;
-    EXPECT_NEAR(pitch_of_view(flight), -6.2 * degree, 0.2 * degree) << wind_pitch;
+    EXPECT_NEAR(compute_view_pitch(flight), -6.2 * degree, 0.2 * degree) << wind_pitch;
   }
 }
 
@@ -286,10 +288,10 @@ TEST(Gimbals, ThatReportAgainstTheHorizonAreBelieved) {
   for (const double wind_pitch : {0.0, 3.8, -6.0}) {
     Flight flight({.wind_pitch = wind_pitch * degree});
     SteppedPort port(flight.autopilot);
-    const MaybeTrouble trouble = aimed(flight, port, -6.2 * degree);
-    ASSERT_FALSE(trouble) << trouble->what;
+    const MaybeFailure failure = aimed(flight, port, -6.2 * degree);
+    ASSERT_FALSE(failure) << failure->what;
     EXPECT_FALSE(flight.vehicle->reports_against_vehicle());
-    EXPECT_NEAR(pitch_of_view(flight), -6.2 * degree, 0.2 * degree);
+    EXPECT_NEAR(compute_view_pitch(flight), -6.2 * degree, 0.2 * degree);
   }
 }
 
@@ -309,19 +311,19 @@ TEST(Gimbals, SteadyTiltIsToldFromTheViewAlone) {
 TEST(Gimbals, ThatDoNotTurnAreNamed) {
   Flight flight({.gimbal_stuck = true});
   SteppedPort port(flight.autopilot);
-  const MaybeTrouble trouble = aimed(flight, port, -20.0 * degree);
-  ASSERT_TRUE(trouble);
+  const MaybeFailure failure = aimed(flight, port, -20.0 * degree);
+  ASSERT_TRUE(failure);
   EXPECT_THAT(
-      trouble->what,
+      failure->what,
       HasSubstr(
           "on the requested direction: gimbal pitch 0.0 degrees instead of -20.0 (at most 2 off)"));
-  EXPECT_THAT(trouble->what, testing::Not(HasSubstr("position")));
+  EXPECT_THAT(failure->what, testing::Not(HasSubstr("position")));
 }
 
 TEST(AimErrors, NameWhatIsOff) {
-  EXPECT_EQ(failures_of({}, 0.3), "");
-  EXPECT_EQ(failures_of({.position = 0.5}, 0.3), "position error 0.50 m (at most 0.30)");
-  EXPECT_EQ(failures_of({.speed = 0.4, .turn = 5.0 * degree}, 0.3),
+  EXPECT_EQ(describe_failures({}, 0.3), "");
+  EXPECT_EQ(describe_failures({.position = 0.5}, 0.3), "position error 0.50 m (at most 0.30)");
+  EXPECT_EQ(describe_failures({.speed = 0.4, .turn = 5.0 * degree}, 0.3),
             "speed 0.40 m/s (at most 0.2); heading error 5.0 degrees (at most 2)");
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 using flight::mavlink::Bytes;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 constexpr std::uint32_t this_machine = 0x7F000001;
 
@@ -55,21 +55,22 @@ TEST(NetworkAddress, IsOfThreeKinds) {
   EXPECT_EQ(waits.kind, NetworkAddress::Kind::udp_wait);
   EXPECT_EQ(waits.host, this_machine);
   EXPECT_EQ(waits.port, 14550);
-  EXPECT_TRUE(waits.is_of_this_machine());
+  EXPECT_TRUE(waits.is_loopback());
   EXPECT_EQ(parse_address("udpout:10.0.0.7:1").kind, NetworkAddress::Kind::udp_send);
   EXPECT_EQ(parse_address("tcp:127.0.0.1:5760").kind, NetworkAddress::Kind::tcp);
-  EXPECT_FALSE(parse_address("udp:0.0.0.0:14550").is_of_this_machine());
+  EXPECT_FALSE(parse_address("udp:0.0.0.0:14550").is_loopback());
 }
 
 TEST(NetworkAddress, IsRefusedInOneLine) {
   for (const char* wrong : {"", "udp", "udp:14550", "serial:127.0.0.1:1", "udp:localhost:1",
                             "udp::1", "udp:1.2.3:4:5", "udp:1.2.3.4.5:6"}) {
-    EXPECT_THAT(complaint_of([&] { parse_address(wrong); }), HasSubstr("must be udp:HOST:PORT"))
+    EXPECT_THAT(thrown_message([&] { parse_address(wrong); }), HasSubstr("must be udp:HOST:PORT"))
         << wrong;
   }
   for (const char* wrong : {"udp:127.0.0.1:0", "udp:127.0.0.1:65536",
                             "udp:127.0.0.1:", "udp:127.0.0.1:80x", "udp:127.0.0.1:-1"}) {
-    EXPECT_THAT(complaint_of([&] { parse_address(wrong); }), HasSubstr("from 1 to 65535")) << wrong;
+    EXPECT_THAT(thrown_message([&] { parse_address(wrong); }), HasSubstr("from 1 to 65535"))
+        << wrong;
   }
 }
 
@@ -93,9 +94,9 @@ TEST(NetworkPort, RefusesAnAddressThatIsTaken) {
   const std::uint16_t number = free_port();
   const NetworkAddress address{NetworkAddress::Kind::udp_wait, this_machine, number};
   const NetworkPort port(address);
-  EXPECT_THAT(complaint_of([&] { NetworkPort other(address); }), HasSubstr("cannot resolve"));
+  EXPECT_THAT(thrown_message([&] { NetworkPort other(address); }), HasSubstr("cannot resolve"));
   const NetworkAddress nobody{NetworkAddress::Kind::tcp, this_machine, number};
-  EXPECT_THAT(complaint_of([&] { NetworkPort other(nobody); }), HasSubstr("cannot resolve"));
+  EXPECT_THAT(thrown_message([&] { NetworkPort other(nobody); }), HasSubstr("cannot resolve"));
 }
 
 std::string flyable(std::string mission) {
@@ -104,15 +105,15 @@ std::string flyable(std::string mission) {
 }
 
 /// The program itself, over the network and in real time, as far as the ground.
-TEST(FlyVerb, SaysWhatTheAutopilotSays) {
+TEST(FlyCommand, SaysWhatTheAutopilotSays) {
   const tests::TestFolder folder;
-  const std::string text = flyable(tests::flown_mission());
+  const std::string text = flyable(tests::flight_mission());
   const std::string mission = folder.write("m.yaml", text);
   const std::string number = std::to_string(free_port());
   std::atomic<bool> is_over = false;
   std::jthread vehicle([&] {
     TestAutopilot autopilot(config::parse_mission(text, "m.yaml").flight(), {-75.0, 0.0, 0.0},
-                            {.refuses_arming = true});
+                            {.rejects_arming = true});
     NetworkPort port(parse_address("udpout:127.0.0.1:" + number));
     fly_in_real_time(autopilot, port, [&] { return is_over.load(); });
   });
@@ -126,22 +127,22 @@ TEST(FlyVerb, SaysWhatTheAutopilotSays) {
   EXPECT_EQ(run.out, "");
 }
 
-TEST(FlyVerb, RefusesMissionsThatItCannotFly) {
+TEST(FlyCommand, RefusesMissionsThatItCannotFly) {
   const tests::TestFolder folder;
-  const auto refusal = [&](const std::string& text, const std::string& address) {
+  const auto rejection = [&](const std::string& text, const std::string& address) {
     return tests::run_skycap(
         {"fly", folder.write("m.yaml", text), "--survey", folder / "survey", "--connect", address});
   };
   const std::string here = "udp:127.0.0.1:1";
-  const tests::ProgramRun px4 = refusal(tests::flown_mission(), here);
+  const tests::ProgramRun px4 = rejection(tests::flight_mission(), here);
   EXPECT_EQ(px4.exit_code, 2);
   EXPECT_THAT(px4.err, HasSubstr("flight.vehicle generic does not use ArduPilot"));
-  EXPECT_THAT(refusal(tests::quick_mission(), here).err, HasSubstr("flight.vehicle is missing"));
-  std::string moving = flyable(tests::flown_mission());
+  EXPECT_THAT(rejection(tests::quick_mission(), here).err, HasSubstr("flight.vehicle is missing"));
+  std::string moving = flyable(tests::flight_mission());
   moving.insert(moving.find("sensor: {") + 9, "capture: moving, ");
-  EXPECT_THAT(refusal(moving, here).err,
+  EXPECT_THAT(rejection(moving, here).err,
               HasSubstr("sensor.capture: moving conflicts with skycap fly"));
-  EXPECT_THAT(refusal(flyable(tests::flown_mission()), "udp:nobody:1").err,
+  EXPECT_THAT(rejection(flyable(tests::flight_mission()), "udp:nobody:1").err,
               HasSubstr("--connect udp:nobody:1: must be"));
 }
 

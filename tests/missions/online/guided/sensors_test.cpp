@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 class FolderSensor : public testing::Test {
  protected:
@@ -46,20 +46,20 @@ TEST_F(FolderSensor, AsksByAPoseAndTakesTheScanThatComes) {
   const geometry::Scan scan = this->scan(7);
   ASSERT_EQ(scan.points.size(), 1U);
   EXPECT_LT((scan.points[0] - Eigen::Vector3f(1.5F, 2.0F, 3.0F)).norm(), 1e-6F);
-  const std::string pose = tests::content_of(folder_.path() / "scan-0007.pose");
+  const std::string pose = tests::read_content(folder_.path() / "scan-0007.pose");
   EXPECT_EQ(online::parse_pose_text(pose, "pose").translation(), Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
 TEST_F(FolderSensor, TakesNoOldScan) {
   folder_.write("scan-0002.ply", "");
-  EXPECT_THAT(complaint_of([&] { scan(2); }), HasSubstr("existed before"));
+  EXPECT_THAT(thrown_message([&] { scan(2); }), HasSubstr("existed before"));
 }
 
 TEST_F(FolderSensor, GivesUp) {
-  EXPECT_THAT(complaint_of([&] { scan(3, 0.1); }), HasSubstr("timeout: no scan arrived"));
+  EXPECT_THAT(thrown_message([&] { scan(3, 0.1); }), HasSubstr("timeout: no scan arrived"));
   stop_.request_stop();
-  EXPECT_THAT(complaint_of([&] { scan(4, 600.0); }), HasSubstr("timeout: no scan arrived"));
-  EXPECT_THAT(complaint_of([&] {
+  EXPECT_THAT(thrown_message([&] { scan(4, 600.0); }), HasSubstr("timeout: no scan arrived"));
+  EXPECT_THAT(thrown_message([&] {
                 folder_sensor(setup_.flight(), setup_.live, folder_.path() / "none", {}, 1.0, {});
               }),
               HasSubstr("is not a folder"));

@@ -27,13 +27,13 @@ Vector3d square_root_controller(const Vector3d& error, double gain, double limit
   return std::sqrt(2.0 * limit * (size - 0.5 * linear)) / size * error;
 }
 
-Vector3d bounded(const Vector3d& value, double most) {
+Vector3d bounded(const Vector3d& value, double max) {
   const double size = value.norm();
-  return size > most ? Vector3d(most / size * value) : value;
+  return size > max ? Vector3d(max / size * value) : value;
 }
 
-double turned(double from, double to, double most) {
-  return from + std::clamp(std::remainder(to - from, 2.0 * std::numbers::pi), -most, most);
+double turned(double from, double to, double max) {
+  return from + std::clamp(std::remainder(to - from, 2.0 * std::numbers::pi), -max, max);
 }
 
 }  // namespace
@@ -42,9 +42,9 @@ TestAutopilot::TestAutopilot(const flight::FlightOptions& flight, const Vector3d
                              const Faults& faults)
     : faults_(faults),
       frame_(flight.site.origin, pad),
-      motion_(flight.flown(), flight.route(pad).conditions),
-      vehicle_(motion_, pad + faults.beside_pad),
-      pad_(pad + faults.beside_pad),
+      motion_(flight.required_vehicle(), flight.route(pad).conditions),
+      vehicle_(motion_, pad + faults.pad_offset),
+      pad_(pad + faults.pad_offset),
       is_armed_(faults.is_armed) {}
 
 bool TestAutopilot::is_past(const std::optional<double>& moment) const {
@@ -67,13 +67,13 @@ void TestAutopilot::obey(const mavlink::CommandLong& command) {
   if (command.command == set_mode) {
     mode_ = static_cast<std::uint32_t>(command.params[1]);
   } else if (command.command == arm) {
-    is_accepted = !faults_.refuses_arming;
+    is_accepted = !faults_.rejects_arming;
     is_armed_ = is_armed_ || is_accepted;
     mavlink::StatusText text;
     text.severity = 2;
-    const std::string why = "PreArm: Compass not calibrated";
-    std::ranges::copy(why, text.text.begin());
-    if (!is_accepted) say(text);
+    const std::string reason = "PreArm: Compass not calibrated";
+    std::ranges::copy(reason, text.text.begin());
+    if (!is_accepted) send_frame(text);
   } else if (command.command == flight::command::takeoff) {
     is_accepted = is_armed_ && mode_ == guided;
     if (is_accepted && !taken_off_) {
@@ -82,26 +82,26 @@ void TestAutopilot::obey(const mavlink::CommandLong& command) {
       target_ = {climb_->to};
     }
   } else if (command.command == flight::command::mount_control) {
-    wanted_pitch_ = command.params[0] * geometry::radians_per_degree;
+    target_pitch_ = command.params[0] * geometry::radians_per_degree;
   }
   mavlink::CommandAnswer answer;
   answer.command = command.command;
   answer.result = is_accepted ? 0 : 4;
-  say(answer);
+  send_frame(answer);
 }
 
 void TestAutopilot::aim_at(const mavlink::PositionTarget& target) {
-  const Vector3d place =
+  const Vector3d vehicle_position =
       frame_.to_mission({1e-7 * target.latitude, 1e-7 * target.longitude, target.height});
-  set_points_.push_back(place);
+  set_points_.push_back(vehicle_position);
   if (mode_ != guided || !is_armed_) return;
   climb_.reset();
-  target_ = {place, {target.velocity[1], target.velocity[0], -target.velocity[2]}};
+  target_ = {vehicle_position, {target.velocity[1], target.velocity[0], -target.velocity[2]}};
   target_time_ = time_;
-  wanted_yaw_ = target.yaw;
+  target_yaw_ = target.yaw;
 }
 
-flight::SetPoint TestAutopilot::wanted() {
+flight::SetPoint TestAutopilot::target_point() {
   if (mode_ == landing) {
     flight::SetPoint down{vehicle_.position(), {0, 0, -motion_.vehicle().mode.landing_speed}};
     down.position.head<2>() = target_.position.head<2>();
@@ -115,15 +115,16 @@ flight::SetPoint TestAutopilot::wanted() {
   return point;
 }
 
-flight::SetPoint TestAutopilot::shaped(const flight::SetPoint& wanted) {
-  const double jerk = *faults_.jerk, most = motion_.vehicle().mode.acceleration;
+flight::SetPoint TestAutopilot::shaped(const flight::SetPoint& target_point) {
+  const double jerk = *faults_.jerk, max = motion_.vehicle().mode.acceleration;
   if (!shaped_) shaped_ = flight::SetPoint{vehicle_.position(), vehicle_.velocity()};
   flight::SetPoint& now = *shaped_;
-  const double acceleration_gain = jerk / most, speed_gain = 0.5 * acceleration_gain;
+  const double acceleration_gain = jerk / max, speed_gain = 0.5 * acceleration_gain;
   const Vector3d velocity =
-      wanted.velocity + square_root_controller(wanted.position - now.position, speed_gain, most);
+      target_point.velocity +
+      square_root_controller(target_point.position - now.position, speed_gain, max);
   const Vector3d asked =
-      bounded(square_root_controller(velocity - now.velocity, acceleration_gain, jerk), most);
+      bounded(square_root_controller(velocity - now.velocity, acceleration_gain, jerk), max);
   now.acceleration += bounded(asked - now.acceleration, jerk * step_time);
   now.position += step_time * now.velocity;
   now.velocity += step_time * now.acceleration;
@@ -142,10 +143,10 @@ void TestAutopilot::step() {
     mode_ = loiter;
     faults_.pilot_takes_over.reset();
   }
-  yaw_ = turned(yaw_, wanted_yaw_, step_time * motion_.vehicle().mode.yaw_rate);
-  pitch_ = turned(pitch_, wanted_pitch_, step_time * motion_.vehicle().gimbal_rate);
+  yaw_ = turned(yaw_, target_yaw_, step_time * motion_.vehicle().mode.yaw_rate);
+  pitch_ = turned(pitch_, target_pitch_, step_time * motion_.vehicle().gimbal_rate);
   if (is_armed_ && taken_off_) {
-    flight::SetPoint point = wanted();
+    flight::SetPoint point = target_point();
     if (faults_.jerk && mode_ == guided && !climb_) {
       point = shaped(point);
     } else {
@@ -166,65 +167,65 @@ void TestAutopilot::step() {
 }
 
 template <class M>
-void TestAutopilot::say(const M& message) {
+void TestAutopilot::send_frame(const M& message) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const std::uint8_t sequence = sequence_++;
   if (is_past(faults_.silent) || share(random_) < faults_.lost) return;
   Bytes frame = mavlink::encode(message, itself, sequence);
   if (share(random_) < faults_.damaged) frame[frame.size() / 2] ^= 0x10;
   const int times = share(random_) < faults_.doubled ? 2 : 1;
-  for (int i = 0; i < times; ++i) said_.insert(said_.end(), frame.begin(), frame.end());
+  for (int i = 0; i < times; ++i) outgoing_.insert(outgoing_.end(), frame.begin(), frame.end());
   if (share(random_) < faults_.late) late_ = frame;  // comes once more, after what follows it
 }
 
 void TestAutopilot::speak() {
   next_words_ += words_period;
-  said_.insert(said_.end(), late_.begin(), late_.end());
+  outgoing_.insert(outgoing_.end(), late_.begin(), late_.end());
   late_.clear();
   constexpr std::uint64_t a_second = 10;
-  const VehiclePlace place = frame_.to_vehicle(vehicle_.position());
+  const VehiclePosition vehicle_position = frame_.to_vehicle(vehicle_.position());
   const Vector3d& velocity = vehicle_.velocity();
   mavlink::GlobalPosition position;
   position.time_boot_ms = static_cast<std::uint32_t>(1e3 * time_);
-  position.latitude = static_cast<std::int32_t>(std::lround(1e7 * place.latitude_deg));
-  position.longitude = static_cast<std::int32_t>(std::lround(1e7 * place.longitude_deg));
+  position.latitude = static_cast<std::int32_t>(std::lround(1e7 * vehicle_position.latitude_deg));
+  position.longitude = static_cast<std::int32_t>(std::lround(1e7 * vehicle_position.longitude_deg));
   position.height_above_home =
-      static_cast<std::int32_t>(std::lround(1e3 * place.height_above_home));
+      static_cast<std::int32_t>(std::lround(1e3 * vehicle_position.height_above_home));
   position.east_speed = static_cast<std::int16_t>(std::lround(100 * velocity.x()));
   position.north_speed = static_cast<std::int16_t>(std::lround(100 * velocity.y()));
   position.down_speed = static_cast<std::int16_t>(std::lround(-100 * velocity.z()));
-  if (!is_past(faults_.position_stops)) say(position);
+  if (!is_past(faults_.position_stops)) send_frame(position);
   mavlink::Attitude attitude;
   attitude.yaw = static_cast<float>(std::remainder(yaw_, 2.0 * std::numbers::pi));
   attitude.pitch = static_cast<float>(vehicle_pitch());
-  say(attitude);
+  send_frame(attitude);
   mavlink::GimbalAttitude gimbal;
   double reported = faults_.gimbal_stuck ? 0.0 : pitch_;
   if (faults_.gimbal_against_vehicle) reported -= vehicle_pitch();
   gimbal.turn = {static_cast<float>(std::cos(0.5 * reported)), 0.0F,
                  static_cast<float>(std::sin(0.5 * reported)), 0.0F};
-  say(gimbal);
+  send_frame(gimbal);
   if (words_++ % a_second != 0) return;
   mavlink::Heartbeat heartbeat;
   heartbeat.type = 2;
   heartbeat.autopilot = faults_.autopilot;
   heartbeat.custom_mode = mode_;
   heartbeat.base_mode = is_armed_ ? 128 : 0;
-  say(heartbeat);
+  send_frame(heartbeat);
   mavlink::SystemStatus status;
   const double used = vehicle_.energy() / (3600.0 * motion_.vehicle().battery_wh);
   const double left = is_past(faults_.battery_fails) ? 0.1 : faults_.battery - used;
   status.battery_remaining = static_cast<std::int8_t>(std::floor(100.0 * left));
-  say(status);
+  send_frame(status);
   mavlink::EstimatorStatus estimator;
   estimator.flags = is_past(faults_.estimate_lost) ? 1 | 2 | 4 | 128 : 1 | 2 | 4 | 8 | 16 | 32;
-  say(estimator);
+  send_frame(estimator);
 }
 
 Bytes TestAutopilot::fly_on(double duration) {
   const double end = time_ + duration;
   while (time_ < end) step();
-  return std::exchange(said_, {});
+  return std::exchange(outgoing_, {});
 }
 
 Bytes StallingPort::receive(double patience) {

@@ -39,10 +39,10 @@ struct Faults {
   double wind_pitch = 0.0;                      ///< that it leans against the wind with [rad]
   bool gimbal_against_vehicle = false;          ///< what its gimbal reports, as servo gimbals do
   bool gimbal_stuck = false;                    ///< at the horizon
-  bool refuses_arming = false;
+  bool rejects_arming = false;
   bool is_armed = false;
   std::uint8_t autopilot = 3;
-  Eigen::Vector3d beside_pad = Eigen::Vector3d::Zero();
+  Eigen::Vector3d pad_offset = Eigen::Vector3d::Zero();
 };
 
 class TestAutopilot {
@@ -70,15 +70,15 @@ class TestAutopilot {
 
  private:
   void step();
-  flight::SetPoint wanted();
-  flight::SetPoint shaped(const flight::SetPoint& wanted);
+  flight::SetPoint target_point();
+  flight::SetPoint shaped(const flight::SetPoint& target_point);
   double vehicle_pitch() const;
   void obey(const flight::mavlink::CommandLong& command);
   void aim_at(const flight::mavlink::PositionTarget& target);
   void speak();
   bool is_past(const std::optional<double>& moment) const;
   template <class M>
-  void say(const M& message);
+  void send_frame(const M& message);
 
   Faults faults_;
   FlightFrame frame_;
@@ -87,7 +87,7 @@ class TestAutopilot {
   Eigen::Vector3d pad_;
   flight::mavlink::FrameReader reader_{flight::mavlink::guided_extra_byte};
   std::mt19937_64 random_{1};
-  flight::mavlink::Bytes said_, late_;
+  flight::mavlink::Bytes outgoing_, late_;
   std::uint8_t sequence_ = 0;
   double time_ = 0.0, next_words_ = 0.0;
   std::uint64_t words_ = 0;
@@ -98,7 +98,7 @@ class TestAutopilot {
   bool is_armed_ = false;
   std::uint32_t mode_ = 0;
   flight::SetPoint target_;
-  double target_time_ = 0.0, yaw_ = 0.0, pitch_ = 0.0, wanted_yaw_ = 0.0, wanted_pitch_ = 0.0;
+  double target_time_ = 0.0, yaw_ = 0.0, pitch_ = 0.0, target_yaw_ = 0.0, target_pitch_ = 0.0;
   std::vector<Eigen::Vector3d> track_, set_points_;
 };
 

@@ -25,34 +25,34 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-using testing_support::complaint_of;
-using tests::content_of;
+using testing_support::thrown_message;
+using tests::read_content;
 
 TEST(LiveSurvey, FedByTheSimulatorIsWhatPlanDoes) {
   for (const std::string& mission :
        {short_mission(tests::quick_mission(), "see++"), short_mission(tests::quick_mission(), "oa"),
-        short_mission(tests::flown_mission()), moving_mission("live: {pose_check: false}\n")}) {
+        short_mission(tests::flight_mission()), moving_mission("live: {pose_check: false}\n")}) {
     const tests::TestFolder folder;
     const Rehearsal rehearsal(mission);
     LiveSurvey survey = rehearsal.open(folder.path());
-    Carrier carrier(rehearsal);
-    while (survey.proposal().view) carrier.add_next(survey);
+    Platform platform(rehearsal);
+    while (survey.proposal().view) platform.add_next(survey);
     const session::SurveyRecord planned = rehearsal.planned();
-    EXPECT_EQ(planned.frames_on_way() > 0, rehearsal.setup().sensor().is_moving());
+    EXPECT_EQ(planned.en_route_frames() > 0, rehearsal.setup().sensor().is_moving());
     expect_same(survey.finish(), planned);
   }
 }
 
 TEST(LiveSurvey, GoesOnWhereItWasAfterEveryScan) {
   for (const std::string& mission :
-       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission()),
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flight_mission()),
         moving_mission("live: {pose_check: false}\n", /*views=*/2)}) {
     const tests::TestFolder folder;
     const Rehearsal rehearsal(mission);
-    Carrier carrier(rehearsal);
+    Platform platform(rehearsal);
     while (rehearsal.open(folder.path()).proposal().view) {
       LiveSurvey survey = rehearsal.open(folder.path());
-      carrier.add_next(survey);
+      platform.add_next(survey);
     }
     expect_same(rehearsal.open(folder.path()).finish(), rehearsal.planned());
   }
@@ -67,7 +67,7 @@ TEST(LiveSurvey, GoesOnFromAnyBeginningOfItsJournal) {
     for (int i = 0; i < 5; ++i) rehearsal.add_one(survey);
   }
   const fs::path journal = folder.path() / "live.journal";
-  const std::string whole = content_of(journal);
+  const std::string whole = read_content(journal);
   const session::SurveyRecord planned = rehearsal.planned();
   constexpr std::size_t parts = 9;
   for (std::size_t part = 0; part <= parts; ++part) {
@@ -86,8 +86,8 @@ TEST(LiveSurvey, IgnoresAScanThatItKnows) {
   EXPECT_TRUE(survey.add(scan, "a"));
   const Proposal before = survey.proposal();
   EXPECT_FALSE(survey.add(scan, "a"));
-  EXPECT_EQ(survey.number_of("a"), ScanNumber{0});
-  EXPECT_EQ(survey.number_of("b"), std::nullopt);
+  EXPECT_EQ(survey.scan_number("a"), ScanNumber{0});
+  EXPECT_EQ(survey.scan_number("b"), std::nullopt);
   EXPECT_EQ(survey.views().size(), 1U);
   EXPECT_EQ(survey.proposal().view->position, before.view->position);
 }
@@ -98,11 +98,11 @@ TEST(LiveSurvey, RemembersRefusals) {
   Eigen::Vector3d first, second;
   {
     LiveSurvey survey = rehearsal.open(folder.path());
-    EXPECT_THAT(testing_support::complaint_of([&] { survey.refuse("too early"); }),
+    EXPECT_THAT(testing_support::thrown_message([&] { survey.reject("too early"); }),
                 testing::HasSubstr("no view to reject"));
     rehearsal.add_one(survey);
     first = survey.proposal().view->position;
-    survey.refuse("behind the fence");
+    survey.reject("behind the fence");
     ASSERT_TRUE(survey.proposal().view);
     second = survey.proposal().view->position;
     EXPECT_NE(first, second);
@@ -117,7 +117,7 @@ TEST(LiveSurvey, DoesNotCountAScanThatCannotBePlannedWith) {
   const Rehearsal rehearsal(tests::quick_mission());
   {
     LiveSurvey survey = rehearsal.open(folder.path());
-    EXPECT_THAT(testing_support::complaint_of([&] { survey.add({}, "nothing"); }),
+    EXPECT_THAT(testing_support::thrown_message([&] { survey.add({}, "nothing"); }),
                 testing::HasSubstr("the first scan contains no point of the scene"));
     EXPECT_TRUE(survey.views().empty());
     rehearsal.add_one(survey);
@@ -126,7 +126,7 @@ TEST(LiveSurvey, DoesNotCountAScanThatCannotBePlannedWith) {
 }
 
 /// Wrong by so many metres along x, and so many degrees about the sensor's own x.
-Eigen::Isometry3d error_of(const geometry::Scan& scan, double shift, double turn_deg) {
+Eigen::Isometry3d make_error(const geometry::Scan& scan, double shift, double turn_deg) {
   Eigen::Isometry3d error = Eigen::Isometry3d::Identity();
   const Eigen::Vector3d sensor = scan.sensor_position();
   error.linear() = Eigen::AngleAxisd(turn_deg * geometry::radians_per_degree,
@@ -137,7 +137,7 @@ Eigen::Isometry3d error_of(const geometry::Scan& scan, double shift, double turn
 }
 
 geometry::Scan displaced(const geometry::Scan& scan, double shift, double turn_deg) {
-  return corrected(scan, error_of(scan, shift, turn_deg));
+  return corrected(scan, make_error(scan, shift, turn_deg));
 }
 
 TEST(LiveSurvey, IsTheSameAsIfScansThatItSetsAsideHadNeverBeen) {
@@ -147,7 +147,7 @@ TEST(LiveSurvey, IsTheSameAsIfScansThatItSetsAsideHadNeverBeen) {
   while (true) {
     LiveSurvey survey = rehearsal.open(folder.path());
     EXPECT_EQ(survey.set_aside(), wrong);
-    EXPECT_EQ(survey.proposal().warns_of_pose(), false);
+    EXPECT_EQ(survey.proposal().has_pose_warning(), false);
     if (!survey.proposal().view) break;
     if (survey.views().size() > 0) {
       const Proposal before = survey.proposal();
@@ -155,7 +155,7 @@ TEST(LiveSurvey, IsTheSameAsIfScansThatItSetsAsideHadNeverBeen) {
       ++wrong;
       EXPECT_FALSE(
           survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), std::to_string(wrong - 1)));
-      ASSERT_TRUE(survey.proposal().warns_of_pose()) << survey.views().size();
+      ASSERT_TRUE(survey.proposal().has_pose_warning()) << survey.views().size();
       EXPECT_EQ(survey.proposal().number, before.number + 1);
       EXPECT_EQ(survey.proposal().view->position, before.view->position);
     }
@@ -173,7 +173,7 @@ TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
     LiveSurvey survey = rehearsal.open(folder.path());
     rehearsal.add_one(survey);
     survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), "wrong");
-    survey.refuse("elsewhere");
+    survey.reject("elsewhere");
     answer = answer_json(survey, rehearsal.setup().flight());
     EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
     EXPECT_THAT(answer, HasSubstr("\"rejected\":1"));
@@ -186,17 +186,17 @@ TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
 
 TEST(LiveSurvey, GivesNoWayFromWhereNobodyKnows) {
   const tests::TestFolder folder;
-  const Rehearsal rehearsal(short_mission(tests::flown_mission()));
+  const Rehearsal rehearsal(short_mission(tests::flight_mission()));
   LiveSurvey survey = rehearsal.open(folder.path());
   rehearsal.add_one(survey);
-  EXPECT_FALSE(survey.proposal().way.points.empty());
+  EXPECT_FALSE(survey.proposal().path.points.empty());
   survey.add(displaced(rehearsal.scan(survey), 2.0, 5.0), "wrong");
-  ASSERT_TRUE(survey.proposal().warns_of_pose());
-  EXPECT_TRUE(survey.proposal().way.points.empty());
-  survey.refuse("elsewhere");
-  EXPECT_TRUE(survey.proposal().way.points.empty());
+  ASSERT_TRUE(survey.proposal().has_pose_warning());
+  EXPECT_TRUE(survey.proposal().path.points.empty());
+  survey.reject("elsewhere");
+  EXPECT_TRUE(survey.proposal().path.points.empty());
   rehearsal.add_one(survey);
-  EXPECT_FALSE(survey.proposal().way.points.empty());
+  EXPECT_FALSE(survey.proposal().path.points.empty());
 }
 
 /// Whoever flies on while nobody knows where, has no way; the next scan that fits gives it back.
@@ -206,43 +206,43 @@ TEST(LiveSurvey, KeepsTheWayThroughAWrongPoseOnIt) {
   std::string answer;
   {
     LiveSurvey survey = rehearsal.open(folder.path());
-    Carrier carrier(rehearsal);
-    carrier.add_next(survey);
-    const std::vector<Eigen::Vector3d> way = survey.proposal().way.points;
+    Platform platform(rehearsal);
+    platform.add_next(survey);
+    const std::vector<Eigen::Vector3d> path = survey.proposal().path.points;
     const geometry::View view = *survey.proposal().view;
-    survey.add_on_way(displaced(carrier.next(survey).scan, 2.0, 5.0), "wrong");
-    ASSERT_TRUE(survey.proposal().warns_of_pose());
-    EXPECT_TRUE(survey.proposal().way.points.empty());
-    EXPECT_EQ(survey.on_way(), 0U);
+    survey.add_en_route(displaced(platform.next(survey).scan, 2.0, 5.0), "wrong");
+    ASSERT_TRUE(survey.proposal().has_pose_warning());
+    EXPECT_TRUE(survey.proposal().path.points.empty());
+    EXPECT_EQ(survey.en_route(), 0U);
     EXPECT_EQ(survey.proposal().view->position, view.position);
-    EXPECT_EQ(rehearsal.open(folder.path() / "other").on_way(), 0U);
+    EXPECT_EQ(rehearsal.open(folder.path() / "other").en_route(), 0U);
   }
   LiveSurvey survey = rehearsal.open(folder.path());
-  EXPECT_TRUE(survey.proposal().way.points.empty());
+  EXPECT_TRUE(survey.proposal().path.points.empty());
   EXPECT_EQ(survey.set_aside(), 1U);
   const geometry::View view = *survey.proposal().view;
   geometry::View between = view;
   between.position = 0.5 * (view.position + survey.views().back().view.position);
-  simulation::CarriedSensor sensor(rehearsal.setup().simulation, 1);
-  survey.add_on_way(rehearsal.scan(sensor, {.view = between}, 2), "right");
-  EXPECT_FALSE(survey.proposal().warns_of_pose());
-  EXPECT_EQ(survey.on_way(), 1U);
-  ASSERT_FALSE(survey.proposal().way.points.empty());
-  EXPECT_EQ(survey.proposal().way.points.back(), view.position);
+  simulation::MountedSensor sensor(rehearsal.setup().simulation, 1);
+  survey.add_en_route(rehearsal.scan(sensor, {.view = between}, 2), "right");
+  EXPECT_FALSE(survey.proposal().has_pose_warning());
+  EXPECT_EQ(survey.en_route(), 1U);
+  ASSERT_FALSE(survey.proposal().path.points.empty());
+  EXPECT_EQ(survey.proposal().path.points.back(), view.position);
   // A way that is asked for now begins where the vehicle is.
-  survey.refuse("elsewhere");
-  ASSERT_FALSE(survey.proposal().way.points.empty());
-  EXPECT_LT((survey.proposal().way.points.front() - between.position).norm(), 1e-9);
+  survey.reject("elsewhere");
+  ASSERT_FALSE(survey.proposal().path.points.empty());
+  EXPECT_LT((survey.proposal().path.points.front() - between.position).norm(), 1e-9);
 }
 
 TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
   const tests::TestFolder folder;
-  const Rehearsal rehearsal(short_mission(tests::flown_mission()));
+  const Rehearsal rehearsal(short_mission(tests::flight_mission()));
   LiveSurvey survey = rehearsal.open(folder.path());
   rehearsal.add_one(survey);
   EXPECT_TRUE(survey.frames().empty());
   const geometry::Scan scan = rehearsal.scan(survey);
-  EXPECT_THAT(complaint_of([&] { survey.add_on_way(scan, "a"); }),
+  EXPECT_THAT(thrown_message([&] { survey.add_en_route(scan, "a"); }),
               HasSubstr("en-route scans require sensor.capture: moving"));
 }
 
@@ -261,7 +261,7 @@ TEST(LiveSurvey, CorrectsPosesTheSameWayAgain) {
     LiveSurvey survey = rehearsal.open(folder.path());
     const geometry::Scan scan = rehearsal.scan(survey);
     rehearsal.add_one(survey);
-    const Eigen::Isometry3d error = error_of(scan, 0.03, 0.5);
+    const Eigen::Isometry3d error = make_error(scan, 0.03, 0.5);
     survey.add(corrected(scan, error), "from the same place");
     answer = answer_json(survey, rehearsal.setup().flight());
     ASSERT_TRUE(survey.proposal().pose->correction) << answer;
@@ -291,16 +291,17 @@ TEST(LiveSurvey, RefusesWhatItCannotTrust) {
   {
     LiveSurvey survey = rehearsal.open(folder.path());
     rehearsal.add_one(survey);
-    EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("another skycap"));
+    EXPECT_THAT(thrown_message([&] { rehearsal.open(folder.path()); }),
+                HasSubstr("another skycap"));
   }
-  EXPECT_THAT(complaint_of([&] { other.open(folder.path()); }),
+  EXPECT_THAT(thrown_message([&] { other.open(folder.path()); }),
               HasSubstr("seed changed from 1 to 2"));
 
   const fs::path scan = fs::directory_iterator(folder.path() / "scans")->path();
-  std::string bytes = content_of(scan);
+  std::string bytes = read_content(scan);
   bytes.back() ^= 1;
   std::ofstream(scan, std::ios::binary) << bytes;
-  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("is damaged"));
+  EXPECT_THAT(thrown_message([&] { rehearsal.open(folder.path()); }), HasSubstr("is damaged"));
 }
 
 void write_records(const fs::path& journal, const std::vector<std::string>& records) {
@@ -320,7 +321,7 @@ TEST(LiveSurvey, RefusesAJournalOfAnotherFormatNamingItsVersion) {
   identity.erase("format");
   records[0] = identity.dump();
   write_records(journal, records);
-  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
+  EXPECT_THAT(thrown_message([&] { rehearsal.open(folder.path()); }),
               HasSubstr("was written by version 0.1.0, whose journals this version cannot "
                         "continue; use another folder"));
 }
@@ -329,12 +330,13 @@ TEST(LiveSurvey, RefusesAJournalOfAnotherFormatNamingItsVersion) {
 void replace_scan(const fs::path& folder, const std::string& bytes) {
   const fs::path scan = fs::directory_iterator(folder / "scans")->path(),
                  journal = folder / "live.journal";
-  const std::string digest = support::sha256_of_file(scan);
+  const std::string digest = support::compute_file_sha256(scan);
   std::ofstream(scan, std::ios::binary) << bytes;
   std::vector<std::string> records = geometry::read_records(journal).records;
   for (std::string& record : records) {
     const std::size_t at = record.find(digest);
-    if (at != std::string::npos) record.replace(at, digest.size(), support::sha256_of_file(scan));
+    if (at != std::string::npos)
+      record.replace(at, digest.size(), support::compute_file_sha256(scan));
   }
   write_records(journal, records);
 }
@@ -342,21 +344,21 @@ void replace_scan(const fs::path& folder, const std::string& bytes) {
 /// As somebody else's folder may be, whose digests are right.
 TEST(LiveSurvey, RefusesKeptScansThatItWouldNeverHaveKept) {
   const Rehearsal rehearsal(tests::quick_mission());
-  const auto complaint = [&](const std::string& part, const std::string& to) {
+  const auto error_message = [&](const std::string& part, const std::string& to) {
     const tests::TestFolder folder;
     {
       LiveSurvey survey = rehearsal.open(folder.path());
       rehearsal.add_one(survey);
     }
-    std::string bytes = content_of(fs::directory_iterator(folder.path() / "scans")->path());
+    std::string bytes = read_content(fs::directory_iterator(folder.path() / "scans")->path());
     // The last four bytes are the last pixel.
     const std::size_t at = part.empty() ? bytes.size() - to.size() : bytes.find(part);
     bytes.replace(at, to.size(), to);
     replace_scan(folder.path(), bytes);
-    return complaint_of([&] { rehearsal.open(folder.path()); });
+    return thrown_message([&] { rehearsal.open(folder.path()); });
   };
-  EXPECT_THAT(complaint("float y", "float w"), HasSubstr(".ply: is not a scan of a survey"));
-  EXPECT_THAT(complaint("", "\xff\xff\xff\x7f"), HasSubstr(".ply: cannot be used: "));
+  EXPECT_THAT(error_message("float y", "float w"), HasSubstr(".ply: is not a scan of a survey"));
+  EXPECT_THAT(error_message("", "\xff\xff\xff\x7f"), HasSubstr(".ply: cannot be used: "));
 }
 
 /// As from a program that plans otherwise.
@@ -372,7 +374,7 @@ TEST(LiveSurvey, NoticesProposalsThatComeOutOtherwise) {
   const std::string field = "\"position\":[";
   records.back().insert(records.back().find(field) + field.size(), "1");
   write_records(journal, records);
-  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
+  EXPECT_THAT(thrown_message([&] { rehearsal.open(folder.path()); }),
               HasSubstr("differs from the one recorded"));
 }
 

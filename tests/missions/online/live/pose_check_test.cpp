@@ -30,7 +30,7 @@ geometry::Mesh furnished() {
   return mesh;
 }
 
-sim::DepthCamera camera_of(double noise, std::uint64_t seed) {
+sim::DepthCamera make_camera(double noise, std::uint64_t seed) {
   sim::DepthCameraConfig config;
   config.camera = {.width = 160, .height = 120, .horizontal_fov = 1.05, .vertical_fov = 0.82};
   config.camera.max_range = 20.0;
@@ -58,7 +58,7 @@ Isometry3d error_at(const Vector3d& sensor, std::uint64_t seed, double shift = 0
 class Survey {
  public:
   Survey(const sim::Scene& scene, double noise, std::uint64_t seed, bool registers = false)
-      : scene_(scene), camera_(camera_of(noise, seed)), check_(radius, registers) {}
+      : scene_(scene), camera_(make_camera(noise, seed)), check_(radius, registers) {}
 
   geometry::Scan scan(const Vector3d& from, const Vector3d& to) {
     return camera_.scan(scene_, geometry::look_at(from, to), frame_++, 1);

@@ -19,12 +19,12 @@ namespace {
 using Eigen::MatrixXd;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 using Matrix = PoseCovariance::Matrix;
 using Vector = PoseCovariance::Vector;
 
 /// By rows, all of it or the upper triangle.
-std::string text_of(const Matrix& matrix, bool is_whole) {
+std::string format_covariance(const Matrix& matrix, bool is_whole) {
   std::string text;
   for (int row = 0; row < 6; ++row) {
     for (int column = is_whole ? 0 : row; column < 6; ++column) {
@@ -47,7 +47,7 @@ TEST(PoseCovariance, IsReadWholeOrByItsUpperTriangle) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Matrix root = some_root(seed), matrix = root * root.transpose();
     for (const bool is_whole : {true, false}) {
-      const PoseCovariance read = parse_pose_covariance(text_of(matrix, is_whole), "c");
+      const PoseCovariance read = parse_pose_covariance(format_covariance(matrix, is_whole), "c");
       EXPECT_LT((read.matrix - matrix).norm(), 1e-15) << seed;
       EXPECT_TRUE(read.matrix == read.matrix.transpose());
     }
@@ -113,14 +113,15 @@ TEST(PoseCovariance, MayBeRoundedAndSingular) {
   Vector once;
   once << 0.1, -0.2, 0.3, 0.01, 0.02, -0.03;
   const Matrix singular = (once * once.transpose()).cast<float>().cast<double>();
-  EXPECT_NEAR(parse_pose_covariance(text_of(singular, true), "c").deviation(Vector::Unit(2)), 0.3,
-              1e-7);
-  EXPECT_EQ(parse_pose_covariance(text_of(Matrix::Zero(), false), "c").position(), 0.0);
+  EXPECT_NEAR(
+      parse_pose_covariance(format_covariance(singular, true), "c").deviation(Vector::Unit(2)), 0.3,
+      1e-7);
+  EXPECT_EQ(parse_pose_covariance(format_covariance(Matrix::Zero(), false), "c").position(), 0.0);
 }
 
 TEST(PoseCovariance, ThatIsNoneIsRefusedInOneLine) {
-  const auto complaint = [](const std::string& text) {
-    const std::string what = complaint_of([&] { parse_pose_covariance(text, "c"); });
+  const auto error_message = [](const std::string& text) {
+    const std::string what = thrown_message([&] { parse_pose_covariance(text, "c"); });
     EXPECT_EQ(what.find('\n'), std::string::npos);
     EXPECT_TRUE(what.starts_with("c: ")) << what;
     return what;
@@ -129,13 +130,14 @@ TEST(PoseCovariance, ThatIsNoneIsRefusedInOneLine) {
     Matrix matrix = Matrix::Identity() * 0.01;
     matrix(row, column) = value;
     matrix(column, row) = other;
-    return complaint(text_of(matrix, true));
+    return error_message(format_covariance(matrix, true));
   };
-  EXPECT_THAT(complaint("1 2 3"), HasSubstr("has 3 numbers; it must have the 36"));
-  EXPECT_THAT(complaint(""), HasSubstr("has 0 numbers"));
+  EXPECT_THAT(error_message("1 2 3"), HasSubstr("has 3 numbers; it must have the 36"));
+  EXPECT_THAT(error_message(""), HasSubstr("has 0 numbers"));
   EXPECT_THAT(with(2, 2, NAN, NAN), HasSubstr("finite"));
   EXPECT_THAT(with(2, 2, INFINITY, INFINITY), HasSubstr("finite"));
-  EXPECT_THAT(complaint("a" + text_of(Matrix::Zero(), true)), HasSubstr("a number is expected"));
+  EXPECT_THAT(error_message("a" + format_covariance(Matrix::Zero(), true)),
+              HasSubstr("a number is expected"));
   EXPECT_THAT(with(4, 4, -1e-9, -1e-9), HasSubstr("the variance of ry is -1e-09"));
   EXPECT_THAT(with(0, 0, 1e6, 1e6), HasSubstr("the variance of x is 1e+06; it must be from 0 to"));
   EXPECT_THAT(with(5, 5, 9.0, 9.0), HasSubstr("rad^2"));
@@ -147,13 +149,15 @@ TEST(PoseCovariance, ThatIsNoneIsRefusedInOneLine) {
        {std::tuple(0, 1, 0.009), {1, 2, 0.009}, {0, 2, -0.009}}) {
     impossible(row, column) = impossible(column, row) = value;
   }
-  EXPECT_THAT(complaint(text_of(impossible, false)), HasSubstr("not positive semidefinite"));
-  EXPECT_THAT(complaint(text_of(Matrix::Identity() * 1e308, true)), HasSubstr("variance of x"));
+  EXPECT_THAT(error_message(format_covariance(impossible, false)),
+              HasSubstr("not positive semidefinite"));
+  EXPECT_THAT(error_message(format_covariance(Matrix::Identity() * 1e308, true)),
+              HasSubstr("variance of x"));
 }
 
-TEST(PoseSigma, ThatIsNoneIsRefused) {
+TEST(PoseSigma, RejectsInvalidInput) {
   for (const std::string text : {"", "1", "1 2 3", "-1 0", "101 0", "0 91", "nan 1", "0.1 x"}) {
-    EXPECT_THAT(complaint_of([&] { parse_pose_sigma(text, "s"); }), HasSubstr("s: ")) << text;
+    EXPECT_THAT(thrown_message([&] { parse_pose_sigma(text, "s"); }), HasSubstr("s: ")) << text;
   }
 }
 

@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 using sim::models::box;
 
 /// Where a sensor may be and what it may look at.
-struct Place {
+struct TestPose {
   std::string name;
   geometry::Mesh mesh;
   double radius;
@@ -39,7 +39,7 @@ geometry::Mesh solids(const std::vector<Eigen::AlignedBox3d>& boxes) {
 }
 
 /// Three squares of two metres.
-Place corner() {
+TestPose corner() {
   return {"corner",
           solids({{Vector3d(-0.2, -0.2, -0.2), Vector3d(2, 2, 0)},
                   {Vector3d(-0.2, -0.2, 0), Vector3d(0, 2, 2)},
@@ -50,7 +50,7 @@ Place corner() {
 }
 
 /// Six metres wide, with a cupboard and a pillar.
-Place room() {
+TestPose room() {
   geometry::Mesh mesh = tests::room_mesh({.width = 6.0, .height = 3.0, .wall = 0.2});
   geometry::append(mesh, solids({{Vector3d(-3, 1.5, 0), Vector3d(-1.2, 3, 2)},
                                  {Vector3d(1, 1, 0), Vector3d(1.5, 1.4, 3)}}));
@@ -62,7 +62,7 @@ Place room() {
 }
 
 /// With a porch, a pilaster, eaves and the ground before it, seen from outside.
-Place building() {
+TestPose building() {
   return {"building",
           solids({{Vector3d(-30, -30, -0.5), Vector3d(30, 30, 0)},
                   {Vector3d(-5, -4, 0), Vector3d(5, 4, 6)},
@@ -75,7 +75,7 @@ Place building() {
 }
 
 /// The foot of a wall.
-Place edge() {
+TestPose edge() {
   return {"edge",
           solids({{Vector3d(-8, -8, -0.2), Vector3d(8, 8, 0)},
                   {Vector3d(-8, 8, 0), Vector3d(8, 8.2, 8)}}),
@@ -84,7 +84,7 @@ Place edge() {
           {Vector3d(-0.5, 8, 0.5), Vector3d(0.5, 8, 1.5)}};
 }
 
-Place wall() {
+TestPose wall() {
   return {"wall",
           box({-10, 3, -10}, {10, 3.2, 10}),
           0.1,
@@ -102,11 +102,11 @@ class Numbers {
     for (double& number : shares) number = share(random_);
     return box.min() + shares.cwiseProduct(box.sizes());
   }
-  Vector3d way() {
+  Vector3d direction() {
     std::normal_distribution<double> number;
-    Vector3d way;
-    for (double& coordinate : way) coordinate = number(random_);
-    return way.normalized();
+    Vector3d direction;
+    for (double& coordinate : direction) coordinate = number(random_);
+    return direction.normalized();
   }
 
  private:
@@ -120,7 +120,7 @@ struct Trial {
 };
 
 /// 10 cm and a degree off.
-Trial tried(const Place& place, const sim::Scene& scene, double noise, std::uint64_t seed) {
+Trial tried(const TestPose& pose, const sim::Scene& scene, double noise, std::uint64_t seed) {
   constexpr double shift = 0.1, angle = geometry::radians_per_degree;
   Numbers numbers(seed);
   sim::DepthCameraConfig config;
@@ -128,23 +128,23 @@ Trial tried(const Place& place, const sim::Scene& scene, double noise, std::uint
   config.camera.max_range = 40.0;
   config.noise = {.sigma = noise, .direction = sim::NoiseDirection::along_ray, .seed = seed};
   const sim::DepthCamera camera(config);
-  const auto look = [&] {
-    const Vector3d from = numbers.within(place.sensors);
-    return geometry::look_at(from, numbers.within(place.targets));
+  const auto take_scan = [&] {
+    const Vector3d from = numbers.within(pose.sensors);
+    return geometry::look_at(from, numbers.within(pose.targets));
   };
-  const geometry::Scan first = camera.scan(scene, look(), 0, 1);
-  geometry::SpacedPoints spaced(0.3 * place.radius);
+  const geometry::Scan first = camera.scan(scene, take_scan(), 0, 1);
+  geometry::SpacedPoints spaced(0.3 * pose.radius);
   std::vector<Eigen::Vector3f> kept;
   for (const Eigen::Vector3f& point : first.points) {
     if (spaced.keep(point)) kept.push_back(point);
   }
-  const geometry::Scan scan = camera.scan(scene, look(), 1, 1);
+  const geometry::Scan scan = camera.scan(scene, take_scan(), 1, 1);
   const Vector3d sensor = scan.sensor_position();
   Isometry3d error = Isometry3d::Identity();
-  error.linear() = Eigen::AngleAxisd(angle, numbers.way()).toRotationMatrix();
-  error.translation() = sensor + shift * numbers.way() - error.linear() * sensor;
+  error.linear() = Eigen::AngleAxisd(angle, numbers.direction()).toRotationMatrix();
+  error.translation() = sensor + shift * numbers.direction() - error.linear() * sensor;
   const auto found = [&](bool registers, const PoseCovariance& covariance) {
-    PoseCheck check(place.radius, registers);
+    PoseCheck check(pose.radius, registers);
     check.remember(first, kept);
     return check.find(corrected(scan, error), covariance);
   };
@@ -167,14 +167,14 @@ struct Counts {
 };
 
 /// So many scans for each noise.
-Counts count(const Place& place) {
+Counts count(const TestPose& pose) {
   const char* const more = std::getenv("REGISTERED_SCANS");
   const std::uint64_t scans = more == nullptr ? 16 : std::strtoul(more, nullptr, 10);
-  const sim::Scene scene(geometry::Mesh(place.mesh), 1);
+  const sim::Scene scene(geometry::Mesh(pose.mesh), 1);
   Counts counts;
   for (const double noise : {0.0, 0.005, 0.01, 0.02}) {
     for (std::uint64_t seed = 1; seed <= scans; ++seed) {
-      const Trial trial = tried(place, scene, noise, seed);
+      const Trial trial = tried(pose, scene, noise, seed);
       ++counts.all;
       const PoseFinding& unknown = trial.unknown;
       counts.missed += unknown.is_checked && unknown.unobservable == 0 && !unknown.is_wrong ? 1 : 0;
@@ -185,12 +185,12 @@ Counts count(const Place& place) {
       const bool is_far = trial.shift > 0.03 || turn_deg > 0.5;
       counts.far += is_far ? 1 : 0;
       if (is_far) {
-        std::cout << place.name << ", noise " << noise << ", seed " << seed << ": " << trial.shift
+        std::cout << pose.name << ", noise " << noise << ", seed " << seed << ": " << trial.shift
                   << " m, " << turn_deg << " deg left\n";
       }
     }
   }
-  std::cout << place.name << ": of " << counts.all << " scans " << counts.corrected
+  std::cout << pose.name << ": of " << counts.all << " scans " << counts.corrected
             << " corrected and shown whole, " << counts.fine
             << " of them to within 1 cm and 0.1 deg, " << counts.far
             << " off by more than 3 cm or 0.5 deg; " << counts.missed << " not flagged\n";
@@ -199,12 +199,12 @@ Counts count(const Place& place) {
 
 // REGISTERED_SCANS in the environment for more than 16 of each noise.
 TEST(RegisteredScans, AreRightWhereTheSurfaceShowsAll) {
-  const Counts of_corner = count(corner()), of_room = count(room()),
-               of_building = count(building());
-  EXPECT_EQ(of_corner.far + of_room.far + of_building.far, 0);
-  EXPECT_GE(of_corner.fine, of_corner.all * 8 / 10);
-  const int missed = of_corner.missed + of_room.missed + of_building.missed;
-  EXPECT_LE(missed, 3 * of_corner.all / 50);
+  const Counts corner_counts = count(corner()), in_room = count(room()),
+               building_counts = count(building());
+  EXPECT_EQ(corner_counts.far + in_room.far + building_counts.far, 0);
+  EXPECT_GE(corner_counts.fine, corner_counts.all * 8 / 10);
+  const int missed = corner_counts.missed + in_room.missed + building_counts.missed;
+  EXPECT_LE(missed, 3 * corner_counts.all / 50);
 }
 
 /// A wall, and the foot of one, never show all.

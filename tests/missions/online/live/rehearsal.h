@@ -53,13 +53,13 @@ class Rehearsal {
 
   /// Without a vehicle `plan` knows from the scene, and a crew by looking, what is walled in.
   bool can_reach(const LiveSurvey& survey) const {
-    return setup_.flight().is_flown() || survey.views().empty() ||
+    return setup_.flight().has_vehicle() || survey.views().empty() ||
            scene_.is_reachable(survey.proposal().view->position);
   }
 
-  geometry::Scan scan(simulation::CarriedSensor& carried, const session::ViewInFlight& at,
+  geometry::Scan scan(simulation::MountedSensor& mounted, const session::ViewInFlight& at,
                       std::uint64_t scans) const {
-    return carried.scan(scene_.scene(), at, scans, threads_);
+    return mounted.scan(scene_.scene(), at, scans, threads_);
   }
 
   void add_one(LiveSurvey& survey) const {
@@ -77,19 +77,19 @@ class Rehearsal {
 };
 
 /// A rehearsal's sensor as its vehicle carries it, on the ways too.
-class Carrier {
+class Platform {
  public:
-  explicit Carrier(const Rehearsal& rehearsal)
+  explicit Platform(const Rehearsal& rehearsal)
       : rehearsal_(rehearsal), sensor_(rehearsal.setup().simulation, rehearsal.setup().run.seed) {}
 
-  struct Taken {
+  struct RehearsedScan {
     geometry::Scan scan;
-    bool is_on_way;
+    bool is_en_route;
   };
 
   /// What `plan` would measure next: on the way to the proposed view, if something is to be
   /// measured there, or else from the view.
-  Taken next(LiveSurvey& survey) {
+  RehearsedScan next(LiveSurvey& survey) {
     const std::vector<session::ViewInFlight> frames = survey.frames();
     const geometry::View& view = *survey.proposal().view;
     session::ViewInFlight at =
@@ -102,42 +102,43 @@ class Carrier {
   }
 
   void add_next(LiveSurvey& survey) {
-    const Taken taken = next(survey);
+    const RehearsedScan taken = next(survey);
     const std::string id = "scan " + std::to_string(scans_);
-    taken.is_on_way ? survey.add_on_way(taken.scan, id) : survey.add(taken.scan, id);
+    taken.is_en_route ? survey.add_en_route(taken.scan, id) : survey.add(taken.scan, id);
   }
 
  private:
   const Rehearsal& rehearsal_;
-  simulation::CarriedSensor sensor_;
+  simulation::MountedSensor sensor_;
   std::uint64_t scans_ = 0;
   double elapsed_ = 0.0;  ///< [s]
 };
 
-inline std::vector<Eigen::Vector3d> places(const std::vector<session::JudgedView>& views) {
-  std::vector<Eigen::Vector3d> places;
-  for (const session::JudgedView& view : views) {
-    places.push_back(view.surveyed.view.position);
-    places.push_back(view.surveyed.view.direction);
+inline std::vector<Eigen::Vector3d> positions(const std::vector<session::EvaluatedView>& views) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const session::EvaluatedView& view : views) {
+    positions.push_back(view.surveyed.view.position);
+    positions.push_back(view.surveyed.view.direction);
   }
-  return places;
+  return positions;
 }
 
 /// All that both kinds of survey know, to the last bit.
 inline void expect_same(const session::SurveyRecord& live, const session::SurveyRecord& planned) {
   EXPECT_EQ(live.stop_reason, planned.stop_reason);
-  const std::vector<Eigen::Vector3d> ours = places(live.views), theirs = places(planned.views);
+  const std::vector<Eigen::Vector3d> ours = positions(live.views),
+                                     theirs = positions(planned.views);
   const auto other = std::ranges::mismatch(ours, theirs).in1 - ours.begin();
   EXPECT_TRUE(ours == theirs) << "they differ from view " << other / 2 << " on";
   EXPECT_TRUE(live.cloud.positions == planned.cloud.positions);
   EXPECT_TRUE(live.cloud.views == planned.cloud.views);
-  ASSERT_EQ(live.flown.has_value(), planned.flown.has_value());
-  if (!live.flown) return;
-  EXPECT_EQ(live.flown->refused, planned.flown->refused);
-  EXPECT_EQ(live.flown->length(), planned.flown->length());
-  EXPECT_EQ(live.flown->min_clearance(), planned.flown->min_clearance());
-  EXPECT_EQ(live.frames_on_way(), planned.frames_on_way());
-  EXPECT_EQ(live.flown->times, planned.flown->times);
+  ASSERT_EQ(live.flight_record.has_value(), planned.flight_record.has_value());
+  if (!live.flight_record) return;
+  EXPECT_EQ(live.flight_record->rejected, planned.flight_record->rejected);
+  EXPECT_EQ(live.flight_record->length(), planned.flight_record->length());
+  EXPECT_EQ(live.flight_record->min_clearance(), planned.flight_record->min_clearance());
+  EXPECT_EQ(live.en_route_frames(), planned.en_route_frames());
+  EXPECT_EQ(live.flight_record->times, planned.flight_record->times);
 }
 
 /// Five views at most, or so many, and by another planner if one is named.
@@ -153,7 +154,7 @@ inline std::string short_mission(std::string mission, const std::string& planner
 /// A vehicle's, whose camera also measures on the ways. It is too far from its teapot, and that too
 /// round, for poses to be judged by it: some of the many frames would be suspected.
 inline std::string moving_mission(const std::string& live = "", int views = 5) {
-  std::string mission = short_mission(tests::flown_mission(live), "", views);
+  std::string mission = short_mission(tests::flight_mission(live), "", views);
   const std::string section = "sensor: {";
   return mission.insert(mission.find(section) + section.size(), "capture: moving, ");
 }

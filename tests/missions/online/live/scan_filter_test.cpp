@@ -44,7 +44,7 @@ class FlyingPixels : public testing::Test {
   static Pixels mix(geometry::Scan& scan) {
     Pixels mixed;
     for (std::size_t i = 1; i + 1 < scan.points.size(); ++i) {
-      const double here = depth_of(scan, i), there = depth_of(scan, i + 1);
+      const double here = compute_depth(scan, i), there = compute_depth(scan, i + 1);
       const bool is_edge = scan.pixels[i] % width > 2 && scan.pixels[i] % width + 3 < width &&
                            std::abs(here - there) > 1.0;
       if (!is_edge || scan.pixels[i] / width % 4 != 0) continue;
@@ -54,13 +54,14 @@ class FlyingPixels : public testing::Test {
     return mixed;
   }
 
-  static double depth_of(const geometry::Scan& scan, std::size_t i) {
+  static double compute_depth(const geometry::Scan& scan, std::size_t i) {
     return (scan.world_from_sensor.inverse() * scan.points[i].cast<double>()).z();
   }
   /// Along its ray.
   static void move_to(geometry::Scan& scan, std::size_t i, double depth) {
     const Eigen::Vector3d ray = scan.points[i].cast<double>() - scan.sensor_position();
-    scan.points[i] = (scan.sensor_position() + ray * (depth / depth_of(scan, i))).cast<float>();
+    scan.points[i] =
+        (scan.sensor_position() + ray * (depth / compute_depth(scan, i))).cast<float>();
   }
 
   static Pixels missing(const geometry::Scan& before, const geometry::Scan& after) {
@@ -106,7 +107,7 @@ TEST_F(FlyingPixels, AndIsolatedReturnsGo) {
   Pixels stray;
   for (int i = 0; i < 100; ++i) {
     const std::size_t k = random() % before.points.size();
-    move_to(before, k, 0.4 * depth_of(before, k));
+    move_to(before, k, 0.4 * compute_depth(before, k));
     stray.insert(before.pixels[k]);
   }
   geometry::Scan after = before;

@@ -24,10 +24,10 @@ using Eigen::Vector3d;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 /// A camera of 64 x 48 pixels and right angles both ways: f = 32 and 24.
-config::MissionSetup setup_of(const std::string& more = "") {
+config::MissionSetup make_setup(const std::string& more = "") {
   return config::parse_mission(
       "sensor: {width: 64, height: 48, horizontal_fov_deg: 90, vertical_fov_deg: 90,\n"
       "         max_range: 20}\n"
@@ -39,7 +39,7 @@ config::MissionSetup setup_of(const std::string& more = "") {
 }
 
 ScanFound read(const ScanInput& input) {
-  const config::MissionSetup setup = setup_of();
+  const config::MissionSetup setup = make_setup();
   return read_scan(input, setup.flight().capture, setup.live);
 }
 
@@ -50,12 +50,13 @@ Isometry3d some_pose() {
   return pose;
 }
 
-TEST(Lens, RaysAreWhereTheDistortionTakesThemBackTo) {
+TEST(CameraIntrinsics, RaysAreWhereTheDistortionTakesThemBackTo) {
   // Of a real camera: TUM RGB-D's freiburg1, colour.
-  const Lens lens = parse_lens("517.3 516.5 318.6 255.3 0.2624 -0.9531 -0.0054 0.0026 1.1633");
+  const CameraIntrinsics intrinsics =
+      parse_intrinsics("517.3 516.5 318.6 255.3 0.2624 -0.9531 -0.0054 0.0026 1.1633");
   for (int u = 0; u < 640; u += 71) {
     for (int v = 0; v < 480; v += 53) {
-      const auto ray = lens.ray({u, v});
+      const auto ray = intrinsics.ray({u, v});
       ASSERT_TRUE(ray) << u << ", " << v;
       // OpenCV's documentation of calib3d, written out.
       const double x = ray->x(), y = ray->y(), r2 = x * x + y * y;
@@ -68,13 +69,13 @@ TEST(Lens, RaysAreWhereTheDistortionTakesThemBackTo) {
   }
 }
 
-TEST(Lens, HasNoRayWhereItsPolynomialFoldsOver) {
-  EXPECT_FALSE(parse_lens("500 500 320 240 -3 0 0 0 0").ray({0, 0}));
+TEST(CameraIntrinsics, HasNoRayWhereItsPolynomialFoldsOver) {
+  EXPECT_FALSE(parse_intrinsics("500 500 320 240 -3 0 0 0 0").ray({0, 0}));
 }
 
-TEST(Lens, HasNoRayWhereItIsEndless) {
-  EXPECT_FALSE(parse_lens("1e-320 1 0 0").ray({1, 0}));
-  EXPECT_TRUE(parse_lens("1e-320 1 0 0").ray({0, 1}));
+TEST(CameraIntrinsics, HasNoRayWhereItIsEndless) {
+  EXPECT_FALSE(parse_intrinsics("1e-320 1 0 0").ray({1, 0}));
+  EXPECT_TRUE(parse_intrinsics("1e-320 1 0 0").ray({0, 1}));
 }
 
 TEST(PoseText, IsReadInEveryLayout) {
@@ -107,7 +108,7 @@ TEST(PoseText, ThatIsNoPoseIsRefused) {
        {"", "1 2 3", "1 2 3 0 0 0 0", "1 2 3 0 0 0 2", "nan 0 0 0 0 0 1", "1e300 0 0 0 0 0 1",
         "1 2 3 4 5 6 x", "1 0 0 0 0 1 0 0 0 0 -1 0", "2 0 0 0 0 2 0 0 0 0 2 0",
         "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18"}) {
-    EXPECT_THAT(complaint_of([&] { parse_pose_text(text, "pose"); }), HasSubstr("pose")) << text;
+    EXPECT_THAT(thrown_message([&] { parse_pose_text(text, "pose"); }), HasSubstr("pose")) << text;
   }
 }
 
@@ -119,7 +120,7 @@ TEST(DepthImage, BecomesPointsAlongTheRays) {
   image.values[47 * 64 + 63] = 4000;
   const auto file = folder.path() / "depth.png";
   geometry::write_depth_png(image, file);
-  const ScanFound found = read({.file = file, .world_from_sensor = some_pose(), .lens = {}});
+  const ScanFound found = read({.file = file, .world_from_sensor = some_pose(), .intrinsics = {}});
   ASSERT_EQ(found.scan.points.size(), 2U);
   EXPECT_THAT(found.scan.pixels, ElementsAre(10 * 64 + 20, 47 * 64 + 63));
   EXPECT_EQ(found.without_return, 64U * 48U - 2U);
@@ -129,36 +130,37 @@ TEST(DepthImage, BecomesPointsAlongTheRays) {
 }
 
 // ICL-NUIM's images have a negative focal length: the axis points the other way.
-TEST(Lens, OfNegativeFocalLengthFlipsItsAxis) {
-  const auto up = parse_lens("480 -480 319.5 239.5").ray({400, 100});
-  const auto down = parse_lens("480 480 319.5 239.5").ray({400, 100});
+TEST(CameraIntrinsics, OfNegativeFocalLengthFlipsItsAxis) {
+  const auto up = parse_intrinsics("480 -480 319.5 239.5").ray({400, 100});
+  const auto down = parse_intrinsics("480 480 319.5 239.5").ray({400, 100});
   ASSERT_TRUE(up && down);
   EXPECT_EQ(up->x(), down->x());
   EXPECT_EQ(up->y(), -down->y());
-  EXPECT_THAT(complaint_of([] { parse_lens("480 0 319.5 239.5"); }),
+  EXPECT_THAT(thrown_message([] { parse_intrinsics("480 0 319.5 239.5"); }),
               HasSubstr("non-zero focal lengths"));
 }
 
 // By a factor in both directions; a cropped image, or a lens off its middle, is what it is.
 TEST(DepthImage, OfAnotherSizeThanItsLensIsRefused) {
   const testing_support::TemporaryFolder folder;
-  const auto complaint = [&](int width, int height, const std::optional<Lens>& lens) {
+  const auto error_message = [&](int width, int height,
+                                 const std::optional<CameraIntrinsics>& intrinsics) {
     const auto file = folder.path() / "size.png";
     const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     geometry::write_depth_png({width, height, std::vector<std::uint16_t>(count, 1500)}, file);
-    return complaint_of([&] { read({.file = file, .lens = lens}); });
+    return thrown_message([&] { read({.file = file, .intrinsics = intrinsics}); });
   };
   EXPECT_THAT(
-      complaint(320, 240, parse_lens("145 145 80 60")),
+      error_message(320, 240, parse_intrinsics("145 145 80 60")),
       testing::AllOf(HasSubstr("size.png"),
                      HasSubstr("the intrinsics are those of an image of about 160 x 120 pixels"),
                      HasSubstr("the image has 320 x 240; multiply fx fy cx cy by 1.99")));
-  EXPECT_THAT(complaint(160, 120, parse_lens("517 517 318.6 255.3")),
+  EXPECT_THAT(error_message(160, 120, parse_intrinsics("517 517 318.6 255.3")),
               HasSubstr("multiply fx fy cx cy by 0.24"));
-  EXPECT_THAT(complaint(160, 120, std::nullopt), HasSubstr("about 63 x 47 pixels"));
-  EXPECT_EQ(complaint(64, 48, parse_lens("40 40 30 25")), "");
-  EXPECT_EQ(complaint(160, 120, parse_lens("145 145 95 50")), "");
-  EXPECT_EQ(complaint(160, 60, parse_lens("145 145 80 60")), "");
+  EXPECT_THAT(error_message(160, 120, std::nullopt), HasSubstr("about 63 x 47 pixels"));
+  EXPECT_EQ(error_message(64, 48, parse_intrinsics("40 40 30 25")), "");
+  EXPECT_EQ(error_message(160, 120, parse_intrinsics("145 145 95 50")), "");
+  EXPECT_EQ(error_message(160, 60, parse_intrinsics("145 145 80 60")), "");
 }
 
 /// The lens looks elsewhere than the mission's camera: points stay true, and pixels follow them.
@@ -167,16 +169,16 @@ TEST(DepthImage, OfAnotherLensIsPutIntoTheMissionsPixels) {
   const geometry::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 2000)};
   const auto file = folder.path() / "depth.png";
   geometry::write_depth_png(image, file);
-  const Lens lens = parse_lens("40 40 30 25");
-  const ScanFound found = read({.file = file, .lens = lens});
-  const geometry::Camera camera(setup_of().flight().capture.camera);
+  const CameraIntrinsics intrinsics = parse_intrinsics("40 40 30 25");
+  const ScanFound found = read({.file = file, .intrinsics = intrinsics});
+  const geometry::Camera camera(make_setup().flight().capture.camera);
   EXPECT_EQ(found.scan.points.size() + found.hidden + found.out_of_view, 64U * 48U);
   for (std::size_t i = 0; i < found.scan.points.size(); ++i) {
     const auto pixel = camera.project(found.scan.points[i].cast<double>());
     ASSERT_TRUE(pixel);
     EXPECT_EQ(std::lround(pixel->x()) + 64 * std::lround(pixel->y()), found.scan.pixels[i]);
   }
-  EXPECT_NO_THROW(require_usable(found.scan, setup_of().flight()));
+  EXPECT_NO_THROW(require_usable(found.scan, make_setup().flight()));
 }
 
 TEST(Cloud, OfAnyOrderIsSeenByTheCamera) {
@@ -186,7 +188,7 @@ TEST(Cloud, OfAnyOrderIsSeenByTheCamera) {
   const std::vector<Eigen::Vector3f> points{
       {0, 0, -1}, {9, 0, 1}, {1, 0.5, 4}, {0.5, 0.25, 2}, {0, 0, 1}};
   geometry::write_cloud(file, {.positions = points, .normals = {}, .views = {}, .colours = {}});
-  const ScanFound found = read({.file = file, .lens = {}});
+  const ScanFound found = read({.file = file, .intrinsics = {}});
   EXPECT_EQ(found.out_of_view, 2U);
   EXPECT_EQ(found.hidden, 1U);
   EXPECT_THAT(found.scan.points, testing::UnorderedElementsAre(points[3], points[4]));
@@ -199,7 +201,7 @@ TEST(Cloud, InTheWorldStaysWhereItIs) {
   const std::vector<Eigen::Vector3f> points{in_view.cast<float>()};
   geometry::write_cloud(file, {.positions = points, .normals = {}, .views = {}, .colours = {}});
   const ScanFound found =
-      read({.file = file, .world_from_sensor = some_pose(), .is_in_world = true, .lens = {}});
+      read({.file = file, .world_from_sensor = some_pose(), .is_in_world = true, .intrinsics = {}});
   ASSERT_EQ(found.scan.points.size(), 1U);
   EXPECT_LT((found.scan.points[0] - points[0]).norm(), 1e-6);
 }
@@ -219,7 +221,7 @@ TEST(KeptScan, GivesBackEveryBit) {
 
 TEST(RequireUsable, RefusesScansThatWouldHarm) {
   const auto message = [](const geometry::Scan& scan, const std::string& more = "") {
-    return complaint_of([&] { require_usable(scan, setup_of(more).flight()); });
+    return thrown_message([&] { require_usable(scan, make_setup(more).flight()); });
   };
   geometry::Scan scan;
   scan.points = {{0, 0, 1}, {0, 0, 2}};

@@ -28,7 +28,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-skycap_live::Pose pose_of(const geometry::Scan& scan) {
+skycap_live::Pose make_pose(const geometry::Scan& scan) {
   skycap_live::Pose pose{};
   for (int i = 0; i < 12; ++i) {
     pose[static_cast<std::size_t>(i)] = scan.world_from_sensor(i / 4, i % 4);
@@ -36,7 +36,7 @@ skycap_live::Pose pose_of(const geometry::Scan& scan) {
   return pose;
 }
 
-std::vector<float> numbers_of(const geometry::Scan& scan) {
+std::vector<float> flatten_points(const geometry::Scan& scan) {
   const float* begin = scan.points.data()->data();
   return {begin, begin + 3 * scan.points.size()};
 }
@@ -57,7 +57,7 @@ std::string scanner_mission() {
 /// A survey that is served from a thread of its own.
 class Served {
  public:
-  Served(const Rehearsal& rehearsal, ServerPlace place)
+  Served(const Rehearsal& rehearsal, ServerEndpoint endpoint)
       : survey_(rehearsal.open(folder_.path() / "survey")),
         session_(rehearsal.setup().name, rehearsal.setup().flight(), rehearsal.setup().live,
                  survey_,
@@ -65,7 +65,7 @@ class Served {
                    record_ = survey_.finish();
                    return std::string("done");
                  }),
-        server_(std::move(place)),
+        server_(std::move(endpoint)),
         thread_([this](const std::stop_token& stop) {
           server_.run(
               session_, [this](const std::string& note) { notes_ += note + "\n"; }, stop);
@@ -101,18 +101,18 @@ session::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
   const tests::TestFolder folder;
   Served served(rehearsal, {.socket = folder / "socket", .port = {}});
   skycap_live::Survey client(served.address());
-  Carrier carrier(rehearsal);
+  Platform platform(rehearsal);
   while (client.next().find("\"state\":\"view\"") != std::string::npos) {
     // Between two messages nobody else is at the survey.
     LiveSurvey& survey = served.survey();
     if (!rehearsal.can_reach(survey)) {
-      client.refuse(survey.proposal().number, "walled in");
+      client.reject(survey.proposal().number, "walled in");
       continue;
     }
-    const auto [scan, is_on_way] = carrier.next(survey);
+    const auto [scan, is_en_route] = platform.next(survey);
     const std::string answer =
-        client.add_points(numbers_of(scan), pose_of(scan), scan.pixels, {},
-                          is_on_way ? skycap_live::From::way : skycap_live::From::view);
+        client.add_points(flatten_points(scan), make_pose(scan), scan.pixels, {},
+                          is_en_route ? skycap_live::From::en_route : skycap_live::From::view);
     if (answer.find("\"warning\"") != std::string::npos) throw std::runtime_error(answer);
   }
   client.finish();
@@ -121,7 +121,7 @@ session::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
 
 TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
   for (const std::string& mission :
-       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission()),
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flight_mission()),
         moving_mission("live: {pose_check: false}\n"), scanner_mission()}) {
     const Rehearsal rehearsal(mission);
     expect_same(fed_by_simulator(rehearsal), rehearsal.planned());
@@ -137,7 +137,7 @@ TEST(Serve, FedByTheSimulatorIsWhatPlanDoesWithShippedMissions) {
   std::istringstream names(given == nullptr ? "teapot" : given);
   for (std::string name; names >> name;) {
     SCOPED_TRACE(name);
-    std::string mission = tests::content_of(missions / (name + ".yaml"));
+    std::string mission = tests::read_content(missions / (name + ".yaml"));
     if (views != nullptr) mission += std::string("limits: {max_views: ") + views + "}\n";
     const Rehearsal rehearsal(mission, missions, 0);
     const session::SurveyRecord planned = rehearsal.planned();
@@ -178,13 +178,13 @@ class SessionAnswers : public testing::Test {
   nlohmann::ordered_json scan_header(int number, const geometry::Scan& scan) const {
     return {{"type", "scan"},
             {"number", number},
-            {"pose", pose_of(scan)},
+            {"pose", make_pose(scan)},
             {"format", "points"},
             {"points", scan.points.size()}};
   }
 
-  static std::string payload_of(const geometry::Scan& scan) {
-    const std::vector<float> numbers = numbers_of(scan);
+  static std::string make_payload(const geometry::Scan& scan) {
+    const std::vector<float> numbers = flatten_points(scan);
     return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)};
   }
 
@@ -202,15 +202,15 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
   LiveSurvey survey = rehearsal.open(folder.path());
   Session session(rehearsal.setup().name, rehearsal.setup().flight(), rehearsal.setup().live,
                   survey, [] { return std::string(); });
-  const auto ask = [&](const geometry::Scan& scan, int number, std::optional<int> on_way) {
+  const auto ask = [&](const geometry::Scan& scan, int number, std::optional<int> en_route) {
     nlohmann::ordered_json header{{"type", "scan"},
                                   {"number", number},
-                                  {"pose", pose_of(scan)},
+                                  {"pose", make_pose(scan)},
                                   {"format", "points"},
                                   {"points", scan.points.size()},
                                   {"has_pixels", true}};
-    if (on_way) header["en_route"] = *on_way;
-    const std::vector<float> numbers = numbers_of(scan);
+    if (en_route) header["en_route"] = *en_route;
+    const std::vector<float> numbers = flatten_points(scan);
     std::string payload(reinterpret_cast<const char*>(numbers.data()),
                         numbers.size() * sizeof(float));
     payload.append(reinterpret_cast<const char*>(scan.pixels.data()),
@@ -223,8 +223,8 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
   nlohmann::ordered_json answer = ask(first, 0, {});
   ASSERT_GT(answer.at("frames").size(), 2U);
   EXPECT_EQ(answer.at("en_route"), 0);
-  Carrier carrier(rehearsal);
-  const geometry::Scan frame = carrier.next(survey).scan;
+  Platform platform(rehearsal);
+  const geometry::Scan frame = platform.next(survey).scan;
   EXPECT_THAT(
       ask(frame, 1, 1).dump(),
       HasSubstr("scan 1 en-route frame 1 is out of order: the next one is 1, or en-route frame 0"));
@@ -245,14 +245,14 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
 
 TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
-  const std::string payload = payload_of(scan);
+  const std::string payload = make_payload(scan);
   EXPECT_THAT(ask(scan_header(1, scan), payload), HasSubstr("out of order: the next one is 0"));
   const std::string first = ask(scan_header(0, scan), payload);
   EXPECT_THAT(first, HasSubstr("\"is_new\":true"));
   EXPECT_THAT(ask(scan_header(0, scan), payload), HasSubstr("\"is_new\":false"));
   geometry::Scan other = scan;
   other.points[0].x() += 1.0F;
-  EXPECT_THAT(ask(scan_header(0, other), payload_of(other)), HasSubstr("was a different scan"));
+  EXPECT_THAT(ask(scan_header(0, other), make_payload(other)), HasSubstr("was a different scan"));
   EXPECT_EQ(survey_.views().size(), 1U);
 }
 
@@ -260,47 +260,47 @@ TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
 TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
   const Eigen::Isometry3d sensor_from_world = scan.world_from_sensor.inverse();
-  std::vector<Eigen::Vector3f> places;
+  std::vector<Eigen::Vector3f> positions;
   for (const Eigen::Vector3f& point : scan.points) {
-    places.push_back((sensor_from_world * point.cast<double>()).cast<float>());
+    positions.push_back((sensor_from_world * point.cast<double>()).cast<float>());
   }
-  const std::string payload(reinterpret_cast<const char*>(places.data()),
-                            places.size() * sizeof places[0]);
+  const std::string payload(reinterpret_cast<const char*>(positions.data()),
+                            positions.size() * sizeof positions[0]);
   std::vector<Eigen::Vector3d> points;
-  points.reserve(places.size());
-  for (const Eigen::Vector3f& place : places) points.push_back(place.cast<double>());
+  points.reserve(positions.size());
+  for (const Eigen::Vector3f& endpoint : positions) points.push_back(endpoint.cast<double>());
   nlohmann::ordered_json header = scan_header(0, scan);
   header["format"] = "cloud";
   EXPECT_THAT(ask(header, payload.substr(1)), HasSubstr("points require"));
   EXPECT_THAT(ask(header, payload), HasSubstr("\"is_new\":true"));
-  const ScanFound same = scan_of(points, scan.world_from_sensor,
-                                 rehearsal_.setup().flight().capture, rehearsal_.setup().live);
+  const ScanFound same = make_scan(points, scan.world_from_sensor,
+                                   rehearsal_.setup().flight().capture, rehearsal_.setup().live);
   EXPECT_FALSE(same.scan.pixels.empty());
-  EXPECT_EQ(survey_.number_of(scan_id(same.scan)), ScanNumber{0});
+  EXPECT_EQ(survey_.scan_number(scan_id(same.scan)), ScanNumber{0});
 }
 
 TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
   const geometry::Scan first = rehearsal_.scan(survey_);
-  ask(scan_header(0, first), payload_of(first));
+  ask(scan_header(0, first), make_payload(first));
   geometry::Scan scan = rehearsal_.scan(survey_);
   Eigen::Isometry3d jump = Eigen::Isometry3d::Identity();
   jump.translation() = 0.1 * scan.world_from_sensor.linear().col(0);
   const geometry::Scan wrong = corrected(scan, jump);
-  const std::string answer = ask(scan_header(1, wrong), payload_of(wrong));
+  const std::string answer = ask(scan_header(1, wrong), make_payload(wrong));
   EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
   EXPECT_THAT(answer, HasSubstr("\"scans\":1"));
-  EXPECT_THAT(ask(scan_header(1, wrong), payload_of(wrong)), HasSubstr("\"is_new\":false"));
+  EXPECT_THAT(ask(scan_header(1, wrong), make_payload(wrong)), HasSubstr("\"is_new\":false"));
   nlohmann::ordered_json header = scan_header(1, scan);
   header["pose_sigma"] = {0.01, "x"};
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_sigma"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("pose_sigma"));
   header["pose_sigma"] = {0.01, 0.1};
   header["pose_covariance"] = {1, 2, 3};
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("conflicts with"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("conflicts with"));
   header.erase("pose_sigma");
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_covariance: has 3 numbers"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("pose_covariance: has 3 numbers"));
   header["pose_covariance"] = PoseCovariance::of(0.01, 0.002).triangle();
-  EXPECT_THAT(ask(header, payload_of(scan)), Not(HasSubstr("warning")));
-  EXPECT_THAT(ask(scan_header(1, wrong), payload_of(wrong)), HasSubstr("\"is_new\":false"));
+  EXPECT_THAT(ask(header, make_payload(scan)), Not(HasSubstr("warning")));
+  EXPECT_THAT(ask(scan_header(1, wrong), make_payload(wrong)), HasSubstr("\"is_new\":false"));
   EXPECT_EQ(survey_.views().size(), 2U);
 }
 
@@ -311,18 +311,18 @@ TEST(Serve, TakesWhatIsKnownOfPosesFromItsClient) {
   Served served(rehearsal, {.socket = folder / "socket", .port = {}});
   skycap_live::Survey client(served.address());
   const geometry::Scan first = rehearsal.scan(served.survey());
-  client.add_points(numbers_of(first), pose_of(first));
+  client.add_points(flatten_points(first), make_pose(first));
   const geometry::Scan scan = rehearsal.scan(served.survey());
   Eigen::Isometry3d jump = Eigen::Isometry3d::Identity();
   jump.translation() = 0.1 * scan.world_from_sensor.linear().col(0);
   const geometry::Scan moved = corrected(scan, jump);
   const auto answer = [&](const skycap_live::PoseError& error) {
-    return client.add_points(numbers_of(moved), pose_of(moved), {}, error);
+    return client.add_points(flatten_points(moved), make_pose(moved), {}, error);
   };
   skycap_live::PoseCovariance covariance{};
   EXPECT_THAT(answer(covariance), HasSubstr("\"warning\":\"pose\""));
   covariance[1] = 0.01;
-  EXPECT_THROW(answer(covariance), skycap_live::Refused);
+  EXPECT_THROW(answer(covariance), skycap_live::Rejected);
   EXPECT_THAT(answer(skycap_live::PoseSigma{0.001, 0.01}), HasSubstr("\"warning\":\"pose\""));
   covariance[1] = 0.0;
   for (const std::size_t i : {0U, 7U, 14U}) covariance[i] = 0.01;
@@ -331,7 +331,7 @@ TEST(Serve, TakesWhatIsKnownOfPosesFromItsClient) {
 
 TEST_F(SessionAnswers, RefusalsTwiceAreOne) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
-  ask(scan_header(0, scan), payload_of(scan));
+  ask(scan_header(0, scan), make_payload(scan));
   const std::string other = ask({{"type", "refuse"}, {"id", 1}});
   EXPECT_EQ(ask({{"type", "refuse"}, {"id", 1}}), other);
   EXPECT_THAT(ask({{"type", "refuse"}, {"id", 9}}), HasSubstr("unknown proposal 9"));
@@ -342,20 +342,20 @@ TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
   nlohmann::ordered_json header = scan_header(0, scan);
   EXPECT_THAT(ask(header, "short"), HasSubstr("the payload has 5 bytes"));
   header["points"] = -1;
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("error"));
   header["points"] = 4294967295U;
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("the payload has"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("the payload has"));
   header = scan_header(0, scan);
   header["pose"] = {1, 2, 3};
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("pose"));
   header["pose"] = "here";
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("error"));
   header["format"] = "mp3";
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("expected points, cloud or depth"));
+  EXPECT_THAT(ask(header, make_payload(scan)), HasSubstr("expected points, cloud or depth"));
   EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("unknown type 'dance'"));
   EXPECT_THAT(ask({{"number", 1}}), HasSubstr("error"));
   EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("no scan yet"));
-  nlohmann::ordered_json depth{{"type", "scan"},    {"number", 0}, {"pose", pose_of(scan)},
+  nlohmann::ordered_json depth{{"type", "scan"},    {"number", 0}, {"pose", make_pose(scan)},
                                {"format", "depth"}, {"width", 2},  {"height", 2},
                                {"unit", 0.001}};
   EXPECT_THAT(ask(depth, "12345"), HasSubstr("the image requires 8"));

@@ -19,22 +19,22 @@ using testing::HasSubstr;
 
 const Message sample{{{"type", "scan"}, {"number", 3}}, std::string("\0\x01payload\n", 10)};
 
-std::string refusal(const std::string& bytes) {
+std::string rejection(const std::string& bytes) {
   FrameReader reader;
   reader.feed(bytes);
-  return testing_support::complaint_of([&] { reader.next(); });
+  return testing_support::thrown_message([&] { reader.next(); });
 }
 
 TEST(Wire, GivesBackMessagesHoweverTheyArrive) {
-  const std::string two = frame_of(sample) + frame_of({{{"type", "next"}}, {}});
-  for (std::size_t piece = 1; piece <= two.size(); ++piece) {
+  const std::string two = encode_frame(sample) + encode_frame({{{"type", "next"}}, {}});
+  for (std::size_t chunk = 1; chunk <= two.size(); ++chunk) {
     FrameReader reader;
     std::vector<Message> messages;
-    for (std::size_t at = 0; at < two.size(); at += piece) {
-      reader.feed(std::string_view(two).substr(at, piece));
+    for (std::size_t at = 0; at < two.size(); at += chunk) {
+      reader.feed(std::string_view(two).substr(at, chunk));
       while (auto message = reader.next()) messages.push_back(std::move(*message));
     }
-    ASSERT_EQ(messages.size(), 2U) << piece;
+    ASSERT_EQ(messages.size(), 2U) << chunk;
     EXPECT_EQ(messages[0].header, sample.header);
     EXPECT_EQ(messages[0].payload, sample.payload);
     EXPECT_EQ(messages[1].header["type"], "next");
@@ -46,11 +46,11 @@ TEST(Wire, GivesBackMessagesHoweverTheyArrive) {
 /// zlib.crc32(b'{"type":"next"}').
 TEST(Wire, IsWhatTheDocumentationSays) {
   const std::string frame("\x0f\0\0\0\0\0\0\0\x1c\xab\x42\xde{\"type\":\"next\"}", 27);
-  EXPECT_EQ(frame_of({{{"type", "next"}}, {}}), frame);
+  EXPECT_EQ(encode_frame({{{"type", "next"}}, {}}), frame);
 }
 
 TEST(Wire, WaitsForTheRestOfAMessage) {
-  const std::string frame = frame_of(sample);
+  const std::string frame = encode_frame(sample);
   ASSERT_FALSE(frame.empty());
   for (std::size_t size = 0; size < frame.size(); ++size) {
     FrameReader reader;
@@ -61,18 +61,19 @@ TEST(Wire, WaitsForTheRestOfAMessage) {
 }
 
 TEST(Wire, RefusesWhatIsNoMessage) {
-  EXPECT_THAT(refusal(std::string(12, '\xff')), HasSubstr("larger than allowed"));
-  std::string damaged = frame_of(sample);
+  EXPECT_THAT(rejection(std::string(12, '\xff')), HasSubstr("larger than allowed"));
+  std::string damaged = encode_frame(sample);
   damaged.back() ^= 1;
-  EXPECT_THAT(refusal(damaged), HasSubstr("checksum"));
-  EXPECT_THAT(refusal(frame_of({"text", {}})), HasSubstr("not a JSON object"));
-  EXPECT_THAT(refusal(frame_of({nlohmann::ordered_json::array(), {}})), HasSubstr("JSON object"));
+  EXPECT_THAT(rejection(damaged), HasSubstr("checksum"));
+  EXPECT_THAT(rejection(encode_frame({"text", {}})), HasSubstr("not a JSON object"));
+  EXPECT_THAT(rejection(encode_frame({nlohmann::ordered_json::array(), {}})),
+              HasSubstr("JSON object"));
 }
 
 /// No bytes do more than be refused or waited for; one changed bit is never taken for a message.
 TEST(Wire, TakesNoHarmFromAnyBytes) {
   std::mt19937_64 random(1);
-  const std::string frame = frame_of(sample);
+  const std::string frame = encode_frame(sample);
   for (int i = 0; i < 20'000; ++i) {
     std::string bytes = frame;
     bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);

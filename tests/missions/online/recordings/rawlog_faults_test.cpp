@@ -19,20 +19,21 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
-  EXPECT_THAT(complaint(write({range_scan(1.0), std::make_shared<mrpt::obs::CObservationGPS>()})),
-              AllOf(HasSubstr("x.rawlog: contains no poses of its scans"), HasSubstr("--poses")));
-  EXPECT_THAT(complaint(write({robot_pose(1.0, {})})), HasSubstr("contains no usable scan"));
+  EXPECT_THAT(
+      error_message(write({range_scan(1.0), std::make_shared<mrpt::obs::CObservationGPS>()})),
+      AllOf(HasSubstr("x.rawlog: contains no poses of its scans"), HasSubstr("--poses")));
+  EXPECT_THAT(error_message(write({robot_pose(1.0, {})})), HasSubstr("contains no usable scan"));
   const std::string two = write({robot_pose(1.0, {}), range_scan(1.0, "L"), range_scan(1.0, "R")});
-  EXPECT_THAT(complaint(two), AllOf(HasSubstr("'L', 'R'"), HasSubstr("--sensor")));
-  EXPECT_THAT(complaint(two, {.sensor = "M", .poses = {}}),
+  EXPECT_THAT(error_message(two), AllOf(HasSubstr("'L', 'R'"), HasSubstr("--sensor")));
+  EXPECT_THAT(error_message(two, {.sensor = "M", .poses = {}}),
               HasSubstr("'M'; its sensors are 'L', 'R'"));
   EXPECT_EQ(frames(two, {.sensor = "R", .poses = {}}).at(0).id, "R 2");
 }
 
 TEST_F(Rawlog, LensesAndStepsThatAreNoneAreNamed) {
-  const auto note = [&](const std::function<void(CObservation3DRangeScan&)>& spoil) {
+  const auto note = [&](const std::function<void(CObservation3DRangeScan&)>& corrupt) {
     const auto scan = range_scan(1.0);
-    spoil(*scan);
+    corrupt(*scan);
     EXPECT_THAT(frames(write({robot_pose(1.0, {}), scan})), IsEmpty());
     return notes_.at(0);
   };
@@ -68,28 +69,28 @@ TEST_F(Rawlog, OfMoreThanThereIsMemoryForIsRefused) {
   }
   Objects sensors{robot_pose(1.0, {})};
   for (int i = 0; i <= 64; ++i) sensors.push_back(range_scan(1.0, std::to_string(i)));
-  EXPECT_THAT(complaint(write(sensors)), HasSubstr("more than 64 sensors"));
-  EXPECT_THAT(complaint(write({range_scan(1.0, std::string(257, 'x'))})),
+  EXPECT_THAT(error_message(write(sensors)), HasSubstr("more than 64 sensors"));
+  EXPECT_THAT(error_message(write({range_scan(1.0, std::string(257, 'x'))})),
               HasSubstr("more than 256 bytes"));
 }
 
 TEST_F(Rawlog, ThatEndsTooSoonIsRefused) {
   for (const std::string name : {"x.rawlog", "x.rawlog.gz"}) {
     const std::string whole =
-        tests::content_of(write({robot_pose(1.0, {}), range_scan(1.0)}, name));
+        tests::read_content(write({robot_pose(1.0, {}), range_scan(1.0)}, name));
     for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 50) {
-      const std::string what = complaint(folder_.write("cut_" + name, whole.substr(0, size)));
+      const std::string what = error_message(folder_.write("cut_" + name, whole.substr(0, size)));
       EXPECT_THAT(what, HasSubstr("cut_" + name)) << size;
     }
   }
-  EXPECT_THAT(complaint(folder_.write("text.rawlog", "this is a text and no rawlog at all")),
+  EXPECT_THAT(error_message(folder_.write("text.rawlog", "this is a text and no rawlog at all")),
               HasSubstr("text.rawlog: entry 0 cannot be read"));
-  EXPECT_THAT(complaint(folder_ / "nowhere.rawlog"), HasSubstr("is not a file"));
+  EXPECT_THAT(error_message(folder_ / "nowhere.rawlog"), HasSubstr("is not a file"));
 }
 
 /// MRPT allocates what a file says it needs: a count of points, and the sides of an image.
 TEST_F(Rawlog, WithCountsThatAreNoneIsRefused) {
-  const std::string whole = tests::content_of(write({robot_pose(1.0, {}), range_scan(1.0)}));
+  const std::string whole = tests::read_content(write({robot_pose(1.0, {}), range_scan(1.0)}));
   const std::string sides{"\x18\0\0\0\x20\0\0\0", 8};
   const std::size_t at = whole.find(sides);
   ASSERT_NE(at, std::string::npos);
@@ -103,7 +104,8 @@ TEST_F(Rawlog, WithCountsThatAreNoneIsRefused) {
     std::string hostile = whole;
     std::memcpy(&hostile[at], &rows, 4);
     std::memcpy(&hostile[at + 4], &columns, 4);
-    EXPECT_THAT(complaint(folder_.write("hostile.rawlog", hostile)), HasSubstr("hostile.rawlog"))
+    EXPECT_THAT(error_message(folder_.write("hostile.rawlog", hostile)),
+                HasSubstr("hostile.rawlog"))
         << rows << " x " << columns;
   }
 }
@@ -111,24 +113,24 @@ TEST_F(Rawlog, WithCountsThatAreNoneIsRefused) {
 TEST_F(Rawlog, ThatIsDamagedIsReadOrRefused) {
   auto frame = std::make_shared<mrpt::obs::CSensoryFrame>();
   frame->insert(range_scan(1.0));
-  const std::string whole = tests::content_of(
+  const std::string whole = tests::read_content(
       write({robot_pose(1.0, {}), wheels(1.0, 0, 0), range_scan(1.0, "DEPTH"), frame}));
   std::mt19937_64 random(1);
   // The bytes of the images' pixels are of no interest.
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> offsets;
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const bool is_pixel = std::string_view(whole).substr(i, 3).find('\0') == std::string::npos;
-    if (!is_pixel || i < 1000) places.push_back(i);
+    if (!is_pixel || i < 1000) offsets.push_back(i);
   }
-  std::size_t refused = 0;
+  std::size_t rejected = 0;
   for (int trial = 0; trial < 400; ++trial) {
     std::string damaged = whole;
     for (std::uint64_t count = 1 + random() % 3; count > 0; --count) {
-      damaged[places[random() % places.size()]] = static_cast<char>(random());
+      damaged[offsets[random() % offsets.size()]] = static_cast<char>(random());
     }
-    refused += complaint(folder_.write("damaged.rawlog", damaged)).empty() ? 0 : 1;
+    rejected += error_message(folder_.write("damaged.rawlog", damaged)).empty() ? 0 : 1;
   }
-  EXPECT_GT(refused, 20U);
+  EXPECT_GT(rejected, 20U);
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST_F(Rawlog, PosesOfATrajectoryAreTheOpticalFrames) {
   Isometry3d expected = Isometry3d::Identity();
   expected.translation() = Vector3d(1, 2, 3);
   EXPECT_TRUE(all[0].world_from_sensor.isApprox(expected));
-  EXPECT_THAT(complaint(write({range_scan(5.0)}), {.sensor = "", .poses = folder_ / "none"}),
+  EXPECT_THAT(error_message(write({range_scan(5.0)}), {.sensor = "", .poses = folder_ / "none"}),
               HasSubstr("none"));
 }
 
@@ -227,8 +227,8 @@ TEST_F(Rawlog, IsTakenInAsItsImagesWouldBe) {
               11);
   }
   for (const char* name : {"scans/000000.ply", "scans/000001.ply"}) {
-    const std::string one = tests::content_of(folder_.path() / "one" / name);
-    EXPECT_EQ(tests::content_of(folder_.path() / "all" / name).size(), one.size());
+    const std::string one = tests::read_content(folder_.path() / "one" / name);
+    EXPECT_EQ(tests::read_content(folder_.path() / "all" / name).size(), one.size());
     EXPECT_GT(one.size(), 5000U);
   }
 }

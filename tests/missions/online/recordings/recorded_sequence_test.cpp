@@ -16,7 +16,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing_support::complaint_of;
+using testing_support::thrown_message;
 
 constexpr std::size_t all = 1000;
 
@@ -32,8 +32,8 @@ class Recording : public testing::Test {
   RecordedSequence read(std::size_t count = all) const {
     return read_sequence(folder_.path(), count);
   }
-  std::string complaint() const {
-    return complaint_of([&] { read(); });
+  std::string error_message() const {
+    return thrown_message([&] { read(); });
   }
   static std::vector<std::string> ids(const RecordedSequence& sequence) {
     std::vector<std::string> ids;
@@ -106,9 +106,9 @@ TEST_F(Recording, SaysWhatIsWrongWithAFrame) {
 
 TEST_F(Recording, WithTimesThatGoBackIsRefused) {
   write_tum("1.00 0 0 0 0 0 0 1\n0.90 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(complaint(), AllOf(HasSubstr("groundtruth.txt: line 2"), HasSubstr("0.90")));
+  EXPECT_THAT(error_message(), AllOf(HasSubstr("groundtruth.txt: line 2"), HasSubstr("0.90")));
   write("groundtruth.txt", "now 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(complaint(), HasSubstr("'now' is found where a time is expected"));
+  EXPECT_THAT(error_message(), HasSubstr("'now' is found where a time is expected"));
 }
 
 TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
@@ -125,14 +125,14 @@ TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
               ElementsAre(HasSubstr("without scale"), HasSubstr("frame-000015.pose.txt")));
 }
 
-TEST_F(Recording, ThatIsNoneIsRefused) {
-  EXPECT_THAT(complaint(), HasSubstr("contains neither depth.txt and groundtruth.txt"));
-  EXPECT_THAT(complaint_of([&] { read_sequence(folder_.path() / "x", all); }),
+TEST_F(Recording, RejectsInvalidInput) {
+  EXPECT_THAT(error_message(), HasSubstr("contains neither depth.txt and groundtruth.txt"));
+  EXPECT_THAT(thrown_message([&] { read_sequence(folder_.path() / "x", all); }),
               HasSubstr("is not a folder"));
   write("depth.txt", "1.0 a.png\n");
-  EXPECT_THAT(complaint(), HasSubstr("groundtruth.txt"));
+  EXPECT_THAT(error_message(), HasSubstr("groundtruth.txt"));
   write("groundtruth.txt", "");
-  EXPECT_THAT(complaint(), HasSubstr("has no usable frame"));
+  EXPECT_THAT(error_message(), HasSubstr("has no usable frame"));
 }
 
 }  // namespace

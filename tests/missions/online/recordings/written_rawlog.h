@@ -96,15 +96,15 @@ class Rawlog : public testing::Test {
     return all;
   }
 
-  std::string complaint(const std::string& file, const RawlogChoice& choice = {}) {
-    const std::string what = testing_support::complaint_of([&] { frames(file, choice); });
+  std::string error_message(const std::string& file, const RawlogChoice& choice = {}) {
+    const std::string what = testing_support::thrown_message([&] { frames(file, choice); });
     EXPECT_EQ(what.find('\n'), std::string::npos) << what;
     return what;
   }
 
   /// The scan as of a survey that takes all points in.
   static std::vector<Eigen::Vector3f> points(const RawlogFrame& frame) {
-    return scan_of(frame, {.is_scanner = true}, {}).scan.points;
+    return make_scan(frame, {.is_scanner = true}, {}).scan.points;
   }
 
   tests::TestFolder folder_;

@@ -17,15 +17,15 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing_support::complaint_of;
-using tests::content_of;
-using tests::flown_mission;
+using testing_support::thrown_message;
+using tests::flight_mission;
+using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
 /// The mission with what `flight` says beside its vehicle.
 std::string fleet_mission(const std::string& flight) {
-  std::string text = flown_mission();
+  std::string text = flight_mission();
   const std::string vehicle = "vehicle: generic,";
   return text.replace(text.find(vehicle), vehicle.size(), flight + ",");
 }
@@ -48,7 +48,7 @@ const TestFolder& package() {
 }
 
 json fleet_summary() {
-  return json::parse(content_of(package() / "out/summary.json")).at("flight").at("fleet");
+  return json::parse(read_content(package() / "out/summary.json")).at("flight").at("fleet");
 }
 
 auto check(const std::string& route, const std::vector<std::string>& more = {}) {
@@ -58,11 +58,11 @@ auto check(const std::string& route, const std::vector<std::string>& more = {}) 
 }
 
 /// The package's fleet in another folder, where tests may spoil it.
-class Spoiled {
+class CorruptedFleet {
  public:
-  Spoiled() {
+  CorruptedFleet() {
     for (const char* name : {"timetable.csv", "fleet-1.plan", "fleet-2.waypoints"}) {
-      folder_.write(name, content_of(package() / ("out/" + std::string(name))));
+      folder_.write(name, read_content(package() / ("out/" + std::string(name))));
     }
   }
 
@@ -70,7 +70,7 @@ class Spoiled {
 
   /// Puts `to` into a field of a line, both counted from 1.
   void set(std::size_t line, std::size_t field, const std::string& to) {
-    std::vector<std::string> lines = flight::lines_of(content_of(table()));
+    std::vector<std::string> lines = flight::split_lines(read_content(table()));
     std::vector<std::string> fields = flight::split(lines.at(line - 1), ',');
     fields.at(field - 1) = to;
     std::string joined, all;
@@ -81,7 +81,8 @@ class Spoiled {
   }
 
   std::string get(std::size_t line, std::size_t field) const {
-    return flight::split(flight::lines_of(content_of(table())).at(line - 1), ',').at(field - 1);
+    return flight::split(flight::split_lines(read_content(table())).at(line - 1), ',')
+        .at(field - 1);
   }
 
   TestFolder folder_;
@@ -89,7 +90,7 @@ class Spoiled {
 
 TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
   const json fleet = fleet_summary();
-  const json summary = json::parse(content_of(package() / "out/summary.json"));
+  const json summary = json::parse(read_content(package() / "out/summary.json"));
   std::vector<int> shared, alone = summary["flight"]["route"]["order"];
   for (const json& vehicle : fleet["vehicles"]) {
     for (const int view : vehicle["order"]) shared.push_back(view);
@@ -102,9 +103,9 @@ TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
   EXPECT_GE(fleet["flown_s"], fleet["flown_bound_s"]);
   EXPECT_GE(fleet["separation"]["proven_m"], 6.0);
 
-  const auto proof = check(package() / "out/timetable.csv");
-  EXPECT_EQ(proof.exit_code, 0) << proof.out << proof.err;
-  EXPECT_THAT(proof.out, HasSubstr(": verified, 2 sorties of 2 vehicles in "));
+  const auto verification = check(package() / "out/timetable.csv");
+  EXPECT_EQ(verification.exit_code, 0) << verification.out << verification.err;
+  EXPECT_THAT(verification.out, HasSubstr(": verified, 2 sorties of 2 vehicles in "));
   for (const char* file : {"out/fleet-1.plan", "out/fleet-2.waypoints", "out/fleet-2.kml"}) {
     const auto own = check(package() / file);
     EXPECT_EQ(own.exit_code, 0) << file << own.out << own.err;
@@ -115,7 +116,7 @@ TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
 TEST(Fleet, FliesInTheSimulatorWithoutComingNearer) {
   const auto run = run_skycap({"fly-test", package() / "out", "--flights", "20", "--returns", "0",
                                "--out", package() / "flown"});
-  const json test = json::parse(content_of(package() / "flown/fly_test.json")).at("fleet");
+  const json test = json::parse(read_content(package() / "flown/fly_test.json")).at("fleet");
   EXPECT_EQ(test["flights"], 20);
   EXPECT_EQ(test["nearer"], 0) << run.out;
   EXPECT_DOUBLE_EQ(test["limit_m"], 6.0 - 2.0 * (0.1 + 0.3));
@@ -123,12 +124,12 @@ TEST(Fleet, FliesInTheSimulatorWithoutComingNearer) {
 }
 
 TEST(Fleet, TimetablesThatBringVehiclesTogetherAreRefused) {
-  Spoiled spoiled;
-  EXPECT_EQ(check(spoiled.table()).exit_code, 0);
+  CorruptedFleet corrupted;
+  EXPECT_EQ(check(corrupted.table()).exit_code, 0);
   // Pads seven metres apart, both up at the same time.
-  spoiled.set(2, 5, "0");
-  spoiled.set(3, 5, "0");
-  const auto together = check(spoiled.table(), {"--set", "flight.separation=20"});
+  corrupted.set(2, 5, "0");
+  corrupted.set(3, 5, "0");
+  const auto together = check(corrupted.table(), {"--set", "flight.separation=20"});
   EXPECT_EQ(together.exit_code, 1);
   EXPECT_THAT(together.out, HasSubstr("vehicle 1, fleet-1.plan and vehicle 2, fleet-2.waypoints "
                                       "may come within "));
@@ -136,14 +137,14 @@ TEST(Fleet, TimetablesThatBringVehiclesTogetherAreRefused) {
 }
 
 TEST(Fleet, TimetablesThatSayOtherwiseThanTheFilesAreRefused) {
-  Spoiled late;
+  CorruptedFleet late;
   late.set(2, 6, std::to_string(std::stod(late.get(2, 6)) + 5.0));
   const auto landing = check(late.table());
   EXPECT_EQ(landing.exit_code, 1);
   EXPECT_THAT(landing.out, HasSubstr("vehicle 1, fleet-1.plan lands at "));
 
-  Spoiled moved;
-  json plan = json::parse(content_of(moved.folder_ / "fleet-1.plan"));
+  CorruptedFleet moved;
+  json plan = json::parse(read_content(moved.folder_ / "fleet-1.plan"));
   json& item = plan["mission"]["items"][6];
   if (item["params"][6].is_number()) item["params"][6] = item["params"][6].get<double>() + 30.0;
   moved.folder_.write("fleet-1.plan", plan.dump());
@@ -151,45 +152,46 @@ TEST(Fleet, TimetablesThatSayOtherwiseThanTheFilesAreRefused) {
 }
 
 TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
-  const auto complaint = [](std::size_t line, std::size_t field, const std::string& to) {
-    Spoiled spoiled;
-    spoiled.set(line, field, to);
-    const auto run = check(spoiled.table());
+  const auto error_message = [](std::size_t line, std::size_t field, const std::string& to) {
+    CorruptedFleet corrupted;
+    corrupted.set(line, field, to);
+    const auto run = check(corrupted.table());
     EXPECT_EQ(run.exit_code, 2) << run.out;
     return run.err;
   };
-  EXPECT_THAT(complaint(1, 1, "drone"), HasSubstr("timetable.csv:1: is not a timetable"));
-  EXPECT_THAT(complaint(3, 1, "3"), HasSubstr("timetable.csv:3: unknown vehicle 3"));
-  EXPECT_THAT(complaint(3, 1, "x"), HasSubstr("timetable.csv:3: vehicle is \"x\""));
-  EXPECT_THAT(complaint(2, 2, "m30t"), HasSubstr("timetable.csv:2: vehicle 1 is generic in"));
-  EXPECT_THAT(complaint(3, 3, "0"), HasSubstr("timetable.csv:3: sortie is \"0\""));
-  EXPECT_THAT(complaint(3, 4, "fleet-1.plan"), HasSubstr("is not one of fleet-2.*"));
-  EXPECT_THAT(complaint(3, 4, "fleet-2.plan"), HasSubstr("fleet-2.plan"));
-  EXPECT_THAT(complaint(3, 4, "fleet-2.plan/../../x.plan"), HasSubstr("is not one of fleet-2.*"));
-  EXPECT_THAT(complaint(2, 5, "soon"), HasSubstr("timetable.csv:2: start_s is \"soon\""));
-  EXPECT_THAT(complaint(2, 6, "-1"), HasSubstr("timetable.csv:2: the landing must be after"));
-  EXPECT_THAT(complaint(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));
+  EXPECT_THAT(error_message(1, 1, "drone"), HasSubstr("timetable.csv:1: is not a timetable"));
+  EXPECT_THAT(error_message(3, 1, "3"), HasSubstr("timetable.csv:3: unknown vehicle 3"));
+  EXPECT_THAT(error_message(3, 1, "x"), HasSubstr("timetable.csv:3: vehicle is \"x\""));
+  EXPECT_THAT(error_message(2, 2, "m30t"), HasSubstr("timetable.csv:2: vehicle 1 is generic in"));
+  EXPECT_THAT(error_message(3, 3, "0"), HasSubstr("timetable.csv:3: sortie is \"0\""));
+  EXPECT_THAT(error_message(3, 4, "fleet-1.plan"), HasSubstr("is not one of fleet-2.*"));
+  EXPECT_THAT(error_message(3, 4, "fleet-2.plan"), HasSubstr("fleet-2.plan"));
+  EXPECT_THAT(error_message(3, 4, "fleet-2.plan/../../x.plan"),
+              HasSubstr("is not one of fleet-2.*"));
+  EXPECT_THAT(error_message(2, 5, "soon"), HasSubstr("timetable.csv:2: start_s is \"soon\""));
+  EXPECT_THAT(error_message(2, 6, "-1"), HasSubstr("timetable.csv:2: the landing must be after"));
+  EXPECT_THAT(error_message(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));
 }
 
 TEST(Fleet, TheRestSharesWhatALostVehicleLeaves) {
-  const auto rest_of = [](const std::vector<std::string>& more) {
+  const auto export_rest = [](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"export", package() / "out", "--format", "plan"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_skycap(arguments);
   };
   const std::size_t left = fleet_summary()["vehicles"][1]["order"].size();
-  const auto all = rest_of({"--lost", "2", "--out", package() / "rest"});
+  const auto all = export_rest({"--lost", "2", "--out", package() / "rest"});
   EXPECT_EQ(all.exit_code, 0) << all.err;
   EXPECT_THAT(all.out, HasSubstr("generic, " + std::to_string(left) + " views"));
   EXPECT_TRUE(std::filesystem::exists(package() / "rest/mission.plan"));
 
   const std::string landing = std::to_string(fleet_summary()["makespan_s"].get<double>() + 10.0);
-  const auto none = rest_of({"--lost", "2", "--after", landing, "--out", package() / "none"});
+  const auto none = export_rest({"--lost", "2", "--after", landing, "--out", package() / "none"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("it had captured all of its views by then"));
-  EXPECT_THAT(rest_of({"--lost", "2"}).err, HasSubstr("requires --out"));
-  EXPECT_THAT(rest_of({"--lost", "3", "--out", package() / "none"}).err, HasSubstr("--lost 3"));
-  EXPECT_THAT(rest_of({"--after", "3"}).err, HasSubstr("requires --lost"));
+  EXPECT_THAT(export_rest({"--lost", "2"}).err, HasSubstr("requires --out"));
+  EXPECT_THAT(export_rest({"--lost", "3", "--out", package() / "none"}).err, HasSubstr("--lost 3"));
+  EXPECT_THAT(export_rest({"--after", "3"}).err, HasSubstr("requires --lost"));
 }
 
 // A list of one is the vehicle: the same settings, and so the same survey and files.
@@ -222,28 +224,28 @@ TEST(Fleet, PlansWithTheLargestPositionErrorOfItsVehicles) {
 // 0.32 + 1.5 + 0.3 + 0.1 m: without RTK the default clearance of 2 m is too small.
 TEST(Fleet, RefusesAClearanceBelowTheErrorsOfAVehicleWithoutRtk) {
   EXPECT_THAT(
-      complaint_of([] { config::parse_mission(fleet_mission("vehicle: mavic_3e"), "m.yaml"); }),
+      thrown_message([] { config::parse_mission(fleet_mission("vehicle: mavic_3e"), "m.yaml"); }),
       HasSubstr("key flight.clearance"));
 }
 
 TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
-  const auto complaint = [](const std::string& flight) {
-    return complaint_of([&] { config::parse_mission(fleet_mission(flight), "m.yaml"); });
+  const auto error_message = [](const std::string& flight) {
+    return thrown_message([&] { config::parse_mission(fleet_mission(flight), "m.yaml"); });
   };
-  EXPECT_THAT(complaint("vehicle: m30t, vehicles: [generic, generic]"),
+  EXPECT_THAT(error_message("vehicle: m30t, vehicles: [generic, generic]"),
               HasSubstr("key flight.vehicle must be the first of flight.vehicles"));
-  EXPECT_THAT(complaint("vehicles: [generic, no_such]"), HasSubstr("key flight.vehicles: "));
-  EXPECT_THAT(complaint("vehicles: [generic, generic], pads: [[-75, 0, 0]]"),
+  EXPECT_THAT(error_message("vehicles: [generic, no_such]"), HasSubstr("key flight.vehicles: "));
+  EXPECT_THAT(error_message("vehicles: [generic, generic], pads: [[-75, 0, 0]]"),
               HasSubstr("key flight.pads has 1 take-off points for 2"));
-  EXPECT_THAT(complaint("vehicles: [generic, generic], pads: [[-70, 0, 0], [-75, 0, 0]]"),
+  EXPECT_THAT(error_message("vehicles: [generic, generic], pads: [[-70, 0, 0], [-75, 0, 0]]"),
               HasSubstr("key flight.takeoff must be the first of flight.pads"));
-  EXPECT_THAT(complaint("vehicle: generic, separation: 8"),
+  EXPECT_THAT(error_message("vehicle: generic, separation: 8"),
               HasSubstr("key flight.separation requires flight.vehicles"));
-  EXPECT_THAT(complaint("vehicle: generic, vehicles: [], pads: [[-75, 0, 0]]"),
+  EXPECT_THAT(error_message("vehicle: generic, vehicles: [], pads: [[-75, 0, 0]]"),
               HasSubstr("key flight.pads requires flight.vehicles"));
-  EXPECT_THAT(complaint("vehicles: [generic, generic], separation: 1"),
+  EXPECT_THAT(error_message("vehicles: [generic, generic], separation: 1"),
               HasSubstr("key flight.separation must be at least the sum of"));
-  EXPECT_THAT(complaint("vehicles: [generic, generic], style: fly-through"),
+  EXPECT_THAT(error_message("vehicles: [generic, generic], style: fly-through"),
               HasSubstr("key flight.style conflicts with flight.vehicles"));
 }
 

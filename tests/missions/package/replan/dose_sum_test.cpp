@@ -8,8 +8,8 @@
 namespace skycap::missions::package {
 namespace {
 
-using survey::skycap::GainField;
-using survey::skycap::Look;
+using survey::surfel::GainField;
+using survey::surfel::Observation;
 
 std::vector<GainField::Target> targets_weighing(const std::vector<float>& weights) {
   std::vector<GainField::Target> targets;
@@ -20,11 +20,11 @@ std::vector<GainField::Target> targets_weighing(const std::vector<float>& weight
 }
 
 // 1 - sum of w exp(-H) / sum of w, by hand.
-TEST(DoseSum, CoversWhatTheDoseModelSays) {
-  DoseSum sum(targets_weighing({1.0F, 3.0F}));
+TEST(ObservationSum, CoversWhatTheDoseModelSays) {
+  ObservationSum sum(targets_weighing({1.0F, 3.0F}));
   EXPECT_EQ(sum.covered(), 0.0);
-  sum.add(doses_of(std::vector<Look>{{0, 1.0F}, {1, 0.5F}}));
-  sum.add(doses_of(std::vector<Look>{{1, 1.5F}}));
+  sum.add(observation_strengths(std::vector<Observation>{{0, 1.0F}, {1, 0.5F}}));
+  sum.add(observation_strengths(std::vector<Observation>{{1, 1.5F}}));
   const double missing = (std::exp(-1.0) + 3.0 * std::exp(-2.0)) / 4.0;
   EXPECT_NEAR(sum.covered(), 1.0 - missing, 1e-6);  // weights and shares of 20 and 24 bits
   EXPECT_NEAR(static_cast<double>(sum.missing(1)) / static_cast<double>(sum.missing(0)),
@@ -32,32 +32,33 @@ TEST(DoseSum, CoversWhatTheDoseModelSays) {
 }
 
 // Hazards of a 256th: off by half of that at most, by chance either way.
-TEST(DoseSum, RoundsHazardsToWhatDoesNotMatter) {
-  DoseSum sum(targets_weighing({2.0F}));
+TEST(ObservationSum, RoundsHazardsToWhatDoesNotMatter) {
+  ObservationSum sum(targets_weighing({2.0F}));
   double hazard = 0.0;
   for (int i = 1; i <= 10; ++i) {
-    const float look = 0.0731F * static_cast<float>(i);
-    sum.add(doses_of(std::vector<Look>{{0, look}}));
-    hazard += double{look};
+    const float single_hazard = 0.0731F * static_cast<float>(i);
+    sum.add(observation_strengths(std::vector<Observation>{{0, single_hazard}}));
+    hazard += double{single_hazard};
     EXPECT_NEAR(sum.covered(), 1.0 - std::exp(-hazard), std::exp(-hazard) * i / 512.0 + 1e-6);
   }
 }
 
 // Views come and go ten thousand times in a search; nothing may stay of those that went.
-TEST(DoseSum, KeepsNoTraceOfViewsThatWent) {
+TEST(ObservationSum, KeepsNoTraceOfViewsThatWent) {
   std::mt19937_64 random(5);
   std::vector<float> weights;
   for (int i = 0; i < 500; ++i) weights.push_back(0.1F + static_cast<float>(random() % 1000));
   const auto targets = targets_weighing(weights);
-  std::vector<std::vector<Dose>> views(12);
+  std::vector<std::vector<ObservationStrength>> views(12);
   for (auto& view : views) {
-    std::vector<Look> looks;
+    std::vector<Observation> observations;
     for (std::uint32_t t = 0; t < 500; ++t) {
-      if (random() % 3 == 0) looks.push_back({t, static_cast<float>(random() % 7000) / 1000.0F});
+      if (random() % 3 == 0)
+        observations.push_back({t, static_cast<float>(random() % 7000) / 1000.0F});
     }
-    view = doses_of(looks);
+    view = observation_strengths(observations);
   }
-  DoseSum sum(targets);
+  ObservationSum sum(targets);
   std::vector<bool> is_in(views.size(), false);
   for (int i = 0; i < 5000; ++i) {
     const std::size_t v = random() % views.size();
@@ -68,7 +69,7 @@ TEST(DoseSum, KeepsNoTraceOfViewsThatWent) {
     }
     is_in[v] = !is_in[v];
   }
-  DoseSum fresh(targets);
+  ObservationSum fresh(targets);
   for (std::size_t v = views.size(); v-- > 0;) {
     if (is_in[v]) fresh.add(views[v]);
   }

@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 using geometry::View;
-using survey::skycap::GainField;
-using survey::skycap::Look;
+using survey::surfel::GainField;
+using survey::surfel::Observation;
 using testing::SizeIs;
 
 constexpr double rest = 2.0;  ///< at each view [s]
@@ -29,22 +29,22 @@ View down_at(double x, double y, double z = 1.0) { return {{x, y, z}, -Vector3d:
 /// Views see what is within `radius` of the place below them.
 struct PlaneWorld {
   explicit PlaneWorld(double radius) {
-    problem.looks = [this, radius](const View& view) {
+    problem.observations = [this, radius](const View& view) {
       ++asked;
-      std::vector<Look> looks;
+      std::vector<Observation> observations;
       for (std::uint32_t t = 0; t < targets.size(); ++t) {
         const Vector3d offset = targets[t].position.cast<double>() - view.position;
-        if (offset.head<2>().norm() <= radius) looks.push_back({t, certain});
+        if (offset.head<2>().norm() <= radius) observations.push_back({t, certain});
       }
-      return looks;
+      return observations;
     };
-    problem.view_of = [](const Vector3d& target, const Vector3d& towards, double distance) {
+    problem.find_view = [](const Vector3d& target, const Vector3d& towards, double distance) {
       return View{target + distance * towards, -towards};
     };
     problem.is_allowed = [](const View&) { return true; };
-    problem.is_in_free_space = problem.has_way_home = [](const View&) { return true; };
+    problem.is_in_free_space = problem.has_return_path = [](const View&) { return true; };
     problem.straight_time = [](const View* from, const View* to) {
-      return (place(to) - place(from)).norm();
+      return (random_coordinate(to) - random_coordinate(from)).norm();
     };
     problem.is_free = problem.has_returns = [](const View*, const View*) { return true; };
     problem.time_per_view = rest;
@@ -67,7 +67,7 @@ struct PlaneWorld {
     problem.targets = targets;
   }
 
-  static Vector3d place(const View* view) {
+  static Vector3d random_coordinate(const View* view) {
     return view == nullptr ? Vector3d::Zero() : view->position;
   }
 
@@ -87,24 +87,24 @@ struct PlaneWorld {
   int asked = 0;
 };
 
-TEST(SpareViews, DropsDuplicates) {
+TEST(RemoveViews, DropsDuplicates) {
   PlaneWorld world(1.0);
   world.add_cluster(10, 0, 0.5);
   world.add_cluster(20, 0, 0.5);
   const View a = down_at(10, 0), b = down_at(20, 0);
-  const FoundTour found = spare_views(world.problem, {a, a, b, a, b}, 0.999);
+  const FoundTour found = remove_views(world.problem, {a, a, b, a, b}, 0.999);
   ASSERT_THAT(found.views, SizeIs(2));
   EXPECT_EQ(found.views[0].position, a.position);
   EXPECT_EQ(found.views[1].position, b.position);
   EXPECT_DOUBLE_EQ(found.time, PlaneWorld::time({a, b}));
 }
 
-TEST(SpareViews, KeepsWhatIsNeeded) {
+TEST(RemoveViews, KeepsWhatIsNeeded) {
   PlaneWorld world(1.0);
   world.add_cluster(10, 0, 0.5);
   world.add_cluster(20, 0, 0.5);
   const std::vector<View> tour = {down_at(20, 0), down_at(10, 0)};
-  const FoundTour found = spare_views(world.problem, tour, covered_by(world.problem, tour));
+  const FoundTour found = remove_views(world.problem, tour, covered_by(world.problem, tour));
   EXPECT_THAT(found.views, SizeIs(2));
   EXPECT_EQ(found.covered, covered_by(world.problem, tour));
 }
@@ -120,32 +120,33 @@ TEST(Anneal, FindsTheLeastToursOfAKnownWorld) {
     start.push_back(down_at(x + 0.6, -0.3));
     start.push_back(down_at(x - 0.4, -0.5));
   }
-  const double wanted = 0.999;
-  ASSERT_GE(covered_by(world.problem, start), wanted);
-  constexpr double least = 2.0 * 29.5 + 3.0 * rest;
+  const double target_coverage = 0.999;
+  ASSERT_GE(covered_by(world.problem, start), target_coverage);
+  constexpr double min = 2.0 * 29.5 + 3.0 * rest;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const FoundTour found = anneal(world.problem, start, wanted, {.seed = seed});
+    const FoundTour found = anneal(world.problem, start, target_coverage, {.seed = seed});
     EXPECT_THAT(found.views, SizeIs(3)) << seed;
-    EXPECT_GE(found.covered, wanted);
+    EXPECT_GE(found.covered, target_coverage);
     EXPECT_NEAR(found.time, PlaneWorld::time(found.views), 1e-9);
-    EXPECT_GE(found.time, least - 1e-9);
-    EXPECT_LE(found.time, least + 1.5) << seed;
+    EXPECT_GE(found.time, min - 1e-9);
+    EXPECT_LE(found.time, min + 1.5) << seed;
   }
 }
 
 /// Sees nothing at its stops, and within a metre all along its ways.
-void measure_on_ways(PlaneWorld& world) {
-  world.problem.looks = [](const View&) { return std::vector<Look>(); };
-  world.problem.way_looks = [&world](const View* from, const View* to) {
-    const Vector3d a = PlaneWorld::place(from), way = PlaneWorld::place(to) - a;
-    std::vector<Look> looks;
+void measure_en_route(PlaneWorld& world) {
+  world.problem.observations = [](const View&) { return std::vector<Observation>(); };
+  world.problem.leg_observations = [&world](const View* from, const View* to) {
+    const Vector3d a = PlaneWorld::random_coordinate(from),
+                   displacement = PlaneWorld::random_coordinate(to) - a;
+    std::vector<Observation> observations;
     for (std::uint32_t t = 0; t < world.targets.size(); ++t) {
       const Vector3d offset = world.targets[t].position.cast<double>() - a;
-      const double share =
-          std::clamp(offset.dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
-      if ((offset - share * way).norm() <= 1.0) looks.push_back({t, certain});
+      const double share = std::clamp(
+          offset.dot(displacement) / std::max(displacement.squaredNorm(), 1e-12), 0.0, 1.0);
+      if ((offset - share * displacement).norm() <= 1.0) observations.push_back({t, certain});
     }
-    return looks;
+    return observations;
   };
 }
 
@@ -154,7 +155,7 @@ void measure_on_ways(PlaneWorld& world) {
 TEST(Anneal, CountsWhatIsMeasuredOnTheWays) {
   PlaneWorld world(1.0);
   for (int i = 1; i <= 20; ++i) world.add_target(i, 0.0);
-  measure_on_ways(world);
+  measure_en_route(world);
   const std::vector<View> whole = {down_at(7, 3, 0), down_at(22, 0, 0)};
   ASSERT_GE(covered_by(world.problem, whole), 0.999);
   for (const std::uint64_t seed : {1, 2, 3}) {
@@ -167,14 +168,14 @@ TEST(Anneal, CountsWhatIsMeasuredOnTheWays) {
 }
 
 // A stop that no way needs is spared, one that a way is bent by is kept.
-TEST(SpareViews, KnowsWhatTheWaysWithoutAViewSee) {
+TEST(RemoveViews, KnowsWhatTheWaysWithoutAViewSee) {
   PlaneWorld world(1.0);
   world.add_target(5, 0);
   world.add_target(10, 0);
   world.add_target(10, 10);
-  measure_on_ways(world);
+  measure_en_route(world);
   const FoundTour found =
-      spare_views(world.problem, {down_at(5, 0, 0), down_at(10, 0, 0), down_at(10, 10, 0)}, 0.999);
+      remove_views(world.problem, {down_at(5, 0, 0), down_at(10, 0, 0), down_at(10, 10, 0)}, 0.999);
   ASSERT_THAT(found.views, SizeIs(2));
   EXPECT_EQ(found.views[0].position, Vector3d(10, 0, 0));
   EXPECT_EQ(found.covered, covered_by(world.problem, found.views));
@@ -187,8 +188,8 @@ TEST(Anneal, KnowsWhatBendsTake) {
   for (const double x : {10.0, 20.0, 30.0}) world.add_cluster(x, 0, 0.5);
   world.problem.time_per_view = 0.1;
   world.problem.bend_time = [](const View* before, const View& at, const View* after) {
-    const Vector3d in = at.position - PlaneWorld::place(before);
-    const Vector3d out = PlaneWorld::place(after) - at.position;
+    const Vector3d in = at.position - PlaneWorld::random_coordinate(before);
+    const Vector3d out = PlaneWorld::random_coordinate(after) - at.position;
     if (in.norm() == 0.0 || out.norm() == 0.0) return 0.0;
     return 4.0 * (1.0 - in.normalized().dot(out.normalized()));
   };
@@ -207,8 +208,8 @@ TEST(Anneal, KnowsWhatBendsTake) {
     EXPECT_GE(found.covered, 0.999);
     const double rests = rest * static_cast<double>(found.views.size());
     const double own_rests = 0.1 * static_cast<double>(found.views.size());
-    const double flown = PlaneWorld::time(found.views) - rests;
-    EXPECT_NEAR(found.time, flown + own_rests + bends(found.views), 1e-9) << seed;
+    const double travel_time = PlaneWorld::time(found.views) - rests;
+    EXPECT_NEAR(found.time, travel_time + own_rests + bends(found.views), 1e-9) << seed;
     // Out and back on a line: one turn.
     EXPECT_LE(found.time, 2.0 * 29.5 + 8.0 + 1.5) << seed;
   }
@@ -220,23 +221,25 @@ TEST(Anneal, TakesOneViewForTwo) {
   world.add_cluster(15, 0, 1.5);
   const std::vector<View> start = {down_at(14, 0.3), down_at(16, -0.3)};
   ASSERT_LT(covered_by(world.problem, {start[0]}), 0.95);
-  const double wanted = covered_by(world.problem, start) - 1e-3;
-  EXPECT_THAT(anneal(world.problem, start, wanted, {}).views, SizeIs(1));
+  const double target_coverage = covered_by(world.problem, start) - 1e-3;
+  EXPECT_THAT(anneal(world.problem, start, target_coverage, {}).views, SizeIs(1));
 }
 
 // Property: whatever it begins from, what it gives covers as much and takes no longer.
 TEST(Anneal, IsNeverSlowerAndNeverCoversLess) {
   std::mt19937_64 random(7);
-  const auto place = [&] { return static_cast<double>(random() % 4000) / 100.0 - 20.0; };
+  const auto random_coordinate = [&] {
+    return static_cast<double>(random() % 4000) / 100.0 - 20.0;
+  };
   for (int world_number = 0; world_number < 8; ++world_number) {
     PlaneWorld world(4.0);
-    for (int i = 0; i < 40; ++i) world.add_target(place(), place());
+    for (int i = 0; i < 40; ++i) world.add_target(random_coordinate(), random_coordinate());
     std::vector<View> start;
-    for (int i = 0; i < 12; ++i) start.push_back(down_at(place(), place()));
-    const double wanted = covered_by(world.problem, start);
+    for (int i = 0; i < 12; ++i) start.push_back(down_at(random_coordinate(), random_coordinate()));
+    const double target_coverage = covered_by(world.problem, start);
     const FoundTour found =
-        anneal(world.problem, start, wanted, {.moves_per_view = 200, .seed = 3});
-    EXPECT_GE(found.covered, wanted);
+        anneal(world.problem, start, target_coverage, {.moves_per_view = 200, .seed = 3});
+    EXPECT_GE(found.covered, target_coverage);
     EXPECT_EQ(found.covered, covered_by(world.problem, found.views));
     EXPECT_LE(found.time, PlaneWorld::time(start) + 1e-9);
   }
@@ -246,10 +249,10 @@ TEST(Anneal, GivesTheSameTourAgain) {
   PlaneWorld world(3.0);
   for (const double x : {8.0, 16.0, 24.0}) world.add_cluster(x, x / 2.0, 1.0);
   const std::vector<View> start = {down_at(8, 4), down_at(16, 8), down_at(24, 12), down_at(9, 5)};
-  const double wanted = covered_by(world.problem, start);
+  const double target_coverage = covered_by(world.problem, start);
   const SearchSettings settings{.moves_per_view = 300, .seed = 11};
-  const FoundTour one = anneal(world.problem, start, wanted, settings);
-  const FoundTour two = anneal(world.problem, start, wanted, settings);
+  const FoundTour one = anneal(world.problem, start, target_coverage, settings);
+  const FoundTour two = anneal(world.problem, start, target_coverage, settings);
   ASSERT_EQ(one.views.size(), two.views.size());
   for (std::size_t i = 0; i < one.views.size(); ++i) {
     EXPECT_EQ(one.views[i].position, two.views[i].position);
@@ -285,15 +288,18 @@ TEST(Anneal, DoesNotGoBackAndForthThroughAWall) {
       start.push_back(down_at(x, y));
     }
   }
-  const auto passes = [](const View* from, const View* to) {
-    const double a = PlaneWorld::place(from).y(), b = PlaneWorld::place(to).y();
+  const auto is_fly_through = [](const View* from, const View* to) {
+    const double a = PlaneWorld::random_coordinate(from).y(),
+                 b = PlaneWorld::random_coordinate(to).y();
     return a * b < 0.0;
   };
-  world.problem.is_free = [&](const View* from, const View* to) { return !passes(from, to); };
+  world.problem.is_free = [&](const View* from, const View* to) {
+    return !is_fly_through(from, to);
+  };
   const FoundTour found = anneal(world.problem, start, 0.999, {});
   int passed = 0;
   for (std::size_t i = 1; i < found.views.size(); ++i) {
-    passed += passes(&found.views[i - 1], &found.views[i]) ? 1 : 0;
+    passed += is_fly_through(&found.views[i - 1], &found.views[i]) ? 1 : 0;
   }
   EXPECT_EQ(passed, 1);
   EXPECT_GT(found.time, PlaneWorld::time(found.views)) << "a blocked way is not free of charge";
@@ -305,7 +311,8 @@ TEST(Anneal, LeavesPlacesWithoutAWayHome) {
   world.add_cluster(10, 0, 0.5);
   world.add_cluster(20, 0, 0.5);
   world.problem.has_returns = [](const View* from, const View* to) {
-    return PlaneWorld::place(from).x() <= 20.0 && PlaneWorld::place(to).x() <= 20.0;
+    return PlaneWorld::random_coordinate(from).x() <= 20.0 &&
+           PlaneWorld::random_coordinate(to).x() <= 20.0;
   };
   const std::vector<View> start = {down_at(10, 0), down_at(20.5, 0)};
   const FoundTour found = anneal(world.problem, start, 0.999, {});
@@ -322,7 +329,7 @@ TEST(Anneal, MakesUpForViewsThatHadToBeLeftOut) {
   const auto has_none = [](const View& view) {
     return view.position.x() > 15.0 && view.position.x() < 20.5;
   };
-  world.problem.has_way_home = std::not_fn(has_none);
+  world.problem.has_return_path = std::not_fn(has_none);
   const FoundTour found = anneal(world.problem, {down_at(10, 0)}, 0.999, {});
   EXPECT_THAT(found.views, SizeIs(2));
   EXPECT_GT(found.covered, 0.999);

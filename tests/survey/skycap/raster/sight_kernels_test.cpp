@@ -20,9 +20,9 @@ using Eigen::Vector3d;
 
 constexpr std::size_t count = 1003;  // no multiple of a vector's length
 
-class SightKernels : public testing::Test {
+class VisibilityKernels : public testing::Test {
  protected:
-  SightKernels() {
+  VisibilityKernels() {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<float> coordinate(-4.0F, 4.0F);
     for (auto* points : {&positions, &normals}) {
@@ -42,7 +42,7 @@ class SightKernels : public testing::Test {
     }
   }
 
-  static skycap::PointArrays arrays_of(const std::array<std::vector<float>, 3>& points) {
+  static surfel::PointArrays to_arrays(const std::array<std::vector<float>, 3>& points) {
     return {points[0].data(), points[1].data(), points[2].data()};
   }
   Vector3d in_camera(std::size_t i) const {
@@ -56,23 +56,23 @@ class SightKernels : public testing::Test {
   const geometry::View view = geometry::look_at({-5.0, 0.5, 1.0}, {0.0, 0.0, 0.0});
   const Eigen::Matrix3d axes = geometry::camera_pose(view).linear();
   std::array<std::vector<float>, 3> positions, normals;
-  skycap::RasterView raster{.focal_length = 40.0F,
+  surfel::RasterView raster{.focal_length = 40.0F,
                             .width = 60.0F,
                             .height = 50.0F,
-                            .stride = 62 + skycap::row_margin,
-                            .outside = (62 + skycap::row_margin) * 52,
+                            .stride = 62 + surfel::row_margin,
+                            .outside = (62 + surfel::row_margin) * 52,
                             .half_slope = {0.75F, 0.62F},
-                            .least_range = 2.0F,
-                            .most_range = 7.0F,
-                            .least_cosine = 0.2F};
+                            .min_range = 2.0F,
+                            .max_range = 7.0F,
+                            .min_cosine = 0.2F};
 };
 
 // Twin in double precision. Coordinates within a thousandth of a pixel's edge may round either way.
-TEST_F(SightKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
+TEST_F(VisibilityKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
   std::vector<std::uint32_t> pixels(count);
   std::vector<float> depths(count);
   std::vector<std::int32_t> sizes(count);
-  skycap::project_points(raster, count, arrays_of(positions), 0.1F,
+  surfel::project_points(raster, count, to_arrays(positions), 0.1F,
                          {pixels.data(), depths.data(), sizes.data()});
   int inside = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -101,7 +101,7 @@ TEST_F(SightKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
 
 // Twin: each square drawn pixel by pixel. Points come as near as a few centimetres, where squares
 // are wider than the raster.
-TEST_F(SightKernels, DepthsAreThoseOfTheNearestSquares) {
+TEST_F(VisibilityKernels, DepthsAreThoseOfTheNearestSquares) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<float> nearness(0.02F, 1.0F);
   for (std::size_t i = 0; i < count; ++i) {
@@ -114,11 +114,11 @@ TEST_F(SightKernels, DepthsAreThoseOfTheNearestSquares) {
   std::vector<std::uint32_t> pixels(count);
   std::vector<float> depths(count);
   std::vector<std::int32_t> sizes(count);
-  skycap::DepthRaster drawn;
+  surfel::DepthRaster drawn;
   for (const float spacing : {0.1F, 0.02F, 0.3F}) {
-    skycap::project_points(raster, count, arrays_of(positions), spacing,
+    surfel::project_points(raster, count, to_arrays(positions), spacing,
                            {pixels.data(), depths.data(), sizes.data()});
-    drawn.draw(raster, count, arrays_of(positions), spacing);
+    drawn.draw(raster, count, to_arrays(positions), spacing);
     std::vector<float> expected(raster.outside, std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < count; ++i) {
       if (pixels[i] == raster.outside) continue;
@@ -137,14 +137,14 @@ TEST_F(SightKernels, DepthsAreThoseOfTheNearestSquares) {
         ASSERT_EQ(drawn.depth(pixel), expected[pixel]) << row << ' ' << column << ' ' << spacing;
       }
     }
-    EXPECT_GT(*std::ranges::max_element(sizes), spacing > 0.05F ? 60 : skycap::largest_window);
+    EXPECT_GT(*std::ranges::max_element(sizes), spacing > 0.05F ? 60 : surfel::largest_window);
   }
 }
 
-TEST_F(SightKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {
+TEST_F(VisibilityKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {
   std::vector<std::uint32_t> in_view(count), pixels(count);
   std::vector<float> depths(count), cosines(count), densities(count), slopes(count);
-  skycap::project_targets(raster, 1e4F, count, arrays_of(positions), arrays_of(normals),
+  surfel::project_targets(raster, 1e4F, count, to_arrays(positions), to_arrays(normals),
                           {in_view.data(), pixels.data(), depths.data(), cosines.data(),
                            densities.data(), slopes.data()});
   std::uint32_t seen = 0;
@@ -154,9 +154,9 @@ TEST_F(SightKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {
     EXPECT_NEAR(cosines[i], cosine, 1e-5);
     const std::array<double, 5> margins = {p.z() - 2.0, 7.0 - p.z(), 0.75 * p.z() - std::abs(p.x()),
                                            0.62 * p.z() - std::abs(p.y()), cosine - 0.2};
-    const double least = *std::ranges::min_element(margins);
-    if (std::abs(least) < 1e-4) continue;  // single precision may decide otherwise
-    EXPECT_EQ(in_view[i], least > 0.0 ? 1U : 0U) << "target " << i;
+    const double min = *std::ranges::min_element(margins);
+    if (std::abs(min) < 1e-4) continue;  // single precision may decide otherwise
+    EXPECT_EQ(in_view[i], min > 0.0 ? 1U : 0U) << "target " << i;
     if (in_view[i] == 0) {
       EXPECT_EQ(pixels[i], raster.outside);
     }
