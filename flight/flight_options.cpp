@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "flight/clearance/prior_obstacle.h"
 #include "flight/motion/flight_time_range.h"
-#include "flight/space/prior_obstacle.h"
-#include "flight/way_home/return_law.h"
+#include "flight/rtl/rtl_profile.h"
 
 namespace skycap::flight {
 namespace {

@@ -14,20 +14,20 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/clearance/measured_space.h"
+#include "flight/clearance/obstacles.h"
 #include "flight/export/geodesy.h"
 #include "flight/fleet/fleet_goal.h"
 #include "flight/fleet/separation.h"
 #include "flight/interpreter/flight_facts.h"
 #include "flight/motion/flight_style.h"
-#include "flight/motion/picture_bounds.h"
+#include "flight/motion/image_motion_bounds.h"
 #include "flight/motion/vehicle.h"
-#include "flight/route/pad_ground.h"
+#include "flight/route/landing_surface.h"
 #include "flight/route/route.h"
-#include "flight/space/measured_space.h"
-#include "flight/space/obstacles.h"
 #include "geometry/angle.h"
-#include "geometry/place/camera.h"
-#include "geometry/place/platform.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/platform.h"
 
 namespace skycap::flight {
 

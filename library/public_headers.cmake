@@ -3,9 +3,9 @@ set(public_headers
   geometry/error.h
   geometry/io/cloud_io.h
   geometry/io/mesh_io.h
-  geometry/place/camera.h
-  geometry/place/pose.h
-  geometry/place/prism.h
+  geometry/pose/camera.h
+  geometry/pose/pose.h
+  geometry/pose/prism.h
   geometry/points/point_cloud.h
   geometry/points/scan.h
   geometry/points/usable_scan.h
@@ -20,18 +20,18 @@ set(public_headers
   sim/sensors/trajectory.h
   survey/planner.h
   survey/see/see.h
-  survey/skycap/skycap_planner.h
-  survey/skycap/survey_belief.h
+  survey/surfel/surfel_planner.h
+  survey/surfel/survey_estimate.h
   survey/survey_loop.h
   survey/view_limits.h
   flight/export/export.h
   flight/export/flight_plan.h
   flight/export/geodesy.h
-  flight/interpreter/certified_export.h
+  flight/interpreter/verified_export.h
   flight/motion/vehicle.h
   flight/route/route.h
-  flight/space/clearance.h
-  flight/space/obstacles.h
+  flight/clearance/clearance.h
+  flight/clearance/obstacles.h
   missions/api/evaluation.h
   missions/api/laser_scan.h
   missions/api/mission.h
@@ -46,22 +46,22 @@ set(supporting_headers
   flight/motion/curve.h
   flight/motion/flight_style.h
   flight/motion/motion.h
-  flight/motion/passage.h
+  flight/motion/fly_through.h
   flight/motion/smoothing.h
   flight/paths/path.h
-  flight/route/pad_ground.h
-  flight/space/segment_distance.h
-  flight/way_home/least_return.h
-  flight/way_home/return_law.h
-  flight/way_home/return_proof.h
-  geometry/directions/spherical_cap.h
+  flight/route/landing_surface.h
+  flight/clearance/segment_distance.h
+  flight/rtl/min_return_altitude.h
+  flight/rtl/rtl_profile.h
+  flight/rtl/return_verification.h
+  geometry/spherical_cap/spherical_cap.h
   geometry/points/outlier_rule.h
   sim/sensors/depth_camera_config.h
   sim/sensors/navigation_errors.h
   sim/sensors/noise.h
-  survey/see/readings.h
+  survey/see/method_variants.h
   survey/see/see_config.h
   survey/coverage_estimator.h
   survey/survey_limits.h
-  survey/skycap/prior_surface.h
-  survey/skycap/skycap_config.h)
+  survey/surfel/prior_surface.h
+  survey/surfel/surfel_config.h)

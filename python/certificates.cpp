@@ -5,9 +5,9 @@
 
 #include <pybind11/stl.h>
 
+#include "flight/clearance/obstacles.h"
 #include "flight/route/route.h"
-#include "flight/space/obstacles.h"
-#include "geometry/place/prism.h"
+#include "geometry/pose/prism.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/interruptible.h"

@@ -1,8 +1,8 @@
 // Views and cameras.
 #include <string>
 
-#include "geometry/place/camera.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/pose.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/point_cloud.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/pose.h"
 #include "survey/survey_limits.h"
 
 namespace skycap::survey {

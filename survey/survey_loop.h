@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/pose.h"
 #include "survey/planner.h"
 #include "survey/survey_limits.h"
 

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
-#include "geometry/place/prism.h"
+#include "geometry/pose/pose.h"
+#include "geometry/pose/prism.h"
 
 namespace skycap::survey {
 

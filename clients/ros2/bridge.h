@@ -10,10 +10,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "clients/ros2/complaints.h"
 #include "clients/ros2/frames.h"
 #include "clients/ros2/pose_history.h"
 #include "clients/ros2/sensor_scan.h"
+#include "clients/ros2/throttled_warnings.h"
 #include "clients/ros2/transforms.h"
 #include "clients/skycap_live.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "clients/ros2/complaints.h"
+#include "clients/ros2/throttled_warnings.h"
 #include "geometry/error.h"
 
 namespace skycap::ros2 {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "clients/ros2/complaints.h"
+#include "clients/ros2/throttled_warnings.h"
 #include "geometry/error.h"
 
 namespace skycap::ros2 {

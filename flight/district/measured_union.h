@@ -8,9 +8,9 @@
 
 #include <vector>
 
-#include "flight/space/bounding_tree.h"
-#include "flight/space/clearance.h"
-#include "flight/space/measured_space.h"
+#include "flight/clearance/bounding_tree.h"
+#include "flight/clearance/clearance.h"
+#include "flight/clearance/measured_space.h"
 
 namespace skycap::flight {
 

@@ -12,7 +12,7 @@
 #include "flight/export/wpml_file.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "geometry/text_parts.h"
 
 namespace skycap::flight {

@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/obstacles.h"
 #include "flight/export/geodesy.h"
 #include "flight/route/route.h"
-#include "flight/space/obstacles.h"
 
 namespace skycap::flight {
 

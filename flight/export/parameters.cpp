@@ -5,8 +5,8 @@
 #include <cmath>
 #include <span>
 
-#include "flight/way_home/least_return.h"
-#include "flight/way_home/return_law.h"
+#include "flight/rtl/min_return_altitude.h"
+#include "flight/rtl/rtl_profile.h"
 #include "geometry/error.h"
 #include "geometry/text_parts.h"
 

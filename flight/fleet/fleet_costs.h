@@ -6,10 +6,10 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/fleet/fleet_problem.h"
 #include "flight/motion/vehicle.h"
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

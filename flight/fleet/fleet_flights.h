@@ -6,7 +6,7 @@
 #include <span>
 
 #include "flight/fleet/separation.h"
-#include "flight/fly_test/fly_test.h"
+#include "flight/monte_carlo/monte_carlo.h"
 
 namespace skycap::flight {
 

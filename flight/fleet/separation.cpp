@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "flight/space/segment_distance.h"
+#include "flight/clearance/segment_distance.h"
 
 namespace skycap::flight {
 namespace {

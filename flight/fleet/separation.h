@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-#include "flight/fly_test/flight_script.h"
+#include "flight/monte_carlo/flight_script.h"
 
 namespace skycap::flight {
 

@@ -3,7 +3,7 @@
 
 #include "flight/export/mavlink_files.h"
 #include "flight/interpreter/flight_facts.h"
-#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpreted_route.h"
 
 namespace skycap::flight {
 

@@ -6,10 +6,10 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/obstacles.h"
 #include "flight/export/flight_plan.h"
 #include "flight/motion/vehicle.h"
-#include "flight/space/obstacles.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::flight {
 

@@ -6,7 +6,7 @@
 #include "flight/interpreter/wpml_interpreter.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 
 namespace skycap::flight {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "flight/export/export.h"
 #include "flight/interpreter/flight_facts.h"
-#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpreted_route.h"
 
 namespace skycap::flight {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpreted_route.h"
 
 namespace skycap::flight {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "flight/interpreter/flight_facts.h"
-#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpreted_route.h"
 
 namespace skycap::flight {
 

@@ -9,7 +9,7 @@
 
 #include "flight/export/wpml_file.h"
 #include "flight/interpreter/flight_facts.h"
-#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpreted_route.h"
 
 namespace skycap::flight {
 

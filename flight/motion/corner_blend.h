@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/motion/curve.h"
 #include "flight/motion/motion.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

@@ -13,8 +13,8 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/motion/motion.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

@@ -8,9 +8,9 @@
 /// long as the curve, slowed to all limits, becomes faster.
 #pragma once
 
+#include "flight/clearance/clearance.h"
 #include "flight/motion/curve.h"
 #include "flight/motion/motion.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

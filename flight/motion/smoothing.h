@@ -6,10 +6,10 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/motion/curve.h"
 #include "flight/motion/flight_style.h"
 #include "flight/motion/motion.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

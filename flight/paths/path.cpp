@@ -6,7 +6,7 @@
 #include <queue>
 #include <string>
 
-#include "flight/space/cell_map.h"
+#include "flight/clearance/cell_map.h"
 #include "geometry/error.h"
 #include "geometry/points/hash_grid.h"
 

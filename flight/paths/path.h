@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-#include "flight/space/clearance.h"
+#include "flight/clearance/clearance.h"
 
 namespace skycap::flight {
 

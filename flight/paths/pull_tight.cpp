@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "flight/paths/path.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::flight {
 namespace {

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "flight/motion/passage.h"
+#include "flight/motion/fly_through.h"
 #include "flight/motion/smoothing.h"
-#include "flight/way_home/ways_home.h"
+#include "flight/rtl/return_paths.h"
 
 namespace skycap::flight {
 namespace {

@@ -1,10 +1,10 @@
 /// Alternatives to stop-and-go flight on a verified route: curved legs and fly-through capture.
 #pragma once
 
+#include "flight/clearance/clearance.h"
 #include "flight/motion/motion.h"
 #include "flight/route/leg_costs.h"
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

@@ -9,7 +9,7 @@
 #include "flight/route/leg_planner.h"
 #include "flight/route/route.h"
 #include "flight/route/sortie_split.h"
-#include "flight/way_home/ways_home.h"
+#include "flight/rtl/return_paths.h"
 
 namespace skycap::flight {
 

@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/paths/path.h"
-#include "flight/space/clearance.h"
-#include "flight/way_home/ways_home.h"
+#include "flight/rtl/return_paths.h"
 
 namespace skycap::flight {
 

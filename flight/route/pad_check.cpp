@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "flight/space/place_text.h"
+#include "flight/clearance/position_text.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {

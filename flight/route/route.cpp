@@ -10,7 +10,7 @@
 #include "flight/route/route_legs.h"
 #include "flight/route/sortie_split.h"
 #include "flight/route/tour.h"
-#include "flight/way_home/ways_home.h"
+#include "flight/rtl/return_paths.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {

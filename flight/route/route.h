@@ -10,15 +10,15 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
+#include "flight/motion/fly_through.h"
 #include "flight/motion/motion.h"
-#include "flight/motion/passage.h"
 #include "flight/motion/smoothing.h"
 #include "flight/motion/vehicle.h"
 #include "flight/paths/path.h"
-#include "flight/route/pad_ground.h"
-#include "flight/space/clearance.h"
-#include "flight/way_home/least_return.h"
-#include "geometry/place/pose.h"
+#include "flight/route/landing_surface.h"
+#include "flight/rtl/min_return_altitude.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::flight {
 

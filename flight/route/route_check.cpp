@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "flight/clearance/position_text.h"
 #include "flight/route/route.h"
-#include "flight/space/place_text.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "flight/clearance/position_text.h"
 #include "flight/motion/flight_time_range.h"
-#include "flight/space/place_text.h"
 
 namespace skycap::flight {
 

@@ -7,11 +7,11 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/motion/motion.h"
 #include "flight/route/leg_costs.h"
 #include "flight/route/leg_planner.h"
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

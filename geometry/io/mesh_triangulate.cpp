@@ -10,9 +10,9 @@
 
 #include "geometry/error.h"
 #include "geometry/io/mesh_formats.h"
-#include "geometry/place/pose.h"
-#include "geometry/place/prism.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/pose.h"
+#include "geometry/pose/prism.h"
+#include "geometry/pose/world.h"
 #include "geometry/surfaces/ear_clipping.h"
 
 namespace skycap::geometry {

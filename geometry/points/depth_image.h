@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "geometry/place/camera.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/camera.h"
 
 namespace skycap::geometry {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/principal_axes.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::geometry {
 namespace {

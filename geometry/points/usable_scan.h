@@ -1,8 +1,8 @@
 /// Validation of scans from external sources.
 #pragma once
 
-#include "geometry/place/camera.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/camera.h"
 
 namespace skycap::geometry {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/place/prism.h"
+#include "geometry/pose/prism.h"
 
 namespace skycap::geometry {
 namespace {

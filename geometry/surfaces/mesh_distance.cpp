@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/parallel.h"
-#include "geometry/place/space_curve.h"
+#include "geometry/pose/space_curve.h"
 #include "geometry/surfaces/distance_kernels.h"
 #include "geometry/surfaces/facet_tree.h"
 

@@ -10,7 +10,7 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::geometry {
 namespace {

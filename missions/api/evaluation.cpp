@@ -4,7 +4,7 @@
 #include <string>
 
 #include "geometry/error.h"
-#include "missions/evaluation/cloud_judge.h"
+#include "missions/evaluation/cloud_evaluator.h"
 
 namespace skycap::missions::api {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "geometry/surfaces/mesh.h"
 #include "survey/planner.h"
 

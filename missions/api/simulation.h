@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/pose.h"
 #include "missions/api/mission.h"
 
 namespace skycap::missions::api {

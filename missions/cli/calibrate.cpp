@@ -8,7 +8,7 @@
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/config/vehicle_reader.h"
 #include "missions/support/number_text.h"
 

@@ -7,16 +7,16 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "flight/clearance/position_text.h"
 #include "flight/export/export.h"
 #include "flight/interpreter/interpret.h"
-#include "flight/space/place_text.h"
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/config/resolve.h"
 #include "missions/config/setup_text.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/package/fleet/timetable_proof.h"
+#include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
 #include "missions/package/settings.h"

@@ -4,9 +4,9 @@
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
-#include "missions/cli/verb_options.h"
-#include "missions/cli/verbs.h"
-#include "missions/package/fleet/timetable_proof.h"
+#include "missions/cli/command_options.h"
+#include "missions/cli/commands.h"
+#include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"

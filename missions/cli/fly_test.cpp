@@ -1,5 +1,3 @@
-#include "flight/fly_test/fly_test.h"
-
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -10,13 +8,14 @@
 
 #include "flight/export/export.h"
 #include "flight/interpreter/interpret.h"
+#include "flight/monte_carlo/monte_carlo.h"
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
+#include "missions/cli/commands.h"
 #include "missions/cli/fly_test_report.h"
-#include "missions/cli/verbs.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/package/fleet/timetable_proof.h"
+#include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
 #include "missions/package/verification/stated_return.h"

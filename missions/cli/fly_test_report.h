@@ -8,7 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "flight/fleet/fleet_flights.h"
-#include "flight/fly_test/fly_test.h"
+#include "flight/monte_carlo/monte_carlo.h"
 
 namespace skycap::missions::cli {
 

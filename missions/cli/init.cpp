@@ -14,7 +14,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/cli/verb_options.h"
+#include "missions/cli/command_options.h"
 #include "missions/config/resolve.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/config/vehicle_reader.h"

@@ -6,7 +6,7 @@
 
 #include "geometry/error.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/session/opening_flight.h"
+#include "missions/session/initial_pattern_flight.h"
 #include "missions/support/identity.h"
 #include "sim/sensors/survey_sensor.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/angle.h"
-#include "missions/cli/verb_options.h"
+#include "missions/cli/command_options.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/config/vehicle_reader.h"
 

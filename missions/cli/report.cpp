@@ -1,5 +1,5 @@
 #include "geometry/io/file.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/report/result_pages.h"
 
 namespace skycap::missions::cli {

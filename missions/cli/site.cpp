@@ -4,7 +4,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
-#include "missions/cli/verb_options.h"
+#include "missions/cli/command_options.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/report/cloud_page.h"

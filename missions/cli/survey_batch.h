@@ -14,8 +14,8 @@
 
 #include "geometry/io/output_folder.h"
 #include "missions/batch/campaign/survey_batch.h"
+#include "missions/cli/command_options.h"
 #include "missions/cli/console.h"
-#include "missions/cli/verb_options.h"
 
 namespace skycap::missions::cli {
 

@@ -10,7 +10,7 @@
 
 #include "geometry/io/output_folder.h"
 #include "missions/batch/campaign/task_job.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 
 namespace skycap::missions::cli {
 

@@ -2,7 +2,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/report/cloud_page.h"

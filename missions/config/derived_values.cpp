@@ -6,7 +6,7 @@
 
 #include "flight/motion/motion.h"
 #include "flight/route/route.h"
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "missions/site_data/site_priors.h"
 #include "missions/site_data/surface_points.h"
 #include "sim/sensors/scanner_field.h"

@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/flight_options.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/config/mission_document.h"
 #include "survey/planners/planner_options.h"
 #include "survey/view_limits.h"

@@ -18,17 +18,17 @@
 #include <Eigen/Geometry>
 
 #include "flight/flight_options.h"
-#include "geometry/place/prism.h"
+#include "geometry/pose/prism.h"
 #include "missions/evaluation/simulation_options.h"
 #include "missions/online/live/live_options.h"
 #include "missions/scan/scan_options.h"
 #include "missions/scene/scene_options.h"
-#include "missions/session/opening_flight.h"
+#include "missions/session/initial_pattern_flight.h"
 #include "missions/site_data/source.h"
 #include "sim/sensors/survey_sensor.h"
 #include "survey/planners/planner_names.h"
 #include "survey/see/see_config.h"
-#include "survey/skycap/skycap_config.h"
+#include "survey/surfel/surfel_config.h"
 #include "survey/survey_limits.h"
 #include "survey/volumetric/volumetric_config.h"
 

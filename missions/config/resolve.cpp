@@ -9,7 +9,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/record_log.h"
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "missions/config/derived_values.h"
 #include "missions/config/key_texts.h"
 #include "missions/config/mission_keys.h"

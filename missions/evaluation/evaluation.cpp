@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "geometry/parallel.h"
-#include "geometry/place/space_curve.h"
+#include "geometry/pose/space_curve.h"
 #include "geometry/random_numbers.h"
 #include "missions/evaluation/coverage.h"
-#include "missions/evaluation/thinned_cloud.h"
+#include "missions/evaluation/downsampled_cloud.h"
 
 namespace skycap::missions::evaluation {
 namespace {

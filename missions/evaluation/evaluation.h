@@ -12,8 +12,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/pose.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::missions::evaluation {

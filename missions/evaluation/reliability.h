@@ -8,7 +8,7 @@
 #include <span>
 
 #include "geometry/surfaces/mesh.h"
-#include "survey/skycap/survey_belief.h"
+#include "survey/surfel/survey_estimate.h"
 
 namespace skycap::missions::evaluation {
 

@@ -15,7 +15,7 @@
 #include "geometry/random_numbers.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
-#include "missions/session/opening_flight.h"
+#include "missions/session/initial_pattern_flight.h"
 #include "missions/support/sha256.h"
 #include "sim/sensors/survey_sensor.h"
 

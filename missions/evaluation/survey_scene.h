@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "geometry/surfaces/mesh.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/evaluation/evaluation.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "geometry/io/output_folder.h"
-#include "missions/evaluation/cloud_judge.h"
+#include "missions/evaluation/cloud_evaluator.h"
 
 namespace skycap::missions::evaluation {
 

@@ -10,7 +10,7 @@
 
 #include "geometry/io/cloud_io.h"
 #include "geometry/surfaces/mesh.h"
-#include "survey/skycap/skycap_planner.h"
+#include "survey/surfel/surfel_planner.h"
 
 namespace skycap::missions::package {
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include "flight/fleet/certified_costs.h"
+#include "flight/clearance/interruptible_space.h"
+#include "flight/clearance/position_text.h"
 #include "flight/fleet/fleet_split.h"
 #include "flight/fleet/timetable.h"
-#include "flight/space/interruptible_space.h"
-#include "flight/space/place_text.h"
+#include "flight/fleet/verified_costs.h"
 #include "geometry/error.h"
-#include "missions/package/fleet/timetable_proof.h"
+#include "missions/package/fleet/timetable_verification.h"
 
 namespace skycap::missions::package {
 namespace {

@@ -9,10 +9,10 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/measured_space.h"
 #include "flight/fleet/fleet_bound.h"
 #include "flight/flight_options.h"
 #include "flight/route/route.h"
-#include "flight/space/measured_space.h"
 #include "geometry/io/output_folder.h"
 #include "missions/package/fleet/timetable_file.h"
 #include "missions/package/flight_files.h"

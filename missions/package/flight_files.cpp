@@ -7,10 +7,10 @@
 #include <string_view>
 #include <utility>
 
+#include "flight/clearance/clearance.h"
+#include "flight/clearance/interruptible_space.h"
 #include "flight/export/parameters.h"
-#include "flight/interpreter/certified_export.h"
-#include "flight/space/clearance.h"
-#include "flight/space/interruptible_space.h"
+#include "flight/interpreter/verified_export.h"
 #include "geometry/error.h"
 #include "missions/package/fleet/timetable_file.h"
 

@@ -11,12 +11,12 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/export/export.h"
 #include "flight/flight_options.h"
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
 #include "geometry/io/output_folder.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/package/replan/mission_choice.h"
 
 namespace skycap::missions::package {

@@ -7,10 +7,10 @@
 
 #include "flight/export/parameters.h"
 #include "flight/route/route.h"
-#include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
-#include "missions/session/way_frames.h"
+#include "missions/package/replanned_mission.h"
+#include "missions/session/en_route_frames.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::package {

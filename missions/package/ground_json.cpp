@@ -4,7 +4,7 @@
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "missions/support/json_text.h"
 
 namespace skycap::missions::package {

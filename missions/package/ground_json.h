@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "flight/route/pad_ground.h"
+#include "flight/route/landing_surface.h"
 
 namespace skycap::missions::package {
 

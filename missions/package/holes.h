@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "geometry/surfaces/mesh.h"
-#include "survey/skycap/skycap_planner.h"
+#include "survey/surfel/surfel_planner.h"
 
 namespace skycap::missions::package {
 

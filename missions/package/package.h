@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "flight/space/measured_space.h"
+#include "flight/clearance/measured_space.h"
 #include "geometry/io/output_folder.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/config/key_override.h"
 #include "missions/config/mission_setup.h"
 #include "missions/evaluation/survey_scene.h"
@@ -20,7 +20,7 @@
 #include "missions/package/flight_files.h"
 #include "missions/simulation/measurement.h"
 #include "missions/simulation/survey_runner.h"
-#include "survey/skycap/skycap_planner.h"
+#include "survey/surfel/surfel_planner.h"
 
 namespace skycap::missions::package {
 

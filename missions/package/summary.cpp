@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "missions/evaluation/reliability.h"
-#include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/package/replanned_mission.h"
 #include "missions/package/route_json.h"
 #include "missions/package/settings.h"
 #include "missions/package/target_coverage.h"

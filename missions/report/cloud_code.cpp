@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/place/space_curve.h"
+#include "geometry/pose/space_curve.h"
 #include "missions/report/script_text.h"
 
 namespace skycap::missions::report {

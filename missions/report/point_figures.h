@@ -9,7 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "geometry/io/cloud_io.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::missions::report {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "flight/space/obstacles.h"
+#include "flight/clearance/obstacles.h"
 #include "missions/site_data/prior_text.h"
 #include "missions/site_data/site_priors.h"
 #include "missions/site_data/terrain.h"

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "flight/clearance/free_boundary.h"
 #include "flight/export/geodesy.h"
-#include "flight/space/free_boundary.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/report/results.h"
 #include "missions/scene/scene_options.h"
 #include "missions/session/survey_options.h"

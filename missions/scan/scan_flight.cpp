@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
-#include "geometry/place/platform.h"
+#include "geometry/pose/platform.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::scan {

@@ -1,6 +1,6 @@
 #include "missions/scan/scan_options.h"
 
-#include "geometry/place/platform.h"
+#include "geometry/pose/platform.h"
 
 namespace skycap::missions::scan {
 

@@ -11,7 +11,7 @@
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::scan {

@@ -13,7 +13,7 @@
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/record_log.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_tiles.h"
 #include "missions/site_data/prior.h"

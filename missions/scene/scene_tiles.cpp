@@ -15,7 +15,7 @@
 #include "geometry/io/json.h"
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "geometry/split_mix.h"
 #include "missions/scene/scene_source.h"
 #include "missions/support/json_text.h"

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/session/survey_flight.h"
 
 namespace skycap::missions::session {

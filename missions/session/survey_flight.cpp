@@ -6,16 +6,16 @@
 #include <string>
 #include <utility>
 
+#include "flight/clearance/clearance.h"
+#include "flight/clearance/interruptible_space.h"
 #include "flight/route/leg_planner.h"
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
-#include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
 #include "geometry/interrupted.h"
 #include "geometry/parallel.h"
-#include "geometry/place/camera.h"
-#include "geometry/place/platform.h"
-#include "missions/session/way_frames.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/platform.h"
+#include "missions/session/en_route_frames.h"
 #include "missions/support/number_text.h"
 #include "survey/planner.h"
 

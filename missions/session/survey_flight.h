@@ -10,11 +10,11 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/measured_space.h"
 #include "flight/flight_options.h"
-#include "flight/route/pad_ground.h"
-#include "flight/space/measured_space.h"
-#include "geometry/place/pose.h"
+#include "flight/route/landing_surface.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/pose.h"
 #include "missions/session/view_in_flight.h"
 
 namespace skycap::missions::session {

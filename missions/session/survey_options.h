@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "flight/flight_options.h"
-#include "missions/session/opening_flight.h"
+#include "missions/session/initial_pattern_flight.h"
 #include "survey/planners/planner_options.h"
 #include "survey/survey_loop.h"
 

@@ -12,7 +12,7 @@
 #include "geometry/points/point_cloud.h"
 #include "missions/session/survey_flight.h"
 #include "survey/coverage_estimator.h"
-#include "survey/skycap/survey_belief.h"
+#include "survey/surfel/survey_estimate.h"
 #include "survey/survey_loop.h"
 
 namespace skycap::missions::session {

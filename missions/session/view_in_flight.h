@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/platform.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/platform.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::missions::session {
 

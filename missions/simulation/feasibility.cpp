@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/error.h"
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/session/survey_flight.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "missions/simulation/carried_sensor.h"
+#include "missions/simulation/mounted_sensor.h"
 
 namespace skycap::missions::simulation {
 namespace {

@@ -9,12 +9,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/evaluation/coverage.h"
+#include "missions/evaluation/downsampled_cloud.h"
 #include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/evaluation/thinned_cloud.h"
-#include "missions/simulation/carried_sensor.h"
+#include "missions/simulation/mounted_sensor.h"
 #include "sim/sensors/survey_sensor.h"
 
 namespace skycap::missions::simulation {

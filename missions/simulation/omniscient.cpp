@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "geometry/parallel.h"
-#include "geometry/place/camera.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/pose.h"
 #include "geometry/random_numbers.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/evaluation.h"
 #include "missions/simulation/measurement.h"
 #include "sim/sensors/depth_camera.h"
-#include "survey/skycap/dose_model.h"
+#include "survey/surfel/coverage_model.h"
 
 namespace skycap::missions::simulation {
 namespace {

@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/session/survey_record.h"

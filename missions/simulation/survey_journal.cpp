@@ -8,7 +8,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/json.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "missions/support/journal_text.h"
 #include "missions/support/json_text.h"
 #include "missions/support/sha256.h"

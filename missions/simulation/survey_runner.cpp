@@ -8,8 +8,8 @@
 
 #include "geometry/parallel.h"
 #include "missions/evaluation/coverage.h"
-#include "missions/session/mission_planner.h"
-#include "missions/simulation/carried_sensor.h"
+#include "missions/session/constrained_planner.h"
+#include "missions/simulation/mounted_sensor.h"
 
 namespace skycap::missions::simulation {
 

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "flight/space/segment_distance.h"
+#include "flight/clearance/segment_distance.h"
 
 namespace skycap::missions::site_data {
 

@@ -8,7 +8,7 @@
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
 #include "missions/site_data/file_reader.h"
-#include "missions/site_data/unknown_ground.h"
+#include "missions/site_data/missing_terrain.h"
 
 namespace skycap::missions::site_data {
 namespace {

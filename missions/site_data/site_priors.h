@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "flight/space/prior_obstacle.h"
+#include "flight/clearance/prior_obstacle.h"
 #include "missions/site_data/prior.h"
 #include "missions/site_data/terrain.h"
 

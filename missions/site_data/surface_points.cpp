@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flight/space/triangle_tree.h"
-#include "flight/space/winding.h"
+#include "flight/clearance/triangle_tree.h"
+#include "flight/clearance/winding.h"
 
 namespace skycap::missions::site_data {
 namespace {

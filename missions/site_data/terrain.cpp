@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "flight/space/triangle_tree.h"
+#include "flight/clearance/triangle_tree.h"
 
 namespace skycap::missions::site_data {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "flight/space/segment_distance.h"
+#include "flight/clearance/segment_distance.h"
 #include "missions/site_data/prior.h"
 
 namespace skycap::missions::site_data {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <utility>
 
+#include "flight/clearance/segment_distance.h"
 #include "flight/route/pad_check.h"
-#include "flight/space/segment_distance.h"
-#include "flight/way_home/return_law.h"
+#include "flight/rtl/rtl_profile.h"
 #include "geometry/error.h"
 
 namespace skycap::missions::wizard {

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/clearance/clearance.h"
 #include "flight/flight_options.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::missions::wizard {
 

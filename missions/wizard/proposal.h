@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "missions/wizard/mission_text.h"
-#include "missions/wizard/wishes.h"
+#include "missions/wizard/site_request.h"
 
 namespace skycap::missions::wizard {
 

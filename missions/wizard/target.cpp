@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/error.h"
-#include "geometry/place/prism.h"
+#include "geometry/pose/prism.h"
 #include "missions/site_data/site_priors.h"
 
 namespace skycap::missions::wizard {

@@ -9,7 +9,7 @@
 #include "flight/export/geodesy.h"
 #include "missions/site_data/prior.h"
 #include "missions/site_data/source.h"
-#include "missions/wizard/wishes.h"
+#include "missions/wizard/site_request.h"
 
 namespace skycap::missions::wizard {
 

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::sim {

@@ -5,9 +5,9 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/place/camera.h"
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/pose.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera_config.h"
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "sim/sensors/noise.h"
 
 namespace skycap::sim {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "sim/scene/four_lanes.h"
 #include "sim/scene/ray_kernels.h"
 #include "sim/sensors/depth_camera_config.h"

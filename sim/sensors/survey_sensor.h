@@ -21,9 +21,9 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/place/platform.h"
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/platform.h"
+#include "geometry/pose/pose.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "sim/sensors/lidar.h"

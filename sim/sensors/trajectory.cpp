@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "geometry/error.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "sim/sensors/navigation_errors.h"
 
 namespace skycap::sim {

@@ -7,7 +7,7 @@
 #include "geometry/error.h"
 #include "survey/limited_planner.h"
 #include "survey/see/see.h"
-#include "survey/skycap/skycap_planner.h"
+#include "survey/surfel/surfel_planner.h"
 #include "survey/volumetric/volumetric_planner.h"
 
 namespace skycap::survey {

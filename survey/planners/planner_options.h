@@ -10,11 +10,11 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "survey/planner.h"
 #include "survey/planners/planner_names.h"
 #include "survey/see/see_config.h"
-#include "survey/skycap/skycap_config.h"
+#include "survey/surfel/surfel_config.h"
 #include "survey/view_limits.h"
 #include "survey/volumetric/volumetric_config.h"
 

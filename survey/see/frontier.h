@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/surface_frame.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::survey::see {
 

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "geometry/points/point_grid.h"
-#include "survey/see/readings.h"
+#include "survey/see/method_variants.h"
 
 namespace skycap::survey::see {
 

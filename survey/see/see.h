@@ -11,7 +11,7 @@
 #include <memory>
 #include <optional>
 
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "survey/planner.h"
 #include "survey/see/see_config.h"
 

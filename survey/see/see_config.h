@@ -6,9 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/directions/spherical_cap.h"
 #include "geometry/points/outlier_rule.h"
-#include "survey/see/readings.h"
+#include "geometry/spherical_cap/spherical_cap.h"
+#include "survey/see/method_variants.h"
 
 namespace skycap::survey::see {
 

@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "survey/see/frontier.h"
-#include "survey/see/readings.h"
+#include "survey/see/method_variants.h"
 
 namespace skycap::survey::see {
 

@@ -11,8 +11,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/camera.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/pose.h"
 #include "survey/volumetric/volumetric_config.h"
 #include "survey/volumetric/volumetric_map.h"
 

@@ -14,7 +14,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "survey/planner.h"
 #include "survey/volumetric/volumetric_config.h"
 #include "survey/volumetric/volumetric_map.h"

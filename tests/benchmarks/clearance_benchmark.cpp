@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <random>
 
-#include "flight/space/clearance.h"
+#include "flight/clearance/clearance.h"
 #include "tests/benchmarks/interleaved.h"
+#include "tests/flight/clearance/cgal_oracle.h"
 #include "tests/flight/scenes.h"
-#include "tests/flight/space/cgal_oracle.h"
 
 int main(int argc, char** argv) {
   using namespace skycap::flight;

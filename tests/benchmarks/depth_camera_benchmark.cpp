@@ -18,7 +18,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/parallel.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "sim/scene/scene_trees.h"
 #include "sim/sensors/depth_camera.h"
 #include "tests/benchmarks/embree_packets.h"

@@ -23,8 +23,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/spaced_points.h"
+#include "geometry/pose/pose.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera.h"

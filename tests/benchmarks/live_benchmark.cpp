@@ -26,8 +26,8 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/skycap_live.h"
-#include "geometry/place/camera.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/pose.h"
 #include "tests/benchmarks/processor_time.h"
 #include "tests/support/temporary_folder.h"
 

@@ -12,14 +12,14 @@
 #include <random>
 #include <vector>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "tests/benchmarks/embree_packets.h"
 #include "tests/benchmarks/interleaved.h"
 #include "tests/benchmarks/town.h"
-#include "tests/flight/space/cgal_oracle.h"
+#include "tests/flight/clearance/cgal_oracle.h"
 
 namespace {
 

@@ -20,14 +20,14 @@
 #include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/package/anew_mission.h"
 #include "missions/package/flight_files.h"
 #include "missions/package/package.h"
-#include "missions/session/mission_planner.h"
+#include "missions/package/replanned_mission.h"
+#include "missions/session/constrained_planner.h"
 #include "missions/simulation/omniscient.h"
 #include "missions/simulation/survey_runner.h"
 #include "sim/sensors/survey_sensor.h"
-#include "tests/missions/flown_mission.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

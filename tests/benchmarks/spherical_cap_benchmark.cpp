@@ -20,7 +20,7 @@
 #include <CGAL/convex_hull_3.h>
 #include <Eigen/Geometry>
 
-#include "geometry/directions/spherical_cap.h"
+#include "geometry/spherical_cap/spherical_cap.h"
 #include "tests/benchmarks/interleaved.h"
 
 namespace {

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "sim/sensors/depth_camera.h"

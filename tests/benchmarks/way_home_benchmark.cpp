@@ -15,7 +15,7 @@
 #include "missions/cli/command_line.h"
 #include "missions/package/package.h"
 #include "tests/benchmarks/interleaved.h"
-#include "tests/missions/flown_mission.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::flight::scenes {
 namespace {

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "flight/space/obstacles.h"
-#include "flight/space/segment_distance.h"
+#include "flight/clearance/obstacles.h"
+#include "flight/clearance/segment_distance.h"
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::flight::scenes {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "flight/link/frame.h"
-#include "flight/link/guided_messages.h"
-#include "flight/link/vehicle_state.h"
-#include "geometry/place/world.h"
+#include "flight/mavlink/frame.h"
+#include "flight/mavlink/guided_messages.h"
+#include "flight/mavlink/vehicle_state.h"
+#include "geometry/pose/world.h"
 #include "missions/config/resolve.h"
 #include "missions/online/live/kept_scan.h"
 #include "missions/online/live/live_journal.h"

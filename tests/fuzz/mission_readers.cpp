@@ -5,8 +5,8 @@
 
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
-#include "geometry/place/world.h"
-#include "missions/batch/benchmark/contestants.h"
+#include "geometry/pose/world.h"
+#include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/trials.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/batch/district/district_file.h"

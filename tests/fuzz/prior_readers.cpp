@@ -1,4 +1,4 @@
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "missions/site_data/formats/file_contents.h"
 #include "missions/site_data/prior.h"
 #include "tests/fuzz/readers.h"

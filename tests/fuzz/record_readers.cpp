@@ -11,8 +11,8 @@
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "geometry/io/record_log.h"
-#include "geometry/place/world.h"
 #include "geometry/points/depth_image.h"
+#include "geometry/pose/world.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/online/recordings/rawlog_sequence.h"
@@ -26,7 +26,7 @@
 #include "missions/support/sha256.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
-#include "tests/missions/flown_mission.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::fuzz {
 namespace {

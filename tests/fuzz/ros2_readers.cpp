@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "clients/ros2/complaints.h"
 #include "clients/ros2/frames.h"
 #include "clients/ros2/sensor_scan.h"
+#include "clients/ros2/throttled_warnings.h"
 #include "clients/ros2/transforms.h"
 #include "geometry/error.h"
 #include "tests/fuzz/readers.h"

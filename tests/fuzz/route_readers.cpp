@@ -5,7 +5,7 @@
 #include "flight/export/export.h"
 #include "flight/export/parameters.h"
 #include "flight/interpreter/interpret.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "missions/config/vehicle_reader.h"
 #include "missions/scan/scan_route.h"
 #include "tests/fuzz/readers.h"

@@ -1,9 +1,9 @@
 #include <sstream>
 
-#include "flight/space/measured_space.h"
+#include "flight/clearance/measured_space.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
 

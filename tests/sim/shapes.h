@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::sim {

@@ -25,19 +25,19 @@ using testing::IsEmpty;
 /// The rows, each with all that it may use; "geometry" and its rooms are open to every room.
 Modules architecture() {
   const std::vector<std::string> geometry = {
-      "geometry",          "geometry/place", "geometry/points", "geometry/directions",
-      "geometry/surfaces", "geometry/io",    "geometry/io/las", "geometry/io/e57",
+      "geometry",          "geometry/pose", "geometry/points", "geometry/spherical_cap",
+      "geometry/surfaces", "geometry/io",   "geometry/io/las", "geometry/io/e57",
       "geometry/io/text"};
   Modules modules = {
       {"geometry", {}},
-      {"geometry/place", {"geometry"}},
-      {"geometry/points", {"geometry", "geometry/place"}},
-      {"geometry/directions", {"geometry", "geometry/place"}},
-      {"geometry/surfaces", {"geometry", "geometry/place"}},
+      {"geometry/pose", {"geometry"}},
+      {"geometry/points", {"geometry", "geometry/pose"}},
+      {"geometry/spherical_cap", {"geometry", "geometry/pose"}},
+      {"geometry/surfaces", {"geometry", "geometry/pose"}},
       {"geometry/io/e57", {"geometry"}},
       {"geometry/io/text", {"geometry"}},
       {"geometry/io",
-       {"geometry", "geometry/place", "geometry/points", "geometry/surfaces", "geometry/io/e57",
+       {"geometry", "geometry/pose", "geometry/points", "geometry/surfaces", "geometry/io/e57",
         "geometry/io/text"}},
       {"geometry/io/las", {"geometry", "geometry/io"}},
   };
@@ -53,31 +53,33 @@ Modules architecture() {
 
   add("survey", {});
   add("survey/see", {"survey"});
-  add("survey/skycap/raster", {"survey"});
-  add("survey/skycap", {"survey", "survey/skycap/raster"});
+  add("survey/surfel/raster", {"survey"});
+  add("survey/surfel", {"survey", "survey/surfel/raster"});
   add("survey/volumetric", {"survey"});
   add("survey/planners",
-      {"survey", "survey/see", "survey/skycap", "survey/skycap/raster", "survey/volumetric"});
+      {"survey", "survey/see", "survey/surfel", "survey/surfel/raster", "survey/volumetric"});
 
-  add("flight/space", {});
+  add("flight/clearance", {});
   add("flight/autopilot", {});
-  add("flight/motion", {"flight/space", "flight/autopilot"});
-  add("flight/paths", {"flight/space"});
-  add("flight/way_home", {"flight/space", "flight/motion", "flight/paths"});
-  add("flight/route", {"flight/space", "flight/motion", "flight/paths", "flight/way_home"});
+  add("flight/motion", {"flight/clearance", "flight/autopilot"});
+  add("flight/paths", {"flight/clearance"});
+  add("flight/rtl", {"flight/clearance", "flight/motion", "flight/paths"});
+  add("flight/route", {"flight/clearance", "flight/motion", "flight/paths", "flight/rtl"});
   add("flight/export",
-      {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
-  add("flight/interpreter", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
-  add("flight/link", {});
-  add("flight/calibration", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
-  add("flight/fly_test", {"flight/space", "flight/autopilot", "flight/motion", "flight/way_home",
-                          "flight/interpreter"});
-  add("flight/fleet", {"flight/space", "flight/motion", "flight/paths", "flight/way_home",
-                       "flight/route", "flight/fly_test"});
-  add("flight/district", {"flight/space", "flight/motion", "flight/way_home", "flight/route"});
-  add("flight",
-      {"flight/space", "flight/motion", "flight/autopilot", "flight/paths", "flight/way_home",
-       "flight/route", "flight/export", "flight/interpreter", "flight/fly_test", "flight/fleet"});
+      {"flight/clearance", "flight/motion", "flight/paths", "flight/rtl", "flight/route"});
+  add("flight/interpreter",
+      {"flight/clearance", "flight/autopilot", "flight/motion", "flight/export"});
+  add("flight/mavlink", {});
+  add("flight/calibration",
+      {"flight/clearance", "flight/autopilot", "flight/motion", "flight/export"});
+  add("flight/monte_carlo", {"flight/clearance", "flight/autopilot", "flight/motion", "flight/rtl",
+                             "flight/interpreter"});
+  add("flight/fleet", {"flight/clearance", "flight/motion", "flight/paths", "flight/rtl",
+                       "flight/route", "flight/monte_carlo"});
+  add("flight/district", {"flight/clearance", "flight/motion", "flight/rtl", "flight/route"});
+  add("flight", {"flight/clearance", "flight/motion", "flight/autopilot", "flight/paths",
+                 "flight/rtl", "flight/route", "flight/export", "flight/interpreter",
+                 "flight/monte_carlo", "flight/fleet"});
 
   std::map<std::string, std::vector<std::string>> modules_in;  // of each library below missions/
   for (const auto& [module_name, others] : modules) {
@@ -137,7 +139,7 @@ Modules architecture() {
                "evaluation", "session", "scene", "site_data", "support"});
   // As a user of the library: public headers.
   add("python",
-      {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/api"});
+      {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});
   return modules;
 }
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "geometry/place/camera.h"
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::tests {
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/parallel.h"
-#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/paper_results.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"

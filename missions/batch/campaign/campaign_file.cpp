@@ -7,7 +7,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/benchmark/methods.h"
 #include "missions/config/former_names.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/unknown_key.h"

@@ -14,7 +14,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
-#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/trials.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/config/key_override.h"

@@ -6,7 +6,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/benchmark/methods.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/config/former_names.h"
 #include "missions/support/yaml_section.h"

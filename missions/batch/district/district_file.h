@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "missions/config/key_override.h"
-#include "missions/wizard/wishes.h"
+#include "missions/wizard/site_request.h"
 
 namespace skycap::missions::batch {
 

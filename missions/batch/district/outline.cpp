@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "geometry/place/prism.h"
+#include "geometry/pose/prism.h"
 
 namespace skycap::missions::batch {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/io/output_folder.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/config/mission_setup.h"
 #include "missions/config/sensor_reader.h"
 

@@ -10,7 +10,7 @@
 
 #include "flight/export/utm.h"
 #include "geometry/io/output_folder.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/config/mission_setup.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/scan/laser_recorder.h"

@@ -6,7 +6,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/support/reconstruction.h"
 
 namespace skycap::missions::cli {

@@ -14,8 +14,8 @@
 #include "missions/cli/clouds/camera_scan.h"
 #include "missions/cli/clouds/laser_scan.h"
 #include "missions/cli/clouds/scan_results.h"
+#include "missions/cli/commands.h"
 #include "missions/cli/tasks.h"
-#include "missions/cli/verbs.h"
 #include "missions/config/preset_files.h"
 #include "missions/config/resolve.h"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/io/output_folder.h"
-#include "missions/cli/verbs.h"
+#include "missions/cli/commands.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/scan/scan_flight.h"
 #include "missions/scan/scan_journal.h"

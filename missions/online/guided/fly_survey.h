@@ -4,7 +4,7 @@
 #include <stop_token>
 
 #include "flight/flight_options.h"
-#include "flight/link/port.h"
+#include "flight/mavlink/port.h"
 #include "missions/online/guided/live_flight.h"
 #include "missions/online/live/live_survey.h"
 

@@ -23,16 +23,16 @@
 
 #include <Eigen/Core>
 
-#include "flight/fly_test/flight_script.h"
-#include "flight/link/autopilot_link.h"
+#include "flight/clearance/segment_distance.h"
+#include "flight/mavlink/autopilot_link.h"
+#include "flight/monte_carlo/flight_script.h"
 #include "flight/motion/motion.h"
-#include "flight/space/segment_distance.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/online/guided/aim_errors.h"
+#include "missions/online/guided/flight_failure.h"
 #include "missions/online/guided/flight_frame.h"
 #include "missions/online/guided/gimbal_report.h"
 #include "missions/online/guided/guided_limits.h"
-#include "missions/online/guided/trouble.h"
 
 namespace skycap::missions::online {
 

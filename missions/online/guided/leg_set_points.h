@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "flight/fly_test/flight_script.h"
-#include "flight/space/segment_distance.h"
+#include "flight/clearance/segment_distance.h"
+#include "flight/monte_carlo/flight_script.h"
 
 namespace skycap::missions::online {
 

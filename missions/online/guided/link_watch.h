@@ -5,9 +5,9 @@
 
 #include <Eigen/Core>
 
-#include "flight/link/vehicle_state.h"
+#include "flight/mavlink/vehicle_state.h"
+#include "missions/online/guided/flight_failure.h"
 #include "missions/online/guided/flight_frame.h"
-#include "missions/online/guided/trouble.h"
 
 namespace skycap::missions::online {
 

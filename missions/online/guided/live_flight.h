@@ -17,10 +17,10 @@
 #include <Eigen/Core>
 
 #include "flight/motion/motion.h"
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/pose.h"
+#include "missions/online/guided/flight_failure.h"
 #include "missions/online/guided/guided_flight.h"
-#include "missions/online/guided/trouble.h"
 #include "missions/online/live/live_survey.h"
 
 namespace skycap::missions::online {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "flight/link/port.h"
+#include "flight/mavlink/port.h"
 
 namespace skycap::missions::online {
 

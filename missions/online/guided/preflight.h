@@ -5,10 +5,10 @@
 
 #include <Eigen/Core>
 
-#include "flight/link/autopilot_link.h"
+#include "flight/mavlink/autopilot_link.h"
+#include "missions/online/guided/flight_failure.h"
 #include "missions/online/guided/flight_frame.h"
 #include "missions/online/guided/guided_limits.h"
-#include "missions/online/guided/trouble.h"
 
 namespace skycap::missions::online {
 

@@ -12,7 +12,7 @@
 #include "flight/export/geodesy.h"
 #include "flight/route/route.h"
 #include "geometry/angle.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/online/live/live_journal.h"
 #include "missions/support/journal_text.h"
 #include "missions/support/json_text.h"

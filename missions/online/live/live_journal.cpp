@@ -9,7 +9,7 @@
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/json.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "missions/session/survey_record.h"
 #include "missions/support/journal_text.h"
 #include "missions/support/json_text.h"

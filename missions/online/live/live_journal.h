@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json_fwd.hpp>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/online/live/pose_check.h"
 #include "missions/session/reach_record.h"
 #include "survey/survey_loop.h"

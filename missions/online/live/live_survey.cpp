@@ -17,7 +17,7 @@
 #include "geometry/points/usable_scan.h"
 #include "missions/online/live/kept_scan.h"
 #include "missions/online/live/live_journal.h"
-#include "missions/session/mission_planner.h"
+#include "missions/session/constrained_planner.h"
 #include "missions/support/journal_text.h"
 
 namespace skycap::missions::online {

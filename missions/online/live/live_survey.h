@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/pose.h"
 #include "missions/online/live/live_options.h"
 #include "missions/online/live/pose_check.h"
 #include "missions/session/survey_options.h"

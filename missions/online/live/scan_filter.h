@@ -11,8 +11,8 @@
 
 #include <cstddef>
 
-#include "geometry/place/camera.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/camera.h"
 
 namespace skycap::missions::online {
 

@@ -10,9 +10,9 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/text/text_scanner.h"
-#include "geometry/place/camera.h"
-#include "geometry/place/world.h"
 #include "geometry/points/usable_scan.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/world.h"
 #include "missions/online/live/live_journal.h"
 
 namespace skycap::missions::online {

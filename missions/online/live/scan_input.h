@@ -13,9 +13,9 @@
 #include <Eigen/Geometry>
 
 #include "flight/flight_options.h"
-#include "geometry/place/camera.h"
 #include "geometry/points/depth_image.h"
 #include "geometry/points/scan.h"
+#include "geometry/pose/camera.h"
 #include "missions/online/live/live_options.h"
 #include "missions/online/live/scan_filter.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "geometry/error.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 
 namespace skycap::missions::online {
 namespace {

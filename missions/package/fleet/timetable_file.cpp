@@ -5,7 +5,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/place/world.h"
+#include "geometry/pose/world.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::package {

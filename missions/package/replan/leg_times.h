@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "missions/package/replan/dose_sum.h"
+#include "missions/package/replan/observation_sum.h"
 #include "missions/package/replan/tour_problem.h"
 
 namespace skycap::missions::package {

@@ -9,12 +9,12 @@
 
 #include "flight/motion/motion.h"
 #include "flight/route/leg_costs.h"
-#include "flight/way_home/returnable_space.h"
+#include "flight/rtl/returnable_space.h"
 #include "geometry/error.h"
 #include "geometry/interrupted.h"
 #include "geometry/parallel.h"
-#include "geometry/place/platform.h"
-#include "missions/package/replan/dose_sum.h"
+#include "geometry/pose/platform.h"
+#include "missions/package/replan/observation_sum.h"
 
 namespace skycap::missions::package {
 namespace {

@@ -2,7 +2,7 @@
 /// well as the survey's views, in less flight time.
 ///
 /// Replanning does not use the scene. The planner's surfels define what views observe
-/// (survey/skycap/view_gain.h), and the free space of the survey defines where views are allowed.
+/// (survey/surfel/view_gain.h), and the free space of the survey defines where views are allowed.
 /// The result is a verified route.
 #pragma once
 
@@ -13,14 +13,14 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/flight_options.h"
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/package/replan/tour_search.h"
 #include "sim/sensors/scanner_field.h"
 #include "survey/planners/planner_options.h"
-#include "survey/skycap/view_gain.h"
+#include "survey/surfel/view_gain.h"
 
 namespace skycap::missions::package {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 
 namespace skycap::missions::package {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-#include "geometry/place/pose.h"
-#include "survey/skycap/view_gain.h"
+#include "geometry/pose/pose.h"
+#include "survey/surfel/view_gain.h"
 
 namespace skycap::missions::package {
 

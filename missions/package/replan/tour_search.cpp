@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "geometry/random_numbers.h"
-#include "missions/package/replan/dose_sum.h"
+#include "missions/package/replan/leg_doses.h"
 #include "missions/package/replan/leg_times.h"
+#include "missions/package/replan/observation_sum.h"
 #include "missions/package/replan/tour_moves.h"
-#include "missions/package/replan/way_doses.h"
 
 namespace skycap::missions::package {
 namespace {

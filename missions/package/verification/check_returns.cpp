@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "flight/export/export.h"
-#include "flight/way_home/least_return.h"
+#include "flight/rtl/min_return_altitude.h"
 #include "missions/package/verification/stated_return.h"
 #include "missions/support/number_text.h"
 

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/flight_options.h"
-#include "flight/space/clearance.h"
 
 namespace skycap::missions::package {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "flight/space/segment_distance.h"
+#include "flight/clearance/segment_distance.h"
 
 namespace skycap::missions::package {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <Eigen/Core>
 
+#include "flight/clearance/clearance.h"
 #include "flight/flight_options.h"
-#include "flight/route/pad_ground.h"
-#include "flight/space/clearance.h"
+#include "flight/route/landing_surface.h"
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::missions::package {

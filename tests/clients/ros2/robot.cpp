@@ -6,7 +6,7 @@
 #include <limits>
 #include <thread>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/config/resolve.h"
 #include "tests/clients/ros2/sample_messages.h"
 

@@ -27,9 +27,9 @@
 #include "tests/clients/ros2/robot.h"
 #include "tests/clients/ros2/sample_messages.h"
 #include "tests/clients/ros2/spoiled_wire.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/online/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::ros2 {
 namespace {

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/flight/clearance/ray_sensor.h"
 #include "tests/flight/scenes.h"
-#include "tests/flight/space/ray_sensor.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::flight {

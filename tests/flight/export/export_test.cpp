@@ -10,8 +10,8 @@
 
 #include "flight/export/trajectory_file.h"
 #include "flight/export/wpml_file.h"
-#include "flight/interpreter/certified_export.h"
 #include "flight/interpreter/interpret.h"
+#include "flight/interpreter/verified_export.h"
 #include "geometry/error.h"
 #include "tests/flight/export/sample_plan.h"
 #include "tests/support/complaint.h"

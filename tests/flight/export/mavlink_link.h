@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "flight/link/message.h"
+#include "flight/mavlink/message.h"
 
 namespace skycap::flight::mavlink {
 

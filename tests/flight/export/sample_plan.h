@@ -1,9 +1,9 @@
 /// A small flight over a small site, for the tests of the formats.
 #pragma once
 
+#include "flight/clearance/obstacles.h"
 #include "flight/export/flight_plan.h"
 #include "flight/route/route.h"
-#include "flight/space/obstacles.h"
 #include "tests/flight/vehicles.h"
 
 namespace skycap::flight {

@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/export/mavlink_files.h"
-#include "tests/flight/space/cgal_oracle.h"
+#include "tests/flight/clearance/cgal_oracle.h"
 
 namespace skycap::flight {
 

@@ -3,7 +3,7 @@
 
 #include "flight/export/export.h"
 #include "flight/export/mavlink_files.h"
-#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpreted_route.h"
 #include "flight/interpreter/mission_interpreter.h"
 #include "tests/flight/export/sample_plan.h"
 

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "flight/clearance/prior_obstacle.h"
 #include "flight/export/flight_plan.h"
 #include "flight/paths/sampling_path.h"
-#include "flight/space/prior_obstacle.h"
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
 #include "tests/support/complaint.h"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/benchmark/methods.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {

@@ -18,8 +18,8 @@
 
 #include "geometry/io/file.h"
 #include "geometry/points/depth_image.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::missions {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/benchmark/methods.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/batch/district/district_file.h"
 #include "tests/missions/former_names/former_mission.h"

@@ -12,9 +12,9 @@
 #include "geometry/io/record_log.h"
 #include "missions/cli/command_line.h"
 #include "tests/missions/ctrl_c.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/results_in.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::missions {
 namespace {

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "flight/export/wpml_file.h"
-#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpreted_route.h"
 #include "flight/interpreter/mission_interpreter.h"
 #include "flight/interpreter/wpml_interpreter.h"
 #include "geometry/error.h"
@@ -22,8 +22,8 @@
 #include "missions/package/verification/stated_return.h"
 #include "missions/package/verification/true_space.h"
 #include "tests/flight/interpreter/random_spoiling.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::missions::cli {
 namespace {

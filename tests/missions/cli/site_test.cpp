@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "geometry/place/prism.h"
+#include "geometry/pose/prism.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/site_data/prior.h"

@@ -55,8 +55,8 @@ TEST(FieldKeys, NameKeysOfTheMissionFile) {
 TEST(FieldKeys, KnowEveryFieldThatLibrariesComplainOf) {
   std::size_t fields = 0;
   for (const char* source :
-       {"geometry/place/camera.cpp", "sim/sensors/depth_camera_config.cpp", "sim/sensors/noise.cpp",
-        "survey/view_limits.cpp", "survey/see/see_config.cpp", "survey/skycap/skycap_config.cpp",
+       {"geometry/pose/camera.cpp", "sim/sensors/depth_camera_config.cpp", "sim/sensors/noise.cpp",
+        "survey/view_limits.cpp", "survey/see/see_config.cpp", "survey/surfel/surfel_config.cpp",
         "survey/volumetric/volumetric_config.cpp"}) {
     for (const std::string& field : find_fields(source)) {
       if (not_from_missions.contains(field)) continue;

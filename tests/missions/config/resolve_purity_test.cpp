@@ -15,7 +15,7 @@
 #include "geometry/error.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/resolve.h"
-#include "missions/session/opening_flight.h"
+#include "missions/session/initial_pattern_flight.h"
 #include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 

@@ -13,7 +13,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/text/ply.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/package/cloud_normals.h"

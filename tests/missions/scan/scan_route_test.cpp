@@ -8,7 +8,7 @@
 
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
 

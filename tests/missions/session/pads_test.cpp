@@ -9,12 +9,12 @@
 
 #include "flight/export/geodesy.h"
 #include "geometry/angle.h"
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "missions/config/resolve.h"
 #include "missions/package/package.h"
 #include "missions/session/survey_flight.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::missions {

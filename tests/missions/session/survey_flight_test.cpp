@@ -8,15 +8,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "flight/clearance/clearance.h"
 #include "flight/export/export.h"
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
-#include "flight/way_home/returnable_space.h"
+#include "flight/rtl/returnable_space.h"
 #include "missions/config/resolve.h"
 #include "missions/package/package.h"
 #include "missions/simulation/survey_runner.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::missions {

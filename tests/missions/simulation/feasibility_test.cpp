@@ -6,8 +6,8 @@
 #include "missions/config/resolve.h"
 #include "missions/simulation/expectation.h"
 #include "missions/simulation/survey_runner.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::missions {
 namespace {

@@ -15,8 +15,8 @@
 #include "missions/package/target_coverage.h"
 #include "missions/simulation/survey_runner.h"
 #include "tests/flight/scenes.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
 #include "tests/support/not_empty.h"
 

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "flight/space/measured_space.h"
-#include "geometry/place/camera.h"
-#include "geometry/place/platform.h"
+#include "flight/clearance/measured_space.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/platform.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/config/resolve.h"
 #include "missions/config/sensor_reader.h"

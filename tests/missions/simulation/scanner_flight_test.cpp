@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "missions/config/resolve.h"
 #include "missions/session/survey_flight.h"
 

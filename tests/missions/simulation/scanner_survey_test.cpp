@@ -6,7 +6,7 @@
 #include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/session/opening_flight.h"
+#include "missions/session/initial_pattern_flight.h"
 #include "missions/simulation/expectation.h"
 #include "missions/simulation/survey_runner.h"
 #include "tests/missions/run_skycap.h"

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flight/space/clearance.h"
+#include "flight/clearance/clearance.h"
 #include "geometry/error.h"
 #include "missions/site_data/site_priors.h"
 #include "tests/flight/scenes.h"

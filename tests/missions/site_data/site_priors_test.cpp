@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "missions/site_data/missing_terrain.h"
 #include "missions/site_data/surface_points.h"
-#include "missions/site_data/unknown_ground.h"
 #include "tests/flight/scenes.h"
 
 namespace skycap::missions::site_data {

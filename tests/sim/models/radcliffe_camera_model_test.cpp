@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "sim/models/models.h"
 #include "sim/models/radcliffe_camera.h"
 #include "sim/scene/scene.h"

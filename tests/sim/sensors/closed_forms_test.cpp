@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "geometry/place/pose.h"
 #include "geometry/points/depth_image.h"
+#include "geometry/pose/pose.h"
 #include "sim/sensors/depth_camera.h"
 #include "sim/sensors/lidar.h"
 #include "tests/sim/packets.h"

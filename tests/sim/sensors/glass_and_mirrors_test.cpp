@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "sim/sensors/lidar.h"

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "geometry/place/camera.h"
-#include "geometry/place/platform.h"
+#include "geometry/pose/camera.h"
+#include "geometry/pose/platform.h"
 #include "sim/sensors/scanner_field.h"
 
 namespace skycap::sim {

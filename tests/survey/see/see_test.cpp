@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "survey/see/frontier.h"
 #include "tests/support/sphere_sensor.h"
 #include "tests/support/stopped_planner.h"

@@ -10,7 +10,7 @@
 #include <octomap/OcTreeNode.h>
 #include <octomap/OccupancyOcTreeBase.h>
 
-#include "geometry/place/pose.h"
+#include "geometry/pose/pose.h"
 #include "survey/volumetric/volumetric_gain.h"
 
 namespace skycap::tests {

@@ -14,9 +14,9 @@
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/evaluation/survey_scene.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/online/guided/test_autopilot.h"
 #include "tests/missions/online/live/rehearsal.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::missions::online {

@@ -12,11 +12,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "flight/space/segment_distance.h"
+#include "flight/clearance/segment_distance.h"
 #include "missions/config/resolve.h"
 #include "missions/online/guided/preflight.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/online/guided/test_autopilot.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/not_empty.h"
 
 namespace skycap::missions::online {

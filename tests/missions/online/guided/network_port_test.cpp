@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "missions/config/resolve.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/online/guided/test_autopilot.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::missions::online {

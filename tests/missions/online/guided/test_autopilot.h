@@ -16,10 +16,10 @@
 #include <Eigen/Core>
 
 #include "flight/flight_options.h"
-#include "flight/fly_test/flight_script.h"
-#include "flight/fly_test/vehicle_model.h"
-#include "flight/link/guided_messages.h"
-#include "flight/link/port.h"
+#include "flight/mavlink/guided_messages.h"
+#include "flight/mavlink/port.h"
+#include "flight/monte_carlo/flight_script.h"
+#include "flight/monte_carlo/vehicle_model.h"
 #include "missions/online/guided/flight_frame.h"
 
 namespace skycap::missions::online {

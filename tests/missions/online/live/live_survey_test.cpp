@@ -14,9 +14,9 @@
 #include "geometry/io/record_log.h"
 #include "missions/online/live/answer.h"
 #include "missions/support/sha256.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/online/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::missions::online {

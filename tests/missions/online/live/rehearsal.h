@@ -13,11 +13,11 @@
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/online/live/live_survey.h"
-#include "missions/simulation/carried_sensor.h"
+#include "missions/simulation/mounted_sensor.h"
 #include "missions/simulation/survey_runner.h"
 #include "sim/sensors/survey_sensor.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::missions::online {
 

@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/place/camera.h"
+#include "geometry/pose/camera.h"
 #include "missions/config/resolve.h"
 #include "missions/online/live/kept_scan.h"
 #include "tests/support/complaint.h"

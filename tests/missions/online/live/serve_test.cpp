@@ -18,9 +18,9 @@
 #include "missions/online/live/scan_input.h"
 #include "missions/online/live/server.h"
 #include "missions/online/live/session.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/online/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 
 namespace skycap::missions::online {
 namespace {

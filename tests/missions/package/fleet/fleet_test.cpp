@@ -6,10 +6,10 @@
 
 #include "flight/export/text.h"
 #include "missions/config/resolve.h"
-#include "missions/package/fleet/timetable_proof.h"
+#include "missions/package/fleet/timetable_verification.h"
 #include "missions/package/settings.h"
-#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/simulated_mission.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::missions {

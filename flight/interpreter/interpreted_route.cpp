@@ -1,0 +1,69 @@
+#include "flight/interpreter/interpreted_route.h"
+
+#include <algorithm>
+
+namespace skycap::flight {
+namespace {
+
+/// Minimum length to subdivide [m]. A leg that is verified in the plan has half of this as margin
+/// in its file, where the required clearance is lower (rounding_bound).
+constexpr double finest_fan = 0.01;
+
+/// Verifies the legs from every point of `start` to `to`. The distance to obstacles is 1-Lipschitz,
+/// and legs from points e apart are at most e apart everywhere. A leg verified at the clearance
+/// plus e therefore verifies all legs within e.
+LegVerification verify_fan(const FreeSpace& space, const Segment& start, const Eigen::Vector3d& to,
+                           double clearance, double up_to) {
+  const double reach = 0.5 * start.length();
+  LegVerification verification = verify(space, {start.at(0.5), to}, clearance, up_to + reach);
+  verification.clearance -= reach;
+  if (!verification.is_verified || verification.clearance >= clearance) return verification;
+  if (start.length() < finest_fan) {
+    verification.is_verified = false;
+    return verification;
+  }
+  const LegVerification first =
+      verify_fan(space, {start.from, start.at(0.5)}, to, clearance, up_to);
+  if (!first.is_verified) return first;
+  const LegVerification second = verify_fan(space, {start.at(0.5), start.to}, to, clearance, up_to);
+  return second.is_verified && first.clearance < second.clearance ? first : second;
+}
+
+std::string describe(const InterpretedSegment& segment, const LegVerification& verification,
+                     const FreeSpace& space) {
+  const Eigen::Vector3d& position = verification.closest.on_leg;
+  return "leg from " + segment.from_item + " to " + segment.to_item + ": " +
+         fixed(verification.closest.distance, 2) + " m from " + space.name(verification.closest) +
+         " at (" + fixed(position.x(), 2) + ", " + fixed(position.y(), 2) + ", " +
+         fixed(position.z(), 2) + ")";
+}
+
+}  // namespace
+
+RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
+                         const FreeSpace& pad_space, double clearance, double up_to) {
+  RouteVerification result{{}, up_to};
+  for (const InterpretedSegment& segment : route.segments) {
+    const FreeSpace& where = segment.is_over_pad ? pad_space : space;
+    const LegVerification verification =
+        segment.start.length() > 0.0
+            ? verify_fan(where, segment.start, segment.to, clearance, up_to)
+            : verify(where, {segment.start.to, segment.to}, clearance, up_to);
+    if (!verification.is_verified)
+      result.problems.push_back(describe(segment, verification, where));
+    const double known =
+        verification.is_verified ? verification.clearance : verification.closest.distance;
+    result.clearance = std::min(result.clearance, known);
+  }
+  return result;
+}
+
+double length(const InterpretedRoute& route) {
+  double sum = 0.0;
+  for (const InterpretedSegment& segment : route.segments) {
+    if (!segment.is_over_pad) sum += (segment.to - segment.start.to).norm();
+  }
+  return sum;
+}
+
+}  // namespace skycap::flight

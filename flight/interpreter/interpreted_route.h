@@ -1,0 +1,61 @@
+/// Flight behaviour for a route file, piece by piece, with verification of all pieces.
+///
+/// Pieces are named by the two items that they connect, with the numbers that ground stations show.
+/// These are the first field of a line in `.waypoints`, doJumpId in `.plan` and wpml:index in WPML.
+/// Files without own numbers count from 0.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flight/clearance/clearance.h"
+#include "flight/export/flight_plan.h"
+#include "flight/export/text.h"
+
+namespace skycap::flight {
+
+/// Straight piece from a point of `start` to `to`. A vehicle that stops before has a single start
+/// point. A vehicle that may turn early starts anywhere on the segment.
+struct InterpretedSegment {
+  Segment start;
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  std::string from_item, to_item;  ///< Item names, such as "item 12".
+  bool is_over_pad = false;    ///< True for climb and landing, where the ground is not an obstacle.
+  double hold = 0.0;           ///< Wait at the end, as specified in the file [s].
+  double speed = unspecified;  ///< Ground speed, if specified in the file [m/s].
+};
+
+/// Position at which photos are taken.
+struct InterpretedStop {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  std::string item;
+  double hold = 0.0;  ///< Rest time before the first photo [s].
+  double yaw_deg =
+      unspecified;  ///< Clockwise from north. `unspecified`: not specified in the file.
+  double pitch_deg = unspecified;  ///< Gimbal pitch, 0 at the horizon.
+  int captures = 0;
+};
+
+struct InterpretedRoute {
+  std::vector<InterpretedSegment> segments;  ///< In flight order.
+  std::vector<InterpretedStop> stops;        ///< Stops with photos.
+  Problems problems;                         ///< Unsafe or unknown behaviour, per item.
+};
+
+struct RouteVerification {
+  Problems problems;       ///< Pieces that cannot be verified, with their items.
+  double clearance = 0.0;  ///< Verified lower bound of all other pieces [m], at most `up_to`.
+};
+
+/// Verifies every piece at `clearance` [m], with a search distance of `up_to` [m]. Pieces above the
+/// pad are verified in `pad_space`, which should not contain the ground there.
+RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
+                         const FreeSpace& pad_space, double clearance, double up_to);
+
+/// Returns the length of the pieces that are not above the pad [m].
+double length(const InterpretedRoute& route);
+
+}  // namespace skycap::flight

@@ -1,0 +1,170 @@
+#include "flight/monte_carlo/flight_script.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "flight/autopilot/mission_mode.h"
+#include "geometry/angle.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Returns the shorter rotation between two headings [rad], 0 if one is not given.
+double turn_between(double from_deg, double to_deg) {
+  if (std::isnan(from_deg) || std::isnan(to_deg)) return 0.0;
+  return std::remainder(to_deg - from_deg, 360.0) * geometry::radians_per_degree;
+}
+
+/// Converts a route's pieces and stops to a script.
+class ScriptWriter {
+ public:
+  ScriptWriter(const InterpretedRoute& route, const Motion& motion)
+      : route_(route), motion_(motion) {}
+
+  FlightScript write() {
+    for (std::size_t i = 0; i < route_.segments.size(); ++i) {
+      const InterpretedSegment& segment = route_.segments[i];
+      ScriptedLeg leg = make_leg(i, script_.empty() ? segment.start.to : script_.back().to);
+      leg.is_over_pad = segment.is_over_pad;
+      leg.items = {segment.from_item, segment.to_item};
+      leg.wait += segment.hold + turning(segment, leg.moving);
+      script_.push_back(std::move(leg));
+    }
+    return std::move(script_);
+  }
+
+ private:
+  ScriptedLeg make_leg(std::size_t i, const Vector3d& from) {
+    const InterpretedSegment& segment = route_.segments[i];
+    const double settling = motion_.vehicle().mode.settle_time;
+    if (is_landing(i))
+      return landing_leg(motion_, from, segment.to.z(), route_.segments.back().to.z());
+    ScriptedLeg leg = scripted_leg(motion_at(segment.speed), from, segment.to);
+    if (leg.moving > 0.0) leg.wait = settling;
+    if (segment.is_over_pad) {
+      leg.moving =
+          std::max(leg.moving, motion_.takeoff_time((segment.to - from).norm()) - settling);
+    }
+    return leg;
+  }
+
+  /// Returns true if a piece is vertically downwards and is the last one, or continues into the
+  /// last one.
+  bool is_landing(std::size_t i) const {
+    const auto is_down = [&](const InterpretedSegment& segment) {
+      const Vector3d displacement = segment.to - segment.start.to;
+      return displacement.z() < 0.0 && displacement.head<2>().norm() == 0.0;
+    };
+    const std::size_t last = route_.segments.size() - 1;
+    if (!route_.segments[last].is_over_pad || !is_down(route_.segments[last])) return false;
+    return i == last || (i + 1 == last && is_down(route_.segments[i]));
+  }
+
+  /// Returns the additional time of vehicle and gimbal rotation beyond the leg [s], for which
+  /// MAVLink missions wait.
+  double turning(const InterpretedSegment& segment, double moving) {
+    if (next_stop_ == route_.stops.size()) return 0.0;
+    const InterpretedStop& stop = route_.stops[next_stop_];
+    if (stop.item != segment.to_item || !stop.position.isApprox(segment.to)) return 0.0;
+    ++next_stop_;
+    const double yaw = turn_between(yaw_deg_, stop.yaw_deg);
+    const double pitch = turn_between(pitch_deg_, stop.pitch_deg);
+    yaw_deg_ = stop.yaw_deg, pitch_deg_ = stop.pitch_deg;
+    if (motion_.vehicle().autopilot != AutopilotType::dji) return 0.0;
+    return motion_.aimed_time(moving, yaw, pitch) - moving;
+  }
+
+  /// Returns the vehicle's motion at the speed set in the file, if it is lower than that of the
+  /// mission.
+  const Motion& motion_at(double speed) {
+    if (std::isnan(speed) || speed >= motion_.conditions().cruise_speed) return motion_;
+    Conditions conditions = motion_.conditions();
+    conditions.cruise_speed = speed;
+    return motions_.try_emplace(speed, motion_.vehicle(), conditions).first->second;
+  }
+
+  const InterpretedRoute& route_;
+  const Motion& motion_;
+  std::map<double, Motion> motions_;
+  FlightScript script_;
+  std::size_t next_stop_ = 0;
+  double yaw_deg_ = unspecified, pitch_deg_ = unspecified;
+};
+
+/// Returns the state `time` after the start of the leg. The duration is that of the leg law, the
+/// shape that of seven phases.
+MotionState state_on(const ScriptedLeg& leg, double jerk, double time) {
+  const double distance = (leg.to - leg.from).norm();
+  const double own = rest_to_rest_time(distance, leg.speed, leg.acceleration, jerk);
+  if (time >= leg.moving || own == 0.0) return {distance, 0.0, 0.0};
+  const double pace = own / leg.moving;
+  MotionState state = rest_to_rest_state(distance, leg.speed, leg.acceleration, jerk, pace * time);
+  state.speed *= pace;
+  state.acceleration *= pace * pace;
+  return state;
+}
+
+SetPoint at(const ScriptedLeg& leg, const MotionState& state) {
+  const Vector3d displacement = leg.to - leg.from;
+  const double length = displacement.norm();
+  if (length == 0.0) return {leg.to};
+  const Vector3d direction = displacement / length;
+  return {leg.from + state.distance * direction, state.speed * direction,
+          state.acceleration * direction};
+}
+
+}  // namespace
+
+double duration(const FlightScript& script) {
+  double sum = 0.0;
+  for (const ScriptedLeg& leg : script) sum += leg.duration();
+  return sum;
+}
+
+SetPoint set_point(const ScriptedLeg& leg, double jerk, double time) {
+  return at(leg, state_on(leg, jerk, time));
+}
+
+double braking_time(const ScriptedLeg& leg, double jerk, double time) {
+  const double speed = state_on(leg, jerk, time).speed;
+  return speed > 0.0 ? speed / leg.acceleration : 0.0;
+}
+
+SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double braking) {
+  const MotionState begin = state_on(leg, jerk, time);
+  const double t = std::min(braking, braking_time(leg, jerk, time));
+  const double length = (leg.to - leg.from).norm();
+  MotionState state{begin.distance + t * (begin.speed - 0.5 * leg.acceleration * t),
+                    begin.speed - leg.acceleration * t, 0.0};
+  if (state.distance >= length) state = {length, 0.0, 0.0};
+  return at(leg, state);
+}
+
+ScriptedLeg scripted_leg(const Motion& motion, const Vector3d& from, const Vector3d& to) {
+  ScriptedLeg leg{.from = from, .to = to};
+  const Vector3d displacement = to - from;
+  const double length = displacement.norm();
+  if (length == 0.0) return leg;
+  const MissionMode& mode = motion.vehicle().mode;
+  leg.speed = motion.leg_speed(displacement / length);
+  leg.acceleration = motion.leg_acceleration(displacement / length);
+  leg.moving = motion.leg_time(displacement) - mode.settle_time;
+  return leg;
+}
+
+ScriptedLeg landing_leg(const Motion& motion, const Vector3d& from, double end, double foot) {
+  ScriptedLeg leg = scripted_leg(motion, from, {from.x(), from.y(), end});
+  const double sinking = motion.landing_time(from.z() - foot) - motion.landing_time(end - foot);
+  leg.moving = std::max(leg.moving, sinking);
+  if (end <= foot) leg.wait = motion.vehicle().mode.touchdown_time;
+  return leg;
+}
+
+FlightScript make_flight_script(const InterpretedRoute& route, const Motion& motion) {
+  return ScriptWriter(route, motion).write();
+}
+
+}  // namespace skycap::flight

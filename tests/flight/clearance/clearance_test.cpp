@@ -1,0 +1,208 @@
+#include "flight/clearance/clearance.h"
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/flight/clearance/cgal_oracle.h"
+#include "tests/flight/scenes.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+Obstacles solid(geometry::Mesh mesh) {
+  Obstacles obstacles;
+  obstacles.mesh = std::move(mesh);
+  return obstacles;
+}
+
+struct Scene {
+  const char* name;
+  std::function<geometry::Mesh(std::mt19937_64&)> make;
+  double clearance;
+};
+
+// NOLINTNEXTLINE(readability-identifier-naming): gtest looks for it
+void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
+
+class RandomScene : public testing::TestWithParam<Scene> {};
+
+// The bar of the certificate, 20,000 legs over the four scenes: never accept what the independent
+// oracle refuses, refuse at most one in a thousand of what it accepts. The oracle knows surfaces
+// only, so the scenes are taken as shells here; solids have their own test.
+TEST_P(RandomScene, CertificateAgreesWithTheOracle) {
+  std::mt19937_64 random(7);
+  const Scene& scene = GetParam();
+  Obstacles obstacles = solid(scene.make(random));
+  obstacles.mesh_is_solid = false;
+  const KnownSpace space(obstacles);
+  const CgalOracle oracle(obstacles.mesh);
+  Eigen::AlignedBox3d around = geometry::bounding_box(obstacles.mesh);
+  around.min() -= Vector3d::Constant(5);
+  around.max() += Vector3d::Constant(5);
+
+  int accepted_by_oracle = 0, rejected_by_skycap = 0, violations = 0;
+  for (const Segment& leg : scenes::legs(random, 5000, around)) {
+    const Verdict verdict = oracle.classify(leg, scene.clearance);
+    const LegVerification verification = verify(space, leg, scene.clearance);
+    EXPECT_EQ(verification.is_verified, verification.clearance >= scene.clearance);
+    EXPECT_EQ(space.is_free(leg, scene.clearance), verification.is_verified);
+    if (verdict == Verdict::violated) {
+      ++violations;
+      EXPECT_FALSE(verification.is_verified) << "accepted a leg with a witness of violation";
+    } else if (verdict == Verdict::clear) {
+      ++accepted_by_oracle;
+      rejected_by_skycap += verification.is_verified ? 0 : 1;
+    }
+  }
+  EXPECT_GT(violations, 100);  // the scene is worth testing on
+  EXPECT_GT(accepted_by_oracle, 100);
+  EXPECT_LE(rejected_by_skycap, accepted_by_oracle / 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Clearance, RandomScene,
+    testing::Values(Scene{"boxes", [](auto& r) { return scenes::boxes(r, 60); }, 2.0},
+                    Scene{"poles", [](auto& r) { return scenes::poles(r, 80); }, 0.3},
+                    Scene{"wires", [](auto& r) { return scenes::wires(r, 160); }, 0.3},
+                    Scene{"city", [](auto&) { return scenes::city(2); }, 2.0}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
+// The nearest place named is real: it is on the leg, that far from the mesh by CGAL, and no sample
+// of the leg is nearer.
+TEST(Clearance, TheClosestPlaceIsTheNearestOfAllSamples) {
+  std::mt19937_64 random(8);
+  Obstacles obstacles = solid(scenes::wires(random, 40));
+  obstacles.mesh_is_solid = false;
+  const KnownSpace space(obstacles);
+  const CgalOracle oracle(obstacles.mesh);
+  const Eigen::AlignedBox3d around(Vector3d::Zero(), Vector3d::Constant(60));
+  for (const Segment& leg : scenes::legs(random, 200, around)) {
+    const Closest closest = space.closest(leg, 1e9);
+    EXPECT_NEAR(oracle.distance(closest.on_leg), closest.distance, 1e-9);
+    EXPECT_NEAR((closest.on_leg - closest.on_obstacle).norm(), closest.distance, 1e-9);
+    for (int i = 0; i <= 100; ++i) {
+      EXPECT_LE(closest.distance, oracle.distance(leg.at(i / 100.0)) + 1e-9);
+    }
+  }
+}
+
+TEST(Clearance, LooksNoFartherThanAsked) {
+  const KnownSpace space(solid(scenes::box(Vector3d::Zero(), Vector3d::Ones())));
+  const Segment leg{{0, 0, 4}, {1, 0, 4}};
+  EXPECT_EQ(space.closest(leg, 2.0).kind, ObstacleKind::none);
+  EXPECT_EQ(space.closest(leg, 2.0).distance, 2.0);
+  EXPECT_NEAR(space.closest(leg, 9.0).distance, 3.0, 1e-12);
+}
+
+TEST(Clearance, ALegInsideASolidIsRefusedWhicheverWayTheSolidFaces) {
+  geometry::Mesh box = scenes::box({-20, -20, -20}, {20, 20, 20});
+  const Segment deep_inside{{-1, 0, 0}, {1, 0, 0}}, outside{{30, 0, 0}, {35, 0, 0}};
+  for (const bool inside_out : {false, true}) {
+    if (inside_out) {
+      for (auto& triangle : box.triangles) std::swap(triangle[0], triangle[1]);
+    }
+    const KnownSpace space(solid(box));
+    EXPECT_FALSE(verify(space, deep_inside, 1.0).is_verified);
+    EXPECT_FALSE(space.is_free(deep_inside, 1.0));
+    EXPECT_TRUE(verify(space, outside, 1.0).is_verified);
+    Obstacles shell = solid(box);
+    shell.mesh_is_solid = false;
+    EXPECT_TRUE(verify(KnownSpace(shell), deep_inside, 1.0).is_verified);
+  }
+}
+
+TEST(Clearance, SelfIntersectingAndDoubledSolidsCountAsSolid) {
+  geometry::Mesh mesh = scenes::box({0, 0, 0}, {10, 10, 10});
+  geometry::append(mesh, scenes::box({5, 5, 5}, {15, 15, 15}));
+  geometry::append(mesh, scenes::box({0, 0, 0}, {10, 10, 10}));  // the first one again
+  const KnownSpace space(solid(mesh));
+  EXPECT_NEAR(space.winding_number({7, 7, 7}), 3.0, 0.05);  // the far field's dipoles are inexact
+  EXPECT_NEAR(space.winding_number({12, 12, 12}), 1.0, 0.05);
+  EXPECT_NEAR(space.winding_number({2, 12, 2}), 0.0, 0.05);
+  EXPECT_FALSE(space.is_free({{7, 7, 7}, {7.1, 7, 7}}, 0.1));
+}
+
+// Over a hollow sheet more than half of the view is surface; facing it is still not being inside.
+TEST(Clearance, TheHollowOfAnOpenTerrainIsNotInside) {
+  geometry::Mesh valley;
+  valley.vertices = {{-10, -50, 20}, {0, -50, 0}, {10, -50, 20},
+                     {-10, 50, 20},  {0, 50, 0},  {10, 50, 20}};
+  valley.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
+  const KnownSpace space(solid(valley));
+  EXPECT_TRUE(space.is_free({{0, -5, 10}, {0, 5, 10}}, 2.0));
+  EXPECT_LT(space.winding_number({0, 0, 8}), -0.5);
+}
+
+TEST(Clearance, PointsAreBalls) {
+  Obstacles obstacles;
+  obstacles.cloud = {{{0, 0, 0}, {10, 0, 0}}, 0.5};
+  const KnownSpace space(obstacles);
+  const Closest closest = space.closest({{-5, 3, 0}, {15, 2, 0}}, 100);
+  EXPECT_EQ(closest.kind, ObstacleKind::point);
+  EXPECT_EQ(closest.index, 1U);
+  // Distance of (10, 0) from the line through (-5, 3) and (15, 2), less the radius.
+  EXPECT_NEAR(closest.distance, 2.25 * 20.0 / std::sqrt(401.0) - 0.5, 1e-6);
+  EXPECT_EQ(space.closest({{0, 0.2, 0}, {0, 0.3, 0}}, 100).distance, 0.0);
+}
+
+// The complaint that autopilots share: waypoints outside a no-fly zone, the leg between through it.
+TEST(Clearance, ALegThroughANoFlyVolumeIsRefusedThoughItsEndsAreOutside) {
+  Obstacles obstacles;
+  obstacles.no_fly = {{"heliport", {{10, -5}, {20, -5}, {20, 5}, {10, 5}}, 0.0, 50.0}};
+  const KnownSpace space(obstacles);
+  const LegVerification through = verify(space, {{0, 0, 20}, {30, 0, 20}}, 2.0);
+  EXPECT_FALSE(through.is_verified);
+  EXPECT_THAT(space.name(through.closest), HasSubstr("heliport"));
+  EXPECT_TRUE(verify(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).is_verified);  // over its ceiling
+  EXPECT_NEAR(verify(space, {{0, 0, 53}, {30, 0, 53}}, 2.0).clearance, 3.0, 2e-6);
+  EXPECT_FALSE(verify(space, {{14, 0, 20}, {16, 0, 20}}, 1.0).is_verified);  // wholly inside
+}
+
+TEST(Clearance, AnUnboundedNoFlyVolumeCannotBeFlownOver) {
+  Obstacles obstacles;
+  obstacles.no_fly = {{"tower", {{10, -5}, {20, -5}, {20, 5}, {10, 5}}}};
+  const KnownSpace space(obstacles);
+  EXPECT_FALSE(space.is_free({{0, 0, 5000}, {30, 0, 5000}}, 1.0));
+  EXPECT_TRUE(space.is_free({{0, 10, 20}, {30, 10, 20}}, 1.0));
+}
+
+TEST(Clearance, TheFenceHoldsLegsAndNotOnlyWaypoints) {
+  Obstacles obstacles;  // an L: the straight line between its arms leaves it
+  obstacles.fence = Prism{"site", {{0, 0}, {40, 0}, {40, 10}, {10, 10}, {10, 40}, {0, 40}}, 0, 30};
+  const KnownSpace space(obstacles);
+  EXPECT_TRUE(space.is_free({{5, 5, 10}, {35, 5, 10}}, 2.0));
+  EXPECT_FALSE(space.is_free({{35, 5, 10}, {5, 35, 10}}, 0.0));
+  EXPECT_FALSE(space.is_free({{50, 50, 10}, {60, 50, 10}}, 1.0));  // wholly outside
+  EXPECT_NEAR(space.closest({{5, 5, 28}, {5, 6, 28}}, 9).distance, 2.0, 1e-9);
+}
+
+TEST(Clearance, TheGroundIsSolid) {
+  Obstacles obstacles;
+  obstacles.ground_height = 10.0;
+  const KnownSpace space(obstacles);
+  EXPECT_NEAR(space.closest({{0, 0, 13}, {9, 0, 15}}, 9).distance, 3.0, 1e-12);
+  EXPECT_EQ(space.closest({{0, 0, 5}, {9, 0, 15}}, 9).distance, 0.0);
+  EXPECT_EQ(space.closest({{0, 0, 13}, {9, 0, 15}}, 9).kind, ObstacleKind::ground);
+}
+
+TEST(Clearance, JointSpaceIsFreeWhereAllAre) {
+  Obstacles building = solid(scenes::box({0, 0, 0}, {10, 10, 10}));
+  Obstacles rules;
+  rules.ground_height = 0.0;
+  const KnownSpace scene(building), no_fly(rules);
+  const JointSpace both({&scene, &no_fly});
+  EXPECT_EQ(both.closest({{20, 0, 3}, {30, 0, 3}}, 99).kind, ObstacleKind::ground);
+  EXPECT_EQ(both.closest({{12, 0, 9}, {30, 0, 9}}, 99).kind, ObstacleKind::mesh);
+  EXPECT_FALSE(both.continues_free({{20, 0, 3}, {30, 0, 3}}, 4.0));
+  EXPECT_TRUE(both.is_free({{20, 0, 5}, {30, 0, 5}}, 4.0));
+}
+
+}  // namespace
+}  // namespace skycap::flight

@@ -1,0 +1,116 @@
+// What a link carries, whoever sends it.
+#include "flight/mavlink/frame.h"
+
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "flight/mavlink/guided_messages.h"
+#include "tests/flight/export/mavlink_link.h"
+
+namespace skycap::flight::mavlink {
+namespace {
+
+constexpr Address somebody{1, 1};
+
+std::vector<Frame> frames_in(const Bytes& bytes) {
+  FrameReader reader(guided_extra_byte);
+  reader.feed(bytes);
+  std::vector<Frame> frames;
+  while (const auto frame = reader.next()) frames.push_back(*frame);
+  return frames;
+}
+
+Bytes heartbeat(std::uint32_t mode, std::uint8_t sequence = 0) {
+  Heartbeat message;
+  message.custom_mode = mode;
+  return encode(message, somebody, sequence);
+}
+
+void append(Bytes& bytes, const Bytes& more) {
+  bytes.insert(bytes.end(), more.begin(), more.end());
+}
+
+// Published constants of the message set: our definitions of the messages are the right ones.
+TEST(Mavlink, TheExtraBytesAreThoseOfTheMessageSets) {
+  EXPECT_EQ(extra_byte<Heartbeat>(), 50);
+  EXPECT_EQ(extra_byte<SystemStatus>(), 124);
+  EXPECT_EQ(extra_byte<Attitude>(), 39);
+  EXPECT_EQ(extra_byte<GlobalPosition>(), 104);
+  EXPECT_EQ(extra_byte<CommandLong>(), 152);
+  EXPECT_EQ(extra_byte<CommandAnswer>(), 143);
+  EXPECT_EQ(extra_byte<PositionTarget>(), 5);
+  EXPECT_EQ(extra_byte<EstimatorStatus>(), 71);
+  EXPECT_EQ(extra_byte<StatusText>(), 83);
+  EXPECT_EQ(extra_byte<GimbalAttitude>(), 137);
+  EXPECT_EQ(extra_byte<MissionRequestList>(), 132);
+  EXPECT_EQ(extra_byte<MissionCount>(), 221);
+  EXPECT_EQ(extra_byte<MissionAnswer>(), 153);
+  EXPECT_EQ(extra_byte<MissionRequest>(), 196);
+  EXPECT_EQ(extra_byte<WireItem>(), 38);
+}
+
+// The check value of CRC-16/MCRF4XX in the catalogue of checksums.
+TEST(Mavlink, TheChecksumHasItsCheckValue) {
+  const Bytes digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(checksum(digits), 0x6F91);
+}
+
+TEST(Mavlink, FramesAreTruncatedAndDamageIsNoticed) {
+  const Bytes frame = encode(CommandAnswer{}, somebody, 7);  // zeros alone: one of them stays
+  EXPECT_EQ(frame.size(), 10U + 1U + 2U);
+  ASSERT_EQ(frames_in(frame).size(), 1U);
+  EXPECT_EQ(decode<CommandAnswer>(frames_in(frame).front())->result, 0);
+  EXPECT_FALSE(decode<Heartbeat>(frames_in(frame).front()));
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      Bytes damaged = frame;
+      damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ (1 << bit));
+      EXPECT_TRUE(frames_in(damaged).empty()) << "byte " << i << ", bit " << bit;
+    }
+  }
+}
+
+TEST(Mavlink, FramesAreFoundInBytesThatComeInPieces) {
+  Bytes bytes;
+  for (std::uint8_t i = 0; i < 20; ++i) append(bytes, heartbeat(i, i));
+  FrameReader reader(guided_extra_byte);
+  std::uint32_t found = 0;
+  for (const std::uint8_t byte : bytes) {
+    reader.feed({&byte, 1});
+    while (const auto frame = reader.next())
+      EXPECT_EQ(decode<Heartbeat>(*frame)->custom_mode, found++);
+  }
+  EXPECT_EQ(found, 20U);
+}
+
+TEST(Mavlink, WhatIsNotKnownIsPassedOver) {
+  Bytes bytes = wire_form({4711, somebody, 0, Bytes(200, 0xFD)}, 0);
+  Bytes marked = heartbeat(1);
+  marked[2] = 1;  // signed
+  append(bytes, marked);
+  append(bytes, heartbeat(3));
+  const std::vector<Frame> frames = frames_in(bytes);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(decode<Heartbeat>(frames.front())->custom_mode, 3U);
+}
+
+// Whatever comes before, a frame is found once no more than one frame's bytes have followed it.
+TEST(Mavlink, NoiseNeitherIsAFrameNorHidesTheNextOnes) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    Bytes bytes(random() % 400);
+    for (std::uint8_t& byte : bytes)
+      byte = static_cast<std::uint8_t>(random() % 4 == 0 ? 0xFD : random());
+    for (std::uint8_t n = 0; n < 20; ++n) append(bytes, heartbeat(1234567, n));
+    const std::vector<Frame> frames = frames_in(bytes);
+    ASSERT_FALSE(frames.empty());
+    EXPECT_LE(frames.size(), 20U);
+    EXPECT_EQ(decode<Heartbeat>(frames.back())->custom_mode, 1234567U);
+    EXPECT_EQ(frames.back().sequence, 19);
+  }
+}
+
+}  // namespace
+}  // namespace skycap::flight::mavlink

@@ -1,0 +1,56 @@
+#include "flight/monte_carlo/vehicle_model.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/flight/vehicles.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double step = 0.04;
+
+class AVehicleModel : public testing::Test {
+ protected:
+  void fly(const SetPoint& target, double time, const Vector3d& air = Vector3d::Zero()) {
+    for (double t = 0.0; t < time; t += step) model_.fly(target, error_, air, step);
+  }
+
+  Motion motion_{vehicle_profile("generic"), Conditions{}};
+  VehicleModel model_{motion_, {1, 2, 30}};
+  Vector3d error_ = Vector3d::Zero();
+};
+
+TEST_F(AVehicleModel, HoversForThePowerOfHovering) {
+  fly({{1, 2, 30}}, 100.0);
+  EXPECT_EQ(model_.position(), Vector3d(1, 2, 30));
+  EXPECT_NEAR(model_.energy(), 100.0 * motion_.hover_power(), 2.0 * step * motion_.hover_power());
+}
+
+TEST_F(AVehicleModel, ReturnsToItsPlaceInSteadyWind) {
+  fly({{1, 2, 30}}, 2.0, {8, 0, 0});
+  EXPECT_GT(model_.position().x(), 1.01);  // pushed away first
+  fly({{1, 2, 30}}, 60.0, {8, 0, 0});
+  EXPECT_NEAR((model_.position() - Vector3d(1, 2, 30)).norm(), 0.0, 0.005);
+}
+
+TEST_F(AVehicleModel, IsAsFarOffAsItTakesItselfToBe) {
+  error_ = {0.2, -0.1, 0.3};
+  fly({{1, 2, 30}}, 60.0);
+  EXPECT_NEAR((model_.position() - (Vector3d(1, 2, 30) - error_)).norm(), 0.0, 0.005);
+}
+
+// A set point that moves steadily is followed without falling behind.
+TEST_F(AVehicleModel, KeepsUpWithASteadySetPoint) {
+  SetPoint target{{1, 2, 30}, {3, 0, 0}};
+  for (int i = 0; i < 1500; ++i) {
+    model_.fly(target, error_, Vector3d::Zero(), step);
+    target.position.x() += 3.0 * step;
+  }
+  EXPECT_NEAR((model_.position() - target.position).norm(), 0.0, 0.01);
+  EXPECT_NEAR(model_.velocity().x(), 3.0, 0.01);
+}
+
+}  // namespace
+}  // namespace skycap::flight

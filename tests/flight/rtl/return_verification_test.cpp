@@ -1,0 +1,157 @@
+#include "flight/rtl/return_verification.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flight/clearance/measured_space.h"
+#include "tests/flight/scenes.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr double clearance = 2.0;
+
+RtlProfile make_rtl_profile(std::vector<AutopilotType> autopilots, double level,
+                            const Vector3d& pad = {0, 0, 0}) {
+  return {.autopilots = std::move(autopilots), .level = level, .landings = {pad}};
+}
+
+/// A free-standing upright slab, whose face toward -x is at `x`.
+Obstacles wall_at(double x, double height = 60.0) {
+  Obstacles obstacles;
+  obstacles.mesh = scenes::box({x, -50, 0}, {x + 1, 50, height});
+  return obstacles;
+}
+
+// The column over a place beside a wall keeps the distance that the place has; so does the whole
+// return to a pad farther off.
+TEST(ReturnVerification, KeepsTheDistanceOfAColumnBesideAWall) {
+  const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4}, 30.0, {-40, 0, 0});
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
+  const KnownSpace enough(wall_at(2.0 + 1e-3, 20.0)), too_near(wall_at(2.0 - 1e-3, 20.0));
+  const ReturnVerification verification = verify_returns(enough, position, rtl_profile, clearance);
+  EXPECT_TRUE(verification.is_verified);
+  EXPECT_NEAR(verification.clearance, 2.0 + 1e-3, 1e-5);
+  EXPECT_FALSE(verify_returns(too_near, position, rtl_profile, clearance).is_verified);
+}
+
+// A leg along a wall is proven to within the slack, and refused at less than the clearance.
+TEST(ReturnVerification, ProvesALegBesideAWallToWithinTheSlack) {
+  const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::ardupilot}, 30.0, {-40, 0, 0});
+  const Segment leg{{0, -20, 10}, {0, 20, 12}};
+  const KnownSpace enough(wall_at(2.0 + return_slack + 1e-3, 20.0));
+  const KnownSpace too_near(wall_at(2.0 - 1e-3, 20.0));
+  const ReturnVerification verification = verify_returns(enough, leg, rtl_profile, clearance);
+  EXPECT_TRUE(verification.is_verified);
+  EXPECT_GE(verification.clearance, 2.0 - 1e-9);
+  EXPECT_LE(verification.clearance, 2.0 + return_slack + 1e-3);
+  EXPECT_FALSE(verify_returns(too_near, leg, rtl_profile, clearance).is_verified);
+}
+
+TEST(ReturnVerification, NamesThePieceThePlaceAndTheObstacle) {
+  const KnownSpace space(wall_at(-20.0, 20.0));  // between the place and the pad
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
+  const ReturnVerification low = verify_returns(
+      space, position, make_rtl_profile({AutopilotType::px4}, 15.0, {-40, 0, 0}), clearance);
+  ASSERT_FALSE(low.is_verified);
+  EXPECT_THAT(describe(low, space),
+              AllOf(HasSubstr("the level flight of the return from (0.00, 0.00, 10.00)"),
+                    HasSubstr("within 0.000 m"), HasSubstr("triangle"), HasSubstr("14.60)")));
+  EXPECT_TRUE(verify_returns(space, position,
+                             make_rtl_profile({AutopilotType::px4}, 23.0, {-40, 0, 0}), clearance)
+                  .is_verified);
+}
+
+// DJI's vehicles fly home level when near; with the wall between, no height of return helps them.
+TEST(ReturnVerification, RefusesALevelReturnOfDjiThroughAWallAtAnyHeight) {
+  const KnownSpace space(wall_at(-20.0, 20.0));
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
+  const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::dji}, 40.0, {-40, 0, 0});
+  const ReturnVerification near = verify_returns(space, position, rtl_profile, clearance);
+  EXPECT_FALSE(near.is_verified);
+  EXPECT_EQ(near.segment.part, ReturnPart::level_as_it_is);
+  const RtlProfile far = make_rtl_profile({AutopilotType::dji}, 40.0, {-60, 0, 0});
+  EXPECT_TRUE(verify_returns(space, position, far, clearance).is_verified);
+}
+
+// Unknown is never free: over a place from which nobody has looked up there is no return.
+TEST(ReturnVerification, RefusesToClimbThroughWhatWasNeverSeen) {
+  MeasuredSpaceConfig config;
+  config.region = {Vector3d(-10, -10, 0), Vector3d(10, 10, 40)};
+  MeasuredSpace space(config);
+  space.declare_free(Eigen::AlignedBox3d(Vector3d(-10, -10, 0), Vector3d(10, 10, 20)));
+  const Segment position{{0, 0, 10}, {0, 0, 10}};
+  const RtlProfile high = make_rtl_profile({AutopilotType::px4}, 50.0, {-40, 0, 0});
+  const ReturnVerification verification = verify_returns(space, position, high, clearance);
+  EXPECT_FALSE(verification.is_verified);
+  EXPECT_EQ(verification.closest.kind, ObstacleKind::unknown_space);
+  EXPECT_EQ(verification.segment.part, ReturnPart::climb);
+  // Level through what was seen, and out of the box.
+  const RtlProfile low = make_rtl_profile({AutopilotType::px4}, 15.0, {-40, 0, 0});
+  EXPECT_TRUE(verify_returns(space, position, low, clearance).is_verified);
+}
+
+/// The distance of a return by brute force: a point every 20 cm, each asked for its own distance.
+double sampled_distance(const FreeSpace& space, const std::vector<ReturnSegment>& segments) {
+  double min = std::numeric_limits<double>::infinity();
+  for (const ReturnSegment& segment : segments) {
+    const int steps = 1 + static_cast<int>(segment.line.length() / 0.2);
+    for (int i = 0; i <= steps; ++i) {
+      const double distance = space.distance(segment.line.at(static_cast<double>(i) / steps), 20.0);
+      min = std::min(min, distance - segment.spread);
+    }
+  }
+  return min;
+}
+
+/// The pieces that an autopilot flies: of DJI's two ways home, either.
+class RandomScenes : public testing::TestWithParam<int> {};
+
+// No return from a point of a proven leg comes nearer than what was proven; and a leg that is
+// refused has a return nearer than the slack above the clearance.
+TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(GetParam()));
+  Obstacles obstacles;
+  obstacles.mesh = scenes::boxes(random, 12);
+  obstacles.ground_height = -40.0;
+  const KnownSpace space(obstacles);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  int verified = 0, rejected = 0;
+  for (const Segment& leg :
+       scenes::legs(random, 60, {Vector3d(-35, -35, -30), Vector3d(35, 35, 35)})) {
+    const RtlProfile rtl_profile =
+        make_rtl_profile({AutopilotType::ardupilot, AutopilotType::px4, AutopilotType::dji},
+                         5.0 + 35.0 * share(random), {-55, -45, -40});
+    const ReturnVerification verification = verify_returns(space, leg, rtl_profile, clearance);
+    if (!verification.is_verified) {
+      ++rejected;
+      const double near =
+          sampled_distance(space, return_segments(rtl_profile, verification.from, return_slack));
+      EXPECT_LE(near, clearance + return_slack + 0.11);  // samples are 20 cm apart
+      continue;
+    }
+    ++verified;
+    EXPECT_GE(verification.clearance, clearance - 1e-9);
+    for (int i = 0; i < 20; ++i) {
+      const Vector3d position = leg.at(share(random));
+      ASSERT_GE(sampled_distance(space, return_segments(rtl_profile, position)),
+                verification.clearance - 1e-6)
+          << position.transpose();
+    }
+  }
+  EXPECT_GT(verified, 5);
+  EXPECT_GT(rejected, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(ReturnVerification, RandomScenes, testing::Range(1, 6));
+
+}  // namespace
+}  // namespace skycap::flight

@@ -1,0 +1,137 @@
+#include "flight/rtl/rtl_profile.h"
+
+#include <algorithm>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/not_empty.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using testing::Each;
+using testing::Field;
+using testing::SizeIs;
+
+constexpr double level = 40.0;
+
+RtlProfile make_rtl_profile(std::vector<AutopilotType> autopilots) {
+  return {.autopilots = std::move(autopilots), .level = level, .landings = {{0, 0, 1}}};
+}
+
+const ReturnSegment* find(const std::vector<ReturnSegment>& segments, ReturnPart part) {
+  const auto found = std::ranges::find(segments, part, &ReturnSegment::part);
+  return found == segments.end() ? nullptr : &*found;
+}
+
+void expect_line(const ReturnSegment* segment, const Vector3d& from, const Vector3d& to,
+                 double spread) {
+  ASSERT_NE(segment, nullptr);
+  EXPECT_TRUE(segment->line.from.isApprox(from)) << segment->line.from.transpose();
+  EXPECT_TRUE(segment->line.to.isApprox(to)) << segment->line.to.transpose();
+  EXPECT_DOUBLE_EQ(segment->spread, spread);
+}
+
+// By hand, from mode_rtl.cpp with RTL_ALT 40, RTL_CONE_SLOPE 0: up at the place, level at 40, where
+// the corner is cut by at most WP_RADIUS = 2: the band from 38 to 40.
+TEST(RtlProfile, ArduCopterClimbsAndFliesLevelInABandOfTwoMetres) {
+  const auto segments = return_segments(make_rtl_profile({AutopilotType::ardupilot}), {30, 40, 12});
+  ASSERT_THAT(segments, SizeIs(2));
+  expect_line(find(segments, ReturnPart::climb), {30, 40, 12}, {30, 40, 40}, 0.0);
+  expect_line(find(segments, ReturnPart::level), {30, 40, 39}, {0, 0, 39}, 1.0);
+}
+
+// rtl_direct.cpp: the climb counts as done NAV_MC_ALT_RAD = 0.8 below, and the descent begins
+// within NAV_ACC_RAD = 1 of the landing place.
+TEST(RtlProfile, Px4FliesLevelUpToEightTenthsBelowAndLandsWithinAMetre) {
+  const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4});
+  const auto segments = return_segments(rtl_profile, {3, 4, 12});
+  ASSERT_THAT(segments, SizeIs(2));
+  expect_line(find(segments, ReturnPart::level), {3, 4, 39.6}, {0, 0, 39.6}, 0.4);
+  const auto columns = landing_columns(rtl_profile, 50.0);
+  ASSERT_THAT(columns, SizeIs(1));
+  expect_line(columns.data(), {0, 0, 50}, {0, 0, 6}, 1.0);
+}
+
+struct DjiCase {
+  double distance;
+  bool may_stay_level, may_land;
+};
+
+// The manuals: over 50 m it climbs first; from 5 to 50 m it may fly home as high as it is; nearer
+// than 5 m it may land where it is. Three metres are added to both.
+TEST(RtlProfile, DjiStaysLevelWithinFiftyMetresAndLandsWithinFive) {
+  for (const DjiCase& expected :
+       {DjiCase{60, false, false}, DjiCase{53.1, false, false}, DjiCase{52.9, true, false},
+        DjiCase{20, true, false}, DjiCase{8.1, true, false}, DjiCase{7.9, true, true},
+        DjiCase{0, true, true}}) {
+    const auto segments =
+        return_segments(make_rtl_profile({AutopilotType::dji}), {expected.distance, 0, 12});
+    const ReturnSegment* as_it_is = find(segments, ReturnPart::level_as_it_is);
+    EXPECT_EQ(as_it_is != nullptr, expected.may_stay_level) << expected.distance;
+    EXPECT_EQ(find(segments, ReturnPart::landing) != nullptr, expected.may_land)
+        << expected.distance;
+    if (as_it_is != nullptr) expect_line(as_it_is, {expected.distance, 0, 12}, {0, 0, 12}, 0.0);
+    expect_line(find(segments, ReturnPart::climb), {expected.distance, 0, 12},
+                {expected.distance, 0, 40}, 0.0);
+  }
+}
+
+TEST(RtlProfile, AVehicleAboveTheHeightOfReturnStaysAsHigh) {
+  const auto segments = return_segments(make_rtl_profile({AutopilotType::px4}), {30, 40, 70});
+  expect_line(find(segments, ReturnPart::climb), {30, 40, 70}, {30, 40, 70}, 0.0);
+  expect_line(find(segments, ReturnPart::level), {30, 40, 69.6}, {0, 0, 69.6}, 0.4);
+}
+
+TEST(RtlProfile, GoesToTheNearestLandingAndToBothWhereThatIsInDoubt) {
+  RtlProfile rtl_profile = make_rtl_profile({AutopilotType::ardupilot});
+  rtl_profile.landings.emplace_back(100, 0, 3);
+  EXPECT_THAT(return_segments(rtl_profile, {30, 0, 10}), SizeIs(2));
+  EXPECT_THAT(return_segments(rtl_profile, {80, 0, 10}), SizeIs(2));
+  expect_line(find(return_segments(rtl_profile, {80, 0, 10}), ReturnPart::level), {80, 0, 39},
+              {100, 0, 39}, 1.0);
+  EXPECT_THAT(return_segments(rtl_profile, {52, 0, 10}),
+              SizeIs(3));  // 48 and 52 m: within 10 m of another
+  EXPECT_THAT(return_segments(rtl_profile, {30, 0, 10}, 20.0),
+              SizeIs(3));  // some within 20 m are nearer
+}
+
+/// How far the points of `segment` are from those of the piece of the same part that is nearest,
+/// ends compared with ends.
+double distance_to_counterpart(const ReturnSegment& segment,
+                               const std::vector<ReturnSegment>& others) {
+  double nearest = 1e9;
+  for (const ReturnSegment& other : others) {
+    if (other.part != segment.part || other.spread != segment.spread) continue;
+    nearest = std::min(nearest, std::max((other.line.from - segment.line.from).norm(),
+                                         (other.line.to - segment.line.to).norm()));
+  }
+  return nearest;
+}
+
+// The property that the proof rests on: whatever is within reach has its ways home within the same
+// distance of those given for the reach.
+TEST(RtlProfile, IsOneLipschitz) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> coordinate(-80, 80), height(5, 60), unit(-1, 1);
+  RtlProfile rtl_profile =
+      make_rtl_profile({AutopilotType::ardupilot, AutopilotType::px4, AutopilotType::dji});
+  rtl_profile.landings.emplace_back(60, -20, 4);
+  for (int i = 0; i < 20000; ++i) {
+    const Vector3d a{coordinate(random), coordinate(random), height(random)};
+    const Vector3d b = a + 15.0 * Vector3d{unit(random), unit(random), unit(random)};
+    const double apart = (b - a).norm();
+    const auto around = return_segments(rtl_profile, a, apart + 1e-12);
+    for (const ReturnSegment& segment :
+         testing_support::not_empty(return_segments(rtl_profile, b))) {
+      ASSERT_LE(distance_to_counterpart(segment, around), apart + 1e-9)
+          << to_string(segment.part) << " from " << b.transpose() << " and " << a.transpose();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace skycap::flight

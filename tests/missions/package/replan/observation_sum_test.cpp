@@ -1,0 +1,81 @@
+#include "missions/package/replan/observation_sum.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace skycap::missions::package {
+namespace {
+
+using survey::surfel::GainField;
+using survey::surfel::Observation;
+
+std::vector<GainField::Target> targets_weighing(const std::vector<float>& weights) {
+  std::vector<GainField::Target> targets;
+  for (const float weight : weights) {
+    targets.push_back({Eigen::Vector3f::Zero(), Eigen::Vector3f::UnitZ(), weight});
+  }
+  return targets;
+}
+
+// 1 - sum of w exp(-H) / sum of w, by hand.
+TEST(ObservationSum, CoversWhatTheDoseModelSays) {
+  ObservationSum sum(targets_weighing({1.0F, 3.0F}));
+  EXPECT_EQ(sum.covered(), 0.0);
+  sum.add(observation_strengths(std::vector<Observation>{{0, 1.0F}, {1, 0.5F}}));
+  sum.add(observation_strengths(std::vector<Observation>{{1, 1.5F}}));
+  const double missing = (std::exp(-1.0) + 3.0 * std::exp(-2.0)) / 4.0;
+  EXPECT_NEAR(sum.covered(), 1.0 - missing, 1e-6);  // weights and shares of 20 and 24 bits
+  EXPECT_NEAR(static_cast<double>(sum.missing(1)) / static_cast<double>(sum.missing(0)),
+              3.0 * std::exp(-1.0), 1e-5);
+}
+
+// Hazards of a 256th: off by half of that at most, by chance either way.
+TEST(ObservationSum, RoundsHazardsToWhatDoesNotMatter) {
+  ObservationSum sum(targets_weighing({2.0F}));
+  double hazard = 0.0;
+  for (int i = 1; i <= 10; ++i) {
+    const float single_hazard = 0.0731F * static_cast<float>(i);
+    sum.add(observation_strengths(std::vector<Observation>{{0, single_hazard}}));
+    hazard += double{single_hazard};
+    EXPECT_NEAR(sum.covered(), 1.0 - std::exp(-hazard), std::exp(-hazard) * i / 512.0 + 1e-6);
+  }
+}
+
+// Views come and go ten thousand times in a search; nothing may stay of those that went.
+TEST(ObservationSum, KeepsNoTraceOfViewsThatWent) {
+  std::mt19937_64 random(5);
+  std::vector<float> weights;
+  for (int i = 0; i < 500; ++i) weights.push_back(0.1F + static_cast<float>(random() % 1000));
+  const auto targets = targets_weighing(weights);
+  std::vector<std::vector<ObservationStrength>> views(12);
+  for (auto& view : views) {
+    std::vector<Observation> observations;
+    for (std::uint32_t t = 0; t < 500; ++t) {
+      if (random() % 3 == 0)
+        observations.push_back({t, static_cast<float>(random() % 7000) / 1000.0F});
+    }
+    view = observation_strengths(observations);
+  }
+  ObservationSum sum(targets);
+  std::vector<bool> is_in(views.size(), false);
+  for (int i = 0; i < 5000; ++i) {
+    const std::size_t v = random() % views.size();
+    if (is_in[v]) {
+      sum.remove(views[v]);
+    } else {
+      sum.add(views[v]);
+    }
+    is_in[v] = !is_in[v];
+  }
+  ObservationSum fresh(targets);
+  for (std::size_t v = views.size(); v-- > 0;) {
+    if (is_in[v]) fresh.add(views[v]);
+  }
+  EXPECT_EQ(sum.covered(), fresh.covered());
+  for (std::uint32_t t = 0; t < 500; ++t) ASSERT_EQ(sum.missing(t), fresh.missing(t)) << t;
+}
+
+}  // namespace
+}  // namespace skycap::missions::package

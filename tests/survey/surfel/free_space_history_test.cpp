@@ -1,0 +1,185 @@
+#include "survey/surfel/free_space_history.h"
+
+#include <random>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/sphere_sensor.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+const geometry::Camera camera{geometry::CameraConfig{.width = 424, .height = 240}};
+const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 about the origin
+constexpr float tolerance = 0.01F;
+
+surfel::FreeSpaceHistory make_history(
+    const std::vector<Vector3d>& viewpoints, double sigma, bool misses_are_empty,
+    std::size_t max_bytes = surfel::FreeSpaceHistory::usual_size) {
+  surfel::FreeSpaceHistory history(tolerance, misses_are_empty, max_bytes);
+  std::uint64_t seed = 1;
+  for (const Vector3d& viewpoint : viewpoints) {
+    const geometry::Scan scan =
+        tests::scan_spheres(ball, camera, geometry::look_at(viewpoint, {0, 0, 0}), sigma, seed++);
+    history.add(surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 0.1F}),
+                static_cast<float>(sigma));
+  }
+  return history;
+}
+
+std::vector<Vector3f> points_in_ball(float radius, int count) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<float> uniform(-radius, radius);
+  std::vector<Vector3f> points;
+  while (points.size() < static_cast<std::size_t>(count)) {
+    const Vector3f p{uniform(random), uniform(random), uniform(random)};
+    if (p.norm() < radius) points.push_back(p);
+  }
+  return points;
+}
+
+const std::vector<Vector3d> around = {{2, 0, 0}, {-2, 0, 0}, {0, 2, 0}, {0, -2, 0.1}, {1, 1, 1.4}};
+
+TEST(FreeSpaceHistory, NeverCallsTheInsideOfASolidEmpty) {
+  for (const bool misses_are_empty : {false, true}) {
+    const surfel::FreeSpaceHistory clean = make_history(around, 0.0, misses_are_empty);
+    // Ranges are kept in single precision of a few tenths of a millimetre.
+    for (const Vector3f& p : points_in_ball(0.499F, 20000)) {
+      ASSERT_NE(clean.query(p), surfel::SpaceState::empty) << p.transpose();
+    }
+    // Noisy depths of sixteen pixels scatter by a quarter of sigma about their mean; 3 cm inside is
+    // beyond the worst of a hundred thousand.
+    const surfel::FreeSpaceHistory noisy = make_history(around, 0.01, misses_are_empty);
+    for (const Vector3f& p : points_in_ball(0.47F, 20000)) {
+      ASSERT_NE(noisy.query(p), surfel::SpaceState::empty) << p.transpose();
+    }
+  }
+}
+
+TEST(FreeSpaceHistory, TellsEmptyMeasuredAndUnknownApart) {
+  const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, false);
+  EXPECT_EQ(history.query({1.0F, 0, 0}), surfel::SpaceState::empty);  // between sensor and ball
+  EXPECT_EQ(history.query({0.5F, 0, 0}), surfel::SpaceState::measured);
+  EXPECT_EQ(history.query({0, 0, 0}), surfel::SpaceState::hidden);      // inside
+  EXPECT_EQ(history.query({-1.0F, 0, 0}), surfel::SpaceState::hidden);  // behind
+  EXPECT_EQ(history.query({1.0F, 0, 0.3F}),
+            surfel::SpaceState::hidden);                                // on a ray without a return
+  EXPECT_EQ(history.query({3.0F, 0, 0}), surfel::SpaceState::outside);  // behind the sensor
+}
+
+TEST(FreeSpaceHistory, RaysWithoutAReturnProveEmptySpaceOnlyIfToldSo) {
+  const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
+  EXPECT_EQ(history.query({1.0F, 0, 0.35F}), surfel::SpaceState::empty);
+  EXPECT_FALSE(history.is_verified_empty({1.0F, 0, 0.35F}, 0.02F));
+}
+
+/// Beside the ball, where a sensor at (2, 0, 0) has rays without a return, nearer than some
+/// returns.
+std::vector<Vector3f> offset_points(int count) {
+  std::vector<Vector3f> points;
+  for (int i = 0; i < count; ++i) {
+    points.emplace_back(0.3F, 0.7F + 0.3F * static_cast<float>(i) / static_cast<float>(count), 0);
+  }
+  return points;
+}
+
+TEST(FreeSpaceHistory, AMissTellsOnlyOfSurfaceThatFacesItOnceMissesHaveLied) {
+  surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
+  const Vector3f beside(0.3F, 0.8F, 0), before(1, 0, 0);
+  const Vector3f front = Vector3f::UnitX(), back = -front, side = Vector3f::UnitZ();
+  for (const Vector3f& normal : {front, back, side}) {
+    EXPECT_EQ(history.query_surface(beside, normal), surfel::SpaceState::empty);
+  }
+  const std::vector<Vector3f> points = offset_points(40);
+  history.compare_misses(points, std::vector<Vector3f>(points.size(), front));
+  ASSERT_TRUE(history.has_false_misses());
+  EXPECT_EQ(history.query_surface(beside, front), surfel::SpaceState::empty);
+  EXPECT_EQ(history.query_surface(beside, back), surfel::SpaceState::hidden);
+  EXPECT_EQ(history.query_surface(beside, side), surfel::SpaceState::hidden);
+  EXPECT_EQ(history.query(beside), surfel::SpaceState::empty);  // as long as nobody asks for a side
+  // A return proves what is before it empty, whichever way that faces.
+  EXPECT_EQ(history.query_surface(before, back), surfel::SpaceState::empty);
+}
+
+TEST(FreeSpaceHistory, MissesLieOnlyWhereManyPointsShouldHaveReturnedThem) {
+  const Vector3f front = Vector3f::UnitX(), side = Vector3f::UnitZ();
+  const auto finds_false_misses = [](const std::vector<Vector3f>& points, const Vector3f& normal) {
+    surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
+    history.compare_misses(points, std::vector<Vector3f>(points.size(), normal));
+    return history.has_false_misses();
+  };
+  EXPECT_FALSE(finds_false_misses(points_in_ball(0.499F, 2000), front));  // behind returns
+  EXPECT_FALSE(finds_false_misses(offset_points(20), front));             // noise, or a wire
+  EXPECT_FALSE(finds_false_misses(offset_points(40), side));  // edge-on: rays pass it by
+  std::vector<Vector3f> far = offset_points(40);
+  for (Vector3f& point : far) point.x() -= 2.0F;
+  EXPECT_FALSE(finds_false_misses(far, front));  // beyond every return: maybe out of range
+  std::vector<Vector3f> mixed = points_in_ball(0.499F, 100000);
+  for (const Vector3f& point : offset_points(40)) mixed.push_back(point);
+  EXPECT_FALSE(finds_false_misses(mixed, front));  // below a thousandth or two
+}
+
+/// Twin: the one compares after every scan, the other all at the end.
+TEST(FreeSpaceHistory, ComparesEveryPointWithEveryImageOnce) {
+  const std::vector<Vector3f> points = offset_points(40);
+  const std::vector<Vector3f> normals(points.size(), Vector3f::UnitX());
+  for (const std::size_t known : {std::size_t{0}, std::size_t{15}, std::size_t{29}}) {
+    surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
+    history.compare_misses(std::span(points).first(known), std::span(normals).first(known));
+    history.compare_misses(std::span(points).first(29), std::span(normals).first(29));
+    EXPECT_FALSE(history.has_false_misses()) << known;
+    history.compare_misses(std::span(points).first(29), std::span(normals).first(29));
+    EXPECT_FALSE(history.has_false_misses()) << known;
+    history.compare_misses(std::span(points).first(30), std::span(normals).first(30));
+    EXPECT_TRUE(history.has_false_misses()) << known;
+  }
+}
+
+TEST(FreeSpaceHistory, ABallIsProvenEmptyOnlyInFrontOfReturns) {
+  const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
+  EXPECT_TRUE(history.is_verified_empty({1.0F, 0, 0}, 0.1F));
+  EXPECT_FALSE(history.is_verified_empty({0.55F, 0, 0}, 0.1F));  // reaches into the ball
+  EXPECT_FALSE(history.is_verified_empty({1.0F, 0, 0}, 0.4F));   // reaches beyond its outline
+  EXPECT_FALSE(history.is_verified_empty({-1.0F, 0, 0}, 0.1F));
+}
+
+/// Many looks at one side, and one at the other side long before.
+TEST(FreeSpaceHistory, ForgetsWhatOthersShowAsWell) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
+  std::vector<Vector3d> viewpoints = {{-2, 0, 0}, {0, 2, 0}};
+  for (int i = 0; i < 40; ++i) {
+    Vector3d viewpoint(2, 0, 0);
+    for (double& coordinate : viewpoint) coordinate += uniform(random);
+    viewpoints.push_back(viewpoint);
+  }
+  constexpr std::size_t image_size = std::size_t{106} * 60 * 3 * sizeof(float);
+  const surfel::FreeSpaceHistory all = make_history(viewpoints, 0.0, false);
+  const surfel::FreeSpaceHistory few = make_history(viewpoints, 0.0, false, 12 * image_size);
+  EXPECT_EQ(all.bytes(), viewpoints.size() * image_size);
+  EXPECT_EQ(few.bytes(), 12 * image_size);
+  EXPECT_EQ(few.image_count(), viewpoints.size());
+  for (const Vector3f& p : {Vector3f(-1, 0, 0), Vector3f(0, 1, 0), Vector3f(1, 0, 0)}) {
+    EXPECT_EQ(few.query(p), surfel::SpaceState::empty) << p.transpose();
+    EXPECT_TRUE(few.is_verified_empty(p, 0.1F));
+  }
+  EXPECT_TRUE(is_unknown(few.query({-1, 0, 0}, 1)));  // the first one is not asked
+  for (const Vector3f& p : points_in_ball(0.499F, 2000)) {
+    ASSERT_NE(few.query(p), surfel::SpaceState::empty);
+  }
+}
+
+TEST(FreeSpaceHistory, KeepsTheNewestHoweverLittleItMayKeep) {
+  const surfel::FreeSpaceHistory history = make_history(around, 0.0, false, 1);
+  EXPECT_EQ(history.image_count(), around.size());
+  EXPECT_EQ(history.query({0.6F, 0.6F, 0.84F}), surfel::SpaceState::empty);
+  EXPECT_TRUE(is_unknown(history.query({1.0F, 0, 0})));
+}
+
+}  // namespace
+}  // namespace skycap::survey
