@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <skycap/survey/skycap_planner.h>
+#include <skycap/survey/surfel_planner.h>
 #include <skycap/survey/survey_loop.h>
 
 using Eigen::Vector3d;

@@ -1,4 +1,4 @@
-#include <skycap/flight/certified_export.h>
+#include <skycap/flight/verified_export.h>
 
 #include "example.h"
 #include "tower.h"

@@ -1,6 +1,6 @@
 #include <skycap/sim/depth_camera.h>
 #include <skycap/sim/models.h>
-#include <skycap/survey/skycap_planner.h>
+#include <skycap/survey/surfel_planner.h>
 
 #include "example.h"
 

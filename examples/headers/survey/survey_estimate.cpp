@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <skycap/survey/survey_belief.h>
+#include <skycap/survey/survey_estimate.h>
 
 #include "example.h"
 
