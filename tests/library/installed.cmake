@@ -56,6 +56,14 @@ foreach(header IN LISTS headers)
   string(MAKE_C_IDENTIFIER ${header} name)
   file(WRITE ${FOLDER}/alone/${name}.cpp "#include <${header}>\n#include <${header}>\n")
 endforeach()
+file(WRITE ${FOLDER}/alone/former_names.cpp "
+#include <skycap/former_names.h>
+
+#include <skycap/survey/survey_loop.h>
+#include <skycap/survey/surfel_planner.h>
+static_assert(sizeof(skycap::survey::skycap::SkycapPlanner) > 0);
+skycap::survey::SurveyPorts ports;
+")
 file(WRITE ${FOLDER}/alone/CMakeLists.txt "
   cmake_minimum_required(VERSION 3.25)
   project(headers LANGUAGES CXX)
