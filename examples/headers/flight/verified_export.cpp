@@ -4,7 +4,7 @@
 #include "tower.h"
 
 // A file that is written because what it says, read back, keeps its distance.
-const Example verified_export_example("flight/certified_export", [] {
+const Example verified_export_example("flight/verified_export", [] {
   const skycap::flight::KnownSpace space = tower_space();
   const skycap::flight::FlightPlan plan = tower_plan(space);
   const auto written =

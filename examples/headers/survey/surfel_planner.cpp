@@ -5,7 +5,7 @@
 #include "example.h"
 
 // Three scans in, and what is believed of the surface then.
-const Example skycap_planner_example("survey/skycap_planner", [] {
+const Example skycap_planner_example("survey/surfel_planner", [] {
   const skycap::sim::Scene scene(skycap::sim::builtin_model("teapot"));
   const skycap::sim::DepthCamera camera(skycap::sim::d435());
   skycap::survey::surfel::SurfelPlanner planner({.coverage_radius = 0.05}, camera.camera());
