@@ -22,7 +22,7 @@ struct SurveyRequest {
   /// Callback with each view and the coverage after it, called on the planning thread. May be
   /// empty.
   std::function<void(const survey::SurveyedView&, double coverage)> report;
-  std::stop_token stop;  ///< ends the survey after the current view
+  std::stop_token stop;  ///< stop request; the current view is completed
 };
 
 struct Survey {

@@ -16,9 +16,9 @@ namespace skycap::missions::cli {
 
 /// Options for work in numbered items that a scheduler can run.
 struct TaskOptions {
-  std::optional<std::string> index;   ///< index of the task, see batch::task_index()
-  std::size_t chunk = 0;              ///< items per task; zero: one, or the scheduler's default
-  bool collects = false;              ///< collects completed items without running any
+  std::optional<std::string> index;  ///< index of the task, see batch::task_index()
+  std::size_t chunk = 0;             ///< items per task; zero: one item, or the scheduler's default
+  bool collects = false;             ///< whether to collect completed items without running any
   std::optional<std::string> engine;  ///< scheduler that runs all tasks
 
   bool is_set() const { return index || engine || collects || chunk > 0; }
@@ -26,10 +26,10 @@ struct TaskOptions {
 
 struct PlanOptions {
   std::filesystem::path mission;
-  std::optional<std::filesystem::path> out;  ///< default: results/NAME
+  std::optional<std::filesystem::path> out;  ///< output folder; default: results/NAME
   std::vector<config::KeyOverride> overrides;
-  std::size_t trials = 0;  ///< zero: a single survey with a mission package
-  bool resumes = false;    ///< resumes an interrupted survey; trials are always resumed
+  std::size_t trials = 0;  ///< number of surveys; zero: a single survey with a mission package
+  bool resumes = false;    ///< whether to resume an interrupted survey; trials are always resumed
   bool has_report = true;  ///< whether to write an HTML report
   bool is_quiet = false;
   bool is_verbose = false;
@@ -49,11 +49,11 @@ struct LiveOptions {
 };
 
 struct NextOptions : LiveOptions {
-  std::optional<std::filesystem::path> scan;       ///< scan that is added first
-  std::string pose;                                ///< sensor pose of the scan; either this
-  std::optional<std::filesystem::path> pose_file;  ///< or this file
-  std::string pose_sigma;                          ///< standard deviations of the pose; either this
-  std::string pose_covariance;  ///< or this covariance; default: from the mission
+  std::optional<std::filesystem::path> scan;  ///< scan to add before planning the next view
+  std::string pose;  ///< sensor pose of the scan; conflicts with `pose_file`
+  std::optional<std::filesystem::path> pose_file;  ///< file with the sensor pose of the scan
+  std::string pose_sigma;  ///< standard deviations of the pose; conflicts with `pose_covariance`
+  std::string pose_covariance;  ///< covariance of the pose; default: from the mission
   std::string intrinsics;       ///< camera intrinsics of a depth image
   double depth_unit = 0.001;    ///< unit of depth values in an image [m]
   bool is_in_world = false;     ///< whether the cloud's points are in the world frame
@@ -78,8 +78,8 @@ int next(const NextOptions& options, const Console& console);
 int finish(const LiveOptions& options, const Console& console);
 
 struct ServeOptions : LiveOptions {
-  std::optional<std::filesystem::path> socket;  ///< path of a Unix socket; either this
-  std::optional<std::uint16_t> port;            ///< or a TCP port on 127.0.0.1
+  std::optional<std::filesystem::path> socket;  ///< path of a Unix socket; conflicts with `port`
+  std::optional<std::uint16_t> port;            ///< TCP port on 127.0.0.1
   bool is_quiet = false;
 };
 
@@ -94,9 +94,10 @@ struct BenchmarkOptions {
   /// scene model; each trial's seed generates a different model. Empty: the missions' own models.
   std::vector<std::string> scenes;
   std::size_t trials = 10;                   ///< trials per planner and mission
-  std::optional<std::filesystem::path> out;  ///< default: results/benchmark
+  std::optional<std::filesystem::path> out;  ///< output folder; default: results/benchmark
   std::vector<config::KeyOverride> overrides;
-  unsigned threads = 0;    ///< concurrent single-threaded surveys; zero: one per processor
+  /// Number of surveys run concurrently, one thread each; zero: one per processor.
+  unsigned threads = 0;
   bool has_report = true;  ///< whether to write an HTML report
   bool is_quiet = false;
 };
@@ -110,7 +111,7 @@ struct CheckOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> route;
   std::optional<double> return_height;  ///< vehicle's return altitude above the take-off point [m]
-  bool prints_setup = false;            ///< prints the resolved setup instead of checking the scene
+  bool prints_setup = false;  ///< whether to print the resolved setup instead of checking the scene
   std::vector<config::KeyOverride> overrides;
 };
 
@@ -151,13 +152,14 @@ struct FlyTestCommandOptions {
 
 /// Simulates repeated flights of every route file in a package, with wind and failsafes, and writes
 /// fly_test.json. Returns exit code 1 if interrupted, if the battery is insufficient, or if a
-/// flight violates the clearance. Permitted errors are deducted from the clearance.
+/// flight comes closer to an obstacle than permitted. The permitted distance is the clearance minus
+/// the error allowances included in it.
 int fly_test(const FlyTestCommandOptions& options, const Console& console);
 
 struct CalibrateOptions {
   std::filesystem::path log;  ///< ArduPilot .bin log or .csv file
   std::string vehicle;        ///< preset most similar to the vehicle flown
-  /// Default: LOG.yaml, where LOG is the stem of the log.
+  /// output file; default: LOG.yaml, where LOG is the stem of the log
   std::optional<std::filesystem::path> out;
   std::optional<double> mass;        ///< mass in flight [kg]; default: from the preset
   std::optional<double> battery_wh;  ///< battery energy [Wh]; default: from the preset
@@ -170,16 +172,16 @@ int calibrate(const CalibrateOptions& options, const Console& console);
 struct ScanCommandOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> route;  ///< route file; default: from the mission
-  std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
+  std::optional<std::filesystem::path> out;    ///< output folder; default: results/NAME/scan
   std::optional<std::string> sensor;           ///< sensor preset or file; default: from the mission
   /// Formats of a laser scanner's points. For depth cameras, only "rawlog" has an effect; it is
   /// written in addition to the PNG files.
   std::vector<std::string> formats = {"las"};
-  bool with_truth = false;  ///< also records ground-truth points
-  bool resumes = false;     ///< resumes an interrupted scan
+  bool with_truth = false;  ///< whether to record ground-truth points as well
+  bool resumes = false;     ///< whether to resume an interrupted scan
   bool has_report = true;   ///< whether to write an HTML report
   std::size_t shards = 0;   ///< number of separately recorded pieces; zero: not divided
-  TaskOptions task;         ///< tasks whose items are pieces
+  TaskOptions task;         ///< scheduler options of the pieces
   std::vector<config::KeyOverride> overrides;
   bool is_quiet = false;
 };
@@ -189,15 +191,15 @@ struct ScanCommandOptions {
 int scan(const ScanCommandOptions& options, const Console& console);
 
 struct EvaluateOptions {
-  std::filesystem::path cloud;     ///< point cloud; either this
-  std::filesystem::path mesh;      ///< or a mesh, evaluated at points sampled on its surface
+  std::filesystem::path cloud;     ///< point cloud to evaluate; conflicts with `mesh`
+  std::filesystem::path mesh;      ///< mesh to evaluate, at points sampled on its surface
   std::string model;               ///< builtin:NAME, model:NAME, mesh file or mission file
   std::optional<double> distance;  ///< coverage distance r_d [m]; default: from the mission file
   std::size_t samples = 100'000;
-  std::size_t shards = 0;  ///< separately evaluated pieces of a cloud; zero: not divided
+  std::size_t shards = 0;  ///< number of separately evaluated pieces of a cloud; zero: not divided
   std::optional<std::filesystem::path> out;  ///< output folder for the pieces and their results
-  TaskOptions task;                          ///< tasks whose items are pieces
-  unsigned threads = 0;                      ///< zero: one per processor
+  TaskOptions task;                          ///< scheduler options of the pieces
+  unsigned threads = 0;                      ///< number of threads; zero: one per processor
   bool is_json = false;
   bool is_quiet = false;
 };
@@ -208,7 +210,8 @@ int evaluate(const EvaluateOptions& options, const Console& console);
 
 struct ReconstructOptions {
   std::filesystem::path cloud;
-  std::optional<std::filesystem::path> out;  ///< default: CLOUD_mesh.ply in the cloud's folder
+  /// Output file; default: CLOUD_mesh.ply in the cloud's folder.
+  std::optional<std::filesystem::path> out;
   int depth = 0;
   double spacing = 0.0;
   double min_density = 0.2;
@@ -222,7 +225,7 @@ struct ModelOptions {
   std::string name;  ///< builtin or downloadable model, or a mission file
   std::optional<std::filesystem::path> out;
   std::optional<std::filesystem::path> render;
-  std::optional<std::string> detail;  ///< overrides scene.detail
+  std::optional<std::string> detail;  ///< level of detail; default: scene.detail
 };
 
 /// Downloads a model if it is not installed, and writes or renders it.
@@ -230,7 +233,7 @@ int model(const ModelOptions& options, const Console& console);
 
 struct ReportOptions {
   std::filesystem::path folder;  ///< folder of results
-  /// Output file, for a folder with one report; default: in the folder.
+  /// output file, for a folder with a single report; default: in the folder
   std::optional<std::filesystem::path> out;
   std::size_t points = 0;  ///< maximum number of displayed points; zero: the report's default
 };
@@ -241,7 +244,7 @@ int report_results(const ReportOptions& options, const Console& console);
 struct ViewOptions {
   std::filesystem::path what;                  ///< results folder, cloud or mission file
   std::optional<std::filesystem::path> out;    ///< HTML file; default: in the folder of `what`
-  std::vector<config::KeyOverride> overrides;  ///< overrides for a mission file
+  std::vector<config::KeyOverride> overrides;  ///< key overrides for a mission file
 };
 
 /// Writes HTML reports of a results folder, cloud or mission scene and opens them in the browser.

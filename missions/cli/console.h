@@ -14,10 +14,10 @@ namespace skycap::missions::cli {
 
 /// Interface between a command and its environment, which tests can replace.
 struct Console {
-  std::ostream& out;             ///< results
-  std::ostream& err;             ///< progress, warnings and errors
+  std::ostream& out;             ///< stream for results
+  std::ostream& err;             ///< stream for progress, warnings and errors
   bool err_is_terminal = false;  ///< whether to show progress in a single rewritten line
-  std::stop_token stop = {};     ///< requested by Ctrl-C
+  std::stop_token stop = {};     ///< stop request, set by Ctrl-C
   /// Number of PendingResultsGuard objects. While it is zero, Ctrl-C ends the program immediately.
   std::atomic<int>* results_held = nullptr;
   const std::atomic<int>* termination_signal =

@@ -318,7 +318,7 @@ namespace {
 /// Options of a survey flown with an autopilot.
 struct FlyOptions : LiveOptions {
   std::string connect;               ///< address for online::parse_address()
-  std::string sensor = "simulated";  ///< "simulated", or a folder that receives scans
+  std::string sensor = "simulated";  ///< "simulated", or the path of a folder that receives scans
   std::string on_failure = "hold";   ///< "hold" or "return"
   std::string intrinsics;            ///< camera intrinsics of depth images
   double depth_unit = 0.001;         ///< unit of depth values in images [m]

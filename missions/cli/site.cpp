@@ -21,12 +21,13 @@ namespace fs = std::filesystem;
 constexpr std::array datums{site_data::HeightDatum::ellipsoid, site_data::HeightDatum::geoid};
 
 struct SiteOptions {
-  fs::path map;                         ///< file with the target and its neighbours
-  std::vector<std::string> ids;         ///< identifiers of the target; either these
-  std::string at;                       ///< or LATITUDE,LONGITUDE of a position on it
-  std::vector<std::string> attributes;  ///< or KEY=VALUE attributes, all of which must match
-  std::string crs, vertical;            ///< as the `prior` keys of the same names
-  std::optional<double> base, height;   ///< as the `prior` keys of the same names
+  fs::path map;  ///< file with the target and its neighbours
+  /// Identifiers of the target; one of `ids`, `at` and `attributes` is required.
+  std::vector<std::string> ids;
+  std::string at;                       ///< LATITUDE,LONGITUDE of a position on the target
+  std::vector<std::string> attributes;  ///< KEY=VALUE attributes, all of which the target must have
+  std::string crs, vertical;            ///< values of prior.crs and prior.vertical
+  std::optional<double> base, height;   ///< values of prior.base and prior.height
   std::optional<fs::path> terrain;
   std::vector<fs::path> obstacles;
   std::string vehicle = "generic";

@@ -61,8 +61,8 @@ class SurveyRunner {
 };
 
 struct BatchOptions {
-  std::filesystem::path file;                ///< file that lists the missions
-  std::optional<std::filesystem::path> out;  ///< default: results/NAME
+  std::filesystem::path file;                ///< campaign or district file
+  std::optional<std::filesystem::path> out;  ///< output folder; default: results/NAME
   TaskOptions task;
   std::optional<unsigned> threads;  ///< default: all processors, or one for a single task
   bool lists = false;

@@ -18,7 +18,8 @@ namespace skycap::missions::cli {
 std::string missing_text(const std::vector<std::size_t>& missing);
 
 struct TaskWork {
-  /// The command starts with its name; the chunk size follows from the options.
+  /// Job description. Its command starts with the command name; its chunk size follows from the
+  /// options.
   batch::JobRequest job;
   bool is_quiet = false;
   std::function<void(geometry::OutputFolder&)> submitting{};  ///< stages additional files of a job

@@ -58,7 +58,8 @@ std::optional<site_data::Role> truth_role(const MissionDocument& document);
 
 flight::FlightOptions flight_options(const MissionDocument& document);
 
-/// Includes the view limits and, for the planner skycap, the prior surface.
+/// Returns the planner's options, including the view limits and, for the planner skycap, the prior
+/// surface.
 survey::PlannerOptions planner_options(const MissionDocument& document,
                                        const flight::FlightOptions& flight);
 

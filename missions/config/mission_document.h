@@ -62,9 +62,9 @@ enum class PlannerGoal {
 /// Sampling density and view distance, used by all planners.
 struct SamplingSection {
   double density = 146'000.0;           ///< rho, required points per m^3
-  double resolution_radius = 0.017;     ///< r [m]
+  double resolution_radius = 0.017;     ///< r, the neighbourhood radius for classifying points [m]
   std::optional<double> spacing;        ///< epsilon, minimum distance between stored points [m]
-  std::optional<double> view_distance;  ///< d [m]
+  std::optional<double> view_distance;  ///< d, the distance of views from surfaces [m]
   std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are discarded
 };
 
@@ -82,8 +82,8 @@ struct PlannerSection {
 /// First view. Without a position, the seed determines a random one.
 struct StartSection {
   std::optional<Eigen::Vector3d> position;
-  std::optional<Eigen::Vector3d> look_at;    ///< target point; with a position, either this
-  std::optional<Eigen::Vector3d> direction;  ///< or `direction` is required
+  std::optional<Eigen::Vector3d> look_at;  ///< target point of the view; conflicts with `direction`
+  std::optional<Eigen::Vector3d> direction;  ///< viewing direction; conflicts with `look_at`
 };
 
 struct LimitsSection {

@@ -121,8 +121,8 @@ void complete_scanner(MissionDocument& document, const Profiles& profiles) {
 }
 
 /// Returns the lateral standard deviation of a rosette's points [m], whose angular errors are much
-/// larger than those of rotating scanners. The distance is the diagonal of the unknown box, because
-/// the ground at the pad is observed from its far side as well.
+/// larger than those of rotating scanners. The distance is the horizontal diagonal of the unknown
+/// box, because the ground at the pad is observed from its far side as well.
 double noise_aside(const MissionDocument& document) {
   const sim::LidarConfig& scanner = *document.sensor.options.scanner;
   const Eigen::AlignedBox3d box = compute_unknown_box(document);

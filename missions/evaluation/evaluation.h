@@ -58,9 +58,9 @@ using CaptureScan = std::function<geometry::Scan(const geometry::View& view, std
                                                  geometry::Scan buffer)>;
 
 /// Returns 1 for each sample that a survey could cover despite sensor noise and point spacing, and
-/// 0 for the others. The samples are covered by up to `views` admissible views, each aimed at a
-/// visible sample not covered by previous views. Ends early if all visible samples are covered. The
-/// result is invalid after a stop request.
+/// 0 for the others. These are the samples covered by up to `views` admissible views, each aimed at
+/// a visible sample not covered by previous views. Ends early if all visible samples are covered.
+/// The result is invalid after a stop request.
 std::vector<std::uint8_t> attainable_samples(
     std::span<const Eigen::Vector3f> samples, std::span<const std::uint8_t> is_visible,
     const sim::Scene& scene, const CaptureScan& capture_scan, const Admissible& admissible,

@@ -2,13 +2,13 @@
 /// the start of a survey through space that a sphere of a given radius fits through. Closed rooms,
 /// and rooms with narrower doors, are unreachable.
 ///
-/// Method: an octree over the scene. A cell is open if all its positions have at least the radius
-/// as distance from every triangle. The test is conservative: the exact distance of the cell's
-/// centre minus half its diagonal. Other cells are subdivided down to cell(). Open cells that share
-/// a face are connected; cells connected with the start are reached. Walls and passages narrower
-/// than twice the radius are therefore never passed. A passage is guaranteed to be found if a
-/// sphere with the radius plus 1.74 cells fits through; in between, the result depends on the grid
-/// alignment. All space outside the scene's box is open.
+/// Method: an octree over the scene. A cell is open if every position in it is at least the radius
+/// away from every triangle. The test uses the exact distance of the cell's centre minus half the
+/// cell's diagonal, so it is conservative. Other cells are subdivided down to cell(). Open cells
+/// that share a face are connected; cells connected with the start are reached. Walls and passages
+/// narrower than twice the radius are therefore never passed. A passage is guaranteed to be found
+/// if a sphere with the radius plus 1.74 cells fits through. Between these limits, the result
+/// depends on the grid alignment. All space outside the scene's box is open.
 #pragma once
 
 #include <array>

@@ -33,8 +33,10 @@ class SurveyScene {
               unsigned threads, const std::filesystem::path& kept = {});
 
   const geometry::Mesh& model() const { return model_; }  ///< placed model without its surroundings
-  const sim::Scene& scene() const { return scene_; }      ///< with surroundings, such as the ground
-  const geometry::SurfaceSamples& samples() const { return samples_; }  ///< of the model
+  /// Scene with surroundings, such as the ground.
+  const sim::Scene& scene() const { return scene_; }
+  /// Samples of the model's surface.
+  const geometry::SurfaceSamples& samples() const { return samples_; }
 
   /// Returns d [m]: the mission's value, or the value derived from camera and density.
   double view_distance() const { return view_distance_; }

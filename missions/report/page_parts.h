@@ -6,13 +6,14 @@
 
 namespace skycap::missions::report {
 
-std::string_view page_frame();   ///< page/page.html, with the placeholders {{title}}, {{data}}, ...
-std::string_view page_style();   ///< page/style.css
-std::string_view page_script();  ///< page/*.js, concatenated
+/// Returns page/page.html, with the placeholders {{title}}, {{data}}, ...
+std::string_view page_frame();
+std::string_view page_style();   ///< Returns page/style.css.
+std::string_view page_script();  ///< Returns page/*.js, concatenated.
 
 /// JavaScript library packaged by Debian.
 struct PageLibrary {
-  std::string_view name;  ///< three, orbit or chart
+  std::string_view name;  ///< name of the library: three, orbit or chart
   std::string_view text;
 };
 

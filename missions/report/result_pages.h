@@ -28,9 +28,9 @@ struct MadePage {
 };
 
 /// Generates the reports of a folder with up to `max_points` points, to be written in the folder
-/// or at `out`. A running live survey keeps the report written by its own commands. Throws
-/// Error{bad_file} if the folder has no results, and Error{bad_usage} if several reports share
-/// `out`.
+/// or at `out`. The report of a running live survey is not regenerated, because its commands keep
+/// it current. Throws Error{bad_file} if the folder has no results, and Error{bad_usage} if several
+/// reports share `out`.
 std::vector<MadePage> made_pages(const std::filesystem::path& folder, std::size_t max_points,
                                  const std::optional<std::filesystem::path>& out);
 

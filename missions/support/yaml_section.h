@@ -26,7 +26,7 @@ class YamlSection {
   YamlSection(const YamlNode& node, std::string path, const std::string& file);
 
   std::optional<YamlSection> section(const std::string& key);
-  /// List of maps; empty without the key.
+  /// Returns the sections of a list of maps, or an empty list if the key is missing.
   std::vector<YamlSection> sections(const std::string& key);
 
   bool has(const std::string& key) { return find(key) != nullptr; }
@@ -34,12 +34,13 @@ class YamlSection {
   double number(const std::string& key, double fallback);
   int integer(const std::string& key, int fallback);
   int integer(const std::string& key, int fallback, int min, int max);
-  std::vector<double> numbers(const std::string& key);  ///< empty without the key
+  /// Returns an empty list if the key is missing.
+  std::vector<double> numbers(const std::string& key);
   std::string text(const std::string& key);
   std::string text(const std::string& key, const std::string& fallback);
-  /// List of strings; empty without the key.
+  /// Returns a list of strings, or an empty list if the key is missing.
   std::vector<std::string> texts(const std::string& key);
-  /// Returns the entries of a map with arbitrary keys; empty without the key.
+  /// Returns the entries of a map with arbitrary keys, or an empty list if the key is missing.
   std::vector<YamlEntry> entries(const std::string& key);
   bool boolean(const std::string& key, bool fallback);
 

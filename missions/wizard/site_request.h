@@ -27,7 +27,8 @@ inline constexpr const char* click_form = "LATITUDE,LONGITUDE in degrees, such a
 /// object.
 struct Pick {
   std::vector<std::string> ids;
-  std::map<std::string, std::string> attributes;  ///< such as parts of an address
+  /// Required attributes, such as parts of an address.
+  std::map<std::string, std::string> attributes;
   std::optional<Click> click;
 };
 

@@ -24,7 +24,7 @@ struct CellFigures {
   /// Fraction of the surface visible from admissible views.
   std::optional<Statistic> coverage_visible;
   std::optional<double> attainable_coverage;  ///< attainable coverage, as a fraction of the surface
-  Statistic planning_time;                    ///< [s]
+  Statistic planning_time;                    ///< processor time for planning [s]
   Statistic distance;
   std::optional<Statistic> flight_time;  ///< flight time of a vehicle [s]
 };
@@ -68,9 +68,10 @@ std::vector<CurvePoint> coverage_curve(const std::vector<Trial>& trials, CurveAx
 /// observed.
 struct TargetFigures {
   std::size_t targets = 0;
-  /// After 1, 2, ... views; the last entry includes all higher numbers.
+  /// Fractions of targets observed after exactly 1, 2, ... views; the last entry includes all
+  /// higher numbers.
   std::vector<double> share_by_views;
-  /// Fractions in bins with upper limits of 0.5, 1.0, ... m.
+  /// Cumulative fractions of targets observed within less than 0.5, 1.0, ... m of travel.
   std::vector<double> share_by_distance;
 };
 

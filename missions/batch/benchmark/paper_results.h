@@ -11,7 +11,7 @@ namespace skycap::missions::batch {
 struct PaperResult {
   double views = 0.0;
   double coverage = 0.0;       ///< fraction, not percent
-  double planning_time = 0.0;  ///< [s]
+  double planning_time = 0.0;  ///< planning time [s]
   double distance = 0.0;
 };
 

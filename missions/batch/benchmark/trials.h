@@ -20,7 +20,7 @@ namespace skycap::missions::batch {
 /// Ground truth for the coverage of a scene, shared by all its surveys.
 struct SceneTruth {
   std::vector<std::uint8_t> is_visible;       ///< visibility of each surface sample of the scene
-  std::optional<double> attainable_coverage;  ///< attainable coverage
+  std::optional<double> attainable_coverage;  ///< attainable coverage, if computed
 };
 
 /// Computes the ground truth of a scene, which takes seconds to minutes. The result is invalid once

@@ -17,7 +17,7 @@ namespace skycap::missions::batch {
 
 /// Named set of changes to mission keys.
 struct Variant {
-  std::string name;  ///< empty: missions with the changes of `set` only
+  std::string name;  ///< name of the variant; empty: missions with the changes of `set` only
   std::vector<config::KeyOverride> changes;
 };
 

@@ -49,9 +49,9 @@ Setup read_setup(const std::filesystem::path& file, const Method* method, const 
 
 /// Storage form of an item's result.
 enum class ItemOutput {
-  file,     ///< a record file, in a folder that no other program writes to
-  folder,   ///< a record file in its own folder, locked by one program at a time
-  package,  ///< a record file and the mission package in the same folder
+  file,     ///< record file only, in a folder that no other program writes to
+  folder,   ///< record file in its own folder, which one program at a time locks
+  package,  ///< record file and mission package in the same folder
 };
 
 /// Survey to be run.

@@ -23,16 +23,14 @@ Environment program_environment();
 
 /// Returns the task number, counted from 0. `index` is the number, or the name of a scheduler that
 /// sets it in an environment variable:
+/// - slurm: SLURM_ARRAY_TASK_ID, counted from 0;
+/// - mpi: OMPI_COMM_WORLD_RANK, counted from 0;
+/// - kubernetes: JOB_COMPLETION_INDEX, counted from 0;
+/// - parallel: PARALLEL_SEQ, counted from 1;
+/// - auto: the one of these variables that is set.
 ///
-/// | index        | variable             | counts from |
-/// | slurm        | SLURM_ARRAY_TASK_ID  | 0           |
-/// | mpi          | OMPI_COMM_WORLD_RANK | 0           |
-/// | kubernetes   | JOB_COMPLETION_INDEX | 0           |
-/// | parallel     | PARALLEL_SEQ         | 1           |
-/// | auto         | the one that is set  |             |
-///
-/// Throws Error{bad_usage} if the value is not a number or the variable is not set. With
-/// auto, also throws it if several variables are set.
+/// Throws Error{bad_usage} if the value is not a number or the variable is not set. With auto, also
+/// throws it if several variables are set.
 std::size_t task_index(const std::string& index, const Environment& environment);
 
 /// Returns the items of a task with `chunk` items per task. The range is empty for tasks beyond the

@@ -26,8 +26,8 @@ nlohmann::ordered_json make_identity(const config::SensorDescription& sensor,
                                      const scene::SensedScene& scene,
                                      const scan::ScanFlight& flight);
 
-/// Starts a journal, or reopens that of an interrupted scan if `resumes` is set. Returns the
-/// recorded progress, which is null for a new scan.
+/// Starts a journal, or reopens that of an interrupted scan if `resumes` is set. Returns the state
+/// of the last checkpoint, or null for a new scan.
 nlohmann::ordered_json open_journal(scan::ScanJournal& journal, bool resumes,
                                     const ScanCommandOptions& options, const support::Identity& run,
                                     const nlohmann::ordered_json& identity, const Console& console);
