@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(FaultPoints, PlanLeavesAWholeResult) {
+TEST(FaultPoints, LeavePlanResultsComplete) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
   const Command command = [&](const std::string& seed, const fs::path& out) {
@@ -28,7 +28,7 @@ TEST(FaultPoints, PlanLeavesAWholeResult) {
 }
 
 /// On a full disk the new survey may stand without its route: the exit code says so.
-TEST(FaultPoints, PlanWithAFlightLeavesAWholeResult) {
+TEST(FaultPoints, LeavePlanResultsWithFlightComplete) {
   const Surveys surveys;
   const Trial trial{.old_folder = surveys["1"],
                     .change =
@@ -41,7 +41,7 @@ TEST(FaultPoints, PlanWithAFlightLeavesAWholeResult) {
   try_faults(trial, {"full", "kill"}, 12);
 }
 
-TEST(FaultPoints, ExportLeavesAWholeResult) {
+TEST(FaultPoints, LeaveExportResultsComplete) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", flight_mission_text),
                     package = folder.path() / "package";
@@ -54,7 +54,7 @@ TEST(FaultPoints, ExportLeavesAWholeResult) {
   try_faults(command, {"full", "kill", "memory"}, 25);
 }
 
-TEST(FaultPoints, ScanLeavesAWholeResult) {
+TEST(FaultPoints, LeaveScanResultsComplete) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
   const Command command = [&](const std::string& seed, const fs::path& out) {
@@ -65,7 +65,7 @@ TEST(FaultPoints, ScanLeavesAWholeResult) {
   try_faults(command, {"memory"}, 40);
 }
 
-TEST(FaultPoints, TrialsLeaveAWholeResult) {
+TEST(FaultPoints, LeaveTrialResultsComplete) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
   try_faults(
@@ -76,7 +76,7 @@ TEST(FaultPoints, TrialsLeaveAWholeResult) {
       {"full", "kill"}, 40);
 }
 
-TEST(FaultPoints, BenchmarkLeavesAWholeResult) {
+TEST(FaultPoints, LeaveBenchmarkResultsComplete) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
   const Command command = [&](const std::string& seed, const fs::path& out) {
@@ -88,7 +88,7 @@ TEST(FaultPoints, BenchmarkLeavesAWholeResult) {
 
 /// On a full disk its tables may be of the items that found room: the exit code says so, and the
 /// same command goes on.
-TEST(FaultPoints, CampaignLeavesAWholeResult) {
+TEST(FaultPoints, LeaveCampaignResultsComplete) {
   const testing_support::TemporaryFolder folder;
   folder.file("m.yaml", quick);
   const std::string head = "missions: [m.yaml]\nplanners: [see++]\nname: c\nseeds: ";
@@ -108,7 +108,7 @@ TEST(FaultPoints, CampaignLeavesAWholeResult) {
   try_going_on(trial, 8);
 }
 
-TEST(FaultPoints, ModelsAreWhole) {
+TEST(FaultPoints, LeaveModelFilesComplete) {
   try_faults(
       [&](const std::string& seed, const fs::path& out) {
         return std::vector<std::string>{"model",    "teapot",
@@ -118,7 +118,7 @@ TEST(FaultPoints, ModelsAreWhole) {
       {"full", "kill", "memory"}, 8);
 }
 
-TEST(FaultPoints, PagesAreWhole) {
+TEST(FaultPoints, LeaveHtmlReportsComplete) {
   const Surveys surveys;
   // Not named .html, so that all of it is compared.
   const Command report = [&](const std::string& seed, const fs::path& out) {
@@ -128,7 +128,7 @@ TEST(FaultPoints, PagesAreWhole) {
   try_faults(report, {"memory"}, 25);
 }
 
-TEST(FaultPoints, MeshesOfCloudsAreWhole) {
+TEST(FaultPoints, LeaveReconstructedMeshesComplete) {
   const Surveys surveys;
   const Command reconstruct = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{
@@ -138,7 +138,7 @@ TEST(FaultPoints, MeshesOfCloudsAreWhole) {
   try_faults(reconstruct, {"full", "kill"}, all);
 }
 
-TEST(FaultPoints, FlyTestLeavesAWholeResult) {
+TEST(FaultPoints, LeaveFlyTestResultsComplete) {
   const Surveys surveys;
   const Command fly_test = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"fly-test", surveys["1"], "--flights", "2",  "--returns",
@@ -148,7 +148,7 @@ TEST(FaultPoints, FlyTestLeavesAWholeResult) {
   try_faults(fly_test, {"full", "kill"}, all);
 }
 
-TEST(FaultPoints, ProposedMissionsAreWhole) {
+TEST(FaultPoints, LeaveProposedMissionsComplete) {
   const testing_support::TemporaryFolder folder;
   const std::string map = folder.file(
       "map.geojson",
@@ -172,7 +172,7 @@ TEST(FaultPoints, ProposedMissionsAreWhole) {
   try_faults(trial, {"memory"}, 15);
 }
 
-TEST(FaultPoints, PagesToViewAreWhole) {
+TEST(FaultPoints, LeaveViewerPagesComplete) {
   const Surveys surveys;
   // Not named .html, so that all of it is compared.
   const auto view = [&](const fs::path& what) {
@@ -209,7 +209,7 @@ std::string flight_log(double hover_power) {
   return log.str();
 }
 
-TEST(FaultPoints, VehiclesOfLogsAreWhole) {
+TEST(FaultPoints, LeaveCalibratedVehicleFilesComplete) {
   const testing_support::TemporaryFolder folder;
   const std::string logs[] = {folder.file("1.csv", flight_log(300.0)),
                               folder.file("2.csv", flight_log(320.0))};

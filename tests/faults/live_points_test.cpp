@@ -47,14 +47,14 @@ class LiveFaultPoints : public testing::Test {
   const fs::path begun_ = scratch_.path() / "begun";
 };
 
-TEST_F(LiveFaultPoints, NextGoesOnWithTheScanThatFailed) {
+TEST_F(LiveFaultPoints, LetNextResumeWithFailedScan) {
   const auto take_next = [&](const fs::path& out, const Fault& fault) {
     return run(next("2", out), fault);
   };
   try_going_on({.old_folder = begun_, .change = take_next, .may_also_be = {}}, all);
 }
 
-TEST_F(LiveFaultPoints, FinishLeavesAWholeResult) {
+TEST_F(LiveFaultPoints, LeaveFinishResultsComplete) {
   const auto finish = [&](const fs::path& out, const Fault& fault) {
     return run(command("finish", out), fault);
   };
@@ -85,7 +85,7 @@ std::vector<float> read_points(const fs::path& cloud) {
 }
 
 /// The server, to which a client sends a scan; then it finishes the survey.
-TEST_F(LiveFaultPoints, ServeGoesOnWithTheScanThatFailed) {
+TEST_F(LiveFaultPoints, LetServeResumeWithFailedScan) {
   const std::vector<float> points = read_points(surveys_["2"] / "cloud.ply");
   const auto serve = [&](const fs::path& out, const Fault& fault) {
     std::array<int, 2> pipe{};

@@ -154,7 +154,7 @@ std::vector<SourceFile> all_sources() {
                                           "missions", "python", "library", "clients", "tests"});
 }
 
-TEST(Modules, AreEnteredInOneDirectionOnly) {
+TEST(Modules, HaveNoCyclicOrForbiddenIncludes) {
   EXPECT_THAT(forbidden_includes(product(), architecture()), IsEmpty());
   EXPECT_THAT(circular_modules(architecture()), IsEmpty());
   EXPECT_THAT(circular_headers(product()), IsEmpty());
@@ -166,12 +166,12 @@ TEST(Modules, KeepHeavyHeadersInSources) {
               IsEmpty());
 }
 
-TEST(Sources, DrawInAStatedOrder) {
+TEST(Sources, DrawRandomNumbersInDefinedOrder) {
   EXPECT_THAT(unordered_draws(SKYCAP_SOURCE_DIR, all_sources()), IsEmpty());
 }
 
 /// A mesh is the truth; points measured of it are not.
-TEST(Modules, HideTheTruthFromPlanners) {
+TEST(Modules, HideGroundTruthFromPlanners) {
   for (const SourceFile& source : testing_support::not_empty(product())) {
     if (!source.path.starts_with("survey/")) continue;
     EXPECT_THAT(source.own, testing::Not(testing::Contains(HasSubstr("surfaces/mesh"))))
@@ -180,7 +180,7 @@ TEST(Modules, HideTheTruthFromPlanners) {
 }
 
 /// A tree of two rooms, upper and lower, with whatever fault a test plants.
-class PlantedFault : public testing::Test {
+class ArchitectureCheck : public testing::Test {
  protected:
   void write(const std::string& path, const std::string& text) {
     const std::filesystem::path file = folder_.path() / path;
@@ -196,7 +196,7 @@ class PlantedFault : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-TEST_F(PlantedFault, AnIncludeAgainstTheDirectionIsFound) {
+TEST_F(ArchitectureCheck, DetectsForbiddenIncludes) {
   write("house/upper/roof.h", "#include \"house/lower/floor.h\"\n");
   write("house/lower/floor.h", "");
   EXPECT_THAT(forbidden_includes(sources(), modules_), IsEmpty());
@@ -205,12 +205,12 @@ TEST_F(PlantedFault, AnIncludeAgainstTheDirectionIsFound) {
               ElementsAre("house/lower/floor.cpp: house/lower may not use house/upper/roof.h"));
 }
 
-TEST_F(PlantedFault, AFileWithoutARoomIsFound) {
+TEST_F(ArchitectureCheck, DetectsFilesWithoutModule) {
   write("house/shed/tool.h", "");
   EXPECT_THAT(forbidden_includes(sources(), modules_), ElementsAre(HasSubstr("in no room")));
 }
 
-TEST_F(PlantedFault, CirclesAreFound) {
+TEST_F(ArchitectureCheck, DetectsCycles) {
   write("house/lower/egg.h", "#include \"house/lower/hen.h\"\n");
   write("house/lower/hen.h", "#include \"house/lower/egg.h\"\n");
   EXPECT_THAT(circular_headers(sources()), ElementsAre("house/lower/egg.h", "house/lower/hen.h"));
@@ -218,14 +218,14 @@ TEST_F(PlantedFault, CirclesAreFound) {
               ElementsAre("a", "b", "c"));
 }
 
-TEST_F(PlantedFault, AHeavyHeaderIsFoundInHeadersOnly) {
+TEST_F(ArchitectureCheck, DetectsHeavyHeadersInHeadersOnly) {
   write("house/lower/tree.cpp", "#include <CGAL/Kd_tree.h>\n");
   EXPECT_THAT(heavy_headers(sources(), {"CGAL/"}), IsEmpty());
   write("house/lower/tree.h", "#include <CGAL/Kd_tree.h>\n");
   EXPECT_THAT(heavy_headers(sources(), {"CGAL/"}), ElementsAre(HasSubstr("house/lower/tree.h")));
 }
 
-TEST_F(PlantedFault, DrawsInOneCallAreFound) {
+TEST_F(ArchitectureCheck, DetectsSeveralDrawsInOneCall) {
   write("house/lower/a.cpp",
         "Vector3d a(normal(random), 1, normal(random));\n"
         "f(i + dice(),\n  row + dice());\n"

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-TEST_F(BridgedRobot, IsToldTheViewAndTheWayInTheFrameOfItsOdometry) {
+TEST_F(Ros2Bridge, PublishesViewAndPathInOdometryFrame) {
   begin();
   EXPECT_THAT(goals_, IsEmpty());
   odometry(9.0, {0, 0, 0});
@@ -36,7 +36,7 @@ TEST_F(BridgedRobot, IsToldTheViewAndTheWayInTheFrameOfItsOdometry) {
                              HasSubstr(R"("hold":false)")));
 }
 
-TEST_F(BridgedRobot, GivesAScanOnceItIsAtTheView) {
+TEST_F(Ros2Bridge, SendsScanWhenRobotIsSettledAtView) {
   begin();
   odometry(8.0, {0, 0, 0});
   odometry(8.05, {0, 0, 0});
@@ -55,7 +55,7 @@ TEST_F(BridgedRobot, GivesAScanOnceItIsAtTheView) {
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(BridgedRobot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
+TEST_F(Ros2Bridge, SendsEnRouteScansWhenMissionCapturesEnRoute) {
   const std::string begun = R"({"en_route": 0, "frame_period_s": 1.0, )";
   answer_ = begun + std::string(first_view).substr(1);
   begin();
@@ -80,7 +80,7 @@ TEST_F(BridgedRobot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(BridgedRobot, IsWhereTransformsHaveItAndItsCamera) {
+TEST_F(Ros2Bridge, ComputesPosesAndMountFromTransforms) {
   begin_with_transforms();
   cloud(8.0);  // tells the frame of the camera, from a time that nobody knows of
   proceed(1.0);
@@ -96,7 +96,7 @@ TEST_F(BridgedRobot, IsWhereTransformsHaveItAndItsCamera) {
   EXPECT_EQ(goals_.back().mount.value().world_from_optical({}).translation(), Vector3d(0, 0, 0.5));
 }
 
-TEST_F(BridgedRobot, WhoseTransformsMoveIsNotThereYet) {
+TEST_F(Ros2Bridge, WaitsWhileTransformsStillMove) {
   begin_with_transforms();
   cloud(8.0);
   proceed(1.0);
@@ -110,7 +110,7 @@ TEST_F(BridgedRobot, WhoseTransformsMoveIsNotThereYet) {
 }
 
 /// There before and after, and in between nobody knows.
-TEST_F(BridgedRobot, IsToldOfGapsWhileItSettles) {
+TEST_F(Ros2Bridge, WarnsAboutPoseGapsDuringSettling) {
   const std::vector<double> times = {9.0, 9.05, 9.1, 9.6, 9.65, 9.7, 9.75};
   begin();
   for (const double time : times) odometry(time, {5, 0, 0});
@@ -126,7 +126,7 @@ TEST_F(BridgedRobot, IsToldOfGapsWhileItSettles) {
 }
 
 /// An arm that moves beside them says nothing of when the body was last heard of.
-TEST_F(BridgedRobot, StampsItsViewsByTransformsThatLeadToTheBody) {
+TEST_F(Ros2Bridge, StampsGoalsWithTimeOfBodyTransforms) {
   begin_with_transforms();
   cloud(8.0);
   transforms(9.0, {{"map", "base_link", {0, 0, 0}}});
@@ -138,7 +138,7 @@ TEST_F(BridgedRobot, StampsItsViewsByTransformsThatLeadToTheBody) {
   EXPECT_EQ(goals_.back().stamp, seconds(9.5));
 }
 
-TEST_F(BridgedRobot, WithoutTransformsSaysWhatIsMissing) {
+TEST_F(Ros2Bridge, NamesMissingTransformFrame) {
   begin({.uses_transforms = true, .world = "map", .taking = Taking::every});
   cloud(10.0);
   proceed(1.0);
@@ -146,7 +146,7 @@ TEST_F(BridgedRobot, WithoutTransformsSaysWhatIsMissing) {
   EXPECT_THAT(warnings_, testing::Contains(HasSubstr("map")));
 }
 
-TEST_F(BridgedRobot, LooksTheWrongWay) {
+TEST_F(Ros2Bridge, IgnoresScanWithOrientationOutsideTolerance) {
   begin();
   for (int step = 0; step <= 40; ++step) {
     const SampleOdometry sample(
@@ -159,7 +159,7 @@ TEST_F(BridgedRobot, LooksTheWrongWay) {
   EXPECT_THAT(scans_, IsEmpty());
 }
 
-TEST_F(BridgedRobot, ScansWaitForOdometryButNotForever) {
+TEST_F(Ros2Bridge, HoldsScansForOdometryUntilTimeout) {
   begin({.taking = Taking::every});
   cloud(10.0);
   proceed(0.4);
@@ -178,7 +178,7 @@ TEST_F(BridgedRobot, ScansWaitForOdometryButNotForever) {
 
 /// Lost, late, twice, from the future, or nonsense: no scan with a wrong pose, no crash, a line
 /// each.
-TEST_F(BridgedRobot, NothingThatIsWrongGetsIntoTheSurvey) {
+TEST_F(Ros2Bridge, KeepsInvalidMessagesOutOfSurvey) {
   begin({.taking = Taking::every});
   const double none = std::numeric_limits<double>::quiet_NaN();
   odometry(9.95, {none, 0, 0});
@@ -225,7 +225,7 @@ TEST_F(BridgedRobot, NothingThatIsWrongGetsIntoTheSurvey) {
   EXPECT_THAT(poses_, SizeIs(2));
 }
 
-TEST_F(BridgedRobot, ComplainsOfAKindOnceInFiveSeconds) {
+TEST_F(Ros2Bridge, LimitsEachWarningToOncePerFiveSeconds) {
   begin();
   for (int i = 0; i < 100; ++i) {
     odometry(-1.0, {0, 0, 0});
@@ -235,7 +235,7 @@ TEST_F(BridgedRobot, ComplainsOfAKindOnceInFiveSeconds) {
   EXPECT_THAT(warnings_[1], HasSubstr("more)"));
 }
 
-TEST_F(BridgedRobot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
+TEST_F(Ros2Bridge, HoldsAfterPoseWarningUntilTakeCommand) {
   begin();
   arrive();
   answer_ = std::string(first_view);
@@ -258,7 +258,7 @@ TEST_F(BridgedRobot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
   EXPECT_TRUE(goals_.back().view);
 }
 
-TEST_F(BridgedRobot, TriesAScanThatTheSurveyRefusedAgainLater) {
+TEST_F(Ros2Bridge, RetriesAfterSurveyRejectsScan) {
   begin({.taking = Taking::every});
   arrive();
   rejection_ = R"({"type":"error","what":"the scan has no pixels"})";
@@ -274,7 +274,7 @@ TEST_F(BridgedRobot, TriesAScanThatTheSurveyRefusedAgainLater) {
   EXPECT_THAT(scans_, SizeIs(1));
 }
 
-TEST_F(BridgedRobot, SendsWhatItsOdometryKnowsOfItsErrors) {
+TEST_F(Ros2Bridge, SendsOdometryCovarianceWhenEnabled) {
   for (const bool is_used : {true, false}) {
     begin({.taking = Taking::every, .uses_covariance = is_used});
     SampleOdometry sample(seconds(10.0), {0, 0, 0});
@@ -290,7 +290,7 @@ TEST_F(BridgedRobot, SendsWhatItsOdometryKnowsOfItsErrors) {
   }
 }
 
-TEST_F(BridgedRobot, TakesDepthImagesWithTheirCamera) {
+TEST_F(Ros2Bridge, SendsDepthImagesWithCameraIntrinsics) {
   begin({.taking = Taking::every});
   odometry(10.0, {0, 0, 0});
   const SampleImage image(seconds(10.0), 4, std::vector<std::uint16_t>(8, 2000), "16UC1");
@@ -303,7 +303,7 @@ TEST_F(BridgedRobot, TakesDepthImagesWithTheirCamera) {
   EXPECT_THAT(std::get<DepthScan>(scans_[0]).intrinsics, ElementsAre(2, 4, 1.5, 0.5));
 }
 
-TEST_F(BridgedRobot, IsToldByCommands) {
+TEST_F(Ros2Bridge, ObeysTextCommands) {
   begin({.taking = Taking::command});
   arrive();
   cloud(10.0);
@@ -318,7 +318,7 @@ TEST_F(BridgedRobot, IsToldByCommands) {
   EXPECT_TRUE(bridge_->is_finished());
 }
 
-TEST_F(BridgedRobot, AsksForTheSurveyNowAndThen) {
+TEST_F(Ros2Bridge, ThrowsWhenPeriodicRequestFindsServerClosed) {
   int asked = 0;
   Bridge lost({},
               {.next = [&]() -> std::string {

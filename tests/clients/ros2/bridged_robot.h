@@ -22,7 +22,7 @@ inline constexpr const char* first_view =
         "view": {"position": [5, 0, 0], "direction": [0, 0, 1], "quaternion_xyzw": [0, 0, 0, 1]},
         "path": [[0, 0, 0], [5, 0, 0]], "clearance_m": 2})";
 
-class BridgedRobot : public testing::Test {
+class Ros2Bridge : public testing::Test {
  protected:
   void begin(BridgeConfig config = {}) {
     bridge_ = std::make_unique<Bridge>(

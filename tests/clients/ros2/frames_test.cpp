@@ -27,7 +27,7 @@ constexpr double right_angle = std::numbers::pi / 2;
 
 /// A quarter turn to the left: the body looks north; the sensor is half a metre ahead of it and
 /// 0.2 m below.
-TEST(Mount, PutsTheOpticalFrameWhereREP103HasIt) {
+TEST(Mount, AlignsOpticalFrameWithREP103) {
   const Mount mount(parse_extrinsic("0.5 0 -0.2 0 0 0 1", ""), Axes::flu);
   const BodyPose body{.position = {10, 20, 30},
                       .turn = Quaterniond(AngleAxisd(right_angle, Vector3d::UnitZ())),
@@ -46,7 +46,7 @@ TEST(Mount, PutsTheOpticalFrameWhereREP103HasIt) {
 }
 
 /// As static transforms of cameras are written in ROS: "0 0 0 -0.5 0.5 -0.5 0.5".
-TEST(Mount, TakesAnOpticalFrameAsItIs) {
+TEST(Mount, UsesOpticalFrameUnchanged) {
   const Isometry3d optical =
       Mount(parse_extrinsic("0 0 0 -0.5 0.5 -0.5 0.5", ""), Axes::optical).world_from_optical({});
   const Isometry3d flu =
@@ -55,7 +55,7 @@ TEST(Mount, TakesAnOpticalFrameAsItIs) {
 }
 
 /// The same by drawing: errors of the body, and where they put the sensor.
-TEST(Mount, MovesTheCovarianceAsManyDrawnErrorsDo) {
+TEST(Mount, TransformsCovarianceLikeSampledErrors) {
   const Mount mount(parse_extrinsic("2 -1 0.5 0 0 0 1", ""), Axes::flu);
   BodyPose body{.position = {1, 2, 3},
                 .turn = Quaterniond(AngleAxisd(0.7, Vector3d(1, 2, 3).normalized())),
@@ -87,7 +87,7 @@ TEST(Mount, MovesTheCovarianceAsManyDrawnErrorsDo) {
   EXPECT_FALSE(mount.covariance_at_sensor(body));
 }
 
-TEST(BodyPose, RefusesWhatIsNoPose) {
+TEST(BodyPose, RejectsInvalidPoses) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto error_message = [](const auto& corrupt) {
     SampleOdometry odometry(seconds(1.0), {1, 2, 3});
@@ -104,14 +104,14 @@ TEST(BodyPose, RefusesWhatIsNoPose) {
   EXPECT_THAT(error_message([](auto& p) { p.covariance[1] = 1; }), HasSubstr("not symmetric"));
 }
 
-TEST(BodyPose, OfZerosHasNoCovariance) {
+TEST(BodyPose, HasNoCovarianceWhenMatrixIsZero) {
   SampleOdometry odometry(seconds(1.0), {1, 2, 3});
   EXPECT_FALSE(body_pose(odometry.message).covariance);
   odometry.message.pose.covariance[0] = 0.25;
   EXPECT_EQ(body_pose(odometry.message).covariance.value()(0, 0), 0.25);
 }
 
-TEST(Extrinsic, RefusesWhatIsNone) {
+TEST(Extrinsic, RejectsInvalidStrings) {
   for (const char* text :
        {"", "1 2 3", "0 0 0 0 0 0 2", "0 0 0 0 0 0 1 0", "0 0 0 0 0 0 x", "nan 0 0 0 0 0 1"}) {
     EXPECT_THAT(thrown_message([&] { parse_extrinsic(text, "--sensor"); }),
@@ -126,7 +126,7 @@ BodyPose pose_at(double x, double yaw = 0.0) {
           .covariance = Covariance::Identity() * (1.0 + x)};
 }
 
-TEST(PoseHistory, GoesEvenlyFromPoseToPose) {
+TEST(PoseHistory, InterpolatesPosesLinearly) {
   PoseHistory history({});
   history.add(seconds(10.1), pose_at(1.0, 0.4));  // out of order
   history.add(seconds(10.0), pose_at(0.0, 0.0));
@@ -138,7 +138,7 @@ TEST(PoseHistory, GoesEvenlyFromPoseToPose) {
   EXPECT_EQ(history.at(seconds(10.1)).pose.position.x(), 1.0);
 }
 
-TEST(PoseHistory, TurnsTheShortWayWhateverTheSignsOfQuaternions) {
+TEST(PoseHistory, InterpolatesRotationAlongShorterArc) {
   PoseHistory history({});
   BodyPose other = pose_at(0.0, 0.2);
   other.turn.coeffs() *= -1.0;
@@ -149,7 +149,7 @@ TEST(PoseHistory, TurnsTheShortWayWhateverTheSignsOfQuaternions) {
   EXPECT_NEAR(match.pose.turn.angularDistance(pose_at(0.0, 0.1).turn), 0.0, 1e-9);
 }
 
-TEST(PoseHistory, SaysWhyAPoseIsNotKnown) {
+TEST(PoseHistory, ReportsReasonForUnknownPose) {
   PoseHistory history({});
   const auto expect = [&](double time, PoseMatch::State state, const std::string& reason) {
     const PoseMatch match = history.at(seconds(time));
@@ -170,7 +170,7 @@ TEST(PoseHistory, SaysWhyAPoseIsNotKnown) {
   expect(10.45, PoseMatch::State::open, "after it");
 }
 
-TEST(PoseHistory, KeepsTheFirstOfPosesWithOneStamp) {
+TEST(PoseHistory, KeepsFirstPoseOfEqualStamps) {
   PoseHistory history({});
   EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), PoseHistory::Added::accepted);
   EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), PoseHistory::Added::known);
@@ -179,7 +179,7 @@ TEST(PoseHistory, KeepsTheFirstOfPosesWithOneStamp) {
 }
 
 /// However far in the future a stamp is, its pose goes with the others.
-TEST(PoseHistory, ForgetsWhatCameFirst) {
+TEST(PoseHistory, DiscardsEarliestReceivedPosesWhenFull) {
   PoseHistory history({.max = 3});
   history.add(seconds(1e9), pose_at(0.0));
   for (int i = 1; i <= 3; ++i) history.add(seconds(i), pose_at(i));
@@ -187,7 +187,7 @@ TEST(PoseHistory, ForgetsWhatCameFirst) {
   EXPECT_EQ(history.at(seconds(1.0)).state, PoseMatch::State::known);
 }
 
-TEST(Stamps, ThatAreNoneAreRefused) {
+TEST(Stamps, RejectsInvalidTimestamps) {
   std::string frame;
   Header header = make_header(seconds(0.0), frame);
   EXPECT_THAT(thrown_message([&] { to_stamp(header); }), HasSubstr("not set"));

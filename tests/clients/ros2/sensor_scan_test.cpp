@@ -21,20 +21,20 @@ using testing_support::thrown_message;
 constexpr float none = std::numeric_limits<float>::quiet_NaN();
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
-TEST(CloudScan, HasThePointsThatAreSome) {
+TEST(CloudScan, KeepsOnlyValidPoints) {
   const SampleCloud cloud(seconds(1.0),
                           {{1, 2, 3}, {none, 2, 3}, {0, 0, 0}, {1, 2, far_away}, {4, 0, 6}});
   EXPECT_THAT(make_scan(cloud.message, Axes::optical).xyz, ElementsAre(1, 2, 3, 4, 0, 6));
 }
 
 /// One metre ahead, two to the left, three up: minus two to the right, minus three down.
-TEST(CloudScan, TurnsTheAxesOfABodyToThoseOfACamera) {
+TEST(CloudScan, ConvertsBodyAxesToOpticalAxes) {
   const SampleCloud cloud(seconds(1.0), {{1, 2, 3}});
   EXPECT_THAT(make_scan(cloud.message, Axes::flu).xyz, ElementsAre(-2, -3, 1));
 }
 
 /// Two rows of two points with four bytes between the rows.
-TEST(CloudScan, OfAnOrganisedCloudGoesRowByRow) {
+TEST(CloudScan, ReadsOrganisedCloudRowByRow) {
   SampleCloud cloud(seconds(1.0), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}});
   cloud.data.insert(cloud.data.begin() + 32, 4, 0xFF);
   cloud.data.insert(cloud.data.end(), 4, 0xFF);
@@ -66,7 +66,7 @@ TEST(CloudScan, ReadsBigEndianNumbersAndDoubles) {
   EXPECT_THAT(make_scan(doubles.message, Axes::optical).xyz, ElementsAre(7.0F, -8.5F, 9.25F));
 }
 
-TEST(CloudScan, OfNoPointsIsEmpty) {
+TEST(CloudScan, IsEmptyWhenCloudHasNoPoints) {
   const SampleCloud cloud(seconds(1.0), {});
   EXPECT_THAT(make_scan(cloud.message, Axes::optical).xyz, IsEmpty());
 }
@@ -76,7 +76,7 @@ struct Corruption {
   std::function<void(SampleCloud&)> corrupt;
 };
 
-TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
+TEST(CloudScan, RejectsMessagesWithInconsistentSizes) {
   const std::vector<Corruption> corruptions = {
       {"1 rows of 64 are a different number", [](SampleCloud& c) { c.data.pop_back(); }},
       {"2 rows of 32 are a different number",
@@ -114,7 +114,7 @@ TEST(CloudScan, RefusesMessagesWhoseNumbersDoNotFit) {
   }
 }
 
-TEST(DepthScan, Of16UC1IsTheImageWithItsLens) {
+TEST(DepthScan, Keeps16UC1ImageWithIntrinsics) {
   const SampleImage image(seconds(1.0), 4,
                           std::vector<std::uint16_t>{0, 1, 2, 3, 400, 500, 600, 65535}, "16UC1");
   const SampleInfo info({0.1, -0.2, 0.001, 0.002, 0.03});
@@ -128,7 +128,7 @@ TEST(DepthScan, Of16UC1IsTheImageWithItsLens) {
 }
 
 /// Pixel (3, 1): x = (3 - 1.5) / 2 * 8, y = (1 - 0.5) / 4 * 8.
-TEST(DepthScan, Of32FC1IsACloud) {
+TEST(DepthScan, Converts32FC1ImageToCloud) {
   const SampleImage image(seconds(1.0), 4,
                           std::vector<float>{none, 0, -1, far_away, none, none, none, 8}, "32FC1");
   const SampleInfo info;
@@ -137,7 +137,7 @@ TEST(DepthScan, Of32FC1IsACloud) {
   EXPECT_THAT(scan.xyz, ElementsAre(6, 1, 8));
 }
 
-TEST(DepthScan, OfARectifiedImageGoesByP) {
+TEST(DepthScan, UsesProjectionMatrixForRectifiedImages) {
   SampleInfo info({0.1});
   const double p[12] = {3, 0, 1, 0, 0, 5, 2, 0, 0, 0, 1, 0};
   std::memcpy(info.message.p, p, sizeof p);
@@ -146,7 +146,7 @@ TEST(DepthScan, OfARectifiedImageGoesByP) {
               ElementsAre(2, 4, 1.5, 0.5, 0.1, 0, 0, 0, 0));
 }
 
-TEST(DepthScan, RefusesImagesWhoseNumbersDoNotFit) {
+TEST(DepthScan, RejectsImagesWithInconsistentSizes) {
   const SampleInfo info;
   const CameraIntrinsics intrinsics = to_intrinsics(info.message, false);
   const auto error_message = [&](const std::function<void(Image&)>& corrupt) {
@@ -164,7 +164,7 @@ TEST(DepthScan, RefusesImagesWhoseNumbersDoNotFit) {
   EXPECT_THAT(error_message([](Image& i) { i.encoding = nullptr; }), HasSubstr("16UC1 or 32FC1"));
 }
 
-TEST(DepthScan, RefusesLensesThatItCannotGoBy) {
+TEST(DepthScan, RejectsUnsupportedIntrinsics) {
   const auto error_message = [](const std::function<void(SampleInfo&)>& corrupt,
                                 std::vector<double> distortion = {}) {
     SampleInfo info(std::move(distortion));

@@ -86,7 +86,7 @@ class Program {
   pid_t process_ = 0;
 };
 
-class LiveRobot : public testing::Test {
+class Ros2LiveSurvey : public testing::Test {
  protected:
   /// Half a minute for `serve` to come up.
   void serve(const std::string& mission) {
@@ -125,7 +125,7 @@ std::string make_ply(const std::vector<Eigen::Vector3f>& points) {
 
 /// Through DDS, with nonsense between, comes what `skycap next` makes of the same scans and poses:
 /// the journal has every scan's digest and pose and every view that was proposed.
-TEST_F(LiveRobot, IsSurveyedAsByHandWithTheSameScans) {
+TEST_F(Ros2LiveSurvey, MatchesNextCommandWithSameScans) {
   const std::string mission = short_mission(tests::flight_mission());
   serve(mission);
   start_bridge();
@@ -152,7 +152,7 @@ TEST_F(LiveRobot, IsSurveyedAsByHandWithTheSameScans) {
 }
 
 /// The body never turns; the gimbal does, and measures on the way, too.
-TEST_F(LiveRobot, TurnsItsCameraOnAGimbalThatTFTellsOf) {
+TEST_F(Ros2LiveSurvey, AimsGimbalCameraByTransforms) {
   const std::string mission = short_mission(tests::quick_mission(), "see++");
   serve(mission);
   start_bridge({"--tf", topics_ + "/tf", "--tf-static", topics_ + "/tf_static"});
@@ -169,7 +169,7 @@ TEST_F(LiveRobot, TurnsItsCameraOnAGimbalThatTFTellsOf) {
   }
 }
 
-TEST_F(LiveRobot, IsToldWhenItsBridgeIsStopped) {
+TEST_F(Ros2LiveSurvey, ReportsStoppedStatusOnSignal) {
   const std::string mission = short_mission(tests::quick_mission());
   serve(mission);
   for (const int signal : {SIGINT, SIGTERM}) {
@@ -183,7 +183,7 @@ TEST_F(LiveRobot, IsToldWhenItsBridgeIsStopped) {
   }
 }
 
-TEST_F(LiveRobot, IsToldWhenTheSurveyIsLost) {
+TEST_F(Ros2LiveSurvey, ReportsLostServer) {
   const std::string mission = short_mission(tests::quick_mission());
   serve(mission);
   start_bridge();
@@ -195,7 +195,7 @@ TEST_F(LiveRobot, IsToldWhenTheSurveyIsLost) {
   EXPECT_THAT(bridge_->log_text(), HasSubstr("error: the survey at unix:"));
 }
 
-TEST_F(LiveRobot, NeedsASurveyThatIsServedAndTopicsThatAreSome) {
+TEST_F(Ros2LiveSurvey, RejectsMissingServerAndInvalidTopics) {
   start_bridge();
   EXPECT_EQ(bridge_->exit_code(), 1);
   EXPECT_THAT(bridge_->log_text(), HasSubstr("no server at this address"));
@@ -236,7 +236,7 @@ void send_all_kinds(const Participant& participant, const std::string& topics, i
 
 /// Sound RTPS around data that is none. SPOILED_ROUNDS is how often each topic is written to, and
 /// ROS2_UNDER a program with its options to run the bridge under, such as valgrind.
-TEST_F(LiveRobot, WhoseMessagesAreSpoiledOnTheWireEndsNothing) {
+TEST_F(Ros2LiveSurvey, SurvivesCorruptedMessages) {
   const char* rounds = std::getenv("SPOILED_ROUNDS");
   serve(short_mission(tests::quick_mission()));
   for (const bool has_images : {false, true}) {
@@ -269,7 +269,7 @@ TEST_F(LiveRobot, WhoseMessagesAreSpoiledOnTheWireEndsNothing) {
   }
 }
 
-TEST_F(LiveRobot, IsGivenNoOptionThatOthersLeaveWithoutEffect) {
+TEST_F(Ros2LiveSurvey, RejectsOptionsWithoutEffect) {
   const std::vector<std::vector<std::string>> idle = {
       {"--base-frame", "base"},
       {"--rectified"},

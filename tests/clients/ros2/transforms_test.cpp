@@ -45,7 +45,7 @@ class TransformTree : public testing::Test {
 };
 
 /// A mast that stands, a gimbal on it that turns, and a camera on that.
-TEST_F(TransformTree, ChainsWhatStandsAndWhatTurns) {
+TEST_F(TransformTree, ChainsStaticAndMovingTransforms) {
   add(0.0, {"base_link", "mast", {0, 0, 2}, about_z(0)}, true);
   add(10.0, {"mast", "gimbal", {0, 0, 0}, about_z(0)});
   add(10.1, {"mast", "gimbal", {0, 0, 0.2}, about_z(10)});
@@ -63,7 +63,7 @@ TEST_F(TransformTree, ChainsWhatStandsAndWhatTurns) {
 }
 
 /// Neither need be above the other: base_footprint is often below base_link.
-TEST_F(TransformTree, LeadsFromBranchToBranch) {
+TEST_F(TransformTree, ConnectsSiblingBranches) {
   add(0.0, {"base_link", "base_footprint", {0, 0, -0.5}}, true);
   add(0.0, {"base_link", "camera", {1, 0, 0}, about_z(90)}, true);
   const PoseMatch match = at("base_footprint", "camera", 1.0);
@@ -75,14 +75,14 @@ TEST_F(TransformTree, LeadsFromBranchToBranch) {
   EXPECT_EQ(at("nobody", "nobody", 1.0).state, State::known);
 }
 
-TEST_F(TransformTree, RefusesToBridgeJumps) {
+TEST_F(TransformTree, RejectsInterpolationAcrossJumps) {
   add(10.0, {"map", "odom", {0, 0, 0}});
   add(10.1, {"map", "odom", {50, 0, 0}});
   EXPECT_EQ(at("map", "odom", 10.05).state, State::rejected);
   EXPECT_EQ(at("map", "odom", 10.1).state, State::known);
 }
 
-TEST_F(TransformTree, TakesWhatCameLastWhateverItsStamp) {
+TEST_F(TransformTree, ReturnsLastReceivedTransformAsNewest) {
   EXPECT_FALSE(tree_.newest("base_link", "gimbal"));
   add(10.0, {"base_link", "gimbal", {1, 0, 0}});
   add(9.0, {"base_link", "gimbal", {2, 0, 0}});
@@ -90,7 +90,7 @@ TEST_F(TransformTree, TakesWhatCameLastWhateverItsStamp) {
             Vector3d(2, 0, 0));
 }
 
-TEST_F(TransformTree, HasNoCirclesNorTooLongChains) {
+TEST_F(TransformTree, RejectsCyclesAndTooLongChains) {
   add(0.0, {"a", "b"}, true);
   add(0.0, {"b", "c"}, true);
   add(0.0, {"c", "a"}, true);
@@ -104,7 +104,7 @@ TEST_F(TransformTree, HasNoCirclesNorTooLongChains) {
   EXPECT_EQ(at("f0", "f60", 1.0).state, State::known);
 }
 
-TEST_F(TransformTree, PassesOverNonsense) {
+TEST_F(TransformTree, RejectsInvalidTransforms) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   add(10.0, {"base_link", "gimbal"});
   EXPECT_THAT(error_message(10.0, {"base_link", "gimbal", {1, 0, 0}}), HasSubstr("the same stamp"));
@@ -127,7 +127,7 @@ TEST_F(TransformTree, PassesOverNonsense) {
   EXPECT_THAT(thrown_message([&] { tree_.add(transform, false); }), HasSubstr("has no name"));
 }
 
-TEST_F(TransformTree, HoldsNoMoreThanItMay) {
+TEST_F(TransformTree, LimitsNumberOfFramesAndPoses) {
   for (std::size_t i = 0; i < Transforms::max_frames; ++i) {
     add(1.0, {"map", "f" + std::to_string(i)});
   }

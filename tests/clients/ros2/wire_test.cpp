@@ -82,7 +82,7 @@ void count_up(double (&numbers)[size], double first) {
 /// Header stamp: int32 sec, uint32 nanosec; string frame_id. Uint32 height, width; PointField[]
 /// fields: string name, uint32 offset, uint8 datatype, uint32 count; bool is_bigendian; uint32
 /// point_step, row_step; uint8[] data; bool is_dense.
-TEST(Wire, OfPointCloud2) {
+TEST(Wire, SerializesPointCloud2) {
   SampleCloud cloud(seconds(7.5), {{1, 2, 3}});
   cloud.message.is_dense = true;
   Cdr expected;
@@ -97,7 +97,7 @@ TEST(Wire, OfPointCloud2) {
 }
 
 /// Header, uint32 height, width, string encoding, uint8 is_bigendian, uint32 step, uint8[] data.
-TEST(Wire, OfImage) {
+TEST(Wire, SerializesImage) {
   const SampleImage image(seconds(7.5), 3, std::vector<std::uint16_t>{1, 2, 3}, "16UC1");
   Cdr expected;
   expected.header(7, 500'000'000, "camera_optical").number(1U).number(3U).string("16UC1");
@@ -109,7 +109,7 @@ TEST(Wire, OfImage) {
 /// Header, uint32 height, width, string distortion_model, float64[] d, float64[9] k, float64[9] r,
 /// float64[12] p, uint32 binning_x, binning_y, RegionOfInterest: uint32 x_offset, y_offset, height,
 /// width, bool do_rectify.
-TEST(Wire, OfCameraInfo) {
+TEST(Wire, SerializesCameraInfo) {
   SampleInfo info({0.5});
   count_up(info.message.k, 10);
   count_up(info.message.r, 20);
@@ -127,7 +127,7 @@ TEST(Wire, OfCameraInfo) {
 
 /// Header, string child_frame_id, PoseWithCovariance: Point x y z, Quaternion x y z w, float64[36];
 /// TwistWithCovariance: Vector3 linear, angular, float64[36].
-TEST(Wire, OfOdometry) {
+TEST(Wire, SerializesOdometry) {
   SampleOdometry odometry(seconds(7.5), {1, 2, 3}, Eigen::Quaterniond(7, 4, 5, 6));
   count_up(odometry.message.pose.covariance, 100);
   odometry.message.twist.twist = {{11, 12, 13}, {14, 15, 16}};
@@ -139,7 +139,7 @@ TEST(Wire, OfOdometry) {
 }
 
 /// Header, Pose; and of a path: header, PoseStamped[].
-TEST(Wire, OfPosesAndPaths) {
+TEST(Wire, SerializesPosesAndPaths) {
   std::string frame = "map";
   std::vector<PoseStamped> poses(2);
   poses[0] = {make_header(seconds(7.5), frame), {{1, 2, 3}, {4, 5, 6, 7}}};
@@ -154,7 +154,7 @@ TEST(Wire, OfPosesAndPaths) {
 
 /// TransformStamped[]: Header, string child_frame_id, Transform: Vector3 translation, Quaternion
 /// rotation x y z w.
-TEST(Wire, OfTransforms) {
+TEST(Wire, SerializesTransforms) {
   const SampleTransforms sample(seconds(7.5), {{"base_link", "mast", {1, 2, 3}, {7, 4, 5, 6}},
                                                {"mast", "camera", {8, 9, 10}, {14, 11, 12, 13}}});
   Cdr expected;
@@ -163,13 +163,13 @@ TEST(Wire, OfTransforms) {
   EXPECT_EQ(sent(sample.message), expected.whole());
 }
 
-TEST(Wire, OfString) {
+TEST(Wire, SerializesString) {
   std::string text = "take";
   EXPECT_EQ(sent(String{text.data()}), Cdr().string("take").whole());
 }
 
 /// By these names DDS finds topics; ROS 2 makes them of package, folder and type.
-TEST(Wire, TypesAreNamedAsROSNamesThem) {
+TEST(Wire, UsesRos2TypeNames) {
   EXPECT_STREQ(descriptor<PointCloud2>().m_typename, "sensor_msgs::msg::dds_::PointCloud2_");
   EXPECT_STREQ(descriptor<Image>().m_typename, "sensor_msgs::msg::dds_::Image_");
   EXPECT_STREQ(descriptor<CameraInfo>().m_typename, "sensor_msgs::msg::dds_::CameraInfo_");

@@ -46,7 +46,7 @@ class Library : public testing::Test {
   std::string file;
 };
 
-TEST_F(Library, SurveysAsTheProgramDoesByteForByte) {
+TEST_F(Library, MatchesPlanCommandByteForByte) {
   for (const std::string planner : {"skycap", "see++"}) {
     const std::string by_program = folder / ("program-" + planner),
                       by_library = folder / ("library-" + planner);
@@ -69,7 +69,7 @@ TEST_F(Library, SurveysAsTheProgramDoesByteForByte) {
 }
 
 /// The planner alone, with a simulator of the test's own, goes the same way as the whole survey.
-TEST_F(Library, PlansFromScansOfOthersAsItsOwnSurveyDoes) {
+TEST_F(Library, PlansSameViewsFromExternalScans) {
   const Mission mission = Mission::load(file);
   const Survey survey = plan(mission);
   sim::DepthCameraConfig config = sim::d435();
@@ -91,7 +91,7 @@ TEST_F(Library, PlansFromScansOfOthersAsItsOwnSurveyDoes) {
   }
 }
 
-TEST_F(Library, SimulatesWhatItsOwnSurveyMeasures) {
+TEST_F(Library, SimulatesSameScansAsSurvey) {
   const Mission mission = Mission::load(file);
   const Survey survey = plan(mission);
   const Simulation simulation(mission);
@@ -109,7 +109,7 @@ TEST_F(Library, SimulatesWhatItsOwnSurveyMeasures) {
 }
 
 /// Half of a sheet, from a height that is known.
-TEST_F(Library, EvaluatesACloudByDistanceAndShare) {
+TEST_F(Library, EvaluatesCloudDistanceAndCoverage) {
   const geometry::Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i <= 50; ++i) {
@@ -147,7 +147,7 @@ TEST_F(Library, FindsSensorsByName) {
   }
 }
 
-TEST_F(Library, ScansInPiecesWhatTheProgramWrites) {
+TEST_F(Library, ScansSamePointsInPiecesAsProgram) {
   ASSERT_EQ(tests::run_skycap({"scan", file, "--quiet", "--out", folder / "scan"}).err, "");
   LaserScan scan(Mission::load(file), {});
   std::size_t points = 0;
@@ -158,7 +158,7 @@ TEST_F(Library, ScansInPiecesWhatTheProgramWrites) {
   EXPECT_GT(points, 0U);
 }
 
-TEST_F(Library, SettingsTakeThePlaceOfKeysAndAreNamedWhenWrong) {
+TEST_F(Library, OverridesKeysAndNamesInvalidSettings) {
   EXPECT_EQ(Mission::load(file, {{"seed", "7"}}).seed(), 7U);
   try {
     Mission::load(file, {{"limits.max_views", "many"}});
@@ -168,7 +168,7 @@ TEST_F(Library, SettingsTakeThePlaceOfKeysAndAreNamedWhenWrong) {
   }
 }
 
-TEST_F(Library, RefusesToScanWithACamera) {
+TEST_F(Library, RejectsCameraForLaserScan) {
   try {
     LaserScan scan(Mission::load(file), {.sensor = "intel_d435"});
     FAIL() << "taken";

@@ -212,7 +212,7 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
   }
 }
 
-TEST_P(Program, RejectsWithOneLineAndNoOutput) {
+TEST_P(Program, RejectsBadInputWithOneLineAndNoOutput) {
   const BadInput& input = GetParam();
   const TestFolder folder;
   const std::string mission = folder.write("mission.yaml", input.mission);
@@ -240,14 +240,14 @@ TEST_P(Program, RejectsWithOneLineAndNoOutput) {
 INSTANTIATE_TEST_SUITE_P(BadInput, Program, testing::ValuesIn(bad_inputs()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
-TEST(ProgramUsage, RefusesUnknownVerbs) {
+TEST(ProgramUsage, RejectsUnknownCommands) {
   const auto run = tests::run_skycap({"soar"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err,
               StartsWith("skycap: error: unknown command 'soar'; expected one of: plan, "));
 }
 
-TEST(ProgramUsage, RefusesToDoNothing) {
+TEST(ProgramUsage, RejectsMissingArguments) {
   EXPECT_EQ(tests::run_skycap({}).exit_code, 2);
   EXPECT_EQ(tests::run_skycap({"plan"}).exit_code, 2);
   EXPECT_EQ(tests::run_skycap({"check"}).exit_code, 2);
@@ -255,7 +255,7 @@ TEST(ProgramUsage, RefusesToDoNothing) {
   EXPECT_EQ(tests::run_skycap({"model"}).exit_code, 2);
 }
 
-TEST(ProgramUsage, ExplainsItself) {
+TEST(ProgramUsage, PrintsHelpAndVersion) {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"--help"},
                                              {"plan", "--help"},
@@ -270,7 +270,7 @@ TEST(ProgramUsage, ExplainsItself) {
   EXPECT_THAT(tests::run_skycap({"--version"}).out, testing::StartsWith("skycap 0."));
 }
 
-TEST(ProgramUsage, MissionsAndCloudsThatAreNotThere) {
+TEST(ProgramUsage, ReportsMissingMissionsAndClouds) {
   EXPECT_THAT(tests::run_skycap({"plan", "/nowhere/m.yaml"}).err,
               HasSubstr("/nowhere/m.yaml: cannot be read (No such file or directory)"));
   EXPECT_THAT(tests::run_skycap({"check", "/proc"}).err, HasSubstr("/proc: is a folder"));
@@ -280,7 +280,7 @@ TEST(ProgramUsage, MissionsAndCloudsThatAreNotThere) {
   EXPECT_THAT(run.err, HasSubstr("/nowhere/c.ply"));
 }
 
-TEST(ProgramUsage, EvaluateNeedsADistanceUnlessTheMissionSaysIt) {
+TEST(ProgramUsage, RequiresDistanceForEvaluateWithoutMission) {
   const TestFolder folder;
   const std::string cloud = folder.write("c.xyz", "0 0 0\n1 1 1\n");
   const auto run = tests::run_skycap({"evaluate", "--cloud", cloud, "--model", "builtin:teapot"});

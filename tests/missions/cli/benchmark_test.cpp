@@ -52,7 +52,7 @@ class BenchmarkCommand : public testing::Test {
   std::string mission_ = folder_.write("quick.yaml", quick_mission());
 };
 
-TEST_F(BenchmarkCommand, WritesTablesForEveryPlannerOfThePaper) {
+TEST_F(BenchmarkCommand, WritesTablesForAllPlannersOfPaper) {
   const ProgramRun result = run("all", {"--max-views", "5"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");  // no progress where there is no terminal
@@ -64,7 +64,7 @@ TEST_F(BenchmarkCommand, WritesTablesForEveryPlannerOfThePaper) {
   }
 }
 
-TEST_F(BenchmarkCommand, StartsAllPlannersFromTheSameView) {
+TEST_F(BenchmarkCommand, StartsAllPlannersFromSameView) {
   ASSERT_EQ(run("see,see++,oa,skycap", {"--max-views", "3"}).exit_code, 0);
   for (const int seed : {1, 2}) {
     // The same pose and noise, and so the same first points and coverage.
@@ -76,7 +76,7 @@ TEST_F(BenchmarkCommand, StartsAllPlannersFromTheSameView) {
   EXPECT_NE(trial("see", 1)["coverage_after"][0], trial("see", 2)["coverage_after"][0]);
 }
 
-TEST_F(BenchmarkCommand, GivesTheSameTablesAfterItWasStopped) {
+TEST_F(BenchmarkCommand, WritesSameTablesAfterInterruption) {
   ASSERT_EQ(run("see++,oa", {"--max-views", "6"}).exit_code, 0);
   const std::string whole = trials_without_times();
   std::filesystem::remove(item("oa", 1));
@@ -85,7 +85,7 @@ TEST_F(BenchmarkCommand, GivesTheSameTablesAfterItWasStopped) {
   EXPECT_EQ(trials_without_times(), whole);
 }
 
-TEST_F(BenchmarkCommand, DoesNotRunAgainWhatIsFinished) {
+TEST_F(BenchmarkCommand, SkipsFinishedRuns) {
   ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
   Json stored = Json::parse(read_content(item("oa", 1)));
   stored["trial"]["points"] = 123456789;
@@ -95,13 +95,13 @@ TEST_F(BenchmarkCommand, DoesNotRunAgainWhatIsFinished) {
   EXPECT_THAT(trials_without_times(), HasSubstr("123456789"));
 }
 
-TEST_F(BenchmarkCommand, RunsAgainWhatOtherSettingsMade) {
+TEST_F(BenchmarkCommand, RepeatsRunsOfOtherSettings) {
   ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
   ASSERT_EQ(run("oa", {"--max-views", "5"}).exit_code, 0);
   EXPECT_EQ(trial("oa", 1)["views"], 5);
 }
 
-TEST_F(BenchmarkCommand, IsSameForAnyThreadCount) {
+TEST_F(BenchmarkCommand, WritesSameTablesForAnyThreadCount) {
   ASSERT_EQ(run("see,oa,pc", {"--max-views", "6", "--threads", "1"}).exit_code, 0);
   const std::string alone = trials_without_times();
   std::filesystem::remove_all(folder_.path() / "out");
@@ -110,7 +110,7 @@ TEST_F(BenchmarkCommand, IsSameForAnyThreadCount) {
 }
 
 // Paper, section IV-B.
-TEST_F(BenchmarkCommand, LimitsVolumetricSurveysToTheMostViewsThatSeeNeeded) {
+TEST_F(BenchmarkCommand, LimitsVolumetricSurveysToMaxViewsOfSee) {
   ASSERT_EQ(run("see,oa").exit_code, 0);
   const int max =
       std::max(trial("see", 1)["views"].get<int>(), trial("see", 2)["views"].get<int>());
@@ -118,7 +118,7 @@ TEST_F(BenchmarkCommand, LimitsVolumetricSurveysToTheMostViewsThatSeeNeeded) {
   EXPECT_EQ(trial("oa", 2)["views"], max);
 }
 
-TEST_F(BenchmarkCommand, ReportsWhatThereIsWhenItIsInterrupted) {
+TEST_F(BenchmarkCommand, ReportsFinishedRunsWhenInterrupted) {
   ASSERT_EQ(run("oa", {"--max-views", "3"}).exit_code, 0);
   std::stop_source stop;
   stop.request_stop();
@@ -128,7 +128,7 @@ TEST_F(BenchmarkCommand, ReportsWhatThereIsWhenItIsInterrupted) {
   EXPECT_FALSE(std::filesystem::exists(item("pc", 1)));
 }
 
-TEST_F(BenchmarkCommand, ReportRegeneratesThePage) {
+TEST_F(BenchmarkCommand, RegeneratesHtmlReport) {
   const ProgramRun result = run("see,see++", {"--max-views", "4"});
   EXPECT_EQ(result.err, "");
   const std::string page = read_content(folder_.path() / "out" / "benchmark.html");
@@ -141,13 +141,13 @@ TEST_F(BenchmarkCommand, ReportRegeneratesThePage) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out" / "benchmark.html"));
 }
 
-TEST_F(BenchmarkCommand, RefusesPlannersThatItDoesNotKnow) {
+TEST_F(BenchmarkCommand, RejectsUnknownPlanners) {
   const ProgramRun result = run("see,frontier");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("unknown planner 'frontier'; expected all or some of see++"));
 }
 
-TEST_F(BenchmarkCommand, DrawsASceneOfAFamilyForEachSeed) {
+TEST_F(BenchmarkCommand, GeneratesSceneOfFamilyForEachSeed) {
   const ProgramRun result =
       run("see", {"--scenes", "fences,statue", "--max-views", "1", "--set",
                   "evaluation.samples=1000", "--set", "scene.longest_side=1", "--no-report"});
@@ -165,13 +165,13 @@ TEST_F(BenchmarkCommand, DrawsASceneOfAFamilyForEachSeed) {
   }
 }
 
-TEST_F(BenchmarkCommand, RefusesFamiliesThatItDoesNotKnow) {
+TEST_F(BenchmarkCommand, RejectsUnknownFamilies) {
   const ProgramRun result = run("see", {"--scenes", "garage,castle"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--scenes: unknown family 'castle'; expected all or bridge"));
 }
 
-TEST_F(BenchmarkCommand, RefusesMissionsOfTheSameName) {
+TEST_F(BenchmarkCommand, RejectsMissionsOfSameName) {
   std::filesystem::create_directory(folder_.path() / "other");
   const std::string other = folder_.write("other/quick.yaml", quick_mission());
   const ProgramRun result = run("oa", {other});
@@ -179,7 +179,7 @@ TEST_F(BenchmarkCommand, RefusesMissionsOfTheSameName) {
   EXPECT_THAT(result.err, HasSubstr("have the same name"));
 }
 
-TEST(Contestants, HaveNamesOfTheirOwn) {
+TEST(BenchmarkMethods, HaveUniqueNames) {
   std::set<std::string> names;
   for (const batch::Method& method : batch::methods()) {
     EXPECT_TRUE(names.insert(method.name).second) << method.name;

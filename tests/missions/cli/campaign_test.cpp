@@ -100,7 +100,7 @@ class CampaignCommand : public testing::Test {
                                         "variants: {plain: {}, short: {limits.max_views: 2}}\n");
 };
 
-TEST_F(CampaignCommand, MakesTheTablesOfAllItems) {
+TEST_F(CampaignCommand, WritesTablesOfAllRuns) {
   const ProgramRun result = run("out");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
@@ -119,7 +119,7 @@ TEST_F(CampaignCommand, MakesTheTablesOfAllItems) {
   EXPECT_TRUE(fs::exists(folder_.path() / "out" / "benchmark.html"));
 }
 
-TEST_F(CampaignCommand, GivesTheSameTablesByThreadsAndByIndex) {
+TEST_F(CampaignCommand, WritesSameTablesByThreadsAndByIndex) {
   ASSERT_EQ(run("one", {"--threads", "1"}).exit_code, 0);
   ASSERT_EQ(run("two", {"--threads", "2"}).exit_code, 0);
   for (int i = item_count - 1; i >= 0; --i) {
@@ -137,7 +137,7 @@ TEST_F(CampaignCommand, GivesTheSameTablesByThreadsAndByIndex) {
   EXPECT_EQ(tables("two"), tables("one"));
 }
 
-TEST_F(CampaignCommand, TakesItsIndexFromTheEngine) {
+TEST_F(CampaignCommand, ReadsIndexFromScheduler) {
   ::setenv("PARALLEL_SEQ", "8", 1);
   const ProgramRun last = run("out", {"--index", "parallel"});
   ::setenv("PARALLEL_SEQ", "9", 1);
@@ -150,7 +150,7 @@ TEST_F(CampaignCommand, TakesItsIndexFromTheEngine) {
   EXPECT_EQ(records("out").size(), 1U);
 }
 
-TEST_F(CampaignCommand, RunsNothingTwiceAndEverythingThatIsStale) {
+TEST_F(CampaignCommand, SkipsCompleteRunsAndRepeatsStaleRuns) {
   ASSERT_EQ(run("out").exit_code, 0);
   const auto before = records("out");
   ASSERT_EQ(run("out").exit_code, 0);
@@ -172,7 +172,7 @@ TEST_F(CampaignCommand, RunsNothingTwiceAndEverythingThatIsStale) {
 }
 
 // What tasks keep for each other is not believed when it is damaged.
-TEST_F(CampaignCommand, MeasuresAgainWhatIsDamaged) {
+TEST_F(CampaignCommand, RecomputesDamagedSceneCache) {
   ASSERT_EQ(run("whole").exit_code, 0);
   for (const char* damage : {"", "-\n", "2\n0101", "0.5"}) {
     ASSERT_EQ(run("out", {"--index", "0"}).exit_code, 0);
@@ -187,7 +187,7 @@ TEST_F(CampaignCommand, MeasuresAgainWhatIsDamaged) {
 }
 
 // The model's content counts, not its name.
-TEST_F(CampaignCommand, RunsAgainWhatAnotherModelMade) {
+TEST_F(CampaignCommand, RepeatsRunsWhenModelContentChanges) {
   ASSERT_EQ(run_skycap({"model", "teapot", "--out", folder_ / "m.ply"}).exit_code, 0);
   const std::string mission = tests::quick_mission();
   folder_.write("quick.yaml",
@@ -201,7 +201,7 @@ TEST_F(CampaignCommand, RunsAgainWhatAnotherModelMade) {
   EXPECT_NE(records("out"), before);
 }
 
-TEST_F(CampaignCommand, GivesTheSameTablesAfterKills) {
+TEST_F(CampaignCommand, WritesSameTablesAfterKills) {
   ASSERT_EQ(run("whole").exit_code, 0);
   std::mt19937 random(1);
   std::map<std::string, std::string> complete;
@@ -226,7 +226,7 @@ TEST_F(CampaignCommand, GivesTheSameTablesAfterKills) {
   }
 }
 
-TEST_F(CampaignCommand, EndsSoonAndWholeWhenItIsToldTo) {
+TEST_F(CampaignCommand, EndsPromptlyWithCompleteFilesOnSignal) {
   std::ofstream(campaign_) << "missions: [quick.yaml]\nplanners: [rse]\nseeds: 500\n"
                               "set: {limits.max_views: 40}\n";
   const pid_t process = started("out", {"--quiet", "--threads", "2"});
@@ -246,7 +246,7 @@ TEST_F(CampaignCommand, EndsSoonAndWholeWhenItIsToldTo) {
   EXPECT_FALSE(fs::exists(folder_.path() / "out" / "report.md"));
 }
 
-TEST_F(CampaignCommand, GoesOnWithoutWhatCannotBeRun) {
+TEST_F(CampaignCommand, SkipsRunsThatFail) {
   folder_.write("broken.yaml", "scene: {model: nothing.ply}\n");
   folder_.write(
       "lost.yaml",
@@ -263,7 +263,7 @@ TEST_F(CampaignCommand, GoesOnWithoutWhatCannotBeRun) {
   EXPECT_THAT(alone.err, HasSubstr("skycap: error: "));
 }
 
-TEST_F(CampaignCommand, LeavesPackagesWhereTheyAreWanted) {
+TEST_F(CampaignCommand, WritesPackagesWhenRequested) {
   std::ofstream(campaign_) << "missions: [quick.yaml]\nplanners: [see++]\nseeds: 1\n"
                               "first_seed: 3\nset: {limits.max_views: 3}\nresults: package\n";
   ASSERT_EQ(run("out").exit_code, 0);
@@ -285,7 +285,7 @@ TEST_F(CampaignCommand, LeavesPackagesWhereTheyAreWanted) {
   EXPECT_FALSE(fs::exists(item / "summary.json"));
 }
 
-TEST_F(CampaignCommand, PrintsItsManifestAndRunsNothing) {
+TEST_F(CampaignCommand, PrintsManifestWithoutRunning) {
   const ProgramRun result = run("out", {"--list"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(std::ranges::count(result.out, '\n'), item_count);
@@ -293,7 +293,7 @@ TEST_F(CampaignCommand, PrintsItsManifestAndRunsNothing) {
 }
 
 // Two tasks at one item: the second is told so, or finds it complete.
-TEST_F(CampaignCommand, TwoTasksNeverFillOneFolder) {
+TEST_F(CampaignCommand, LocksRunFolderAgainstSecondTask) {
   const pid_t first = started("out", {"--quiet", "--index", "0"});
   const pid_t second = started("out", {"--quiet", "--index", "0"});
   const int statuses[] = {wait_for_status(first), wait_for_status(second)};
@@ -312,7 +312,7 @@ void write_program(const fs::path& file, const std::string& program_output) {
 }
 
 // The script that Slurm is given, run by a shell with Slurm's variable.
-TEST_F(CampaignCommand, SubmitsTasksThatSlurmCanRun) {
+TEST_F(CampaignCommand, WritesRunnableSlurmScripts) {
   ASSERT_EQ(run("here").exit_code, 0);
   fs::create_directory(folder_.path() / "bin");
   write_program(folder_.path() / "bin" / "sbatch", "42;cluster");
@@ -339,7 +339,7 @@ TEST_F(CampaignCommand, SubmitsTasksThatSlurmCanRun) {
   EXPECT_EQ(tables("out"), tables("here"));
 }
 
-TEST_F(CampaignCommand, SaysThatThereIsNoEngine) {
+TEST_F(CampaignCommand, ReportsMissingScheduler) {
   std::vector<std::string> submit{"/usr/bin/env", "PATH=" + folder_ / "bin", SKYCAP_PROGRAM};
   for (const std::string& word : words("out", {"--submit", "parallel"})) submit.push_back(word);
   const auto result = support::run_external_program(submit, folder_.path());

@@ -37,7 +37,7 @@ std::string rejection(const std::vector<std::string>& arguments) {
 }
 
 // Class 13: a name that is no UTF-8 reaches summary.json, the route files and the page.
-TEST(FaultClasses, NamesThatAreNoTextLoseNoSurvey) {
+TEST(FaultClasses, KeepsSurveyWithNonUtf8Name) {
   const TestFolder folder;
   const std::string mission = folder.write("\xff\xfe.yaml", tests::flight_mission());
   const auto run = run_skycap({"plan", mission, "--max-views", "2", "--out", folder / "out"});
@@ -48,7 +48,7 @@ TEST(FaultClasses, NamesThatAreNoTextLoseNoSurvey) {
 }
 
 // Class 14: folders and links that lead nowhere, in place of files.
-TEST(FaultClasses, FoldersAndLoopsInPlaceOfFilesAreNamed) {
+TEST(FaultClasses, ReportsFoldersAndLinkLoopsInsteadOfFiles) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", tests::quick_mission());
   for (const char* name : {"a.plan", "s.yaml", "package/summary.json"}) {
@@ -73,7 +73,7 @@ TEST(FaultClasses, FoldersAndLoopsInPlaceOfFilesAreNamed) {
 }
 
 // Of the same kind: who opens a pipe waits for ever.
-TEST(FaultClasses, APipeInPlaceOfMeasuredSpaceIsRefused) {
+TEST(FaultClasses, RejectsPipeInsteadOfFreeSpaceFile) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", tests::flight_mission());
   ASSERT_EQ(run_skycap({"plan", mission, "--max-views", "2", "--out", folder / "out"}).exit_code,
@@ -108,7 +108,7 @@ class OtherCache {
 // NOLINTEND(concurrency-mt-unsafe)
 
 // Class 17: what lies in the cache is not believed as it is.
-TEST(FaultClasses, ACacheThatSaysNonsenseIsNotBelieved) {
+TEST(FaultClasses, RecomputesCorruptedCache) {
   const TestFolder folder;
   const OtherCache cache(folder.path() / "cache");
   const std::string mission = folder.write("m.yaml", tests::quick_mission());
@@ -136,7 +136,7 @@ TEST(FaultClasses, ACacheThatSaysNonsenseIsNotBelieved) {
 }
 
 // Class 20: two programs that write one file, each of them whole.
-TEST(FaultClasses, TwoWritersOfOneFileBothSucceed) {
+TEST(FaultClasses, AllowsTwoWritersOfOneFile) {
   const TestFolder folder;
   const fs::path file = folder.path() / "a.png";
   const std::string one(200'000, '1'), two(300'000, '2');
@@ -171,7 +171,7 @@ std::string blanks(const TestFolder& folder, const std::string& name, std::size_
 }
 
 // What is made of a file takes a multiple of its bytes: 4 GB of a cloud of 1 GiB, once.
-TEST(FaultClasses, WhatWouldTakeMoreMemoryThanAProgramMayIsRefused) {
+TEST(FaultClasses, RejectsFilesLargerThanMemoryLimits) {
   const TestFolder folder;
   EXPECT_THAT(rejection({"model", blanks(folder, "m.obj.gz", 257)}),
               HasSubstr("larger than 256 MiB"));

@@ -25,7 +25,7 @@ using tests::former_mission;
 using tests::read_content;
 using tests::run_skycap;
 
-TEST(FormerNames, GiveTheSameResults) {
+TEST(FormerNames, GiveSameResultsAsCurrentNames) {
   const tests::TestFolder folder;
   for (const char* name : {"former", "current"}) std::filesystem::create_directory(folder / name);
   const std::string former = folder.write("former/m.yaml", former_mission);
@@ -45,7 +45,7 @@ TEST(FormerNames, GiveTheSameResults) {
             Json::parse(read_content(folder / "current/out/summary.json"))["settings"]);
 }
 
-TEST(FormerNames, AreWarnedOfOnceForAFile) {
+TEST(FormerNames, CauseOneWarningPerFile) {
   const tests::TestFolder folder;
   const std::string mission = folder.write("m.yaml", former_mission);
   const auto run = run_skycap({"check", mission, "--setup", "--set", "planner.least_gain=0.02"});
@@ -58,7 +58,7 @@ TEST(FormerNames, AreWarnedOfOnceForAFile) {
                     HasSubstr("--set: planner.least_gain is now planner.min_gain")));
 }
 
-TEST(FormerNames, AreRewrittenByTheProgram) {
+TEST(FormerNames, AreRewrittenByCheckCommand) {
   const tests::TestFolder folder;
   const std::string mission = folder.write("m.yaml", former_mission);
   const auto run = run_skycap({"check", mission, "--rewrite", folder / "new.yaml"});
@@ -72,7 +72,7 @@ TEST(FormerNames, AreRewrittenByTheProgram) {
   EXPECT_FALSE(std::filesystem::exists(folder / "no.yaml"));
 }
 
-TEST(FormerNames, OfOptionsAreAcceptedWithAWarning) {
+TEST(FormerNames, AreAcceptedAsOptionsWithWarning) {
   const auto check = run_skycap({"check", "no.yaml", "--return-height=30"});
   EXPECT_EQ(check.err,
             "skycap: warning: --return-height is now --return-altitude; version 0.3 will not "
@@ -83,7 +83,7 @@ TEST(FormerNames, OfOptionsAreAcceptedWithAWarning) {
   EXPECT_THAT(plan.err, HasSubstr(run_skycap({"plan", "no.yaml", "--use-prior-as-truth"}).err));
 }
 
-TEST(FormerNames, OfCampaignsAndDistrictsAreRead) {
+TEST(FormerNames, AreReadInCampaignsAndDistricts) {
   const batch::CampaignFile campaign = batch::parse_campaign(
       "missions: [a.yaml]\nplanners: [see++, omniscient]\nset: {planner.least_gain: 0.1}\n"
       "variants: {slow: {flight: {views: anew}}}\n",

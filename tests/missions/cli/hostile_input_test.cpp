@@ -47,7 +47,7 @@ std::string summary_with(const std::string& settings, const std::string& rest) {
          settings + "}, " + rest + "}";
 }
 
-TEST(HostileInput, DeeplyNestedJsonIsRefused) {
+TEST(HostileInput, RejectsDeeplyNestedJson) {
   const TestFolder folder;
   const std::string deep(200'000, '[');
   const std::string mission = folder.write("m.yaml", quick_mission());
@@ -60,7 +60,7 @@ TEST(HostileInput, DeeplyNestedJsonIsRefused) {
               HasSubstr("summary.json: is not a package's summary"));
 }
 
-TEST(HostileInput, PackagesWithPlacesOutOfTheWorldAreRefused) {
+TEST(HostileInput, RejectsPackagesWithPositionsOutOfRange) {
   const TestFolder folder;
   const auto message = [&](const std::string& summary) {
     folder.write("summary.json", summary);
@@ -80,7 +80,7 @@ TEST(HostileInput, PackagesWithPlacesOutOfTheWorldAreRefused) {
               HasSubstr("settings.zzz.4000000000 is unknown"));
 }
 
-TEST(HostileInput, RoutesOutOfTheWorldAreRefused) {
+TEST(HostileInput, RejectsScanRoutesOutOfRange) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const std::string tum = folder.write("far.tum", "0 0 0 1e19 0 0 0 1\n1 0 0 1e19 0 0 0 1\n");
@@ -88,7 +88,7 @@ TEST(HostileInput, RoutesOutOfTheWorldAreRefused) {
               HasSubstr("trajectory pose 0 is (0, 0, 1e+19)"));
 }
 
-TEST(HostileInput, SensorsBeyondAnyInstrumentAreRefused) {
+TEST(HostileInput, RejectsSensorsWithUnrealisticValues) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto message = [&](const std::string& more) {
@@ -112,7 +112,7 @@ TEST(HostileInput, SensorsBeyondAnyInstrumentAreRefused) {
               HasSubstr("folder.yaml: is a directory"));
 }
 
-TEST(HostileInput, MeshesBeyondSinglePrecisionAreRefused) {
+TEST(HostileInput, RejectsMeshesBeyondSinglePrecision) {
   const TestFolder folder;
   const std::string mesh = folder.write("far.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_THAT(rejection({"model", mesh}), HasSubstr("far.obj: face 0: vertex 1 is (1e+39, 0, 0)"));
@@ -124,7 +124,7 @@ TEST(HostileInput, MeshesBeyondSinglePrecisionAreRefused) {
       HasSubstr("nan is not a number"));
 }
 
-TEST(HostileInput, WorkWithoutEndIsRefusedBeforeItBegins) {
+TEST(HostileInput, RejectsExcessiveWorkBeforeStart) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto message = [&](const std::vector<std::string>& options) {
@@ -141,7 +141,7 @@ TEST(HostileInput, WorkWithoutEndIsRefusedBeforeItBegins) {
               HasSubstr("coverage_distance"));
 }
 
-TEST(HostileInput, ControlCharactersNeverReachTheTerminal) {
+TEST(HostileInput, RemovesControlCharactersFromOutput) {
   const tests::ProgramRun run = run_skycap({"plan", "/nowhere/\x1b[2J\x07.yaml"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, AllOf(Not(HasSubstr("\x1b")), Not(HasSubstr("\x07"))));
@@ -153,7 +153,7 @@ TEST(HostileInput, ControlCharactersNeverReachTheTerminal) {
   EXPECT_EQ(text.str(), "h\xC3\xA9 \n");
 }
 
-TEST(HostileInput, PlacesOfEveryRouteAreWithinTheWorld) {
+TEST(HostileInput, RejectsRouteFilesWithPositionsOutOfRange) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto message = [&](const std::string& name, const std::string& content) {
@@ -166,7 +166,7 @@ TEST(HostileInput, PlacesOfEveryRouteAreWithinTheWorld) {
               HasSubstr("far.waypoints"));
 }
 
-TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
+TEST(HostileInput, ReportsUnknownModelNames) {
   const TestFolder folder;
   const std::string mission = folder.write(
       "m.yaml", "scene: {model: 'builtin:nope'}\nevaluation: {coverage_distance: 1}\n");
@@ -179,7 +179,7 @@ TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
       HasSubstr("--model: unknown builtin model 'nope'"));
 }
 
-TEST(HostileInput, CopiesThatNoMemoryHoldsAreRefused) {
+TEST(HostileInput, RejectsTooManyModelCopies) {
   const TestFolder folder;
   std::string copies;
   for (int i = 0; i < 1000; ++i) copies += "[0, 0, 0], ";
@@ -191,7 +191,7 @@ TEST(HostileInput, CopiesThatNoMemoryHoldsAreRefused) {
       HasSubstr("m.yaml: scene.copies: 1002 times 16256 triangles exceed the limit of 1e+07"));
 }
 
-TEST(HostileInput, AHundredThousandMaterialsAreReadInTheirTime) {
+TEST(HostileInput, ReadsHundredThousandMaterials) {
   const TestFolder folder;
   std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (int i = 0; i < 100'000; ++i) mesh += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
@@ -199,7 +199,7 @@ TEST(HostileInput, AHundredThousandMaterialsAreReadInTheirTime) {
   EXPECT_EQ(geometry::read_mesh_by_material(path).size(), 100'000U);
 }
 
-TEST(HostileInput, PointsOnALineAreNoSurface) {
+TEST(HostileInput, RejectsReconstructionOfCollinearPoints) {
   const TestFolder folder;
   for (const double step : {0.0, 0.001}) {
     std::string line;
@@ -230,7 +230,7 @@ int exit_code_after_interruption(const std::vector<std::string>& arguments) {
   return -1;
 }
 
-TEST(HostileInput, CtrlCEndsWhatWaitsForever) {
+TEST(HostileInput, StopsWaitingForPipeOnCtrlC) {
   const TestFolder folder;
   const std::string pipe = folder / "m.yaml";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -238,7 +238,7 @@ TEST(HostileInput, CtrlCEndsWhatWaitsForever) {
   EXPECT_EQ(exit_code_after_interruption({"plan", pipe, "--out", folder / "out"}), 1);
 }
 
-TEST(HostileInput, CtrlCEndsTheMeasureOfWhatIsAttainable) {
+TEST(HostileInput, StopsAttainableCoverageOnCtrlC) {
   const TestFolder folder;
   const std::string file = folder.write("m.yaml", quick_mission());
   const config::MissionSetup mission = config::read_mission(
@@ -255,7 +255,7 @@ TEST(HostileInput, CtrlCEndsTheMeasureOfWhatIsAttainable) {
 /// A disk that is full.
 class FullBuffer : public std::streambuf {};
 
-TEST(HostileInput, ResultsThatCannotBePrintedAreAFailure) {
+TEST(HostileInput, FailsWhenResultsCannotBePrinted) {
   FullBuffer full;
   std::ostream out(&full);
   std::ostringstream err;
@@ -263,7 +263,7 @@ TEST(HostileInput, ResultsThatCannotBePrintedAreAFailure) {
   EXPECT_THAT(err.str(), HasSubstr("cannot write to standard output"));
 }
 
-TEST(HostileInput, TrialsThatAreDoneAreNotRunAgain) {
+TEST(HostileInput, SkipsFinishedTrials) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto trials = [&](const std::string& count, const std::string& seed,
@@ -284,7 +284,7 @@ TEST(HostileInput, TrialsThatAreDoneAreNotRunAgain) {
   EXPECT_TRUE(std::filesystem::exists(folder / "out/interrupted/trials.csv"));
 }
 
-TEST(HostileInput, AnInterruptedSurveyDoesNotReplaceACompleteOne) {
+TEST(HostileInput, KeepsCompleteSurveyWhenRepeatIsInterrupted) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const std::vector<std::string> plan{"plan", mission, "--quiet", "--out", folder / "out"};

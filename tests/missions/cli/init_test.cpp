@@ -22,7 +22,7 @@ using testing::StartsWith;
 using tests::read_content;
 using tests::run_skycap;
 
-TEST(Init, WritesAMissionThatCheckAccepts) {
+TEST(Init, WritesMissionAcceptedByCheck) {
   const tests::TestFolder folder;
   const std::string mission = folder / "teapot.yaml";
   const auto made = run_skycap({"init", "builtin:teapot", "--out", mission});
@@ -51,7 +51,7 @@ TEST(Init, WritesMissionsForEverySensorAndVehicle) {
   }
 }
 
-TEST(Init, WritesALiveMissionForARoom) {
+TEST(Init, WritesLiveMissionForRoom) {
   const tests::TestFolder folder;
   const std::string room = folder / "room.yaml", hall = folder / "hall.yaml";
   ASSERT_EQ(run_skycap({"init", "room", "--size", "5", "4", "3", "--out", room}).exit_code, 0);
@@ -68,7 +68,7 @@ TEST(Init, WritesALiveMissionForARoom) {
   EXPECT_TRUE(config::read_live_mission(hall).flight().has_vehicle());
 }
 
-TEST(Init, RefusesToOverwriteAndUnknownNames) {
+TEST(Init, RejectsOverwritingAndUnknownNames) {
   const tests::TestFolder folder;
   const std::string mission = folder.write("m.yaml", "keep\n");
   EXPECT_EQ(run_skycap({"init", "builtin:teapot", "--out", mission}).exit_code, 2);
@@ -84,7 +84,7 @@ TEST(Init, RefusesToOverwriteAndUnknownNames) {
   EXPECT_FALSE(std::filesystem::exists(folder / "new.yaml"));
 }
 
-TEST(Presets, ListEveryVehicleAndSensorWithPlausibleValues) {
+TEST(Presets, ListsVehiclesAndSensorsWithPlausibleValues) {
   const auto json = nlohmann::json::parse(run_skycap({"presets", "--json"}).out);
   EXPECT_EQ(json["vehicles"].size(), config::vehicle_presets().size());
   EXPECT_EQ(json["sensors"].size(), config::sensor_presets().size());

@@ -28,7 +28,7 @@ nlohmann::ordered_json identity_in(const tests::TestFolder& folder) {
       geometry::read_records(folder.path() / "live.journal").records.at(0));
 }
 
-TEST(OpenSurvey, BeginsWherePlanDoesInAScene) {
+TEST(OpenSurvey, StartsAtSameViewAsPlanInScene) {
   const tests::TestFolder folder;
   const config::MissionSetup setup = make_setup(tests::quick_mission("seed: 7\n"));
   const evaluation::SurveyScene scene(setup.simulation, "", setup.run.threads);
@@ -41,7 +41,7 @@ TEST(OpenSurvey, BeginsWherePlanDoesInAScene) {
 }
 
 /// So that a survey is not continued in another scene.
-TEST(OpenSurvey, KeepsTheSphereOfTheSceneInTheJournal) {
+TEST(OpenSurvey, KeepsSceneSphereInJournal) {
   const tests::TestFolder folder, other;
   const config::MissionSetup setup = make_setup(tests::quick_mission());
   const survey::ViewSphere sphere =
@@ -58,7 +58,7 @@ TEST(OpenSurvey, KeepsTheSphereOfTheSceneInTheJournal) {
   EXPECT_EQ(identity_in(other)["volumetric.sphere_radius"], "3");
 }
 
-TEST(OpenSurvey, BeginsWithTheGivenViewWithoutAScene) {
+TEST(OpenSurvey, StartsAtConfiguredViewWithoutScene) {
   const std::string rest =
       "planner: {density: 5200, resolution_radius: 0.0525,\n"
       "          scene_box: {min: [-1, -1, -1], max: [1, 1, 1]}}\n"
@@ -74,7 +74,7 @@ TEST(OpenSurvey, BeginsWithTheGivenViewWithoutAScene) {
 }
 
 /// Not where the view was wanted, and with the noise of the scan's number.
-TEST(SimulatedSensor, MeasuresTheSceneFromWhereTheVehicleIs) {
+TEST(SimulatedSensor, MeasuresFromActualVehiclePose) {
   const config::MissionSetup setup = make_setup(tests::quick_mission());
   const geometry::View requested{{3, 0, 0}, {-1, 0, 0}}, actual_view{{0, 2, 0.5}, {0, -1, 0}};
   const geometry::Scan scan =
@@ -87,7 +87,7 @@ TEST(SimulatedSensor, MeasuresTheSceneFromWhereTheVehicleIs) {
   EXPECT_TRUE(scan.world_from_sensor.isApprox(geometry::camera_pose(actual_view)));
 }
 
-TEST(SimulatedSensor, NeedsAScene) {
+TEST(SimulatedSensor, RequiresScene) {
   evaluation::SimulationOptions options = make_setup(tests::quick_mission()).simulation;
   options.scene.model.clear();
   EXPECT_THAT(thrown_message([&] { simulated_sensor(options, "", {}); }), HasSubstr("scene.model"));

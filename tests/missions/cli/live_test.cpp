@@ -84,7 +84,7 @@ class LiveCommands : public testing::Test {
   sim::Scene scene_ = sim::Scene(small_teapot(), 1);
 };
 
-TEST_F(LiveCommands, SurveyAPlaceThatNobodyHasModelled) {
+TEST_F(LiveCommands, SurveyWithoutSceneModel) {
   EXPECT_EQ(answer({})["state"], "first_scan");
   const fs::path page = folder_.path() / "survey" / "report.html";
   EXPECT_FALSE(fs::exists(page));  // there is nothing to show
@@ -117,14 +117,14 @@ TEST_F(LiveCommands, SurveyAPlaceThatNobodyHasModelled) {
   EXPECT_EQ(data["summary"], summary);
 }
 
-TEST_F(LiveCommands, TakeTheSameCallTwice) {
+TEST_F(LiveCommands, AcceptSameScanTwice) {
   const std::vector<std::string> call =
       measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
   EXPECT_EQ(answer(call), answer(call));
   EXPECT_THAT(run_skycap(command("next", call)).err, HasSubstr("known already"));
 }
 
-TEST_F(LiveCommands, WarnOfAWrongPose) {
+TEST_F(LiveCommands, WarnAboutWrongPose) {
   const geometry::View view = geometry::look_at({1.6, 0.7, 0.8}, {0.0, 0.0, 0.3});
   answer(measured(view, 0));
   std::vector<std::string> call = measured(view, 1);
@@ -147,7 +147,7 @@ TEST_F(LiveCommands, WarnOfAWrongPose) {
   EXPECT_FALSE(answer(call).contains("warning"));
 }
 
-TEST_F(LiveCommands, SayWhatIsMissing) {
+TEST_F(LiveCommands, ReportMissingInput) {
   const auto rejection = [&](const std::vector<std::string>& arguments) {
     const ProgramRun run = run_skycap(arguments);
     EXPECT_EQ(run.exit_code, 2) << run.out;

@@ -63,7 +63,7 @@ std::string moving_mission() {
   return text.insert(text.find(sensor) + sensor.size(), "capture: moving, ");
 }
 
-TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
+TEST_F(ResumedPlan, MatchesUninterruptedPlan) {
   struct Case {
     std::string mission, planner;
     int views;  ///< until it is interrupted, and as many more
@@ -90,7 +90,7 @@ TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
 }
 
 /// What a kill leaves is the beginning of a journal, of any length.
-TEST_F(ResumedPlan, GoesOnFromAnyPartOfAJournal) {
+TEST_F(ResumedPlan, ResumesFromAnyPrefixOfJournal) {
   folder_.write("m.yaml", quick_mission());
   const std::vector<std::string> more{"--max-views", "6"};
   ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0);
@@ -103,7 +103,7 @@ TEST_F(ResumedPlan, GoesOnFromAnyPartOfAJournal) {
   }
 }
 
-TEST_F(ResumedPlan, IsInterruptedAgainWithoutLoss) {
+TEST_F(ResumedPlan, MatchesUninterruptedPlanAfterTwoInterruptions) {
   folder_.write("m.yaml", quick_mission());
   const std::vector<std::string> more{"--max-views", "6"};
   ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0);
@@ -113,7 +113,7 @@ TEST_F(ResumedPlan, IsInterruptedAgainWithoutLoss) {
   EXPECT_TRUE(results_in(folder_ / "part") == results_in(folder_ / "whole"));
 }
 
-TEST_F(ResumedPlan, WithoutAJournalBegins) {
+TEST_F(ResumedPlan, StartsWithoutJournal) {
   folder_.write("m.yaml", quick_mission());
   const tests::ProgramRun run = run_skycap(plan("out", {"--resume"}));
   EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -121,7 +121,7 @@ TEST_F(ResumedPlan, WithoutAJournalBegins) {
   EXPECT_FALSE(fs::exists(folder_.path() / "out" / "survey.journal"));
 }
 
-TEST_F(ResumedPlan, OfAnotherSurveyIsRefused) {
+TEST_F(ResumedPlan, RejectsJournalOfAnotherSurvey) {
   folder_.write("m.yaml", quick_mission());
   interrupt_after(2);
   const std::string journal = read_content(journal_);
@@ -137,7 +137,7 @@ TEST_F(ResumedPlan, OfAnotherSurveyIsRefused) {
   EXPECT_THAT(rejection({"--resume", "--set", "scene.longest_side=1.01"}), HasSubstr("surface"));
 }
 
-TEST_F(ResumedPlan, RejectsADamagedJournalAndAcceptsAPrefix) {
+TEST_F(ResumedPlan, RejectsDamagedJournalAndRestartsWithoutResume) {
   folder_.write("m.yaml", quick_mission());
   interrupt_after(3);
   std::string journal = read_content(journal_);
@@ -151,7 +151,7 @@ TEST_F(ResumedPlan, RejectsADamagedJournalAndAcceptsAPrefix) {
 }
 
 /// A journal whose checksums are right, and which says something else than the survey does.
-TEST_F(ResumedPlan, ThatGoesAnotherWayIsNoticed) {
+TEST_F(ResumedPlan, RejectsJournalWithDifferentResults) {
   folder_.write("m.yaml", quick_mission());
   interrupt_after(3);
   std::vector<std::string> records = geometry::read_records(journal_).records;

@@ -42,7 +42,7 @@ class ResumedScan : public tests::CubeScan {
                                          "--format", "rawlog"};
 };
 
-TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
+TEST_F(ResumedScan, MatchesUninterruptedLaserScan) {
   ASSERT_EQ(run_skycap(scan("whole", with(clouds_, {"--threads", "2"}))).exit_code, 0);
   interrupt_at("% flown", clouds_);
   for (const char* name : {"scan.las", "trajectory.tum", "trajectory_estimated.tum"}) {
@@ -56,7 +56,7 @@ TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
 }
 
 // What a kill leaves: more in the files than the journal knows, and a part of a record.
-TEST_F(ResumedScan, CutsOffWhatItsJournalDoesNotKnow) {
+TEST_F(ResumedScan, DiscardsDataMissingFromJournal) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   interrupt_at("% flown", clouds_);
   const std::string partial = read_content(folder_ / "part/scan.las");
@@ -73,7 +73,7 @@ TEST_F(ResumedScan, CutsOffWhatItsJournalDoesNotKnow) {
   EXPECT_NE(partial, read_content(folder_ / "part/scan.las"));
 }
 
-TEST_F(ResumedScan, OfACameraEndsAsIfNothingHadHappened) {
+TEST_F(ResumedScan, MatchesUninterruptedCameraScan) {
   ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
   interrupt_at("image 2 of 4", images_);
   EXPECT_FALSE(fs::exists(folder_ / "part/depth_000002.png"));
@@ -83,7 +83,7 @@ TEST_F(ResumedScan, OfACameraEndsAsIfNothingHadHappened) {
 }
 
 // What a kill leaves of a camera's: half an image that the journal does not know, a longer log.
-TEST_F(ResumedScan, OfACameraCutsOffWhatItsJournalDoesNotKnow) {
+TEST_F(ResumedScan, DiscardsImagesMissingFromJournal) {
   ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
   interrupt_at("image 2 of 4", images_);
   const fs::path log = journal_.parent_path() / "frames.rawlog";
@@ -96,7 +96,7 @@ TEST_F(ResumedScan, OfACameraCutsOffWhatItsJournalDoesNotKnow) {
 }
 
 // Bytes that were on the disk and are not there any more cannot be made up.
-TEST_F(ResumedScan, WhoseFilesHaveShrunkIsRefused) {
+TEST_F(ResumedScan, RejectsTruncatedFiles) {
   for (const auto& [options, until, name] :
        {std::tuple{clouds_, "% flown", "scan.las"},
         std::tuple{images_, "image 2 of 4", "frames.rawlog"}}) {
@@ -113,7 +113,7 @@ TEST_F(ResumedScan, WhoseFilesHaveShrunkIsRefused) {
 }
 
 // The results of the interrupted run share bytes with the files that grow on.
-TEST_F(ResumedScan, ThatIsInterruptedAgainKeepsWhatWasThere) {
+TEST_F(ResumedScan, KeepsEarlierResultsWhenInterruptedAgain) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   interrupt_at("% flown", clouds_);
   const fs::path kept = folder_ / "kept.las";
@@ -130,7 +130,7 @@ TEST_F(ResumedScan, ThatIsInterruptedAgainKeepsWhatWasThere) {
   expect_same_results();
 }
 
-TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
+TEST_F(ResumedScan, RejectsOtherScanWithoutLosingResults) {
   interrupt_at("% flown", clouds_);
   const auto before = tests::scan_results_in(folder_ / "part");
   const auto rejection = [&](const std::vector<std::string>& more) {
@@ -149,7 +149,7 @@ TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
 }
 
 // Of files that a key names, what they hold counts.
-TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
+TEST_F(ResumedScan, RejectsChangedSensorOrRouteFiles) {
   interrupt_at("image 2 of 4", images_);
   const auto rejection_with = [&](const std::string& file, const std::string& from,
                                   const std::string& to) {
@@ -169,7 +169,7 @@ TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
   EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
 }
 
-TEST_F(ResumedScan, RejectsADamagedJournalAndAcceptsAPrefix) {
+TEST_F(ResumedScan, RejectsDamagedJournalAndRestartsWithoutResume) {
   interrupt_at("% flown", clouds_);
   std::string journal = read_content(journal_);
   journal[journal.find("\"seed\"") + 1] ^= 1;
@@ -181,7 +181,7 @@ TEST_F(ResumedScan, RejectsADamagedJournalAndAcceptsAPrefix) {
   EXPECT_FALSE(fs::exists(journal_.parent_path()));
 }
 
-TEST_F(ResumedScan, WithoutAJournalBegins) {
+TEST_F(ResumedScan, StartsWithoutJournal) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   const auto run = run_skycap(scan("part", with(clouds_, {"--resume"})));
   EXPECT_EQ(run.exit_code, 0) << run.err;

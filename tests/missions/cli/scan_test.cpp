@@ -75,7 +75,7 @@ class ScanCommand : public testing::Test {
 };
 
 // A name may be as long as a folder's; what comes after it must not be lost.
-TEST_F(ScanCommand, SaysAllOfTheSummaryWhateverTheNamesLength) {
+TEST_F(ScanCommand, PrintsWholeSummaryWithLongName) {
   const std::string name(250, 'n');
   const ProgramRun run = scan({"--set", "name=" + name});
   EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -83,7 +83,7 @@ TEST_F(ScanCommand, SaysAllOfTheSummaryWhateverTheNamesLength) {
   EXPECT_THAT(run.out, HasSubstr(" M pulses/s\n  results   "));
 }
 
-TEST_F(ScanCommand, LeavesTheCloudBothTrajectoriesAndASummary) {
+TEST_F(ScanCommand, WritesCloudTrajectoriesAndSummary) {
   const ProgramRun run = scan();
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
@@ -97,7 +97,7 @@ TEST_F(ScanCommand, LeavesTheCloudBothTrajectoriesAndASummary) {
   EXPECT_EQ(json["files"][0]["bytes"], std::filesystem::file_size(folder / "out/scan.las"));
 }
 
-TEST_F(ScanCommand, WritesMeasuredAndTruePointsSideBySide) {
+TEST_F(ScanCommand, WritesMeasuredAndTruePoints) {
   const ProgramRun run =
       scan({"--format", "ply", "--with-truth", "--set", "scan.navigation.horizontal_sigma=0.2"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -113,7 +113,7 @@ TEST_F(ScanCommand, WritesMeasuredAndTruePointsSideBySide) {
 }
 
 // Without errors of the carrier, what is left is the noise of the range: 0.01 m.
-TEST_F(ScanCommand, AFaultlessCarrierLeavesTheSensorsNoiseOnly) {
+TEST_F(ScanCommand, HasOnlySensorNoiseWithPerfectNavigation) {
   ASSERT_EQ(scan({"--format", "ply"}).exit_code, 0);
   const auto measured = geometry::read_cloud(folder / "out/scan.ply").positions;
   EXPECT_LT(largest_error(measured), 0.067F);  // no normal is beyond 6.7 sigma
@@ -123,7 +123,7 @@ TEST_F(ScanCommand, AFaultlessCarrierLeavesTheSensorsNoiseOnly) {
 }
 
 // So few shots are all in the preview; the flight of 0.314 s has six turns of 50 ms and a part.
-TEST_F(ScanCommand, ThePreviewHasThePointsAndTheirPieces) {
+TEST_F(ScanCommand, WritesPreviewWithPointsAndPieces) {
   ASSERT_EQ(scan({"--format", "ply"}).exit_code, 0);
   const auto preview = geometry::read_cloud(folder / "out/preview.ply");
   EXPECT_EQ(preview.positions, geometry::read_cloud(folder / "out/scan.ply").positions);
@@ -133,7 +133,7 @@ TEST_F(ScanCommand, ThePreviewHasThePointsAndTheirPieces) {
   EXPECT_EQ(summary()["preview"]["piece_s"], 0.05);
 }
 
-TEST_F(ScanCommand, ReportRegeneratesThePage) {
+TEST_F(ScanCommand, RegeneratesHtmlReport) {
   ASSERT_EQ(scan().exit_code, 0);
   const std::string page = tests::read_content(folder / "out/scan.html");
   EXPECT_THAT(page, HasSubstr("\"kind\":\"scan\""));
@@ -152,7 +152,7 @@ TEST_F(ScanCommand, ReportRegeneratesThePage) {
 }
 
 // Of shots in a row, whatever the channel, a tenth: 1000 of 10,000, six deviations of 30 around.
-TEST(Preview, ChoosesAShareOfEachChannel) {
+TEST(Preview, SelectsFractionOfEachChannel) {
   for (std::uint64_t channel = 0; channel < 16; ++channel) {
     int chosen = 0;
     for (std::uint64_t time = 0; time < 10'000; ++time) {
@@ -165,7 +165,7 @@ TEST(Preview, ChoosesAShareOfEachChannel) {
   EXPECT_DOUBLE_EQ(scan::preview_share(15e6), 0.1);
 }
 
-TEST_F(ScanCommand, FliesAGivenRouteWithAGivenSensor) {
+TEST_F(ScanCommand, ScansRouteFileWithNamedSensor) {
   const std::string route = folder.write("route.tum",
                                          "0.0 5 0 1 0 0 0 1\n"
                                          "0.1 5 1 1 0 0 0 1\n");
@@ -177,7 +177,7 @@ TEST_F(ScanCommand, FliesAGivenRouteWithAGivenSensor) {
 }
 
 // The cube's lid is of lead, its sides of chalk; the ground has what the mission says.
-TEST_F(ScanCommand, IntensitiesAreThoseOfTheMaterials) {
+TEST_F(ScanCommand, ComputesIntensitiesFromMaterials) {
   folder.write("chalk.obj",
                "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\n"
                "f 4 3 2 1\nusemtl lead\nf 5 6 7 8\nusemtl chalk\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n"
@@ -219,7 +219,7 @@ TEST_F(ScanCommand, IntensitiesAreThoseOfTheMaterials) {
 }
 
 // Facing the cube's side at x = 1 from x = 5 and then x = 3: all depths there are 4 and 2 m.
-TEST_F(ScanCommand, ACameraLeavesADatasetOfDepthImages) {
+TEST_F(ScanCommand, WritesDepthImagesForCamera) {
   folder.write("camera.yaml",
                "name: Test camera\nkind: camera\nwidth_px: 20\nheight_px: 10\n"
                "horizontal_fov_deg: 10\nvertical_fov_deg: 5\n");
@@ -246,7 +246,7 @@ TEST_F(ScanCommand, ACameraLeavesADatasetOfDepthImages) {
 }
 
 // Beside the picture, with the rawlog that was asked for, the dataset is the same.
-TEST_F(ScanCommand, ACameraLeavesARawlogOnDemand) {
+TEST_F(ScanCommand, WritesRawlogForCameraOnRequest) {
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z\n0,5,0,1,-1,0,0\n1,3,0,1,-1,0,0\n");
   const ProgramRun run =
@@ -259,7 +259,7 @@ TEST_F(ScanCommand, ACameraLeavesARawlogOnDemand) {
 
 // Known: EPSG 32630, Oxford's zone. East and north there are turned by 1.4 degrees and shrunk by
 // 0.03 % at most, so the cube stays a cube of 2 m to 0.1 m.
-TEST_F(ScanCommand, LasFilesAreOnTheMapOnDemand) {
+TEST_F(ScanCommand, WritesLasInMapCoordinatesOnRequest) {
   const std::vector<std::string> georeference = {"--set", "site.latitude_deg=51.7534",
                                                  "--set", "site.longitude_deg=-1.254",
                                                  "--set", "site.ellipsoid_height=110"};
@@ -288,7 +288,7 @@ TEST_F(ScanCommand, LasFilesAreOnTheMapOnDemand) {
 }
 
 // A second cube, 6 m to the east and turned, is scanned and is part of what is evaluated.
-TEST_F(ScanCommand, AModelCanStandAtSeveralPlaces) {
+TEST_F(ScanCommand, ScansAndEvaluatesModelCopies) {
   const std::string both =
       folder.write("both.yaml",
                    "scene: {model: cube.obj, copies: [[6, 1, 45]]}\n"
@@ -329,7 +329,7 @@ TEST_F(ScanCommand, AModelCanStandAtSeveralPlaces) {
   EXPECT_NEAR(geometry::bounding_box(mesh).max().x(), 6 + std::sqrt(2.0), 1e-6);
 }
 
-TEST_F(ScanCommand, CtrlCLeavesWholeFilesOfTheBeginning) {
+TEST_F(ScanCommand, KeepsFilesCompleteOnCtrlC) {
   std::stop_source stop;
   stop.request_stop();
   const ProgramRun run = scan({"--format", "ply"}, stop.get_token());
@@ -340,7 +340,7 @@ TEST_F(ScanCommand, CtrlCLeavesWholeFilesOfTheBeginning) {
   EXPECT_THAT(run.err, HasSubstr("no report after Ctrl-C; skycap report writes it"));
 }
 
-TEST_F(ScanCommand, ARawlogOfNothingIsNotWritten) {
+TEST_F(ScanCommand, OmitsEmptyRawlog) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_EQ(scan({"--format", "rawlog,ply"}, stop.get_token()).exit_code, 1);

@@ -171,7 +171,7 @@ void corrupt_wpml(const Shipped& shipped, const std::filesystem::path& path) {
   });
 }
 
-TEST(ShippedFiles, AreRefusedOrHarmlessWhenSpoiled) {
+TEST(ShippedFiles, AreRejectedOrHarmlessWhenCorrupted) {
   const tests::TestFolder made;
   const std::vector<std::filesystem::path> folders = packages(made);
   ASSERT_FALSE(folders.empty());

@@ -84,7 +84,7 @@ class Site : public testing::Test {
   const std::string path_ = folder_.path().string();
 };
 
-TEST_F(Site, IsACertifiedMissionInTwoCommands) {
+TEST_F(Site, PlansVerifiedMissionInTwoCommands) {
   const auto site = propose("--id DEBY_1");
   ASSERT_EQ(site.exit_code, 0) << site.err;
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "house.html"));
@@ -102,7 +102,7 @@ TEST_F(Site, IsACertifiedMissionInTwoCommands) {
 }
 
 // A hill that is in the same file is higher than anything that may be flown at the target.
-TEST_F(Site, IsFlownBelowTheHillsOfItsTile) {
+TEST_F(Site, PlansBelowHillsOfTile) {
   write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}, {900, 0, 150}}));
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   ASSERT_LT(mission().flight().airspace.max_height.value(), 150.0);
@@ -112,7 +112,7 @@ TEST_F(Site, IsFlownBelowTheHillsOfItsTile) {
 }
 
 // Wherever the first view is drawn, it is not in the house next door.
-TEST_F(Site, BeginsOutsideOfTheNeighbours) {
+TEST_F(Site, StartsOutsideNeighbouringBuildings) {
   std::vector<Vector3d> crowd;
   for (int x = -2; x <= 2; ++x) {
     for (int y = -2; y <= 2; ++y) crowd.emplace_back(16.0 * x, 16.0 * y, 0.0);
@@ -135,7 +135,7 @@ TEST_F(Site, BeginsOutsideOfTheNeighbours) {
 }
 
 // Known places: the building's middle, its foot, and what must lie outside of everything.
-TEST_F(Site, IsProposedAboutItsTarget) {
+TEST_F(Site, ProposesMissionAroundTarget) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   const config::MissionSetup mission = this->mission();
   const flight::GeodeticPoint& origin = mission.flight().site.origin;
@@ -159,7 +159,7 @@ TEST_F(Site, IsProposedAboutItsTarget) {
 }
 
 // Each value has a word on it, beside it or over it.
-TEST_F(Site, IsCommentedValueByValue) {
+TEST_F(Site, CommentsEveryValue) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   std::istringstream text(read_content(folder_.path() / "house.yaml"));
   std::size_t values = 0;
@@ -176,7 +176,7 @@ TEST_F(Site, IsCommentedValueByValue) {
   EXPECT_GT(values, 20U);
 }
 
-TEST_F(Site, IsPickedByNameAddressOrClick) {
+TEST_F(Site, SelectsTargetByIdAttributeOrPosition) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   const std::string by_name = read_content(folder_.path() / "house.yaml");
   for (const char* pick : {"--at 48.76318391,11.39953620", "--at 48.76304965,11.39950258"}) {
@@ -193,7 +193,7 @@ TEST_F(Site, IsPickedByNameAddressOrClick) {
   EXPECT_EQ(read_content(folder_.path() / "house.yaml"), by_name);
 }
 
-TEST_F(Site, ReportsWhatIsMissing) {
+TEST_F(Site, ReportsMissingOptions) {
   EXPECT_THAT(propose("").err, AllOf(HasSubstr("contains 3 objects, DEBY_0, DEBY_1, DEBY_2"),
                                      HasSubstr("--id, --at or --attribute")));
   EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with id DEBY_7"));
@@ -211,7 +211,7 @@ TEST_F(Site, ReportsWhatIsMissing) {
 }
 
 // What a file says of itself holds, whatever is said of those that do not.
-TEST_F(Site, TakesWordsForFilesThatDoNotSayIt) {
+TEST_F(Site, AppliesVerticalOptionOnlyToFilesWithoutDatum) {
   // Ground above EGM96's geoid; the top of a slab is where the buildings' feet are.
   const double undulation = site_data::egm96_undulation(48.7632, 11.3995);
   Cube ground;
@@ -227,7 +227,7 @@ TEST_F(Site, TakesWordsForFilesThatDoNotSayIt) {
 
 // Heights above DHHN2016's geoid, whose grid Debian does not have, and EGM96 is within metres of
 // it.
-TEST_F(Site, LetsEgm96StandInWhereThatIsAskedFor) {
+TEST_F(Site, UsesEgm96ForMissingGeoidGridOnRequest) {
   write("tile.gml", tile(in_a_row, "EPSG:25832+7837"));
   EXPECT_THAT(
       run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --out " + path_ + "/house.yaml").err,
@@ -239,7 +239,7 @@ TEST_F(Site, LetsEgm96StandInWhereThatIsAskedFor) {
               380.0 + site_data::egm96_undulation(48.7632, 11.3995), 0.02);
 }
 
-TEST_F(Site, IsAsHighAsAnybodySays) {
+TEST_F(Site, AppliesHeightOptionToObjectsWithoutHeight) {
   Cube low, high;
   high.low.x() += 30.0;
   std::string map = make_geojson(low);
@@ -263,7 +263,7 @@ TEST_F(Site, IsAsHighAsAnybodySays) {
 }
 
 // A name is a name, whatever YAML would make of it.
-TEST_F(Site, TakesFilesOfAnyName) {
+TEST_F(Site, AcceptsFilesOfAnyName) {
   const std::string name = "a 'tile': #1 \\n \"{x}\".gml";
   std::filesystem::rename(folder_.path() / "tile.gml", folder_.path() / name);
   const auto run = tests::run_skycap({"site", path_ + "/" + name, "--vertical", "ellipsoid", "--id",
@@ -273,7 +273,7 @@ TEST_F(Site, TakesFilesOfAnyName) {
 }
 
 /// A crown of 3 m that begins 5 m over the pad, as a laser scanner sees it: eight points.
-TEST_F(Site, HasNoPadUnderACrown) {
+TEST_F(Site, KeepsPadClearOfTreeCrown) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   const Vector3d free_pad = mission().flight().takeoff.value();
   remove_proposal();
@@ -292,7 +292,7 @@ TEST_F(Site, HasNoPadUnderACrown) {
 }
 
 // South of the houses, where pads are looked for first, the ground falls by one in two.
-TEST_F(Site, HasItsPadWhereTheGroundIsLevel) {
+TEST_F(Site, PutsPadOnLevelGround) {
   std::string grid =
       "ncols 80\nnrows 80\nxllcorner 676130\nyllcorner 5403705\ncellsize 5\n"
       "NODATA_value -9999\n";

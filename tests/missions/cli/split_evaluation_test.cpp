@@ -61,7 +61,7 @@ class SplitEvaluation : public testing::Test {
   tests::TestFolder folder_;
 };
 
-TEST_F(SplitEvaluation, HasTheFiguresOfTheWholeToTheLastDigit) {
+TEST_F(SplitEvaluation, MatchesUnsplitEvaluationExactly) {
   write_cloud(1'100'000);  // a reader hands on up to a million at a time
   const std::string whole = evaluate({}).out;
   const auto figures = nlohmann::json::parse(whole);
@@ -84,7 +84,7 @@ TEST_F(SplitEvaluation, HasTheFiguresOfTheWholeToTheLastDigit) {
 }
 
 // The scanner of a mission with ground measures that, too: it is no error of the model's points.
-TEST_F(SplitEvaluation, TellsGroundFromTheModel) {
+TEST_F(SplitEvaluation, SeparatesGroundFromModel) {
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 500; ++i) {
     const float angle = 0.01F * static_cast<float>(i);
@@ -116,7 +116,7 @@ TEST_F(SplitEvaluation, TellsGroundFromTheModel) {
   EXPECT_EQ(run_evaluate({"--json", "--out", folder_ / "out", "--pieces", "2"}), whole);
 }
 
-TEST_F(SplitEvaluation, SkipsWhatIsCompleteAndSaysWhatIsMissing) {
+TEST_F(SplitEvaluation, SkipsCompletePiecesAndReportsMissingOnes) {
   write_cloud(1000);
   ASSERT_EQ(shards(2, {"--index", "1"}).exit_code, 0);
   const fs::path shard = folder_.path() / "out" / "pieces" / "1_of_2" / "piece.json";
@@ -134,7 +134,7 @@ TEST_F(SplitEvaluation, SkipsWhatIsCompleteAndSaysWhatIsMissing) {
   EXPECT_THAT(damaged.err, HasSubstr("distances.bin: is truncated"));
 }
 
-TEST_F(SplitEvaluation, ReportsWhatItCannotSplit) {
+TEST_F(SplitEvaluation, RejectsUnsupportedInput) {
   const auto rejection = [&](const std::vector<std::string>& words) {
     const auto run = run_skycap(words);
     EXPECT_EQ(run.exit_code, 2);

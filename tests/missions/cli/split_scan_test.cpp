@@ -40,7 +40,7 @@ class SplitScan : public tests::CubeScan {
   const std::vector<std::string> all_{"--format", "las,ply,pcd,xyz,rawlog,e57", "--with-truth"};
 };
 
-TEST_F(SplitScan, GivesTheBytesOfTheWholeWhoeverMeasuresWhichPiece) {
+TEST_F(SplitScan, MatchesUnsplitScanForAnyTaskOrder) {
   ASSERT_EQ(run_skycap(scan("whole", all_)).exit_code, 0);
   for (const std::size_t shards : {1, 2, 4}) {
     for (std::size_t i = 0; i < shards; ++i) {  // not in their order
@@ -55,7 +55,7 @@ TEST_F(SplitScan, GivesTheBytesOfTheWholeWhoeverMeasuresWhichPiece) {
   }
 }
 
-TEST_F(SplitScan, HasPiecesWithoutFiringsWhereThereAreMoreThanCanBe) {
+TEST_F(SplitScan, AllowsMorePiecesThanFirings) {
   const std::vector<std::string> short_flight{"--set", "scan.orbit.speed=100"};
   ASSERT_EQ(run_skycap(scan("whole", short_flight)).exit_code, 0);
   const auto run = run_skycap(scan("part", with(short_flight, {"--pieces", "15"})));
@@ -63,7 +63,7 @@ TEST_F(SplitScan, HasPiecesWithoutFiringsWhereThereAreMoreThanCanBe) {
   expect_same_results();
 }
 
-TEST_F(SplitScan, MeasuresSeveralPiecesInATask) {
+TEST_F(SplitScan, MeasuresSeveralPiecesPerTask) {
   ASSERT_EQ(run_skycap(scan("whole", {})).exit_code, 0);
   ASSERT_EQ(task(1, 5, {"--chunk", "3"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(own_shard_folder("3_of_5")));
@@ -83,7 +83,7 @@ TEST_F(SplitScan, MeasuresSeveralPiecesInATask) {
   EXPECT_THAT(again.err, HasSubstr("contains no pieces; its results are complete"));
 }
 
-TEST_F(SplitScan, SkipsWhatIsCompleteAndMeasuresAnewWhatIsOfAnotherScan) {
+TEST_F(SplitScan, SkipsCompletePiecesAndRepeatsPiecesOfOtherScans) {
   ASSERT_EQ(task(1, 2).exit_code, 0);
   const fs::path cloud = own_shard_folder("1_of_2") / "scan.las";
   const auto written = fs::last_write_time(cloud);
@@ -95,7 +95,7 @@ TEST_F(SplitScan, SkipsWhatIsCompleteAndMeasuresAnewWhatIsOfAnotherScan) {
   EXPECT_EQ(collect(2).exit_code, 1);  // that piece is of another seed
 }
 
-TEST_F(SplitScan, GoesOnWithAPieceThatWasInterrupted) {
+TEST_F(SplitScan, ResumesInterruptedPiece) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   tests::CtrlC keys("% flown");
   std::ostringstream out;
@@ -115,7 +115,7 @@ TEST_F(SplitScan, GoesOnWithAPieceThatWasInterrupted) {
   expect_same_results();
 }
 
-TEST_F(SplitScan, TakesNoDamagedPieceForComplete) {
+TEST_F(SplitScan, TreatsDamagedPieceAsIncomplete) {
   ASSERT_EQ(run_skycap(scan("part", {"--pieces", "1", "--index", "0"})).exit_code, 0);
   std::ofstream(own_shard_folder("0_of_1") / "piece.json") << "{";
   EXPECT_THAT(collect(1).err, HasSubstr("0 of 1 pieces are complete; missing 0"));
@@ -123,7 +123,7 @@ TEST_F(SplitScan, TakesNoDamagedPieceForComplete) {
   EXPECT_EQ(collect(1).exit_code, 0);
 }
 
-TEST_F(SplitScan, ReportsWhatItCannotSplit) {
+TEST_F(SplitScan, RejectsUnsupportedInput) {
   const auto rejection = [&](const std::vector<std::string>& options) {
     const auto run = run_skycap(scan("part", options));
     EXPECT_EQ(run.exit_code, 2);

@@ -45,14 +45,14 @@ const std::set<std::string> not_from_missions = {
     "stereo.disparity_sigma_px", "stereo.disparity_step_px"  // descriptions of sensors alone
 };
 
-TEST(FieldKeys, NameKeysOfTheMissionFile) {
+TEST(FieldKeys, NameExistingMissionKeys) {
   ASSERT_FALSE(config::field_keys.empty());
   for (const config::FieldKey& known : config::field_keys) {
     EXPECT_NE(config::find_key(known.key), nullptr) << known.field << ": " << known.key;
   }
 }
 
-TEST(FieldKeys, KnowEveryFieldThatLibrariesComplainOf) {
+TEST(FieldKeys, CoverEveryFieldInLibraryErrors) {
   std::size_t fields = 0;
   for (const char* source :
        {"geometry/pose/camera.cpp", "sim/sensors/depth_camera_config.cpp", "sim/sensors/noise.cpp",
@@ -67,7 +67,7 @@ TEST(FieldKeys, KnowEveryFieldThatLibrariesComplainOf) {
   EXPECT_GE(fields, 40U);
 }
 
-TEST(FieldKeys, PutTheKeyAndItsLineIntoTheMessage) {
+TEST(FieldKeys, AddKeyAndLineToErrorMessages) {
   const std::string message = testing_support::thrown_message([] {
     config::parse_mission(
         "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.005}\n"

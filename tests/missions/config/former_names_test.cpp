@@ -37,7 +37,7 @@ config::MissionSetup make_setup(const std::string& text) {
   return config::parse_mission(text, "m.yaml");
 }
 
-TEST(FormerNames, OfShippedMissionsMeanTheSame) {
+TEST(FormerNames, GiveSameSetupsForShippedMissions) {
   std::size_t missions = 0;
   for (const auto& entry : std::filesystem::directory_iterator(former_missions)) {
     const std::string name = entry.path().filename().string();
@@ -49,7 +49,7 @@ TEST(FormerNames, OfShippedMissionsMeanTheSame) {
   EXPECT_EQ(missions, 9U);
 }
 
-TEST(FormerNames, OfShippedMissionsAreRewrittenToTheShippedFiles) {
+TEST(FormerNames, AreRewrittenToShippedMissions) {
   for (const auto& entry : std::filesystem::directory_iterator(former_missions)) {
     const std::string name = entry.path().filename().string();
     EXPECT_EQ(config::with_current_names(read_content(entry.path()), name),
@@ -57,7 +57,7 @@ TEST(FormerNames, OfShippedMissionsAreRewrittenToTheShippedFiles) {
   }
 }
 
-TEST(FormerNames, AreAllRewrittenAndNothingElse) {
+TEST(FormerNames, AreAllRewrittenWithoutOtherChanges) {
   const std::string current = config::with_current_names(former_mission, "m.yaml");
   EXPECT_EQ(config::setup_text(make_setup(current)),
             config::setup_text(make_setup(former_mission)));
@@ -72,7 +72,7 @@ TEST(FormerNames, AreAllRewrittenAndNothingElse) {
   EXPECT_THAT(current, HasSubstr("# A tower.  Its planner.least_gain stays in this comment.\n"));
 }
 
-TEST(FormerNames, OfValuesAreRead) {
+TEST(FormerNames, AreReadAsValues) {
   const auto value = [](const config::Key& key, const std::string& text) {
     const auto found = key.get(config::parse_mission_document(
         smallest, "m.yaml",
@@ -91,7 +91,7 @@ TEST(FormerNames, OfValuesAreRead) {
   }
 }
 
-TEST(FormerNames, AreRefusedBesideTheCurrentOnes) {
+TEST(FormerNames, AreRejectedTogetherWithCurrentNames) {
   const auto error_message = [](const std::string& section) {
     return testing_support::thrown_message(
         [&] { make_setup("scene: {model: 'builtin:teapot'}\nevaluation:\n" + section); });
@@ -101,7 +101,7 @@ TEST(FormerNames, AreRefusedBesideTheCurrentOnes) {
                         "evaluation.coverage_distance, which is set, too; remove one of them"));
 }
 
-TEST(FormerNames, ThatCannotBeToldApartAreNotRewritten) {
+TEST(FormerNames, AreNotRewrittenWhenAmbiguous) {
   EXPECT_THAT(testing_support::thrown_message([] {
                 config::with_current_names(
                     "{scan: {orbit: {radius: 3}}, evaluation: {radius: 1}}\n", "m.yaml");
@@ -110,7 +110,7 @@ TEST(FormerNames, ThatCannotBeToldApartAreNotRewritten) {
 }
 
 // A summary that version 0.1 wrote, as the corpora of the readers keep it.
-TEST(FormerFields, OfPackagesAreRead) {
+TEST(FormerFields, AreReadInPackages) {
   const std::filesystem::path file = source / "tests/fuzz/corpus/summary/package.json";
   ASSERT_THAT(read_content(file), HasSubstr("\"version\": \"0.1.0\""));
   const package::PackageSummary summary =
@@ -119,7 +119,7 @@ TEST(FormerFields, OfPackagesAreRead) {
   EXPECT_GT(summary.mission.evaluation().registration_distance, 0.0);
 }
 
-TEST(FormerFields, HaveCurrentNamesAndWords) {
+TEST(FormerFields, AreConvertedToCurrentNamesAndValues) {
   using Json = nlohmann::ordered_json;
   Json former = Json::parse(R"({
     "coverage_ceiling": 0.9, "stop_reason": "nowhere_to_go", "planner": "anew",

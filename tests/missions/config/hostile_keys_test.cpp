@@ -190,7 +190,7 @@ bool are_accepted(const Values& values, const std::string& what) {
   }
 }
 
-TEST(HostileKeys, AreRefusedByTheirNameOrTakenWithinTheirRange) {
+TEST(HostileKeys, AreRejectedByNameOrAcceptedWithinRange) {
   std::size_t rejected = 0, taken = 0;
   for (const Key& key : config::mission_keys()) {
     for (const std::string& value : values_for(key)) {
@@ -210,7 +210,7 @@ std::string number_drawn(std::mt19937& random) {
 
 // Several at once, of numbers of all sizes. HOSTILE_SEED and HOSTILE_MISSIONS in the environment
 // draw others, and so many.
-TEST(HostileKeys, DrawnTogetherAreRefusedByANameOrTakenWithinTheirRanges) {
+TEST(HostileKeys, AreRejectedOrAcceptedInRandomCombinations) {
   const char *seed = std::getenv("HOSTILE_SEED"), *missions = std::getenv("HOSTILE_MISSIONS");
   std::mt19937 random(seed == nullptr ? 1U : static_cast<unsigned>(std::stoul(seed)));
   const auto& keys = config::mission_keys();
@@ -228,7 +228,7 @@ TEST(HostileKeys, DrawnTogetherAreRefusedByANameOrTakenWithinTheirRanges) {
   }
 }
 
-TEST(HostileKeys, AreNotTakenForOtherKeys) {
+TEST(HostileKeys, AreNotMistakenForOtherKeys) {
   for (const std::string name :
        {"__proto__", "scene", "planner.densty", "a.b.c.d", "Name", "name "}) {
     try {
@@ -243,7 +243,7 @@ TEST(HostileKeys, AreNotTakenForOtherKeys) {
   }
 }
 
-TEST(HostileKeys, ManyOrLongOnesAreReadInProportionToTheirNumber) {
+TEST(HostileKeys, AreRejectedQuicklyWhenManyOrLong) {
   const std::string base = "scene: {model: 'builtin:teapot'}\n";
   std::string many = base;
   for (int i = 0; i < 90'000; ++i) many += "k" + std::to_string(i) + ": 1\n";

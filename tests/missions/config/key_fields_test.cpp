@@ -89,9 +89,9 @@ void expect_own_fields(std::span<const config::Key> keys, Document document) {
   }
 }
 
-TEST(MissionKeys, HaveFieldsOfTheirOwn) { expect_own_fields(config::mission_keys(), {}); }
+TEST(MissionKeys, HaveDistinctFields) { expect_own_fields(config::mission_keys(), {}); }
 
-TEST(MissionKeys, OfSourcesHaveFieldsOfTheirOwn) {
+TEST(MissionKeys, HaveDistinctFieldsForSources) {
   Document document;
   document.prior.emplace_back();
   expect_own_fields(config::find_key("prior")->items, std::move(document));
@@ -386,7 +386,7 @@ constexpr KeyField fields[] = {
 };
 
 // A key that sets and gets the field of another passes all tests that only go through the key.
-TEST(MissionKeys, StandForTheFieldsThatAreNamedForThem) {
+TEST(MissionKeys, SetAndGetTheirNamedFields) {
   EXPECT_EQ(std::size(fields), config::mission_keys().size() - 1) << "all but the list of sources";
   for (const config::Key& key : config::mission_keys()) {
     if (key.type == config::KeyType::sources) continue;

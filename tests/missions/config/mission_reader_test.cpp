@@ -27,7 +27,7 @@ std::string error_message(const std::string& text,
       [&] { config::parse_mission_document(text, "m.yaml", overrides); });
 }
 
-TEST(MissionReader, NeedsOnlyAModelAndARegistrationDistance) {
+TEST(MissionReader, RequiresOnlyModelAndCoverageDistance) {
   const config::MissionDocument mission = parsed("");
   EXPECT_EQ(mission.name, "vase");
   EXPECT_EQ(mission.scene.model, "builtin:teapot");
@@ -35,13 +35,13 @@ TEST(MissionReader, NeedsOnlyAModelAndARegistrationDistance) {
   EXPECT_TRUE(mission.planner.see.optimise_views);
 }
 
-TEST(MissionReader, TurnsDegreesIntoRadians) {
+TEST(MissionReader, ConvertsDegreesToRadians) {
   const config::MissionDocument mission =
       parsed("sensor: {horizontal_fov_deg: 90}\nplanner: {name: see}\n", {});
   EXPECT_DOUBLE_EQ(mission.sensor.options.camera.camera.horizontal_fov, 0.5 * std::numbers::pi);
 }
 
-TEST(MissionReader, TakesPresetsFirstWhereverTheyStand) {
+TEST(MissionReader, AppliesPresetsFirst) {
   const config::MissionDocument mission = parsed(
       "sensor: {width: 600, preset: high_resolution}\nplanner: {visibility_graph: true, name: "
       "see}\n");
@@ -51,7 +51,7 @@ TEST(MissionReader, TakesPresetsFirstWhereverTheyStand) {
   EXPECT_FALSE(mission.planner.see.optimise_views);
 }
 
-TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
+TEST(MissionReader, AppliesOverridesAndNamesTheirOrigin) {
   const config::MissionDocument mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
   EXPECT_EQ(mission.seed, 8U);
   EXPECT_EQ(error_message(smallest, {{"--seed", "seed", "many"}}),
@@ -60,7 +60,7 @@ TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
               HasSubstr("did you mean planner.density?"));
 }
 
-TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
+TEST(MissionReader, SuggestsKeyInCorrectSection) {
   EXPECT_EQ(error_message(smallest + "sensor:\n  sigma: 0.1\n"),
             "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(error_message(smallest + "colour_of_the_sky: blue\n"),
@@ -70,7 +70,7 @@ TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
 
 // The parser must survive what people and fuzzers write: here, every prefix of a valid mission and
 // every single damaged byte of it either parses or is refused in one line.
-TEST(MissionReader, RefusesDamagedFilesInOneLine) {
+TEST(MissionReader, RejectsDamagedFilesInOneLine) {
   const std::string whole =
       "scene:\n  model: builtin:teapot  # a comment\n  position: [1, 2.5, -3e1]\n"
       "evaluation: {coverage_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";

@@ -47,14 +47,14 @@ const Json& find_property(const Json& schema, const std::string& path) {
   return *property;
 }
 
-TEST(MissionSchema, KnowsExactlyTheKeysOfTheReader) {
+TEST(MissionSchema, HasSameKeysAsReader) {
   std::set<std::string> in_schema, in_reader;
   collect_paths(shipped_schema(), "", in_schema);
   for (const config::Key& key : config::mission_keys()) in_reader.insert(key.path);
   EXPECT_EQ(in_schema, in_reader);
 }
 
-TEST(MissionKeys, StandInTheirSectionAndOnce) {
+TEST(MissionKeys, BelongToTheirSectionAndAreUnique) {
   std::set<std::string> paths;
   for (const config::KeySection& section : config::key_sections) {
     for (const config::Key& key : section.keys()) {
@@ -67,7 +67,7 @@ TEST(MissionKeys, StandInTheirSectionAndOnce) {
 }
 
 // For each key, what the schema calls the limits is where the reader starts to refuse.
-TEST(MissionSchema, HasTheReadersTypesAndRanges) {
+TEST(MissionSchema, HasSameTypesAndRangesAsReader) {
   const Json schema = shipped_schema();
   for (const config::Key& key : testing_support::not_empty(config::mission_keys())) {
     const Json& property = find_property(schema, key.path);
@@ -104,7 +104,7 @@ TEST(MissionSchema, HasTheReadersTypesAndRanges) {
   }
 }
 
-TEST(MissionSchema, IsTheFileThatIsShipped) {
+TEST(MissionSchema, MatchesShippedFile) {
   EXPECT_EQ(tests::read_content(source / "missions" / "mission.schema.json"),
             config::mission_json_schema())
       << "run: build/release/skycap check --schema > missions/mission.schema.json";
@@ -130,7 +130,7 @@ std::string generated_parts(const std::string& page) {
   return parts;
 }
 
-TEST(MissionReference, ListsEveryKeyOnceAsTheProgramPrintsIt) {
+TEST(MissionReference, ListsEveryKeyAsPrintedByProgram) {
   const std::filesystem::path page = source / "docs" / "reference" / "mission-file.md";
   const auto printed = key_rows(config::mission_key_table());
   EXPECT_GE(printed.size(), config::mission_keys().size());
@@ -153,7 +153,7 @@ const survey::see::SeeConfig& see_config(const config::MissionSetup& setup) {
 }
 
 // Table 1 and section IV of the paper.
-TEST(ShippedMissions, HaveThePapersParameters) {
+TEST(ShippedMissions, HaveParametersOfPaper) {
   for (const char* name : {"teapot", "bunny", "dragon"}) {
     const config::MissionSetup mission =
         config::read_mission(source / "missions" / (std::string(name) + ".yaml"));

@@ -27,7 +27,7 @@ std::string error_message(const std::string& more) {
   return testing_support::thrown_message([&] { parsed(more); });
 }
 
-TEST(PriorKeys, SayAllThatASourceHas) {
+TEST(PriorKeys, SetEveryFieldOfSource) {
   const config::MissionDocument given = parsed(
       "prior:\n"
       "  - {file: tile.gml, role: obstacle, select: {lod: 2, id: [A1, B2]}}\n"
@@ -70,7 +70,7 @@ TEST(PriorKeys, SayAllThatASourceHas) {
 }
 
 // What a package keeps of a mission is read back as the same sources.
-TEST(PriorKeys, AreReadBackFromSettings) {
+TEST(PriorKeys, ReadBackFromSettings) {
   const config::MissionDocument given = parsed(
       "prior: [{file: tile.gml, role: target, base: terrain, place: {heading_deg: 90}},\n"
       "        {file: x.las, role: obstacle, select: {classes: [6], attribute: {a: b}}}]\n");
@@ -83,7 +83,7 @@ TEST(PriorKeys, AreReadBackFromSettings) {
   EXPECT_EQ(text.find("uncertainty"), std::string::npos) << "what was not given is not said";
 }
 
-TEST(PriorKeys, AreNamedWithTheirLineWhenTheyAreWrong) {
+TEST(PriorKeys, ReportInvalidValuesWithLine) {
   EXPECT_EQ(error_message("prior: {file: a.obj}\n"),
             "m.yaml:3: key prior is a map; it must be a list of maps, each with file, role and "
             "further keys");
@@ -104,7 +104,7 @@ TEST(PriorKeys, AreNamedWithTheirLineWhenTheyAreWrong) {
 
 // The hostile values that no key takes, at each key of a source: refused by its name, or taken
 // within its range.
-TEST(PriorKeys, RefuseHostileValues) {
+TEST(PriorKeys, RejectHostileValues) {
   const std::vector<std::string> hostile = {"",
                                             "~",
                                             "nan",

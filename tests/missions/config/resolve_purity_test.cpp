@@ -208,7 +208,7 @@ class ResolvePurity : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-TEST_F(ResolvePurity, GivesTheSameForTheSameArguments) {
+TEST_F(ResolvePurity, ReturnsSameSetupForSameArguments) {
   for (const auto& [name, text] : missions()) {
     SCOPED_TRACE(name);
     const Inputs inputs(document(text));
@@ -224,7 +224,7 @@ TEST_F(ResolvePurity, GivesTheSameForTheSameArguments) {
 }
 
 // Bit for bit: what is completed already is not completed again.
-TEST_F(ResolvePurity, ChangesNothingOfWhatItHasCompleted) {
+TEST_F(ResolvePurity, KeepsResolvedDocumentUnchanged) {
   for (const auto& [name, text] : missions()) {
     SCOPED_TRACE(name);
     const Inputs inputs(document(text));
@@ -251,7 +251,7 @@ config::MissionDocument make_document(const MissionSetup& setup, const std::stri
   return config::parse_mission_document("seed: 1\n", file, keys);
 }
 
-TEST_F(ResolvePurity, GivesTheSameForTheTextsOfItsKeys) {
+TEST_F(ResolvePurity, ReturnsSameSetupForWrittenKeys) {
   constexpr double digits = 1e-9;  // texts of keys have twelve
   for (const auto& [name, text] : missions()) {
     SCOPED_TRACE(name);
@@ -269,7 +269,7 @@ TEST_F(ResolvePurity, GivesTheSameForTheTextsOfItsKeys) {
 }
 
 // As if the file had said so, but for what belongs to the run.
-TEST_F(ResolvePurity, WithKeysIsTheMissionOfAnotherFile) {
+TEST_F(ResolvePurity, MatchesFileWithSameKeysWhenOverridden) {
   const std::vector<config::KeyOverride> changes{{"the test", "flight.clearance", "3"},
                                                  {"the test", "planner.view_distance", "7"}};
   for (const auto& [name, text] : missions()) {
@@ -290,7 +290,7 @@ TEST_F(ResolvePurity, WithKeysIsTheMissionOfAnotherFile) {
   }
 }
 
-TEST_F(ResolvePurity, WithKeysNamesTheOriginOfWhatIsWrong) {
+TEST_F(ResolvePurity, NamesOriginOfInvalidOverrides) {
   const MissionSetup setup = Inputs(document(missions().at("camera"))).resolved();
   EXPECT_EQ(testing_support::thrown_message([&] {
               config::with_keys(setup, {{"--views", "limits.max_views", "0"}});
@@ -302,7 +302,7 @@ TEST_F(ResolvePurity, WithKeysNamesTheOriginOfWhatIsWrong) {
               HasSubstr("did you mean planner.density?"));
 }
 
-TEST_F(ResolvePurity, SaysTheTextOfEachKeyAndOfNothingElse) {
+TEST_F(ResolvePurity, ReturnsTextOfKnownKeysOnly) {
   const MissionSetup setup = Inputs(document(missions().at("camera"))).resolved();
   EXPECT_EQ(setup.text("planner.density"), "100");
   EXPECT_EQ(setup.text("start.position"), "-");

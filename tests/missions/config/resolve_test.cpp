@@ -34,7 +34,7 @@ std::string error_message(const std::string& text) {
 }
 
 // echo 51.7534 -1.254 0 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
-TEST(Resolve, TakesEgm96WhereAGeoidIsAskedForAndNoneIsGiven) {
+TEST(Resolve, UsesEgm96WhenGeoidIsRequiredButUnset) {
   const std::string location = "site: {latitude_deg: 51.7534, longitude_deg: -1.254";
   const auto undulation = [&](const std::string& text) {
     return parsed(text).flight().site.geoid_undulation;
@@ -51,7 +51,7 @@ TEST(Resolve, TakesEgm96WhereAGeoidIsAskedForAndNoneIsGiven) {
 
 // spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of
 // clusters.
-TEST(Resolve, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
+TEST(Resolve, DerivesBuildingPresetFromSensorAndDensity) {
   const std::string building =
       "sensor: {preset: high_resolution}\n"
       "planner: {preset: building, density: 213, spacing: 0.0685, resolution_radius: 0.15";
@@ -74,7 +74,7 @@ TEST(Resolve, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
 }
 
 // Points as far apart as the paper's would leave gaps that do not count as covered.
-TEST(Resolve, StoresPointsSoThatTheyCanCover) {
+TEST(Resolve, LimitsSpacingToCoverageDistance) {
   const auto spacing = [](const std::string& distance, const std::string& more) {
     return config::parse_mission(
                "scene: {model: 'builtin:teapot'}\n"
@@ -92,7 +92,7 @@ TEST(Resolve, StoresPointsSoThatTheyCanCover) {
 }
 
 // A moving sensor measures on the way, so that stops are what is left to spare.
-TEST(Resolve, SparesMinutesWhereTheWaysMeasure) {
+TEST(Resolve, MinimisesTimeWhenSensorCapturesEnRoute) {
   const auto goal = [](const std::string& more) {
     return parsed("planner: {name: skycap" + more).text("planner.goal");
   };
@@ -106,7 +106,7 @@ TEST(Resolve, SparesMinutesWhereTheWaysMeasure) {
 
 // Of surveys by the M350 at 4 m/s a view was measured to cost 6.5 to 8 s, and half a second of rest
 // was added since.
-TEST(ViewPrice, IsOfDistancesOrOfTheStop) {
+TEST(ViewPrice, DependsOnViewDistanceOrStopTime) {
   const auto price = [](const std::string& more) {
     const config::MissionSetup setup =
         parsed("planner: {name: skycap, view_distance: 20, goal: " + more);
@@ -121,7 +121,7 @@ TEST(ViewPrice, IsOfDistancesOrOfTheStop) {
   EXPECT_LE(price("minutes" + flight_mission), 34.0);
 }
 
-TEST(Resolve, ReadsTheSitesAirspace) {
+TEST(Resolve, ReadsSiteAirspace) {
   const config::MissionSetup mission = parsed(
       "site:\n"
       "  geofence: [[-50, -40], [50, -40], [50.5, 40]]\n"
@@ -144,7 +144,7 @@ TEST(Resolve, ReadsTheSitesAirspace) {
   EXPECT_NO_THROW(limits.validate());
 }
 
-TEST(Resolve, RefusesAirspacesThatCannotBe) {
+TEST(Resolve, RejectsInvalidAirspaces) {
   EXPECT_THAT(error_message("site: {geofence: [[0, 0], [1, 0]]}"),
               HasSubstr("three or more corners"));
   EXPECT_THAT(error_message("site: {geofence: [[0, 0], [1, 0], [1, x]]}"),
@@ -162,7 +162,7 @@ TEST(Resolve, RefusesAirspacesThatCannotBe) {
       HasSubstr("limits.max_pitch_deg must be greater than"));
 }
 
-TEST(Resolve, MeasuresTheGroundClearanceFromTheScenesBase) {
+TEST(Resolve, MeasuresGroundClearanceFromSceneBase) {
   const config::MissionSetup mission = config::parse_mission(
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
       "evaluation: {coverage_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
@@ -171,7 +171,7 @@ TEST(Resolve, MeasuresTheGroundClearanceFromTheScenesBase) {
   EXPECT_EQ(mission.survey().planner.limits.min_height, 62.0);
 }
 
-TEST(Resolve, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
+TEST(Resolve, DefaultsToSkycapPlannerForFlights) {
   const std::string flight_mission = smallest +
                                      "flight: {vehicle: generic, unknown_box: {min: [0, 0, 0], "
                                      "max: [1, 1, 1]}}\n";
@@ -184,7 +184,7 @@ TEST(Resolve, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
 }
 
 // k = 1 admits no frontier: SEE cannot work with it, and no other planner looks at k.
-TEST(Resolve, ChecksSeesDensityOnlyForSee) {
+TEST(Resolve, ChecksDensityOnlyForSee) {
   const std::string sparse = smallest + "planner: {density: 1000, resolution_radius: 0.05, name: ";
   for (const char* name : {"see", "see++"}) {
     EXPECT_THAT(error_message(sparse + name + "}\n"), HasSubstr("which admits no frontier"))
@@ -196,7 +196,7 @@ TEST(Resolve, ChecksSeesDensityOnlyForSee) {
 }
 
 // 51.7534 is no binary fraction: by way of radians it came back as 51.753399999999999.
-TEST(Resolve, KeepsThePlaceAsItIsWritten) {
+TEST(Resolve, KeepsExactSitePosition) {
   for (const double latitude : {51.7534, -33.856784, 0.1, 47.3}) {
     const flight::GeodeticPoint origin =
         parsed("site: {latitude_deg: " + support::exact_text(latitude) +
@@ -215,7 +215,7 @@ struct RejectedSetting {
   const char* message;  ///< how it begins
 };
 
-TEST(Resolve, ChecksEachPlannersOwnSettingsWithTheirPlace) {
+TEST(Resolve, ChecksPlannerSettingsAndNamesTheirLine) {
   const std::vector<RejectedSetting> settings{
       {"see", "planner:\n  core_threshold: 3\n",
        "m.yaml:4: key planner.core_threshold is 3; it must be at least 4"},

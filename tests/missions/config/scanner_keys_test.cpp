@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
+TEST(SensorLidar, RejectsConflictingSettings) {
   const auto validation_error = [](const std::string& sensor,
                                    const std::string& more) -> std::string {
     try {

@@ -29,7 +29,7 @@ double pulses_per_second(const char* preset) {
   return static_cast<double>(config.channels.size()) / config.firing_period;
 }
 
-TEST(SensorPresets, AllAreValid) {
+TEST(SensorPresets, AreValid) {
   EXPECT_EQ(config::sensor_presets().size(), 15U);
   for (const std::string_view preset : config::sensor_presets()) {
     EXPECT_FALSE(config::find_sensor(std::string(preset)).name.empty()) << preset;
@@ -37,7 +37,7 @@ TEST(SensorPresets, AllAreValid) {
 }
 
 // The data sheets' rates, each the number of lasers over the firing period.
-TEST(SensorPresets, ShootAsOftenAsTheDataSheetsSay) {
+TEST(SensorPresets, HavePulseRatesOfDataSheets) {
   EXPECT_NEAR(pulses_per_second("velodyne_vlp16"), 289'352, 1);
   EXPECT_NEAR(pulses_per_second("velodyne_vlp32c"), 578'704, 1);
   EXPECT_NEAR(pulses_per_second("ouster_os1_64"), 655'360, 1);
@@ -51,7 +51,7 @@ TEST(SensorPresets, ShootAsOftenAsTheDataSheetsSay) {
 }
 
 // The widest angle off the axis that a rosette reaches, against half its sold field of view.
-TEST(SensorPresets, RosettesReachTheirFieldsOfView) {
+TEST(SensorPresets, CoverFieldsOfViewOfRosettes) {
   const auto widest = [](const char* preset) {
     const config::SensorDescription description = config::find_sensor(preset);
     double angle = 0.0;
@@ -67,13 +67,13 @@ TEST(SensorPresets, RosettesReachTheirFieldsOfView) {
   EXPECT_NEAR(widest("dji_zenmuse_l2"), 0.5 * 70.0, 0.5);
 }
 
-TEST(SensorPresets, WidthsAtHalfMaximumBecomeWidthsAtOneOverESquared) {
+TEST(SensorPresets, ConvertBeamDivergenceToOneOverESquared) {
   const config::SensorDescription description = config::find_sensor("dji_zenmuse_l2");
   EXPECT_NEAR(lidar(description).beam.divergence_horizontal, 1.02e-3, 1e-5);
   EXPECT_NEAR(lidar(description).beam.divergence_vertical, 0.34e-3, 1e-5);
 }
 
-TEST(SensorPresets, TheExperimentsCamerasAreThoseOfTheSimulator) {
+TEST(SensorPresets, MatchSimulatorCameras) {
   const auto camera = [](const char* preset) {
     const config::SensorDescription description = config::find_sensor(preset);
     return std::get<DepthCameraConfig>(description.sensor);
@@ -98,7 +98,7 @@ void expect_message(const std::string& text, const char* message) {
   }
 }
 
-TEST(ReadSensor, NamesFileLineAndKeyOfWhatIsWrong) {
+TEST(ReadSensor, ReportsFileLineAndKeyOfErrors) {
   const std::string head = "name: X\nkind: spinning\n";
   expect_message("name: X\n", "my.yaml:1: key kind is missing");
   expect_message("name: X\nkind: sonar\n", "my.yaml:2: key kind is sonar; it must be one of");
@@ -118,7 +118,7 @@ TEST(ReadSensor, NamesFileLineAndKeyOfWhatIsWrong) {
   expect_message("name: X\nkind: rosette\nfiring_period_us: 10\n", "key prisms must list");
 }
 
-TEST(FindSensor, SaysWhichSensorsThereAre) {
+TEST(FindSensor, ListsKnownSensorsWhenUnknown) {
   try {
     config::find_sensor("ouster");
     FAIL() << "found";

@@ -26,7 +26,7 @@ std::string error_message(const std::string& text) {
   return testing_support::thrown_message([&] { config::read_vehicle(text, "kite.yaml"); });
 }
 
-TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
+TEST(VehiclePresets, AreValidAndNamedLikeTheirFiles) {
   EXPECT_EQ(config::vehicle_preset_files().size(), 7U);
   for (const auto& [preset, text] : config::vehicle_preset_files()) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
@@ -38,7 +38,7 @@ TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
 
 // The energy model's calibration holds for every one: a full battery hovers as long as the sheet
 // says.
-TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
+TEST(VehiclePresets, HaveHoverTimeOfDataSheets) {
   for (const auto& [preset, text] : testing_support::not_empty(config::vehicle_preset_files())) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     const flight::Motion motion(vehicle, {.reserve = 0.0});
@@ -48,7 +48,7 @@ TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
 }
 
 // ArduPilot's documentation: WP_SPD_UP, WP_SPD_DN, WP_ACC, WP_ACC_Z, WP_JERK, LAND_SPD_MS.
-TEST(VehiclePresets, ArduCopterFliesByItsDefaults) {
+TEST(VehiclePresets, HaveArduCopterDefaults) {
   const flight::Vehicle vehicle = config::find_vehicle("generic_ardupilot");
   EXPECT_EQ(vehicle.autopilot, AutopilotType::ardupilot);
   EXPECT_EQ(vehicle.mode.leg_profile, LegProfile::s_curve);
@@ -61,7 +61,7 @@ TEST(VehiclePresets, ArduCopterFliesByItsDefaults) {
   EXPECT_EQ(vehicle.mode.landing_speed, 0.5);
 }
 
-TEST(VehicleReader, ADescriptionMaySayWhatIsDifferent) {
+TEST(VehicleReader, InheritsUnsetValuesFromBaseVehicle) {
   const flight::Vehicle base_vehicle = config::find_vehicle("m350_rtk");
   const flight::Vehicle vehicle = config::read_vehicle(
       "name: mine\nlike: m350_rtk\nmass: 8\ngimbal_rate_deg: 45\nwpml: {payload: 65534}\n"
@@ -77,7 +77,7 @@ TEST(VehicleReader, ADescriptionMaySayWhatIsDifferent) {
   EXPECT_EQ(vehicle.battery_wh, base_vehicle.battery_wh);
 }
 
-TEST(VehicleReader, WhatIsWrongIsNamedByLine) {
+TEST(VehicleReader, ReportsLineOfErrors) {
   const std::string base = "name: kite\nlike: generic\n";
   EXPECT_THAT(error_message(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss is unknown"));
   EXPECT_THAT(error_message(base + "mass: heavy\n"),
@@ -99,7 +99,7 @@ TEST(VehicleReader, WhatIsWrongIsNamedByLine) {
   EXPECT_THAT(error_message("like: generic\n"), HasSubstr("key name is missing"));
 }
 
-TEST(VehicleReader, ReadsFiles) {
+TEST(VehicleReader, ReadsVehicleFiles) {
   const testing_support::TemporaryFolder folder;
   const std::string path = (folder.path() / "mine.yaml").string();
   std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";

@@ -29,7 +29,7 @@ std::vector<Vector3f> noisy_points(int count, float sigma) {
 }
 
 // Points of a half-normal distribution of distances from the surface, from either side.
-TEST(AccuracyMeter, RecoversTheNoiseOfMeasurements) {
+TEST(AccuracyMeter, RecoversMeasurementNoise) {
   constexpr float sigma = 0.01F;
   evaluation::AccuracyMeter meter(square);
   meter.add(noisy_points(20'000, sigma));
@@ -43,7 +43,7 @@ TEST(AccuracyMeter, RecoversTheNoiseOfMeasurements) {
 }
 
 // Five points whose distances are known: 1, 2, 3, 4 above the square and 3-4-5 beside its corner.
-TEST(AccuracyMeter, HasTheAnswersOfFivePoints) {
+TEST(AccuracyMeter, ComputesKnownFiguresOfFivePoints) {
   evaluation::AccuracyMeter meter(square);
   meter.add(std::vector<Vector3f>{{0, 0, 3}, {1, 1, -1}, {5, 6, 0}, {0, 1, 4}, {-1, 0, 2}});
   EXPECT_EQ(meter.points(), 5U);
@@ -55,7 +55,7 @@ TEST(AccuracyMeter, HasTheAnswersOfFivePoints) {
   EXPECT_DOUBLE_EQ(accuracy.largest, 5.0);
 }
 
-TEST(AccuracyMeter, DependsNeitherOnPiecesNorOnThreads) {
+TEST(AccuracyMeter, IsIndependentOfPiecesAndThreads) {
   const std::vector<Vector3f> points = noisy_points(10'000, 0.1F);
   evaluation::AccuracyMeter whole(square, 1), chunks(square, 3);
   whole.add(points);
@@ -70,7 +70,7 @@ TEST(AccuracyMeter, DependsNeitherOnPiecesNorOnThreads) {
 
 // Known answer: a wall that stands on the ground, in the plane x = 0. Of points above the diagonal
 // the wall is nearer.
-TEST(AccuracyMeter, LeavesOutPointsOfWhatStandsBeside) {
+TEST(AccuracyMeter, IgnoresPointsNearerToSurroundings) {
   const geometry::Mesh wall{{{0, -9, 0}, {0, 9, 0}, {0, 9, 9}, {0, -9, 9}}, {{0, 1, 2}, {0, 2, 3}}};
   const geometry::Mesh ground{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}},
                               {{0, 1, 2}, {0, 2, 3}}};
@@ -88,7 +88,7 @@ TEST(AccuracyMeter, LeavesOutPointsOfWhatStandsBeside) {
   EXPECT_FLOAT_EQ(static_cast<float>(alone.accuracy().largest), std::hypot(7.0F, 0.5F));
 }
 
-TEST(AccuracyMeter, OfNoPointsIsZero) {
+TEST(AccuracyMeter, IsZeroWithoutPoints) {
   evaluation::AccuracyMeter meter(square);
   EXPECT_EQ(meter.accuracy().largest, 0.0);
   EXPECT_EQ(meter.share_within(1.0), 0.0);

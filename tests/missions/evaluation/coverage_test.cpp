@@ -26,7 +26,7 @@ std::vector<Vector3f> sphere(std::size_t count) {
 
 // Brute-force twin. Cells of the search are 2 r_d wide; coordinates of both signs and a shift far
 // from the origin try their borders.
-TEST(CoverageMeter, CoversWhatBruteForceCovers) {
+TEST(CoverageMeter, MatchesBruteForce) {
   for (const float shift : {0.0F, 40.0F}) {
     std::vector<Vector3f> samples = tests::random_points(2000, 1.0, 1);
     std::vector<Vector3f> points = tests::random_points(300, 1.0, 2);
@@ -55,7 +55,7 @@ TEST(CoverageMeter, CoversWhatBruteForceCovers) {
 
 // Measurements on the upper half of the unit sphere reach over its edge by an arc of chord r_d:
 // they cover the samples with z >= -sin(2 asin(r_d / 2)), a share of (1 + sin(...)) / 2.
-TEST(CoverageMeter, CoversAMeasuredHemisphereAndItsRim) {
+TEST(CoverageMeter, CoversMeasuredHemisphereAndRim) {
   constexpr double distance = 0.2;
   std::vector<Vector3f> measured;
   for (const Vector3f& point : sphere(200'000)) {
@@ -68,7 +68,7 @@ TEST(CoverageMeter, CoversAMeasuredHemisphereAndItsRim) {
   EXPECT_NEAR(meter.share(), 0.5 * (1.0 + rim), 1e-3);
 }
 
-TEST(CoverageMeter, CountsTheShareOfMarkedSamplesAlone) {
+TEST(CoverageMeter, ComputesCoverageOfMarkedSamplesOnly) {
   const std::vector<Vector3f> samples{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   evaluation::CoverageMeter meter(samples, 0.1);
   meter.add(std::vector<Vector3f>{{0, 0, 0.05F}, {2, 0, 0}});
@@ -77,7 +77,7 @@ TEST(CoverageMeter, CountsTheShareOfMarkedSamplesAlone) {
   EXPECT_EQ(evaluation::covered_share(meter.is_covered(), none), std::nullopt);
 }
 
-TEST(FibonacciDirections, AreUnitAndSpreadEvenly) {
+TEST(FibonacciDirections, AreUnitVectorsAndSpreadEvenly) {
   constexpr std::size_t count = 1000;
   const auto directions = evaluation::fibonacci_directions(count);
   ASSERT_EQ(directions.size(), count);

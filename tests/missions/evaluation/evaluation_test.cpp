@@ -38,7 +38,7 @@ geometry::Mesh cube_in_a_cube() {
 const evaluation::Admissible from_anywhere{
     .view_distance = 4.0, .allows = {}, .directions = 200, .clearance = 1e-4};
 
-TEST(VisibleSamples, AreThoseOutside) {
+TEST(VisibleSamples, IncludeOnlyOuterSurface) {
   const geometry::Mesh mesh = cube_in_a_cube();
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
@@ -51,7 +51,7 @@ TEST(VisibleSamples, AreThoseOutside) {
 }
 
 // From z >= 0 only, the bottom of a cube that stands on z = 0 is hidden.
-TEST(VisibleSamples, ObeyTheGroundClearance) {
+TEST(VisibleSamples, RespectAdmissibleViews) {
   geometry::Mesh mesh = cube(1.0);
   geometry::transform(mesh, Eigen::Affine3d(Eigen::Translation3d(0, 0, 1)));
   const sim::Scene scene(mesh);
@@ -65,7 +65,7 @@ TEST(VisibleSamples, ObeyTheGroundClearance) {
   }
 }
 
-TEST(VisibleSamples, AreTheSameForAnyNumberOfThreads) {
+TEST(VisibleSamples, AreSameForAnyThreadCount) {
   const geometry::Mesh mesh = cube_in_a_cube();
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 5000, 1);
@@ -86,7 +86,7 @@ evaluation::CaptureScan quick_scans(const sim::Scene& scene) {
 
 // With a spacing well below r_d and no noise, all that can be seen can be covered; the cube inside
 // (its share of the area is 0.09 / 1.09) cannot.
-TEST(AttainableCoverage, IsTheVisibleShareWhenNothingElseLimits) {
+TEST(AttainableCoverage, IsVisibleFractionWithoutOtherLimits) {
   const geometry::Mesh mesh = cube_in_a_cube();
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
@@ -100,7 +100,7 @@ TEST(AttainableCoverage, IsTheVisibleShareWhenNothingElseLimits) {
 
 // Where the spacing exceeds r_d, holes stay between the stored points: one disc of radius r_d at
 // most every spacing^2 sqrt(3)/2, the densest packing.
-TEST(AttainableCoverage, IsLimitedByTheSpacingOfStoredPoints) {
+TEST(AttainableCoverage, IsLimitedByPointSpacing) {
   const geometry::Mesh mesh = cube(1.0);
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
@@ -113,7 +113,7 @@ TEST(AttainableCoverage, IsLimitedByTheSpacingOfStoredPoints) {
   EXPECT_GT(attainable_coverage, 0.5);  // random packings reach 0.55 of the plane
 }
 
-TEST(AttainableCoverage, LeavesOutWhatLiesOutsideTheBox) {
+TEST(AttainableCoverage, ExcludesSurfaceOutsideBox) {
   const geometry::Mesh mesh = cube(1.0);
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);

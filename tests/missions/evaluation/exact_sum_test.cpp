@@ -30,7 +30,7 @@ evaluation::ExactSum compute_sum(const std::vector<double>& all) {
   return sum;
 }
 
-TEST(ExactSum, LosesNothing) {
+TEST(ExactSum, KeepsSmallTerms) {
   // 2^70 + 2^-70, times 3: the small parts would be lost in double precision.
   evaluation::ExactSum sum;
   for (int i = 0; i < 3; ++i) {
@@ -48,7 +48,7 @@ TEST(ExactSum, LosesNothing) {
 }
 
 // Property: any order and any parts give the same digits.
-TEST(ExactSum, DependsNeitherOnOrderNorOnParts) {
+TEST(ExactSum, IsIndependentOfOrderAndPartition) {
   std::vector<double> all = numbers(10'000);
   const evaluation::ExactSum::Digits digits = compute_sum(all).all_digits();
   std::shuffle(all.begin(), all.end(), std::mt19937_64(2));
@@ -68,7 +68,7 @@ TEST(ExactSum, DependsNeitherOnOrderNorOnParts) {
               1e-13 * static_cast<double>(reference));
 }
 
-TEST(ExactSum, HoldsTheLeastAndTheGreatestNumbers) {
+TEST(ExactSum, RepresentsExtremeDoubles) {
   evaluation::ExactSum sum;
   sum.add(std::numeric_limits<double>::denorm_min());
   EXPECT_EQ(sum.value(), std::numeric_limits<double>::denorm_min());

@@ -33,7 +33,7 @@ bool leads_inside(const geometry::Mesh& mesh, const ReachableSpace::Config& conf
       .leads_to(node_position, joins);
 }
 
-TEST(ReachableSpace, HasNoSealedRooms) {
+TEST(ReachableSpace, ExcludesSealedRooms) {
   const geometry::Mesh box = sim::models::box({-12, -12, 0}, {12, 12, 24});
   for (const double radius : {0.0, 0.5, 5.0}) {
     EXPECT_FALSE(leads_inside(box, {.radius = radius})) << radius;
@@ -45,7 +45,7 @@ TEST(ReachableSpace, HasNoSealedRooms) {
 
 // The door decides: wider than the ball by 3.5 cells of an eighth of its radius it counts, narrower
 // than the ball it does not.
-TEST(ReachableSpace, GoesThroughDoorsThatAreWideEnough) {
+TEST(ReachableSpace, IncludesRoomsWithWideDoors) {
   Room room{.door_width = 5.0, .door_height = 5.0};
   EXPECT_TRUE(leads_inside(room_mesh(room), {.radius = 2.0}));
   EXPECT_FALSE(leads_inside(room_mesh(room), {.radius = 2.6}));
@@ -57,7 +57,7 @@ TEST(ReachableSpace, GoesThroughDoorsThatAreWideEnough) {
   EXPECT_TRUE(leads_inside(room_mesh(room), {.radius = 0.0}));
 }
 
-TEST(ReachableSpace, BeginsAtTheStart) {
+TEST(ReachableSpace, StartsAtConfiguredPosition) {
   const geometry::Mesh sealed = room_mesh({});
   const ReachableSpace::Config inside{.radius = 1.0, .start = Vector3d(3, 3, 3)};
   EXPECT_TRUE(leads_inside(sealed, inside, {-8, -8, 8}));
@@ -71,7 +71,7 @@ TEST(ReachableSpace, BeginsAtTheStart) {
 }
 
 // A start within a wall leads nowhere.
-TEST(ReachableSpace, IsEmptyWhereTheStartIsEnclosed) {
+TEST(ReachableSpace, IsEmptyWhenStartIsEnclosed) {
   const geometry::Mesh mesh = room_mesh({});
   const auto nowhere = [](const Vector3d&, const Vector3d&) { return false; };
   const geometry::MeshDistance surface(mesh);
@@ -83,7 +83,7 @@ TEST(ReachableSpace, IsEmptyWhereTheStartIsEnclosed) {
 }
 
 // A bell that is open below: a way leads in under its rim, unless that is too low.
-TEST(ReachableSpace, KeepsToTheHeights) {
+TEST(ReachableSpace, RespectsHeightLimits) {
   geometry::Mesh bell = sim::models::box({-10, -10, 20}, {10, 10, 21});
   for (const double x : {-10.0, 9.0}) {
     geometry::append(bell, sim::models::box({x, -10, 10}, {x + 1, 10, 20}));
@@ -149,7 +149,7 @@ class GridFlood {
 
 // Between two grids: one that keeps so much more that its ways are the cells' too, and one that
 // keeps so much less that the cells' ways are its own.
-TEST(ReachableSpace, LiesBetweenAStricterAndALooserGrid) {
+TEST(ReachableSpace, LiesBetweenStricterAndLooserGrids) {
   constexpr double radius = 0.8;
   for (const std::uint64_t seed : {1, 2}) {
     const geometry::Mesh mesh = cluttered_room(seed);
@@ -199,7 +199,7 @@ ReachableSpace room_space(const geometry::MeshDistance& distance, const geometry
   return {distance, geometry::bounding_box(mesh), {.radius = 1.0}, keeping(1.0, distance)};
 }
 
-TEST(ReachableSpace, IsTheSameFromAFile) {
+TEST(ReachableSpace, ReadsBackFromFile) {
   const geometry::Mesh mesh = room_mesh({.door_width = 5.0, .door_height = 5.0});
   const geometry::MeshDistance distance(mesh);
   const ReachableSpace space = room_space(distance, mesh);
@@ -216,7 +216,7 @@ TEST(ReachableSpace, IsTheSameFromAFile) {
   }
 }
 
-TEST(ReachableSpace, IsNotReadFromAFileThatIsSpoiled) {
+TEST(ReachableSpace, RejectsCorruptedFile) {
   const geometry::Mesh mesh = room_mesh({.door_width = 5.0, .door_height = 5.0});
   const geometry::MeshDistance distance(mesh);
   const std::string whole = room_space(distance, mesh).bytes();

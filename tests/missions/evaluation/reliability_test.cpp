@@ -25,7 +25,7 @@ geometry::SurfaceSamples samples_at(std::initializer_list<float> positions) {
 
 // A thin wall: its other side is believed something else. One sample is beyond all patches, one
 // does not count.
-TEST(Reliability, AsksTheNearestPatchThatFacesTheSameWay) {
+TEST(Reliability, UsesNearestPatchWithSameOrientation) {
   const std::vector<EstimatedPatch> estimate{
       patch_at(0.0F, 1.0F, 0.25F), patch_at(0.0F, -1.0F, 0.95F), patch_at(4.0F, 1.0F, 0.95F)};
   const auto samples = samples_at({0.0F, 0.1F, 0.2F, 0.3F, 4.1F, 9.0F, 4.2F});
@@ -43,7 +43,7 @@ TEST(Reliability, AsksTheNearestPatchThatFacesTheSameWay) {
 }
 
 // Whoever is right of each probability has no error, whoever is sure of all has what it is off by.
-TEST(Reliability, IsWithoutErrorWhereProbabilitiesComeTrue) {
+TEST(Reliability, HasNoErrorForCalibratedProbabilities) {
   std::vector<EstimatedPatch> estimate, sure;
   geometry::SurfaceSamples samples;
   std::vector<std::uint8_t> is_covered;
@@ -60,7 +60,7 @@ TEST(Reliability, IsWithoutErrorWhereProbabilitiesComeTrue) {
   EXPECT_NEAR(reliability(sure, samples, is_covered, {}, 0.4).error, 0.55, 1e-6);
 }
 
-TEST(Reliability, OfNothingIsZero) {
+TEST(Reliability, IsZeroWithoutPatches) {
   const Reliability found = reliability({}, {}, {}, {}, 1.0);
   EXPECT_EQ(found.error, 0.0);
   EXPECT_EQ(found.unknown_share, 0.0);

@@ -58,7 +58,7 @@ bool is_on_inside(const Eigen::Vector3f& point) {
 
 // What is in a sealed room counts neither as visible nor as attainable, whatever fits; all of the
 // outside does. Walls of closed solids have nothing else.
-TEST(SurveyScene, CountsNothingInSealedRooms) {
+TEST(SurveyScene, ExcludesSealedRoomsFromCoverage) {
   const WindowedRoom sealed(0.0);
   const evaluation::SurveyScene scene = sealed.scene({});
   const std::vector<std::uint8_t> visible = scene.visible(2);
@@ -83,7 +83,7 @@ TEST(SurveyScene, CountsNothingInSealedRooms) {
 
 // A way in that is 3 m wide is one for a ball of 1 m, and none for a ball of 2 m, for the
 // evaluation and for planners alike.
-TEST(SurveyScene, CountsRoomsThatTheRadiusFitsInto) {
+TEST(SurveyScene, IncludesRoomsPassableForRadius) {
   const WindowedRoom room(3.0);
   const auto seen_inside = [&](const char* radius) {
     const evaluation::SurveyScene scene =
@@ -104,7 +104,7 @@ TEST(SurveyScene, CountsRoomsThatTheRadiusFitsInto) {
   EXPECT_LT(seen_inside("2"), 0.2);
 }
 
-TEST(SurveyScene, RefusesAStartInsideOfAWall) {
+TEST(SurveyScene, RejectsStartInsideWall) {
   const WindowedRoom room(3.0);
   const evaluation::SurveyScene scene = room.scene({{"--set", "start.position", "[10.25, 0, 5]"},
                                                     {"--set", "start.look_at", "[0, 0, 5]"},
@@ -114,7 +114,7 @@ TEST(SurveyScene, RefusesAStartInsideOfAWall) {
 }
 
 // The file stands for the mission and its model: whoever reads it computes nothing.
-TEST(SurveyScene, KeepsWhatCanBeReachedInAFile) {
+TEST(SurveyScene, CachesReachableSpaceInFile) {
   const WindowedRoom room(3.0);
   const TestFolder folder;
   const std::filesystem::path kept = folder.path() / "reached";
@@ -144,7 +144,7 @@ std::string two_cubes(const TestFolder& folder, const char* neighbours) {
 }
 
 // Rays end on what stands beside the target, the sensor keeps off it, and none of it is judged.
-TEST(SurveyScene, HasNeighboursThatAreNotJudged) {
+TEST(SurveyScene, ExcludesNeighboursFromEvaluation) {
   const TestFolder folder;
   const auto make_mission = [&](const char* neighbours) {
     return config::parse_mission(two_cubes(folder, neighbours), "m.yaml");

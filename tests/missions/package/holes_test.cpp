@@ -33,7 +33,7 @@ MissingReason two_holes(int x, int y) {
   return x == 10 && y == 10 ? MissingReason::seen_too_thinly : MissingReason::none;
 }
 
-TEST(Holes, AreConnectedPiecesLargestFirst) {
+TEST(Holes, AreConnectedAndSortedByArea) {
   const std::vector<geometry::View> views = {{{19.0, 19.0, 5.0}, {0, 0, -1}},
                                              {{1.5, 1.5, 4.0}, {0, 0, -1}}};
   const MissingSurface missing = missing_surface(make_floor(20, two_holes), views);
@@ -53,7 +53,7 @@ TEST(Holes, AreConnectedPiecesLargestFirst) {
 }
 
 // What hangs together for different reasons is told apart.
-TEST(Holes, HaveOneReasonEach) {
+TEST(Holes, AreSplitByReason) {
   const MissingSurface missing = missing_surface(
       make_floor(10,
                  [](int x, int) {
@@ -67,7 +67,7 @@ TEST(Holes, HaveOneReasonEach) {
 
 // Guessed pieces of 4 m lie 5 m apart and make one hole; of pieces of half a metre, 2 m apart, each
 // is for itself. Most pieces have a side of one metre.
-TEST(Holes, LinkPiecesByTheirOwnSize) {
+TEST(Holes, LinkPatchesByPatchSize) {
   std::vector<EstimatedPatch> patches =
       make_floor(20, [](int, int) { return MissingReason::none; });
   for (int i = 0; i < 4; ++i) {
@@ -91,7 +91,7 @@ TEST(Holes, LinkPiecesByTheirOwnSize) {
 }
 
 // Whatever the pieces are: nothing that is missing is lost or counted twice.
-TEST(Holes, SumToWhatIsMissing) {
+TEST(Holes, SumToMissingArea) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<float> coordinate(0.0F, 20.0F), share(0.0F, 1.0F);
   std::vector<EstimatedPatch> patches;
@@ -114,7 +114,7 @@ TEST(Holes, SumToWhatIsMissing) {
   EXPECT_NEAR(sum, area - covered, 1e-6 * area);  // products of floats
 }
 
-TEST(Holes, OfNothingAreNone) {
+TEST(Holes, AreEmptyWithoutMissingSurface) {
   const MissingSurface missing = missing_surface({}, {});
   EXPECT_TRUE(missing.holes.empty());
   EXPECT_EQ(missing.area, 0.0);
@@ -122,7 +122,7 @@ TEST(Holes, OfNothingAreNone) {
             0.0);
 }
 
-TEST(TruePatches, AreTheSamplesWithTheirShareOfTheSurface) {
+TEST(TruePatches, HaveSamplesWithEqualAreas) {
   geometry::SurfaceSamples samples;
   samples.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   samples.normals.assign(4, Eigen::Vector3f::UnitZ());

@@ -74,7 +74,7 @@ std::vector<double> numbers_in(std::string line) {
   return numbers;
 }
 
-TEST(Package, ViewsReadBackExactly) {
+TEST(Package, WritesViewsThatReadBackExactly) {
   const session::SurveyRecord record = two_views();
   const auto lines = split_lines(package::views_csv(record));
   ASSERT_EQ(lines.size(), 3U);
@@ -89,7 +89,7 @@ TEST(Package, ViewsReadBackExactly) {
   EXPECT_EQ(numbers_in(lines[2])[12], std::sqrt(2.0));
 }
 
-TEST(Package, TrajectoryHoldsTheCamerasPoses) {
+TEST(Package, WritesCameraPosesAsTrajectory) {
   const session::SurveyRecord record = two_views();
   const auto lines = split_lines(package::trajectory_tum(record));
   ASSERT_EQ(lines.size(), 3U);
@@ -105,7 +105,7 @@ TEST(Package, TrajectoryHoldsTheCamerasPoses) {
   }
 }
 
-TEST(Package, SummaryHasTheContractsFields) {
+TEST(Package, WritesAllSummaryFields) {
   const package::CoverageFigures coverage{2.0 / 7.0, 0.5, {}};
   const auto summary =
       nlohmann::json::parse(package::summary_json(make_mission(), two_views(), coverage));
@@ -130,7 +130,7 @@ TEST(Package, SummaryHasTheContractsFields) {
   }
 }
 
-TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
+TEST(Package, WritesOnlyApplicableSettings) {
   const auto settings = [](const std::string& model) {
     return nlohmann::json::parse(
         package::summary_json(make_mission(model), two_views(), {}))["settings"];
@@ -139,13 +139,13 @@ TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
   EXPECT_FALSE(settings("house.ply").contains("scene.detail"));
 }
 
-TEST(Package, SummaryShowsNamesThatAreNotUtf8) {
+TEST(Package, ReplacesInvalidUtf8InSummary) {
   config::MissionSetup mission = make_mission();
   mission.name = "vase\xff";
   EXPECT_THAT(package::summary_json(mission, two_views(), {}), HasSubstr("vase\xef\xbf\xbd"));
 }
 
-TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
+TEST(Package, WritesCloudWithNormalsTowardsSensors) {
   const tests::TestFolder folder;
   {
     geometry::OutputFolder out(folder.path());
@@ -161,7 +161,7 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
 }
 
 // The planner's belief is written as numbers that fit together and as a map coloured by them.
-TEST(Package, ShowsWhatThePlannerBelieves) {
+TEST(Package, WritesPlannerEstimate) {
   const config::MissionSetup mission = config::parse_mission(
       tests::quick_mission(), "m.yaml",
       {{"--planner", "planner.name", "skycap"}, {"--set", "limits.max_views", "3"}});
@@ -197,7 +197,7 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
 }
 
 // One sample of each kind, read back by the reader of any properties.
-TEST(Package, HasTheTruthBesideTheBelief) {
+TEST(Package, WritesGroundTruthCoverage) {
   const package::TrueCoverage truth{
       .samples = {.points = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}},
                   .normals = std::vector<Eigen::Vector3f>(4, Eigen::Vector3f::UnitZ()),
@@ -223,7 +223,7 @@ TEST(Package, HasTheTruthBesideTheBelief) {
   EXPECT_EQ(std::set(colours.begin(), colours.end()).size(), 4U);  // one for each kind
 }
 
-TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
+TEST(Package, OmitsCoverageMapWithoutEstimate) {
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
   package::stage_package(make_mission(), two_views(), {}, 1, out);
@@ -235,7 +235,7 @@ TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
 
 // On a sphere the normal at a point is the point itself; on its inside, seen from the centre, the
 // opposite.
-TEST(CloudNormals, AreThoseOfASphereTowardsTheSensor) {
+TEST(CloudNormals, MatchSphereAndFaceSensor) {
   geometry::PointCloud cloud;
   for (const Vector3d& direction : evaluation::fibonacci_directions(5000)) {
     cloud.positions.push_back(direction.cast<float>());
@@ -253,7 +253,7 @@ TEST(CloudNormals, AreThoseOfASphereTowardsTheSensor) {
   }
 }
 
-TEST(CloudNormals, OfLonelyPointsPointToTheSensor) {
+TEST(CloudNormals, PointToSensorForIsolatedPoints) {
   geometry::PointCloud cloud;
   cloud.positions = {{0, 0, 0}, {5, 0, 0}};
   cloud.views = {0, 0};
@@ -262,7 +262,7 @@ TEST(CloudNormals, OfLonelyPointsPointToTheSensor) {
   EXPECT_EQ(normals[0], Vector3f(0, 1, 0));
 }
 
-TEST(CloudNormals, AreAllThereOrNone) {
+TEST(CloudNormals, AreEmptyWhenStopped) {
   geometry::PointCloud cloud;
   cloud.positions = {{0, 0, 0}, {5, 0, 0}};
   cloud.views = {0, 0};
@@ -273,7 +273,7 @@ TEST(CloudNormals, AreAllThereOrNone) {
   EXPECT_TRUE(package::cloud_normals(cloud, sensors, 0.2, 1, stop.get_token()).empty());
 }
 
-TEST(OutputFolder, LeavesNothingBehindUnlessCommitted) {
+TEST(OutputFolder, WritesFilesOnlyWhenCommitted) {
   const tests::TestFolder folder;
   const std::filesystem::path results = folder.path() / "results";
   {
@@ -291,7 +291,7 @@ TEST(OutputFolder, LeavesNothingBehindUnlessCommitted) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(results), {}), 2);
 }
 
-TEST(OutputFolder, SaysWhyItCannotBeWrittenTo) {
+TEST(OutputFolder, ReportsUnwritableFolders) {
   const tests::TestFolder folder;
   const std::string file = folder.write("file", "");
   for (const std::string& bad : {file, file + "/below", std::string("/proc/skycap")}) {
@@ -305,7 +305,7 @@ TEST(OutputFolder, SaysWhyItCannotBeWrittenTo) {
 }
 
 // FIPS 180-4's examples: one block, and two.
-TEST(Sha256, MatchesTheStandardsExamples) {
+TEST(Sha256, MatchesStandardExamples) {
   const auto of = [](std::string_view text) {
     return support::sha256(std::as_bytes(std::span(text)));
   };

@@ -79,7 +79,7 @@ std::vector<std::uint16_t> numbers(std::size_t count) {
 }
 
 // Every point comes back within half a step in each axis, with its own attributes.
-TEST(CloudCode, ReadsBackToHalfAStep) {
+TEST(CloudCode, ReadsBackWithinHalfAStep) {
   const auto points = sphere(5000, 20.0, 0.01);
   const auto ids = numbers(points.size());
   std::vector<std::uint16_t> small;
@@ -106,7 +106,7 @@ TEST(CloudCode, ReadsBackToHalfAStep) {
 }
 
 // Spacing of random points on a surface: two in a cube of sqrt(2) spacings.
-TEST(CloudCode, StepIsAnEighthOfTheSpacingAtMost) {
+TEST(CloudCode, UsesStepOfEighthOfSpacing) {
   const CloudCode code = encode_cloud(sphere(20'000, 20.0, 0.0), {}, 100'000);
   const double usual = std::sqrt(4.0 * std::numbers::pi * 400.0 / 20'000);  // of a square grid
   EXPECT_GT(code.spacing, 0.4 * usual);
@@ -115,7 +115,7 @@ TEST(CloudCode, StepIsAnEighthOfTheSpacingAtMost) {
 }
 
 // Two far apart among many: cells cannot be finer than 2^-16 of the whole.
-TEST(CloudCode, StepIsLimitedByTheExtent) {
+TEST(CloudCode, LimitsStepByExtent) {
   std::vector<Vector3f> points = sphere(20'000, 1.0, 0.0);
   points.emplace_back(1e5F, 0.0F, 0.0F);
   const CloudCode code = encode_cloud(points, {}, 100'000);
@@ -125,7 +125,7 @@ TEST(CloudCode, StepIsLimitedByTheExtent) {
 }
 
 // A thinned cloud is spread as the whole: each octant keeps its share.
-TEST(CloudCode, ThinsEvenly) {
+TEST(CloudCode, DownsamplesEvenly) {
   const auto points = sphere(40'000, 20.0, 0.0);
   const CloudCode code = encode_cloud(points, {}, 4000);
   EXPECT_EQ(code.points, 4000U);
@@ -154,7 +154,7 @@ std::vector<std::vector<std::uint16_t>> survey_attributes(const std::vector<Vect
 }
 
 // A building's kind of surface: the bound of the report's size, of characters on the page.
-TEST(CloudCode, TakesLittleRoom) {
+TEST(CloudCode, IsCompact) {
   const auto points = sphere(200'000, 20.0, 0.01);
   const auto values = survey_attributes(points);
   const CloudAttribute attributes[] = {
@@ -163,7 +163,7 @@ TEST(CloudCode, TakesLittleRoom) {
   EXPECT_LT(static_cast<double>(base64(code.bytes).size()) / 200'000.0, 3.6);
 }
 
-TEST(CloudCode, HoldsNothingOneAndTheSame) {
+TEST(CloudCode, EncodesEmptySingleAndEqualPoints) {
   EXPECT_EQ(decode(encode_cloud({}, {}, 10)).positions.size(), 0U);
   const std::vector<Vector3f> one = {{1, 2, 3}};
   EXPECT_NEAR((decode(encode_cloud(one, {}, 10)).positions.at(0) - Vector3d(1, 2, 3)).norm(), 0.0,
@@ -172,7 +172,7 @@ TEST(CloudCode, HoldsNothingOneAndTheSame) {
   EXPECT_EQ(decode(encode_cloud(same, {}, 10)).positions.size(), 7U);
 }
 
-TEST(CloudCode, IsTheSameEachTime) {
+TEST(CloudCode, IsDeterministic) {
   const auto points = sphere(3000, 2.0, 0.001);
   EXPECT_EQ(encode_cloud(points, {}, 1000).bytes, encode_cloud(points, {}, 1000).bytes);
 }

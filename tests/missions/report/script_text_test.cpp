@@ -11,7 +11,7 @@ using testing::Not;
 using Json = nlohmann::ordered_json;
 
 // HTML 13.2.5.4: within a script only "</script" and "<!--" mean anything, and both begin with '<'.
-TEST(ScriptJson, CanNeitherEndItsScriptNorOpenAComment) {
+TEST(ScriptJson, EscapesScriptEndAndComments) {
   const Json json = {{"name", "</script><!-- \u2028 \u2029 <script>"}, {"</script>", 1}};
   const std::string text = script_json(json);
   EXPECT_THAT(text, Not(HasSubstr("<")));
@@ -20,13 +20,13 @@ TEST(ScriptJson, CanNeitherEndItsScriptNorOpenAComment) {
   EXPECT_EQ(Json::parse(text), json);  // and still says the same
 }
 
-TEST(HtmlText, HasNoCharacterThatMeansAnything) {
+TEST(HtmlText, EscapesSpecialCharacters) {
   EXPECT_EQ(html_text("<a href=\"x\">'&'</a>"),
             "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
 }
 
 // RFC 4648, section 10.
-TEST(Base64, IsTheStandards) {
+TEST(Base64, MatchesStandardExamples) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");
@@ -35,7 +35,7 @@ TEST(Base64, IsTheStandards) {
 }
 
 // printf 'alert(1)' | openssl dgst -sha256 -binary | base64
-TEST(PolicyHash, IsTheShaOfTheText) {
+TEST(PolicyHash, MatchesSha256OfScript) {
   EXPECT_EQ(policy_hash("alert(1)"), "'sha256-bhHHL3z2vDgxUt0W3dWQOrprscmda2Y5pLsLg4GF+pI='");
 }
 

@@ -50,7 +50,7 @@ struct Planned {
   tests::ProgramRun run;
 };
 
-TEST(SurveyReport, IsWrittenByPlanAndAnewByReportWithTheSameBytes) {
+TEST(SurveyReport, IsSameFromPlanAndReportCommands) {
   const Planned survey(tests::quick_mission(), {"--planner", "skycap"});
   const std::string page = survey.page();
   ASSERT_FALSE(page.empty());
@@ -60,7 +60,7 @@ TEST(SurveyReport, IsWrittenByPlanAndAnewByReportWithTheSameBytes) {
   EXPECT_TRUE(tests::read_content(survey.folder / "again.html") == page);
 }
 
-TEST(SurveyReport, SaysWhatTheSummarySaysAndNothingElse) {
+TEST(SurveyReport, ShowsOnlyFiguresOfSummary) {
   const Planned survey(tests::quick_mission(), {"--planner", "skycap"});
   const Json data = extract_data(survey.page());
   EXPECT_EQ(data["summary"], Json::parse(tests::read_content(survey.folder / "out/summary.json")));
@@ -76,7 +76,7 @@ TEST(SurveyReport, SaysWhatTheSummarySaysAndNothingElse) {
 
 // The table's sum is the missing share of the surface, for planners that believe and those that
 // do not.
-TEST(SurveyReport, HolesSumToTheMissingShare) {
+TEST(SurveyReport, HasHolesThatSumToMissingFraction) {
   for (const char* planner : {"skycap", "see++"}) {
     const Planned survey(tests::quick_mission(), {"--planner", planner});
     const Json summary = extract_data(survey.page())["summary"];
@@ -92,14 +92,14 @@ TEST(SurveyReport, HolesSumToTheMissingShare) {
   }
 }
 
-TEST(SurveyReport, IsLeftOutOnRequest) {
+TEST(SurveyReport, IsOmittedOnRequest) {
   const Planned survey(tests::quick_mission(), {"--no-report"});
   EXPECT_TRUE(std::filesystem::exists(survey.folder.path() / "out" / "summary.json"));
   EXPECT_FALSE(std::filesystem::exists(survey.folder.path() / "out" / "report.html"));
 }
 
 // Somebody waits for the program to end.
-TEST(SurveyReport, OfAnInterruptedSurveyIsMadeWhenAskedFor) {
+TEST(SurveyReport, IsWrittenForInterruptedSurveyOnRequest) {
   std::stop_source stop;
   stop.request_stop();
   const Planned survey(tests::quick_mission(), {}, stop.get_token());
@@ -113,7 +113,7 @@ TEST(SurveyReport, OfAnInterruptedSurveyIsMadeWhenAskedFor) {
 }
 
 // The camera's keys are no settings of such a survey, and would be refused beside the lidar.
-TEST(SurveyReport, OfALidarIsWrittenToo) {
+TEST(SurveyReport, IsWrittenForLidarSurvey) {
   const Planned survey(
       "scene: {model: 'builtin:teapot', longest_side: 10.0}\n"
       "sensor: {lidar: velodyne_vlp16}\n"
@@ -130,7 +130,7 @@ TEST(SurveyReport, OfALidarIsWrittenToo) {
 
 // A name ends no script and makes no element, in the title as in the data. A mission file's name
 // has no '/', but a summary may come from anywhere.
-TEST(SurveyReport, TakesNamesForText) {
+TEST(SurveyReport, EscapesMissionNames) {
   const Planned survey(tests::quick_mission());
   const std::string plain = survey.page(), file = survey.folder / "out/summary.json";
   Json summary = Json::parse(tests::read_content(file));
@@ -146,7 +146,7 @@ TEST(SurveyReport, TakesNamesForText) {
 }
 
 // Nothing but our own scripts may run, and nothing may be fetched.
-TEST(SurveyReport, HasAStrictPolicyAndNoAddresses) {
+TEST(SurveyReport, HasStrictPolicyAndNoExternalLinks) {
   const std::string page = Planned(tests::quick_mission()).page();
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
   const std::string policy = page.substr(page.find("content=\"default"), 1000);
@@ -156,7 +156,7 @@ TEST(SurveyReport, HasAStrictPolicyAndNoAddresses) {
   EXPECT_THAT(std::string(page_script()), Not(HasSubstr("innerHTML")));
 }
 
-TEST(SurveyReport, GoesWithoutACloud) {
+TEST(SurveyReport, IsWrittenWithoutCloud) {
   const Planned survey(tests::quick_mission());
   std::filesystem::remove(survey.folder.path() / "out" / "cloud.ply");
   const auto run = tests::run_skycap({"report", survey.folder / "out"});
@@ -165,7 +165,7 @@ TEST(SurveyReport, GoesWithoutACloud) {
 }
 
 // Trials and a survey in the same folder have a page each.
-TEST(TrialsPage, StandsBesideTheSurveys) {
+TEST(TrialsReport, IsWrittenSeparatelyFromSurveyReport) {
   const Planned survey(tests::quick_mission(), {"--max-views", "3"});
   const auto trials =
       tests::run_skycap({"plan", survey.folder / "m.yaml", "--trials", "2", "--max-views", "3",
@@ -189,7 +189,7 @@ TEST(TrialsPage, StandsBesideTheSurveys) {
   EXPECT_THAT(one.err, HasSubstr("contains several reports"));
 }
 
-TEST(ResultPages, RefuseWhatIsNoResult) {
+TEST(ResultReports, RejectInvalidResults) {
   const tests::TestFolder folder;
   for (const char* name : {"trials.json", "results.json"}) {
     for (const char* text : {"", "[]", "{}", "{\"results\": 3, \"trials\": []}"}) {
@@ -202,7 +202,7 @@ TEST(ResultPages, RefuseWhatIsNoResult) {
   }
 }
 
-TEST(SurveyReport, RefusesWhatIsNoSummary) {
+TEST(SurveyReport, RejectsInvalidSummaries) {
   const tests::TestFolder folder;
   EXPECT_EQ(tests::run_skycap({"report", folder.path().string()}).exit_code, 2);
   for (const char* text : {"", "[]", "{}", "{\"settings\": {}, \"per_view\": 3}"}) {
@@ -214,7 +214,7 @@ TEST(SurveyReport, RefusesWhatIsNoSummary) {
   }
 }
 
-TEST(View, WritesAPageOfACloudAndSaysWhere) {
+TEST(View, WritesHtmlReportOfCloudAndPrintsItsPath) {
   const tests::TestFolder folder;
   const auto run = tests::run_skycap(
       {"view", folder.write("c.xyz", "0 0 0\n1 0 0\n0 1 0\n"), "--out", folder / "c.html"});
@@ -224,7 +224,7 @@ TEST(View, WritesAPageOfACloudAndSaysWhere) {
             3);
 }
 
-TEST(View, ShowsAMissionBeforeItsSurvey) {
+TEST(View, ShowsMissionBeforeSurvey) {
   const tests::TestFolder folder;
   const std::string mission = tests::quick_mission(
       "site: {no_fly: [{corners: [[5, 5], [9, 5], [9, 9]], floor: 0, ceiling: 30}]}\n");
@@ -239,7 +239,7 @@ TEST(View, ShowsAMissionBeforeItsSurvey) {
 }
 
 // Seen head-on, at 45 degrees, from behind, and by nobody.
-TEST(PointFigures, IncidenceIsTheAngleToTheSensor) {
+TEST(PointFigures, ComputeIncidenceAngleToSensor) {
   geometry::AttributedCloud cloud;
   cloud.positions.assign(4, Eigen::Vector3f::Zero());
   cloud.normals.assign(4, Eigen::Vector3f::UnitZ());
@@ -254,7 +254,7 @@ TEST(PointFigures, IncidenceIsTheAngleToTheSensor) {
 // The mean of four is twice as sure as one; along rays at 45 degrees (the middle of that step) the
 // noise across the surface is cos(45) of what it is head-on. A point that nobody saw counts
 // nowhere.
-TEST(PointFigures, NeighboursMakeASurfaceSurer) {
+TEST(PointFigures, ReduceSurfaceErrorByNeighbours) {
   geometry::AttributedCloud cloud;
   cloud.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5F, 0.5F, 0}, {9, 9, 9}};
   const std::vector<std::uint16_t> steps = {4, 4, 4, 4, no_incidence, 4};
@@ -267,12 +267,12 @@ TEST(PointFigures, NeighboursMakeASurfaceSurer) {
   EXPECT_TRUE(surface_errors(cloud, steps, {}, 1.5).empty());
 }
 
-TEST(PointFigures, HistogramCountsEachOnce) {
+TEST(PointFigures, CountEachValueOnceInHistogram) {
   const std::vector<float> values = {-1.0F, 0.0F, 0.9F, 1.0F, 3.0F, 4.0F, NAN};
   EXPECT_THAT(histogram(values, 0.0, 4.0, 4), ElementsAre(3, 1, 0, 2));
 }
 
-TEST(Verdict, LightsFollowTheirRules) {
+TEST(Verdict, AssignsLightsByThresholds) {
   const auto light = [](double coverage) {
     return verdict({{"complete", true}, {"coverage_visible", coverage}})["lights"][0]["light"];
   };

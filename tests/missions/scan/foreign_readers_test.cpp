@@ -104,13 +104,13 @@ class ForeignReader : public testing::Test {
   sim::LidarReturns returns;
 };
 
-TEST_F(ForeignReader, PclReadsEveryFieldOfAPcdFile) {
+TEST_F(ForeignReader, ReadsEveryFieldOfPcdWithPcl) {
   pcl::PCLPointCloud2 cloud;
   ASSERT_EQ(pcl::io::loadPCDFile(written("pcd"), cloud), 0);
   expect_fields(cloud);
 }
 
-TEST_F(ForeignReader, PclReadsEveryFieldOfAPlyFile) {
+TEST_F(ForeignReader, ReadsEveryFieldOfPlyWithPcl) {
   pcl::PCLPointCloud2 cloud;
   ASSERT_EQ(pcl::io::loadPLYFile(written("ply"), cloud), 0);
   expect_fields(cloud);
@@ -131,7 +131,7 @@ double scatter(const std::vector<Vector3d>& points) {
 // The noise is in every file, and only once: sigma = 0.01 m along rays that meet the sphere within
 // 11 degrees of its normal. Its triangles are at most 2 mm inside of it. Four standard deviations
 // of the estimate from 8000 points, and 2 % for the angle.
-TEST_F(ForeignReader, EveryFormatHasTheNoiseOnce) {
+TEST_F(ForeignReader, FindsNoiseOnceInEveryFormat) {
   const sim::LidarFlight faultless{ground_truth, ground_truth, mount, mount};
   const auto cloud_path = [&](const std::string& format) {
     const scan::CloudFormatInfo& info = scan::cloud_format_named(format);
@@ -170,7 +170,7 @@ Isometry3d eigen_pose(const mrpt::poses::CPose3D& pose) {
 }
 
 // MRPT's own loader; the clouds of the pieces, put where the carrier believes to be, are the cloud.
-TEST_F(ForeignReader, MrptLoadsTheRawlogAndFindsThePointsWhereTheyWereReported) {
+TEST_F(ForeignReader, ReadsPointPositionsOfRawlogWithMrpt) {
   mrpt::obs::CRawlog rawlog;
   ASSERT_TRUE(rawlog.loadFromRawLogFile(written("rawlog")));
   ASSERT_EQ(rawlog.size() % 3, 0U);
@@ -197,7 +197,7 @@ TEST_F(ForeignReader, MrptLoadsTheRawlogAndFindsThePointsWhereTheyWereReported) 
 
 // The range image and what it says of its azimuths give the points again, to half a range step and
 // what the sensor moves within a shot.
-TEST_F(ForeignReader, TheRangeImageOfARawlogIsThatOfTheSensor) {
+TEST_F(ForeignReader, ReadsRangeImagesOfRawlogWithMrpt) {
   mrpt::obs::CRawlog rawlog;
   ASSERT_TRUE(rawlog.loadFromRawLogFile(written("rawlog")));
   std::size_t pixels = 0, next = 0;
@@ -230,7 +230,7 @@ TEST_F(ForeignReader, TheRangeImageOfARawlogIsThatOfTheSensor) {
 }
 
 // The other way round: what PCL writes, in each of its three ways. A NaN is a pixel without return.
-TEST_F(ForeignReader, PclsOwnFilesAreRead) {
+TEST_F(ForeignReader, ReadsFilesWrittenByPcl) {
   pcl::PointCloud<pcl::PointNormal> cloud;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<float> any(-50.0F, 50.0F);
@@ -258,7 +258,7 @@ TEST_F(ForeignReader, PclsOwnFilesAreRead) {
   }
 }
 
-TEST_F(ForeignReader, OurOwnFilesAreReadBack) {
+TEST_F(ForeignReader, ReadsBackSkycapFiles) {
   for (const std::string format : {"e57", "las", "las7", "pcd", "ply", "xyz"}) {
     const geometry::AttributedCloud read = geometry::read_cloud(written(format));
     ASSERT_EQ(read.positions.size(), returns.size()) << format;
@@ -272,7 +272,7 @@ TEST_F(ForeignReader, OurOwnFilesAreReadBack) {
 // MRPT turns the images into points by itself; they are on the sphere, where the carrier believes
 // that it is. Depths are rounded to 1 mm, half of which a slanted ray makes 0.7 mm; the largest of
 // the sphere's triangles are 6.2 mm inside of it.
-TEST_F(ForeignReader, MrptProjectsTheDepthImagesOfARawlogOntoTheSurface) {
+TEST_F(ForeignReader, ProjectsDepthImagesOntoSurfaceWithMrpt) {
   sim::DepthCameraConfig camera;
   camera.camera.width = 64;
   camera.camera.height = 48;

@@ -54,7 +54,7 @@ TEST(OrbitTrajectory, KeepsRadiusSpeedAndHeading) {
   }
 }
 
-TEST(OrbitTrajectory, ASingleCircleIsTheLowest) {
+TEST(OrbitTrajectory, FliesSingleCircleAtMinHeight) {
   const sim::Trajectory trajectory = scan::orbit_trajectory(
       {.radius = 10, .min_height = 3, .max_height = 9, .circles = 1, .speed = 2});
   EXPECT_NEAR(trajectory.end(), 2 * pi * 10 / 2, 1e-9);
@@ -76,7 +76,7 @@ class ScanRouteFile : public testing::Test {
   const View second = geometry::look_at({10, 8, 5}, {0, 0, 9});
 };
 
-TEST_F(ScanRouteFile, ATumTrajectoryKeepsItsTimesAndPoses) {
+TEST_F(ScanRouteFile, KeepsTimesAndPosesOfTumTrajectory) {
   const std::string file =
       folder.write("flight.tum", flight::write_tum({{2.0, geometry::camera_pose(first)},
                                                     {3.5, geometry::camera_pose(second)}}));
@@ -88,7 +88,7 @@ TEST_F(ScanRouteFile, ATumTrajectoryKeepsItsTimesAndPoses) {
   expect_view(route.platform, 3.5, second);
 }
 
-TEST_F(ScanRouteFile, ViewsAreFlownInAStraightLineAtTheGivenSpeed) {
+TEST_F(ScanRouteFile, FliesStraightBetweenViewsAtSetSpeed) {
   options.speed = 4.0;
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z,points\n"
@@ -102,7 +102,7 @@ TEST_F(ScanRouteFile, ViewsAreFlownInAStraightLineAtTheGivenSpeed) {
   expect_view(route.platform, 2.0, {{10, 8, 5}, {-1, 0, 0}});
 }
 
-TEST_F(ScanRouteFile, TheAirframeStaysLevelWhereTheGimbalLooksDown) {
+TEST_F(ScanRouteFile, KeepsAirframeLevelWhenGimbalPitches) {
   std::vector<flight::TimedState> states(2);
   states[0].position = {1, 2, 30};
   states[0].yaw = 0.5 * pi;  // east
@@ -130,7 +130,7 @@ std::string sortie(const Vector3d& from, const Vector3d& to, double start) {
   return flight::write_trajectory_csv(states, flight::Frame::enu);
 }
 
-TEST_F(ScanRouteFile, OfAPackageAllSortiesAreFlownOneAfterTheOther) {
+TEST_F(ScanRouteFile, FliesAllSortiesOfPackageInSequence) {
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
   folder.write("mission-1.csv", sortie({0, 0, 10}, {4, 0, 10}, 6.5));
@@ -147,7 +147,7 @@ TEST_F(ScanRouteFile, OfAPackageAllSortiesAreFlownOneAfterTheOther) {
 }
 
 // Straight lines between the views of a flown survey lead through what stands there.
-TEST_F(ScanRouteFile, AFlownPackageWithoutATrajectoryIsRefused) {
+TEST_F(ScanRouteFile, RejectsFlightPackageWithoutTrajectory) {
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
   folder.write("free_space.bin", "");
@@ -158,7 +158,7 @@ TEST_F(ScanRouteFile, AFlownPackageWithoutATrajectoryIsRefused) {
 }
 
 // 2e-5 degrees of longitude at the equator: 2.2264 m on WGS84.
-TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
+TEST_F(ScanRouteFile, FliesGeodeticWaypointsNoseForward) {
   const std::string file =
       folder.write("route.waypoints",
                    "QGC WPL 110\n"
@@ -185,7 +185,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
   EXPECT_TRUE(route.image_times.empty());
 }
 
-TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
+TEST_F(ScanRouteFile, ReportsInvalidRoutes) {
   const auto message = [&](const std::string& name, const std::string& content) -> std::string {
     try {
       scan::read_scan_route(folder.write(name, content), options, scan::Platform::gimbal);

@@ -66,7 +66,7 @@ class ScanRunner : public testing::Test {
   sim::LidarConfig config;
 };
 
-TEST_F(ScanRunner, TheFileHoldsEveryReturnFieldByField) {
+TEST_F(ScanRunner, WritesEveryFieldOfReturnsToLas) {
   config.beam = {
       .rings = 1, .divergence_horizontal = 0.002, .divergence_vertical = 0.002, .max_returns = 3};
   const scan::ScanResult result = run(folder / "scan.las", 2);
@@ -94,7 +94,7 @@ TEST_F(ScanRunner, TheFileHoldsEveryReturnFieldByField) {
   }
 }
 
-TEST_F(ScanRunner, AnE57FileHoldsEveryReturn) {
+TEST_F(ScanRunner, WritesEveryReturnToE57) {
   const scan::ScanResult result = run(folder / "scan.e57", 2);
   geometry::E57Reader reader(folder / "scan.e57");
   EXPECT_THAT(reader.reference_system(), testing::StartsWith("LOCAL_CS["));
@@ -114,7 +114,7 @@ TEST_F(ScanRunner, AnE57FileHoldsEveryReturn) {
   EXPECT_EQ(next, returns.size());
 }
 
-TEST_F(ScanRunner, GivesTheSameBytesForAnyNumberOfThreads) {
+TEST_F(ScanRunner, WritesSameBytesForAnyThreadCount) {
   for (const std::string extension : {".las", ".e57"}) {
     run(folder / ("one" + extension), 1);
     const std::vector<char> expected = read_bytes(folder / ("one" + extension));
@@ -127,7 +127,7 @@ TEST_F(ScanRunner, GivesTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST_F(ScanRunner, AStoppedScanLeavesAValidFileOfItsBeginning) {
+TEST_F(ScanRunner, WritesValidFileWhenStopped) {
   std::stop_source stop;
   std::vector<scan::CloudFile> files = las_files(folder / "part.las");
   const auto stop_at_once = [&](const scan::ScanProgress&) { stop.request_stop(); };
@@ -145,7 +145,7 @@ TEST_F(ScanRunner, AStoppedScanLeavesAValidFileOfItsBeginning) {
 }
 
 // From each checkpoint that a kill may leave behind, whatever was appended after it.
-TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
+TEST_F(ScanRunner, ResumesFromAnyCheckpointToSameBytes) {
   struct Checkpoint {
     scan::ScanProgress progress;
     scan::CloudState state;
@@ -194,7 +194,7 @@ TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
               testing::HasSubstr("less than the 1000000000"));
 }
 
-TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
+TEST_F(ScanRunner, ReportsWriteErrors) {
   try {
     const scan::CloudFile file(folder / "missing" / "scan.las", scan::las_format({}));
     FAIL() << "written";

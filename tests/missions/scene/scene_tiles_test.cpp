@@ -65,7 +65,7 @@ class TileScan : public tests::CubeScan {
 };
 
 // Whoever measures a piece of the flight has other tiles in memory than who measures all of it.
-TEST_F(TileScan, GivesTheSameBytesInAnyNumberOfPieces) {
+TEST_F(TileScan, WritesSameBytesForAnyNumberOfPieces) {
   ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
   for (const char* const tile_count : {"2", "4", "9"}) {
     const auto run = run_skycap(scan("part", with(clouds_, {"--pieces", tile_count})));
@@ -76,7 +76,7 @@ TEST_F(TileScan, GivesTheSameBytesInAnyNumberOfPieces) {
 }
 
 // A twin: the same triangles as one mesh.
-TEST_F(TileScan, MeasuresWhatOneMeshWouldShow) {
+TEST_F(TileScan, MatchesScanOfJoinedMesh) {
   ASSERT_EQ(run_skycap(scan("part", {"--format", "xyz"})).exit_code, 0);
   write_mission("joined.ply", ", position: [45, 10, 1]");
   ASSERT_EQ(run_skycap(scan("whole", {"--format", "xyz"})).exit_code, 0);
@@ -101,7 +101,7 @@ TEST_F(TileScan, MeasuresWhatOneMeshWouldShow) {
 }
 
 // Property: of what is in reach, rays meet the same bits, whichever other tiles there are.
-TEST_F(TileScan, RaysMeetTheSameWhicheverFurtherTilesAreInMemory) {
+TEST_F(TileScan, HitsSamePointsForAnyLoadedDistantTiles) {
   const scene::TiledScene tiles(mission().scene(), folder_.path(), 0);
   EXPECT_EQ(tiles.triangles(), joined_.triangles.size());
   std::vector<AlignedBox3d> boxes;
@@ -132,7 +132,7 @@ TEST_F(TileScan, RaysMeetTheSameWhicheverFurtherTilesAreInMemory) {
   EXPECT_GT(hits, 50);
 }
 
-TEST_F(TileScan, AreOneMeshForWhoNeedsOne) {
+TEST_F(TileScan, JoinsTilesIntoOneMesh) {
   const geometry::Mesh mesh = scene::load_model(mission().scene(), folder_.path());
   EXPECT_EQ(mesh.triangles.size(), joined_.triangles.size());
   const AlignedBox3d box = geometry::bounding_box(mesh), expected = geometry::bounding_box(joined_);
@@ -140,7 +140,7 @@ TEST_F(TileScan, AreOneMeshForWhoNeedsOne) {
   EXPECT_LT((box.max() - expected.max()).norm(), 1e-5);
 }
 
-TEST_F(TileScan, StandInRowsAndColumnsOfSeveralKinds) {
+TEST_F(TileScan, ArrangesTilesInRowsAndColumns) {
   write_tiles(
       "[{model: 'builtin:city-block', columns: 3, rows: 2, spacing: 250, kinds: 0, seed: 7}]");
   const auto tiles = scene::find_tiles(mission().scene(), folder_.path());
@@ -163,7 +163,7 @@ TEST_F(TileScan, StandInRowsAndColumnsOfSeveralKinds) {
   EXPECT_EQ(few[0].shifts.size() + few[1].shifts.size(), 81U);
 }
 
-TEST_F(TileScan, AreRefusedInOneLineWhereSomethingIsWrong) {
+TEST_F(TileScan, RejectsInvalidTilesInOneLine) {
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"[{files: 'nothing*.ply'}]", "files is nothing*.ply and matches no file"},
       {"[{files: 'tile_?.ply', model: joined.ply}]", "or model is required"},

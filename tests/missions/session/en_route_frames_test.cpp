@@ -49,7 +49,7 @@ double cross_track_error(const Vector3d& position, const std::vector<Vector3d>& 
 const View west{{0, 0, 10}, -Vector3d::UnitX()};
 const View north_down{{20, 20, 10}, Vector3d(0, 1, -1).normalized()};
 
-TEST(EnRouteFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
+TEST(EnRouteFrames, FollowPathNoFasterThanVehicle) {
   const config::MissionSetup mission = mission_with();
   const session::LegMotion motion(mission.flight());
   const session::ExecutedLeg path{{{0, 0, 10}, {20, 0, 10}, {20, 20, 10}}, 2.0};
@@ -73,7 +73,7 @@ TEST(EnRouteFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
   }
 }
 
-TEST(EnRouteFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
+TEST(EnRouteFrames, TurnEvenlyAlongShorterArc) {
   const session::LegMotion motion(mission_with().flight());
   const session::ExecutedLeg path{{{0, 0, 10}, {40, 0, 10}}, 2.0};
   const View south_east{{0, 0, 10}, Vector3d(1, -1, 0).normalized()};
@@ -91,7 +91,7 @@ TEST(EnRouteFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
   }
 }
 
-TEST(EnRouteFrames, LookAtTheSceneWhereBothViewsDo) {
+TEST(EnRouteFrames, LookAtSceneWhenBothViewsDo) {
   const session::LegMotion motion(mission_with().flight());
   const Vector3d scene(50, 60, 5);
   const View from = geometry::look_at({0, 0, 20}, scene),
@@ -104,7 +104,7 @@ TEST(EnRouteFrames, LookAtTheSceneWhereBothViewsDo) {
 }
 
 // Between frames a tenth of a second apart the place changes as the velocities say.
-TEST(EnRouteFrames, MoveAsTheirVelocitiesSay) {
+TEST(EnRouteFrames, MoveAccordingToTheirVelocities) {
   const session::LegMotion motion(mission_with().flight());
   const auto frames = motion.frames({{{0, 0, 10}, {30, 0, 20}}, 2.0}, west, west, 0.1);
   ASSERT_GT(frames.size(), 50U);
@@ -115,14 +115,14 @@ TEST(EnRouteFrames, MoveAsTheirVelocitiesSay) {
   }
 }
 
-TEST(EnRouteFrames, AreNoneOnAWayThatIsOverBeforeTheFirst) {
+TEST(EnRouteFrames, AreEmptyOnPathShorterThanPeriod) {
   const session::LegMotion motion(mission_with().flight());
   EXPECT_TRUE(motion.frames({{{0, 0, 10}, {0.5, 0, 10}}, 2.0}, west, west, 60.0).empty());
   EXPECT_TRUE(motion.frames({{{0, 0, 10}, {0, 0, 10}}, 2.0}, west, west, 1.0).empty());
 }
 
 // Distance over speed, a ramp at both ends, a stop in the corner; then rests, the pad's climb.
-TEST(EnRouteFrames, TimesAreThoseOfTheVehicle) {
+TEST(EnRouteFrames, HaveTimesOfVehicleMotion) {
   const config::MissionSetup mission = mission_with();
   const session::LegMotion motion(mission.flight());
   const flight::Motion vehicle(mission.flight().required_vehicle(),
@@ -137,7 +137,7 @@ TEST(EnRouteFrames, TimesAreThoseOfTheVehicle) {
               start + flight::corner_hold + 2.0 * (2.0 * one + flight::corner_hold + rest), 1e-9);
 }
 
-TEST(MovingSurvey, CoversAsMuchInLessTime) {
+TEST(MovingSurvey, ReachesSameCoverageInLessTime) {
   const config::MissionSetup stops = config::parse_mission(flight_mission(), "m.yaml");
   // At a stop less is left to gain: the way has shown much of it.
   const config::MissionSetup moving = mission_with("planner.min_gain", "0.01");
@@ -158,7 +158,7 @@ TEST(MovingSurvey, CoversAsMuchInLessTime) {
   EXPECT_GT(moving_coverage, standing_coverage - 0.01 * static_cast<double>(seeds.size()));
 }
 
-TEST(MovingSurvey, DoesNotDependOnThreads) {
+TEST(MovingSurvey, IsSameForAnyThreadCount) {
   const config::MissionSetup mission = mission_with("limits.max_views", "4");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord one = simulation::run_survey(mission.simulation, scene, 1, 1),
@@ -168,7 +168,7 @@ TEST(MovingSurvey, DoesNotDependOnThreads) {
   EXPECT_EQ(one.flight_record->measured->free_volume(), two.flight_record->measured->free_volume());
 }
 
-TEST(MovingSurvey, KnowsOfEachPointWhereItWasMeasuredFrom) {
+TEST(MovingSurvey, RecordsScanOfEachPoint) {
   const config::MissionSetup mission = mission_with("limits.max_views", "4");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, 1, 2);
@@ -191,7 +191,7 @@ TEST(MovingSurvey, KnowsOfEachPointWhereItWasMeasuredFrom) {
   EXPECT_GT(std::ranges::count(brought, true), static_cast<std::ptrdiff_t>(record.views.size()));
 }
 
-TEST(MovingSurvey, PackageNamesTheViewThatEachPointWasTakenOnTheWayTo) {
+TEST(MovingSurvey, WritesDestinationViewOfEachPoint) {
   const tests::TestFolder folder;
   const std::string mission = folder.write("m.yaml", flight_mission());
   const auto run = tests::run_skycap({"plan", mission, "--set", "sensor.capture=moving", "--set",
@@ -213,7 +213,7 @@ std::string rejection_message(const std::string& text,
   return testing_support::thrown_message([&] { config::parse_mission(text, "m.yaml", keys); });
 }
 
-TEST(MovingSurvey, NeedsAVehicleAndAPlannerThatLearnsOnTheWay) {
+TEST(MovingSurvey, RequiresVehicleAndPlannerWithEnRouteScans) {
   const config::KeyOverride moving{"--set", "sensor.capture", "moving"};
   EXPECT_THAT(rejection_message(flight_mission(), {moving, {"--planner", "planner.name", "see++"}}),
               HasSubstr("sensor.capture: moving requires a planner that uses"));

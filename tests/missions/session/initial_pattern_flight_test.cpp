@@ -61,7 +61,7 @@ double turned(const std::vector<View>& views) {
   return turned;
 }
 
-TEST(InitialPatternFlight, AnOrbitGoesOnceRoundTheBoxAndKeepsOutOfIt) {
+TEST(InitialPatternFlight, OrbitsOnceOutsideBox) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const config::MissionSetup mission = make_mission(house);
     EXPECT_EQ(mission.survey().start.initial_pattern, InitialPattern::orbit);
@@ -75,7 +75,7 @@ TEST(InitialPatternFlight, AnOrbitGoesOnceRoundTheBoxAndKeepsOutOfIt) {
   }
 }
 
-TEST(InitialPatternFlight, AnOrbitCirclesOftenEnoughForTheHeightOfTheBox) {
+TEST(InitialPatternFlight, OrbitsTallBoxSeveralTimes) {
   const config::MissionSetup mission = make_mission(tower);  // 40 m high, looked at from 20 m
   const std::vector<View> views = planned_initial_views(mission);
   EXPECT_NEAR(turned(views), 4.0 * M_PI, 1e-9);
@@ -94,7 +94,7 @@ TEST(InitialPatternFlight, AnOrbitCirclesOftenEnoughForTheHeightOfTheBox) {
             129U);
 }
 
-TEST(InitialPatternFlight, StripsLieOverAFlatBoxNoFartherApartThanTheyAreHigh) {
+TEST(InitialPatternFlight, FliesStripsOverFlatBoxWithLimitedSpacing) {
   const config::MissionSetup mission = make_mission(block);
   EXPECT_EQ(mission.survey().start.initial_pattern, InitialPattern::strips);
   const std::vector<View> views = planned_initial_views(mission);
@@ -106,13 +106,13 @@ TEST(InitialPatternFlight, StripsLieOverAFlatBoxNoFartherApartThanTheyAreHigh) {
   }
 }
 
-TEST(InitialPatternFlight, IsLeftOutWhereNobodyAsksForIt) {
+TEST(InitialPatternFlight, IsOmittedWhenDisabled) {
   EXPECT_TRUE(planned_initial_views(make_mission(tower, ", initial_pattern: none")).empty());
   EXPECT_EQ(planned_initial_views(make_mission(tower, ", initial_pattern: strips")).size() % 2, 0U);
 }
 
 // The speed that a scanner's density allows grows with its turns; half the vehicle's is the most.
-TEST(InitialPatternFlight, FliesSlowerWhereMorePointsAreAskedFor) {
+TEST(InitialPatternFlight, FliesSlowerForHigherDensity) {
   const config::MissionSetup mission = make_mission(tower);
   const double coarse = mission.flight().cruise_speed;
   EXPECT_DOUBLE_EQ(coarse, 7.5);  // the m350_rtk flies 15 m/s

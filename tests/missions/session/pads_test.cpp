@@ -118,7 +118,7 @@ tests::ProgramRun check(const std::vector<std::string>& more,
 
 // The route goes round the building to behind it: whoever returns from there at 5 m flies through
 // it.
-TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
+TEST(StatedReturns, AreRejectedAtAltitudeThroughBuilding) {
   package().write("behind.waypoints",
                   route_there_and_back({{-22, -22, 6}, {22, -22, 6}, {22, 0, 6}}));
   const auto check_return = [](const std::string& height) {
@@ -136,7 +136,7 @@ TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
   EXPECT_EQ(check_return(std::to_string(height)).exit_code, 0);
 }
 
-TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
+TEST(Pads, AreRejectedBeforeSurveyWhenDeclaredTooSteep) {
   const TestFolder& folder = package();
   const auto run = run_skycap(
       {"plan", folder / "m.yaml", "--out", folder / "steep", "--set", "flight.pad_slope_deg=12"});
@@ -159,7 +159,7 @@ TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
   EXPECT_THAT(allowed.out, HasSubstr("  pad       slope 12.0 degrees as declared\n"));
 }
 
-TEST(Pads, TooSteepByTheTerrainAreRefused) {
+TEST(Pads, AreRejectedWhenTerrainIsTooSteep) {
   const TestFolder folder;
   folder.write("building.obj", building());
   folder.write("slope.obj",
@@ -173,7 +173,7 @@ TEST(Pads, TooSteepByTheTerrainAreRefused) {
   EXPECT_THAT(run.out, HasSubstr("has a slope of 14.0 degrees by the terrain")) << run.out;
 }
 
-TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
+TEST(Pads, AreCheckedAgainstSceneInRouteFiles) {
   const TestFolder& folder = package();
   const auto with = [&](const std::string& model) {
     return check(
@@ -207,7 +207,7 @@ geometry::Scan make_ramp_scan(const geometry::Camera& camera, const geometry::Vi
   return scan;
 }
 
-TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
+TEST(Pads, AreRejectedWhenMeasuredTooSteep) {
   const TestFolder& folder = package();
   const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
   const double slope = std::tan(13.0 * radians_per_degree);

@@ -40,7 +40,7 @@ flight::KnownSpace make_truth(const flight::FlightOptions& options,
 }
 
 // The planner's and the flight's world is what was measured. This is the other one.
-TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
+TEST(SurveyFlight, KeepsClearanceFromGroundTruth) {
   const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const flight::KnownSpace truth = make_truth(mission.flight(), scene);
@@ -63,7 +63,7 @@ TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
   }
 }
 
-TEST(SurveyFlight, DoesNotDependOnThreads) {
+TEST(SurveyFlight, IsSameForAnyThreadCount) {
   const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord one = simulation::run_survey(mission.simulation, scene, 1, 1),
@@ -74,7 +74,7 @@ TEST(SurveyFlight, DoesNotDependOnThreads) {
 }
 
 // The shipped missions that fly, from any random start.
-TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
+TEST(SurveyFlight, ReachesFirstViewOfShippedMissions) {
   const std::filesystem::path folder = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
   for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
     const config::MissionSetup mission =
@@ -88,7 +88,7 @@ TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
   }
 }
 
-TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
+TEST(SurveyFlight, RespectsGimbalLimits) {
   const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
   session::SurveyFlight flight(mission.flight(), first, 0);
@@ -99,7 +99,7 @@ TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
                                 {position, Vector3d(std::cos(too_steep), 0, std::sin(too_steep))}));
 }
 
-TEST(SurveyFlight, StopsInTheSearchForAWay) {
+TEST(SurveyFlight, StopsPathSearchOnRequest) {
   const config::MissionSetup mission = config::parse_mission(flight_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
   session::SurveyFlight flight(mission.flight(), first, 0);
@@ -128,7 +128,7 @@ const TestFolder& package() {
   return folder;
 }
 
-TEST(FlightPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth) {
+TEST(FlightPackage, VerifiesEveryRouteFormatAgainstGroundTruth) {
   const TestFolder& folder = package();
   const json summary = json::parse(read_content(folder / "out/summary.json"));
   const json& flight = summary.at("flight");
@@ -155,7 +155,7 @@ TEST(FlightPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth
 
 // Returns as PX4 flies them, from anywhere on the route, against the teapot as it is: a point every
 // 10 cm, asked for its distance alone.
-TEST(FlightPackage, NoReturnFromAnywhereComesNearTheTruth) {
+TEST(FlightPackage, KeepsReturnsClearOfGroundTruth) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
   const flight::Route route =
@@ -190,7 +190,7 @@ TEST(FlightPackage, NoReturnFromAnywhereComesNearTheTruth) {
   }
 }
 
-TEST(FlightPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
+TEST(FlightPackage, VerifiesReturnsAtStatedAltitude) {
   const TestFolder& folder = package();
   const auto check = [&](const std::string& file, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"check", folder / "m.yaml", "--route", file};
@@ -213,7 +213,7 @@ TEST(FlightPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
   EXPECT_THAT(cone.out, HasSubstr("not safe, mission.params: RTL_CONE_ANG is 45; it must be 0"));
 }
 
-TEST(FlightPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
+TEST(FlightPackage, ReportsCollidingLegsInMovedScene) {
   const TestFolder& folder = package();
   // The same route with the teapot moved to the lowest of its stations.
   const std::vector<geometry::View> views = package::read_package(folder / "out", {}).views;
@@ -230,7 +230,7 @@ TEST(FlightPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
 }
 
 // In its package a file is held to the package's pad; items are named as the ground station does.
-TEST(FlightPackage, ChecksNameTheItemsOfSpoiledFiles) {
+TEST(FlightPackage, NamesItemsOfCorruptedFiles) {
   const TestFolder& folder = package();
   json plan = json::parse(read_content(folder / "out/mission.plan"));
   const auto check = [&](const json& corrupted) {
@@ -255,7 +255,7 @@ TEST(FlightPackage, ChecksNameTheItemsOfSpoiledFiles) {
                                              " (command 82) is a NAV_SPLINE_WAYPOINT"));
 }
 
-TEST(FlightPackage, IsExportedAgainForAnotherVehicle) {
+TEST(FlightPackage, ExportsForAnotherVehicle) {
   const TestFolder& folder = package();
   const auto run = run_skycap({"export", folder / "out", "--format", "kmz", "--format", "litchi",
                                "--set", "flight.vehicle=mavic_3e", "--out", folder / "again"});
@@ -279,7 +279,7 @@ std::string steps_for(const std::string& vehicle, const std::string& format) {
   return steps == std::string::npos ? "" : run.out.substr(steps);
 }
 
-TEST(FlightPackage, PrintsStepsForTheVehicleAndNoOther) {
+TEST(FlightPackage, PrintsStepsForConfiguredVehicleOnly) {
   const std::vector<std::string> ardupilot{"RTL_ALT ", "RTL_CONE_SLOPE", "BATT_LOW_MAH",
                                            "mission.param "},
       px4{"RTL_RETURN_ALT", "RTL_CONE_ANG", "mission.params ", "mission.plan in QGroundControl"},
@@ -304,7 +304,7 @@ TEST(FlightPackage, PrintsStepsForTheVehicleAndNoOther) {
   expect_only(steps_for("mavic_3e", "kmz"), dji, {ardupilot, px4});
 }
 
-TEST(FlightPackage, ReadsBackAsItWasPlanned) {
+TEST(FlightPackage, ReadsBackAsPlanned) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
   const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
@@ -344,7 +344,7 @@ TEST(FlightPackage, KeepsSurveyPathsInSurveyOrder) {
   }
 }
 
-TEST(FlightPackage, RefusesWaysOfASummaryThatLeadNowhere) {
+TEST(FlightPackage, RejectsSummaryPathsOutOfRange) {
   const TestFolder& folder = package();
   json summary = json::parse(read_content(folder / "out/summary.json"));
   summary["per_view"][1]["way"][0][2] = 1e300;
@@ -353,7 +353,7 @@ TEST(FlightPackage, RefusesWaysOfASummaryThatLeadNowhere) {
               HasSubstr("summary.json: per_view[1].way"));
 }
 
-TEST(FlightPackage, SmallBatteriesGiveAFileForEachSortie) {
+TEST(FlightPackage, WritesFilePerSortieForSmallBattery) {
   const TestFolder& folder = package();
   const auto run = run_skycap({"export", folder / "out", "--format", "plan", "--set",
                                "flight.hold=300", "--out", folder / "sorties"});
@@ -368,7 +368,7 @@ TEST(FlightPackage, SmallBatteriesGiveAFileForEachSortie) {
   EXPECT_FALSE(std::filesystem::exists(folder / "sorties/mission-1.plan"));
 }
 
-TEST(FlightPackage, SaysWhatAFormatLacks) {
+TEST(FlightPackage, ReportsMissingDataOfFormats) {
   const TestFolder folder;
   std::string text = flight_mission();
   text.erase(text.find("site:"), text.find("evaluation:") - text.find("site:"));
@@ -384,7 +384,7 @@ TEST(FlightPackage, SaysWhatAFormatLacks) {
 }
 
 // The pilot vouched for the air above the pad, but the tip of the spout is there.
-TEST(FlightPackage, KeepsTheSurveyWhenThereIsNoRoute) {
+TEST(FlightPackage, KeepsSurveyWithoutRoute) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", flight_mission());
   const auto run =
@@ -405,7 +405,7 @@ TEST(FlightPackage, KeepsTheSurveyWhenThereIsNoRoute) {
             0);
 }
 
-TEST(FlightPackage, BrokenPackagesAndRoutesAreNamed) {
+TEST(FlightPackage, ReportsDamagedPackagesAndRoutes) {
   const TestFolder& folder = package();
   const auto message = [](const std::vector<std::string>& arguments) {
     const auto run = run_skycap(arguments);

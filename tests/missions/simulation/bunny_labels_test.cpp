@@ -63,7 +63,7 @@ std::vector<PointLabel> recomputed_labels(const std::vector<Eigen::Vector3f>& po
 }
 
 // A sixteenth of the D435's pixels and of the density, so that the recomputation takes a second.
-TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
+TEST(BunnySurvey, MatchesFullRecomputationOfLabelsAfterEveryView) {
   const config::MissionSetup mission = config::read_mission(
       SKYCAP_SOURCE_DIR "/missions/bunny.yaml", {{"--set", "sensor.width", "212"},
                                                  {"--set", "sensor.height", "120"},

@@ -34,7 +34,7 @@ simulation::Feasibility of(const std::string& text, const Settings& settings) {
       mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), {.threads = 2});
 }
 
-TEST(Feasibility, FindsNothingInMissionsThatWork) {
+TEST(Feasibility, FindsNoProblemsInFeasibleMissions) {
   for (const std::string& text : {quick_mission(), flight_mission()}) {
     const simulation::Feasibility found = of(text, {});
     EXPECT_THAT(found.problems, IsEmpty());
@@ -49,7 +49,7 @@ struct Flaw {
 
 const std::string box_min = "planner.scene_box.min", box_max = "planner.scene_box.max";
 
-TEST(Feasibility, SaysWhatCannotWork) {
+TEST(Feasibility, ReportsInfeasibleSettings) {
   const std::vector<Flaw> flaws{
       {{{"limits.stand_off", "100"}},
        "limits.stand_off (100 m) must be smaller than the view dist"},
@@ -71,7 +71,7 @@ TEST(Feasibility, SaysWhatCannotWork) {
               Contains(HasSubstr("flight.unknown_box excludes")));
 }
 
-TEST(Feasibility, WarnsOfWhatIsHardlyMeant) {
+TEST(Feasibility, WarnsAboutImplausibleSettings) {
   const std::vector<Flaw> flaws{
       {{{box_min, "[-1, -1, 0]"}, {box_max, "[0, 1, 1]"}}, "of the surface, which no survey"},
       {{{"planner.view_distance", "20"}}, "covers only part of what it sees"},
@@ -84,7 +84,7 @@ TEST(Feasibility, WarnsOfWhatIsHardlyMeant) {
   }
 }
 
-TEST(Feasibility, IsAskedBeforeASurveyBegins) {
+TEST(Feasibility, IsCheckedBeforeSurvey) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const std::string sentence = "limits.stand_off (100 m) must be smaller than the view distance";
@@ -105,7 +105,7 @@ TEST(Feasibility, IsAskedBeforeASurveyBegins) {
 
 // The survey takes at least half the fewest views that were expected and at most twice the most; a
 // limit is not expected to be broken.
-TEST(Expectation, HoldsTheSurvey) {
+TEST(Expectation, PredictsViewsWithinFactorOfTwo) {
   const config::MissionSetup mission =
       config::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", "skycap"}});
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -129,7 +129,7 @@ TEST(Expectation, HoldsTheSurvey) {
   EXPECT_LE(at_most.max_minutes, 1.0);
 }
 
-TEST(Expectation, OfAVolumetricPlannerIsItsNumberOfViews) {
+TEST(Expectation, EqualsViewLimitOfVolumetricPlanner) {
   const config::MissionSetup mission =
       config::parse_mission(quick_mission(), "m.yaml",
                             overrides({{"planner.name", "oa"}, {"volumetric.view_limit", "8"}}));

@@ -44,7 +44,7 @@ std::vector<Eigen::Vector3f> points_at_rest(const config::MissionSetup& mission,
 
 // A pixel in a corner moves by 252 px for each radian, and movements count at 16 m: in a readout of
 // 0.02 s by half a pixel at 1.35 m/s beside the sway of a stop.
-TEST(MountedSensor, StandsWhereItMovesByLessThanHalfAPixel) {
+TEST(MountedSensor, IsAtRestBelowHalfAPixelOfMotion) {
   const config::MissionSetup mission =
       mission_with({{"sensor.exposure", "0.001"}, {"sensor.readout", "0.02"}});
   const std::vector<Eigen::Vector3f> standing = points_at_rest(mission, at_wall, 3, 5);
@@ -59,7 +59,7 @@ TEST(MountedSensor, StandsWhereItMovesByLessThanHalfAPixel) {
 }
 
 // 160 pixels of 69.4 degrees: f = 116 px. At 16 m, 8 m/s and 0.2 s are 11.5 of them and more.
-TEST(MountedSensor, FlyingAtAWallARollingShutterTiltsIt) {
+TEST(MountedSensor, ComputesRollingShutterSkew) {
   const config::MissionSetup mission =
       exact_mission({{"sensor.exposure", "0.001"}, {"sensor.readout", "0.2"}});
   simulation::MountedSensor mounted(mission.simulation, 3);
@@ -72,7 +72,7 @@ TEST(MountedSensor, FlyingAtAWallARollingShutterTiltsIt) {
   EXPECT_NEAR(bottom.x(), 11.2, 0.02 + sway);
 }
 
-TEST(MountedSensor, SwaysAtAStopDifferentlyInEachFrameAndAlikeWithEachSeed) {
+TEST(MountedSensor, VariesHoverDriftByFrameAndSeed) {
   const config::MissionSetup mission = exact_mission({{"sensor.readout", "3"}});
   const auto first_point = [&](std::uint64_t seed, std::uint64_t frame) {
     simulation::MountedSensor mounted(mission.simulation, seed);
@@ -83,7 +83,7 @@ TEST(MountedSensor, SwaysAtAStopDifferentlyInEachFrameAndAlikeWithEachSeed) {
   EXPECT_NE(first_point(1, 0), first_point(2, 0));
 }
 
-TEST(MountedSensor, PosesAreOffAsTheNavigationIsAndAtMomentsNearEachOtherAlike) {
+TEST(MountedSensor, HasCorrelatedNavigationErrors) {
   const config::MissionSetup mission = exact_mission(
       {{"scan.navigation.horizontal_sigma", "0.3"}, {"scan.navigation.correlation_time", "50"}});
   double square = 0.0, change = 0.0, before = 0.0;
@@ -107,7 +107,7 @@ TEST(MountedSensor, PosesAreOffAsTheNavigationIsAndAtMomentsNearEachOtherAlike) 
   EXPECT_NEAR(change, 2.0 * 0.09 * (1.0 - std::exp(-0.5 / 50.0)), 0.5 * 0.0018);
 }
 
-TEST(MountedSensor, WithoutAVehicleNavigationIsThatOfScansAlone) {
+TEST(MountedSensor, IgnoresNavigationErrorsWithoutVehicle) {
   const std::string text =
       "scene: {model: 'builtin:teapot'}\nevaluation: {coverage_distance: 0.05}\n"
       "planner: {name: skycap, density: 100, resolution_radius: 0.2}\n"
@@ -119,7 +119,7 @@ TEST(MountedSensor, WithoutAVehicleNavigationIsThatOfScansAlone) {
 }
 
 // A survey whose poses are off by as much as points may be covers less than it would, and knows it.
-TEST(MountedSensor, ASurveyWithErrorsOfItsPosesBelievesLess) {
+TEST(MountedSensor, LowersEstimatedCoverageWithPoseErrors) {
   const Keys few{{"limits.max_views", "5"}, {"planner.target_coverage", "1"}};
   const config::MissionSetup exact = mission_with(few);
   Keys keys = few;

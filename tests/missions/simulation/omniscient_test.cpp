@@ -18,7 +18,7 @@ using tests::quick_mission;
 constexpr simulation::OmniscientConfig quick{
     .candidates = 200, .samples = 1500, .target_coverage = {}};
 
-TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
+TEST(OracleSurvey, NeedsFewerViewsThanPlannerForSameCoverage) {
   const config::MissionSetup mission = config::parse_mission(
       quick_mission("seed: 3\n"), "m.yaml", {{"--planner", "planner.name", "skycap"}});
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -38,7 +38,7 @@ TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
   EXPECT_GE(known.coverage(), *config.target_coverage - 0.03);
 }
 
-TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
+TEST(OracleSurvey, StartsAtPlannerStartAndKeepsLimits) {
   const config::MissionSetup mission =
       config::parse_mission(quick_mission("site: {min_height: 0.3}\n"), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -55,7 +55,7 @@ TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
   EXPECT_GT(record.coverage(), 0.5);
 }
 
-TEST(Omniscient, IsSameForAnyThreadCount) {
+TEST(OracleSurvey, IsSameForAnyThreadCount) {
   const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const session::SurveyRecord one =
@@ -66,7 +66,7 @@ TEST(Omniscient, IsSameForAnyThreadCount) {
   EXPECT_EQ(one.distance(), three.distance());
 }
 
-TEST(Omniscient, EndsAtTheLimitOfViews) {
+TEST(OracleSurvey, EndsAtViewLimit) {
   const config::MissionSetup mission =
       config::parse_mission(quick_mission(), "m.yaml", {{"--max-views", "limits.max_views", "2"}});
   const session::SurveyRecord record = simulation::survey_omnisciently(

@@ -62,7 +62,7 @@ double nearest(const std::vector<Vector3d>& flown_path, const AlignedBox3d& box)
   return min;
 }
 
-TEST(PriorSurvey, KeepsEveryLegClearOfObstaclesNobodyMeasured) {
+TEST(PriorSurvey, KeepsLegsClearOfUnmeasuredObstacles) {
   const TestFolder folder;
   const config::MissionSetup mission =
       config::parse_mission(with_obstacle(folder.path()), "m.yaml");
@@ -85,7 +85,7 @@ TEST(PriorSurvey, KeepsEveryLegClearOfObstaclesNobodyMeasured) {
 }
 
 // From the mission file to the exported route, and back through `check --route`.
-TEST(PriorSurvey, IsPlannedExportedAndCheckedWithItsObstacles) {
+TEST(PriorSurvey, PlansExportsAndChecksWithObstacles) {
   const TestFolder folder;
   std::ofstream(folder.path() / "m.yaml") << with_obstacle(folder.path());
   std::ofstream(folder.path() / "bare.yaml") << flight_mission();
@@ -107,7 +107,7 @@ TEST(PriorSurvey, IsPlannedExportedAndCheckedWithItsObstacles) {
   EXPECT_THAT(gone.err, HasSubstr("mast.obj"));
 }
 
-TEST(PriorSurvey, SaysAtWhichKeyASourceIsWrong) {
+TEST(PriorSurvey, NamesKeysOfInvalidSources) {
   const auto error_message = [](const std::string& prior) {
     return testing_support::thrown_message(
         [&] { config::parse_mission(flight_mission("prior: [" + prior + "]\n"), "m.yaml"); });
@@ -139,7 +139,7 @@ geometry::Mesh hillside() {
           {{0, 1, 2}, {0, 2, 3}}};
 }
 
-TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
+TEST(PriorSurvey, UsesTerrainAsGroundOfViewsPadsAndLegs) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "hill.obj";
   geometry::write_mesh(file, hillside());
@@ -191,7 +191,7 @@ std::string live_mission(const std::string& prior) {
   return text;
 }
 
-TEST(PriorSurvey, ATargetSaysWhereTheSceneIs) {
+TEST(PriorSurvey, DerivesSceneBoxFromTarget) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "house.obj";
   geometry::write_mesh(file, flight::scenes::box({-5, -4, 0}, {5, 4, 6}));
@@ -208,7 +208,7 @@ TEST(PriorSurvey, ATargetSaysWhereTheSceneIs) {
 }
 
 // Where the pad is not given, nobody knows what counts from it.
-TEST(PriorSurvey, HeightsCountFromAPadThatIsGiven) {
+TEST(PriorSurvey, RequiresPadForTakeoffHeights) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "house.geojson";
   std::ofstream(file)
@@ -232,7 +232,7 @@ TEST(PriorSurvey, HeightsCountFromAPadThatIsGiven) {
 }
 
 // With nothing but a map of the house: a dry run in which the map is the truth, and says so.
-TEST(PriorSurvey, ADryRunTakesTheTargetsForTheTruth) {
+TEST(PriorSurvey, UsesTargetsAsGroundTruthInSimulation) {
   const TestFolder folder;
   geometry::write_mesh(folder.path() / "house.obj", flight::scenes::box({-5, -4, 0}, {5, 4, 6}));
   std::ofstream(folder.path() / "m.yaml")
@@ -258,7 +258,7 @@ TEST(PriorSurvey, ADryRunTakesTheTargetsForTheTruth) {
 }
 
 // Known answer: of a house whose roof alone was measured, the roof is covered.
-TEST(TargetCoverage, TellsWhatOfAnObjectWasMeasured) {
+TEST(TargetCoverage, ComputesMeasuredFractionOfObject) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "house.obj";
   geometry::write_mesh(file, flight::scenes::box({0, 0, 0}, {10, 10, 10}));

@@ -41,7 +41,7 @@ sim::LidarConfig make_scanner(const std::string& preset) {
   return std::get<sim::LidarConfig>(config::find_sensor(preset).sensor);
 }
 
-TEST(ScannerField, KindsAreTold) {
+TEST(ScannerField, DetectsScannerKinds) {
   using sim::ScannerKind;
   EXPECT_EQ(sim::find_scanner_kind(make_scanner("ouster_os1_128")), ScannerKind::ring);
   EXPECT_EQ(sim::find_scanner_kind(make_scanner("velodyne_vlp16")), ScannerKind::ring);
@@ -52,7 +52,7 @@ TEST(ScannerField, KindsAreTold) {
 }
 
 // Data sheets: the Mid-70 sees a circle of 70.4 degrees; 100,000 shots a second.
-TEST(ScannerField, ARosettesCameraFitsIntoItsRoundField) {
+TEST(ScannerField, FitsCameraIntoRoundFieldOfRosette) {
   const auto camera = sim::forward_camera(make_scanner("livox_mid70")).camera;
   const double half_diagonal = std::atan(
       std::hypot(std::tan(0.5 * camera.horizontal_fov), std::tan(0.5 * camera.vertical_fov)));
@@ -63,7 +63,7 @@ TEST(ScannerField, ARosettesCameraFitsIntoItsRoundField) {
 }
 
 // The longer it draws, the finer it fills its field.
-TEST(ScannerField, ARosettesGapsCloseWithTime) {
+TEST(ScannerField, ShrinksRosetteGapsWithTime) {
   const sim::LidarConfig lidar = make_scanner("livox_avia");
   Eigen::Matrix3d optical_from_scanner;
   optical_from_scanner << 0, -1, 0, 0, 0, -1, 1, 0, 0;
@@ -76,7 +76,7 @@ TEST(ScannerField, ARosettesGapsCloseWithTime) {
   EXPECT_LT(last, 1.0 * degree);
 }
 
-TEST(ScannerField, ARosetteLooksToTheLeftAndDownUnlessItsMountSaysOtherwise) {
+TEST(ScannerField, LooksLeftAndDownForRosetteUnlessMountIsSet) {
   const config::MissionSetup usual = make_mission("livox_avia");
   const View nose{{1, 2, 30}, {0, 1, 0}};
   const View left = geometry::scanner_view(*usual.sensor().mount, nose);
@@ -120,7 +120,7 @@ sim::PlatformMotion on_stretch(const View& from, const View& to, double duration
 
 // The property that everything rests on: no place of any surface counts as free, whatever was flown
 // between the first ray of a scan and the last.
-TEST(ScannerField, WhatARosetteInFlightProvesFreeHoldsNothing) {
+TEST(ScannerField, ContainsNoSurfaceInFreeSpaceOfRosette) {
   const geometry::Mesh mesh = room();
   const sim::Scene scene(mesh);
   const geometry::SurfaceSamples truth = geometry::sample_surface(mesh, 20'000, 3);
@@ -151,7 +151,7 @@ TEST(ScannerField, WhatARosetteInFlightProvesFreeHoldsNothing) {
 }
 
 // A line's scan in flight is all of the stretch, a line at a time.
-TEST(ScannerField, ALineInFlightMeasuresAllOfItsWay) {
+TEST(ScannerField, CoversWholeLegWithSingleLineLidar) {
   const sim::Scene scene(room());
   const config::MissionSetup mission = make_mission("riegl_vux_1uav");
   sim::SurveySensorOptions exact = mission.sensor();

@@ -29,7 +29,7 @@ geometry::Scan far_returns(const geometry::View& from, double max_elevation) {
 
 // Autopilots climb before they return: a view is no good below air that nobody has seen, though the
 // way there is free.
-TEST(ScannerFlight, GoesOnlyWhereItsAutopilotCanReturnFrom) {
+TEST(ScannerFlight, ReachesOnlyViewsWithFreeReturnClimb) {
   const config::MissionSetup mission = config::parse_mission(
       "scene: {model: builtin:teapot, longest_side: 20}\n"
       "sensor: {lidar: ouster_os1_128}\n"

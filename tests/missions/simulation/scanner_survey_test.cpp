@@ -45,16 +45,14 @@ void expect_survey(const std::string& lidar, double min_coverage) {
   EXPECT_NEAR(record.estimate.value().coverage, share, 0.06);
 }
 
-TEST(ScannerSurvey, ByARosetteEndsByItselfAndKnowsWhatItCovered) {
-  expect_survey("livox_mid70", 0.85);
-}
+TEST(ScannerSurvey, EndsAndEstimatesCoverageWithRosette) { expect_survey("livox_mid70", 0.85); }
 
-TEST(ScannerSurvey, ByALineEndsByItselfAndKnowsWhatItCovered) {
+TEST(ScannerSurvey, EndsAndEstimatesCoverageWithSingleLineLidar) {
   expect_survey("riegl_minivux_1uav", 0.85);
 }
 
 // A scanner that looks down at a fixed pitch may have no random view of the scene's middle.
-TEST(ScannerSurvey, IsForetoldFromWhereItsOpeningBegins) {
+TEST(ScannerSurvey, IsPredictedFromStartOfInitialPattern) {
   for (const char* lidar : {"livox_avia", "riegl_minivux_1uav", "ouster_os1_128"}) {
     const config::MissionSetup mission = mission_by(lidar);
     const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -66,7 +64,7 @@ TEST(ScannerSurvey, IsForetoldFromWhereItsOpeningBegins) {
   }
 }
 
-TEST(ScannerSurvey, IsTakenByEveryPlanner) {
+TEST(ScannerSurvey, RunsWithEveryPlanner) {
   const tests::TestFolder folder;
   const std::string lidar = folder.write(
       "lidar.yaml",

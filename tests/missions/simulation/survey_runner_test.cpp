@@ -32,7 +32,7 @@ using tests::read_content;
 using tests::run_skycap;
 using tests::TestFolder;
 
-TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
+TEST(SurveyScene, StartsAtConfiguredOrRandomView) {
   const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const geometry::View a = scene.first_view(1), b = scene.first_view(2);
@@ -60,7 +60,7 @@ TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
 }
 
 // The order of the draws is part of a seed's meaning: the same start from every compiler.
-TEST(SurveyScene, DrawsRandomStartsInAStatedOrder) {
+TEST(SurveyScene, DrawsRandomStartsInDefinedOrder) {
   const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
@@ -72,7 +72,7 @@ TEST(SurveyScene, DrawsRandomStartsInAStatedOrder) {
   }
 }
 
-TEST(SurveyScene, KeepsRandomStartsAboveTheGroundClearance) {
+TEST(SurveyScene, KeepsRandomStartsAboveGroundClearance) {
   const config::MissionSetup mission = config::parse_mission(
       quick_mission(), "m.yaml", {{"--set", "limits.ground_clearance", "0.5"}});
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
@@ -91,7 +91,7 @@ std::vector<std::string> planner_names() {
 }
 
 // Each planner that a mission can name surveys the quick mission's scene.
-TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
+TEST(RunSurvey, CoversSceneWithEveryPlanner) {
   EXPECT_EQ(planner_names().size(), 10U);
   for (const std::string& name : planner_names()) {
     const config::MissionSetup mission = config::parse_mission(
@@ -105,7 +105,7 @@ TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
 }
 
 // The fence leaves a half plane, the prism takes a bite out of it, the gimbal looks down only.
-TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
+TEST(RunSurvey, KeepsSiteAndLimitsWithEveryPlanner) {
   const std::string site =
       "site:\n"
       "  geofence: [[-9, -9], [9, -9], [9, 0.5], [-9, 0.5]]\n"
@@ -133,7 +133,7 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
   }
 }
 
-TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
+TEST(MakePlanner, RequiresSphereForVolumetricPlanner) {
   const config::KeyOverride name{"", "planner.name", "oa"};
   const auto make_test_planner = [](const std::vector<config::KeyOverride>& keys,
                                     const survey::PlannerRun& run) {
@@ -150,7 +150,7 @@ TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
             nullptr);
 }
 
-TEST(RunSurvey, EndsWhenABudgetIsSpent) {
+TEST(RunSurvey, EndsAtDistanceAndViewLimits) {
   for (const char* name : {"see++", "skycap"}) {
     const auto record_with = [&](const char* key, const char* value) {
       const config::MissionSetup mission = config::parse_mission(
@@ -174,7 +174,7 @@ TEST(RunSurvey, EndsWhenABudgetIsSpent) {
 }
 
 // An admissible place is one that the mission's limits allow: from above only, tops are visible.
-TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
+TEST(SurveyScene, CountsSurfaceSeenFromAdmissiblePositions) {
   const auto share = [](const std::string& more) {
     const config::MissionSetup mission = config::parse_mission(quick_mission(more), "m.yaml");
     const std::vector<std::uint8_t> visible =
@@ -190,7 +190,7 @@ TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
 }
 
 // Coverage along the way is what the final cloud covers, and grows.
-TEST(RunSurvey, JudgesEveryView) {
+TEST(RunSurvey, EvaluatesEveryView) {
   const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
   const evaluation::SurveyScene scene(mission.simulation, "", 0);
   std::size_t reported = 0;
@@ -210,7 +210,7 @@ TEST(RunSurvey, JudgesEveryView) {
 }
 
 // Wherever a stop meets it: the cloud is that of the views that are reported.
-TEST(RunSurvey, HoldsWhatItsViewsMeasuredWhenItIsStopped) {
+TEST(RunSurvey, KeepsPointsOfReportedViewsWhenStopped) {
   const config::MissionSetup mission = config::parse_mission(
       quick_mission(), "m.yaml",
       {{"--planner", "planner.name", "rsv"}, {"--set", "volumetric.view_limit", "100"}});
@@ -235,7 +235,7 @@ TEST(RunSurvey, HoldsWhatItsViewsMeasuredWhenItIsStopped) {
   EXPECT_GT(stopped, 0);
 }
 
-TEST(Plan, RepeatsItselfByteByByteWithAnyNumberOfThreads) {
+TEST(Plan, WritesSameBytesForAnyThreadCount) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   for (const char* threads : {"1", "2", "3"}) {
@@ -250,7 +250,7 @@ TEST(Plan, RepeatsItselfByteByByteWithAnyNumberOfThreads) {
   }
 }
 
-TEST(Plan, MakesAnotherSurveyOfAnotherSeed) {
+TEST(Plan, PlansDifferentSurveyForDifferentSeed) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   for (const char* seed : {"1", "2"}) {
@@ -261,7 +261,7 @@ TEST(Plan, MakesAnotherSurveyOfAnotherSeed) {
 }
 
 // A stop that is requested during the first view: that view is finished and kept.
-TEST(Plan, LeavesAWholeIncompletePackageWhenInterrupted) {
+TEST(Plan, WritesIncompletePackageWhenInterrupted) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   std::stop_source stop;
@@ -280,7 +280,7 @@ TEST(Plan, LeavesAWholeIncompletePackageWhenInterrupted) {
               Not(HasSubstr("property float nx")));
 }
 
-TEST(Plan, ShowsProgressOnATerminalOnlyAndNothingWhenQuiet) {
+TEST(Plan, ShowsProgressOnlyOnTerminalUnlessQuiet) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const std::vector<std::string> plain{"plan",         mission,       "--out",
@@ -303,7 +303,7 @@ TEST(Plan, ShowsProgressOnATerminalOnlyAndNothingWhenQuiet) {
 }
 
 // Trials side by side are the surveys that separate runs make.
-TEST(Plan, TrialsEqualSeparateSurveys) {
+TEST(Plan, RunsTrialsEqualToSeparateSurveys) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const std::vector<std::string> trials{"plan", mission,  "--out", folder / "t", "--trials",
@@ -324,7 +324,7 @@ TEST(Plan, TrialsEqualSeparateSurveys) {
 }
 
 // SEE++ without its two additions is SEE, bit by bit.
-TEST(Plan, SeeIsSeePlusPlusWithoutOptimiserAndGraph) {
+TEST(Plan, MatchesSeeWithoutOptimiserAndGraph) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "see", "--planner", "see"}).exit_code,
@@ -338,7 +338,7 @@ TEST(Plan, SeeIsSeePlusPlusWithoutOptimiserAndGraph) {
 }
 
 // evaluate, from files, must find the coverage that plan measured on the way.
-TEST(Evaluate, AgreesWithThePlansOwnCoverage) {
+TEST(Evaluate, MatchesCoverageOfPlan) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "out"}).exit_code, 0);
@@ -353,7 +353,7 @@ TEST(Evaluate, AgreesWithThePlansOwnCoverage) {
   EXPECT_NEAR(evaluation["distance_to_model_m"]["root_mean_square"], 0.03, 0.008);
 }
 
-TEST(Plan, SurveysCopiesOfTheModelAndKeepsThemInTheSettings) {
+TEST(Plan, KeepsModelCopiesInSettings) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto run = run_skycap({"plan", mission, "--set", "scene.copies=[[1.5, 0, 90]]",
@@ -363,7 +363,7 @@ TEST(Plan, SurveysCopiesOfTheModelAndKeepsThemInTheSettings) {
   EXPECT_EQ(summary["settings"]["scene.copies"], json::parse("[[1.5, 0.0, 90.0]]"));
 }
 
-TEST(Model, HasLevelsOfDetailOfTheSameShape) {
+TEST(Model, HasDetailLevelsOfSameShape) {
   const TestFolder folder;
   const auto printed = [](const std::string& model, const char* detail) {
     return run_skycap({"model", model, "--detail", detail});
@@ -390,7 +390,7 @@ TEST(Model, HasLevelsOfDetailOfTheSameShape) {
   EXPECT_EQ(printed("radcliffe-camera", "finest").exit_code, 2);
 }
 
-TEST(Model, WritesAMissionsSceneAsSurveyed) {
+TEST(Model, WritesSceneOfMission) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
   const auto run = run_skycap({"model", mission, "--out", folder / "scene.ply"});

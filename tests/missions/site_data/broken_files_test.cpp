@@ -30,7 +30,7 @@ std::vector<Whole> whole_files() {
           {"cube.e57", make_e57(cube)}};
 }
 
-class BrokenFiles : public testing::Test {
+class DamagedFiles : public testing::Test {
  protected:
   /// Whether it was refused; a finding if the message is not one line that names the file.
   bool is_rejected(const std::string& name, const std::string& bytes, const std::string& what) {
@@ -56,13 +56,13 @@ class BrokenFiles : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(BrokenFiles, AreReadWhole) {
+TEST_F(DamagedFiles, AreReadWhenIntact) {
   for (const Whole& whole : whole_files()) {
     EXPECT_FALSE(is_rejected(whole.name, whole.bytes, "whole")) << whole.name;
   }
 }
 
-TEST_F(BrokenFiles, ThatAreCutShortAreRefusedInOneLine) {
+TEST_F(DamagedFiles, AreRejectedInOneLineWhenTruncated) {
   std::size_t rejected = 0;
   for (const Whole& whole : whole_files()) {
     for (std::size_t i = 0; i < 20; ++i) {
@@ -74,7 +74,7 @@ TEST_F(BrokenFiles, ThatAreCutShortAreRefusedInOneLine) {
   EXPECT_GE(rejected, 100U);  // text of whole lines, such as an OBJ, may still be a mesh
 }
 
-TEST_F(BrokenFiles, WithChangedBytesAreReadOrRefusedInOneLine) {
+TEST_F(DamagedFiles, AreReadOrRejectedInOneLineWhenBytesChange) {
   std::mt19937_64 random(1);
   std::size_t rejected = 0, read = 0;
   for (const Whole& whole : whole_files()) {
@@ -90,7 +90,7 @@ TEST_F(BrokenFiles, WithChangedBytesAreReadOrRefusedInOneLine) {
 }
 
 // A tree takes many times the bytes of its text: 110 MB and 60 MB here.
-TEST_F(BrokenFiles, WhoseTreesWouldTakeMoreThanMemoryAreRefused) {
+TEST_F(DamagedFiles, AreRejectedWhenTreesExceedMemoryLimit) {
   const auto expect_rejected = [&](const std::string& name, const std::string& bytes) {
     const Source source = make_source(folder_.file(name, bytes));
     EXPECT_THAT(thrown_message([&] { read_prior(source, site_at_cube()); }),
@@ -104,7 +104,7 @@ TEST_F(BrokenFiles, WhoseTreesWouldTakeMoreThanMemoryAreRefused) {
   expect_rejected("many.json", json + "]}");
 }
 
-TEST_F(BrokenFiles, OfNoFormatAreToldWhichThereAre) {
+TEST_F(DamagedFiles, AreRejectedWithKnownFormatsWhenUnknown) {
   Source source = make_source(folder_.file("notes.doc", "dear surveyor"));
   EXPECT_THAT([&] { read_prior(source, site_at_cube()); },
               testing::ThrowsMessage<Error>(testing::AllOf(testing::HasSubstr("notes.doc: "),
@@ -119,7 +119,7 @@ TEST_F(BrokenFiles, OfNoFormatAreToldWhichThereAre) {
 
 // The first crashes assimp 5.2 itself, the second has it take memory without end; it
 // therefore runs in a process of its own.
-TEST_F(BrokenFiles, ThatMakeTheirLibraryCrashOrLoopAreRefused) {
+TEST_F(DamagedFiles, AreRejectedWhenLibraryCrashesOrLoops) {
   const auto error_message = [&](const std::string& name, const std::string& bytes) {
     return thrown_message(
         [&] { read_prior(make_source(folder_.file(name, bytes)), site_at_cube()); });

@@ -53,7 +53,7 @@ class CityGml : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-TEST_F(CityGml, TakesTheHighestLevelOfEachObjectUnlessToldOtherwise) {
+TEST_F(CityGml, UsesMaxDetailOfEachObjectByDefault) {
   const std::string text = model(building(
       "<bldg:lod1Solid>" + square(10, 1) + "</bldg:lod1Solid><bldg:lod2MultiSurface>" +
       square(20, 2) +
@@ -67,7 +67,7 @@ TEST_F(CityGml, TakesTheHighestLevelOfEachObjectUnlessToldOtherwise) {
   EXPECT_DOUBLE_EQ(geometry::surface_area(first.objects[0].mesh), 100.0 + 900.0);
 }
 
-TEST_F(CityGml, OfTwoReferenceSystemsIsRefusedUnlessOneIsNamed) {
+TEST_F(CityGml, RejectsTwoReferenceSystemsUnlessPoseIsSet) {
   const std::string text = model(building(
       "<gml:boundedBy><gml:Envelope srsName=\"EPSG:25832\"/></gml:boundedBy><bldg:lod2Solid>" +
       square(10, 1, "srsName=\"EPSG:31468\"") + "</bldg:lod2Solid>"));
@@ -81,7 +81,7 @@ TEST_F(CityGml, OfTwoReferenceSystemsIsRefusedUnlessOneIsNamed) {
   EXPECT_EQ(read(text).objects.size(), 1U) << "a place puts all of it";
 }
 
-TEST_F(CityGml, LeavesOutWhatHasNoHeights) {
+TEST_F(CityGml, IgnoresRingsWithoutHeights) {
   const std::string flat =
       "<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList srsDimension=\"2\">0 0 9 0 9 9 0 0"
       "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
@@ -94,7 +94,7 @@ TEST_F(CityGml, LeavesOutWhatHasNoHeights) {
       ThrowsMessage<Error>(HasSubstr("only coordinates without heights")));
 }
 
-TEST_F(CityGml, GivesAPartWhereAPartIsAskedFor) {
+TEST_F(CityGml, SelectsBuildingParts) {
   const std::string text = model(building(
       "<bldg:lod2Solid>" + square(10, 1) +
       "</bldg:lod2Solid><bldg:consistsOfBuildingPart>"
@@ -106,7 +106,7 @@ TEST_F(CityGml, GivesAPartWhereAPartIsAskedFor) {
   EXPECT_DOUBLE_EQ(geometry::surface_area(part.objects[0].mesh), 900.0);
 }
 
-TEST_F(CityGml, KeepsHolesAndFillsThemWithWhatStandsThere) {
+TEST_F(CityGml, KeepsHolesAndFillsThemWithOpenings) {
   const std::string text = model(building(
       "<bldg:boundedBy><bldg:WallSurface gml:id=\"w\"><bldg:lod3MultiSurface>" +
       square(10, 1, "", 3.0) +
@@ -120,7 +120,7 @@ TEST_F(CityGml, KeepsHolesAndFillsThemWithWhatStandsThere) {
   EXPECT_THAT(prior.objects[0].surfaces, Contains(SurfaceKind::opening));
 }
 
-TEST_F(CityGml, PassesReferencesOverButLearnsFromThem) {
+TEST_F(CityGml, ReadsSurfaceKindsFromReferences) {
   const std::string text =
       model(building("<bldg:lod2Solid><gml:Solid>" + square(10, 1, "gml:id=\"p\"") +
                      "</gml:Solid></bldg:lod2Solid><bldg:boundedBy><bldg:RoofSurface gml:id=\"r\">"
@@ -131,7 +131,7 @@ TEST_F(CityGml, PassesReferencesOverButLearnsFromThem) {
   EXPECT_THAT(prior.objects[0].surfaces, testing::Each(SurfaceKind::roof));
 }
 
-TEST_F(CityGml, LeavesRoomsAndClosuresOutAndSaysSo) {
+TEST_F(CityGml, ReportsIgnoredRoomsAndClosures) {
   const std::string text =
       model(building("<bldg:lod2Solid>" + square(10, 1) +
                      "</bldg:lod2Solid>"
@@ -146,7 +146,7 @@ TEST_F(CityGml, LeavesRoomsAndClosuresOutAndSaysSo) {
   EXPECT_THAT(prior.notes, Contains(HasSubstr("1 Room ignored")));
 }
 
-TEST_F(CityGml, ReadsPositionsOneByOne) {
+TEST_F(CityGml, ReadsSinglePositions) {
   const std::string ring =
       "<gml:Polygon><gml:exterior><gml:LinearRing><gml:pos>0 0 1</gml:pos><gml:pos>4 0 1</gml:pos>"
       "<gml:pos>4 4 1</gml:pos><gml:pos>0 4 1</gml:pos></gml:LinearRing></gml:exterior>"
@@ -156,7 +156,7 @@ TEST_F(CityGml, ReadsPositionsOneByOne) {
   EXPECT_DOUBLE_EQ(geometry::surface_area(prior.objects[0].mesh), 16.0);
 }
 
-TEST_F(CityGml, KnowsItsVersionsAndAttributes) {
+TEST_F(CityGml, ReadsVersionsAndAttributes) {
   EXPECT_EQ(read(model(building(square(1, 0)), "1.0")).format, "CityGML 1.0");
   const Prior third = read(
       model(building("<gen:genericAttribute><gen:StringAttribute><gen:name>use</gen:name>"
@@ -175,7 +175,7 @@ TEST_F(CityGml, KnowsItsVersionsAndAttributes) {
   EXPECT_EQ(attributes.at("ThoroughfareName"), "Am Ring");
 }
 
-TEST_F(CityGml, DropsPolygonsWithoutAreaAndCountsThem) {
+TEST_F(CityGml, CountsDroppedPolygonsWithoutArea) {
   const std::string line =
       "<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 1 1 0 0 0</gml:posList>"
       "</gml:LinearRing></gml:exterior></gml:Polygon>";
@@ -184,7 +184,7 @@ TEST_F(CityGml, DropsPolygonsWithoutAreaAndCountsThem) {
   EXPECT_DOUBLE_EQ(geometry::surface_area(prior.objects[0].mesh), 4.0);
 }
 
-TEST_F(CityGml, ReportsWhatIsWrong) {
+TEST_F(CityGml, ReportsErrors) {
   const struct {
     std::string text, message;
   } cases[] = {
@@ -210,14 +210,14 @@ TEST_F(CityGml, ReportsWhatIsWrong) {
   }
 }
 
-TEST_F(CityGml, OfMoreObjectsThanAllowedIsRefused) {
+TEST_F(CityGml, RejectsTooManyObjects) {
   const std::string two = model(building(square(1, 0)) + building(square(1, 0)));
   EXPECT_EQ(parse_citygml("city.gml", two, 2).objects.size(), 2U);
   EXPECT_THAT([&] { parse_citygml("city.gml", two, 1); },
               ThrowsMessage<Error>(HasSubstr("city.gml: has more than 1 objects")));
 }
 
-TEST_F(CityGml, EndsAtDepthsAndEntitiesOfTheHostile) {
+TEST_F(CityGml, RejectsDeepNestingAndExternalEntities) {
   std::string deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";
   for (int i = 0; i < 100'000; ++i) deep += "</a>";

@@ -36,7 +36,7 @@ std::string make_surface(const std::string& type, const std::string& boundaries)
          type + R"(","lod":1,"boundaries":)" + boundaries + "}]}}," + four_vertices + "}";
 }
 
-TEST_F(CityJson, NestsBoundariesByType) {
+TEST_F(CityJson, ReadsBoundariesByGeometryType) {
   EXPECT_EQ(read(make_surface("MultiSurface", "[[[0,1,2,3]]]")).objects[0].mesh.triangles.size(),
             2U);
   EXPECT_EQ(read(make_surface("Solid", "[[[[0,1,2,3]]]]")).objects[0].mesh.triangles.size(), 2U);
@@ -44,7 +44,7 @@ TEST_F(CityJson, NestsBoundariesByType) {
             2U);
 }
 
-TEST_F(CityJson, IsParsedOnceWhileAReadOnceLives) {
+TEST_F(CityJson, IsParsedOnceDuringReadOnce) {
   Source source;
   source.file = folder_.file("city.json", make_surface("MultiSurface", "[[[0,1,2,3]]]"));
   source.pose = SourcePose{};
@@ -71,7 +71,7 @@ TEST_F(CityJson, IsParsedOnceWhileAReadOnceLives) {
   EXPECT_NE(read_contents(source, {}), kept);
 }
 
-TEST_F(CityJson, ReadsAFeatureALineWithTheFirstLinesScale) {
+TEST_F(CityJson, ReadsFeatureLinesWithScaleOfFirstLine) {
   const std::string lines =
       R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.5,0.5,0.5],"translate":[10,20,30]},)"
       R"("CityObjects":{},"vertices":[]})"
@@ -91,7 +91,7 @@ TEST_F(CityJson, ReadsAFeatureALineWithTheFirstLinesScale) {
   EXPECT_TRUE(prior.box.min().isApprox(Eigen::Vector3d(10, 20, 30)));
 }
 
-TEST_F(CityJson, PutsTemplatesWhereTheirInstancesAre) {
+TEST_F(CityJson, TransformsTemplatesToInstances) {
   const std::string text =
       R"({"type":"CityJSON","version":"1.1","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
       R"("geometry-templates":{"templates":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}],)"
@@ -104,7 +104,7 @@ TEST_F(CityJson, PutsTemplatesWhereTheirInstancesAre) {
   EXPECT_TRUE(prior.box.min().isApprox(Eigen::Vector3d(4, 4, 0)));
 }
 
-TEST_F(CityJson, ReportsWhatIsWrong) {
+TEST_F(CityJson, ReportsErrors) {
   const std::string deep(100'000, '[');
   const struct {
     std::string text, message;
@@ -127,7 +127,7 @@ TEST_F(CityJson, ReportsWhatIsWrong) {
 }
 
 /// Property: what instances of a template make of a small file is bounded.
-TEST_F(CityJson, OfMoreCornersThanItsTreeAllowsIsRefused) {
+TEST_F(CityJson, RejectsTooManyCorners) {
   std::string ring = "0", instances;
   for (int i = 1; i < 10'000; ++i) ring += ",0";
   for (int i = 0; i < 1601; ++i) {
@@ -145,7 +145,7 @@ TEST_F(CityJson, OfMoreCornersThanItsTreeAllowsIsRefused) {
 }
 
 /// By what is counted in the text, before any of it is read.
-TEST_F(CityJson, WhoseTreeWouldTakeTooMuchIsRefused) {
+TEST_F(CityJson, RejectsTreesAboveMemoryLimit) {
   EXPECT_THAT([&] { parse_cityjson("city.json", std::string(max_tree_bytes / 65 + 1, '[')); },
               ThrowsMessage<Error>(HasSubstr("city.json: requires more than 2 GiB")));
 }

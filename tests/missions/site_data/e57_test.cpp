@@ -29,7 +29,7 @@ class E57File : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-TEST_F(E57File, KnowsItsReferenceSystemByItsMetadata) {
+TEST_F(E57File, ReadsReferenceSystemFromMetadata) {
   const Prior by_file = read(make_e57(cube_, "EPSG:25832"), [](Source& s) { s.crs.clear(); });
   const Prior by_key = read(make_e57(cube_));
   EXPECT_EQ(by_file.crs, "ETRS89 / UTM zone 32N");
@@ -38,7 +38,7 @@ TEST_F(E57File, KnowsItsReferenceSystemByItsMetadata) {
               ThrowsMessage<Error>(HasSubstr("scan.e57: ")));
 }
 
-TEST_F(E57File, KeepsThePositionOfOwnScans) {
+TEST_F(E57File, KeepsPositionsOfSkycapScans) {
   Cube near;
   near.low = {1.0, 2.0, 3.0};
   const auto without_words = [](Source& s) {
@@ -54,7 +54,7 @@ TEST_F(E57File, KeepsThePositionOfOwnScans) {
   }
 }
 
-TEST_F(E57File, IsNoGroundNoTargetAndNoTruth) {
+TEST_F(E57File, IsRejectedAsTerrainTargetOrGroundTruth) {
   for (const Role role : {Role::terrain, Role::target, Role::truth}) {
     EXPECT_THAT([&] { read(make_e57(cube_), [&](Source& s) { s.role = role; }); },
                 ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.e57: contains no surfaces"),
@@ -62,19 +62,19 @@ TEST_F(E57File, IsNoGroundNoTargetAndNoTruth) {
   }
 }
 
-TEST_F(E57File, KeepsOnePointACube) {
+TEST_F(E57File, KeepsOnePointPerVoxel) {
   EXPECT_EQ(read(make_e57(cube_), [](Source& s) { s.spacing = 1e4; }).points.size(), 1U);
   EXPECT_EQ(read(make_e57(cube_), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
 }
 
 // It is read piece by piece, whatever its size; what follows the file on disk here is a hole.
-TEST_F(E57File, MayBeLargerThanTwoGigabytes) {
+TEST_F(E57File, ReadsFilesLargerThanTwoGigabytes) {
   const std::filesystem::path file = folder_.file("large.e57", make_e57(cube_));
   std::filesystem::resize_file(file, max_bytes + (std::size_t{1} << 20));
   EXPECT_EQ(read_prior(make_source(file), site_at_cube()).points.size(), 8U);
 }
 
-TEST_F(E57File, HasNoClasses) {
+TEST_F(E57File, RejectsClassSelection) {
   EXPECT_THAT([&] { read(make_e57(cube_), [](Source& s) { s.select.classes = {2}; }); },
               ThrowsMessage<Error>(HasSubstr("select.classes does not apply")));
 }

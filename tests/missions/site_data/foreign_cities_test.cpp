@@ -55,7 +55,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text;
 }
 
-TEST(ReferenceNames, AreThoseOfAuthorities) {
+TEST(ReferenceNames, AreConvertedToAuthorityCodes) {
   for (const char* name :
        {"urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH", "urn:adv:crs:ETRS89_UTM32 * DE_DHHN2016_NH",
         "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH*GCG2016"}) {
@@ -74,7 +74,7 @@ TEST(ReferenceNames, AreThoseOfAuthorities) {
   EXPECT_EQ(likely_name("my own"), "");
 }
 
-TEST_F(ForeignCity, NamesItsSystemAsAuthoritiesDo) {
+TEST_F(ForeignCity, ReadsReferenceSystemNamesOfAuthorities) {
   for (const char* name : {"EPSG:25832", "http://www.opengis.net/gml/srs/epsg.xml#25832",
                            "urn:adv:crs:ETRS89_UTM32", "urn:ogc:def:crs:EPSG:6.9:25832"}) {
     expect_cube("a.gml", testing_support::make_citygml(Cube(), name));
@@ -101,7 +101,7 @@ std::string gml_with(const std::function<std::string(const std::vector<std::stri
   return text;
 }
 
-TEST_F(ForeignCity, ReadsCoordinatesWithSeparatorsOfTheirOwn) {
+TEST_F(ForeignCity, ReadsCoordinatesWithCustomSeparators) {
   const auto coordinates = [](const std::string& attributes, const std::string& cs,
                               const std::string& ts, char point) {
     return gml_with([=](const std::vector<std::string>& numbers) {
@@ -122,7 +122,7 @@ TEST_F(ForeignCity, ReadsCoordinatesWithSeparatorsOfTheirOwn) {
               HasSubstr("it must be a number"));
 }
 
-TEST_F(ForeignCity, ReadsPointsOneByOne) {
+TEST_F(ForeignCity, ReadsSinglePoints) {
   for (const char* element : {"pointProperty", "pointRep"}) {
     expect_cube("a.gml", gml_with([&](const std::vector<std::string>& numbers) {
                   std::string text;
@@ -136,7 +136,7 @@ TEST_F(ForeignCity, ReadsPointsOneByOne) {
   }
 }
 
-TEST_F(ForeignCity, ReadsTextOfSixteenBits) {
+TEST_F(ForeignCity, ReadsUtf16Files) {
   const std::string gml = replaced(testing_support::make_citygml(Cube()), "<?xml version=\"1.0\"?>",
                                    "<?xml version=\"1.0\" encoding=\"UTF-16\"?>");
   for (const bool is_big_endian : {false, true}) {
@@ -151,7 +151,7 @@ TEST_F(ForeignCity, ReadsTextOfSixteenBits) {
   expect_cube("a.gml", "\xEF\xBB\xBF" + testing_support::make_citygml(Cube()));
 }
 
-TEST_F(ForeignCity, ReadsIncompleteSemanticsAsSurfacesWithoutAKind) {
+TEST_F(ForeignCity, ReadsSurfacesWithIncompleteSemantics) {
   const std::string json = testing_support::make_cityjson(Cube());
   const std::size_t begin = json.find(R"("semantics":)"), end = json.find("]]}}]}}", begin) + 3;
   const auto with = [&](const std::string& semantics) {
@@ -169,7 +169,7 @@ TEST_F(ForeignCity, ReadsIncompleteSemanticsAsSurfacesWithoutAKind) {
               with(R"("semantics":{"surfaces":[{"type":"WallSurface"}],"values":[[0]]})"));
 }
 
-TEST_F(ForeignCity, TakesALevelThatIsNoNumberForAll) {
+TEST_F(ForeignCity, AcceptsInvalidDetailLevels) {
   const std::string json = testing_support::make_cityjson(Cube());
   for (const char* lod :
        {R"("lod":null)", R"("lod":"")", R"("lod":"high")", R"("lod":true)", R"("lod":-1)"}) {
@@ -182,7 +182,7 @@ TEST_F(ForeignCity, TakesALevelThatIsNoNumberForAll) {
   }
 }
 
-TEST_F(ForeignCity, NamesTheObjectThatIsBroken) {
+TEST_F(ForeignCity, NamesInvalidObjects) {
   const std::string json = testing_support::make_cityjson(Cube());
   EXPECT_THAT(error_message("a.json", replaced(json, R"("boundaries":[[)", R"("bounds":[[)")),
               HasSubstr("violates the CityJSON specification in the object cube ("));

@@ -55,7 +55,7 @@ std::string mode(const std::string& name) { return "<altitudeMode>" + name + "</
 /// geoid.
 double roof_altitude() { return 520.0 - egm96_undulation(48.0, 9.0); }
 
-TEST_F(ForeignKml, ExtrudedPolygonsReachTheGround) {
+TEST_F(ForeignKml, ExtrudesPolygonsToGround) {
   const double roof = roof_altitude();
   const std::string text = placemark(polygon(extruded + mode("absolute"), roof));
   const Prior open = read("a.kml", text);
@@ -71,14 +71,14 @@ TEST_F(ForeignKml, ExtrudedPolygonsReachTheGround) {
   EXPECT_NEAR(target.box.min().z(), 0.0, 0.1);
 }
 
-TEST_F(ForeignKml, PolygonsWithoutExtrudeAreSheets) {
+TEST_F(ForeignKml, ReadsPolygonsWithoutExtrudeAsSheets) {
   const double roof = roof_altitude();
   const Prior prior = read("a.kml", placemark(polygon(mode("absolute"), roof)));
   EXPECT_NEAR(prior.box.min().z(), 20.0, 0.1);
   EXPECT_NEAR(prior.box.max().z(), 20.0, 0.1);
 }
 
-TEST_F(ForeignKml, HeightsAboveTheGroundAreThoseOfSolids) {
+TEST_F(ForeignKml, ReadsHeightsAboveGroundAsSolids) {
   const auto based = [](Source& s) {
     s.base = 500.0;
     s.vertical = HeightDatum::ellipsoid;
@@ -95,7 +95,7 @@ TEST_F(ForeignKml, HeightsAboveTheGroundAreThoseOfSolids) {
               HasSubstr("contains no height of hall"));
 }
 
-TEST_F(ForeignKml, ExtrudedLinesAreWallsAndPointsArePoles) {
+TEST_F(ForeignKml, ExtrudesLinesToWallsAndPointsToPoles) {
   const double roof = roof_altitude();
   const std::string line = "<LineString>" + extruded + mode("absolute") + "<coordinates>9,48," +
                            std::to_string(roof) + " 9.0002,48," + std::to_string(roof) +
@@ -111,7 +111,7 @@ TEST_F(ForeignKml, ExtrudedLinesAreWallsAndPointsArePoles) {
   EXPECT_NEAR(pole.box.max().z(), 20.0, 0.1);
 }
 
-TEST_F(ForeignKml, OfSeveralPolygonsAllAreRead) {
+TEST_F(ForeignKml, ReadsAllPolygonsOfMultiGeometry) {
   const double roof = roof_altitude();
   const std::string text =
       placemark("<MultiGeometry>" + polygon(extruded + mode("absolute"), roof) +
@@ -140,7 +140,7 @@ std::string make_zip(const std::string& name, const std::string& bytes) {
          number(central.size(), 4) + number(local.size(), 4) + number(0, 2);
 }
 
-TEST_F(ForeignKml, IsReadFromKmz) {
+TEST_F(ForeignKml, ReadsKmz) {
   const double roof = roof_altitude();
   const std::string text = placemark(polygon(extruded + mode("absolute"), roof));
   const Prior prior = read("hall.kmz", make_zip("doc.kml", text));

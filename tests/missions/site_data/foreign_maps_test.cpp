@@ -51,7 +51,7 @@ std::string building(const std::string& properties) {
          "[[[9,48],[9.0002,48],[9.0002,48.0002],[9,48.0002],[9,48]]]}}";
 }
 
-TEST(BuildingHeights, ReadsLengthsAsMappersWriteThem) {
+TEST(BuildingHeights, ReadsLengthsInMapNotations) {
   const struct {
     const char* text;
     double metres;
@@ -74,7 +74,7 @@ TEST(BuildingHeights, ReadsLengthsAsMappersWriteThem) {
   EXPECT_EQ(parse_storeys("G+2"), std::nullopt);
 }
 
-TEST_F(ForeignMap, IsAsHighAsItsAttributesSay) {
+TEST_F(ForeignMap, ReadsHeightsFromAttributes) {
   const struct {
     const char* properties;
     double height;
@@ -105,7 +105,7 @@ TEST_F(ForeignMap, IsAsHighAsItsAttributesSay) {
               6.096, 1e-3);
 }
 
-TEST_F(ForeignMap, ThatSaysAHeightNobodyUnderstandsIsRefused) {
+TEST_F(ForeignMap, RejectsUnreadableHeights) {
   for (const char* properties : {R"("height":"12 parsecs")", R"("building:levels":"G+2")",
                                  R"("building:levels":"2","roof:height":"steep")"}) {
     EXPECT_THAT(
@@ -116,7 +116,7 @@ TEST_F(ForeignMap, ThatSaysAHeightNobodyUnderstandsIsRefused) {
   }
 }
 
-TEST_F(ForeignMap, TakesZeroAndLessForUnknown) {
+TEST_F(ForeignMap, TreatsHeightsUpToZeroAsUnknown) {
   for (const char* height : {"-1", "0", "-1.0"}) {
     const std::string text = building(R"("height":)" + std::string(height));
     EXPECT_THAT(error_message("a.geojson", text), HasSubstr("contains no height of way/1"));
@@ -126,7 +126,7 @@ TEST_F(ForeignMap, TakesZeroAndLessForUnknown) {
   }
 }
 
-TEST_F(ForeignMap, NamesTheAttributesThatThereAreWhereNoneIsTheHeight) {
+TEST_F(ForeignMap, ListsAttributesWhenHeightIsMissing) {
   const std::string text = building(R"("name":"hall","hauteur":17)");
   EXPECT_THAT(error_message("a.geojson", text), HasSubstr("(it has the attributes "));
   EXPECT_THAT(error_message("a.geojson", text), HasSubstr("hauteur, "));
@@ -163,7 +163,7 @@ std::string tag(const std::string& key, const std::string& value) {
   return "<tag k='" + key + "' v='" + value + "'/>";
 }
 
-TEST_F(ForeignMap, HasThePartsOfItsBuildings) {
+TEST_F(ForeignMap, ReadsBuildingParts) {
   const std::string hall = osm_line(101, false, tag("building", "yes") + tag("height", "12"));
   const std::string part =
       tag("building:part", "yes") + tag("height", "40") + tag("min_height", "12");
@@ -182,7 +182,7 @@ TEST_F(ForeignMap, HasThePartsOfItsBuildings) {
   EXPECT_NEAR(read("a.osm", osm(hall + tank)).box.max().z(), 20.0, 1e-2);
 }
 
-TEST_F(ForeignMap, HasMastsAndWallsThatStateAHeight) {
+TEST_F(ForeignMap, ReadsMastsAndWallsWithHeight) {
   const std::string mast = "<node id='9' lat='48.0001' lon='9.0001' version='1'>" +
                            tag("man_made", "mast") + tag("height", "45") + "</node>";
   const Prior prior = read("a.osm", osm(mast));
@@ -202,7 +202,7 @@ TEST_F(ForeignMap, HasMastsAndWallsThatStateAHeight) {
   EXPECT_NEAR(walled.box.sizes().y(), 0.5, 0.01);
 }
 
-TEST_F(ForeignMap, LeavesOutWhatIsNoStructureAndCountsIt) {
+TEST_F(ForeignMap, CountsIgnoredNonStructures) {
   const std::string hall = osm_line(101, true, tag("building", "yes") + tag("height", "12"));
   const std::string others = osm_line(102, false, tag("landuse", "residential")) +
                              osm_line(103, false, tag("building", "no") + tag("height", "30")) +
@@ -232,7 +232,7 @@ std::string dxf(const std::string& header, double unit) {
 
 std::string insunits(int number) { return "9\n$INSUNITS\n70\n" + std::to_string(number) + "\n"; }
 
-TEST_F(ForeignMap, OfADrawingIsInItsUnit) {
+TEST_F(ForeignMap, ReadsUnitsOfDrawings) {
   const auto here = [](Source& s) {
     s.vertical.reset();
     s.base = 0.0;
@@ -263,7 +263,7 @@ TEST_F(ForeignMap, OfADrawingIsInItsUnit) {
   EXPECT_LT((reported.box.sizes() - Eigen::Vector3d(8, 10, 12)).norm(), 1e-3);
 }
 
-TEST_F(ForeignMap, WarnsOfASizeThatComesFromAWrongUnit) {
+TEST_F(ForeignMap, WarnsAboutImplausibleExtent) {
   const auto here = [](Source& s) {
     s.vertical.reset();
     s.base = 0.0;
@@ -277,7 +277,7 @@ TEST_F(ForeignMap, WarnsOfASizeThatComesFromAWrongUnit) {
               Not(Contains(HasSubstr("Warning"))));
 }
 
-TEST_F(ForeignMap, OfAShapefileHasNamesOfTenCharacters) {
+TEST_F(ForeignMap, ReadsTruncatedAttributeNamesOfShapefiles) {
   const auto file = folder_.path() / "levels.shp";
   testing_support::write_map(
       file, {.driver = "ESRI Shapefile", .attributes = {{"building_l", "4"}, {"NAME", "hall"}}});
@@ -288,7 +288,7 @@ TEST_F(ForeignMap, OfAShapefileHasNamesOfTenCharacters) {
   EXPECT_NEAR(read_file(upper).box.max().z(), 14.0, 1e-3);
 }
 
-TEST_F(ForeignMap, WithoutAnIndexIsReadAndWithoutASystemRefused) {
+TEST_F(ForeignMap, ReadsShapefileWithoutIndexButNotWithoutCrs) {
   const auto file = folder_.path() / "hall.shp";
   testing_support::write_map(file, {.driver = "ESRI Shapefile", .attributes = {{"height", "12"}}});
   std::filesystem::remove(folder_.path() / "hall.shx");

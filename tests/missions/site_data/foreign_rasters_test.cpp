@@ -43,14 +43,14 @@ class ForeignRaster : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-TEST_F(ForeignRaster, HasNoGroundWhereAMaskSaysSo) {
+TEST_F(ForeignRaster, IgnoresMaskedCells) {
   expect_hole(read({.hole = -9999.0, .has_nodata = true}));
   expect_hole(read({.hole = 0.0, .has_mask = true}));
   expect_hole(read({.hole = 0.0, .has_alpha = true}));
   expect_hole(read({.hole = -32767.0, .has_alpha = true}));
 }
 
-TEST_F(ForeignRaster, HasNoGroundAtHeightsThatAreNone) {
+TEST_F(ForeignRaster, IgnoresCommonNodataHeights) {
   for (const double hole : {-9999.0, -32767.0, -32768.0, 32767.0, 65535.0, -3.4028235e38, 1e20}) {
     SCOPED_TRACE(hole);
     const Prior prior = read({.hole = hole});
@@ -64,7 +64,7 @@ TEST_F(ForeignRaster, HasNoGroundAtHeightsThatAreNone) {
   EXPECT_THAT(whole.notes, IsEmpty());
 }
 
-TEST_F(ForeignRaster, IsInTheUnitOfItsBandOrRefused) {
+TEST_F(ForeignRaster, ReadsBandUnitsAndRejectsUnknownOnes) {
   // 500 and 512 are stored, in each of these units.
   for (const auto& [unit, metres] : std::initializer_list<std::pair<const char*, double>>{
            {"feet", 0.3048}, {"US survey foot", 1200.0 / 3937.0}, {"cm", 0.01}, {"Metre", 1.0}}) {
@@ -79,13 +79,13 @@ TEST_F(ForeignRaster, IsInTheUnitOfItsBandOrRefused) {
   EXPECT_THAT(read({.bands = 3}).notes, Contains(HasSubstr("the first of 3 bands")));
 }
 
-TEST_F(ForeignRaster, OfImpossibleHeightsAloneIsRefused) {
+TEST_F(ForeignRaster, RejectsImpossibleHeights) {
   EXPECT_THAT(testing_support::thrown_message(
                   [&] { read({.hole = -9999.0}, [](Source& s) { s.unit = 1000.0; }); }),
               HasSubstr("heights must be from -500 to 9000 m; one is "));
 }
 
-TEST_F(ForeignRaster, InDegreesWithoutASystemIsRefused) {
+TEST_F(ForeignRaster, RejectsDegreesWithoutReferenceSystem) {
   Source source;
   source.file = folder_.file("ground.asc",
                              "ncols 2\nnrows 2\nxllcorner 9\nyllcorner 48\ncellsize 0.0001\n"

@@ -60,7 +60,7 @@ void put(const std::filesystem::path& file) {
   std::ofstream(file, std::ios::binary) << split_glb(testing_support::make_glb({})).binary;
 }
 
-TEST_F(ForeignScene, OpensBuffersByTheirAddresses) {
+TEST_F(ForeignScene, OpensBuffersByUri) {
   for (const auto& [uri, name] : std::initializer_list<std::pair<const char*, const char*>>{
            {"my%20house.bin", "my house.bin"},
            {"h%C3%A4us.bin", "h\xC3\xA4us.bin"},
@@ -74,7 +74,7 @@ TEST_F(ForeignScene, OpensBuffersByTheirAddresses) {
   }
 }
 
-TEST_F(ForeignScene, OpensNothingOutsideOfItsFolder) {
+TEST_F(ForeignScene, RejectsFilesOutsideFolder) {
   std::filesystem::create_directories(folder_.path() / "scene");
   put(folder_.path() / "secret.bin");
   for (const char* uri : {"../secret.bin", "..%2Fsecret.bin", "%2e%2e/secret.bin"}) {
@@ -85,7 +85,7 @@ TEST_F(ForeignScene, OpensNothingOutsideOfItsFolder) {
   }
 }
 
-TEST_F(ForeignScene, ThatNeedsAnUnknownExtensionIsRefusedByName) {
+TEST_F(ForeignScene, RejectsUnknownRequiredExtensionsByName) {
   put(folder_.path() / "b.bin");
   for (const std::string name :
        {"KHR_mesh_quantization", "EXT_meshopt_compression", "CESIUM_RTC", "ACME_rotated_houses"}) {
@@ -118,7 +118,7 @@ TEST_F(ForeignScene, ThatNeedsAnUnknownExtensionIsRefusedByName) {
               HasSubstr("requires the glTF extension CESIUM_RTC"));
 }
 
-TEST_F(ForeignScene, ThatNeedsAnExtensionOfLooksAloneIsRead) {
+TEST_F(ForeignScene, AcceptsRequiredAppearanceExtensions) {
   put(folder_.path() / "b.bin");
   const Prior prior = read(
       "scene.gltf",
@@ -175,7 +175,7 @@ std::string converted(const std::string& name, const std::string& factor,
          "',#12);\n#14=IFCUNITASSIGNMENT((#9,#13));\n";
 }
 
-TEST_F(ForeignScene, OfIfcIsInTheUnitThatItSays) {
+TEST_F(ForeignScene, ReadsUnitsOfIfc) {
   const struct {
     std::string unit;
     double metres;
@@ -192,14 +192,14 @@ TEST_F(ForeignScene, OfIfcIsInTheUnitThatItSays) {
   EXPECT_LT((marked.box.sizes() - Vector3d(8, 10, 12)).norm(), 1e-3);
 }
 
-TEST_F(ForeignScene, OfIfcWithoutAKnownUnitIsRefused) {
+TEST_F(ForeignScene, RejectsIfcWithoutKnownUnit) {
   const std::string unknown =
       "#10=IFCSIUNIT(*,.AREAUNIT.,$,.SQUARE_METRE.);\n#14=IFCUNITASSIGNMENT((#10));\n";
   EXPECT_THAT(error_message("a.ifc", ifc(unknown, 1.0)), HasSubstr("has no linear unit; set unit"));
   EXPECT_LT((read("a.ifc", ifc(unknown, 0.5), 0.5).box.sizes() - Vector3d(8, 10, 12)).norm(), 1e-3);
 }
 
-TEST_F(ForeignScene, OfIfcNotesAPlaceOnAMap) {
+TEST_F(ForeignScene, ReportsMapPositionOfIfc) {
   const Prior prior =
       read("a.ifc", ifc(si("$"), 1.0,
                         "#70=IFCPROJECTEDCRS('EPSG:25832',$,$,$,$,$,$);\n"

@@ -59,7 +59,7 @@ Value big_endian(const std::string& bytes, std::size_t position) {
 }
 
 // Known answer: the published grid itself (EGM96, 15'), read and interpolated here.
-TEST(Geodesy, KnowsTheGeoidAsItsGridHasIt) {
+TEST(Geodesy, MatchesPublishedGeoidGrid) {
   std::ifstream stream("/usr/share/proj/egm96_15.gtx", std::ios::binary);
   if (!stream) GTEST_SKIP() << "Debian's proj-data is not there";
   const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
@@ -86,7 +86,7 @@ TEST(Geodesy, KnowsTheGeoidAsItsGridHasIt) {
 }
 
 // echo LAT LON 0 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
-TEST(Geodesy, KnowsTheGeoid) {
+TEST(Geodesy, MatchesKnownGeoidUndulations) {
   EXPECT_NEAR(egm96_undulation(51.7534, -1.254), 47.760744, 1e-6);
   EXPECT_NEAR(egm96_undulation(48.75, 11.42), 46.466337, 1e-6);
   EXPECT_NEAR(egm96_undulation(0.0, 0.0), 17.161579, 1e-6);
@@ -94,7 +94,7 @@ TEST(Geodesy, KnowsTheGeoid) {
 }
 
 // 1e-9 degrees are a tenth of a millimetre.
-TEST(Geodesy, FollowsTheMapsProjection) {
+TEST(Geodesy, MatchesUtmProjection) {
   const ReferenceRequest request{.crs = "EPSG:32632", .vertical = HeightDatum::ellipsoid};
   for (double latitude = 1.0; latitude < 84.0; latitude += 9.0) {
     for (double longitude = 6.0; longitude <= 12.0; longitude += 1.3) {
@@ -107,7 +107,7 @@ TEST(Geodesy, FollowsTheMapsProjection) {
   }
 }
 
-TEST(Geodesy, CountsHeightsFromGeoidOrPad) {
+TEST(Geodesy, ConvertsHeightsAboveGeoidOrPad) {
   ReferenceRequest request{.crs = "EPSG:25832", .takeoff_height = 400.0};
   request.vertical = HeightDatum::geoid;
   const Vector3d position(677863.1, 5402477.3,
@@ -123,7 +123,7 @@ TEST(Geodesy, CountsHeightsFromGeoidOrPad) {
 }
 
 // What stands in for something better is within what PROJ states, and that is added up.
-TEST(Geodesy, AddsUpWhatStandInsMayBeOff) {
+TEST(Geodesy, AddsErrorsOfSubstitutes) {
   ReferenceRequest request{.crs = "EPSG:27700"};  // Debian has no OSTN15
   request.vertical = HeightDatum::ellipsoid;
   request.near = flight::GeodeticPoint{51.6965, -1.278, 0.0};
@@ -141,14 +141,14 @@ TEST(Geodesy, AddsUpWhatStandInsMayBeOff) {
 }
 
 // echo 48.763 11.3985 330 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
-TEST(Geodesy, HeightsOfASystemOfThreeAxesCountFromTheGeoidIfThatIsSaid) {
+TEST(Geodesy, UsesGeoidForThreeAxisSystemWhenSet) {
   ReferenceRequest request{.crs = "EPSG:4979"};
   EXPECT_EQ(geodetic(request, {11.3985, 48.763, 330.0}).z(), 330.0);
   request.vertical = HeightDatum::geoid;
   EXPECT_NEAR(geodetic(request, {11.3985, 48.763, 330.0}).z(), 376.490242, 1e-6);
 }
 
-TEST(Geodesy, RefusesAGeoidWhoseGridIsMissingUnlessToldOtherwise) {
+TEST(Geodesy, RejectsMissingGeoidGridUnlessVerticalIsSet) {
   ReferenceRequest request{.crs = "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"};
   EXPECT_THAT(
       [&] { geodetic_transform(request); },
@@ -159,7 +159,7 @@ TEST(Geodesy, RefusesAGeoidWhoseGridIsMissingUnlessToldOtherwise) {
   EXPECT_NEAR(position.z(), 146.466455, 1e-6);
 }
 
-TEST(Geodesy, RefusesWhatIsNoReferenceSystem) {
+TEST(Geodesy, RejectsInvalidReferenceSystems) {
   for (const char* crs : {"EPSG:1", "nonsense", "EPSG:4978", "EPSG:5773", "+proj=pipeline"}) {
     EXPECT_THAT(testing_support::thrown_message(
                     [&] { geodetic_transform({.crs = crs, .vertical = HeightDatum::ellipsoid}); }),
@@ -168,7 +168,7 @@ TEST(Geodesy, RefusesWhatIsNoReferenceSystem) {
   }
 }
 
-TEST(Geodesy, TakesEastFirstWhateverTheAuthoritySays) {
+TEST(Geodesy, ReadsEastFirstByDefault) {
   // EPSG:4326 has latitude first, EPSG:31467 north first; files have not.
   const ReferenceRequest plain{.crs = "EPSG:4326", .vertical = HeightDatum::ellipsoid};
   EXPECT_TRUE(geodetic(plain, {11.4, 48.7, 5.0}).isApprox(Vector3d(11.4, 48.7, 5.0), 1e-12));
@@ -183,7 +183,7 @@ TEST(Geodesy, TakesEastFirstWhateverTheAuthoritySays) {
 
 /// A metre of the map is 0.9996 m on the ground at the central meridian, and 1.0004 at its zone's
 /// border, where the map's north is turned to the east.
-TEST(Geodesy, UndoesScaleAndConvergenceOfTheGrid) {
+TEST(Geodesy, CorrectsGridScaleAndConvergence) {
   for (const double longitude : {9.0, 10.5, 12.0}) {
     const flight::GeodeticPoint origin{48.0, longitude, 0.0};
     const OnMap map = utm(origin.latitude_deg, origin.longitude_deg, 32);
@@ -196,7 +196,7 @@ TEST(Geodesy, UndoesScaleAndConvergenceOfTheGrid) {
 }
 
 /// On a sphere's curve alone: a place 10 km away on the ellipsoid is d^2 / 2 R below the plane.
-TEST(Geodesy, CurvesWithTheEarth) {
+TEST(Geodesy, AccountsForEarthCurvature) {
   const Vector3d position = in_site("EPSG:4326", {0.0, 0.0, 0.0}, {0.0, 0.09, 0.0});
   const double radius = 6378137.0 * (1.0 - 0.00669437999014);  // of the meridian at the equator
   const double angle = 0.09 * M_PI / 180.0;
@@ -216,7 +216,7 @@ TEST(Geodesy, CrossesTheAntimeridian) {
   EXPECT_LT(fiji.norm(), 1e-3);
 }
 
-TEST(Geodesy, HoldsAtThePoles) {
+TEST(Geodesy, IsCorrectAtPoles) {
   const flight::GeodeticPoint pole{90.0, 0.0, 0.0};
   const double metres =
       6399593.6258 * M_PI / 180.0;  // of a degree there: polar radius of curvature
@@ -229,7 +229,7 @@ TEST(Geodesy, HoldsAtThePoles) {
   EXPECT_LT(in_site("EPSG:32661", pole, {2000000.0, 2000000.0, 0.0}).norm(), 1e-3);
 }
 
-TEST(Geodesy, CountsInFeet) {
+TEST(Geodesy, ConvertsFeet) {
   // Oregon Lambert (ft): EPSG:2994; heights in feet, too, as nothing else is said.
   Source source;
   source.crs = "EPSG:2994";
@@ -245,7 +245,7 @@ TEST(Geodesy, CountsInFeet) {
 
 // A wall of 100 ft whose foot is 1000 ft high. The foot above the ellipsoid:
 // echo 44.050126698 -123.071508372 304.8 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
-TEST(Geodesy, CountsHeightsInFeetWhereTheSystemHasThem) {
+TEST(Geodesy, ConvertsHeightsInFeetOfReferenceSystem) {
   Source source;
   source.file = "wall.gml";
   source.crs = "EPSG:2994+8228";  // heights in feet, NAVD88's

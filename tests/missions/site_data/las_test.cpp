@@ -31,7 +31,7 @@ class Las : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-TEST_F(Las, KeepsTheClassesThatAreAskedFor) {
+TEST_F(Las, KeepsSelectedClasses) {
   for (const auto& [minor, format] : {std::pair(2, 3), {4, 6}}) {
     const std::string bytes = make_las(cube_, minor, format);
     EXPECT_EQ(read(bytes, [](Source& s) { s.select.classes = {6}; }).points.size(), 4U);
@@ -41,7 +41,7 @@ TEST_F(Las, KeepsTheClassesThatAreAskedFor) {
   }
 }
 
-TEST_F(Las, IsNoGroundNoTargetAndNoTruth) {
+TEST_F(Las, IsRejectedAsTerrainTargetOrGroundTruth) {
   for (const Role role : {Role::terrain, Role::target, Role::truth}) {
     EXPECT_THAT([&] { read(make_las(cube_, 4, 6), [&](Source& s) { s.role = role; }); },
                 ThrowsMessage<Error>(testing::AnyOf(HasSubstr("scan.las: contains no surfaces"),
@@ -49,12 +49,12 @@ TEST_F(Las, IsNoGroundNoTargetAndNoTruth) {
   }
 }
 
-TEST_F(Las, KeepsOnePointACube) {
+TEST_F(Las, KeepsOnePointPerVoxel) {
   EXPECT_EQ(read(make_las(cube_, 4, 6), [](Source& s) { s.spacing = 1e4; }).points.size(), 1U);
   EXPECT_EQ(read(make_las(cube_, 4, 6), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
 }
 
-TEST_F(Las, KnowsItsReferenceSystemByItsRecord) {
+TEST_F(Las, ReadsReferenceSystemFromRecord) {
   const std::string wkt =
       "PROJCS[\"ETRS89 / UTM zone 32N\",GEOGCS[\"ETRS89\",DATUM[\"European_Terrestrial_Reference_"
       "System_1989\",SPHEROID[\"GRS 1980\",6378137,298.257222101]],PRIMEM[\"Greenwich\",0],UNIT["
@@ -68,7 +68,7 @@ TEST_F(Las, KnowsItsReferenceSystemByItsRecord) {
   EXPECT_LT((by_record.points[7] - by_key.points[7]).norm(), 1e-4F);
 }
 
-TEST_F(Las, KeepsThePositionOfOwnScans) {
+TEST_F(Las, KeepsPositionsOfSkycapScans) {
   Cube near;
   near.low = {1.0, 2.0, 3.0};
   const Prior prior = read(
@@ -81,13 +81,13 @@ TEST_F(Las, KeepsThePositionOfOwnScans) {
 }
 
 // It is read piece by piece, whatever its size; the file here is mostly a hole on disk.
-TEST_F(Las, MayBeLargerThanTwoGigabytes) {
+TEST_F(Las, ReadsFilesLargerThanTwoGigabytes) {
   const std::filesystem::path file = folder_.file("large.las", make_las(cube_, 2, 3));
   std::filesystem::resize_file(file, max_bytes + (std::size_t{1} << 20));
   EXPECT_EQ(read_prior(make_source(file), site_at_cube()).points.size(), 8U);
 }
 
-TEST_F(Las, RefusesWhatSaysToBeCompressedAndNotHow) {
+TEST_F(Las, RejectsMissingCompressionRecord) {
   std::string bytes = make_las(cube_, 2, 3);
   bytes[104] = static_cast<char>(0x83);
   EXPECT_THAT([&] { read(bytes); },
@@ -95,7 +95,7 @@ TEST_F(Las, RefusesWhatSaysToBeCompressedAndNotHow) {
 }
 
 /// The shared airborne scan of Autzen Stadium: Oregon Lambert in feet, heights in feet.
-TEST_F(Las, ReadsAnAirborneScanInFeet) {
+TEST_F(Las, ReadsAirborneScanInFeet) {
   const char* const models = std::getenv("SKYCAP_MODELS");  // NOLINT(concurrency-mt-unsafe)
   const std::filesystem::path file =
       std::filesystem::path(models == nullptr ? "" : models) / "recorded/autzen_trim.las";

@@ -65,7 +65,7 @@ std::string ring_at(const std::string& height) {
   return text + "," + height;
 }
 
-TEST_F(Map, ExtrudesAPolygonDrawnInGoogleEarth) {
+TEST_F(Map, ExtrudesPolygonFromGoogleEarth) {
   const Prior prior =
       read("court.kml", make_kml("", ring_at("0")), [](Source& s) { s.height = 18.0; });
   ASSERT_EQ(prior.objects.size(), 1U);
@@ -75,7 +75,7 @@ TEST_F(Map, ExtrudesAPolygonDrawnInGoogleEarth) {
   EXPECT_NEAR(prior.box.max().z(), 18.0, 1e-3);
 }
 
-TEST_F(Map, HeightsOfAPolygonInGoogleEarthCountOnlyIfTheyAreAbsolute) {
+TEST_F(Map, UsesOnlyAbsoluteHeightsOfKmlPolygons) {
   const auto unplaced = [](Source& s) {
     s.base.reset();
     s.height = 18.0;
@@ -92,7 +92,7 @@ TEST_F(Map, HeightsOfAPolygonInGoogleEarthCountOnlyIfTheyAreAbsolute) {
   EXPECT_NEAR(prior.box.max().z(), 38.0, 1e-3);
 }
 
-TEST_F(Map, APolygonWithHeightsMakesNoSurfacesOfThoseWithout) {
+TEST_F(Map, ReadsPolygonsWithAndWithoutHeights) {
   const std::string roof = "[[9,48,510],[9.0002,48,510],[9.0002,48.0002,512],[9,48,510]]";
   const std::string text = R"({"type":"FeatureCollection","features":[)" +
                            feature(R"({"id":"roof"})", roof) + "," +
@@ -108,7 +108,7 @@ TEST_F(Map, APolygonWithHeightsMakesNoSurfacesOfThoseWithout) {
               ThrowsMessage<Error>(HasSubstr("contains no height of flat; set height")));
 }
 
-TEST_F(Map, TakesHeightsAndLevelsFromAttributes) {
+TEST_F(Map, ReadsHeightsAndStoreysFromAttributes) {
   const std::string text =
       R"({"type":"FeatureCollection","features":[)" +
       feature(R"({"id":"tall","height":"21.5 m"})", json_ring()) + "," +
@@ -123,7 +123,7 @@ TEST_F(Map, TakesHeightsAndLevelsFromAttributes) {
   EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines state storeys only")));
 }
 
-TEST_F(Map, ReadsBuildingsOfOpenStreetMap) {
+TEST_F(Map, ReadsOpenStreetMapBuildings) {
   // Editors write nodes in any order.
   const std::string osm = R"(<?xml version="1.0"?><osm version="0.6">
 <node id="4" lat="48.0002" lon="9.0"/><node id="3" lat="48.0002" lon="9.0002"/>
@@ -144,7 +144,7 @@ TEST_F(Map, CutsCourtyardsOut) {
   EXPECT_NEAR(volume(prior.objects[0].mesh), 0.75 * ring_area * 10.0, 1.0);
 }
 
-TEST_F(Map, AsksForWhatItCannotKnow) {
+TEST_F(Map, ReportsMissingKeys) {
   const std::string text = feature("{}", json_ring());
   EXPECT_THAT([&] { read("a.geojson", text); }, ThrowsMessage<Error>(HasSubstr("set height")));
   EXPECT_THAT(
@@ -168,7 +168,7 @@ TEST_F(Map, AsksForWhatItCannotKnow) {
               ThrowsMessage<Error>(HasSubstr("unknown layer b; expected one of: a")));
 }
 
-TEST_F(Map, KeepsWhatIsWithinAPolygon) {
+TEST_F(Map, KeepsObjectsWithinPolygon) {
   const std::string two =
       R"({"type":"FeatureCollection","features":[)" +
       feature(R"({"id":"in","height":5})", json_ring()) + "," +
@@ -182,7 +182,7 @@ TEST_F(Map, KeepsWhatIsWithinAPolygon) {
   EXPECT_EQ(prior.objects[0].id, "in");
 }
 
-TEST_F(Map, OpensNothingButTheFile) {
+TEST_F(Map, OpensOnlyNamedFile) {
   // A VRT may name any other file: its driver is not among those that are asked.
   EXPECT_THAT(testing_support::thrown_message(
                   [&] { read("a.tif", "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"/>"); }),

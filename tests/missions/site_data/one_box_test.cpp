@@ -56,7 +56,7 @@ const AlignedBox3d cube_box = [] {
   return box;
 }();
 
-class OneBox : public testing::Test {
+class BoxFixture : public testing::Test {
  protected:
   Prior read(const std::string& name, const std::string& bytes,
              const std::function<void(Source&)>& change = {}) {
@@ -84,7 +84,7 @@ class OneBox : public testing::Test {
   testing_support::TemporaryFolder folder_;
 };
 
-TEST_F(OneBox, OfCityGml) {
+TEST_F(BoxFixture, ReadsCityGml) {
   const Prior prior = read("cube.gml", make_citygml(cube_), [](Source& s) { s.crs.clear(); });
   expect_cube(prior, millimetre);
   EXPECT_EQ(prior.format, "CityGML 2.0");
@@ -98,14 +98,14 @@ TEST_F(OneBox, OfCityGml) {
   EXPECT_EQ(prior.objects[0].surfaces[4], SurfaceKind::wall);
 }
 
-TEST_F(OneBox, OfCityJson) {
+TEST_F(BoxFixture, ReadsCityJson) {
   const Prior prior = read("cube.json", make_cityjson(cube_), [](Source& s) { s.crs.clear(); });
   expect_cube(prior, millimetre);
   EXPECT_EQ(prior.format, "CityJSON 2.0");
   EXPECT_EQ(prior.objects[0].surfaces[2], SurfaceKind::roof);
 }
 
-TEST_F(OneBox, OfAnOutlineWithAHeight) {
+TEST_F(BoxFixture, ReadsOutlineWithHeight) {
   const Prior prior = read("cube.geojson", make_geojson(cube_), [](Source& s) {
     s.crs.clear();
     s.base = 380.0;
@@ -116,7 +116,7 @@ TEST_F(OneBox, OfAnOutlineWithAHeight) {
   EXPECT_EQ(prior.objects[0].id, "cube");
 }
 
-TEST_F(OneBox, OfAnOutlineOnTerrain) {
+TEST_F(BoxFixture, ReadsOutlineOnTerrain) {
   Source source = make_source(folder_.file("cube.geojson", make_geojson(cube_)));
   source.vertical.reset();
   source.base_on_terrain = true;
@@ -128,15 +128,15 @@ TEST_F(OneBox, OfAnOutlineOnTerrain) {
   EXPECT_NEAR(prior.box.min().x(), cube_box.min().x(), 0.01);
 }
 
-TEST_F(OneBox, OfAMesh) { expect_cube(read("cube.obj", make_obj(cube_)), millimetre); }
+TEST_F(BoxFixture, ReadsMesh) { expect_cube(read("cube.obj", make_obj(cube_)), millimetre); }
 
-TEST_F(OneBox, OfAScene) {
+TEST_F(BoxFixture, ReadsGltfScene) {
   const Prior prior =
       read("cube.glb", make_glb(cube_), [this](Source& s) { s.offset = cube_.low; });
   expect_cube(prior, millimetre);
 }
 
-TEST_F(OneBox, OfARasterWithinACell) {
+TEST_F(BoxFixture, ReadsRasterWithinOneCell) {
   const Prior prior = read("cube.asc", make_ascii_grid(cube_));
   EXPECT_EQ(prior.grid.columns, 28U);
   EXPECT_EQ(prior.grid.rows, 28U);
@@ -154,7 +154,7 @@ TEST_F(OneBox, OfARasterWithinACell) {
   EXPECT_NEAR(roof.sizes().x(), cube_box.sizes().x(), 1.0);
 }
 
-TEST_F(OneBox, OfAScan) {
+TEST_F(BoxFixture, ReadsLasScan) {
   for (const auto& [minor, format] : {std::pair(0, 0),
                                       {1, 1},
                                       {2, 2},
@@ -174,14 +174,14 @@ TEST_F(OneBox, OfAScan) {
   }
 }
 
-TEST_F(OneBox, OfAnE57FileIsThatOfItsScans) {
+TEST_F(BoxFixture, ReadsE57Scan) {
   const Prior prior = read("cube.e57", make_e57(cube_));
   ASSERT_EQ(prior.points.size(), 8U);
   EXPECT_LT((prior.points[0].cast<double>() - low_corner).norm(), millimetre);
   EXPECT_LT((prior.points[7].cast<double>() - high_corner).norm(), millimetre);
 }
 
-TEST_F(OneBox, HasItsHeightsInAllDatums) {
+TEST_F(BoxFixture, ReportsHeightsInAllDatums) {
   const Prior prior = read("cube.gml", make_citygml(cube_));
   EXPECT_NEAR(prior.ellipsoid_heights->min, 380.0, millimetre);
   EXPECT_NEAR(prior.ellipsoid_heights->max, 390.0, millimetre);
@@ -190,7 +190,7 @@ TEST_F(OneBox, HasItsHeightsInAllDatums) {
 }
 
 // EGM96 is off by up to a metre, as PROJ states it: that comes on top of what the file is off.
-TEST_F(OneBox, IsTheLessCertainTheMoreStandsIn) {
+TEST_F(BoxFixture, AddsUncertaintyOfGeoidSubstitute) {
   const auto geoid = [](Source& s) { s.vertical = HeightDatum::geoid; };
   EXPECT_EQ(read("cube.gml", make_citygml(cube_)).uncertainty, 0.3);
   EXPECT_EQ(read("cube.gml", make_citygml(cube_), geoid).uncertainty, 1.3);
@@ -203,7 +203,7 @@ TEST_F(OneBox, IsTheLessCertainTheMoreStandsIn) {
             1.5);
 }
 
-TEST_F(OneBox, TurnsAsItIsToldWhateverTheFormatSays) {
+TEST_F(BoxFixture, AppliesConfiguredUpAxis) {
   const Prior prior = read("cube.glb", make_glb(cube_), [](Source& s) {
     s.crs.clear();
     s.vertical.reset();
@@ -216,7 +216,7 @@ TEST_F(OneBox, TurnsAsItIsToldWhateverTheFormatSays) {
 }
 
 // A property's name is no mark of a format.
-TEST_F(OneBox, OfAnOutlineWithPropertiesOfOtherFormats) {
+TEST_F(BoxFixture, ReadsOutlineWithPropertiesOfOtherFormats) {
   std::string text = make_geojson(cube_);
   text.insert(text.find("\"function\""), R"("asset":"CityJSON","glTF":{"asset":1},)");
   const Prior prior = read("cube.geojson", text, [](Source& s) {
@@ -227,7 +227,7 @@ TEST_F(OneBox, OfAnOutlineWithPropertiesOfOtherFormats) {
   EXPECT_EQ(prior.objects[0].attributes.at("asset"), "CityJSON");
 }
 
-TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
+TEST_F(BoxFixture, RejectsInapplicableKeys) {
   const auto error_message = [&](const std::string& name, const std::string& bytes,
                                  const std::function<void(Source&)>& change) {
     return testing_support::thrown_message([&] { read(name, bytes, change); });
@@ -267,7 +267,7 @@ TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
               HasSubstr("vertical does not apply to this file"));
 }
 
-TEST_F(OneBox, OfPlacesInTheSitesFrame) {
+TEST_F(BoxFixture, ReadsMeshWithPoseInSiteFrame) {
   Cube near;
   near.low = {0.0, 0.0, 0.0};
   const Prior prior = read("cube.obj", make_obj(near), [](Source& s) {
@@ -279,7 +279,7 @@ TEST_F(OneBox, OfPlacesInTheSitesFrame) {
   EXPECT_LT((prior.box.max() - Vector3d(22, -3, 11)).norm(), 1e-9) << prior.box.max();
 }
 
-TEST_F(OneBox, InCentimetresWithYUp) {
+TEST_F(BoxFixture, ReadsCentimetresWithYUp) {
   Cube near;
   near.low = {0.0, 0.0, 0.0};
   near.size = {1000.0, 500.0, 200.0};
@@ -293,7 +293,7 @@ TEST_F(OneBox, InCentimetresWithYUp) {
   EXPECT_TRUE(prior.box.isApprox(AlignedBox3d(Vector3d(0, -2, 0), Vector3d(10, 0, 5)), 1e-9));
 }
 
-TEST_F(OneBox, WithSwappedAxesIsRefusedWithBothPlaces) {
+TEST_F(BoxFixture, RejectsSwappedAxes) {
   Cube swapped;
   swapped.low = {5403900.0, 676300.0, 380.0};
   EXPECT_THAT([&] { read("cube.gml", make_citygml(swapped)); },
@@ -301,7 +301,7 @@ TEST_F(OneBox, WithSwappedAxesIsRefusedWithBothPlaces) {
                                          HasSubstr("axes may be swapped"))));
 }
 
-TEST_F(OneBox, FarFromTheSiteIsRefused) {
+TEST_F(BoxFixture, RejectsDataFarFromSite) {
   Cube far;
   far.low.x() += 51'000.0;
   EXPECT_THAT([&] { read("cube.json", make_cityjson(far)); },
@@ -310,12 +310,12 @@ TEST_F(OneBox, FarFromTheSiteIsRefused) {
                                          testing::Not(HasSubstr("swapped")))));
 }
 
-TEST_F(OneBox, WithoutADatumOfHeightsIsRefused) {
+TEST_F(BoxFixture, RejectsMissingVerticalDatum) {
   EXPECT_THAT([&] { read("cube.gml", make_citygml(cube_), [](Source& s) { s.vertical.reset(); }); },
               ThrowsMessage<Error>(HasSubstr("set vertical: ellipsoid, geoid or takeoff")));
 }
 
-TEST_F(OneBox, OfAMapWithoutACrsIsNotTakenForTheSitesFrame) {
+TEST_F(BoxFixture, RejectsMapCoordinatesWithoutCrs) {
   const auto nowhere = [](Source& s) {
     s.crs.clear();
     s.vertical.reset();
@@ -324,7 +324,7 @@ TEST_F(OneBox, OfAMapWithoutACrsIsNotTakenForTheSitesFrame) {
               ThrowsMessage<Error>(HasSubstr("more than 50 km from the site")));
 }
 
-TEST_F(OneBox, IsWhatSelectLetsThrough) {
+TEST_F(BoxFixture, AppliesSelection) {
   const auto select = [](const std::function<void(Selection&)>& change) {
     return [=](Source& s) { change(s.select); };
   };

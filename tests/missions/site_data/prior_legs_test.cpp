@@ -149,7 +149,7 @@ std::size_t legs_to_try() {
   return enabled == nullptr ? 10'000 : std::stoul(enabled);
 }
 
-TEST(PriorLegs, NoneIsCertifiedThatWhatIsReallyThereRefuses) {
+TEST(PriorLegs, AreVerifiedOnlyWhenClearOfGroundTruth) {
   std::mt19937_64 random(1019);
   const testing_support::TemporaryFolder folder;
   constexpr std::size_t legs_per_site = 500;

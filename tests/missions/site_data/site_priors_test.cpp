@@ -37,7 +37,7 @@ flight::PriorObstacle surface_model(const HeightGrid& grid) {
 
 // Above and between the nodes of a cell its highest one is in the way, half a cell beyond the grid
 // too.
-TEST(SitePriors, ASurfaceModelIsSolidUnderTheHighestNodeOfEachCell) {
+TEST(SitePriors, FillSurfaceModelBelowMaxNodeOfEachCell) {
   const auto obstacle =
       surface_model(make_grid([](int x, int y) { return x == 2 && y == 1 ? 9.0 : 1.0; }));
   const auto height_over = [&](double x, double y) {
@@ -53,7 +53,7 @@ TEST(SitePriors, ASurfaceModelIsSolidUnderTheHighestNodeOfEachCell) {
   EXPECT_NEAR(obstacle.distance({-2.5, 1.5, 0.5}, 100), 2.0, 1e-6);
 }
 
-TEST(SitePriors, NodesWithoutAHeightAreNoneOfIt) {
+TEST(SitePriors, IgnoreNodesWithoutHeight) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto obstacle = surface_model(make_grid([&](int x, int) { return x < 3 ? 1.0 : nan; }));
   EXPECT_EQ(obstacle.distance({1.5, 1.5, 0.0}, 100), 0.0);
@@ -61,7 +61,7 @@ TEST(SitePriors, NodesWithoutAHeightAreNoneOfIt) {
 }
 
 // A strip is as wide as its cells.
-TEST(SitePriors, ASurfaceModelOfOneRowIsSolidToo) {
+TEST(SitePriors, FillSurfaceModelOfOneRow) {
   HeightGrid row{.columns = 3, .rows = 1, .nodes = {}, .right = {2, 0}, .down = {0, -2}};
   for (const float x : {0.0F, 2.0F, 4.0F}) row.nodes.emplace_back(x, 0.0F, 7.0F);
   const auto obstacle = surface_model(row);
@@ -72,7 +72,7 @@ TEST(SitePriors, ASurfaceModelOfOneRowIsSolidToo) {
 }
 
 // A large grid is held in fewer columns, none of which is lower than any of its nodes.
-TEST(SitePriors, AThinnedSurfaceModelHidesNoHeight) {
+TEST(SitePriors, KeepMaxHeightsInDownsampledSurfaceModel) {
   HeightGrid grid{.columns = 1700, .rows = 1700, .nodes = {}, .right = {1, 0}, .down = {0, 1}};
   for (int row = 0; row < 1700; ++row) {
     for (int column = 0; column < 1700; ++column) {
@@ -90,7 +90,7 @@ TEST(SitePriors, AThinnedSurfaceModelHidesNoHeight) {
   }
 }
 
-TEST(Terrain, IsAsHighAsThePlaneThroughItsNodes) {
+TEST(Terrain, InterpolatesPlaneThroughNodes) {
   Prior prior;
   prior.grid = make_grid([](int x, int y) { return 0.5 * x - 0.25 * y; });
   const Terrain terrain({&prior});
@@ -105,7 +105,7 @@ TEST(Terrain, IsAsHighAsThePlaneThroughItsNodes) {
 }
 
 // Beside a node without height, each node still has its own cell.
-TEST(Terrain, EndsHalfACellFromItsLastNodes) {
+TEST(Terrain, EndsHalfACellFromLastNodes) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Prior prior;
   prior.grid = make_grid([](int, int) { return 2.0; });
@@ -118,7 +118,7 @@ TEST(Terrain, EndsHalfACellFromItsLastNodes) {
 }
 
 // Of a grid that is too large to be held as it is, a peak between those nodes that are kept stays.
-TEST(Terrain, KeepsThePeaksOfALargeGrid) {
+TEST(Terrain, KeepsPeaksOfLargeGrid) {
   Prior prior;
   prior.grid = {.columns = 2000, .rows = 2000, .nodes = {}, .right = {1, 0}, .down = {0, 1}};
   for (int row = 0; row < 2000; ++row) {
@@ -164,7 +164,7 @@ double top_at(const flight::PriorObstacle& obstacle, double x, double y) {
 }
 
 // A tile turned by 45 degrees: beside it, within the box around it, and beyond, there is the plane.
-TEST(UnknownGround, IsThePlaneBesideATurnedTile) {
+TEST(UnknownGround, IsPlaneOutsideRotatedTile) {
   const UnknownGround unknown(
       {ground_where([](double x, double y) { return std::abs(x) + std::abs(y) < 20.0; }, 7.0)},
       -3.0);
@@ -179,7 +179,7 @@ TEST(UnknownGround, IsThePlaneBesideATurnedTile) {
 
 // A hole within the ground is as high as the highest ground beside it, a gap between two tiles that
 // is open to the sides is the plane.
-TEST(UnknownGround, IsAsHighAsTheGroundThatSurroundsIt) {
+TEST(UnknownGround, HasMaxHeightOfSurroundingGround) {
   const auto in_hole = [](double x, double y) { return x > 5 && x < 8 && y > -4 && y < 3; };
   const auto west = [](double x, double) { return x < -10; };
   const UnknownGround unknown(
@@ -195,14 +195,14 @@ TEST(UnknownGround, IsAsHighAsTheGroundThatSurroundsIt) {
   EXPECT_THAT(unknown.note(), testing::HasSubstr("1 holes"));
 }
 
-TEST(Terrain, OfASurfaceIsItsTop) {
+TEST(Terrain, UsesMaxHeightOfSurface) {
   Prior prior;
   prior.objects.push_back({.id = "hill", .mesh = flight::scenes::box({0, 0, 0}, {10, 10, 3})});
   EXPECT_NEAR(Terrain({&prior}).height({4.0, 7.0}).value(), 3.0, 1e-9);
 }
 
 // A box of 2 x 3 x 4 m, as its file turns it: points on walls and roof, outward, none below.
-TEST(SurfacePoints, CoverWhatCanBeSeenFacingOutward) {
+TEST(SurfacePoints, CoverVisibleSurfaceFacingOutward) {
   Object object{.id = "1", .mesh = flight::scenes::box({0, 0, 0}, {2, 3, 4})};
   object.surfaces.assign(object.mesh.triangles.size(), SurfaceKind::wall);
   for (const bool is_inward : {false, true}) {

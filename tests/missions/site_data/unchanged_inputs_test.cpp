@@ -38,7 +38,7 @@ std::map<std::string, std::pair<std::uint32_t, fs::file_time_type>> compute_chec
   return sums;
 }
 
-class UnchangedInputs : public testing::Test {
+class InputFiles : public testing::Test {
  protected:
   /// Reads a file of the folder, which nobody may write to meanwhile.
   Prior read(const fs::path& file, const std::function<void(Source&)>& change = {}) {
@@ -63,7 +63,7 @@ class UnchangedInputs : public testing::Test {
 
 void set_base(Source& source) { source.base = 500.0; }
 
-TEST_F(UnchangedInputs, OfEveryMap) {
+TEST_F(InputFiles, StayUnchangedWhenMapsAreRead) {
   for (const auto& [driver, name] :
        std::initializer_list<std::pair<const char*, const char*>>{{"GPKG", "a.gpkg"},
                                                                   {"ESRI Shapefile", "a.shp"},
@@ -76,7 +76,7 @@ TEST_F(UnchangedInputs, OfEveryMap) {
   }
 }
 
-TEST_F(UnchangedInputs, OfADatabaseWithALogWhoseChangesAreRead) {
+TEST_F(InputFiles, StayUnchangedWhenDatabaseWithLogIsRead) {
   const fs::path live = folder_.path() / "live", left = folder_.path() / "left";
   fs::create_directories(live);
   fs::create_directories(left);
@@ -99,19 +99,19 @@ TEST_F(UnchangedInputs, OfADatabaseWithALogWhoseChangesAreRead) {
   EXPECT_NEAR(read(left / "hall.gpkg", set_base).box.max().z(), 12.0, 0.01);
 }
 
-TEST_F(UnchangedInputs, OfAShapefileWithoutAnIndex) {
+TEST_F(InputFiles, StayUnchangedWhenShapefileWithoutIndexIsRead) {
   testing_support::write_map(folder_.path() / "a.shp",
                              {.driver = "ESRI Shapefile", .attributes = {{"height", "12"}}});
   fs::remove(folder_.path() / "a.shx");
   EXPECT_NEAR(read(folder_.path() / "a.shp", set_base).box.max().z(), 12.0, 0.01);
 }
 
-TEST_F(UnchangedInputs, OfARaster) {
+TEST_F(InputFiles, StayUnchangedWhenRasterIsRead) {
   testing_support::write_raster(folder_.path() / "a.tif", {.has_mask = true});
   read(folder_.path() / "a.tif");
 }
 
-TEST_F(UnchangedInputs, OfEverythingElse) {
+TEST_F(InputFiles, StayUnchangedForAllOtherFormats) {
   const testing_support::Cube cube;
   const auto on_map = [](Source& source) {
     source.crs = "EPSG:25832";

@@ -19,7 +19,7 @@ std::string error_message(const std::function<void(PipeWriter&)>& work) {
   });
 }
 
-TEST(ChildProcess, HandsOverWhatItFinds) {
+TEST(ChildProcess, ReturnsResults) {
   ChildProcess child({"x.file", "their library", 1}, [](PipeWriter& pipe) {
     pipe.put(7);
     pipe.put_text("words");
@@ -31,13 +31,13 @@ TEST(ChildProcess, HandsOverWhatItFinds) {
   EXPECT_EQ(child.read_row<std::vector<double>>(), std::vector<double>(100'000, 0.5));
 }
 
-TEST(ChildProcess, ThatCrashesOrEndsEarlyIsAComplaint) {
+TEST(ChildProcess, ReportsCrashOrEarlyExit) {
   const std::string end = "x.file: is damaged: their library stopped while reading it";
   EXPECT_EQ(error_message([](PipeWriter&) { std::raise(SIGKILL); }), end);
   EXPECT_EQ(error_message([](PipeWriter&) {}), end);
 }
 
-TEST(ChildProcess, ThatNeverEndsIsEnded) {
+TEST(ChildProcess, EndsAfterTimeout) {
   const auto loop = [](PipeWriter&) {
     for (volatile bool goes_on = true; goes_on;) {
     }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(ExternalProgram, SaysWhatBecameOfIt) {
+TEST(ExternalProgram, ReturnsExitCodeAndOutput) {
   const ProgramResult result = run_external_program({"sh", "-c", "pwd; echo no >&2; exit 7"}, "/");
   EXPECT_EQ(result.exit_code, 7);
   EXPECT_EQ(result.output, "/\nno\n");
@@ -20,7 +20,7 @@ TEST(ExternalProgram, SaysWhatBecameOfIt) {
 }
 
 // GNU parallel takes the first signal for a wish to begin nothing new.
-TEST(ExternalProgram, IsEndedEvenIfItOverhearsTheFirstSignal) {
+TEST(ExternalProgram, IsStoppedEvenWhenFirstSignalIsIgnored) {
   for (const char* script :
        {"exec sleep 60", "trap 'trap - TERM' TERM; while :; do sleep 0.05; done",
         "while :; do echo much; sleep 0.01; done"}) {

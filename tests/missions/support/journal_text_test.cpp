@@ -22,7 +22,7 @@ std::string error_message(const std::string& found, const std::string& expected)
   return testing_support::thrown_message([&] { require_same_survey("j", found, expected, cure); });
 }
 
-TEST(JournalText, TellsASurveyByVersionSeedAndKeys) {
+TEST(JournalIdentity, ContainsVersionSeedAndKeys) {
   const auto json = nlohmann::ordered_json::parse(make_identity(run));
   EXPECT_EQ(json.at("version"), version);
   EXPECT_EQ(json.at("seed"), 7);
@@ -31,7 +31,7 @@ TEST(JournalText, TellsASurveyByVersionSeedAndKeys) {
   EXPECT_NO_THROW(require_same_survey("j", make_identity(run), make_identity(run), cure));
 }
 
-TEST(JournalText, NamesWhatIsDifferent) {
+TEST(JournalIdentity, NamesChangedSettings) {
   Identity other = run;
   other.settings[1].value = "13";
   EXPECT_EQ(
@@ -40,7 +40,7 @@ TEST(JournalText, NamesWhatIsDifferent) {
 }
 
 // Earlier journals count what limits refuse as unreachable, and say nothing of a format.
-TEST(JournalText, SaysWhichVersionWroteAJournalOfAnotherFormat) {
+TEST(JournalIdentity, ReportsVersionOfJournalInOtherFormat) {
   const std::string end = ", whose journals this version cannot continue; " + cure;
   EXPECT_EQ(error_message(R"({"version": "0.1.0", "seed": 7})", make_identity(run)),
             "j: was written by version 0.1.0" + end);
@@ -53,12 +53,12 @@ TEST(JournalText, SaysWhichVersionWroteAJournalOfAnotherFormat) {
 }
 
 // Those of scans have none.
-TEST(JournalText, AsksForAFormatOnlyWhereThereIsOne) {
+TEST(JournalIdentity, RequiresFormatOnlyWhenPresent) {
   const std::string identity = identity_text(run, {{"formats", "las"}});
   EXPECT_NO_THROW(require_same_survey("j", identity, identity, cure));
 }
 
-TEST(JournalText, RejectsWhatIsNotAnIdentity) {
+TEST(JournalIdentity, RejectsInvalidIdentity) {
   EXPECT_EQ(error_message("[1, 2]", make_identity(run)), "j: is not a journal");
 }
 

@@ -45,7 +45,7 @@ double largest_error(const geometry::Mesh& mesh) {
 }
 
 // A sphere has area 4 pi r^2, and its triangles face away from its centre.
-TEST(Reconstruct, ASphereIsClosedRoundAndFacesOutward) {
+TEST(Reconstruct, ReturnsClosedOutwardSphere) {
   const geometry::AttributedCloud cloud = ball_cloud();
   const support::Reconstruction result = support::reconstruct(cloud.positions, cloud.normals, {});
   EXPECT_EQ(result.points, cloud.positions.size());
@@ -60,7 +60,7 @@ TEST(Reconstruct, ASphereIsClosedRoundAndFacesOutward) {
   }
 }
 
-TEST(Reconstruct, NormalsAreEstimatedAndAgreeWhereNoneAreGiven) {
+TEST(Reconstruct, EstimatesMissingNormals) {
   const support::Reconstruction result = support::reconstruct(ball_cloud().positions, {}, {});
   EXPECT_LT(largest_error(result.mesh), 0.02);
   EXPECT_NEAR(geometry::surface_area(result.mesh), 16.0 * std::numbers::pi, 0.5);
@@ -68,7 +68,7 @@ TEST(Reconstruct, NormalsAreEstimatedAndAgreeWhereNoneAreGiven) {
 
 // Of the sphere above z = 2, a height of 3 of its 4 m: area 2 pi r h. Poisson closes the hole
 // below; what has no points around it goes.
-TEST(Reconstruct, HolesStayHoles) {
+TEST(Reconstruct, KeepsHoles) {
   const geometry::AttributedCloud cloud = ball_cloud(2.0F);
   const support::Reconstruction trimmed = support::reconstruct(cloud.positions, cloud.normals, {});
   EXPECT_GT(trimmed.trimmed_triangles, 100U);
@@ -81,7 +81,7 @@ TEST(Reconstruct, HolesStayHoles) {
   EXPECT_GT(geometry::surface_area(closed.mesh), geometry::surface_area(trimmed.mesh) + 1.0);
 }
 
-TEST(Reconstruct, ThinsTheCloudToTheSpacing) {
+TEST(Reconstruct, DownsamplesCloudToSpacing) {
   const geometry::AttributedCloud cloud = ball_cloud();
   const support::Reconstruction result =
       support::reconstruct(cloud.positions, cloud.normals, {.spacing = 0.3});
@@ -89,7 +89,7 @@ TEST(Reconstruct, ThinsTheCloudToTheSpacing) {
   EXPECT_LT(largest_error(result.mesh), 0.1);
 }
 
-TEST(Reconstruct, RefusesWhatMakesNoSurface) {
+TEST(Reconstruct, RejectsUnusableInput) {
   const std::vector<Vector3f> few(99, Vector3f::Zero());
   EXPECT_THAT(testing_support::thrown_message([&] { support::reconstruct(few, {}, {}); }),
               testing::HasSubstr("too few points: 99"));
@@ -109,7 +109,7 @@ class ReconstructCommand : public testing::Test {
   const tests::TestFolder folder;
 };
 
-TEST_F(ReconstructCommand, WritesAMeshThatEvaluateComparesWithTheModel) {
+TEST_F(ReconstructCommand, WritesMeshAcceptedByEvaluate) {
   geometry::write_cloud(folder / "ball.ply", make_columns(ball_cloud()));
   geometry::write_mesh(folder / "truth.ply", sim::sphere({1, 2, 3}, 2.0, 5));
   const tests::ProgramRun run = tests::run_skycap({"reconstruct", folder / "ball.ply"});
@@ -122,7 +122,7 @@ TEST_F(ReconstructCommand, WritesAMeshThatEvaluateComparesWithTheModel) {
   EXPECT_THAT(evaluated.out, testing::HasSubstr("coverage  100.00%"));
 }
 
-TEST_F(ReconstructCommand, SaysWhichCloudHasTooFewPoints) {
+TEST_F(ReconstructCommand, NamesCloudWithTooFewPoints) {
   const std::string cloud = folder.write("few.xyz", "0 0 0\n1 0 0\n0 1 0\n");
   const tests::ProgramRun run = tests::run_skycap({"reconstruct", cloud});
   EXPECT_EQ(run.exit_code, 2);
@@ -150,14 +150,14 @@ class MovedProgram : public testing::Test {
   const tests::TestFolder folder_;
 };
 
-TEST_F(MovedProgram, LoadsTheModuleBesideIt) {
+TEST_F(MovedProgram, LoadsModuleFromSameFolder) {
   add_module();
   const support::ProgramResult result = reconstruct();
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_LT(largest_error(geometry::read_mesh(folder_ / "ball_mesh.ply")), 0.02);
 }
 
-TEST_F(MovedProgram, SaysWhichModuleItMisses) {
+TEST_F(MovedProgram, NamesMissingModule) {
   const support::ProgramResult result = reconstruct();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.output, testing::HasSubstr((folder_ / "libskycap_reconstruction.so") +

@@ -30,7 +30,7 @@ batch::Trial trial(double a, double b, double c) {
   return trial;
 }
 
-TEST(CoverageCurve, AveragesStepsAtEvenPlaces) {
+TEST(CoverageCurve, AveragesStepsAtEvenDistances) {
   const std::vector<batch::Trial> trials{trial(0.2, 0.4, 0.8), trial(0.4, 0.4, 0.6)};
   const auto curve =
       batch::coverage_curve(trials, batch::CurveAxis::distance, 7);  // every half metre
@@ -43,7 +43,7 @@ TEST(CoverageCurve, AveragesStepsAtEvenPlaces) {
   EXPECT_DOUBLE_EQ(curve[6].mean, 0.7);
 }
 
-TEST(CoverageCurve, SpreadsTimesByFactors) {
+TEST(CoverageCurve, SpacesTimesLogarithmically) {
   const auto curve =
       batch::coverage_curve({trial(0.2, 0.4, 0.8)}, batch::CurveAxis::planning_time, 3);
   ASSERT_EQ(curve.size(), 3U);
@@ -53,7 +53,7 @@ TEST(CoverageCurve, SpreadsTimesByFactors) {
   EXPECT_DOUBLE_EQ(curve[2].mean, 0.8);
 }
 
-TEST(CoverageCurve, KeepsTheEndOfTrialsThatAreOver) {
+TEST(CoverageCurve, KeepsFinalCoverageOfFinishedTrials) {
   batch::Trial longer = trial(0.2, 0.4, 0.6);
   longer.coverage_after.push_back(1.0);
   longer.distance_after.push_back(9.0);
@@ -64,7 +64,7 @@ TEST(CoverageCurve, KeepsTheEndOfTrialsThatAreOver) {
   EXPECT_DOUBLE_EQ(curve.back().mean, 0.8);
 }
 
-TEST(CoverageCurve, OverTheTimeInTheAirIsOfFlights) {
+TEST(CoverageCurve, RequiresFlightsForFlightTimeAxis) {
   batch::Trial flight_trial = trial(0.2, 0.4, 0.8);
   flight_trial.flight_time_after = {60.0, 90.0, 180.0};
   const auto curve =
@@ -80,11 +80,11 @@ TEST(CoverageCurve, OverTheTimeInTheAirIsOfFlights) {
           .empty());
 }
 
-TEST(CoverageCurve, WithoutTrialsIsEmpty) {
+TEST(CoverageCurve, IsEmptyWithoutTrials) {
   EXPECT_TRUE(batch::coverage_curve({}, batch::CurveAxis::views, 4).empty());
 }
 
-TEST(TargetFigures, CountViewsAndDistancesUntilATargetIsObserved) {
+TEST(TargetFigures, CountViewsAndDistancesUntilTargetIsObserved) {
   batch::Trial a = trial(0.1, 0.2, 0.3);
   a.targets = {{1, 0.4}, {2, 0.7}, {1, 1.6}, {40, 99.0}};
   const batch::TargetFigures figures = batch::target_figures({a});
@@ -97,7 +97,7 @@ TEST(TargetFigures, CountViewsAndDistancesUntilATargetIsObserved) {
   EXPECT_DOUBLE_EQ(figures.share_by_distance.back(), 0.75);
 }
 
-TEST(ReachFigures, AreOfTheFirstViewThatComesToTheCoverage) {
+TEST(ReachFigures, UseFirstViewThatReachesCoverage) {
   const auto reach = batch::reach_figures({trial(0.2, 0.4, 0.8), trial(0.4, 0.5, 0.6)}, 0.4);
   ASSERT_TRUE(reach);
   EXPECT_EQ(reach->reached, 2U);
@@ -106,7 +106,7 @@ TEST(ReachFigures, AreOfTheFirstViewThatComesToTheCoverage) {
   EXPECT_DOUBLE_EQ(reach->planning_time.mean, 1.5);
 }
 
-TEST(ReachFigures, LeaveOutTrialsThatEndBefore) {
+TEST(ReachFigures, IgnoreTrialsThatEndBelowCoverage) {
   const std::vector<batch::Trial> trials{trial(0.2, 0.4, 0.8), trial(0.4, 0.5, 0.6)};
   const auto reach = batch::reach_figures(trials, 0.7);
   ASSERT_TRUE(reach);
@@ -115,7 +115,7 @@ TEST(ReachFigures, LeaveOutTrialsThatEndBefore) {
   EXPECT_FALSE(batch::reach_figures(trials, 0.9));
 }
 
-TEST(ViewFigures, AreMeansOverTheTrials) {
+TEST(ViewFigures, AverageOverTrials) {
   const batch::ViewFigures figures =
       batch::view_figures({trial(0.1, 0.2, 0.6), trial(0.1, 0.2, 0.9)});
   EXPECT_DOUBLE_EQ(figures.frontiers.mean, 2.0);
@@ -123,7 +123,7 @@ TEST(ViewFigures, AreMeansOverTheTrials) {
 }
 
 // Table 1 as printed.
-TEST(PaperResults, AreThoseOfTheTables) {
+TEST(PaperResults, MatchPublishedTables) {
   const auto dragon = batch::paper_result("dragon", "pc");
   ASSERT_TRUE(dragon);
   EXPECT_EQ(dragon->views, 130);
@@ -147,7 +147,7 @@ std::vector<batch::BenchmarkCell> two_cells() {
   return {{"teapot", "see", {see, trial(0.4, 0.5, 0.6)}}, {"teapot", "oa", {trial(0, 0, 0.5)}}};
 }
 
-TEST(BenchmarkReport, PutsRatiosToThePaperBesideOurFigures) {
+TEST(BenchmarkReport, WritesRatiosToPaperResults) {
   const auto json = nlohmann::json::parse(batch::results_json(two_cells()));
   const auto& see = json["results"][0];
   EXPECT_EQ(see["views"]["mean"], 3.0);
@@ -158,7 +158,7 @@ TEST(BenchmarkReport, PutsRatiosToThePaperBesideOurFigures) {
   EXPECT_TRUE(json["results"][1]["views"]["half_width_95"].is_null());  // one trial
 }
 
-TEST(BenchmarkReport, MarkdownHasBothTables) {
+TEST(BenchmarkReport, WritesBothTablesAsMarkdown) {
   const std::string text = batch::report_markdown(two_cells());
   EXPECT_THAT(text, HasSubstr("| SEE | 3.0 (60.0) | 70.0 (98.1) | 4 (4.13) | 3.0 (42.8) |"));
   EXPECT_THAT(text, HasSubstr("| OA | 3.0 (105.0) |"));
@@ -166,7 +166,7 @@ TEST(BenchmarkReport, MarkdownHasBothTables) {
   EXPECT_THAT(text, HasSubstr("| SEE | 1 | 100.0 | 100.0 |"));
 }
 
-TEST(BenchmarkReport, SaysWhatItTakesToReachTheCoverageOfSee) {
+TEST(BenchmarkReport, ReportsEffortToReachCoverageOfSee) {
   std::vector<batch::BenchmarkCell> cells = two_cells();
   cells[1].trials = {trial(0.1, 0.75, 0.9), trial(0.1, 0.2, 0.3)};
   const std::string text = batch::report_markdown(cells);
@@ -179,7 +179,7 @@ TEST(BenchmarkReport, SaysWhatItTakesToReachTheCoverageOfSee) {
   EXPECT_EQ(json["results"][1]["until_coverage_of"]["paper"]["trials"], 0);
 }
 
-TEST(BenchmarkReport, CsvHasALineForEachCellAndTrial) {
+TEST(BenchmarkReport, WritesCsvLineForEachCellAndTrial) {
   const std::string table = batch::table_1_csv(two_cells());
   EXPECT_EQ(std::ranges::count(table, '\n'), 3);
   EXPECT_THAT(table, HasSubstr("\nteapot,oa,1,3,0,,105,"));
@@ -189,7 +189,7 @@ TEST(BenchmarkReport, CsvHasALineForEachCellAndTrial) {
   EXPECT_THAT(trials, HasSubstr("\nteapot,oa,0,complete,3,"));
 }
 
-TEST(TrialText, GivesTheSameTrialBack) {
+TEST(TrialJson, ReadsBackSameTrial) {
   batch::Trial before = trial(0.1 + 0.2, 1.0 / 3.0, 0.7);
   before.seed = 18'000'000'000'000'000'001ULL;
   before.stop_reason = survey::StopReason::view_limit;
@@ -204,7 +204,7 @@ TEST(TrialText, GivesTheSameTrialBack) {
   EXPECT_FALSE(after.coverage.attainable_coverage);
 }
 
-TEST(TrialText, RefusesWhatIsNoTrial) {
+TEST(TrialJson, RejectsInvalidTrials) {
   const auto error_message = [](const std::string& text) {
     return testing_support::thrown_message([&] { batch::parse_trial(text); });
   };

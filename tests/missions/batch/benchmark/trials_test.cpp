@@ -16,14 +16,14 @@ namespace {
 using testing::HasSubstr;
 
 // Student's t for 4 degrees of freedom is 2.776 at 97.5 % (any table).
-TEST(Statistic, MatchesAHandComputedExample) {
+TEST(Statistic, MatchesHandComputedExample) {
   const batch::Statistic s = batch::statistic({2, 4, 4, 6, 9});
   EXPECT_DOUBLE_EQ(s.mean, 5.0);
   EXPECT_DOUBLE_EQ(s.deviation, std::sqrt(7.0));
   EXPECT_NEAR(s.half_width_95, 2.776 * std::sqrt(7.0 / 5.0), 1e-3);
 }
 
-TEST(Statistic, OfOneNumberIsUncertain) {
+TEST(Statistic, HasInfiniteIntervalForOneNumber) {
   const batch::Statistic s = batch::statistic({3});
   EXPECT_EQ(s.mean, 3.0);
   EXPECT_EQ(s.deviation, 0.0);
@@ -51,7 +51,7 @@ config::MissionSetup mission_called(const std::string& name, const std::string& 
                                "m.yaml");
 }
 
-TEST(Trials, CurvesKeepTheEndOfSurveysThatAreOver) {
+TEST(Trials, KeepsFinalValuesOfFinishedSurveysInCurves) {
   const auto json =
       nlohmann::json::parse(batch::trials_json(mission_called("vase"), two_trials(), 2, 1));
   EXPECT_EQ(json["trials"], 2);
@@ -64,7 +64,7 @@ TEST(Trials, CurvesKeepTheEndOfSurveysThatAreOver) {
   EXPECT_DOUBLE_EQ(json["mean_after_view"]["distance_m"][2], 2.5);
 }
 
-TEST(Trials, PutThePapersFiguresBesideTheirs) {
+TEST(Trials, ReportsPaperResults) {
   const config::MissionSetup mission = mission_called("vase", "paper: {views: 22.3}\n");
   const auto json = nlohmann::json::parse(batch::trials_json(mission, two_trials(), 2, 1));
   EXPECT_EQ(json["views"]["paper"], 22.3);
@@ -75,7 +75,7 @@ TEST(Trials, PutThePapersFiguresBesideTheirs) {
 }
 
 // Table 1, where the mission is one of its models and names no other publication.
-TEST(Trials, TakeThePapersRowOfTheirPlanner) {
+TEST(Trials, UsesPaperRowOfPlanner) {
   const config::MissionSetup mission =
       mission_called("bunny", "planner: {name: see}\npaper: {coverage: 0.5}\n");
   const auto json = nlohmann::json::parse(batch::trials_json(mission, two_trials(), 2, 1));
@@ -85,13 +85,13 @@ TEST(Trials, TakeThePapersRowOfTheirPlanner) {
   EXPECT_FALSE(json["coverage_visible"].contains("paper"));
 }
 
-TEST(Trials, TableHoldsNamesOfAnyLength) {
+TEST(Trials, WritesNamesOfAnyLengthInTable) {
   const config::MissionSetup mission = mission_called(std::string(1000, 'v'));
   EXPECT_THAT(batch::trials_table(mission, two_trials()),
               testing::StartsWith(mission.name + ": 2 trials, 1 complete\n"));
 }
 
-TEST(Trials, CsvHasALineForEach) {
+TEST(Trials, WritesCsvLineForEachTrial) {
   EXPECT_EQ(
       batch::trials_csv(two_trials()),
       "seed,stop_reason,views,coverage,coverage_visible,attainable_coverage,distance_m,points,"
@@ -100,7 +100,7 @@ TEST(Trials, CsvHasALineForEach) {
       "2,view_limit,4,1,,,5,0,,,0\n");
 }
 
-TEST(Trials, AreReadBackAsTheyWereWritten) {
+TEST(Trials, ReadsBackWrittenTrials) {
   for (const batch::Trial& trial : two_trials()) {
     const batch::Trial again = batch::parse_trial(batch::trial_json(trial));
     EXPECT_EQ(again.flight_length, trial.flight_length);

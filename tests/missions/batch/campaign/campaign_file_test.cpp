@@ -38,7 +38,7 @@ const char* const two_by_two =
     "  plain: {}\n"
     "  dense: {planner: {density: 213}, start.position: [1, 2, 3.5]}\n";
 
-TEST(Campaign, ExpandsToTheProductOfItsLists) {
+TEST(Campaign, ExpandsToProductOfLists) {
   const Manifest manifest(parse_campaign(two_by_two, "folder/c.yaml"));
   EXPECT_EQ(manifest.file().name, "c");
   EXPECT_EQ(manifest.file().folder, "folder");
@@ -62,7 +62,7 @@ TEST(Campaign, ExpandsToTheProductOfItsLists) {
             R"("start.position":"[1, 2, 3.5]"},"folder":"items/b/dense/oa/seed_5"})");
 }
 
-TEST(Campaign, NeedsNothingButMissions) {
+TEST(Campaign, RequiresOnlyMissions) {
   const Manifest manifest(parse_campaign("missions: [a.yaml]\n", "c.yaml"));
   ASSERT_EQ(manifest.size(), 10U);
   EXPECT_EQ(manifest.line(3).folder(), "items/a/own/seed_4");
@@ -70,7 +70,7 @@ TEST(Campaign, NeedsNothingButMissions) {
   EXPECT_EQ(manifest.file().results, ItemResults::figures);
 }
 
-TEST(Campaign, AppendsItemsWhenSeedsAreAdded) {
+TEST(Campaign, AppendsRunsWhenSeedsAreAdded) {
   const Manifest few(parse_campaign(two_by_two, "c.yaml"));
   const std::string text = two_by_two;
   const Manifest more(
@@ -80,7 +80,7 @@ TEST(Campaign, AppendsItemsWhenSeedsAreAdded) {
 }
 
 // Every item of a range belongs to one entry, and comes up once.
-TEST(Campaign, RangesAreSharedOutToEntries) {
+TEST(Campaign, DividesRangesAmongEntries) {
   const Manifest manifest(parse_campaign(two_by_two, "c.yaml"));
   for (std::size_t first = 0; first < manifest.size(); ++first) {
     for (std::size_t end = first; end <= manifest.size(); ++end) {
@@ -99,7 +99,7 @@ TEST(Campaign, RangesAreSharedOutToEntries) {
 }
 
 // Property: a value written in one line and read again is the value.
-TEST(Campaign, HandsValuesOnAsTheyAre) {
+TEST(Campaign, WritesYamlValuesUnchanged) {
   for (const char* value :
        {"1", "-2.5e-3", "'7'", "true", "see++", "'a, b]: \"c\" # d'", "builtin:teapot",
         "[1, [2, '3'], {a: b, 'c d': ~}]", "{x: [], y: {}}", "''", "\"tab\\tand\\x7f\""}) {
@@ -115,7 +115,7 @@ TEST(Campaign, HandsValuesOnAsTheyAre) {
   }
 }
 
-TEST(Campaign, RefusesWhatItDoesNotUnderstandWhereItStands) {
+TEST(Campaign, RejectsInvalidKeysWithLineNumber) {
   EXPECT_THAT(rejection_message("[a]"), HasSubstr("c.yaml:1: is not a map"));
   EXPECT_THAT(rejection_message("name: x\n"),
               HasSubstr("c.yaml:1: key missions is missing or empty"));
@@ -144,7 +144,7 @@ TEST(Campaign, RefusesWhatItDoesNotUnderstandWhereItStands) {
               HasSubstr("c.yaml:2: key results is all; it must be one of figures, package"));
 }
 
-TEST(Campaign, RefusesMoreItemsThanItsBound) {
+TEST(Campaign, RejectsMoreRunsThanMaximum) {
   std::string missions = "m0.yaml";
   for (int i = 1; i < 12; ++i) missions += ", m" + std::to_string(i) + ".yaml";
   EXPECT_THAT(rejection_message("missions: [" + missions + "]\nseeds: 100000\n"),
@@ -152,7 +152,7 @@ TEST(Campaign, RefusesMoreItemsThanItsBound) {
 }
 
 // A wrong value is known when a mission is read with it; the message says where it stands.
-TEST(Campaign, ChangesKnowTheirLine) {
+TEST(Campaign, NamesLineOfInvalidChanges) {
   const CampaignFile file =
       parse_campaign("missions: [a.yaml]\nvariants:\n  v:\n    planner.density: much\n", "c.yaml");
   const std::string mission =

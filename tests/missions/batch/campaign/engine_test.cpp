@@ -33,7 +33,7 @@ std::string rejection_message(const std::string& index, const Environment& envir
 }
 
 // The first and the eighth task of each, as its manual numbers them.
-TEST(TaskIndex, FollowsEachEnginesNumbers) {
+TEST(TaskIndex, FollowsNumberingOfEachScheduler) {
   const auto task = [](const std::string& engine, const char* variable, const char* value) {
     const Environment environment = make_environment({{variable, value}});
     EXPECT_EQ(task_index("auto", environment), task_index(engine, environment));
@@ -50,7 +50,7 @@ TEST(TaskIndex, FollowsEachEnginesNumbers) {
   EXPECT_EQ(task_index("7", make_environment({{"PARALLEL_SEQ", "1"}})), 7U);
 }
 
-TEST(TaskIndex, RefusesWhatSaysNoTask) {
+TEST(TaskIndex, RejectsInvalidIndices) {
   const Environment none = make_environment({});
   for (const char* wrong : {"-1", "1.5", "", "7 ", "0x3", "99999999999999999999", "all"}) {
     EXPECT_THAT(rejection_message(wrong, none), HasSubstr("--index is")) << wrong;
@@ -65,7 +65,7 @@ TEST(TaskIndex, RefusesWhatSaysNoTask) {
 }
 
 // Property: the tasks of a job together have each item once, whatever the chunk.
-TEST(TaskIndex, TasksShareItemsOut) {
+TEST(TaskIndex, AssignsEachRunToOneTask) {
   for (std::size_t items = 1; items <= 30; ++items) {
     for (std::size_t chunk = 1; chunk <= items + 2; ++chunk) {
       std::size_t next = 0;
@@ -91,7 +91,7 @@ JobRequest request(std::size_t items, std::size_t chunk = 0, unsigned jobs = 4) 
           .jobs = jobs};
 }
 
-TEST(EngineJob, SplitsAsTheEngineLikesIt) {
+TEST(SchedulerJob, SplitsRunsBySchedulerLimits) {
   const auto describe_split = [](EngineName engine, const JobRequest& requested) {
     const TaskSplit tasks = split(engine, requested);
     return std::vector<std::size_t>{tasks.tasks, tasks.chunk};
@@ -105,7 +105,7 @@ TEST(EngineJob, SplitsAsTheEngineLikesIt) {
 }
 
 // A shell is the oracle: it reads the words back.
-TEST(EngineJob, ScriptsSurviveTheShell) {
+TEST(SchedulerJob, QuotesShellArgumentsInScripts) {
   const std::string script =
       job_script("t", {}, {"printf", "<%s>", "a b", "it's", "$HOME `x` \\ \"q\"", "-n", ""});
   EXPECT_THAT(script, testing::StartsWith("#!/bin/sh\n# t, written by skycap"));
@@ -113,7 +113,7 @@ TEST(EngineJob, ScriptsSurviveTheShell) {
   EXPECT_EQ(result.output, "<a b><it's><$HOME `x` \\ \"q\"><-n><>");
 }
 
-TEST(EngineJob, IsStartedByWords) {
+TEST(SchedulerJob, HasSubmitCommandAndFiles) {
   const EngineJob slurm = engine_job(EngineName::slurm, request(5, 2));
   EXPECT_EQ(slurm.command.front(), "sbatch");
   EXPECT_EQ(slurm.command.back(), "/data/out/slurm.sh");

@@ -22,7 +22,7 @@ std::string error_message(const std::string& text) {
   return thrown_message([&] { parse_district(text, "town/quarter.yaml"); });
 }
 
-TEST(DistrictFile, OfAMapAloneHasDefaults) {
+TEST(DistrictFile, HasDefaultsWhenOnlyMapIsSet) {
   const DistrictFile district = parse_district("map: town.gml\n", "town/quarter.yaml");
   EXPECT_EQ(district.name, "quarter");
   EXPECT_EQ(district.request.map, "town/town.gml");
@@ -35,7 +35,7 @@ TEST(DistrictFile, OfAMapAloneHasDefaults) {
   EXPECT_THAT(district.set, IsEmpty());
 }
 
-TEST(DistrictFile, SaysWhatIsSurveyedAndHow) {
+TEST(DistrictFile, ReadsAllKeys) {
   const DistrictFile district = parse_district(
       "name: old_town\nmap: town.gml\ncrs: 'EPSG:25832'\nvertical: geoid\nbase: 380\nheight: 9\n"
       "terrain: dtm.tif\nobstacles: [trees.las]\n"
@@ -73,7 +73,7 @@ struct ExpectedError {
   std::string text, program_output;
 };
 
-TEST(DistrictFile, SaysWhatIsWrongAndWhatWouldBeRight) {
+TEST(DistrictFile, ReportsErrorsWithRemedies) {
   const std::vector<ExpectedError> expected_errors{
       {"pads: []\n", "key map is missing"},
       {"map: a\nvertical: takeoff\n", ":2: key vertical is takeoff; it must be one of ellipsoid"},

@@ -83,7 +83,7 @@ class District : public testing::Test {
   const tests::TestFolder folder_;
 };
 
-TEST_F(District, IsSurveyedAndFlownWithOneCommand) {
+TEST_F(District, PlansSurveysAndFlightWithOneCommand) {
   const auto run_once = run();
   ASSERT_EQ(run_once.exit_code, 0) << run_once.err << run_once.out;
   EXPECT_THAT(run_once.out, HasSubstr("2 of 2 surveyed"));
@@ -107,7 +107,7 @@ TEST_F(District, IsSurveyedAndFlownWithOneCommand) {
 }
 
 // By the file as an autopilot reads it, in the space as it truly is: all buildings, the ground.
-TEST_F(District, IsProvenAgainFromItsFiles) {
+TEST_F(District, VerifiesRouteFilesAgainstAllBuildings) {
   ASSERT_EQ(run({"--no-report"}).exit_code, 0);
   const json flight = results().at("flight");
   int checked = 0;
@@ -125,7 +125,7 @@ TEST_F(District, IsProvenAgainFromItsFiles) {
   EXPECT_GE(checked, 2);
 }
 
-TEST_F(District, GoesOnWhereItWasLeft) {
+TEST_F(District, ResumesUnfinishedSurveys) {
   const auto first = run({"--index", "1"});
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const auto partly = run({"--collect"});
@@ -144,7 +144,7 @@ TEST_F(District, GoesOnWhereItWasLeft) {
   EXPECT_EQ(read_content(out() / "targets.csv"), table);
 }
 
-TEST_F(District, CutsOutWhatIsNearEachTarget) {
+TEST_F(District, CutsOutSurroundingsOfEachTarget) {
   std::vector<Vector3d> far = positions;
   far.emplace_back(85, 0, 0);
   far.emplace_back(900, 0, 0);
@@ -157,7 +157,7 @@ TEST_F(District, CutsOutWhatIsNearEachTarget) {
 
 // A neighbour stands in the scene that a target's sensor sees; what it sees free up to the boxes of
 // others is kept for the flight of all. A target by itself needs neither box.
-TEST_F(District, KeepsWhatTargetsSeeOfEachOther) {
+TEST_F(District, KeepsUnknownBoxesOfNeighbouringTargets) {
   folder_.write("town.city.json", town({{0, 0, 0}, {18, 0, 0}, {500, 0, 0}}));
   write("map: town.city.json\nvertical: ellipsoid\n");
   ASSERT_EQ(run({"--list"}).exit_code, 0);
@@ -176,7 +176,7 @@ TEST_F(District, KeepsWhatTargetsSeeOfEachOther) {
   }
 }
 
-TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {
+TEST_F(District, SelectsTargetsByPositionAndAttribute) {
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {attribute: {number: '3'}}\n");
   EXPECT_THAT(run({"--list"}).out,
               AllOf(HasSubstr("house_3.yaml"), testing::Not(HasSubstr("house_2"))));
@@ -186,14 +186,14 @@ TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {
   EXPECT_NEAR(district_plan.targets[0].box.min().z(), 0.0, 0.02);
 }
 
-TEST_F(District, SaysWhyThereIsNothingToSurvey) {
+TEST_F(District, ReportsWhySelectionIsEmpty) {
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {near: '48.0,11.0', distance: 10}\n");
   EXPECT_THAT(run().err, HasSubstr("key targets leaves none of the 4 objects of"));
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {id: [castle]}\n");
   EXPECT_THAT(run().err, HasSubstr("castle"));
 }
 
-TEST_F(District, OnASlopeNeedsATerrain) {
+TEST_F(District, RequiresTerrainOnSlope) {
   folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}, {120, 0, 3}}));
   const auto rejected = run();
   EXPECT_EQ(rejected.exit_code, 2);
@@ -216,7 +216,7 @@ std::string rising_ground() {
   return text;
 }
 
-TEST_F(District, OnASlopeStandsOnItsTerrain) {
+TEST_F(District, UsesTerrainOnSlope) {
   folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}}));
   folder_.write("ground.asc", rising_ground());
   write("map: town.city.json\nvertical: ellipsoid\ncrs: 'EPSG:25832'\nterrain: ground.asc\n");
@@ -231,7 +231,7 @@ TEST_F(District, OnASlopeStandsOnItsTerrain) {
   EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
 }
 
-TEST_F(District, RefusesAPadInABuilding) {
+TEST_F(District, RejectsPadInsideBuilding) {
   const std::string map = "map: town.city.json\nvertical: ellipsoid\n";
   write(map);
   ASSERT_EQ(run({"--list"}).exit_code, 0);

@@ -35,14 +35,14 @@ std::vector<std::vector<double>> corners(const Ring& ring) {
   return list;
 }
 
-TEST(Outline, OfABoxIsItsBase) {
+TEST(Outline, IsBaseOfBox) {
   const auto rings = compute_outline(box({1, 2, 0}, {4, 6, 9}));
   ASSERT_EQ(rings.size(), 1U);
   EXPECT_THAT(corners(rings[0]), UnorderedElementsAre(ElementsAre(1, 2), ElementsAre(4, 2),
                                                       ElementsAre(4, 6), ElementsAre(1, 6)));
 }
 
-TEST(Outline, OfTwoBoxesIsTwoRings) {
+TEST(Outline, HasTwoRingsForTwoBoxes) {
   geometry::Mesh mesh = box({0, 0, 0}, {2, 2, 5});
   append(mesh, box({5, 0, 0.2}, {7, 2, 5}));
   append(mesh, box({9, 0, 3}, {11, 2, 5}));  // stands on nothing
@@ -50,7 +50,7 @@ TEST(Outline, OfTwoBoxesIsTwoRings) {
 }
 
 // A tent has no floor.
-TEST(Outline, WithoutALevelFaceIsTheHull) {
+TEST(Outline, IsHullWithoutLevelFace) {
   geometry::Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {2, 2, 3}};
   mesh.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
@@ -60,7 +60,7 @@ TEST(Outline, WithoutALevelFaceIsTheHull) {
                                              ElementsAre(4, 4), ElementsAre(0, 4)));
 }
 
-TEST(Groups, AreOfWhatIsNearerThanAsked) {
+TEST(Groups, JoinsObjectsWithinMergeDistance) {
   const std::vector<site_data::Object> row{
       object("a", box({0, 0, 0}, {10, 10, 8})), object("b", box({30, 0, 0}, {40, 10, 8})),
       object("c", box({10, 0, 0}, {20, 10, 6})), object("d", box({20.3, 0, 0}, {29, 10, 6}))};
@@ -70,7 +70,7 @@ TEST(Groups, AreOfWhatIsNearerThanAsked) {
 }
 
 // A street of houses that share walls is not one survey.
-TEST(Groups, AreNoLargerThanASurvey) {
+TEST(Groups, LimitsGroupSize) {
   std::vector<site_data::Object> street;
   street.reserve(20);
   for (int i = 0; i < 20; ++i) {
@@ -84,7 +84,7 @@ TEST(Groups, AreNoLargerThanASurvey) {
   EXPECT_EQ(members, street.size());
 }
 
-TEST(CityText, IsReadAsWhatItWasWrittenFrom) {
+TEST(CityJsonWriter, WritesObjectsThatReadBackEqual) {
   const tests::TestFolder folder;
   site_data::Object tower = object("tower \"A\"", box({1000.25, -3, 0}, {1010.5, 7, 21.125}));
   tower.surfaces.back() = site_data::SurfaceKind::wall;

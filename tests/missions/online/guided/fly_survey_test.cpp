@@ -79,7 +79,7 @@ double find_nearest(const std::vector<Vector3d>& positions, const scene::SceneOp
   return nearest;
 }
 
-TEST_F(FlySurvey, IsWhatPlanDoesAndKeepsItsClearance) {
+TEST_F(FlySurvey, MatchesPlanAndKeepsClearance) {
   const FlightEnd end = fly();
   ASSERT_FALSE(end.failure) << end.failure->what << "\n" << notes_;
   EXPECT_TRUE(end.has_landed);
@@ -97,14 +97,14 @@ TEST_F(FlySurvey, IsWhatPlanDoesAndKeepsItsClearance) {
 }
 
 /// One frame in ten is lost, one in twenty damaged, others come twice or once more and late.
-TEST_F(FlySurvey, IsTheSameOverABadLink) {
+TEST_F(FlySurvey, MatchesPlanOverLossyLink) {
   const FlightEnd end = fly({.lost = 0.1, .doubled = 0.1, .damaged = 0.05, .late = 0.1});
   ASSERT_FALSE(end.failure) << end.failure->what << "\n" << notes_;
   EXPECT_TRUE(end.has_landed);
   online::expect_same(survey_->finish(), rehearsal_.planned());
 }
 
-TEST_F(FlySurvey, FliesHomeWhenItIsInterruptedAndGoesOnLater) {
+TEST_F(FlySurvey, ReturnsWhenInterruptedAndResumesLater) {
   const Sensor exact = sensor_;
   sensor_ = [&](const geometry::View& requested, const geometry::View& actual_view,
                 std::size_t number) {
@@ -126,7 +126,7 @@ TEST_F(FlySurvey, FliesHomeWhenItIsInterruptedAndGoesOnLater) {
   EXPECT_EQ(online::positions(record.views), online::positions(rehearsal_.planned().views));
 }
 
-TEST_F(FlySurvey, LeavesControlToAPilotAtOnce) {
+TEST_F(FlySurvey, YieldsControlToPilotImmediately) {
   const FlightEnd end = fly({.pilot_takes_over = 30.0}, {.returns_on_failure = true});
   ASSERT_TRUE(end.failure);
   EXPECT_EQ(end.failure->kind, FailureKind::pilot);
@@ -147,7 +147,7 @@ bool are_near(const std::vector<Vector3d>& positions, const std::vector<Vector3d
 }
 
 /// Set points are at most half a metre apart, and the way from the pad begins with none.
-TEST_F(FlySurvey, StaysOnItsLegsWhereverTheLinkIsLost) {
+TEST_F(FlySurvey, StaysOnLegsWhenLinkIsLost) {
   fly();
   const std::vector<Vector3d> legs = autopilot_->set_points();
   const Vector3d above_pad = survey_->flight()->above_pad();
@@ -177,7 +177,7 @@ struct HeldFlight {
 class HeldFlights : public FlySurvey, public testing::WithParamInterface<HeldFlight> {};
 
 /// Even where a return is asked for: nobody knows where the vehicle is.
-TEST_P(HeldFlights, HoldUntilAPilotComes) {
+TEST_P(HeldFlights, HoldPositionUntilPilotTakesOver) {
   const FlightEnd end = fly(GetParam().faults, {.returns_on_failure = true});
   ASSERT_TRUE(end.failure);
   EXPECT_EQ(end.failure->kind, GetParam().kind) << end.failure->what;
@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
                                FailureKind::off_leg}),
     [](const auto& test) { return test.param.name; });
 
-TEST_F(FlySurvey, HoldsIfNoReturnIsAskedFor) {
+TEST_F(FlySurvey, HoldsPositionUnlessReturnIsEnabled) {
   sensor_ = [](const geometry::View&, const geometry::View&, std::size_t) -> geometry::Scan {
     throw Error(ErrorKind::bad_file, "the camera does not answer");
   };
@@ -211,7 +211,7 @@ TEST_F(FlySurvey, HoldsIfNoReturnIsAskedFor) {
   EXPECT_FALSE(end.has_landed);
 }
 
-TEST_F(FlySurvey, FliesHomeWithoutAPlanner) {
+TEST_F(FlySurvey, ReturnsWhenPlannerTimesOut) {
   std::vector<std::promise<void>> never;
   FlightOptions options{.returns_on_failure = true};
   int works = 0;
@@ -228,7 +228,7 @@ TEST_F(FlySurvey, FliesHomeWithoutAPlanner) {
   EXPECT_GT(find_nearest(autopilot_->set_points(), rehearsal_.setup().scene()), 1.88);
 }
 
-TEST_F(FlySurvey, FliesHomeWhileItsBatteryLasts) {
+TEST_F(FlySurvey, ReturnsOnBatteryFailsafe) {
   const FlightEnd end = fly({.battery_fails = 30.0});
   ASSERT_TRUE(end.failure);
   EXPECT_EQ(end.failure->kind, FailureKind::battery);
@@ -261,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(
         GroundedFlight{"flat_battery", {.battery = 0.265}, "battery at 26%"}),
     [](const auto& test) { return test.param.name; });
 
-TEST_F(FlySurvey, StandsBesideThePadsMiddle) {
+TEST_F(FlySurvey, LandsOnPadAfterOffsetTakeOff) {
   const FlightEnd end = fly({.pad_offset = {1.0, -1.0, 0.0}});
   ASSERT_FALSE(end.failure) << end.failure->what;
   EXPECT_LT((autopilot_->position() - survey_->flight()->pad()).norm(), 0.3);

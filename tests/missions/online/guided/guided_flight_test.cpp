@@ -122,7 +122,7 @@ double whole_time(const Faults& faults) {
 
 // The fault of old: at the end of braking the vehicle is still ahead of its set point, by more than
 // legs are proven for.
-TEST(GuidedFlight, TheTestAutopilotFliesPastItsSetPoints) {
+TEST(GuidedFlight, OvershootsSetPointsOnTestAutopilot) {
   Flight flight({.jerk = heavy_jerk});
   std::stop_source stop;
   double max = 0.0;
@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 // Two hundred at random moments: all go home along the way that they came by, and land.
-TEST_P(Interruptions, EndOnThePad) {
+TEST_P(Interruptions, EndOnPad) {
   const double whole = whole_time(GetParam().faults);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> moments(0.5, whole);
@@ -181,7 +181,7 @@ TEST_P(Interruptions, EndOnThePad) {
 }
 
 // Where it holds is on the leg that it came on, and it is at rest there.
-TEST(GuidedFlight, HoldsAtRestOnItsLegWhenInterrupted) {
+TEST(GuidedFlight, HoldsAtRestOnLegWhenInterrupted) {
   for (const double moment : {9.0, 12.0, 15.0, 21.0, 27.0, 33.0}) {
     Flight flight({.jerk = heavy_jerk});
     std::stop_source stop;
@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(GuidedFlight, Stalls,
                          });
 
 // The set points that follow are where the vehicle is, not where they ended.
-TEST_P(Stalls, EndWhereTheVehicleIs) {
+TEST_P(Stalls, EndAtVehiclePosition) {
   Flight flight({.jerk = default_jerk});
   StallingPort port(flight.autopilot, GetParam().begin, GetParam().duration);
   const MaybeFailure failure = flight.fly(port, {});
@@ -232,7 +232,7 @@ TEST_P(Stalls, EndWhereTheVehicleIs) {
 }
 
 // Shorter ones are flown through: the vehicle never flies back.
-TEST(GuidedFlight, DoesNotFlyBackAfterAShortStall) {
+TEST(GuidedFlight, FliesForwardAfterShortStall) {
   for (const double duration : {0.3, 0.6, 0.9}) {
     Flight flight({.jerk = default_jerk});
     StallingPort port(flight.autopilot, 9.0, duration);
@@ -273,7 +273,7 @@ double compute_view_pitch(const Flight& flight) {
   return std::asin(flight.vehicle->view().direction.z());
 }
 
-TEST(Gimbals, ThatReportAgainstTheVehicleAreCompensated) {
+TEST(Gimbals, CompensateVehicleRelativeReports) {
   for (const double wind_pitch : {0.0, 1.0, 3.8, -6.0, 12.0}) {
     Flight flight({.wind_pitch = wind_pitch * degree, .gimbal_against_vehicle = true});
     SteppedPort port(flight.autopilot);
@@ -284,7 +284,7 @@ TEST(Gimbals, ThatReportAgainstTheVehicleAreCompensated) {
   }
 }
 
-TEST(Gimbals, ThatReportAgainstTheHorizonAreBelieved) {
+TEST(Gimbals, UseHorizonRelativeReportsDirectly) {
   for (const double wind_pitch : {0.0, 3.8, -6.0}) {
     Flight flight({.wind_pitch = wind_pitch * degree});
     SteppedPort port(flight.autopilot);
@@ -296,7 +296,7 @@ TEST(Gimbals, ThatReportAgainstTheHorizonAreBelieved) {
 }
 
 // A tilt that does not change tells only what the gimbal would have to say at the view.
-TEST(Gimbals, SteadyTiltIsToldFromTheViewAlone) {
+TEST(Gimbals, DetectReportFrameDuringSteadyTilt) {
   GimbalReport report;
   report.begin_aim(0.0, -0.1);
   for (double time = 0.0; time < 5.0; time += 0.1) report.hear(time, -0.1 - 0.06, 0.06);
@@ -308,7 +308,7 @@ TEST(Gimbals, SteadyTiltIsToldFromTheViewAlone) {
   EXPECT_FALSE(horizon.is_against_vehicle());
 }
 
-TEST(Gimbals, ThatDoNotTurnAreNamed) {
+TEST(Gimbals, ReportStuckGimbal) {
   Flight flight({.gimbal_stuck = true});
   SteppedPort port(flight.autopilot);
   const MaybeFailure failure = aimed(flight, port, -20.0 * degree);
@@ -320,7 +320,7 @@ TEST(Gimbals, ThatDoNotTurnAreNamed) {
   EXPECT_THAT(failure->what, testing::Not(HasSubstr("position")));
 }
 
-TEST(AimErrors, NameWhatIsOff) {
+TEST(AimErrors, DescribeExceededTolerances) {
   EXPECT_EQ(describe_failures({}, 0.3), "");
   EXPECT_EQ(describe_failures({.position = 0.5}, 0.3), "position error 0.50 m (at most 0.30)");
   EXPECT_EQ(describe_failures({.speed = 0.4, .turn = 5.0 * degree}, 0.3),

@@ -50,7 +50,7 @@ Bytes received(NetworkPort& port, std::size_t size) {
   return all;
 }
 
-TEST(NetworkAddress, IsOfThreeKinds) {
+TEST(NetworkAddress, ParsesThreeKinds) {
   const NetworkAddress waits = parse_address("udp:127.0.0.1:14550");
   EXPECT_EQ(waits.kind, NetworkAddress::Kind::udp_wait);
   EXPECT_EQ(waits.host, this_machine);
@@ -61,7 +61,7 @@ TEST(NetworkAddress, IsOfThreeKinds) {
   EXPECT_FALSE(parse_address("udp:0.0.0.0:14550").is_loopback());
 }
 
-TEST(NetworkAddress, IsRefusedInOneLine) {
+TEST(NetworkAddress, RejectsInvalidAddresses) {
   for (const char* wrong : {"", "udp", "udp:14550", "serial:127.0.0.1:1", "udp:localhost:1",
                             "udp::1", "udp:1.2.3:4:5", "udp:1.2.3.4.5:6"}) {
     EXPECT_THAT(thrown_message([&] { parse_address(wrong); }), HasSubstr("must be udp:HOST:PORT"))
@@ -74,7 +74,7 @@ TEST(NetworkAddress, IsRefusedInOneLine) {
   }
 }
 
-TEST(NetworkPort, HearsOnlyTheFirstWhoSpeaks) {
+TEST(NetworkPort, ReceivesOnlyFromFirstSender) {
   const std::uint16_t number = free_port();
   NetworkPort port({NetworkAddress::Kind::udp_wait, this_machine, number});
   NetworkPort first({NetworkAddress::Kind::udp_send, this_machine, number});
@@ -90,7 +90,7 @@ TEST(NetworkPort, HearsOnlyTheFirstWhoSpeaks) {
   EXPECT_TRUE(second.receive(0.05).empty());
 }
 
-TEST(NetworkPort, RefusesAnAddressThatIsTaken) {
+TEST(NetworkPort, RejectsAddressInUse) {
   const std::uint16_t number = free_port();
   const NetworkAddress address{NetworkAddress::Kind::udp_wait, this_machine, number};
   const NetworkPort port(address);
@@ -105,7 +105,7 @@ std::string flyable(std::string mission) {
 }
 
 /// The program itself, over the network and in real time, as far as the ground.
-TEST(FlyCommand, SaysWhatTheAutopilotSays) {
+TEST(FlyCommand, ReportsAutopilotMessages) {
   const tests::TestFolder folder;
   const std::string text = flyable(tests::flight_mission());
   const std::string mission = folder.write("m.yaml", text);
@@ -127,7 +127,7 @@ TEST(FlyCommand, SaysWhatTheAutopilotSays) {
   EXPECT_EQ(run.out, "");
 }
 
-TEST(FlyCommand, RefusesMissionsThatItCannotFly) {
+TEST(FlyCommand, RejectsUnsupportedMissions) {
   const tests::TestFolder folder;
   const auto rejection = [&](const std::string& text, const std::string& address) {
     return tests::run_skycap(

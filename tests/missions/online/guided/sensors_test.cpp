@@ -35,7 +35,7 @@ class FolderSensor : public testing::Test {
 };
 
 /// A camera: it waits for the pose, and one point ahead of it is what it sees.
-TEST_F(FolderSensor, AsksByAPoseAndTakesTheScanThatComes) {
+TEST_F(FolderSensor, WritesPoseAndReadsArrivingScan) {
   std::jthread camera([&](const std::stop_token& stop) {
     while (!stop.stop_requested() && !fs::exists(folder_.path() / "scan-0007.pose")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -50,12 +50,12 @@ TEST_F(FolderSensor, AsksByAPoseAndTakesTheScanThatComes) {
   EXPECT_EQ(online::parse_pose_text(pose, "pose").translation(), Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST_F(FolderSensor, TakesNoOldScan) {
+TEST_F(FolderSensor, RejectsExistingScan) {
   folder_.write("scan-0002.ply", "");
   EXPECT_THAT(thrown_message([&] { scan(2); }), HasSubstr("existed before"));
 }
 
-TEST_F(FolderSensor, GivesUp) {
+TEST_F(FolderSensor, TimesOutWithoutScan) {
   EXPECT_THAT(thrown_message([&] { scan(3, 0.1); }), HasSubstr("timeout: no scan arrived"));
   stop_.request_stop();
   EXPECT_THAT(thrown_message([&] { scan(4, 600.0); }), HasSubstr("timeout: no scan arrived"));

@@ -28,7 +28,7 @@ using testing::Not;
 using testing_support::thrown_message;
 using tests::read_content;
 
-TEST(LiveSurvey, FedByTheSimulatorIsWhatPlanDoes) {
+TEST(LiveSurvey, MatchesPlanWithSimulatedScans) {
   for (const std::string& mission :
        {short_mission(tests::quick_mission(), "see++"), short_mission(tests::quick_mission(), "oa"),
         short_mission(tests::flight_mission()), moving_mission("live: {pose_check: false}\n")}) {
@@ -43,7 +43,7 @@ TEST(LiveSurvey, FedByTheSimulatorIsWhatPlanDoes) {
   }
 }
 
-TEST(LiveSurvey, GoesOnWhereItWasAfterEveryScan) {
+TEST(LiveSurvey, ResumesAfterEveryScan) {
   for (const std::string& mission :
        {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flight_mission()),
         moving_mission("live: {pose_check: false}\n", /*views=*/2)}) {
@@ -59,7 +59,7 @@ TEST(LiveSurvey, GoesOnWhereItWasAfterEveryScan) {
 }
 
 /// A kill leaves any beginning of the journal, and maybe a scan that it does not know yet.
-TEST(LiveSurvey, GoesOnFromAnyBeginningOfItsJournal) {
+TEST(LiveSurvey, ResumesFromAnyPrefixOfJournal) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(short_mission(tests::quick_mission(), "see++"));
   {
@@ -78,7 +78,7 @@ TEST(LiveSurvey, GoesOnFromAnyBeginningOfItsJournal) {
   }
 }
 
-TEST(LiveSurvey, IgnoresAScanThatItKnows) {
+TEST(LiveSurvey, IgnoresKnownScan) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission());
   LiveSurvey survey = rehearsal.open(folder.path());
@@ -92,7 +92,7 @@ TEST(LiveSurvey, IgnoresAScanThatItKnows) {
   EXPECT_EQ(survey.proposal().view->position, before.view->position);
 }
 
-TEST(LiveSurvey, RemembersRefusals) {
+TEST(LiveSurvey, KeepsRejectedViewsAfterReopening) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission());
   Eigen::Vector3d first, second;
@@ -112,7 +112,7 @@ TEST(LiveSurvey, RemembersRefusals) {
   EXPECT_EQ(survey.proposal().number, 2U);
 }
 
-TEST(LiveSurvey, DoesNotCountAScanThatCannotBePlannedWith) {
+TEST(LiveSurvey, IgnoresUnusableFirstScan) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission());
   {
@@ -140,7 +140,7 @@ geometry::Scan displaced(const geometry::Scan& scan, double shift, double turn_d
   return corrected(scan, make_error(scan, shift, turn_deg));
 }
 
-TEST(LiveSurvey, IsTheSameAsIfScansThatItSetsAsideHadNeverBeen) {
+TEST(LiveSurvey, IsUnaffectedByRejectedScans) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(fine_mission());
   std::size_t wrong = 0;
@@ -165,7 +165,7 @@ TEST(LiveSurvey, IsTheSameAsIfScansThatItSetsAsideHadNeverBeen) {
   expect_same(rehearsal.open(folder.path()).finish(), rehearsal.planned());
 }
 
-TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
+TEST(LiveSurvey, KeepsPoseWarningUntilScanIsUsed) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(fine_mission());
   std::string answer;
@@ -184,7 +184,7 @@ TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
   EXPECT_THAT(answer_json(survey, rehearsal.setup().flight()), Not(HasSubstr("warning")));
 }
 
-TEST(LiveSurvey, GivesNoWayFromWhereNobodyKnows) {
+TEST(LiveSurvey, ProposesNoPathAfterPoseWarning) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(short_mission(tests::flight_mission()));
   LiveSurvey survey = rehearsal.open(folder.path());
@@ -200,7 +200,7 @@ TEST(LiveSurvey, GivesNoWayFromWhereNobodyKnows) {
 }
 
 /// Whoever flies on while nobody knows where, has no way; the next scan that fits gives it back.
-TEST(LiveSurvey, KeepsTheWayThroughAWrongPoseOnIt) {
+TEST(LiveSurvey, RestoresPathAfterWrongEnRoutePose) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(moving_mission());
   std::string answer;
@@ -235,7 +235,7 @@ TEST(LiveSurvey, KeepsTheWayThroughAWrongPoseOnIt) {
   EXPECT_LT((survey.proposal().path.points.front() - between.position).norm(), 1e-9);
 }
 
-TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
+TEST(LiveSurvey, RejectsEnRouteScansWithoutMovingCapture) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(short_mission(tests::flight_mission()));
   LiveSurvey survey = rehearsal.open(folder.path());
@@ -248,7 +248,7 @@ TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
 
 // Of houses, whose walls and roofs show every way to move and are large beside the patches that are
 // compared; a teapot is too round.
-TEST(LiveSurvey, CorrectsPosesTheSameWayAgain) {
+TEST(LiveSurvey, RepeatsPoseCorrectionsAfterReopening) {
   const tests::TestFolder folder;
   std::string houses = fine_mission(
       "live: {registration: true, pose_sigma: 0.02, pose_sigma_deg: 0.5}\n"
@@ -275,7 +275,7 @@ TEST(LiveSurvey, CorrectsPosesTheSameWayAgain) {
   EXPECT_THAT(answer, HasSubstr("\"corrected\":true"));
 }
 
-TEST(LiveSurvey, TakesPosesAsTheyAreIfAsked) {
+TEST(LiveSurvey, AcceptsPosesUncheckedWhenConfigured) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(fine_mission("live: {pose_check: false}\n"));
   LiveSurvey survey = rehearsal.open(folder.path());
@@ -285,7 +285,7 @@ TEST(LiveSurvey, TakesPosesAsTheyAreIfAsked) {
   EXPECT_FALSE(survey.proposal().pose);
 }
 
-TEST(LiveSurvey, RefusesWhatItCannotTrust) {
+TEST(LiveSurvey, RejectsLockedChangedOrDamagedFolder) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission()), other(tests::quick_mission("seed: 2\n"));
   {
@@ -310,7 +310,7 @@ void write_records(const fs::path& journal, const std::vector<std::string>& reco
   for (const std::string& record : records) log.append(record);
 }
 
-TEST(LiveSurvey, RefusesAJournalOfAnotherFormatNamingItsVersion) {
+TEST(LiveSurvey, RejectsJournalOfOtherFormatNamingItsVersion) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission());
   rehearsal.open(folder.path());
@@ -342,7 +342,7 @@ void replace_scan(const fs::path& folder, const std::string& bytes) {
 }
 
 /// As somebody else's folder may be, whose digests are right.
-TEST(LiveSurvey, RefusesKeptScansThatItWouldNeverHaveKept) {
+TEST(LiveSurvey, RejectsInvalidStoredScans) {
   const Rehearsal rehearsal(tests::quick_mission());
   const auto error_message = [&](const std::string& part, const std::string& to) {
     const tests::TestFolder folder;
@@ -362,7 +362,7 @@ TEST(LiveSurvey, RefusesKeptScansThatItWouldNeverHaveKept) {
 }
 
 /// As from a program that plans otherwise.
-TEST(LiveSurvey, NoticesProposalsThatComeOutOtherwise) {
+TEST(LiveSurvey, RejectsDifferingProposals) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission());
   {

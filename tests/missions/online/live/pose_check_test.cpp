@@ -91,7 +91,7 @@ class PoseChecks : public testing::Test {
   sim::Scene scene_{furnished(), 1};
 };
 
-TEST_F(PoseChecks, NeverSuspectTrueOnes) {
+TEST_F(PoseChecks, AcceptTruePoses) {
   for (const double noise : {0.0, 0.005, 0.02, 0.05}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       Survey survey(scene_, noise, seed);
@@ -107,7 +107,7 @@ TEST_F(PoseChecks, NeverSuspectTrueOnes) {
 }
 
 /// All that what both scans show can tell; in ways in which it may be shifted unseen they are not.
-TEST_F(PoseChecks, FindTenCentimetresAndADegree) {
+TEST_F(PoseChecks, DetectTenCentimetresAndOneDegree) {
   int missed = 0;
   for (const double noise : {0.0, 0.01, 0.02}) {
     Survey survey(scene_, noise, 1);
@@ -129,7 +129,7 @@ TEST_F(PoseChecks, FindTenCentimetresAndADegree) {
   EXPECT_LE(missed, 1) << "of 60";
 }
 
-TEST_F(PoseChecks, CorrectWhatTheSigmaAllows) {
+TEST_F(PoseChecks, CorrectErrorsWithinSigma) {
   Survey survey(scene_, 0.005, 1, true);
   survey.remember(survey.scan(stops[0], cupboard));
   int whole = 0;
@@ -150,7 +150,7 @@ TEST_F(PoseChecks, CorrectWhatTheSigmaAllows) {
 }
 
 /// Nobody meets the same surface again after such a jump, but it was looked through.
-TEST_F(PoseChecks, FindJumpsFartherThanSurfacesReach) {
+TEST_F(PoseChecks, DetectJumpsBeyondSurfaceExtent) {
   Survey survey(scene_, 0.01, 1);
   for (const Vector3d& stop : stops) survey.remember(survey.scan(stop, cupboard));
   for (const Vector3d& jump : {Vector3d(-1, 1, 0), Vector3d(1, -1, 0), Vector3d(0, 0, 2)}) {
@@ -162,7 +162,7 @@ TEST_F(PoseChecks, FindJumpsFartherThanSurfacesReach) {
 }
 
 /// A wall says nothing of motions along it.
-TEST_F(PoseChecks, SayWhatAWallDoesNotShow) {
+TEST_F(PoseChecks, ReportUnobservableDirectionsOfWall) {
   Survey survey(scene_, 0.01, 1, true);
   const Vector3d stop(0.5, 0.0, 1.5), wall(0.5, -3.0, 1.5);
   survey.remember(survey.scan(Vector3d(0.6, -1.2, 1.5), wall));
@@ -172,7 +172,7 @@ TEST_F(PoseChecks, SayWhatAWallDoesNotShow) {
   EXPECT_EQ(finding.unobservable, 3);
 }
 
-TEST_F(PoseChecks, SayNothingOfWhatNobodyHasSeen) {
+TEST_F(PoseChecks, SkipScansWithoutOverlap) {
   Survey survey(scene_, 0.01, 1);
   EXPECT_FALSE(survey.find(survey.scan(stops[0], cupboard)).is_checked);
   survey.remember(survey.scan(stops[0], cupboard));
@@ -182,7 +182,7 @@ TEST_F(PoseChecks, SayNothingOfWhatNobodyHasSeen) {
 }
 
 /// Whichever way the sensor looks, its errors are along the mission's axes.
-TEST_F(PoseChecks, TakeErrorsAlongTheAxesThatTheCovarianceNames) {
+TEST_F(PoseChecks, AllowErrorsAlongCovarianceAxes) {
   for (int axis = 0; axis < 3; ++axis) {
     Survey survey(scene_, 0.005, 1, true);
     survey.remember(survey.scan(stops[0], cupboard));
@@ -202,7 +202,7 @@ TEST_F(PoseChecks, TakeErrorsAlongTheAxesThatTheCovarianceNames) {
 }
 
 /// A mast that turns at its foot: position and direction go astray together, and only so.
-TEST_F(PoseChecks, TakeErrorsThatGoTogetherForWhatTheyAre) {
+TEST_F(PoseChecks, RespectCorrelatedErrors) {
   Survey survey(scene_, 0.005, 1);
   survey.remember(survey.scan(stops[0], cupboard));
   const Vector3d sensor = stops[1], foot = sensor - Vector3d(2.0, 1.0, 0.0);
@@ -221,7 +221,7 @@ TEST_F(PoseChecks, TakeErrorsThatGoTogetherForWhatTheyAre) {
   }
 }
 
-TEST_F(PoseChecks, ComeOutTheSame) {
+TEST_F(PoseChecks, AreDeterministic) {
   const auto find = [&] {
     Survey survey(scene_, 0.01, 1, true);
     for (const Vector3d& stop : stops) survey.remember(survey.scan(stop, cupboard));

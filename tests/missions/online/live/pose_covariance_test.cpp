@@ -43,7 +43,7 @@ Matrix some_root(std::uint64_t seed) {
   return root;
 }
 
-TEST(PoseCovariance, IsReadWholeOrByItsUpperTriangle) {
+TEST(PoseCovariance, ReadsFullMatrixOrUpperTriangle) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Matrix root = some_root(seed), matrix = root * root.transpose();
     for (const bool is_whole : {true, false}) {
@@ -56,7 +56,7 @@ TEST(PoseCovariance, IsReadWholeOrByItsUpperTriangle) {
 
 /// ROS: "In order, the parameters are: (x, y, z, rotation about X axis, rotation about Y axis,
 /// rotation about Z axis)".
-TEST(PoseCovariance, HasRosOrder) {
+TEST(PoseCovariance, UsesRosOrder) {
   std::string text;
   for (int i = 1; i <= 6; ++i) {
     for (int j = 1; j <= 6; ++j) text += i == j ? std::to_string(i) + "e-2 " : "0 ";
@@ -69,7 +69,7 @@ TEST(PoseCovariance, HasRosOrder) {
   }
 }
 
-TEST(PoseCovariance, OfASigmaIsTheSameEachWay) {
+TEST(PoseCovariance, IsIsotropicForSigma) {
   const PoseCovariance covariance = parse_pose_sigma("0.05 2", "s");
   const double angle = 2.0 * geometry::radians_per_degree;
   EXPECT_DOUBLE_EQ(covariance.position(), 0.05);
@@ -79,7 +79,7 @@ TEST(PoseCovariance, OfASigmaIsTheSameEachWay) {
   EXPECT_DOUBLE_EQ(covariance.deviation(direction), std::hypot(0.05 * 5.0, angle * 13.0));
 }
 
-TEST(PoseCovariance, DeviatesAsItsRootDoes) {
+TEST(PoseCovariance, ComputesDeviationsLikeMatrixRoot) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Matrix root = some_root(seed);
     const PoseCovariance covariance{root * root.transpose()};
@@ -93,7 +93,7 @@ TEST(PoseCovariance, DeviatesAsItsRootDoes) {
   }
 }
 
-TEST(PoseCovariance, MeasuresErrorsInStandardDeviations) {
+TEST(PoseCovariance, ComputesDistanceInStandardDeviations) {
   Vector error;
   error << 0.3, 0.0, 0.0, 0.0, 0.0, 0.04;
   // Nothing is known to be wrong: what is left are the errors that come on top.
@@ -109,7 +109,7 @@ TEST(PoseCovariance, MeasuresErrorsInStandardDeviations) {
 }
 
 /// Filters write these: with the last bits lost, and without any error along some axes.
-TEST(PoseCovariance, MayBeRoundedAndSingular) {
+TEST(PoseCovariance, AcceptsRoundedAndSingularMatrices) {
   Vector once;
   once << 0.1, -0.2, 0.3, 0.01, 0.02, -0.03;
   const Matrix singular = (once * once.transpose()).cast<float>().cast<double>();
@@ -119,7 +119,7 @@ TEST(PoseCovariance, MayBeRoundedAndSingular) {
   EXPECT_EQ(parse_pose_covariance(format_covariance(Matrix::Zero(), false), "c").position(), 0.0);
 }
 
-TEST(PoseCovariance, ThatIsNoneIsRefusedInOneLine) {
+TEST(PoseCovariance, RejectsInvalidInputInOneLine) {
   const auto error_message = [](const std::string& text) {
     const std::string what = thrown_message([&] { parse_pose_covariance(text, "c"); });
     EXPECT_EQ(what.find('\n'), std::string::npos);

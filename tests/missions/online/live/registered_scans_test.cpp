@@ -198,7 +198,7 @@ Counts count(const TestPose& pose) {
 }
 
 // REGISTERED_SCANS in the environment for more than 16 of each noise.
-TEST(RegisteredScans, AreRightWhereTheSurfaceShowsAll) {
+TEST(RegisteredScans, AreCorrectWhenSurfaceConstrainsAllDirections) {
   const Counts corner_counts = count(corner()), in_room = count(room()),
                building_counts = count(building());
   EXPECT_EQ(corner_counts.far + in_room.far + building_counts.far, 0);
@@ -208,7 +208,7 @@ TEST(RegisteredScans, AreRightWhereTheSurfaceShowsAll) {
 }
 
 /// A wall, and the foot of one, never show all.
-TEST(RegisteredScans, SayWhatSlides) {
+TEST(RegisteredScans, AreNotCorrectedWhenSurfaceAllowsSliding) {
   EXPECT_EQ(count(wall()).corrected, 0);
   EXPECT_EQ(count(edge()).corrected, 0);
 }

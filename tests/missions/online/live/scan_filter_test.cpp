@@ -75,7 +75,7 @@ class FlyingPixels : public testing::Test {
   geometry::Camera camera_{geometry::CameraConfig{}};
 };
 
-TEST_F(FlyingPixels, AreFoundAtEdges) {
+TEST_F(FlyingPixels, AreRemovedAtEdges) {
   for (const double noise : {0.0, 0.005, 0.01}) {
     geometry::Scan before = scan(noise);
     const Pixels mixed = mix(before);
@@ -91,7 +91,7 @@ TEST_F(FlyingPixels, AreFoundAtEdges) {
   }
 }
 
-TEST_F(FlyingPixels, LeaveTrueSurfacesAlone) {
+TEST_F(FlyingPixels, ExcludeTrueSurfaces) {
   geometry::Scan before = scan(0.0);
   geometry::Scan after = before;
   remove_flying_pixels(after, camera_);
@@ -101,7 +101,7 @@ TEST_F(FlyingPixels, LeaveTrueSurfacesAlone) {
   ASSERT_EQ(after.points.size(), after.pixels.size());
 }
 
-TEST_F(FlyingPixels, AndIsolatedReturnsGo) {
+TEST_F(FlyingPixels, AreRemovedWithIsolatedReturns) {
   geometry::Scan before = scan(0.005);
   std::mt19937_64 random(1);
   Pixels stray;
@@ -117,7 +117,7 @@ TEST_F(FlyingPixels, AndIsolatedReturnsGo) {
   EXPECT_GE(right, std::ssize(stray) - 3);
 }
 
-TEST_F(FlyingPixels, NeedPixels) {
+TEST_F(FlyingPixels, RequirePixelIndices) {
   geometry::Scan unorganised = scan(0.0);
   unorganised.pixels.clear();
   const std::size_t count = unorganised.points.size();

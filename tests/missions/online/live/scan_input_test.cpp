@@ -50,7 +50,7 @@ Isometry3d some_pose() {
   return pose;
 }
 
-TEST(CameraIntrinsics, RaysAreWhereTheDistortionTakesThemBackTo) {
+TEST(CameraIntrinsics, ComputesRaysThatDistortBackToPixels) {
   // Of a real camera: TUM RGB-D's freiburg1, colour.
   const CameraIntrinsics intrinsics =
       parse_intrinsics("517.3 516.5 318.6 255.3 0.2624 -0.9531 -0.0054 0.0026 1.1633");
@@ -69,16 +69,16 @@ TEST(CameraIntrinsics, RaysAreWhereTheDistortionTakesThemBackTo) {
   }
 }
 
-TEST(CameraIntrinsics, HasNoRayWhereItsPolynomialFoldsOver) {
+TEST(CameraIntrinsics, HasNoRayWhereDistortionIsNotInvertible) {
   EXPECT_FALSE(parse_intrinsics("500 500 320 240 -3 0 0 0 0").ray({0, 0}));
 }
 
-TEST(CameraIntrinsics, HasNoRayWhereItIsEndless) {
+TEST(CameraIntrinsics, HasNoRayWhereItIsInfinite) {
   EXPECT_FALSE(parse_intrinsics("1e-320 1 0 0").ray({1, 0}));
   EXPECT_TRUE(parse_intrinsics("1e-320 1 0 0").ray({0, 1}));
 }
 
-TEST(PoseText, IsReadInEveryLayout) {
+TEST(PoseString, ReadsEveryLayout) {
   const Isometry3d pose = some_pose();
   const Eigen::Quaterniond q(pose.linear());
   std::ostringstream seven, twelve;
@@ -92,7 +92,7 @@ TEST(PoseText, IsReadInEveryLayout) {
 }
 
 /// As trackers write it; of the data set 7-Scenes.
-TEST(PoseText, IsMadeARotation) {
+TEST(PoseString, OrthonormalisesRotation) {
   const Isometry3d pose = parse_pose_text(
       "0.9093129 0.2726223 -0.3142243 -0.34\n-0.2724862 0.9610498 0.0452796 0.016\n"
       "0.3143392 0.0444496 0.9482094 0.297\n0 0 0 1\n",
@@ -103,7 +103,7 @@ TEST(PoseText, IsMadeARotation) {
   EXPECT_EQ(pose.translation(), Vector3d(-0.34, 0.016, 0.297));
 }
 
-TEST(PoseText, ThatIsNoPoseIsRefused) {
+TEST(PoseString, RejectsInvalidPoses) {
   for (const std::string text :
        {"", "1 2 3", "1 2 3 0 0 0 0", "1 2 3 0 0 0 2", "nan 0 0 0 0 0 1", "1e300 0 0 0 0 0 1",
         "1 2 3 4 5 6 x", "1 0 0 0 0 1 0 0 0 0 -1 0", "2 0 0 0 0 2 0 0 0 0 2 0",
@@ -112,7 +112,7 @@ TEST(PoseText, ThatIsNoPoseIsRefused) {
   }
 }
 
-TEST(DepthImage, BecomesPointsAlongTheRays) {
+TEST(DepthImage, ConvertsPixelsToPointsAlongRays) {
   const testing_support::TemporaryFolder folder;
   geometry::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 0)};
   image.values[10 * 64 + 20] = 1500;
@@ -130,7 +130,7 @@ TEST(DepthImage, BecomesPointsAlongTheRays) {
 }
 
 // ICL-NUIM's images have a negative focal length: the axis points the other way.
-TEST(CameraIntrinsics, OfNegativeFocalLengthFlipsItsAxis) {
+TEST(CameraIntrinsics, FlipsAxisForNegativeFocalLength) {
   const auto up = parse_intrinsics("480 -480 319.5 239.5").ray({400, 100});
   const auto down = parse_intrinsics("480 480 319.5 239.5").ray({400, 100});
   ASSERT_TRUE(up && down);
@@ -141,7 +141,7 @@ TEST(CameraIntrinsics, OfNegativeFocalLengthFlipsItsAxis) {
 }
 
 // By a factor in both directions; a cropped image, or a lens off its middle, is what it is.
-TEST(DepthImage, OfAnotherSizeThanItsLensIsRefused) {
+TEST(DepthImage, RejectsSizeDifferentFromIntrinsics) {
   const testing_support::TemporaryFolder folder;
   const auto error_message = [&](int width, int height,
                                  const std::optional<CameraIntrinsics>& intrinsics) {
@@ -164,7 +164,7 @@ TEST(DepthImage, OfAnotherSizeThanItsLensIsRefused) {
 }
 
 /// The lens looks elsewhere than the mission's camera: points stay true, and pixels follow them.
-TEST(DepthImage, OfAnotherLensIsPutIntoTheMissionsPixels) {
+TEST(DepthImage, RemapsOtherIntrinsicsToMissionPixels) {
   const testing_support::TemporaryFolder folder;
   const geometry::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 2000)};
   const auto file = folder.path() / "depth.png";
@@ -181,7 +181,7 @@ TEST(DepthImage, OfAnotherLensIsPutIntoTheMissionsPixels) {
   EXPECT_NO_THROW(require_usable(found.scan, make_setup().flight()));
 }
 
-TEST(Cloud, OfAnyOrderIsSeenByTheCamera) {
+TEST(Cloud, ProjectsUnorderedPointsIntoCamera) {
   const testing_support::TemporaryFolder folder;
   const auto file = folder.path() / "cloud.ply";
   // Behind; far off to the side; two in one pixel; in the middle.
@@ -194,7 +194,7 @@ TEST(Cloud, OfAnyOrderIsSeenByTheCamera) {
   EXPECT_THAT(found.scan.points, testing::UnorderedElementsAre(points[3], points[4]));
 }
 
-TEST(Cloud, InTheWorldStaysWhereItIs) {
+TEST(Cloud, KeepsWorldCoordinates) {
   const testing_support::TemporaryFolder folder;
   const auto file = folder.path() / "cloud.ply";
   const Vector3d in_view = some_pose() * Vector3d(0.1, 0.1, 2.0);
@@ -206,7 +206,7 @@ TEST(Cloud, InTheWorldStaysWhereItIs) {
   EXPECT_LT((found.scan.points[0] - points[0]).norm(), 1e-6);
 }
 
-TEST(KeptScan, GivesBackEveryBit) {
+TEST(StoredScan, ReadsBackExactly) {
   geometry::Scan scan;
   scan.points = {{0.1F, -2e-30F, 3e7F}, {-0.0F, 1e-45F, 7.0F}};
   scan.pixels = {0, 4294967295U};
@@ -219,7 +219,7 @@ TEST(KeptScan, GivesBackEveryBit) {
   EXPECT_THAT(parse_kept_scan("scan", kept_scan({})).points, IsEmpty());
 }
 
-TEST(RequireUsable, RefusesScansThatWouldHarm) {
+TEST(RequireUsable, RejectsInvalidScans) {
   const auto message = [](const geometry::Scan& scan, const std::string& more = "") {
     return thrown_message([&] { require_usable(scan, make_setup(more).flight()); });
   };

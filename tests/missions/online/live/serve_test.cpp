@@ -119,7 +119,7 @@ session::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
   return served.record();
 }
 
-TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
+TEST(Serve, MatchesPlanWithSimulatedScans) {
   for (const std::string& mission :
        {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flight_mission()),
         moving_mission("live: {pose_check: false}\n"), scanner_mission()}) {
@@ -130,7 +130,7 @@ TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
 
 /// The missions that SHIPPED_MISSIONS names, such as "bunny city_block", else a quick one, whole.
 /// With SHIPPED_VIEWS those that have no limits end after so many.
-TEST(Serve, FedByTheSimulatorIsWhatPlanDoesWithShippedMissions) {
+TEST(Serve, MatchesPlanForShippedMissions) {
   const std::filesystem::path missions = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
   // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets variables
   const char *given = std::getenv("SHIPPED_MISSIONS"), *views = std::getenv("SHIPPED_VIEWS");
@@ -169,7 +169,7 @@ TEST(Serve, AnswersOneClientAtATime) {
   EXPECT_THAT(served.notes(), HasSubstr("a second client was refused"));
 }
 
-class SessionAnswers : public testing::Test {
+class ServeSession : public testing::Test {
  protected:
   std::string ask(const nlohmann::ordered_json& header, const std::string& payload = {}) {
     return session_.answer({header, payload}).header.dump();
@@ -196,7 +196,7 @@ class SessionAnswers : public testing::Test {
 };
 
 /// Each in its place among the frames of the way, and the view only then.
-TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
+TEST(Serve, AcceptsEnRouteScansInOrderAndOnce) {
   const Rehearsal rehearsal(moving_mission());
   const tests::TestFolder folder;
   LiveSurvey survey = rehearsal.open(folder.path());
@@ -243,7 +243,7 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
   EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
 }
 
-TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
+TEST_F(ServeSession, RejectsScansOutOfOrderAndIgnoresRepeats) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
   const std::string payload = make_payload(scan);
   EXPECT_THAT(ask(scan_header(1, scan), payload), HasSubstr("out of order: the next one is 0"));
@@ -257,7 +257,7 @@ TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
 }
 
 /// As those of files: each point in the pixel that it is seen in, the nearest of several.
-TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
+TEST_F(ServeSession, AssignsPixelsToSensorFrameClouds) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
   const Eigen::Isometry3d sensor_from_world = scan.world_from_sensor.inverse();
   std::vector<Eigen::Vector3f> positions;
@@ -279,7 +279,7 @@ TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
   EXPECT_EQ(survey_.scan_number(scan_id(same.scan)), ScanNumber{0});
 }
 
-TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
+TEST_F(ServeSession, WarnsAboutWrongPoses) {
   const geometry::Scan first = rehearsal_.scan(survey_);
   ask(scan_header(0, first), make_payload(first));
   geometry::Scan scan = rehearsal_.scan(survey_);
@@ -305,7 +305,7 @@ TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
 }
 
 /// A jump is one that the covariance explains, or one that sets the scan aside.
-TEST(Serve, TakesWhatIsKnownOfPosesFromItsClient) {
+TEST(Serve, UsesPoseCovarianceOfClient) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(fine_mission());
   Served served(rehearsal, {.socket = folder / "socket", .port = {}});
@@ -329,7 +329,7 @@ TEST(Serve, TakesWhatIsKnownOfPosesFromItsClient) {
   EXPECT_THAT(answer(covariance), Not(HasSubstr("warning")));
 }
 
-TEST_F(SessionAnswers, RefusalsTwiceAreOne) {
+TEST_F(ServeSession, CountsRepeatedRejectionOnce) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
   ask(scan_header(0, scan), make_payload(scan));
   const std::string other = ask({{"type", "refuse"}, {"id", 1}});
@@ -337,7 +337,7 @@ TEST_F(SessionAnswers, RefusalsTwiceAreOne) {
   EXPECT_THAT(ask({{"type", "refuse"}, {"id", 9}}), HasSubstr("unknown proposal 9"));
 }
 
-TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
+TEST_F(ServeSession, ReportsInvalidRequestsWithoutChanges) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
   nlohmann::ordered_json header = scan_header(0, scan);
   EXPECT_THAT(ask(header, "short"), HasSubstr("the payload has 5 bytes"));

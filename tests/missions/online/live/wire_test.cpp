@@ -25,7 +25,7 @@ std::string rejection(const std::string& bytes) {
   return testing_support::thrown_message([&] { reader.next(); });
 }
 
-TEST(Wire, GivesBackMessagesHoweverTheyArrive) {
+TEST(Wire, DecodesMessagesFromAnyChunkSize) {
   const std::string two = encode_frame(sample) + encode_frame({{{"type", "next"}}, {}});
   for (std::size_t chunk = 1; chunk <= two.size(); ++chunk) {
     FrameReader reader;
@@ -44,12 +44,12 @@ TEST(Wire, GivesBackMessagesHoweverTheyArrive) {
 
 /// Written by hand from docs/reference/live-protocol.md; the checksum is Python's
 /// zlib.crc32(b'{"type":"next"}').
-TEST(Wire, IsWhatTheDocumentationSays) {
+TEST(Wire, MatchesDocumentedFormat) {
   const std::string frame("\x0f\0\0\0\0\0\0\0\x1c\xab\x42\xde{\"type\":\"next\"}", 27);
   EXPECT_EQ(encode_frame({{{"type", "next"}}, {}}), frame);
 }
 
-TEST(Wire, WaitsForTheRestOfAMessage) {
+TEST(Wire, WaitsForIncompleteMessages) {
   const std::string frame = encode_frame(sample);
   ASSERT_FALSE(frame.empty());
   for (std::size_t size = 0; size < frame.size(); ++size) {
@@ -60,7 +60,7 @@ TEST(Wire, WaitsForTheRestOfAMessage) {
   }
 }
 
-TEST(Wire, RefusesWhatIsNoMessage) {
+TEST(Wire, RejectsInvalidMessages) {
   EXPECT_THAT(rejection(std::string(12, '\xff')), HasSubstr("larger than allowed"));
   std::string damaged = encode_frame(sample);
   damaged.back() ^= 1;
@@ -71,7 +71,7 @@ TEST(Wire, RefusesWhatIsNoMessage) {
 }
 
 /// No bytes do more than be refused or waited for; one changed bit is never taken for a message.
-TEST(Wire, TakesNoHarmFromAnyBytes) {
+TEST(Wire, RejectsCorruptedBytes) {
   std::mt19937_64 random(1);
   const std::string frame = encode_frame(sample);
   for (int i = 0; i < 20'000; ++i) {

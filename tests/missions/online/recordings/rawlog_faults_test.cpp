@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
+TEST_F(Rawlog, RejectsMissingPosesScansOrSensorChoice) {
   EXPECT_THAT(
       error_message(write({range_scan(1.0), std::make_shared<mrpt::obs::CObservationGPS>()})),
       AllOf(HasSubstr("x.rawlog: contains no poses of its scans"), HasSubstr("--poses")));
@@ -30,7 +30,7 @@ TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
   EXPECT_EQ(frames(two, {.sensor = "R", .poses = {}}).at(0).id, "R 2");
 }
 
-TEST_F(Rawlog, LensesAndStepsThatAreNoneAreNamed) {
+TEST_F(Rawlog, ReportsInvalidIntrinsicsAndRangeUnits) {
   const auto note = [&](const std::function<void(CObservation3DRangeScan&)>& corrupt) {
     const auto scan = range_scan(1.0);
     corrupt(*scan);
@@ -55,7 +55,7 @@ TEST_F(Rawlog, LensesAndStepsThatAreNoneAreNamed) {
 }
 
 /// What is compressed well is little as a file.
-TEST_F(Rawlog, OfMoreThanThereIsMemoryForIsRefused) {
+TEST_F(Rawlog, RejectsContentBeyondMemoryLimits) {
   const auto large = range_scan(1.0);
   large->rangeImage_setSize(5001, 5000);
   large->rangeImage.setZero();
@@ -74,7 +74,7 @@ TEST_F(Rawlog, OfMoreThanThereIsMemoryForIsRefused) {
               HasSubstr("more than 256 bytes"));
 }
 
-TEST_F(Rawlog, ThatEndsTooSoonIsRefused) {
+TEST_F(Rawlog, RejectsTruncatedFiles) {
   for (const std::string name : {"x.rawlog", "x.rawlog.gz"}) {
     const std::string whole =
         tests::read_content(write({robot_pose(1.0, {}), range_scan(1.0)}, name));
@@ -89,7 +89,7 @@ TEST_F(Rawlog, ThatEndsTooSoonIsRefused) {
 }
 
 /// MRPT allocates what a file says it needs: a count of points, and the sides of an image.
-TEST_F(Rawlog, WithCountsThatAreNoneIsRefused) {
+TEST_F(Rawlog, RejectsInvalidCounts) {
   const std::string whole = tests::read_content(write({robot_pose(1.0, {}), range_scan(1.0)}));
   const std::string sides{"\x18\0\0\0\x20\0\0\0", 8};
   const std::size_t at = whole.find(sides);
@@ -110,7 +110,7 @@ TEST_F(Rawlog, WithCountsThatAreNoneIsRefused) {
   }
 }
 
-TEST_F(Rawlog, ThatIsDamagedIsReadOrRefused) {
+TEST_F(Rawlog, ReadsOrRejectsDamagedFiles) {
   auto frame = std::make_shared<mrpt::obs::CSensoryFrame>();
   frame->insert(range_scan(1.0));
   const std::string whole = tests::read_content(

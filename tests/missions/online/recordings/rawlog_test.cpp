@@ -41,7 +41,7 @@ bool is_near(const Isometry3d& pose, const CPose3D& expected) {
   return (pose.matrix() - matrix).norm() < 1e-9;
 }
 
-TEST_F(Rawlog, RangeImagesAreWhereMrptPutsThem) {
+TEST_F(Rawlog, ProjectsRangeImagesLikeMrpt) {
   const CPose3D robot(1.0, 2.0, 3.0, -0.5, 0.1, 0.3);
   for (const bool is_depth : {true, false}) {
     for (const bool is_bent : {true, false}) {
@@ -70,7 +70,7 @@ TEST_F(Rawlog, RangeImagesAreWhereMrptPutsThem) {
   }
 }
 
-TEST_F(Rawlog, PosesAreThoseNearestInTime) {
+TEST_F(Rawlog, UsesPosesNearestInTime) {
   const auto all =
       frames(write({robot_pose(1.0, {1, 0, 0, 0, 0, 0}), range_scan(1.01), wheels(1.01, 9, 0),
                     range_scan(1.5), range_scan(1.99), robot_pose(2.0, {2, 0, 0, 0.5, 0, 0})}));
@@ -84,7 +84,7 @@ TEST_F(Rawlog, PosesAreThoseNearestInTime) {
   EXPECT_THAT(reports_, ElementsAre(HasSubstr("scan 1"), HasSubstr("scan 2"), HasSubstr("scan 3")));
 }
 
-TEST_F(Rawlog, WheelsWillDoWhereThereIsNothingBetter) {
+TEST_F(Rawlog, UsesWheelOdometryWithoutBetterPoses) {
   const auto all = frames(write({wheels(1.0, 2.0, 0.5), range_scan(1.0)}));
   ASSERT_EQ(all.size(), 1U);
   EXPECT_TRUE(is_near(all[0].world_from_sensor, optical(CPose3D(2, 0, 0, 0.5, 0, 0) + mount)));
@@ -92,7 +92,7 @@ TEST_F(Rawlog, WheelsWillDoWhereThereIsNothingBetter) {
 }
 
 /// The older format: a frame of observations, then how the robot moved, and again.
-TEST_F(Rawlog, MovementsBetweenFramesAddUp) {
+TEST_F(Rawlog, IntegratesMovementsBetweenFrames) {
   const CPose3D in_space(0.5, 0.1, 0.2, 0.3, 0.1, -0.1);
   const auto frame = [](double time) {
     auto all = std::make_shared<mrpt::obs::CSensoryFrame>();
@@ -117,7 +117,7 @@ TEST_F(Rawlog, MovementsBetweenFramesAddUp) {
   }
 }
 
-TEST_F(Rawlog, PosesOfATrajectoryAreTheOpticalFrames) {
+TEST_F(Rawlog, ReadsTrajectoryPosesAsOpticalFrames) {
   const std::string poses = folder_.write("poses.txt", "# t x y z q\n4.99 1 2 3 0 0 0 1\n");
   const auto all = frames(write({robot_pose(5.0, {9, 9, 9, 0, 0, 0}), range_scan(5.0)}),
                           {.sensor = "", .poses = poses});
@@ -129,7 +129,7 @@ TEST_F(Rawlog, PosesOfATrajectoryAreTheOpticalFrames) {
               HasSubstr("none"));
 }
 
-TEST_F(Rawlog, ImagesMayBeInFilesBesideIt) {
+TEST_F(Rawlog, ReadsExternalImageFiles) {
   const std::string images = folder_ / "x_Images";
   std::filesystem::create_directories(images);
   const auto pose = robot_pose(1.0, {});
@@ -150,7 +150,7 @@ TEST_F(Rawlog, ImagesMayBeInFilesBesideIt) {
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("outside the rawlog's folder")));
 }
 
-TEST_F(Rawlog, CloudsAreTakenAsTheyAre) {
+TEST_F(Rawlog, ReadsPointClouds) {
   const auto cloud = std::make_shared<mrpt::obs::CObservationPointCloud>();
   cloud->timestamp = mrpt::Clock::fromDouble(1.0);
   cloud->sensorPose = mount;
@@ -168,7 +168,7 @@ TEST_F(Rawlog, CloudsAreTakenAsTheyAre) {
 }
 
 /// One shot of a VLP-16's first channel, 15 degrees downwards, 5000 steps of 2 mm far.
-TEST_F(Rawlog, PacketsOfAVelodyneBecomePoints) {
+TEST_F(Rawlog, DecodesVelodynePackets) {
   const auto scan = std::make_shared<mrpt::obs::CObservationVelodyneScan>();
   scan->timestamp = mrpt::Clock::fromDouble(1.0);
   scan->calibration = mrpt::obs::VelodyneCalibration::LoadDefaultCalibration("VLP16");
@@ -191,7 +191,7 @@ TEST_F(Rawlog, PacketsOfAVelodyneBecomePoints) {
 }
 
 /// The same images by this door and as PNG files.
-TEST_F(Rawlog, IsTakenInAsItsImagesWouldBe) {
+TEST_F(Rawlog, MatchesSurveyFromImageFiles) {
   const std::string mission = folder_.write(
       "m.yaml",
       "sensor: {width: 32, height: 24, horizontal_fov_deg: 56.5, vertical_fov_deg: 43.5,\n"

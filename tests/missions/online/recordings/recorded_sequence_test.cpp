@@ -44,7 +44,7 @@ class Recording : public testing::Test {
   tests::TestFolder folder_;
 };
 
-TEST_F(Recording, OfTumIsPairedByTime) {
+TEST_F(Recording, PairsTumImagesAndPosesByTime) {
   write_tum("#t x y z qx qy qz qw\n0.99 1 2 3 0 0 0 1\n1.115 4 5 6 0 0 0 1\n1.125 7 8 9 0 0 0 1\n");
   const RecordedSequence sequence = read();
   EXPECT_THAT(ids(sequence), ElementsAre("1.00", "1.10"));
@@ -57,7 +57,7 @@ TEST_F(Recording, OfTumIsPairedByTime) {
 }
 
 // Trackers that correct a pose write it once more under the same time.
-TEST_F(Recording, TakesTheLastOfLinesOfOneTimeAndSaysSo) {
+TEST_F(Recording, UsesLastOfLinesWithSameTime) {
   write_tum(
       "1.00 0 0 0 0 0 0 1\n1.000 5 0 0 0 0 0 1\n1.10 1 0 0 0 0 0 1\n1.10 2 0 0 0 0 0 1\n"
       "1.10 3 0 0 0 0 0 1\n1.20 9 0 0 0 0 0 1\n");
@@ -73,7 +73,7 @@ TEST_F(Recording, TakesTheLastOfLinesOfOneTimeAndSaysSo) {
 }
 
 // As Windows programs write lists: a byte-order mark, backslashes, quotes, line ends of their own.
-TEST_F(Recording, ReadsListsOfWindowsPrograms) {
+TEST_F(Recording, ReadsListsFromWindowsPrograms) {
   write_tum(
       "\xEF\xBB\xBF"
       "1.00 0 0 0 0 0 0 1\r\n1.10 0 0 0 0 0 0 1\r\n1.20 0 0 0 0 0 0 1\r\n");
@@ -89,12 +89,12 @@ TEST_F(Recording, ReadsListsOfWindowsPrograms) {
   EXPECT_EQ(sequence.frames[2].file, folder_.path() / "depth/c.png");
 }
 
-TEST_F(Recording, EndsWhereItIsToldTo) {
+TEST_F(Recording, EndsAtMaxFrames) {
   write_tum("1.00 0 0 0 0 0 0 1\n1.10 0 0 0 0 0 0 1\n1.20 0 0 0 0 0 0 1\n");
   EXPECT_THAT(ids(read(2)), ElementsAre("1.00", "1.10"));
 }
 
-TEST_F(Recording, SaysWhatIsWrongWithAFrame) {
+TEST_F(Recording, ReportsInvalidFrames) {
   write_tum("1.00 0 0 0 0 0 0 1\n1.10 0 0 0 0 0 0 3\n1.20 0 0 0 0 0 0 1\n");
   std::filesystem::remove(folder_.path() / "c.png");
   const RecordedSequence sequence = read();
@@ -104,14 +104,14 @@ TEST_F(Recording, SaysWhatIsWrongWithAFrame) {
                           HasSubstr("c.png: does not exist")));
 }
 
-TEST_F(Recording, WithTimesThatGoBackIsRefused) {
+TEST_F(Recording, RejectsDecreasingTimes) {
   write_tum("1.00 0 0 0 0 0 0 1\n0.90 0 0 0 0 0 0 1\n");
   EXPECT_THAT(error_message(), AllOf(HasSubstr("groundtruth.txt: line 2"), HasSubstr("0.90")));
   write("groundtruth.txt", "now 0 0 0 0 0 0 1\n");
   EXPECT_THAT(error_message(), HasSubstr("'now' is found where a time is expected"));
 }
 
-TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
+TEST_F(Recording, ReadsSevenScenesPoseFiles) {
   for (const char* frame : {"frame-000010", "frame-000005", "frame-000000", "frame-000015"}) {
     write(std::string(frame) + ".depth.png", "");
   }

@@ -88,7 +88,7 @@ class CorruptedFleet {
   TestFolder folder_;
 };
 
-TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
+TEST(Fleet, DividesAllWaypointsAndVerifiesFiles) {
   const json fleet = fleet_summary();
   const json summary = json::parse(read_content(package() / "out/summary.json"));
   std::vector<int> shared, alone = summary["flight"]["route"]["order"];
@@ -113,7 +113,7 @@ TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
   }
 }
 
-TEST(Fleet, FliesInTheSimulatorWithoutComingNearer) {
+TEST(Fleet, KeepsSeparationInSimulatedFlights) {
   const auto run = run_skycap({"fly-test", package() / "out", "--flights", "20", "--returns", "0",
                                "--out", package() / "flown"});
   const json test = json::parse(read_content(package() / "flown/fly_test.json")).at("fleet");
@@ -123,7 +123,7 @@ TEST(Fleet, FliesInTheSimulatorWithoutComingNearer) {
   EXPECT_GE(test["least_m"], test["limit_m"]);
 }
 
-TEST(Fleet, TimetablesThatBringVehiclesTogetherAreRefused) {
+TEST(Fleet, RejectsTimetablesThatViolateSeparation) {
   CorruptedFleet corrupted;
   EXPECT_EQ(check(corrupted.table()).exit_code, 0);
   // Pads seven metres apart, both up at the same time.
@@ -136,7 +136,7 @@ TEST(Fleet, TimetablesThatBringVehiclesTogetherAreRefused) {
   EXPECT_THAT(together.out, HasSubstr(": not safe, 2 sorties"));
 }
 
-TEST(Fleet, TimetablesThatSayOtherwiseThanTheFilesAreRefused) {
+TEST(Fleet, RejectsTimetablesThatContradictFiles) {
   CorruptedFleet late;
   late.set(2, 6, std::to_string(std::stod(late.get(2, 6)) + 5.0));
   const auto landing = check(late.table());
@@ -151,7 +151,7 @@ TEST(Fleet, TimetablesThatSayOtherwiseThanTheFilesAreRefused) {
   EXPECT_NE(check(moved.table()).exit_code, 0);
 }
 
-TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
+TEST(Fleet, RejectsCorruptedRowsWithLineNumber) {
   const auto error_message = [](std::size_t line, std::size_t field, const std::string& to) {
     CorruptedFleet corrupted;
     corrupted.set(line, field, to);
@@ -173,7 +173,7 @@ TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
   EXPECT_THAT(error_message(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));
 }
 
-TEST(Fleet, TheRestSharesWhatALostVehicleLeaves) {
+TEST(Fleet, ReassignsViewsOfLostVehicle) {
   const auto export_rest = [](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"export", package() / "out", "--format", "plan"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -195,7 +195,7 @@ TEST(Fleet, TheRestSharesWhatALostVehicleLeaves) {
 }
 
 // A list of one is the vehicle: the same settings, and so the same survey and files.
-TEST(Fleet, OfOneIsTheVehicleItself) {
+TEST(Fleet, EqualsSingleVehicleForListOfOne) {
   const auto settings = [](const std::string& flight) {
     return package::settings_json(config::parse_mission(fleet_mission(flight), "m.yaml"));
   };
@@ -211,7 +211,7 @@ TEST(Fleet, OfOneIsTheVehicleItself) {
   }
 }
 
-TEST(Fleet, PlansWithTheLargestPositionErrorOfItsVehicles) {
+TEST(Fleet, UsesMaxPositionErrorOfVehicles) {
   const auto position_error = [](const std::string& flight) {
     return config::parse_mission(fleet_mission(flight), "m.yaml").flight().position_error;
   };
@@ -222,13 +222,13 @@ TEST(Fleet, PlansWithTheLargestPositionErrorOfItsVehicles) {
 }
 
 // 0.32 + 1.5 + 0.3 + 0.1 m: without RTK the default clearance of 2 m is too small.
-TEST(Fleet, RefusesAClearanceBelowTheErrorsOfAVehicleWithoutRtk) {
+TEST(Fleet, RejectsClearanceBelowErrorsWithoutRtk) {
   EXPECT_THAT(
       thrown_message([] { config::parse_mission(fleet_mission("vehicle: mavic_3e"), "m.yaml"); }),
       HasSubstr("key flight.clearance"));
 }
 
-TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
+TEST(Fleet, RejectsContradictoryKeys) {
   const auto error_message = [](const std::string& flight) {
     return thrown_message([&] { config::parse_mission(fleet_mission(flight), "m.yaml"); });
   };
@@ -250,7 +250,7 @@ TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
 }
 
 // Along the side that the first pad is at, to either side in turn.
-TEST(Fleet, StandsInARowWherePadsAreNotGiven) {
+TEST(Fleet, PutsDefaultPadsInRow) {
   const config::MissionSetup mission = config::parse_mission(
       fleet_mission("vehicles: [generic, generic, generic], separation: 9"), "m.yaml");
   const std::vector<Eigen::Vector3d> pads = mission.flight().fleet_pads({-75, 0, 0});

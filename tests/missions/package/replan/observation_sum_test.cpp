@@ -20,7 +20,7 @@ std::vector<GainField::Target> targets_weighing(const std::vector<float>& weight
 }
 
 // 1 - sum of w exp(-H) / sum of w, by hand.
-TEST(ObservationSum, CoversWhatTheDoseModelSays) {
+TEST(ObservationSum, MatchesCoverageModel) {
   ObservationSum sum(targets_weighing({1.0F, 3.0F}));
   EXPECT_EQ(sum.covered(), 0.0);
   sum.add(observation_strengths(std::vector<Observation>{{0, 1.0F}, {1, 0.5F}}));
@@ -32,7 +32,7 @@ TEST(ObservationSum, CoversWhatTheDoseModelSays) {
 }
 
 // Hazards of a 256th: off by half of that at most, by chance either way.
-TEST(ObservationSum, RoundsHazardsToWhatDoesNotMatter) {
+TEST(ObservationSum, LimitsErrorOfRoundedHazards) {
   ObservationSum sum(targets_weighing({2.0F}));
   double hazard = 0.0;
   for (int i = 1; i <= 10; ++i) {
@@ -44,7 +44,7 @@ TEST(ObservationSum, RoundsHazardsToWhatDoesNotMatter) {
 }
 
 // Views come and go ten thousand times in a search; nothing may stay of those that went.
-TEST(ObservationSum, KeepsNoTraceOfViewsThatWent) {
+TEST(ObservationSum, ForgetsRemovedViewsExactly) {
   std::mt19937_64 random(5);
   std::vector<float> weights;
   for (int i = 0; i < 500; ++i) weights.push_back(0.1F + static_cast<float>(random() % 1000));

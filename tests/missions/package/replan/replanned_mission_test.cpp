@@ -44,7 +44,7 @@ json read_summary(const std::string& package) {
   return json::parse(read_content(packages() / (package + "/summary.json")));
 }
 
-TEST(ReplannedMission, IsFasterAndPromisesNoLess) {
+TEST(ReplannedMission, IsFasterWithoutLessPredictedCoverage) {
   const json flight = read_summary("anew").at("flight");
   const json& replanned = flight.at("replanned");
   ASSERT_TRUE(replanned.at("is_flown").get<bool>());
@@ -66,7 +66,7 @@ TEST(ReplannedMission, IsFasterAndPromisesNoLess) {
 }
 
 // What it is compared with is the mission that the survey leaves without it.
-TEST(ReplannedMission, IsComparedWithTheSurveysOwn) {
+TEST(ReplannedMission, IsComparedWithSurveyMission) {
   const json own = read_summary("survey").at("flight");
   EXPECT_FALSE(own.contains("replanned"));
   const json compared = read_summary("anew").at("flight").at("replanned").at("survey");
@@ -75,7 +75,7 @@ TEST(ReplannedMission, IsComparedWithTheSurveysOwn) {
   EXPECT_EQ(compared.at("views"), own.at("route").at("stations"));
 }
 
-TEST(ReplannedMission, LeavesTheSurveyAsItIs) {
+TEST(ReplannedMission, KeepsSurveyFilesUnchanged) {
   const TestFolder& folder = packages();
   for (const char* name : {"views.csv", "cloud.ply", "coverage.ply", "free_space.bin"}) {
     EXPECT_EQ(read_content(folder / ("anew/" + std::string(name))),
@@ -86,7 +86,7 @@ TEST(ReplannedMission, LeavesTheSurveyAsItIs) {
 
 // The dose model promises shares of what was measured, the judge measures shares of what is
 // visible: of this teapot nearly the same. A tenth is more than both scatter by.
-TEST(ReplannedMission, KeepsItsPromiseWhenItIsFlownAgain) {
+TEST(ReplannedMission, ReachesSurveyCoverageInSimulatedReflight) {
   const json summary = read_summary("anew");
   const double again =
       summary.at("flight").at("replanned").at("reflight").at("coverage_visible").get<double>();
@@ -95,7 +95,7 @@ TEST(ReplannedMission, KeepsItsPromiseWhenItIsFlownAgain) {
 }
 
 // Frames on the survey's ways have seen what its few views have not: the mission is to cover that.
-TEST(ReplannedMission, CoversWhatTheFramesOnTheSurveysWaysHaveSeen) {
+TEST(ReplannedMission, CoversSurfaceSeenByEnRouteFrames) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "moving", "--set",
                                "flight.views=replanned", "--set", "sensor.capture=moving"});
@@ -108,7 +108,7 @@ TEST(ReplannedMission, CoversWhatTheFramesOnTheSurveysWaysHaveSeen) {
             replanned.at("survey_reflight").at("coverage_visible_unthinned").get<double>() - 0.005);
 }
 
-TEST(ReplannedMission, DoesNotDependOnThreads) {
+TEST(ReplannedMission, IsSameForAnyThreadCount) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "threads", "--threads",
                                "4", "--set", "flight.views=replanned"});
@@ -119,7 +119,7 @@ TEST(ReplannedMission, DoesNotDependOnThreads) {
 }
 
 // Against the scene as it is, every leg of every file.
-TEST(ReplannedMission, FilesKeepTheClearanceFromTheTruth) {
+TEST(ReplannedMission, KeepsClearanceFromGroundTruthInAllFiles) {
   const TestFolder& folder = packages();
   for (const char* extension : {"plan", "waypoints", "kml", "geojson", "csv"}) {
     const auto check = run_skycap({"check", folder / "m.yaml", "--route",
@@ -130,7 +130,7 @@ TEST(ReplannedMission, FilesKeepTheClearanceFromTheTruth) {
 }
 
 // Past its views: faster than with stops, each view's picture in the trajectory, and proven.
-TEST(ReplannedMission, IsFlownPastItsViews) {
+TEST(ReplannedMission, CapturesViewsInFlyThrough) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "passing", "--threads",
                                "1", "--set", "flight.views=replanned", "--set",
@@ -165,7 +165,7 @@ TEST(ReplannedMission, IsFlownPastItsViews) {
   EXPECT_EQ(read_content(folder / "passing again/mission.csv"), csv);
 }
 
-TEST(ReplannedMission, SaysWhyNothingIsPassed) {
+TEST(ReplannedMission, ReportsWhyFlyThroughIsUnavailable) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "blurred", "--set",
                                "flight.style=fly-through", "--set", "sensor.exposure=1", "--set",
@@ -179,7 +179,7 @@ TEST(ReplannedMission, SaysWhyNothingIsPassed) {
               HasSubstr("flight.style: fly-through conflicts with a sensor that must rest"));
 }
 
-TEST(ReplannedMission, IsExportedAgainAsItWasPlanned) {
+TEST(ReplannedMission, ExportsSameFilesAgain) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"export", folder / "anew", "--format", "plan", "--format", "csv",
                                "--out", folder / "again"});
@@ -194,7 +194,7 @@ TEST(ReplannedMission, IsExportedAgainAsItWasPlanned) {
 }
 
 // On request the survey's own mission is written after all.
-TEST(ReplannedMission, GivesBackTheSurveysMission) {
+TEST(ReplannedMission, ExportsSurveyMissionOnRequest) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"export", folder / "anew", "--format", "csv", "--set",
                                "flight.views=survey", "--out", folder / "back"});
@@ -202,7 +202,7 @@ TEST(ReplannedMission, GivesBackTheSurveysMission) {
   EXPECT_EQ(read_content(folder / "back/mission.csv"), read_content(folder / "survey/mission.csv"));
 }
 
-TEST(ReplannedMission, IsNotMadeOfASurveyThatDidNotAskForIt) {
+TEST(ReplannedMission, IsRejectedForSurveyWithoutReplannedViews) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"export", folder / "survey", "--format", "csv", "--set",
                                "flight.views=replanned", "--out", folder / "refused"});
@@ -212,7 +212,7 @@ TEST(ReplannedMission, IsNotMadeOfASurveyThatDidNotAskForIt) {
   EXPECT_FALSE(std::filesystem::exists(folder / "refused/mission.csv"));
 }
 
-TEST(ReplannedMission, RefusesStationsThatAreNowhere) {
+TEST(ReplannedMission, RejectsWaypointsOutOfRange) {
   json summary = read_summary("anew");
   summary["flight"]["replanned"]["stations"][1]["way"][0][2] = 1e300;
   EXPECT_THAT(testing_support::thrown_message(
@@ -220,7 +220,7 @@ TEST(ReplannedMission, RefusesStationsThatAreNowhere) {
               HasSubstr("summary.json: flight.replanned.stations[1].way"));
 }
 
-TEST(ReplannedMission, NeedsAPlannerThatKnowsTheSurface) {
+TEST(ReplannedMission, RequiresSkycapPlanner) {
   const auto error_message = [](const std::string& key, const std::string& value) {
     return testing_support::thrown_message([&] {
       config::parse_mission(flight_mission(), "m.yaml",

@@ -87,7 +87,7 @@ struct PlaneWorld {
   int asked = 0;
 };
 
-TEST(RemoveViews, DropsDuplicates) {
+TEST(RemoveViews, RemovesDuplicates) {
   PlaneWorld world(1.0);
   world.add_cluster(10, 0, 0.5);
   world.add_cluster(20, 0, 0.5);
@@ -99,7 +99,7 @@ TEST(RemoveViews, DropsDuplicates) {
   EXPECT_DOUBLE_EQ(found.time, PlaneWorld::time({a, b}));
 }
 
-TEST(RemoveViews, KeepsWhatIsNeeded) {
+TEST(RemoveViews, KeepsNeededViews) {
   PlaneWorld world(1.0);
   world.add_cluster(10, 0, 0.5);
   world.add_cluster(20, 0, 0.5);
@@ -111,7 +111,7 @@ TEST(RemoveViews, KeepsWhatIsNeeded) {
 
 // Clusters of radius 0.5 on a line from home, seen whole from within 0.5 of their middles: the
 // least is three views, and to the nearest place that sees the last one and back, on the ground.
-TEST(Anneal, FindsTheLeastToursOfAKnownWorld) {
+TEST(Anneal, FindsNearOptimalToursInKnownWorld) {
   PlaneWorld world(1.0);
   for (const double x : {10.0, 20.0, 30.0}) world.add_cluster(x, 0, 0.5);
   std::vector<View> start;
@@ -152,7 +152,7 @@ void measure_en_route(PlaneWorld& world) {
 
 // Targets in a line from home: whoever measures on the way flies to where the last one is in sight,
 // and back.
-TEST(Anneal, CountsWhatIsMeasuredOnTheWays) {
+TEST(Anneal, CountsEnRouteMeasurements) {
   PlaneWorld world(1.0);
   for (int i = 1; i <= 20; ++i) world.add_target(i, 0.0);
   measure_en_route(world);
@@ -168,7 +168,7 @@ TEST(Anneal, CountsWhatIsMeasuredOnTheWays) {
 }
 
 // A stop that no way needs is spared, one that a way is bent by is kept.
-TEST(RemoveViews, KnowsWhatTheWaysWithoutAViewSee) {
+TEST(RemoveViews, CountsEnRouteCoverageOfRemainingLegs) {
   PlaneWorld world(1.0);
   world.add_target(5, 0);
   world.add_target(10, 0);
@@ -183,7 +183,7 @@ TEST(RemoveViews, KnowsWhatTheWaysWithoutAViewSee) {
 
 // Three clusters that are seen from a straight line and from beside it: who loses time in bends
 // takes the line, though it takes more views.
-TEST(Anneal, KnowsWhatBendsTake) {
+TEST(Anneal, AccountsForTimeInBends) {
   PlaneWorld world(1.0);
   for (const double x : {10.0, 20.0, 30.0}) world.add_cluster(x, 0, 0.5);
   world.problem.time_per_view = 0.1;
@@ -216,7 +216,7 @@ TEST(Anneal, KnowsWhatBendsTake) {
 }
 
 // Two views that each see half of it, where one between them sees all.
-TEST(Anneal, TakesOneViewForTwo) {
+TEST(Anneal, ReplacesTwoViewsByOne) {
   PlaneWorld world(2.0);
   world.add_cluster(15, 0, 1.5);
   const std::vector<View> start = {down_at(14, 0.3), down_at(16, -0.3)};
@@ -226,7 +226,7 @@ TEST(Anneal, TakesOneViewForTwo) {
 }
 
 // Property: whatever it begins from, what it gives covers as much and takes no longer.
-TEST(Anneal, IsNeverSlowerAndNeverCoversLess) {
+TEST(Anneal, NeverReturnsSlowerOrLessCoveringTour) {
   std::mt19937_64 random(7);
   const auto random_coordinate = [&] {
     return static_cast<double>(random() % 4000) / 100.0 - 20.0;
@@ -245,7 +245,7 @@ TEST(Anneal, IsNeverSlowerAndNeverCoversLess) {
   }
 }
 
-TEST(Anneal, GivesTheSameTourAgain) {
+TEST(Anneal, IsDeterministic) {
   PlaneWorld world(3.0);
   for (const double x : {8.0, 16.0, 24.0}) world.add_cluster(x, x / 2.0, 1.0);
   const std::vector<View> start = {down_at(8, 4), down_at(16, 8), down_at(24, 12), down_at(9, 5)};
@@ -262,7 +262,7 @@ TEST(Anneal, GivesTheSameTourAgain) {
 }
 
 // Nothing below 5 m is allowed, nothing east of 12 m is free.
-TEST(Anneal, KeepsLimitsAndFreeSpace) {
+TEST(Anneal, RespectsLimitsAndFreeSpace) {
   PlaneWorld world(4.0);
   for (const double x : {4.0, 9.0, 14.0}) world.add_cluster(x, 0, 1.0);
   world.problem.is_allowed = [](const View& view) { return view.position.z() >= 5.0; };
@@ -279,7 +279,7 @@ TEST(Anneal, KeepsLimitsAndFreeSpace) {
 
 // North and south of a wall that is dear to get round, from the gap at its western end: each side
 // is to be visited once, so that the wall is passed twice at most.
-TEST(Anneal, DoesNotGoBackAndForthThroughAWall) {
+TEST(Anneal, CrossesWallOnlyOnceEachDirection) {
   PlaneWorld world(1.0);
   std::vector<View> start;
   for (const double x : {6.0, 12.0, 18.0}) {
@@ -306,7 +306,7 @@ TEST(Anneal, DoesNotGoBackAndForthThroughAWall) {
 }
 
 // East of 20 m nothing has a way home: what is there can be seen from before it, too.
-TEST(Anneal, LeavesPlacesWithoutAWayHome) {
+TEST(Anneal, AvoidsPositionsWithoutReturnPath) {
   PlaneWorld world(3.0);
   world.add_cluster(10, 0, 0.5);
   world.add_cluster(20, 0, 0.5);
@@ -322,7 +322,7 @@ TEST(Anneal, LeavesPlacesWithoutAWayHome) {
 }
 
 // What the survey covered from a place without a way home is covered from elsewhere.
-TEST(Anneal, MakesUpForViewsThatHadToBeLeftOut) {
+TEST(Anneal, ReplacesViewsWithoutReturnPath) {
   PlaneWorld world(3.0);
   world.add_cluster(10, 0, 0.5);
   world.add_cluster(20, 0, 0.5);
