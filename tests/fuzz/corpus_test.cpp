@@ -90,13 +90,13 @@ class Corpus : public testing::TestWithParam<Reader> {
   }
 };
 
-TEST_P(Corpus, FilesAreReadOrRefused) {
+TEST_P(Corpus, ReadsOrRejectsFiles) {
   const std::vector<fs::path> files = find_corpus_files(GetParam());
   ASSERT_FALSE(files.empty());
   for (const fs::path& path : files) expect_held(read_bytes(path), path.filename());
 }
 
-TEST_P(Corpus, FilesThatAreCutShortAreReadOrRefused) {
+TEST_P(Corpus, ReadsOrRejectsTruncatedFiles) {
   for (const fs::path& path : find_corpus_files(GetParam())) {
     const std::string bytes = read_bytes(path);
     for (std::size_t part = 0; part < 12; ++part) {
@@ -105,7 +105,7 @@ TEST_P(Corpus, FilesThatAreCutShortAreReadOrRefused) {
   }
 }
 
-TEST_P(Corpus, FilesWithChangedBytesAreReadOrRefused) {
+TEST_P(Corpus, ReadsOrRejectsFilesWithChangedBytes) {
   std::mt19937 random(number_in_environment("CORPUS_SEED", 1));
   const std::uint32_t changes = number_in_environment("CORPUS_CHANGES", 200);
   for (const fs::path& path : find_corpus_files(GetParam())) {

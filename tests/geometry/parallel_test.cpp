@@ -10,7 +10,7 @@
 namespace skycap::geometry {
 namespace {
 
-TEST(ParallelFor, DoesEachItemOnce) {
+TEST(ParallelFor, RunsEachItemOnce) {
   for (const unsigned threads : {0U, 1U, 2U, 7U}) {
     std::vector<int> done(1000, 0);
     parallel_for(done.size(), threads, [&](std::size_t i) { ++done[i]; });
@@ -18,7 +18,7 @@ TEST(ParallelFor, DoesEachItemOnce) {
   }
 }
 
-TEST(ParallelFor, ThrowsOnWhatAnItemThrows) {
+TEST(ParallelFor, RethrowsExceptionOfItem) {
   const auto fail_at_37 = [](std::size_t i) {
     if (i == 37) throw std::runtime_error("item 37");
   };

@@ -27,7 +27,7 @@ TEST(Requirement, NamesFieldValueAndRule) {
   EXPECT_EQ(error_message(-1.234567e-300), "sensor.width is -1.23457e-300; it must be above 0");
 }
 
-TEST(Requirement, IsSilentWhenItHolds) { EXPECT_NO_THROW(require(true, "x", 0.0, "zero")); }
+TEST(Requirement, DoesNotThrowWhenMet) { EXPECT_NO_THROW(require(true, "x", 0.0, "zero")); }
 
 }  // namespace
 }  // namespace skycap

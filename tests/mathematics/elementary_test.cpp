@@ -63,7 +63,7 @@ void PrintTo(const Function& function, std::ostream* out) { *out << function.nam
 class Elementary : public testing::TestWithParam<Function> {};
 
 // The independent twin is MPFR, over all magnitudes and, twice as often, near one.
-TEST_P(Elementary, IsNearTheTrueValue) {
+TEST_P(Elementary, MatchesMpfr) {
   const Function& function = GetParam();
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> log_range(std::log2(function.min),
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(All, Elementary,
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 // Of two arguments, of all magnitudes against one another.
-TEST(Elementary, PowAndAtan2AreNearTheTrueValue) {
+TEST(Elementary, MatchesMpfrForPowAndAtan2) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> exponent(-300.0, 300.0), near(-8.0, 8.0);
   Exact exact, second;
@@ -144,7 +144,7 @@ TEST(Elementary, PowAndAtan2AreNearTheTrueValue) {
 
 // The hardest arguments for the reduction by pi / 2 (J.-M. Muller, Elementary Functions, 11.3.2:
 // the double nearest to a multiple of it), and powers of two around it.
-TEST(Elementary, AnglesNextToMultiplesOfAQuarterTurnAreReducedWell) {
+TEST(Elementary, ReducesAnglesNearMultiplesOfQuarterTurn) {
   std::vector<double> angles = {6381956970095103.0 * 0x1p797, 0x1.6ac5b262ca1ffp+849};
   for (int quarters = 1; quarters < 3000; ++quarters) {
     angles.push_back(quarters * 1.5707963267948966);
@@ -165,7 +165,7 @@ TEST(Elementary, AnglesNextToMultiplesOfAQuarterTurnAreReducedWell) {
 }
 
 // What has an exact answer gives it.
-TEST(Elementary, ExactAnswersAreExact) {
+TEST(Elementary, ReturnsExactResultsExactly) {
   for (int n = -1074; n < 1024; ++n) {
     EXPECT_EQ(exp2(n), std::ldexp(1.0, n));
     EXPECT_EQ(log2(std::ldexp(1.0, n)), n);
@@ -192,7 +192,7 @@ bool is_same(double a, double b) {
 }
 
 // C17, annex F.10.
-TEST(Elementary, SpecialValuesAreThoseOfTheStandard) {
+TEST(Elementary, ReturnsSpecialValuesOfC17) {
   struct Case {
     const char* what;
     double computed, expected;
@@ -293,7 +293,7 @@ TEST(Elementary, SpecialValuesAreThoseOfTheStandard) {
 }
 
 // What the program and the libraries in it call under a name in C: found first by the loader.
-TEST(Elementary, AreWhatEveryNameInCMeans) {
+TEST(Elementary, ReplacesTheCFunctions) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> argument(0.1, 0.9);
   const auto expect_same = [&](const char* name, UnaryFunction ours) {

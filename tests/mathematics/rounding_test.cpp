@@ -21,7 +21,7 @@ struct Rounded {
   rounded.wide[1] = y;
 }
 
-TEST(Rounding, OfAFloatIsKeptWhereItIsWidenedAgain) {
+TEST(Rounding, KeepsSinglePrecisionAfterWidening) {
   Rounded rounded{};
   round({0.1, 0.2}, rounded);
   EXPECT_EQ(rounded.wide[0], 0.1F);

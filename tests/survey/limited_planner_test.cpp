@@ -75,7 +75,7 @@ Scan make_scan(const std::vector<Vector3f>& points) {
 
 const Scan scan = make_scan({{0, 0, 0}, {0, 0, 1}});
 
-TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimits) {
+TEST(LimitedPlanner, ProposesOnlyViewsWithinLimits) {
   LimitedPlanner planner(planner_at_heights({1, 3, 5, 9, 2, 4, 6}), two_to_four);
   std::vector<double> heights;
   for (auto view = planner.next_view(scan); view; view = planner.next_view(scan)) {
@@ -85,7 +85,7 @@ TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimits) {
   EXPECT_THAT(heights, ElementsAre(3, 2, 4));
 }
 
-TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimitsInPlaceOfOthers) {
+TEST(LimitedPlanner, ProposesOnlyAlternativeViewsWithinLimits) {
   LimitedPlanner planner(planner_at_heights({3, 5, 1, 2, 6}), two_to_four);
   EXPECT_EQ(planner.next_view(scan)->position.z(), 3.0);
   EXPECT_EQ(planner.next_alternative_view()->position.z(), 2.0);
@@ -93,7 +93,7 @@ TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimitsInPlaceOfOthers) {
 }
 
 // What a scan shows counts from the scan on; what was measured before counts as well.
-TEST(LimitedPlanner, KeepsTheStandOffFromAllThatWasMeasured) {
+TEST(LimitedPlanner, KeepsStandOffFromAllMeasuredPoints) {
   auto list = std::make_unique<ListPlanner>(std::vector<View>{
       view_at(2.9, 0), view_at(3.1, 0), view_at(3.1, 0), view_at(-0.9, 0), view_at(-1.1, 0)});
   LimitedPlanner planner(std::move(list), {.min_standoff = 1.0});
@@ -103,7 +103,7 @@ TEST(LimitedPlanner, KeepsTheStandOffFromAllThatWasMeasured) {
   EXPECT_TRUE(planner.allows(view_at(-1.1, 0)));
 }
 
-TEST(LimitedPlanner, SaysThatThereIsNowhereToGoWhenAllViewsAreRefused) {
+TEST(LimitedPlanner, StopsWithNowhereToGoWhenAllViewsAreRejected) {
   LimitedPlanner planner(planner_at_heights({1, 5, 3}), two_to_four);
   ASSERT_TRUE(planner.next_view(scan));
   EXPECT_FALSE(planner.next_alternative_view());
@@ -113,7 +113,7 @@ TEST(LimitedPlanner, SaysThatThereIsNowhereToGoWhenAllViewsAreRefused) {
   EXPECT_EQ(planner.stop_reason(), StopReason::complete);
 }
 
-TEST(LimitedPlanner, EndsASurveyForWhatItsLimitsRefuse) {
+TEST(LimitedPlanner, EndsSurveyWithReasonOfItsLimits) {
   const auto sense = [](const View& view, const Scan&) {
     return Scan{.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}}};
   };
@@ -127,7 +127,7 @@ TEST(LimitedPlanner, EndsASurveyForWhatItsLimitsRefuse) {
 }
 
 // An opening is not the planner's, but its limits are the survey's.
-TEST(LimitedPlanner, LeavesOutWhatItsLimitsRefuseOfAnOpening) {
+TEST(LimitedPlanner, SkipsInitialPatternViewsOutsideLimits) {
   const auto sense = [](const View& view, const Scan&) {
     return Scan{.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}}};
   };
@@ -140,7 +140,7 @@ TEST(LimitedPlanner, LeavesOutWhatItsLimitsRefuseOfAnOpening) {
 }
 
 // The step is that of the scan, whatever the planner does in search of another view.
-TEST(LimitedPlanner, KeepsTheStepOfTheScan) {
+TEST(LimitedPlanner, KeepsStepOfLastScan) {
   LimitedPlanner planner(planner_at_heights({1, 5, 3, 2}), two_to_four);
   ASSERT_TRUE(planner.next_view(scan));
   EXPECT_EQ(planner.last_step().points_new, 2U);
@@ -148,7 +148,7 @@ TEST(LimitedPlanner, KeepsTheStepOfTheScan) {
   EXPECT_EQ(planner.last_step().points_new, 2U);
 }
 
-TEST(LimitedPlanner, StopsInTheSearchForAView) {
+TEST(LimitedPlanner, StopsWhilePlanningView) {
   LimitedPlanner planner(planner_at_heights({1, 5, 3}), two_to_four);
   std::stop_source stop;
   planner.stop_on(stop.get_token());
@@ -156,7 +156,7 @@ TEST(LimitedPlanner, StopsInTheSearchForAView) {
   EXPECT_THROW(planner.next_view(scan), Interrupted);
 }
 
-TEST(LimitedPlanner, HandsOnWhatThePlannerIsTold) {
+TEST(LimitedPlanner, ForwardsCallsToPlanner) {
   auto list = planner_at_heights({3});
   const ListPlanner& inside = *list;
   LimitedPlanner planner(std::move(list), two_to_four);

@@ -54,7 +54,7 @@ std::vector<double> positions(const SurveyResult& result) {
   return x;
 }
 
-TEST(SurveyLoop, GoesOnUntilThePlannerIsDone) {
+TEST(SurveyLoop, ContinuesUntilPlannerIsComplete) {
   WalkingPlanner planner(3);
   const SurveyResult result = run_survey(planner, start, {}, {.sense = sense});
   EXPECT_EQ(result.stop_reason, StopReason::complete);
@@ -64,7 +64,7 @@ TEST(SurveyLoop, GoesOnUntilThePlannerIsDone) {
 }
 
 // Trap T10: the distance starts at the first view and is of straight segments.
-TEST(SurveyLoop, CountsDistanceFromTheFirstView) {
+TEST(SurveyLoop, MeasuresDistanceFromFirstView) {
   WalkingPlanner planner(2);
   const SurveyResult result = run_survey(planner, {{-5, 0, 0}, {1, 0, 0}}, {}, {.sense = sense});
   EXPECT_EQ(result.views[0].distance, 0.0);
@@ -72,7 +72,7 @@ TEST(SurveyLoop, CountsDistanceFromTheFirstView) {
   EXPECT_EQ(result.views[2].distance, 7.0);
 }
 
-TEST(SurveyLoop, StopsAtItsLimits) {
+TEST(SurveyLoop, StopsAtLimits) {
   WalkingPlanner first(100);
   EXPECT_EQ(run_survey(first, start, {.max_views = 4}, {.sense = sense}).stop_reason,
             StopReason::view_limit);
@@ -82,7 +82,7 @@ TEST(SurveyLoop, StopsAtItsLimits) {
   EXPECT_THAT(positions(result), ElementsAre(0, 1, 2));
 }
 
-TEST(SurveyLoop, AsksForAnotherViewWhenOneCannotBeReached) {
+TEST(SurveyLoop, RequestsAlternativeForUnreachableView) {
   WalkingPlanner planner(4);
   const auto odd_positions_only = [](const Vector3d&, const View& to) {
     return static_cast<int>(to.position.x()) % 2 == 1;
@@ -94,7 +94,7 @@ TEST(SurveyLoop, AsksForAnotherViewWhenOneCannotBeReached) {
 }
 
 // The opening comes first; what cannot be reached of it is left out, and the planner goes on.
-TEST(SurveyLoop, TakesTheOpeningBeforeThePlannersViews) {
+TEST(SurveyLoop, FliesInitialPatternBeforePlannedViews) {
   WalkingPlanner planner(4);
   const auto view_at = [](double x) { return View{{x, 0, 0}, {1, 0, 0}}; };
   const auto not_at_eleven = [](const Vector3d&, const View& to) { return to.position.x() != 11; };
@@ -134,7 +134,7 @@ class SlowPlanner final : public Planner {
 };
 
 // Also where views were refused: by the loop itself, or by whoever moves the sensor.
-TEST(SurveyLoop, SplitsThePlanningTimeWithoutRemainder) {
+TEST(SurveyLoop, SplitsPlanningTimeWithoutRemainder) {
   const auto far_only = [](const Vector3d&, const View& to) { return to.position.x() >= 3; };
   SlowPlanner planner;
   SurveyStepper steps(planner, {}, {.can_reach = far_only});
@@ -153,7 +153,7 @@ TEST(SurveyLoop, SplitsThePlanningTimeWithoutRemainder) {
   EXPECT_GE(taken.step.times[2].seconds, 0.015);  // 1 and 2 by the loop, 3 by the caller
 }
 
-TEST(SurveyLoop, StopsBetweenViewsWhenAsked) {
+TEST(SurveyLoop, StopsBetweenViewsOnRequest) {
   WalkingPlanner planner(100);
   std::stop_source stop;
   const SurveyResult result = run_survey(planner, start, {},
@@ -191,7 +191,7 @@ class StoppedPlanner final : public Planner {
   int scans_ = 0;
 };
 
-TEST(SurveyLoop, StopsWhileThePlannerLooksForAView) {
+TEST(SurveyLoop, StopsWhilePlanningView) {
   StoppedPlanner planner;
   const SurveyResult result =
       run_survey(planner, start, {}, {.sense = sense}, planner.source.get_token());
@@ -200,7 +200,7 @@ TEST(SurveyLoop, StopsWhileThePlannerLooksForAView) {
 }
 
 // Once there is a view to come back with, other views are not asked for to the end.
-TEST(SurveyLoop, StopsWhileViewsAreRefused) {
+TEST(SurveyLoop, StopsWhileViewsAreRejected) {
   WalkingPlanner planner(1'000'000'000);
   std::stop_source source;
   std::stop_token reported;
@@ -219,7 +219,7 @@ TEST(SurveyLoop, StopsWhileViewsAreRefused) {
   EXPECT_TRUE(reported.stop_requested());
 }
 
-TEST(SurveyLoop, StopsWhenTheTimeIsUp) {
+TEST(SurveyLoop, StopsAtTimeLimit) {
   WalkingPlanner planner(100);
   // A metre of way and a second a view: places 0, 1 and 2 take 5 s.
   const SurveyResult result = run_survey(
@@ -228,7 +228,7 @@ TEST(SurveyLoop, StopsWhenTheTimeIsUp) {
   EXPECT_THAT(positions(result), ElementsAre(0, 1, 2));
 }
 
-TEST(SurveyLoop, HandsEachScanBackForItsMemory) {
+TEST(SurveyLoop, ReturnsScanBuffersForReuse) {
   WalkingPlanner planner(2);
   std::vector<const void*> taken, returned;
   const auto reusing_buffer = [&](const View& view, Scan buffer) {
@@ -243,7 +243,7 @@ TEST(SurveyLoop, HandsEachScanBackForItsMemory) {
 }
 
 // A real drone stops where the wind lets it; the pose it reports is what counts.
-TEST(SurveyLoop, TakesThePoseThatTheSensorReached) {
+TEST(SurveyLoop, UsesPoseThatSensorReached) {
   WalkingPlanner planner(1);
   const auto drift = [](const View& view, const Scan&) {
     return sense({view.position + Vector3d(0, 0.5, 0), view.direction});

@@ -18,11 +18,11 @@ using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-TEST(ViewLimits, WithoutLimitsEveryViewIsAllowed) {
+TEST(ViewLimits, AllowEveryViewByDefault) {
   EXPECT_TRUE(ViewLimits{}.allow({{0, 0, -100}, {0, 0, 1}}));
 }
 
-TEST(ViewLimits, HeightPitchFenceAndNoFlyVolumesEachForbid) {
+TEST(ViewLimits, ForbidByHeightPitchFenceAndNoFlyVolumes) {
   ViewLimits limits;
   limits.min_height = 2.0;
   limits.max_height = 50.0;
@@ -44,7 +44,7 @@ TEST(ViewLimits, HeightPitchFenceAndNoFlyVolumesEachForbid) {
 }
 
 // Property: whatever is returned is allowed, at the distance asked for, looking at the target.
-TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
+TEST(ViewLimits, MakeTargetViewsWithinLimits) {
   ViewLimits limits;
   limits.min_height = 2.0;
   limits.max_height = 30.0;
@@ -67,7 +67,7 @@ TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
   EXPECT_GT(found, 500);
 }
 
-TEST(ViewLimits, ALowViewIsRaisedAtItsAzimuthAndAFreeOneIsKept) {
+TEST(ViewLimits, RaiseLowViewsAndKeepAllowedViews) {
   ViewLimits limits;
   limits.min_height = 2.0;
   const auto raised = limits.make_target_view({0, 0, 1}, Vector3d(1, 1, -1).normalized(), 10.0);
@@ -80,7 +80,7 @@ TEST(ViewLimits, ALowViewIsRaisedAtItsAzimuthAndAFreeOneIsKept) {
   EXPECT_TRUE(kept->position.isApprox(Vector3d(0, 0, 11)));
 }
 
-TEST(ViewLimits, ReportsTheInvalidField) {
+TEST(ViewLimits, ReportTheInvalidField) {
   const auto validation_error = [](const ViewLimits& limits) -> std::string {
     try {
       limits.validate();

@@ -81,7 +81,7 @@ double integrated_s_curve(double distance, const LegLimits& limits, double jerk,
   return 2.0 * ramp.time + std::max(0.0, distance - 2.0 * ramp.distance) / ramp.speed;
 }
 
-TEST(SCurve, AgreesWithItsIntegration) {
+TEST(SCurve, MatchesNumericalIntegration) {
   for (const double distance : {0.02, 0.3, 1.0, 4.0, 15.0, 60.0, 300.0}) {
     for (const double speed : {0.1, 1.5, 4.0, 12.0}) {
       for (const double acceleration : {0.2, 1.0, 2.5}) {
@@ -95,7 +95,7 @@ TEST(SCurve, AgreesWithItsIntegration) {
 }
 
 // Without a rise of the jerk it is the motion of seven phases, whose time is another closed form.
-TEST(SCurve, IsSevenPhasesWhenTheJerkJumps) {
+TEST(SCurve, MatchesSevenPhasesWithoutJerkRiseTime) {
   for (const double distance : {0.01, 0.5, 3.0, 20.0, 200.0}) {
     for (const double speed : {0.5, 4.0, 15.0}) {
       EXPECT_NEAR(s_curve_time(distance, {speed, 2.0}, 4.0, 0.0),
@@ -105,7 +105,7 @@ TEST(SCurve, IsSevenPhasesWhenTheJerkJumps) {
   }
 }
 
-TEST(SCurve, LongLegsTakeTheSumOfTheirParts) {
+TEST(SCurve, MatchesClosedFormOnLongLegs) {
   EXPECT_NEAR(s_curve_time(100.0, {4.0, 1.6}, 1.0, 0.3), 25.0 + 2.5 + 1.6 + 0.3, 1e-9);
   EXPECT_EQ(s_curve_time(0.0, {4.0, 2.5}, 1.0, 0.3), 0.0);
 }
@@ -138,7 +138,7 @@ double stepped_braking(double distance, const LegLimits& limits, double jerk) {
   return time;
 }
 
-TEST(BrakingDistance, AgreesWithItsIntegration) {
+TEST(BrakingDistance, MatchesNumericalIntegration) {
   for (const double distance : {2.0, 5.0, 20.0, 100.0}) {
     for (const LegLimits& limits : {LegLimits{4.0, 3.0}, LegLimits{1.5, 3.0}}) {
       const double time = braking_distance_time(distance, limits, 4.0);
@@ -200,7 +200,7 @@ const std::vector<LoggedSortie>& logged_sorties() {
 }
 
 // The bar: within 5 % of the times that were flown.
-TEST(ArduCopter, TimesAreThoseOfFlights) {
+TEST(ArduCopter, PredictsLoggedFlightTimesWithinFivePercent) {
   const Motion motion(vehicle_profile("generic_ardupilot"), {.cruise_speed = 4.0});
   for (const LoggedSortie& sortie : logged_sorties()) {
     double time = motion.takeoff_time(5.0) + motion.landing_time(5.0);
@@ -212,7 +212,7 @@ TEST(ArduCopter, TimesAreThoseOfFlights) {
   }
 }
 
-TEST(MissionMode, AbsurdLimitsAreNamed) {
+TEST(MissionMode, RejectsZeroLandingSpeed) {
   MissionMode mode;
   mode.landing_speed = 0.0;
   try {

@@ -63,7 +63,7 @@ FlightLog make_log(const Vehicle& vehicle, const Vector2d& wind, double noise) {
   return log;
 }
 
-TEST(Calibration, FindsTheVehicleAndTheWindOfAPerfectLog) {
+TEST(Calibration, RecoversVehicleAndWindFromNoiseFreeLog) {
   const Calibration found = calibrate(make_log(reference_vehicle(), {2.0, -1.0}, 0.0),
                                       vehicle_profile("generic_ardupilot"), 1.225);
   EXPECT_NEAR(found.vehicle.endurance_min, 22.0, 0.01);
@@ -76,7 +76,7 @@ TEST(Calibration, FindsTheVehicleAndTheWindOfAPerfectLog) {
 }
 
 // Single readings that are off by a tenth of the power leave its energy within a percent.
-TEST(Calibration, IsGoodForTheEnergyOfANoisyLog) {
+TEST(Calibration, PredictsPowerFromNoisyLog) {
   const Calibration found = calibrate(make_log(reference_vehicle(), {2.0, -1.0}, 25.0),
                                       vehicle_profile("generic_ardupilot"), 1.225);
   const Motion real(reference_vehicle(), {}), model(found.vehicle, {});
@@ -88,7 +88,7 @@ TEST(Calibration, IsGoodForTheEnergyOfANoisyLog) {
 }
 
 // A model that cannot say what happened says so by its error: power that swings by a third.
-TEST(Calibration, SaysHowFarItIsOff) {
+TEST(Calibration, ReportsLargeEnergyErrorWhenModelDoesNotFit) {
   FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     if (i * 5 / log.samples.size() % 2 == 1) log.samples[i].power *= 1.33;
@@ -96,7 +96,7 @@ TEST(Calibration, SaysHowFarItIsOff) {
   EXPECT_GT(calibrate(log, vehicle_profile("generic_ardupilot"), 1.225).energy_error, 0.1);
 }
 
-TEST(Calibration, RefusesLogsThatHoldTooLittle) {
+TEST(Calibration, RejectsLogsWithTooLittleFlight) {
   const auto tried = [](FlightLog log) {
     return [log] { calibrate(log, vehicle_profile("generic_ardupilot"), 1.225); };
   };
@@ -114,7 +114,7 @@ TEST(Calibration, RefusesLogsThatHoldTooLittle) {
   EXPECT_THAT(tried(level), throws_message("s of hovering; required: at least 20 s"));
 }
 
-TEST(Calibration, TakesOverTheAutopilotsLimits) {
+TEST(Calibration, ReadsLimitsFromLoggedParameters) {
   FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   log.parameters = {{"WPNAV_SPEED_UP", 400}, {"WP_SPD_DN", 2.25},    {"ATC_INPUT_TC", 0.2},
                     {"LAND_SPEED", 70},      {"ATC_SLEW_YAW", 9000}, {"FENCE_RADIUS", 300}};
@@ -128,7 +128,7 @@ TEST(Calibration, TakesOverTheAutopilotsLimits) {
 }
 
 // Legs of 20 m that take 0.8 s more than the law says; every second waypoint is passed.
-TEST(Calibration, SettlingIsWhatLegsTakeBeyondTheirLaw) {
+TEST(Calibration, ComputesSettleTimeFromLegDurations) {
   FlightLog log = make_log(reference_vehicle(), {0, 0}, 0.0);
   const LocalFrame frame({51.0, 7.0, 0.0});
   const Vehicle vehicle = vehicle_profile("generic_ardupilot");

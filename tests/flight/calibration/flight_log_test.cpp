@@ -67,7 +67,7 @@ std::string sample_log() {
   return log.bytes;
 }
 
-TEST(DataflashLog, HoldsPowerVelocityParametersAndCommands) {
+TEST(DataflashLog, ReadsPowerVelocityParametersAndCommands) {
   const FlightLog log = read_dataflash(sample_log());
   ASSERT_THAT(log.samples, SizeIs(2));
   EXPECT_DOUBLE_EQ(log.samples[0].time, 1.0);
@@ -85,14 +85,14 @@ TEST(DataflashLog, HoldsPowerVelocityParametersAndCommands) {
 }
 
 /// Two samples, a parameter and a command.
-TEST(DataflashLog, OfMoreEntriesThanAllowedIsRefused) {
+TEST(DataflashLog, RejectsMoreEntriesThanTheLimit) {
   EXPECT_THAT(read_dataflash(sample_log(), 4).samples, SizeIs(2));
   EXPECT_THAT(
       [] { read_dataflash(sample_log(), 3); },
       ThrowsMessage<Error>(HasSubstr("contains more than 3 samples, parameters and commands")));
 }
 
-TEST(DataflashLog, DamageIsSkipped) {
+TEST(DataflashLog, SkipsDamagedBytes) {
   const std::string good = sample_log();
   const std::string log = good.substr(0, 4 * 89) + "\xA3\x95\x77garbage\xA3" + good.substr(4 * 89);
   EXPECT_THAT(read_dataflash(log).samples, SizeIs(2));
@@ -100,7 +100,7 @@ TEST(DataflashLog, DamageIsSkipped) {
 }
 
 // Property: whatever the bytes, it is an answer or an Error.
-TEST(DataflashLog, AnyBytesAreReadOrRefused) {
+TEST(DataflashLog, ReadsOrRejectsRandomlyCorruptedLogs) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 2000; ++i) {
     std::string log = sample_log();
@@ -113,7 +113,7 @@ TEST(DataflashLog, AnyBytesAreReadOrRefused) {
   }
 }
 
-TEST(DataflashLog, ReportsWhatIsMissing) {
+TEST(DataflashLog, ReportsMissingMessages) {
   const auto throws_message = [](const char* what) {
     return ThrowsMessage<Error>(HasSubstr(what));
   };
@@ -124,7 +124,7 @@ TEST(DataflashLog, ReportsWhatIsMissing) {
               throws_message("contains no battery"));
 }
 
-TEST(CsvLog, ColumnsComeInAnyOrder) {
+TEST(CsvLog, AcceptsColumnsInAnyOrder) {
   const FlightLog log = read_csv_log(
       "power_w,time_s,volts,up_m_s,east_m_s,north_m_s\n200,1,22,0.5,2,1\n210,1.1,22,0,3,4\n");
   ASSERT_THAT(log.samples, SizeIs(2));
@@ -132,7 +132,7 @@ TEST(CsvLog, ColumnsComeInAnyOrder) {
   EXPECT_EQ(log.samples[0].velocity, Eigen::Vector3d(2, 1, 0.5));
 }
 
-TEST(CsvLog, FaultsAreSaidByLine) {
+TEST(CsvLog, ReportsErrorsWithLineNumber) {
   const std::string header = "time_s,east_m_s,north_m_s,up_m_s,power_w\n";
   const auto rejects = [&](const std::string& text, const char* what) {
     EXPECT_THAT([&] { read_csv_log(text); }, ThrowsMessage<Error>(HasSubstr(what))) << text;
@@ -144,7 +144,7 @@ TEST(CsvLog, FaultsAreSaidByLine) {
   rejects(header, "there is no sample");
 }
 
-TEST(CsvLog, OfMoreSamplesThanAllowedIsRefused) {
+TEST(CsvLog, RejectsMoreSamplesThanTheLimit) {
   const std::string two = "time_s,east_m_s,north_m_s,up_m_s,power_w\n1,0,0,0,9\n2,0,0,0,9\n";
   EXPECT_THAT(read_csv_log(two, 2).samples, SizeIs(2));
   EXPECT_THAT([&] { read_csv_log(two, 1); },

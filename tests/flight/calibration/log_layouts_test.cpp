@@ -137,7 +137,7 @@ class LogLayouts : public testing::TestWithParam<std::size_t> {
 INSTANTIATE_TEST_SUITE_P(Calibration, LogLayouts, testing::Range<std::size_t>(0, 5),
                          [](const auto& test) { return std::string(layouts()[test.param].name); });
 
-TEST_P(LogLayouts, GiveThePowerThatWasFlown) {
+TEST_P(LogLayouts, YieldHoverPowerOfVehicle) {
   for (const double power : {150.0, 190.0, 215.0, 250.0, 400.0}) {
     const Vehicle vehicle = reference_vehicle(power);
     const Calibration found = calibrate(read_dataflash(make_log(layout(), vehicle)),
@@ -167,7 +167,7 @@ std::string damaged(std::string log, const Damage& damage, std::uint64_t seed) {
 }
 
 // Up to one byte in a hundred, lost or spoiled.
-TEST_P(LogLayouts, GiveNearlyThePowerOfDamagedLogsOrRefuseThem) {
+TEST_P(LogLayouts, YieldHoverPowerFromDamagedLogsOrReject) {
   const Vehicle vehicle = reference_vehicle(250.0);
   const std::string log = make_log(layout(), vehicle);
   int read = 0;
@@ -192,7 +192,7 @@ TEST_P(LogLayouts, GiveNearlyThePowerOfDamagedLogsOrRefuseThem) {
 const Layout& newest() { return layouts().back(); }
 
 // A model whose rotors cannot be better than momentum theory: the hover is right, and it is said.
-TEST(CalibrationBounds, HoverIsRightAndTheBoundIsAWarning) {
+TEST(CalibrationBounds, KeepsHoverPowerAndWarnsAtRotorEfficiencyLimit) {
   Vehicle vehicle = reference_vehicle(250.0);
   vehicle.avionics_power = 110.0;
   for (const double scale : {0.6, 0.8, 0.86}) {
@@ -208,7 +208,7 @@ TEST(CalibrationBounds, HoverIsRightAndTheBoundIsAWarning) {
 }
 
 // One leg north and one east cannot tell wind from drag: there is none then, and hover is right.
-TEST(CalibrationBounds, WindThatTheLogDoesNotShowIsNone) {
+TEST(CalibrationBounds, EstimatesNoWindWhenLogCannotSeparateItFromDrag) {
   const Vehicle vehicle = reference_vehicle(215.0);
   const Motion motion(vehicle, {});
   FlightLog log;
@@ -222,7 +222,7 @@ TEST(CalibrationBounds, WindThatTheLogDoesNotShowIsNone) {
   EXPECT_LT(std::abs(hover_error(found, vehicle)), 0.005);
 }
 
-TEST(CalibrationBounds, DragThatTheLogDoesNotShowIsAWarning) {
+TEST(CalibrationBounds, WarnsWhenDragAreaIsAtItsLimit) {
   Vehicle vehicle = reference_vehicle(250.0);
   vehicle.drag_area = 0.0;
   const Calibration found = calibrate(read_dataflash(make_log(newest(), vehicle)),
@@ -231,7 +231,7 @@ TEST(CalibrationBounds, DragThatTheLogDoesNotShowIsAWarning) {
 }
 
 // Whatever the preset's endurance says of its own mass.
-TEST(CalibrationMass, FitsThePresetsOtherFigures) {
+TEST(CalibrationMass, IsAppliedWithoutChangingRotorDiameter) {
   for (const double mass : {1.0, 1.5, 2.5, 3.0}) {
     Vehicle vehicle = reference_vehicle(300.0);
     vehicle.mass = mass;
@@ -244,7 +244,7 @@ TEST(CalibrationMass, FitsThePresetsOtherFigures) {
 }
 
 // Rotors of 0.3 m take 369 W to hold 4 kg up.
-TEST(CalibrationMass, ScalesRotorsThatCouldNotCarryIt) {
+TEST(CalibrationMass, EnlargesRotorsThatCannotCarryIt) {
   Vehicle vehicle = reference_vehicle(300.0);
   vehicle.mass = 4.0;
   vehicle.rotor_diameter = 0.3 * std::sqrt(2.0);
@@ -255,7 +255,7 @@ TEST(CalibrationMass, ScalesRotorsThatCouldNotCarryIt) {
   EXPECT_LT(std::abs(hover_error(found, vehicle)), 0.005);
 }
 
-TEST(CalibrationRefusals, NameTheirTrueReason) {
+TEST(CalibrationErrors, NameTheCause) {
   const Vehicle vehicle = reference_vehicle(250.0);
   const auto error_message = [&](const auto& measure_amperes) {
     return thrown_message([&] {
@@ -278,7 +278,7 @@ TEST(CalibrationRefusals, NameTheirTrueReason) {
               HasSubstr("fits no power model: the power scatters by"));
 }
 
-TEST(CalibrationRefusals, NameTheFlightThatSuffices) {
+TEST(CalibrationErrors, NameTheRequiredFlight) {
   FlightLog log = read_dataflash(make_log(newest(), reference_vehicle(250.0)));
   const auto error_message = [](const FlightLog& some) {
     return thrown_message([&] { calibrate(some, vehicle_profile("generic_ardupilot"), 1.225); });
@@ -294,7 +294,7 @@ TEST(CalibrationRefusals, NameTheFlightThatSuffices) {
               HasSubstr("required: at least 120 s: hover for 60 s and fly 4"));
 }
 
-TEST(ForeignLogs, AreNamedForWhatTheyAre) {
+TEST(ForeignLogs, AreRejectedWithTheNameOfTheirFormat) {
   const auto kind = [](const std::string& bytes) {
     return thrown_message([&] { read_dataflash(bytes); });
   };
@@ -310,7 +310,7 @@ TEST(ForeignLogs, AreNamedForWhatTheyAre) {
 }
 
 // Master since October 2024: CMD lists the mission at its upload, MISE what is executed.
-TEST(ExecutedItems, AreMiseWhereTheLogHasThem) {
+TEST(ExecutedItems, AreReadFromMiseMessagesWhenLogged) {
   DataflashWriter log;
   const Layout& layout = newest();
   for (const LogFormat* format : {&layout.estimator, &layout.battery, &items, &executed}) {
@@ -330,7 +330,7 @@ TEST(ExecutedItems, AreMiseWhereTheLogHasThem) {
 }
 
 // Legs of one time are a list, not a flight: nothing is said of how long they settle.
-TEST(ExecutedItems, LegsWithoutTimesSayNothing) {
+TEST(ExecutedItems, AreNotUsedForSettleTimeWithoutTimes) {
   FlightLog log = read_dataflash(make_log(newest(), reference_vehicle(250.0)));
   const LocalFrame frame({51.0, 7.0, 0.0});
   for (int i = 0; i < 20; ++i) {
@@ -345,7 +345,7 @@ TEST(ExecutedItems, LegsWithoutTimesSayNothing) {
 }
 
 // A vehicle that was switched off and on writes a second flight whose times begin again.
-TEST(DataflashTimes, GoOnAfterARestart) {
+TEST(DataflashTimes, IncreaseAcrossVehicleRestart) {
   const Vehicle vehicle = reference_vehicle(250.0);
   const std::string log = make_log(newest(), vehicle);
   const FlightLog once = read_dataflash(log), twice = read_dataflash(log + log);

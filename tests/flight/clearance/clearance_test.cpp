@@ -31,12 +31,12 @@ struct Scene {
 // NOLINTNEXTLINE(readability-identifier-naming): gtest looks for it
 void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
 
-class RandomScene : public testing::TestWithParam<Scene> {};
+class RandomSceneVerification : public testing::TestWithParam<Scene> {};
 
 // The bar of the certificate, 20,000 legs over the four scenes: never accept what the independent
 // oracle refuses, refuse at most one in a thousand of what it accepts. The oracle knows surfaces
 // only, so the scenes are taken as shells here; solids have their own test.
-TEST_P(RandomScene, CertificateAgreesWithTheOracle) {
+TEST_P(RandomSceneVerification, MatchesCgalOracle) {
   std::mt19937_64 random(7);
   const Scene& scene = GetParam();
   Obstacles obstacles = solid(scene.make(random));
@@ -67,7 +67,7 @@ TEST_P(RandomScene, CertificateAgreesWithTheOracle) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Clearance, RandomScene,
+    Clearance, RandomSceneVerification,
     testing::Values(Scene{"boxes", [](auto& r) { return scenes::boxes(r, 60); }, 2.0},
                     Scene{"poles", [](auto& r) { return scenes::poles(r, 80); }, 0.3},
                     Scene{"wires", [](auto& r) { return scenes::wires(r, 160); }, 0.3},
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The nearest place named is real: it is on the leg, that far from the mesh by CGAL, and no sample
 // of the leg is nearer.
-TEST(Clearance, TheClosestPlaceIsTheNearestOfAllSamples) {
+TEST(Clearance, ReturnsTheClosestPointOfTheLeg) {
   std::mt19937_64 random(8);
   Obstacles obstacles = solid(scenes::wires(random, 40));
   obstacles.mesh_is_solid = false;
@@ -93,7 +93,7 @@ TEST(Clearance, TheClosestPlaceIsTheNearestOfAllSamples) {
   }
 }
 
-TEST(Clearance, LooksNoFartherThanAsked) {
+TEST(Clearance, ReturnsNoObstacleBeyondSearchDistance) {
   const KnownSpace space(solid(scenes::box(Vector3d::Zero(), Vector3d::Ones())));
   const Segment leg{{0, 0, 4}, {1, 0, 4}};
   EXPECT_EQ(space.closest(leg, 2.0).kind, ObstacleKind::none);
@@ -101,7 +101,7 @@ TEST(Clearance, LooksNoFartherThanAsked) {
   EXPECT_NEAR(space.closest(leg, 9.0).distance, 3.0, 1e-12);
 }
 
-TEST(Clearance, ALegInsideASolidIsRefusedWhicheverWayTheSolidFaces) {
+TEST(Clearance, RejectsLegInsideSolidForBothOrientations) {
   geometry::Mesh box = scenes::box({-20, -20, -20}, {20, 20, 20});
   const Segment deep_inside{{-1, 0, 0}, {1, 0, 0}}, outside{{30, 0, 0}, {35, 0, 0}};
   for (const bool inside_out : {false, true}) {
@@ -118,7 +118,7 @@ TEST(Clearance, ALegInsideASolidIsRefusedWhicheverWayTheSolidFaces) {
   }
 }
 
-TEST(Clearance, SelfIntersectingAndDoubledSolidsCountAsSolid) {
+TEST(Clearance, TreatsSelfIntersectingAndDuplicateMeshesAsSolid) {
   geometry::Mesh mesh = scenes::box({0, 0, 0}, {10, 10, 10});
   geometry::append(mesh, scenes::box({5, 5, 5}, {15, 15, 15}));
   geometry::append(mesh, scenes::box({0, 0, 0}, {10, 10, 10}));  // the first one again
@@ -130,7 +130,7 @@ TEST(Clearance, SelfIntersectingAndDoubledSolidsCountAsSolid) {
 }
 
 // Over a hollow sheet more than half of the view is surface; facing it is still not being inside.
-TEST(Clearance, TheHollowOfAnOpenTerrainIsNotInside) {
+TEST(Clearance, TreatsHollowOfOpenTerrainAsFree) {
   geometry::Mesh valley;
   valley.vertices = {{-10, -50, 20}, {0, -50, 0}, {10, -50, 20},
                      {-10, 50, 20},  {0, 50, 0},  {10, 50, 20}};
@@ -140,7 +140,7 @@ TEST(Clearance, TheHollowOfAnOpenTerrainIsNotInside) {
   EXPECT_LT(space.winding_number({0, 0, 8}), -0.5);
 }
 
-TEST(Clearance, PointsAreBalls) {
+TEST(Clearance, TreatsPointsAsBalls) {
   Obstacles obstacles;
   obstacles.cloud = {{{0, 0, 0}, {10, 0, 0}}, 0.5};
   const KnownSpace space(obstacles);
@@ -153,7 +153,7 @@ TEST(Clearance, PointsAreBalls) {
 }
 
 // The complaint that autopilots share: waypoints outside a no-fly zone, the leg between through it.
-TEST(Clearance, ALegThroughANoFlyVolumeIsRefusedThoughItsEndsAreOutside) {
+TEST(Clearance, RejectsLegThroughNoFlyVolumeWithEndsOutside) {
   Obstacles obstacles;
   obstacles.no_fly = {{"heliport", {{10, -5}, {20, -5}, {20, 5}, {10, 5}}, 0.0, 50.0}};
   const KnownSpace space(obstacles);
@@ -165,7 +165,7 @@ TEST(Clearance, ALegThroughANoFlyVolumeIsRefusedThoughItsEndsAreOutside) {
   EXPECT_FALSE(verify(space, {{14, 0, 20}, {16, 0, 20}}, 1.0).is_verified);  // wholly inside
 }
 
-TEST(Clearance, AnUnboundedNoFlyVolumeCannotBeFlownOver) {
+TEST(Clearance, RejectsFlightOverUnboundedNoFlyVolume) {
   Obstacles obstacles;
   obstacles.no_fly = {{"tower", {{10, -5}, {20, -5}, {20, 5}, {10, 5}}}};
   const KnownSpace space(obstacles);
@@ -173,7 +173,7 @@ TEST(Clearance, AnUnboundedNoFlyVolumeCannotBeFlownOver) {
   EXPECT_TRUE(space.is_free({{0, 10, 20}, {30, 10, 20}}, 1.0));
 }
 
-TEST(Clearance, TheFenceHoldsLegsAndNotOnlyWaypoints) {
+TEST(Clearance, RejectsLegThatLeavesFenceBetweenWaypoints) {
   Obstacles obstacles;  // an L: the straight line between its arms leaves it
   obstacles.fence = Prism{"site", {{0, 0}, {40, 0}, {40, 10}, {10, 10}, {10, 40}, {0, 40}}, 0, 30};
   const KnownSpace space(obstacles);
@@ -183,7 +183,7 @@ TEST(Clearance, TheFenceHoldsLegsAndNotOnlyWaypoints) {
   EXPECT_NEAR(space.closest({{5, 5, 28}, {5, 6, 28}}, 9).distance, 2.0, 1e-9);
 }
 
-TEST(Clearance, TheGroundIsSolid) {
+TEST(Clearance, TreatsGroundAsSolid) {
   Obstacles obstacles;
   obstacles.ground_height = 10.0;
   const KnownSpace space(obstacles);
@@ -192,7 +192,7 @@ TEST(Clearance, TheGroundIsSolid) {
   EXPECT_EQ(space.closest({{0, 0, 13}, {9, 0, 15}}, 9).kind, ObstacleKind::ground);
 }
 
-TEST(Clearance, JointSpaceIsFreeWhereAllAre) {
+TEST(Clearance, IsFreeInJointSpaceOnlyWhereAllSpacesAreFree) {
   Obstacles building = solid(scenes::box({0, 0, 0}, {10, 10, 10}));
   Obstacles rules;
   rules.ground_height = 0.0;

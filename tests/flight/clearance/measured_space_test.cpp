@@ -59,7 +59,7 @@ void expect_truly_free(const FreeSpace& measured, const FreeSpace& truth, const 
   EXPECT_GT(free, min);  // it does prove something
 }
 
-TEST(MeasuredSpace, NothingIsFreeBeforeItIsMeasured) {
+TEST(MeasuredSpace, IsUnknownBeforeFirstScan) {
   const MeasuredSpace space;
   EXPECT_FALSE(space.is_free({{0, 0, 0}, {1, 0, 0}}, 0.0));
   const Closest closest = space.closest({{0, 0, 0}, {1, 0, 0}}, 5.0);
@@ -69,7 +69,7 @@ TEST(MeasuredSpace, NothingIsFreeBeforeItIsMeasured) {
   EXPECT_TRUE(space.extent().isEmpty());
 }
 
-TEST(MeasuredSpace, DistancesToTheEndOfADeclaredBoxAreExact) {
+TEST(MeasuredSpace, ComputesExactDistancesToDeclaredBoxFaces) {
   MeasuredSpace space({.voxel = 0.25});
   space.declare_free(AlignedBox3d(Vector3d(-4, -4, -4), Vector3d(4, 4, 4)));
   EXPECT_NEAR(space.free_volume(), 512.0, 1e-9);
@@ -80,7 +80,7 @@ TEST(MeasuredSpace, DistancesToTheEndOfADeclaredBoxAreExact) {
 }
 
 // The ball's volume, less at most the voxels that its surface cuts.
-TEST(MeasuredSpace, ADeclaredBallIsFilledFromInside) {
+TEST(MeasuredSpace, FillsDeclaredBallFromInside) {
   MeasuredSpace space({.voxel = 0.1});
   space.declare_free(Vector3d(0.03, 0.02, 0.01), 2.0);
   const auto ball = [](double radius) { return 4.0 / 3.0 * M_PI * std::pow(radius, 3); };
@@ -89,7 +89,7 @@ TEST(MeasuredSpace, ADeclaredBallIsFilledFromInside) {
   EXPECT_GT(space.distance(Vector3d(0.03, 0.02, 0.01), 5.0), 2.0 - 0.1 * std::sqrt(3.0));
 }
 
-TEST(MeasuredSpace, WhatCountsAsFreeKeepsItsDistanceFromTheTruth) {
+TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForDepthImages) {
   const geometry::Mesh scene = room();
   MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});
   for (const Vector3d& target : {Vector3d(9, 0, 5), Vector3d(0, 9, 3), Vector3d(9, 9, 7)}) {
@@ -118,7 +118,7 @@ TEST(MeasuredSpace, DoesNotDependOnThreadCount) {
   EXPECT_EQ(known_on(3), alone);
 }
 
-TEST(MeasuredSpace, ASensorThatLooksAroundProvesFreeSpaceToo) {
+TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForSweeps) {
   const geometry::Mesh scene = room();
   MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});
   constexpr double spacing = 0.02;
@@ -131,7 +131,7 @@ TEST(MeasuredSpace, ASensorThatLooksAroundProvesFreeSpaceToo) {
 }
 
 // Rays of a turn in flight begin beside the place that the turn is taken to be from.
-TEST(MeasuredSpace, RaysThatBeginBesideTheScansPlaceProveNothingThatIsNotFree) {
+TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForSpreadRayOrigins) {
   const geometry::Mesh scene = room();
   constexpr double spacing = 0.02, spread = 0.6;
   MeasuredSpace spread_out({.voxel = 0.2, .depth_margin = 0.0}),
@@ -149,7 +149,7 @@ TEST(MeasuredSpace, RaysThatBeginBesideTheScansPlaceProveNothingThatIsNotFree) {
 
 // Which way the axis of the turn lies makes no difference to a sensor whose rays are as dense all
 // around.
-TEST(MeasuredSpace, WhatASweepProvesIsTrulyFreeWhicheverWayItsAxisLies) {
+TEST(MeasuredSpace, KeepsFreeSpaceClearOfGroundTruthForAnySweepAxis) {
   const geometry::Mesh scene = room();
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), Vector3d(1, 2, -2)}) {
     MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});
@@ -162,7 +162,7 @@ TEST(MeasuredSpace, WhatASweepProvesIsTrulyFreeWhicheverWayItsAxisLies) {
 
 // A ball before the middle of a wall that is hit all over is free; the same ball is not with a cell
 // in its middle, or next to its rim, that no ray hit, though all rays are far behind it.
-TEST(MeasuredSpace, ScatteredRaysProveNothingBesideACellThatNoneHit) {
+TEST(MeasuredSpace, TreatsScatteredRayCellsNextToGapsAsUnknown) {
   const auto space_with_hole = [](double hole_at) {
     geometry::Scan scan;  // along z
     for (int i = -100; i < 100; ++i) {
@@ -183,7 +183,7 @@ TEST(MeasuredSpace, ScatteredRaysProveNothingBesideACellThatNoneHit) {
   EXPECT_FALSE(space_with_hole(3.0).is_free({{-2.4, 0, 5}, {-2.4, 0, 5}}, 0.05));
 }
 
-TEST(MeasuredSpace, APixelWithoutAReturnProvesNothingUnlessTheSensorIsTrusted) {
+TEST(MeasuredSpace, TreatsNoReturnPixelsAsFreeOnlyWhenConfigured) {
   const geometry::Mesh wall = scenes::box({10, -2, -2}, {11, 2, 2});  // in half of the image
   const geometry::Scan scan = depth_image(wall, small_camera, look_at({0, 0, 0}, {10, 0, 0}));
   const Segment beside_the_wall{{11, 5, 0}, {12, 5, 0}}, before_it{{7.5, 0, 0}, {8.5, 0, 0}};
@@ -198,7 +198,7 @@ TEST(MeasuredSpace, APixelWithoutAReturnProvesNothingUnlessTheSensorIsTrusted) {
   EXPECT_FALSE(trusting.is_free({{-2, 0, 0}, {-1, 0, 0}}, 0.1));  // behind the camera
 }
 
-TEST(MeasuredSpace, AMeasuredPointStaysOccupiedWhateverComesLater) {
+TEST(MeasuredSpace, KeepsMeasuredPointsOccupiedAfterLaterScans) {
   MeasuredSpace space({.voxel = 0.25, .free_without_return = 30.0});
   const geometry::Mesh wall = scenes::box({10, -20, -20}, {11, 20, 20});
   space.insert(depth_image(wall, small_camera, look_at({0, 0, 0}, {10, 0, 0})), small_camera);
@@ -212,7 +212,7 @@ TEST(MeasuredSpace, AMeasuredPointStaysOccupiedWhateverComesLater) {
 
 // Nothing peeked: the far side of the building bulges out, which nobody has seen. A path found in
 // what was seen never touches the truth, though the straight way round the near side's shape would.
-TEST(MeasuredSpace, PathsNeverTouchTheUnseenSideOfABuilding) {
+TEST(MeasuredSpace, KeepsPathsClearOfUnobservedSideOfBuilding) {
   geometry::Mesh building = scenes::box({-5, -5, 0}, {5, 5, 10});
   geometry::append(building, scenes::box({-9, 5, 0}, {9, 16, 10}));  // the surprise
   geometry::append(building, scenes::box({-60, -60, -1}, {60, 60, 0}));
@@ -258,7 +258,7 @@ MeasuredSpace space_with_region() {
   return space;
 }
 
-TEST(MeasuredSpace, OutsideOfItsRegionEverythingIsFreeButMeasuredPoints) {
+TEST(MeasuredSpace, TreatsSpaceOutsideRegionAsFreeExceptMeasuredPoints) {
   const MeasuredSpace space = space_with_region();
   // Around the region, on the side that nobody has seen.
   EXPECT_TRUE(space.is_free({{-20, 20, 5}, {20, 20, 5}}, 10.0));
@@ -275,7 +275,7 @@ TEST(MeasuredSpace, OutsideOfItsRegionEverythingIsFreeButMeasuredPoints) {
   EXPECT_GT(space.free_volume(), 1.0);
 }
 
-TEST(MeasuredSpace, KeepsNoPointsBelowItsFloor) {
+TEST(MeasuredSpace, DiscardsPointsBelowFloor) {
   geometry::Scan scan;
   scan.world_from_sensor.translation() = Vector3d(0, 0, 10);
   scan.points = {{0, 0, 0.1F}, {3, 0, 0.3F}};
@@ -305,7 +305,7 @@ std::map<std::array<int, 3>, int> counted(const std::vector<Eigen::Vector3f>& fa
 
 // A box of 9 x 10 x 17 voxels has 2 (90 + 153 + 170) faces, each once, across blocks and below
 // zero; a voxel that is measured inside adds its six.
-TEST(MeasuredSpace, EndsAtEachFaceOfWhatIsFreeOnce) {
+TEST(MeasuredSpace, CollectsEachBoundaryFaceOnce) {
   MeasuredSpace space({.voxel = 0.5});
   EXPECT_TRUE(collect_boundary(space).empty());
   space.declare_free(AlignedBox3d(Vector3d(-2, -1, 3), Vector3d(2.5, 4, 11.5)));
@@ -324,7 +324,7 @@ TEST(MeasuredSpace, EndsAtEachFaceOfWhatIsFreeOnce) {
 }
 
 // Beside the region everything is free, so nothing ends there.
-TEST(MeasuredSpace, DoesNotEndWhereItsRegionDoes) {
+TEST(MeasuredSpace, CollectsNoBoundaryFacesAtRegionFaces) {
   MeasuredSpace space({.voxel = 0.5, .region = AlignedBox3d(Vector3d(0, 0, 0), Vector3d(4, 4, 4))});
   space.declare_free(AlignedBox3d(Vector3d(0, 0, 0), Vector3d(2, 4, 4)));
   const std::vector<Eigen::Vector3f> faces = collect_boundary(space);
@@ -332,7 +332,7 @@ TEST(MeasuredSpace, DoesNotEndWhereItsRegionDoes) {
   for (const Eigen::Vector3f& face : faces) EXPECT_EQ(face.x(), 2.0F);
 }
 
-TEST(MeasuredSpace, IsTheSameAfterWritingAndReading) {
+TEST(MeasuredSpace, RoundTripsThroughFile) {
   const MeasuredSpace space = space_with_region();
   std::stringstream file;
   space.write(file);
@@ -350,7 +350,7 @@ TEST(MeasuredSpace, IsTheSameAfterWritingAndReading) {
   EXPECT_EQ(same.str(), file.str());
 }
 
-TEST(MeasuredSpace, BrokenFilesAreRefusedByName) {
+TEST(MeasuredSpace, RejectsDamagedFilesWithFileName) {
   std::stringstream file;
   space_with_region().write(file);
   const std::string whole = file.str();
@@ -367,7 +367,7 @@ TEST(MeasuredSpace, BrokenFilesAreRefusedByName) {
 }
 
 /// Of blocks as wide as the Earth.
-TEST(MeasuredSpace, FilesOfBlocksOutOfTheWorldAreRefused) {
+TEST(MeasuredSpace, RejectsFilesWithBlocksOutOfRange) {
   std::stringstream file;
   space_with_region().write(file);
   for (const double voxel : {1e3, 1e30, 1e300}) {
@@ -381,7 +381,7 @@ TEST(MeasuredSpace, FilesOfBlocksOutOfTheWorldAreRefused) {
   }
 }
 
-TEST(MeasuredSpace, BadScansAndConfigurationsAreNamed) {
+TEST(MeasuredSpace, RejectsInvalidScansAndConfigurations) {
   MeasuredSpace space;
   geometry::Scan scan;
   scan.points = {{1, 0, 0}};

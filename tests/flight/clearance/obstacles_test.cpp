@@ -24,9 +24,9 @@ std::string error_message(const Obstacles& obstacles) {
 const std::vector<Vector2d> square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
 const std::vector<Vector2d> l_shape{{0, 0}, {40, 0}, {40, 10}, {10, 10}, {10, 40}, {0, 40}};
 
-TEST(Obstacles, NothingAtAllIsValid) { EXPECT_EQ(error_message({}), ""); }
+TEST(Obstacles, AreValidWhenEmpty) { EXPECT_EQ(error_message({}), ""); }
 
-TEST(Obstacles, ValidateNamesThePartThatIsWrong) {
+TEST(Obstacles, ReportTheInvalidPart) {
   Obstacles two_corners;
   two_corners.no_fly = {{"pad", {{0, 0}, {1, 0}}}};
   EXPECT_THAT(error_message(two_corners), HasSubstr("no-fly volume \"pad\" has 2 corners"));
@@ -55,7 +55,7 @@ TEST(Obstacles, ValidateNamesThePartThatIsWrong) {
 }
 
 // Both ways of asking agree: parity in the plane, and the winding number of the closed surface.
-TEST(Prism, ContainsAgreesWithTheWindingOfItsSurface) {
+TEST(Prism, ContainsPointsWithPositiveWindingNumber) {
   std::mt19937_64 random(4);
   for (const bool clockwise : {false, true}) {
     Prism prism{"L", l_shape, 3, 20};
@@ -71,7 +71,7 @@ TEST(Prism, ContainsAgreesWithTheWindingOfItsSurface) {
   }
 }
 
-TEST(Prism, AFootprintWithCornersOnALineIsFilledCompletely) {
+TEST(Prism, TriangulatesFootprintWithCollinearCorners) {
   const Prism prism{"T", {{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}, {5, 10}, {0, 10}}, 0, 1};
   EXPECT_NEAR(geometry::surface_area(surface(prism)), 2 * 100 + 40, 1e-9);
 }

@@ -24,7 +24,7 @@ PriorObstacleConfig house_model(double uncertainty) {
   return config;
 }
 
-TEST(PriorObstacle, IsNearerByWhatItMayBeOff) {
+TEST(PriorObstacle, IsEnlargedByItsUncertainty) {
   const PriorObstacle obstacle(house_model(0.5));
   const Segment leg{{15, 2, 4}, {15, 8, 4}};
   const Closest closest = obstacle.closest(leg, 100);
@@ -36,7 +36,7 @@ TEST(PriorObstacle, IsNearerByWhatItMayBeOff) {
   EXPECT_NEAR(obstacle.surface_distance({15, 5, 4}, 100), 4.5, 1e-9);
 }
 
-TEST(PriorObstacle, IsInTheWayInsideOfIt) {
+TEST(PriorObstacle, IsOccupiedInside) {
   const PriorObstacle obstacle(house_model(0.1));
   EXPECT_EQ(obstacle.distance({5, 5, 4}, 100), 0.0);
   EXPECT_FALSE(obstacle.is_free({{5, 5, 3}, {5, 5, 4}}, 0.5));
@@ -44,7 +44,7 @@ TEST(PriorObstacle, IsInTheWayInsideOfIt) {
 }
 
 // A cloud's points are balls; a point stands for a surface up to a cube's diagonal away.
-TEST(PriorObstacle, PointsReachAsFarAsTheSurfaceBetweenThem) {
+TEST(PriorObstacle, EnlargesPointsByRadiusAndUncertainty) {
   PriorObstacleConfig config{.name = "the prior scan.las", .uncertainty = 0.3};
   config.points = {{0, 0, 5}, {1, 0, 5}};
   config.point_radius = 0.2;
@@ -54,7 +54,7 @@ TEST(PriorObstacle, PointsReachAsFarAsTheSurfaceBetweenThem) {
 }
 
 // What a height model does not show, under a roof or a crown, is in the way as what it shows.
-TEST(PriorObstacle, ColumnsAreSolidToTheBottomOfTheWorld) {
+TEST(PriorObstacle, ExtendsColumnsDownwardWithoutLimit) {
   PriorObstacleConfig config{.name = "the prior dsm.tif", .uncertainty = 1.0};
   config.columns = {{Vector3d(0, 0, 4), Vector3d(1, 1, 5)}};
   const PriorObstacle obstacle(config);
@@ -64,7 +64,7 @@ TEST(PriorObstacle, ColumnsAreSolidToTheBottomOfTheWorld) {
   EXPECT_NEAR(obstacle.extent().min().z(), 3.0, 1e-9) << "no path leads below the world";
 }
 
-TEST(PriorObstacle, IsTheGroundOfPadsUnlessItIsAModel) {
+TEST(PriorObstacle, IsGroundForTerrainAndCloudsOnly) {
   EXPECT_FALSE(PriorObstacle(house_model(0.1)).is_ground());
   PriorObstacleConfig terrain = house_model(0.1);
   terrain.is_ground = true;
@@ -79,7 +79,7 @@ TEST(PriorObstacle, IsTheGroundOfPadsUnlessItIsAModel) {
   EXPECT_EQ(without_ground(site).priors.size(), 1U);
 }
 
-TEST(PriorObstacle, SaysWhatItCannotWorkWith) {
+TEST(PriorObstacle, RejectsInvalidConfigurations) {
   const auto error_message = [](const PriorObstacleConfig& config) {
     return testing_support::thrown_message([&] { PriorObstacle{config}; });
   };
@@ -94,7 +94,7 @@ TEST(PriorObstacle, SaysWhatItCannotWorkWith) {
 }
 
 // Beside all else that is known: the nearest counts, and is called by its own name.
-TEST(KnownSpace, TakesPriorsIn) {
+TEST(KnownSpace, IncludesPriorObstacles) {
   Obstacles site;
   site.ground_height = 0.0;
   site.priors = {std::make_shared<const PriorObstacle>(house_model(0.5))};
@@ -162,7 +162,7 @@ struct RandomTown {
 
 // 10^5 legs against an independent judge: no leg is certified that exact geometry refuses, and
 // hardly any is refused that it certifies.
-TEST(PriorObstacle, CertifiesNoLegThatExactGeometryRefuses) {
+TEST(PriorObstacle, VerifiesOnlyLegsThatCgalAccepts) {
   std::mt19937_64 random(19);
   std::uniform_real_distribution<double> clearances(0.0, 4.0);
   std::size_t verified = 0, rejected = 0, needlessly = 0;

@@ -38,7 +38,7 @@ double to_triangle(const Vector3d& point, const Triangle& triangle) {
   return valley(Segment{a, b}, row);
 }
 
-TEST(SegmentDistance, ToATriangleAgreesWithNestedSearch) {
+TEST(SegmentDistance, MatchesNestedSearchForTriangles) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 300; ++i) {
     Triangle triangle;
@@ -52,7 +52,7 @@ TEST(SegmentDistance, ToATriangleAgreesWithNestedSearch) {
   }
 }
 
-TEST(SegmentDistance, TheCheapTestNeverRulesOutATriangleThatIsNear) {
+TEST(SegmentDistance, ExcludesNoNearTriangleInFastTest) {
   std::mt19937_64 random(5);
   int ruled_out = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -66,7 +66,7 @@ TEST(SegmentDistance, TheCheapTestNeverRulesOutATriangleThatIsNear) {
   EXPECT_GT(ruled_out, 500);
 }
 
-TEST(SegmentDistance, ThePointsNamedAreOnBothShapesAndThatFarApart) {
+TEST(SegmentDistance, ReturnsNearestPointsOnBothShapes) {
   std::mt19937_64 random(2);
   for (int i = 0; i < 2000; ++i) {
     Triangle triangle;
@@ -79,7 +79,7 @@ TEST(SegmentDistance, ThePointsNamedAreOnBothShapesAndThatFarApart) {
   }
 }
 
-TEST(SegmentDistance, ToABoxAgreesWithSearch) {
+TEST(SegmentDistance, MatchesSearchForBoxes) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 2000; ++i) {
     Eigen::AlignedBox3d box(scenes::point_in(random, around));
@@ -92,7 +92,7 @@ TEST(SegmentDistance, ToABoxAgreesWithSearch) {
 }
 
 // Analytic: parallel, crossing, collinear, and points instead of segments.
-TEST(SegmentDistance, BetweenSegmentsInSpecialPositions) {
+TEST(SegmentDistance, IsExactForSpecialSegmentPairs) {
   const Segment x_axis{{0, 0, 0}, {10, 0, 0}};
   const auto distance = [&](const Vector3d& from, const Vector3d& to) {
     return std::sqrt(nearest(x_axis, Segment{from, to}).squared_distance);
@@ -105,7 +105,7 @@ TEST(SegmentDistance, BetweenSegmentsInSpecialPositions) {
 }
 
 // 300 m long edges at angles down to 1e-12: the error must stay below the clearance guard, 1e-6 m.
-TEST(SegmentDistance, NearlyParallelSegmentsKeepTheirDigits) {
+TEST(SegmentDistance, KeepsPrecisionForNearlyParallelSegments) {
   for (double angle = 1e-3; angle > 1e-12; angle /= 10.0) {
     const Segment along{{0, 0, 0}, {300, 0, 0}};
     const Vector3d tilt(0, 150 * angle, 0);
@@ -114,7 +114,7 @@ TEST(SegmentDistance, NearlyParallelSegmentsKeepTheirDigits) {
   }
 }
 
-TEST(SegmentDistance, ATriangleWithoutAreaIsItsEdges) {
+TEST(SegmentDistance, TreatsTriangleWithoutAreaAsItsEdges) {
   const Triangle needle{Vector3d(0, 0, 0), Vector3d(5, 0, 0), Vector3d(10, 0, 0)};
   const Triangle point{Vector3d(1, 1, 1), Vector3d(1, 1, 1), Vector3d(1, 1, 1)};
   const Segment segment{{7, 2, -1}, {7, 2, 1}};

@@ -58,7 +58,7 @@ std::vector<AlignedBox3d> measured_in(const AlignedBox3d& region, std::mt19937_6
 
 /// The rule by itself: a space that is unknown in the hull of both regions, and in which all that
 /// is in neither, and all that one of them has measured, is free.
-TEST(MeasuredUnion, IsWhatOneSurveyThatMeasuredAllOfItWouldKnow) {
+TEST(MeasuredUnion, MatchesOneSurveyOfAllRegions) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 20; ++round) {
     MeasuredSpace a = make_space(west), b = make_space(east), all = make_space(west.merged(east));
@@ -85,7 +85,7 @@ TEST(MeasuredUnion, IsWhatOneSurveyThatMeasuredAllOfItWouldKnow) {
 }
 
 // What one survey has seen free is in the way all the same where another one has met something.
-TEST(MeasuredUnion, KeepsWhatAnyHasMetInTheWay) {
+TEST(MeasuredUnion, IsOccupiedWhereAnySurveyMeasuredAPoint) {
   MeasuredSpace a = make_space(west), b = make_space(east);
   a.declare_free(west);
   b.declare_free(east);
@@ -115,7 +115,7 @@ MeasuredSpace read_again(const MeasuredSpace& space) {
 }
 
 // What a survey has seen free beyond its own box is free in the boxes of others, too.
-TEST(MeasuredUnion, CountsWhatASurveyHasSeenBeyondItsRegion) {
+TEST(MeasuredUnion, IncludesFreeSpaceObservedOutsideOwnRegion) {
   const Segment beyond{{3.5, 0, 4}, {7, 0, 4}};
   const MeasuredSpace alone = seen_from_the_west({}), kept = seen_from_the_west({east});
   EXPECT_EQ(kept.free_volume(), alone.free_volume());
@@ -132,7 +132,7 @@ TEST(MeasuredUnion, CountsWhatASurveyHasSeenBeyondItsRegion) {
 
 // For the survey itself a box beside it is as closed as its own; what is free is what would be if
 // both were one, wherever neither leaves a gap to the hull.
-TEST(MeasuredUnion, LetsASurveyFlyInTheBoxesOfOthersWhereItHasSeenThemFreeOnly) {
+TEST(MeasuredUnion, MatchesMeasuredSpaceOfMergedRegions) {
   const MeasuredSpace extra_boxes = seen_from_the_west({east});
   MeasuredSpace one({.voxel = voxel, .region = west.merged(east)});
   EXPECT_EQ(extra_boxes.closest({{9.5, 5, 1}, {9.5, 5, 2}}, 1.0).kind, ObstacleKind::unknown_space);
@@ -150,7 +150,7 @@ TEST(MeasuredUnion, LetsASurveyFlyInTheBoxesOfOthersWhereItHasSeenThemFreeOnly) 
 }
 
 // Nobody has been there: the box of a target that was not surveyed is closed.
-TEST(MeasuredUnion, IsClosedWhereNothingWasMeasured) {
+TEST(MeasuredUnion, IsUnknownInUnsurveyedRegions) {
   MeasuredSpace a = make_space(west);
   a.declare_free(west);
   const MeasuredUnion together(both(std::move(a), make_space(east)));
@@ -160,13 +160,13 @@ TEST(MeasuredUnion, IsClosedWhereNothingWasMeasured) {
   EXPECT_EQ(together.closest({{6, 0, 4}, {6, 0, 4}}, 1.0).kind, ObstacleKind::unknown_space);
 }
 
-TEST(MeasuredUnion, OfNothingIsFree) {
+TEST(MeasuredUnion, IsFreeWhenEmpty) {
   const MeasuredUnion nothing({});
   EXPECT_TRUE(nothing.is_free({{0, 0, 0}, {100, 0, 0}}, 2.0));
   EXPECT_TRUE(nothing.extent().isEmpty());
 }
 
-TEST(MeasuredUnion, RefusesSpacesThatDoNotGoTogether) {
+TEST(MeasuredUnion, RejectsSpacesWithoutRegionOrWithOtherVoxelSize) {
   EXPECT_THAT(thrown_message(
                   [] { MeasuredUnion(both(make_space(west), MeasuredSpace({.voxel = voxel}))); }),
               HasSubstr("a measured space without a region cannot be merged"));

@@ -50,7 +50,7 @@ std::vector<std::uint32_t> numbers_below(std::size_t count) {
   return numbers;
 }
 
-TEST(PadSorties, FlyEachTargetFromThePadBesideIt) {
+TEST(PadSorties, ReachEachTargetFromItsNearestPad) {
   std::mt19937_64 random(1);
   CapturePoints given;
   given.add({0, 0, 15}, 8, 0, random);
@@ -66,7 +66,7 @@ TEST(PadSorties, FlyEachTargetFromThePadBesideIt) {
   }
 }
 
-TEST(PadSorties, LeaveOutWhatNoBatteryReaches) {
+TEST(PadSorties, ListCapturePointsOutOfBatteryRangeAsUnreachable) {
   std::mt19937_64 random(2);
   CapturePoints given;
   given.add({0, 0, 15}, 3, 0, random);
@@ -80,7 +80,7 @@ TEST(PadSorties, LeaveOutWhatNoBatteryReaches) {
 }
 
 // Neighbouring targets are ordered together, a thousand stations at a time.
-TEST(PadSorties, OrderThousandsOfStationsNearlyAsShortAsAllAtOnce) {
+TEST(PadSorties, OrderThousandCapturePointsNearTheExpectedTourLength) {
   std::mt19937_64 random(3);
   CapturePoints given;
   for (std::uint32_t target = 0; target < 240; ++target) {
@@ -96,7 +96,7 @@ TEST(PadSorties, OrderThousandsOfStationsNearlyAsShortAsAllAtOnce) {
   EXPECT_LT(sorties.length, 1.6 * 0.7124 * std::sqrt(1200.0 * 640.0 * 600.0));
 }
 
-TEST(PadSorties, OfNoStationsOrPadsAreNone) {
+TEST(PadSorties, AreEmptyWithoutCapturePointsOrPads) {
   EXPECT_THAT(sorties_from_pads({}, {}, std::vector<Vector3d>{{0, 0, 0}}, 5.0, motion()).order,
               IsEmpty());
   std::mt19937_64 random(4);

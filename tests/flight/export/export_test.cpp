@@ -53,7 +53,7 @@ const FormatInfo& find_info(Format format) { return formats()[static_cast<std::s
 class EveryFormat : public testing::TestWithParam<Format> {};
 
 // The points flown are the plan's: to half a unit of the last digit written and of 1e-7 degrees.
-TEST_P(EveryFormat, IsValidAndReadsBackAsTheSameFlight) {
+TEST_P(EveryFormat, RoundTripsTheFlightPlan) {
   const Format format = GetParam();
   const FlightPlan plan = sample_plan(vehicle_for(format));
   const std::string content = write(plan, format);
@@ -84,7 +84,7 @@ TEST_P(EveryFormat, IsValidAndReadsBackAsTheSameFlight) {
   }
 }
 
-TEST_P(EveryFormat, GetsItsNameOnlyOnceProvedAgain) {
+TEST_P(EveryFormat, WritesFileOnlyAfterVerification) {
   const Format format = GetParam();
   const FlightPlan plan = sample_plan(vehicle_for(format));
   const Scratch scratch;
@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(Export, EveryFormat,
 
 // Curves in files are proved again between the places that they are written as.
 // Missions without a name key are called as their file, which may be called anything.
-TEST(Export, ANameThatIsNotUtf8IsNoFailure) {
+TEST(Export, AcceptsPlanNameThatIsNotUtf8) {
   for (const Format format : {Format::plan, Format::geojson}) {
     FlightPlan plan = sample_plan(vehicle_for(format));
     plan.name = "caf\xE9";
@@ -130,7 +130,7 @@ TEST(Export, ANameThatIsNotUtf8IsNoFailure) {
   }
 }
 
-TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
+TEST(Export, WritesVerifiedCurvesInCurveFormats) {
   const FlightPlan stops = corner_plan(FlightStyle::stop);
   for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth, FlightStyle::pass}) {
     const FlightPlan plan = corner_plan(style);
@@ -149,7 +149,7 @@ TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
   }
 }
 
-TEST(Export, MeanSeaLevelIsRefusedWithoutTheUndulation) {
+TEST(Export, RejectsAmslFormatsWithoutGeoidUndulation) {
   for (const FormatInfo& info : testing_support::not_empty(formats())) {
     FlightPlan plan = sample_plan(vehicle_for(info.format));
     plan.site.geoid_undulation.reset();
@@ -164,7 +164,7 @@ TEST(Export, MeanSeaLevelIsRefusedWithoutTheUndulation) {
   }
 }
 
-TEST(Export, SaysWhatAFormatCannotHold) {
+TEST(Export, NotesElementsThatFormatCannotContain) {
   const Scratch scratch;
   const KnownSpace space(sample_site());
   const ExportResult plan = export_flight(sample_plan(vehicle_profile("generic")), Format::plan,
@@ -172,7 +172,7 @@ TEST(Export, SaysWhatAFormatCannotHold) {
   EXPECT_THAT(plan.notes, testing::ElementsAre(HasSubstr("\"shed\" is left out")));
 }
 
-TEST(Export, UnknownFormatsAndFilesAreNamed) {
+TEST(Export, RejectsUnknownFormatsAndFiles) {
   EXPECT_EQ(format_named("kmz"), Format::kmz);
   EXPECT_THAT(testing_support::thrown_message([&] { format_named("gpx"); }),
               testing::HasSubstr("unknown format \"gpx\""));
@@ -186,7 +186,7 @@ TEST(Export, UnknownFormatsAndFilesAreNamed) {
 }
 
 // An independent reader of the XML formats, where it is installed.
-TEST(Export, XmlIsWellFormedByXmllint) {
+TEST(Export, WritesXmlThatXmllintAccepts) {
   if (std::system("command -v xmllint > /dev/null 2>&1") != 0) GTEST_SKIP() << "no xmllint";
   const Scratch scratch;
   const KmzContent kmz = unpack_kmz(write(sample_plan(vehicle_profile("m30t")), Format::kmz));
@@ -203,7 +203,7 @@ TEST(Export, XmlIsWellFormedByXmllint) {
 // Derivatives by differences agree with what is stated: the profile is the motion that it says.
 class TrajectoryStyles : public testing::TestWithParam<FlightStyle> {};
 
-TEST_P(TrajectoryStyles, VelocitiesAndAccelerationsAreTheDerivatives) {
+TEST_P(TrajectoryStyles, HaveVelocitiesAndAccelerationsThatMatchDerivatives) {
   const FlightPlan plan = corner_plan(GetParam());
   constexpr double dt = 0.001;
   const std::vector<TimedState> states = trajectory(plan, dt);
@@ -227,7 +227,7 @@ INSTANTIATE_TEST_SUITE_P(Styles, TrajectoryStyles,
 
 // In passing as at stops: each view's picture is taken in its place, looking its way; the vehicle
 // moves meanwhile, no faster than asked.
-TEST(Trajectory, PassedViewsAreThoseOfTheStops) {
+TEST(Trajectory, CapturesSameViewsInFlyThroughAsAtStops) {
   const auto captures = [](FlightStyle style) {
     std::vector<TimedState> captured;
     for (const TimedState& state : trajectory(corner_plan(style), 0.1)) {
@@ -251,7 +251,7 @@ TEST(Trajectory, PassedViewsAreThoseOfTheStops) {
   EXPECT_GE(moving, 2U);
 }
 
-TEST(Trajectory, CsvRoundTripsInBothFrames) {
+TEST(Trajectory, RoundTripsThroughCsvInBothFrames) {
   const std::vector<TimedState> states = trajectory(sample_plan(vehicle_profile("generic")), 0.5);
   for (const Frame frame : {Frame::enu, Frame::ned}) {
     const std::vector<TimedState> read = read_trajectory_csv(write_trajectory_csv(states, frame));
@@ -265,7 +265,7 @@ TEST(Trajectory, CsvRoundTripsInBothFrames) {
   }
 }
 
-TEST(Trajectory, NedIsNorthEastDownWithYawFromNorth) {
+TEST(Trajectory, WritesNedPositionsAndYawFromNorth) {
   TimedState state{1.0, {10, 20, 30}, {1, 2, 3}, {0, 0, 0}, 0.5, 0.1, -0.2, true};
   EXPECT_THAT(write_trajectory_csv({state}, Frame::ned),
               HasSubstr("1.000000,20.000000,10.000000,-30.000000,2.000000,1.000000,-3.000000,"));
@@ -275,7 +275,7 @@ TEST(Trajectory, NedIsNorthEastDownWithYawFromNorth) {
               HasSubstr(",1.070796,-0.100000,-0.200000,1"));
 }
 
-TEST(Trajectory, TumKeepsPosesAndPutsWLast) {
+TEST(Trajectory, RoundTripsThroughTumWithWLast) {
   const auto poses = camera_poses(trajectory(sample_plan(vehicle_profile("generic")), 0.5));
   const auto read = read_tum(write_tum(poses));
   ASSERT_EQ(read.size(), poses.size());
@@ -286,7 +286,7 @@ TEST(Trajectory, TumKeepsPosesAndPutsWLast) {
   EXPECT_THAT(write_tum({still}), HasSubstr(" 0.000000000 0.000000000 0.000000000 1.000000000\n"));
 }
 
-TEST(Trajectory, BadFilesAreRefusedByLine) {
+TEST(Trajectory, RejectsInvalidFilesWithLineNumber) {
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"),
               testing::Contains(HasSubstr("line 2 goes back")));
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 2\n"), testing::Contains(HasSubstr("length 2")));
@@ -302,7 +302,7 @@ TEST(Trajectory, BadFilesAreRefusedByLine) {
 // ---- geodesy ---------------------------------------------------------------------------------
 
 // Analytic: on the equator and at the pole the ellipsoid's radii are known in closed form.
-TEST(Geodesy, AgreesWithTheEllipsoidInClosedForm) {
+TEST(Geodesy, MatchesClosedFormsOnEquatorAndPole) {
   constexpr double a = 6378137.0, f = 1.0 / 298.257223563;
   const LocalFrame equator({0, 0, 0});
   const double angle = 0.01 * M_PI / 180.0;
@@ -314,7 +314,7 @@ TEST(Geodesy, AgreesWithTheEllipsoidInClosedForm) {
   EXPECT_NEAR(pole.to_local({-90, 0, 0}).z(), -2 * a * (1 - f), 1e-6);
 }
 
-TEST(Geodesy, RoundTripsEverywhere) {
+TEST(Geodesy, RoundTripsBetweenLocalAndGeodetic) {
   for (double latitude = -85; latitude <= 85; latitude += 17) {
     for (double longitude = -179; longitude <= 179; longitude += 53) {
       const LocalFrame frame({latitude, longitude, 250});
@@ -324,7 +324,7 @@ TEST(Geodesy, RoundTripsEverywhere) {
   }
 }
 
-TEST(Geodesy, AbsurdSitesAreNamed) {
+TEST(Geodesy, RejectsInvalidSites) {
   EXPECT_THAT(testing_support::thrown_message([&] {
                 Site{{91, 0, 0}, {}}.validate();
               }),

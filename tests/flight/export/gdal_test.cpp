@@ -85,7 +85,7 @@ void expect_flight(const std::string& report, const FlightPlan& plan, double und
   EXPECT_EQ(capture_point, points.size());
 }
 
-TEST_F(Gdal, ReadsOurGeoJson) {
+TEST_F(Gdal, ReadsExportedGeoJson) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   const std::string text = report("mission.geojson", write_geojson(plan));
   expect_flight(text, plan, 0.0);
@@ -95,7 +95,7 @@ TEST_F(Gdal, ReadsOurGeoJson) {
   EXPECT_NE(text.find("WGS 84"), std::string::npos);
 }
 
-TEST_F(Gdal, ReadsOurKml) {
+TEST_F(Gdal, ReadsExportedKml) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   const std::string text = report("mission.kml", write_kml(plan));
   expect_flight(text, plan, *plan.site.geoid_undulation);

@@ -42,7 +42,7 @@ Problems with_template(const std::string& from, const std::string& to) {
       pack_kmz({replaced(good_kmz().template_kml, from, to), good_kmz().waylines_wpml}));
 }
 
-TEST(Kmz, ZipAndXmlRules) {
+TEST(Kmz, ReportsInvalidZipAndXml) {
   EXPECT_THAT(validate_kmz(pack_kmz(good_kmz())), IsEmpty());
   EXPECT_THAT(validate_kmz("PK but not really"), Contains(HasSubstr("not a zip")));
   EXPECT_THAT(validate_kmz(""), Contains(HasSubstr("template.kml is missing")));
@@ -56,7 +56,7 @@ TEST(Kmz, ZipAndXmlRules) {
               Contains(HasSubstr("template.kml and waylines.wpml differ")));
 }
 
-TEST(Kmz, MissionConfigRules) {
+TEST(Kmz, ReportsInvalidMissionConfig) {
   EXPECT_THAT(with_waylines("<wpml:flyToWaylineMode>safely", "<wpml:flyToWaylineMode>boldly"),
               Contains(HasSubstr("flyToWaylineMode \"boldly\"")));
   EXPECT_THAT(with_waylines("<wpml:finishAction>goHome</wpml:finishAction>", ""),
@@ -76,7 +76,7 @@ TEST(Kmz, MissionConfigRules) {
               Contains(HasSubstr("payloadPositionIndex 3")));
 }
 
-TEST(Kmz, WaypointRules) {
+TEST(Kmz, ReportsInvalidWaypoints) {
   EXPECT_THAT(
       with_waylines("<wpml:executeHeightMode>relativeToStartPoint", "<wpml:executeHeightMode>AGL"),
       Contains(HasSubstr("executeHeightMode \"AGL\"")));
@@ -96,7 +96,7 @@ TEST(Kmz, WaypointRules) {
               Contains(HasSubstr("ellipsoidHeight")));
 }
 
-TEST(Kmz, ActionRules) {
+TEST(Kmz, ReportsInvalidActions) {
   EXPECT_THAT(with_waylines("<wpml:actionGroupId>1<", "<wpml:actionGroupId>0<"),
               Contains(HasSubstr("actionGroupId 0 twice")));
   EXPECT_THAT(with_waylines("<wpml:actionGroupEndIndex>1<", "<wpml:actionGroupEndIndex>0<"),
@@ -115,7 +115,7 @@ TEST(Kmz, ActionRules) {
       Contains(HasSubstr("takePhoto without a gimbalRotate")));
 }
 
-TEST(Kmz, ContainsWhatThePilotExpects) {
+TEST(Kmz, ContainsAnglesCapturesAndHoldsOfPlan) {
   const FlightPlan plan = sample_plan(vehicle_profile("m350_rtk"));
   const RouteFile route = read_kmz(write_kmz(plan));
   ASSERT_EQ(route.points.size(), plan.waypoints.size());
@@ -134,7 +134,7 @@ TEST(Kmz, ContainsWhatThePilotExpects) {
 
 // ---- KML -------------------------------------------------------------------------------------
 
-TEST(Kml, Rules) {
+TEST(Kml, ReportsInvalidElements) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   const std::string good = write_kml(plan);
   const auto with = [&](const std::string& from, const std::string& to) {
@@ -164,7 +164,7 @@ TEST(Kml, Rules) {
 
 // ---- GeoJSON ---------------------------------------------------------------------------------
 
-TEST(GeoJson, Rules) {
+TEST(GeoJson, ReportsInvalidFeatures) {
   using nlohmann::json;
   const std::string good = write_geojson(sample_plan(vehicle_profile("generic")));
   const auto after = [&](const std::function<void(json&)>& change) {
@@ -197,7 +197,7 @@ TEST(GeoJson, Rules) {
               Contains(HasSubstr("wrong direction")));
 }
 
-TEST(GeoJson, StationsCarryTheirHeightsAboveEveryKnownDatum) {
+TEST(GeoJson, WritesCapturePointHeightsForEveryKnownDatum) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   const auto capture_point = [&] {
     return nlohmann::json::parse(write_geojson(plan))["features"][1];
@@ -212,7 +212,7 @@ TEST(GeoJson, StationsCarryTheirHeightsAboveEveryKnownDatum) {
 
 // ---- Litchi ----------------------------------------------------------------------------------
 
-TEST(Litchi, Rules) {
+TEST(Litchi, ReportsInvalidRows) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   const std::string good = write_litchi(plan);
   const auto with = [&](const std::string& from, const std::string& to) {
@@ -236,7 +236,7 @@ TEST(Litchi, Rules) {
   }
 }
 
-TEST(Litchi, WhatItCannotHoldIsSaid) {
+TEST(Litchi, RejectsTooManyCapturesOrWaypoints) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints[1].captures = 20;
   EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),

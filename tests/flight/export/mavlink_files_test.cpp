@@ -34,7 +34,7 @@ Problems after(const std::function<void(json&)>& change) {
 json& item(json& plan, std::size_t i) { return plan["mission"]["items"][i]; }
 
 // At home's height whatever the ground's: PX4 adds the height of return to the point's own.
-TEST(PlanFile, HoldsTheRallyPointsOfTheProof) {
+TEST(PlanFile, ContainsVerifiedRallyPointsAtHomeHeight) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.returns->rtl_profile.landings.emplace_back(35.0, 20.0, -1.0);
   const MavlinkMission file = read_plan(write_plan(plan));
@@ -44,7 +44,7 @@ TEST(PlanFile, HoldsTheRallyPointsOfTheProof) {
   EXPECT_EQ(file.rally.front().height, 0.0);
 }
 
-TEST(PlanFile, TopLevelRules) {
+TEST(PlanFile, ReportsInvalidTopLevelKeys) {
   EXPECT_THAT(validate_plan(good_plan()), IsEmpty());
   EXPECT_THAT(validate_plan("{"), Contains(HasSubstr("not a JSON object")));
   EXPECT_THAT(validate_plan("[]"), Contains(HasSubstr("not a JSON object")));
@@ -73,7 +73,7 @@ TEST(PlanFile, TopLevelRules) {
               Contains(HasSubstr("at least one item")));
 }
 
-TEST(PlanFile, ItemRules) {
+TEST(PlanFile, ReportsInvalidItems) {
   const auto bad = [](const char* key, const json& value) {
     return after([&](json& p) { item(p, 2)[key] = value; });
   };
@@ -92,7 +92,7 @@ TEST(PlanFile, ItemRules) {
               Contains(HasSubstr("must be the height in its params")));
 }
 
-TEST(PlanFile, RulesOnWhatTheItemsDo) {
+TEST(PlanFile, ReportsInvalidItemContent) {
   EXPECT_THAT(after([](json& p) { item(p, 0)["params"][4] = 91; }),
               Contains(HasSubstr("latitude")));
   EXPECT_THAT(after([](json& p) { item(p, 0)["params"][5] = -181; }),
@@ -123,7 +123,7 @@ TEST(PlanFile, RulesOnWhatTheItemsDo) {
               Contains(HasSubstr("PX4 rejects the whole mission")));
 }
 
-TEST(PlanFile, FenceRules) {
+TEST(PlanFile, ReportsInvalidFencePolygons) {
   const auto polygon = [](json& p, std::size_t i) -> json& { return p["geoFence"]["polygons"][i]; };
   EXPECT_THAT(after([&](json& p) { polygon(p, 0).erase("inclusion"); }),
               Contains(HasSubstr("inclusion")));
@@ -140,7 +140,7 @@ TEST(PlanFile, FenceRules) {
               Contains(HasSubstr("must not repeat")));
 }
 
-TEST(PlanFile, CircleRules) {
+TEST(PlanFile, ReportsInvalidFenceCircles) {
   const auto with_circle = [](double radius, bool is_inclusion) {
     return after([&](json& p) {
       const json home = p["mission"]["plannedHomePosition"];
@@ -154,7 +154,7 @@ TEST(PlanFile, CircleRules) {
   EXPECT_THAT(with_circle(-5, false), Contains(HasSubstr("positive radius")));
 }
 
-TEST(PlanFile, ContainsWhatThePilotExpects) {
+TEST(PlanFile, ContainsAnglesCapturesAndHoldsOfPlan) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   const RouteFile route = make_route(read_plan(good_plan()).items);
   const std::vector<StopTime> times = stop_times(plan);
@@ -172,7 +172,7 @@ TEST(PlanFile, ContainsWhatThePilotExpects) {
 
 // ---- the autopilots' dialects ----------------------------------------------------------------
 
-TEST(MissionItems, PX4TurnsByTheWaypointArduPilotByACommandOfItsOwn) {
+TEST(MissionItems, SetYawInPx4WaypointsAndInArduPilotConditionYaw) {
   const auto count = [](const std::vector<MissionItem>& items, int command) {
     return std::count_if(items.begin(), items.end(),
                          [&](const MissionItem& i) { return i.command == command; });
@@ -196,7 +196,7 @@ std::vector<int> commands(const std::vector<MissionItem>& items, std::size_t fir
 // ArduPilot starts gimbal and yaw on the way to the waypoint, in this order or the gimbal waits for
 // the yaw, and takes the picture between two delays, or the vehicle leaves while the shutter is
 // open.
-TEST(MissionItems, ArduPilotAimsOnTheWayAndStaysAfterTheShot) {
+TEST(MissionItems, AimEnRouteAndHoldAfterCaptureForArduPilot) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic_ardupilot"));
   const std::vector<StopTime> times = stop_times(plan);
   const auto items = mission_items(plan);
@@ -227,7 +227,7 @@ TEST(MissionItems, ArduPilotAimsOnTheWayAndStaysAfterTheShot) {
 }
 
 // The speeds that the times are made with are in the file, whatever the vehicle is set to.
-TEST(MissionItems, SpeedsOfThePlanAreWritten) {
+TEST(MissionItems, SetTheSpeedsOfThePlan) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic_ardupilot"));
   const auto items = mission_items(plan);
   const double speeds[] = {plan.conditions.cruise_speed, plan.vehicle.mode.max_ascent,
@@ -238,7 +238,7 @@ TEST(MissionItems, SpeedsOfThePlanAreWritten) {
   }
 }
 
-TEST(MissionItems, PX4HoldsInTheWaypointAndDelaysAfterTheShot) {
+TEST(MissionItems, HoldInWaypointAndDelayAfterCaptureForPx4) {
   const auto items = mission_items(sample_plan(vehicle_profile("generic")));
   using namespace command;
   ASSERT_FALSE(items.empty());
@@ -250,7 +250,7 @@ TEST(MissionItems, PX4HoldsInTheWaypointAndDelaysAfterTheShot) {
   }
 }
 
-TEST(MissionItems, ArduPilotsMemoryIsForeseen) {
+TEST(MissionItems, MatchArduPilotStorageRounding) {
   auto items = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
   EXPECT_THAT(check_items(as_stored(items, AutopilotType::ardupilot), AutopilotType::ardupilot),
               IsEmpty());
@@ -266,7 +266,7 @@ TEST(MissionItems, ArduPilotsMemoryIsForeseen) {
   EXPECT_DOUBLE_EQ(stored.params[6], 7.25);
 }
 
-TEST(MissionItems, GimbalCommandsThatArduPilotWouldSpoilAreFound) {
+TEST(MissionItems, ReportGimbalCommandsThatArduPilotWouldAlter) {
   auto items = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
   const auto with = [&](std::array<double, 7> params) {
     items[1] = {command::gimbal_pitch_yaw, frame::mission, params};
@@ -277,7 +277,7 @@ TEST(MissionItems, GimbalCommandsThatArduPilotWouldSpoilAreFound) {
   EXPECT_THAT(with({-7, 0, unspecified, 0, 0, 0, 0}), Contains(HasSubstr("no parameter 3")));
 }
 
-TEST(MissionItems, TooManyForTheVehicleIsSaid) {
+TEST(MissionItems, RejectMoreItemsThanVehicleAccepts) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.vehicle.max_waypoints = 10;
   EXPECT_THAT(testing_support::thrown_message([&] { mission_items(plan); }),
@@ -289,7 +289,7 @@ TEST(MissionItems, TooManyForTheVehicleIsSaid) {
 
 // ---- .waypoints ------------------------------------------------------------------------------
 
-TEST(WaypointsFile, HasTabsHomeForArduPilotAndNoNaN) {
+TEST(WaypointsFile, HasTabsAndHomeForArduPilotAndNoNan) {
   const std::string px4 = write_waypoints(sample_plan(vehicle_profile("generic")));
   const std::string ardupilot = write_waypoints(sample_plan(vehicle_profile("generic_ardupilot")));
   EXPECT_TRUE(px4.starts_with("QGC WPL 110\n0\t1\t3\t22\t"));
@@ -307,7 +307,7 @@ TEST(WaypointsFile, HasTabsHomeForArduPilotAndNoNaN) {
   EXPECT_EQ(read_waypoints(ardupilot).items.front().number, 1U);
 }
 
-TEST(WaypointsFile, RulesOfTheText) {
+TEST(WaypointsFile, ReportsInvalidText) {
   const std::string good = write_waypoints(sample_plan(vehicle_profile("generic")));
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;

@@ -54,14 +54,14 @@ void expect_same(const std::vector<MissionItem>& sent, const std::vector<WireIte
   }
 }
 
-TEST(MavlinkUpload, APlanComesBackTheSame) {
+TEST(MavlinkUpload, RoundTripsPlan) {
   const auto items = read_plan(write_plan(sample_plan(vehicle_profile("generic")))).items;
   mavlink::Autopilot autopilot;
   ASSERT_TRUE(mavlink::upload(autopilot, on_the_wire(items)));
   expect_same(items, mavlink::download(autopilot));
 }
 
-TEST(MavlinkUpload, WaypointsFilesOfBothDialectsComeBackTheSame) {
+TEST(MavlinkUpload, RoundTripsWaypointsFilesOfBothAutopilots) {
   for (const char* vehicle : {"generic", "generic_ardupilot"}) {
     const auto items = read_waypoints(write_waypoints(sample_plan(vehicle_profile(vehicle)))).items;
     mavlink::Autopilot autopilot;
@@ -70,7 +70,7 @@ TEST(MavlinkUpload, WaypointsFilesOfBothDialectsComeBackTheSame) {
   }
 }
 
-TEST(MavlinkUpload, ADamagedFrameIsSentAgainAndAMissionIsWholeOrNotThere) {
+TEST(MavlinkUpload, ResendsDamagedFrameAndRejectsPartialMission) {
   const auto items = read_plan(write_plan(sample_plan(vehicle_profile("generic")))).items;
   const std::vector<WireItem> wire = on_the_wire(items);
   mavlink::Autopilot autopilot;

@@ -64,7 +64,7 @@ std::map<std::string, double> read_as_qgroundcontrol(const std::string& text) {
 }
 
 // Centimetres under the old names, metres under those since 4.7.
-TEST(Parameters, ArduPilotReturnsAtTheCertifiedHeightByEitherName) {
+TEST(Parameters, SetArduPilotReturnAltitudeUnderBothNames) {
   const auto values = read_as_mission_planner(write_parameters(make_plan("generic_ardupilot")));
   EXPECT_EQ(values.at("RTL_ALT"), 4700);
   EXPECT_EQ(values.at("RTL_ALT_M"), 47);
@@ -80,7 +80,7 @@ TEST(Parameters, ArduPilotReturnsAtTheCertifiedHeightByEitherName) {
   EXPECT_EQ(values.at("FENCE_ALT_MAX"), 60);
 }
 
-TEST(Parameters, ArduPilotGoesToRallyPointsHoweverFar) {
+TEST(Parameters, SetNoArduPilotRallyDistanceLimit) {
   FlightPlan plan = make_plan("generic_ardupilot");
   EXPECT_FALSE(read_as_mission_planner(write_parameters(plan)).contains("RALLY_LIMIT_KM"));
   plan.returns->rtl_profile.landings.emplace_back(35.0, 20.0, 0.0);
@@ -89,7 +89,7 @@ TEST(Parameters, ArduPilotGoesToRallyPointsHoweverFar) {
   EXPECT_EQ(values.at("RALLY_INCL_HOME"), 1.0);
 }
 
-TEST(Parameters, Px4ReturnsAtTheCertifiedHeight) {
+TEST(Parameters, SetPx4ReturnAltitude) {
   const auto values = read_as_qgroundcontrol(write_parameters(make_plan("generic")));
   EXPECT_EQ(values.at("RTL_RETURN_ALT"), 47);
   EXPECT_EQ(values.at("RTL_CONE_ANG"), 0);
@@ -102,7 +102,7 @@ TEST(Parameters, Px4ReturnsAtTheCertifiedHeight) {
   EXPECT_EQ(values.at("GF_ACTION"), 3);
 }
 
-TEST(Parameters, AreReadBackAsWritten) {
+TEST(Parameters, RoundTripThroughFile) {
   for (const char* vehicle : {"generic_ardupilot", "generic"}) {
     const FlightPlan plan = make_plan(vehicle);
     const AutopilotType autopilot = plan.vehicle.autopilot;
@@ -118,7 +118,7 @@ TEST(Parameters, AreReadBackAsWritten) {
   }
 }
 
-TEST(Parameters, SaysWhichSettingsChangeTheWayHome) {
+TEST(Parameters, ReportSettingsThatChangeTheReturn) {
   EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_CONE_SLOPE", 0}}, AutopilotType::ardupilot),
               IsEmpty());
   EXPECT_THAT(return_problems({{"RTL_ALT", 4700}}, AutopilotType::ardupilot),
@@ -130,7 +130,7 @@ TEST(Parameters, SaysWhichSettingsChangeTheWayHome) {
               ElementsAre("NAV_ACC_RAD is 10; it must be in [0.05, 1]"));
 }
 
-TEST(Parameters, NamesTheLineThatIsNone) {
+TEST(Parameters, RejectInvalidLine) {
   try {
     read_parameters("# fine\nRTL_ALT,4700\nRTL_CONE_SLOPE=0\n");
     FAIL() << "must not be taken";
@@ -139,7 +139,7 @@ TEST(Parameters, NamesTheLineThatIsNone) {
   }
 }
 
-TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
+TEST(Parameters, RequireVerifiedReturns) {
   FlightPlan plan = make_plan("generic");
   plan.returns.reset();
   EXPECT_THAT(testing_support::thrown_message([&] { write_parameters(plan); }),
@@ -149,7 +149,7 @@ TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
 }
 
 // A ceiling leaves heights that are not whole metres: files and summaries state the same.
-TEST(ReturnAltitude, IsStatedInFull) {
+TEST(ReturnAltitude, IsWrittenWithAllDecimals) {
   EXPECT_EQ(return_altitude_text(62.0), "62");
   EXPECT_EQ(return_altitude_text(42.7), "42.7");
   EXPECT_EQ(return_altitude_text(11.25), "11.25");

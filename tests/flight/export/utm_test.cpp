@@ -45,7 +45,7 @@ double meridian(double latitude) {
 
 // Closed form: on the central meridian the easting is 500 km, and the northing the meridian's
 // length times 0.9996.
-TEST(Utm, TheCentralMeridianHasItsLengthTimesItsScale) {
+TEST(Utm, MatchesClosedFormOnCentralMeridian) {
   for (const double latitude_deg : {0.0, 10.0, 51.0, 83.0}) {
     const UtmProjection utm({{latitude_deg, -3.0, 12.0}, {}});
     const Vector3d position = utm.to_map(Vector3d::Zero());
@@ -58,7 +58,7 @@ TEST(Utm, TheCentralMeridianHasItsLengthTimesItsScale) {
 
 // Of PROJ, from the coordinate system that is written into files: all three coordinates, to its
 // 0.1 mm. The last point is over the equator from Quito, where its zone's false northing stays.
-TEST(Utm, IsWhereProjPutsPointsByTheWktOfTheFile) {
+TEST(Utm, MatchesProjForWrittenWkt) {
   const Context context(proj_context_create(), proj_context_destroy);
   for (const Site& site : {oxford, quito, ushuaia}) {
     const UtmProjection utm(site);
@@ -84,7 +84,7 @@ TEST(Utm, IsWhereProjPutsPointsByTheWktOfTheFile) {
   }
 }
 
-TEST(Utm, TheSeriesNearTheOriginIsTheProjection) {
+TEST(Utm, MatchesExactProjectionNearOrigin) {
   for (const Site& site : {oxford, quito, ushuaia}) {
     const UtmProjection utm(site);
     for (const Vector3d& local : {Vector3d(999, 0, 0), Vector3d(-700, 700, 100),
@@ -94,7 +94,7 @@ TEST(Utm, TheSeriesNearTheOriginIsTheProjection) {
   }
 }
 
-TEST(Utm, HeightsAreAboveTheGeoidWhereItIsKnown) {
+TEST(Utm, UsesGeoidHeightsWhenUndulationIsKnown) {
   Site site = oxford;
   site.geoid_undulation = 47.0;
   const UtmProjection utm(site);
@@ -111,7 +111,7 @@ TEST(Utm, HeightsAreAboveTheGeoidWhereItIsKnown) {
   EXPECT_EQ(UtmProjection(ushuaia).epsg(), 32719);
 }
 
-TEST(Utm, RefusesThePoles) {
+TEST(Utm, RejectsPolarLatitudes) {
   EXPECT_THAT(
       [] {
         UtmProjection({{85.5, 0.0, 0.0}, {}});

@@ -118,7 +118,7 @@ Order all_capture_points(const FleetSplit& split) {
   return all;
 }
 
-TEST(FleetSplit, IsTheBestOfAllCutsOfItsOrder) {
+TEST(FleetSplit, MatchesBestCutOfOrder) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const FleetProblem problem = flat_problem(seed, 12, {{0, 0, 0}, {50, 0, 0}, {100, 0, 0}});
     const Order order = counted(12);
@@ -136,7 +136,7 @@ TEST(FleetSplit, IsTheBestOfAllCutsOfItsOrder) {
 }
 
 // A battery that holds half of the tour: the time is that of the split into sorties.
-TEST(FleetSplit, FliesSeveralSortiesWhereTheBatteryAsksForThem) {
+TEST(FleetSplit, UsesSeveralSortiesWhenBatteryIsTooSmall) {
   FleetProblem problem = flat_problem(3, 10, {{0, 0, 0}});
   const Order order = counted(10);
   const double at_once = part_time(problem.vehicles[0], order);
@@ -156,7 +156,7 @@ TEST(FleetSplit, FliesSeveralSortiesWhereTheBatteryAsksForThem) {
 }
 
 // Against all ways of sharing nine stations out: what is found is the best, and both bounds are.
-TEST(FleetSplit, IsTheOptimumOfSmallCasesAndTheBoundsHold) {
+TEST(FleetSplit, MatchesOptimumOfSmallCasesAndKeepsBounds) {
   double min_bound = 1.0, min_collected = 1.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const double apart : {0.0, 40.0}) {
@@ -189,7 +189,7 @@ TEST(FleetSplit, IsTheOptimumOfSmallCasesAndTheBoundsHold) {
 }
 
 // One vehicle's share is a tour: it is no longer than LEMON's.
-TEST(FleetSplit, OfOneVehicleIsNoLongerThanTheToursOfALibrary) {
+TEST(FleetSplit, IsNotLongerThanLemonTourForOneVehicle) {
   double sum = 0.0;
   for (const std::size_t count : {50, 80}) {
     const FleetProblem problem = flat_problem(count, count, {{30, 0, 0}});
@@ -212,7 +212,7 @@ TEST(FleetSplit, OfOneVehicleIsNoLongerThanTheToursOfALibrary) {
 }
 
 // A station on each of three sides, a vehicle for each: who flies to one has time for no other.
-TEST(CollectionBound, SeesThatEveryVehicleHasToFlyFar) {
+TEST(CollectionBound, IsTightWhenEveryVehicleHasToFlyFar) {
   FleetProblem problem = flat_problem(1, 3, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
   for (FleetVehicle& vehicle : problem.vehicles) {
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -228,7 +228,7 @@ TEST(CollectionBound, SeesThatEveryVehicleHasToFlyFar) {
   EXPECT_LE(collection_bound(problem, 400.0), 350.0);
 }
 
-TEST(FleetSplit, IsNoWorseAfterExchanges) {
+TEST(FleetSplit, ImprovesThroughExchangesAndAnnealing) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const FleetProblem problem = flat_problem(seed, 40, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
     const FleetSplit cut = split_among(problem, counted(40), FleetGoal::makespan);
@@ -246,7 +246,7 @@ TEST(FleetSplit, IsNoWorseAfterExchanges) {
 }
 
 // Two that fly twice as fast get more to do than one that does not, but each some.
-TEST(FleetSplit, GivesMoreToTheFaster) {
+TEST(FleetSplit, AssignsMoreCapturePointsToFasterVehicle) {
   FleetProblem problem = flat_problem(8, 30, {{0, 0, 0}, {0, 0, 0}});
   for (auto* parts : {&problem.vehicles[1].out, &problem.vehicles[1].back,
                       &problem.vehicles[1].capture_point, &problem.vehicles[1].legs}) {
@@ -267,7 +267,7 @@ FleetMember make_member(const Vehicle& vehicle, const Eigen::Vector2d& wind = {0
 
 // The least cost is one whatever way is flown: straight, or with a stop in a corner. From rest to
 // rest is faster than the autopilot's braking, but not twice as fast.
-TEST(FleetCosts, NoWayRoundACornerIsFasterThanTheLeast) {
+TEST(FleetCosts, AreLowerBoundsForPathsAroundCorner) {
   std::mt19937_64 random(4);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(60, 60, 40));
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
@@ -291,7 +291,7 @@ TEST(FleetCosts, NoWayRoundACornerIsFasterThanTheLeast) {
 
 // A place of the straight line is not free: whatever way is flown round the ball about it, with one
 // corner or with two, takes no less.
-TEST(FleetCosts, NoWayRoundABallIsFasterThanTheLeast) {
+TEST(FleetCosts, AreLowerBoundsForPathsAroundBall) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(40, 40, 20));

@@ -48,7 +48,7 @@ double sampled(const TimedFlight& first, const TimedFlight& second, double toler
   return min_distance;
 }
 
-TEST(Separation, OfHeadOnFlightsIsZeroAndOfParallelOnesTheirGap) {
+TEST(Separation, IsZeroForHeadOnAndGapForParallelFlights) {
   const TimedFlight there{{leg_between({0, 0, 10}, {40, 0, 10}, 4.0, 1.0)}, jerk, 0.0};
   const TimedFlight back{{leg_between({40, 0, 10}, {0, 0, 10}, 4.0, 1.0)}, jerk, 0.0};
   const TimedFlight beside{{leg_between({0, 7, 10}, {40, 7, 10}, 4.0, 1.0)}, jerk, 0.0};
@@ -61,7 +61,7 @@ TEST(Separation, OfHeadOnFlightsIsZeroAndOfParallelOnesTheirGap) {
 }
 
 // One crosses where the other has been: far apart on time, together if both may be as late.
-TEST(Separation, ShrinksWithTheTolerance) {
+TEST(Separation, DecreasesWithTimeTolerance) {
   const TimedFlight first{{leg_between({-20, 0, 10}, {20, 0, 10}, 4.0, 0.0)}, jerk, 0.0};
   const TimedFlight second{{leg_between({0, -20, 10}, {0, 20, 10}, 4.0, 0.0)}, jerk, 8.0};
   // Both cross in the middle of their flights, 8 s apart.
@@ -75,7 +75,7 @@ TEST(Separation, ShrinksWithTheTolerance) {
   EXPECT_NEAR(verified_distance(first, second, 4.0, 100.0), 0.0, 1e-3);
 }
 
-TEST(Separation, IsNotAskedForWhereOneHasLandedLongBefore) {
+TEST(Separation, IsNotRequiredAfterLandingPlusTolerance) {
   const TimedFlight first{{leg_between({0, 0, 10}, {20, 0, 10}, 4.0, 0.0)}, jerk, 0.0};
   TimedFlight second = first;
   second.start = first.landing() + 10.1;
@@ -84,7 +84,7 @@ TEST(Separation, IsNotAskedForWhereOneHasLandedLongBefore) {
   EXPECT_TRUE(too_near(first, second, {.distance = 50.0, .tolerance = 5.0}));
 }
 
-TEST(Separation, SaysWhereTheyMeet) {
+TEST(Separation, ReportsEncounterPositions) {
   const TimedFlight first{{leg_between({0, 0, 10}, {40, 0, 10}, 4.0, 0.0)}, jerk, 0.0};
   const TimedFlight second{{leg_between({20, 3, 10}, {20, 3, 10}, 4.0, 100.0)}, jerk, 0.0};
   const auto encounter = too_near(first, second, {.distance = 5.0});
@@ -97,7 +97,7 @@ TEST(Separation, SaysWhereTheyMeet) {
 
 // 100,000 random pairs of timed legs: what is certified no sampling refutes, what is refused is
 // too near indeed, and the bound is the sampled distance but for what samples miss.
-TEST(Separation, OfRandomTimedLegsIsNeverMoreThanSamplesSay) {
+TEST(Separation, IsNotMoreThanSampledDistanceOfRandomLegs) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(40, 40, 20));
@@ -131,7 +131,7 @@ TEST(Separation, OfRandomTimedLegsIsNeverMoreThanSamplesSay) {
   EXPECT_LT(verified, 90'000);
 }
 
-TEST(Separation, FromAPlaceOnTheGroundIsThatOfTheWholeFlight) {
+TEST(Separation, IsComputedFromGroundPointToWholeFlight) {
   const FlightScript script{leg_between({0, 0, 0}, {0, 0, 8}, 2.0, 0.0),
                             leg_between({0, 0, 8}, {30, 0, 8}, 4.0, 0.0)};
   EXPECT_NEAR(distance_from(script, {15, 6, 0}), 10.0, 1e-9);

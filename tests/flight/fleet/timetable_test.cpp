@@ -47,7 +47,7 @@ bool has_conflict(const std::vector<TimedFlight>& flights,
   return false;
 }
 
-TEST(Timetable, StartsAllAtOnceWhoNeverMeet) {
+TEST(Timetable, StartsSeparateFlightsAtOnce) {
   const std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {0, 50, 10}), jerk},
                                          {1, 0, there_and_back({30, 0, 0}, {30, 40, 10}), jerk}};
   const Timetable table = timetable(sorties, 2, {.distance = 20.0, .tolerance = 10.0});
@@ -57,7 +57,7 @@ TEST(Timetable, StartsAllAtOnceWhoNeverMeet) {
 }
 
 // They cross. No other pair of starts, one of them at once, has the last landing sooner.
-TEST(Timetable, DelaysAsLittleAsCanBeWhereTwoCross) {
+TEST(Timetable, HasMinimalDelayForCrossingFlights) {
   const std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {40, 60, 10}), jerk},
                                          {1, 0, there_and_back({40, 0, 0}, {0, 40, 10}), jerk}};
   const SeparationRule rule{.distance = 10.0, .tolerance = 1.0};
@@ -76,7 +76,7 @@ TEST(Timetable, DelaysAsLittleAsCanBeWhereTwoCross) {
 }
 
 // The same way for all: nothing helps but one after the other.
-TEST(Timetable, FliesOneAfterTheOtherWhereNothingElseHelps) {
+TEST(Timetable, FliesSequentiallyWhenPathsAreShared) {
   std::vector<FleetSortie> sorties;
   for (std::size_t v = 0; v < 3; ++v) {
     sorties.push_back({v, 0, there_and_back({0, 0, 0}, {0, 5, 8}), jerk});
@@ -90,7 +90,7 @@ TEST(Timetable, FliesOneAfterTheOtherWhereNothingElseHelps) {
   EXPECT_NEAR(table.delay, table.makespan - one, 1e-9);
 }
 
-TEST(Timetable, LetsAVehicleLandBeforeItsNextSortie) {
+TEST(Timetable, StartsNextSortieAfterLanding) {
   const std::vector<FleetSortie> sorties{{0, 1, there_and_back({0, 0, 0}, {0, 50, 10}), jerk},
                                          {0, 0, there_and_back({0, 0, 0}, {20, 50, 10}), jerk},
                                          {1, 0, there_and_back({60, 0, 0}, {60, 50, 10}), jerk}};
@@ -101,7 +101,7 @@ TEST(Timetable, LetsAVehicleLandBeforeItsNextSortie) {
 }
 
 // The way to the left crosses that of the other vehicle, the one to the right is a little longer.
-TEST(Timetable, HasAVehicleFlyWhichOfItsVariantsLandsFirst) {
+TEST(Timetable, SelectsVariantThatLandsFirst) {
   std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {0, 50, 10}), jerk},
                                    {1, 0, there_and_back({30, 0, 0}, {0, 40, 10}), jerk, 0},
                                    {1, 0, there_and_back({30, 0, 0}, {60, 45, 10}), jerk, 1}};

@@ -64,7 +64,7 @@ class VerifiedBlockCosts : public testing::Test {
 };
 
 // What routes are chosen by is what they then take, in whatever order, in one sortie or in several.
-TEST_F(VerifiedBlockCosts, AreWhatCertifiedRoutesTake) {
+TEST_F(VerifiedBlockCosts, MatchPlannedRouteTimes) {
   constexpr std::uint32_t count = 14;
   const std::vector<CapturePoint> capture_points = random_capture_points(space, count);
   std::mt19937_64 random(3);
@@ -91,7 +91,7 @@ TEST_F(VerifiedBlockCosts, AreWhatCertifiedRoutesTake) {
   }
 }
 
-TEST_F(VerifiedBlockCosts, AreNoLessThanTheLeastAndTheSameForAnyNumberOfThreads) {
+TEST_F(VerifiedBlockCosts, AreNotBelowLowerBoundAndIndependentOfThreadCount) {
   const std::vector<CapturePoint> capture_points = random_capture_points(space, 24);
   const VerifiedCosts one(capture_points, fleet, space, 1), two(capture_points, fleet, space, 2);
   for (std::size_t v = 0; v < fleet.size(); ++v) {
@@ -114,7 +114,7 @@ TEST_F(VerifiedBlockCosts, AreNoLessThanTheLeastAndTheSameForAnyNumberOfThreads)
 }
 
 // In a building.
-TEST_F(VerifiedBlockCosts, OfStationsThatNobodyReachesAreInfinite) {
+TEST_F(VerifiedBlockCosts, AreInfiniteForUnreachableCapturePoints) {
   std::vector<CapturePoint> capture_points = random_capture_points(space, 6);
   capture_points[2].view.position = {-25, -25, 10};
   const VerifiedCosts costs(capture_points, fleet, space);

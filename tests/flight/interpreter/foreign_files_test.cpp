@@ -64,7 +64,7 @@ struct WaypointsCase {
 
 class ForeignWaypointsFiles : public testing::TestWithParam<WaypointsCase> {};
 
-TEST_P(ForeignWaypointsFiles, AreInterpretedLikeOwnFiles) {
+TEST_P(ForeignWaypointsFiles, AreInterpretedLikeExportedFiles) {
   const FlightFacts facts = sample_facts(AutopilotType::ardupilot);
   const InterpretedRoute route = interpret(read_waypoints(GetParam().text), facts);
   expect_same_flight(route, interpret(read_waypoints(our_waypoints()), facts));
@@ -100,7 +100,7 @@ std::vector<WaypointsCase> waypoints_cases() {
 INSTANTIATE_TEST_SUITE_P(Interpreter, ForeignWaypointsFiles, testing::ValuesIn(waypoints_cases()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST(ForeignWaypointsRejected, NameTheTrueReason) {
+TEST(RejectedWaypointsFiles, NameTheCause) {
   const auto error_message = [](const std::string& text) {
     return testing_support::thrown_message([&] { read_waypoints(text); });
   };
@@ -113,7 +113,7 @@ TEST(ForeignWaypointsRejected, NameTheTrueReason) {
 }
 
 // PX4 takes a place of zeros literally.
-TEST(ForeignWaypointsRejected, LandingsWithoutAPlaceOnPx4) {
+TEST(RejectedWaypointsFiles, IncludePx4LandingsWithoutPosition) {
   MavlinkMission file = sample_file(AutopilotType::px4);
   file.items.back().params[4] = file.items.back().params[5] = 0.0;
   EXPECT_THAT(find_problems(file, AutopilotType::px4), Contains(HasSubstr("has no position")));
@@ -130,7 +130,7 @@ struct PlanCase {
 
 class ForeignPlanFiles : public testing::TestWithParam<PlanCase> {};
 
-TEST_P(ForeignPlanFiles, AreInterpretedLikeOwnFiles) {
+TEST_P(ForeignPlanFiles, AreInterpretedLikeExportedFiles) {
   // The rules of the fence are those of another test: a file without one lacks the mission's.
   FlightFacts facts = sample_facts(AutopilotType::px4);
   facts.no_fly.clear(), facts.fence.reset();
@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
                  }}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(PlansOfOthersRefused, NameTheTrueReason) {
+TEST(RejectedPlanFiles, NameTheCause) {
   const auto error_message = [](const std::function<void(json&)>& change) {
     json plan = our_plan();
     change(plan);
@@ -253,7 +253,7 @@ struct KmzCase {
 
 class ForeignKmzFiles : public testing::TestWithParam<KmzCase> {};
 
-TEST_P(ForeignKmzFiles, AreInterpretedLikeOwnFiles) {
+TEST_P(ForeignKmzFiles, AreInterpretedLikeExportedFiles) {
   const FlightFacts facts = make_flight_facts(dji_plan());
   const InterpretedRoute expected = interpret(unpack_kmz(write_kmz(dji_plan())), facts);
   expect_same_flight(interpret(unpack_kmz(GetParam().bytes), facts), expected);
@@ -300,7 +300,7 @@ std::vector<KmzCase> kmz_cases() {
 INSTANTIATE_TEST_SUITE_P(Interpreter, ForeignKmzFiles, testing::ValuesIn(kmz_cases()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST(KmzOfOthersRefused, NameTheTrueReason) {
+TEST(RejectedKmzFiles, NameTheCause) {
   const KmzContent good = unpack_kmz(write_kmz(dji_plan()));
   const auto error_message = [](const std::string& bytes) {
     return testing_support::thrown_message([&] { read_kmz(bytes); });
@@ -317,7 +317,7 @@ TEST(KmzOfOthersRefused, NameTheTrueReason) {
 }
 
 // Pilot 2: the template above the geoid, the waylines above the ellipsoid.
-TEST(ForeignKmzFiles, HeightsOfBothFilesMayHaveTheirOwnDatum) {
+TEST(ForeignKmzFiles, MayUseDifferentAltitudeReferences) {
   KmzContent kmz = unpack_kmz(write_kmz(dji_plan()));
   const LocalFrame frame(dji_plan().site.origin);
   const double foot = frame.to_geodetic(dji_plan().pad).height;
@@ -347,7 +347,7 @@ TEST(ForeignKmzFiles, HeightsOfBothFilesMayHaveTheirOwnDatum) {
 
 // ---- parameter files -------------------------------------------------------------------------
 
-TEST(ParametersOfOthers, MayHaveBlanksMarksAndComments) {
+TEST(ForeignParameterFiles, MayContainBlanksByteOrderMarkAndComments) {
   const std::vector<Parameter> read = read_parameters(
       "\xEF\xBB\xBF# MAVProxy\r\nRTL_ALT          6300.000000\r\n\r\nFS_THR_ENABLE, 1\r\n");
   ASSERT_EQ(read.size(), 2U);

@@ -27,7 +27,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-class BothAutopilots : public testing::TestWithParam<AutopilotType> {
+class MissionInterpreter : public testing::TestWithParam<AutopilotType> {
  protected:
   MavlinkMission good() const { return sample_file(GetParam()); }  // namespace
   Problems after(const std::function<void(MavlinkMission&)>& change) const {
@@ -42,18 +42,18 @@ class BothAutopilots : public testing::TestWithParam<AutopilotType> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Interpreter, BothAutopilots,
+INSTANTIATE_TEST_SUITE_P(Interpreter, MissionInterpreter,
                          testing::Values(AutopilotType::px4, AutopilotType::ardupilot),
                          [](const auto& parameter) {
                            return parameter.param == AutopilotType::px4 ? "px4" : "ardupilot";
                          });
 
-TEST_P(BothAutopilots, OurOwnFilesAreFine) {
+TEST_P(MissionInterpreter, AcceptsExportedFiles) {
   EXPECT_THAT(find_problems(good(), GetParam()), IsEmpty());
 }
 
 // The promise of the table: whatever is not in it is refused by its item.
-TEST_P(BothAutopilots, EveryUnknownCommandIsRefused) {
+TEST_P(MissionInterpreter, RejectsEveryUnknownCommand) {
   const MavlinkMission file = good();
   MavlinkMission corrupted = file;
   const std::size_t i = find_index(file, command::waypoint, 1);
@@ -67,7 +67,7 @@ TEST_P(BothAutopilots, EveryUnknownCommandIsRefused) {
   }
 }
 
-TEST_P(BothAutopilots, CommandsThatAreNotFlownOrNotProvenAreRefused) {
+TEST_P(MissionInterpreter, RejectsUnsupportedCommands) {
   int rejected = 0;
   for (int id = 0; id < 65536; ++id) {
     const CommandRow* const row = find_command(id);
@@ -80,7 +80,7 @@ TEST_P(BothAutopilots, CommandsThatAreNotFlownOrNotProvenAreRefused) {
   EXPECT_GT(rejected, 10);
 }
 
-TEST_P(BothAutopilots, ALoiterInTheWallIsFlownTo) {
+TEST_P(MissionInterpreter, ReportsLoiterInsideWall) {
   const std::size_t i = find_index(good(), command::waypoint, 1);
   EXPECT_THAT(after([&](MavlinkMission& f) {
                 f.items[i].command = command::loiter_time;
@@ -90,7 +90,7 @@ TEST_P(BothAutopilots, ALoiterInTheWallIsFlownTo) {
                              HasSubstr("0.00 m from "))));
 }
 
-TEST_P(BothAutopilots, LandingsAreOnThePadOrRefused) {
+TEST_P(MissionInterpreter, RejectsLandingsOffTheTakeOffPoint) {
   const std::size_t i = find_index(good(), command::land);
   const auto landing_at = [&](const Eigen::Vector3d& position) {
     return after([&](MavlinkMission& f) { move(f.items[i], position); });
@@ -109,7 +109,7 @@ TEST_P(BothAutopilots, LandingsAreOnThePadOrRefused) {
                     names(good(), middle + 1, "after the landing")));
 }
 
-TEST_P(BothAutopilots, HoldsRadiiAndSpeedsAreTheMissions) {
+TEST_P(MissionInterpreter, RejectsChangedHoldsRadiiAndSpeeds) {
   const std::size_t waypoint_index = find_waypoint(good()), hold = find_hold(good());
   EXPECT_THAT(after([&](MavlinkMission& f) {
                 f.items[waypoint_index].params[0] = 0.0;
@@ -133,7 +133,7 @@ TEST_P(BothAutopilots, HoldsRadiiAndSpeedsAreTheMissions) {
               Contains(HasSubstr("no item before it sets the speed")));
 }
 
-TEST_P(BothAutopilots, PhotographsLookWhereTheViewsDo) {
+TEST_P(MissionInterpreter, RejectsCapturesThatDifferFromViews) {
   const bool is_px4 = GetParam() == AutopilotType::px4;
   const std::size_t waypoint_index = find_waypoint(good());
   const std::size_t yaw = is_px4 ? waypoint_index : find_index(good(), command::condition_yaw);
@@ -154,7 +154,7 @@ TEST_P(BothAutopilots, PhotographsLookWhereTheViewsDo) {
               names(good(), waypoint_index, "away from all views of the mission"));
 }
 
-TEST_P(BothAutopilots, HomeIsThePad) {
+TEST_P(MissionInterpreter, RejectsHomeAwayFromTakeOffPoint) {
   EXPECT_THAT(
       after([](MavlinkMission& f) { f.home->height += 30.0; }),
       Contains(AllOf(HasSubstr(sample_file(GetParam()).home_name), HasSubstr("30.0 m above"))));
@@ -170,7 +170,7 @@ TEST_P(BothAutopilots, HomeIsThePad) {
 }
 
 // One item above sea level says nothing of the others.
-TEST_P(BothAutopilots, HeightsCountItemByItem) {
+TEST_P(MissionInterpreter, AppliesAltitudeReferencePerItem) {
   const std::size_t i = find_index(good(), command::waypoint, 1);
   const double pad_amsl = 111.5 - 46.7;
   EXPECT_THAT(after([&](MavlinkMission& f) {
@@ -196,7 +196,7 @@ TEST_P(BothAutopilots, HeightsCountItemByItem) {
               testing::HasSubstr(", above sea level, requires"));
 }
 
-TEST_P(BothAutopilots, PlacesThatMeanAsBeforeAreRefused) {
+TEST_P(MissionInterpreter, RejectsZeroPositionsAndHeights) {
   const std::size_t i = find_index(good(), command::waypoint, 1);
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[i].params[4] = f.items[i].params[5] = 0.0; }),
               names(good(), i, "as before"));
@@ -204,7 +204,7 @@ TEST_P(BothAutopilots, PlacesThatMeanAsBeforeAreRefused) {
               names(good(), i, "height 0"));
 }
 
-TEST_P(BothAutopilots, JumpsAreFlown) {
+TEST_P(MissionInterpreter, FollowsJumps) {
   // Back from the last station to the first, through the building, twice.
   const std::size_t end = find_index(good(), command::land) - 1;
   const auto jump_to = [&](double number, double repeats) {
@@ -220,7 +220,7 @@ TEST_P(BothAutopilots, JumpsAreFlown) {
   EXPECT_THAT(jump_to(500, 1), Contains(HasSubstr("item 999 jumps to an item that does not")));
 }
 
-TEST_P(BothAutopilots, FenceAndRallyPointsAreTheMissions) {
+TEST_P(MissionInterpreter, RejectsChangedFenceAndRallyPoints) {
   if (GetParam() == AutopilotType::ardupilot) {
     // .waypoints hold no fence: the route alone is judged.
     EXPECT_FALSE(good().supports_fence);
@@ -250,7 +250,7 @@ TEST_P(BothAutopilots, FenceAndRallyPointsAreTheMissions) {
 }
 
 // Returns go to the nearest place to land, so the file must hold those that are proven.
-TEST_P(BothAutopilots, RallyPointsAreTheMissions) {
+TEST_P(MissionInterpreter, RejectsMissingOrRaisedRallyPoints) {
   FlightFacts facts = sample_facts(GetParam());
   facts.rally = {{35, 35, 0}};
   const GeodeticPoint position = position_at({35, 35, 0});
@@ -265,7 +265,7 @@ TEST_P(BothAutopilots, RallyPointsAreTheMissions) {
   EXPECT_THAT(with({}), Contains(HasSubstr("does not contain 1 of the mission's 1 rally points")));
 }
 
-TEST_P(BothAutopilots, WhatFollowsMustBeFlown) {
+TEST_P(MissionInterpreter, RejectsItemsThatAreNotExecuted) {
   EXPECT_THAT(after([](MavlinkMission& f) { f.items[2].auto_continue = false; }),
               names(good(), 2, "does not continue"));
   EXPECT_THAT(after([](MavlinkMission& f) { f.items.push_back(f.items[2]); }),
@@ -284,7 +284,7 @@ TEST_P(BothAutopilots, WhatFollowsMustBeFlown) {
 }
 
 // A corner without a stop is cut: the triangle of its two legs must be free.
-TEST_P(BothAutopilots, CornersWithoutAStopAreProvenAsTriangles) {
+TEST_P(MissionInterpreter, VerifiesCornersWithoutStopAsTriangles) {
   const auto rounded = [&](const Eigen::Vector3d& corner) {
     MavlinkMission file = good();
     file.items.resize(2);
@@ -313,7 +313,7 @@ TEST_P(BothAutopilots, CornersWithoutAStopAreProvenAsTriangles) {
   EXPECT_THAT(rounded(corner), Contains(HasSubstr("leg from item")));
 }
 
-TEST(Interpreter, ArduPilotStopsWithoutAHoldBeforeADelay) {
+TEST(Interpreter, AcceptsDelayInsteadOfHoldForArduPilot) {
   MavlinkMission file = sample_file(AutopilotType::ardupilot);
   const std::size_t waypoint_index = find_waypoint(file);
   file.items[waypoint_index].params[0] = 0.0;
@@ -322,12 +322,12 @@ TEST(Interpreter, ArduPilotStopsWithoutAHoldBeforeADelay) {
   EXPECT_THAT(find_problems(file, AutopilotType::ardupilot), IsEmpty());
 }
 
-TEST(Interpreter, AFileForTheOtherAutopilotIsSaid) {
+TEST(Interpreter, ReportsFileForOtherAutopilot) {
   EXPECT_THAT(find_problems(sample_file(AutopilotType::px4), AutopilotType::ardupilot),
               Contains(HasSubstr("written for PX4; vehicle \"generic_ardupilot\"")));
 }
 
-TEST(ItemOrder, JumpsAreUnrolled) {
+TEST(ItemOrder, UnrollsJumps) {
   const auto item = [](int command, std::size_t number, double to = 0, double times = 0) {
     return MissionItem{command, frame::mission, {to, times}, true, number};
   };
@@ -340,7 +340,7 @@ TEST(ItemOrder, JumpsAreUnrolled) {
 }
 
 // Property: a fan that is proven keeps its clearance on every one of its legs.
-TEST(InterpretedRoute, AProvenFanIsFreeEverywhere) {
+TEST(InterpretedRoute, KeepsClearanceOnAllLegsOfVerifiedFan) {
   const KnownSpace space(sample_site());
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> level(-30, 30), height(3, 25);

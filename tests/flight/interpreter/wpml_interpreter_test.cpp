@@ -48,9 +48,9 @@ Problems with_both(const std::string& from, const std::string& to) {
   return after({replaced(good().template_kml, from, to), replaced(good().waylines_wpml, from, to)});
 }
 
-TEST(WpmlInterpreter, OurOwnFilesAreFine) { EXPECT_THAT(after(good()), IsEmpty()); }
+TEST(WpmlInterpreter, AcceptsExportedFiles) { EXPECT_THAT(after(good()), IsEmpty()); }
 
-TEST(WpmlInterpreter, TheMissionsSettingsAreThoseThatAreProven) {
+TEST(WpmlInterpreter, RejectsChangedMissionSettings) {
   const std::string end = "</wpml:";
   const auto setting = [&](const std::string& name, const std::string& value,
                            const std::string& other) {
@@ -83,7 +83,7 @@ TEST(WpmlInterpreter, TheMissionsSettingsAreThoseThatAreProven) {
               Contains(HasSubstr("\"m350_rtk\" is 89")));
 }
 
-TEST(WpmlInterpreter, WaypointsAreNamedByTheirIndex) {
+TEST(WpmlInterpreter, ReportsProblemsWithWaypointIndex) {
   EXPECT_THAT(with_waylines("<wpml:useStraightLine>1", "<wpml:useStraightLine>0", 2),
               Contains(StartsWith("waypoint 2 has wpml:useStraightLine 0")));
   EXPECT_THAT(with_waylines("<wpml:waypointSpeed>4.00", "<wpml:waypointSpeed>15", 3),
@@ -101,7 +101,7 @@ TEST(WpmlInterpreter, WaypointsAreNamedByTheirIndex) {
               Contains(StartsWith("waypoint 2 has wpml:actionTriggerType")));
 }
 
-TEST(WpmlInterpreter, PhotographsAreTheMissions) {
+TEST(WpmlInterpreter, RejectsChangedCaptures) {
   EXPECT_THAT(with_waylines("<wpml:hoverTime>2.00", "<wpml:hoverTime>0.00"),
               Contains(HasSubstr("holds 0.00 s before its image")));
   std::string ahead = good().waylines_wpml;
@@ -116,7 +116,7 @@ TEST(WpmlInterpreter, PhotographsAreTheMissions) {
               Contains(HasSubstr("turns the gimbal")));
 }
 
-TEST(WpmlInterpreter, ThePadIsTheMissions) {
+TEST(WpmlInterpreter, RejectsChangedTakeOffPoint) {
   const std::size_t start = good().template_kml.find("<wpml:takeOffRefPoint>");
   const std::size_t stop = good().template_kml.find("</wpml:takeOffRefPoint>");
   const std::string was = good().template_kml.substr(start, stop - start);
@@ -132,7 +132,7 @@ TEST(WpmlInterpreter, ThePadIsTheMissions) {
 }
 
 // Up to the security height, level, and down to a first waypoint that is not above the pad.
-TEST(WpmlInterpreter, TheWayToTheFirstWaypointIsProven) {
+TEST(WpmlInterpreter, IncludesPathToFirstWaypoint) {
   FlightPlan moved = plan();
   moved.waypoints.front().position = {14, -16, 8};
   FlightFacts facts = make_flight_facts(plan());
@@ -148,7 +148,7 @@ TEST(WpmlInterpreter, TheWayToTheFirstWaypointIsProven) {
   EXPECT_TRUE(comes_level);
 }
 
-TEST(LitchiInterpreter, SpeedsAndCurvesAreProvenOrRefusedByLine) {
+TEST(LitchiInterpreter, ReportsChangedSpeedsAndCurvesWithLineNumber) {
   const FlightPlan generic = sample_plan(vehicle_profile("generic"));
   const std::string text = write_litchi(generic);
   const auto with = [&](const std::string& from, const std::string& to) {

@@ -33,7 +33,7 @@ void append(Bytes& bytes, const Bytes& more) {
 }
 
 // Published constants of the message set: our definitions of the messages are the right ones.
-TEST(Mavlink, TheExtraBytesAreThoseOfTheMessageSets) {
+TEST(Mavlink, ComputesPublishedCrcExtraBytes) {
   EXPECT_EQ(extra_byte<Heartbeat>(), 50);
   EXPECT_EQ(extra_byte<SystemStatus>(), 124);
   EXPECT_EQ(extra_byte<Attitude>(), 39);
@@ -52,12 +52,12 @@ TEST(Mavlink, TheExtraBytesAreThoseOfTheMessageSets) {
 }
 
 // The check value of CRC-16/MCRF4XX in the catalogue of checksums.
-TEST(Mavlink, TheChecksumHasItsCheckValue) {
+TEST(Mavlink, ComputesChecksumCheckValue) {
   const Bytes digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   EXPECT_EQ(checksum(digits), 0x6F91);
 }
 
-TEST(Mavlink, FramesAreTruncatedAndDamageIsNoticed) {
+TEST(Mavlink, TruncatesFramesAndDetectsEveryBitError) {
   const Bytes frame = encode(CommandAnswer{}, somebody, 7);  // zeros alone: one of them stays
   EXPECT_EQ(frame.size(), 10U + 1U + 2U);
   ASSERT_EQ(frames_in(frame).size(), 1U);
@@ -72,7 +72,7 @@ TEST(Mavlink, FramesAreTruncatedAndDamageIsNoticed) {
   }
 }
 
-TEST(Mavlink, FramesAreFoundInBytesThatComeInPieces) {
+TEST(Mavlink, FindsFramesInByteStream) {
   Bytes bytes;
   for (std::uint8_t i = 0; i < 20; ++i) append(bytes, heartbeat(i, i));
   FrameReader reader(guided_extra_byte);
@@ -85,7 +85,7 @@ TEST(Mavlink, FramesAreFoundInBytesThatComeInPieces) {
   EXPECT_EQ(found, 20U);
 }
 
-TEST(Mavlink, WhatIsNotKnownIsPassedOver) {
+TEST(Mavlink, SkipsUnknownMessages) {
   Bytes bytes = wire_form({4711, somebody, 0, Bytes(200, 0xFD)}, 0);
   Bytes marked = heartbeat(1);
   marked[2] = 1;  // signed
@@ -97,7 +97,7 @@ TEST(Mavlink, WhatIsNotKnownIsPassedOver) {
 }
 
 // Whatever comes before, a frame is found once no more than one frame's bytes have followed it.
-TEST(Mavlink, NoiseNeitherIsAFrameNorHidesTheNextOnes) {
+TEST(Mavlink, FindsFramesAfterRandomBytes) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 2000; ++i) {
     Bytes bytes(random() % 400);

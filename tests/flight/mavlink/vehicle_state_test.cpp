@@ -32,7 +32,7 @@ class HeardVehicle : public testing::Test {
   VehicleState state_;
 };
 
-TEST(VehicleState, WaitsForAnAutopilot) {
+TEST(VehicleState, IgnoresFramesBeforeAutopilotHeartbeat) {
   VehicleState state;
   state.hear(make_frame(GlobalPosition{}, 0), 1.0);
   Heartbeat gcs;
@@ -45,14 +45,14 @@ TEST(VehicleState, WaitsForAnAutopilot) {
   EXPECT_EQ(state.heartbeat()->mode, 4U);
 }
 
-TEST_F(HeardVehicle, IsTheOnlyOne) {
+TEST_F(HeardVehicle, IgnoresOtherVehicles) {
   state_.hear(make_frame(heartbeat(5), 101, other), 2.0);
   EXPECT_EQ(state_.heartbeat()->mode, 4U);
   EXPECT_EQ(state_.last_heard(), 1.0);
 }
 
 // Frames that come twice or late must not take a vehicle back into the mode that it was in before.
-TEST_F(HeardVehicle, DoesNotGoBack) {
+TEST_F(HeardVehicle, IgnoresRepeatedAndLateFrames) {
   state_.hear(make_frame(heartbeat(9), 102), 2.0);
   state_.hear(make_frame(heartbeat(4), 101), 3.0);
   state_.hear(make_frame(heartbeat(4), 102), 3.0);
@@ -60,7 +60,7 @@ TEST_F(HeardVehicle, DoesNotGoBack) {
   EXPECT_EQ(state_.heartbeat()->time, 2.0);
 }
 
-TEST_F(HeardVehicle, IsHeardAgainAfterItsCountHasGoneRound) {
+TEST_F(HeardVehicle, AcceptsFramesAfterSequenceOverflow) {
   for (int i = 101; i < 700; i += 50) {
     state_.hear(make_frame(heartbeat(static_cast<std::uint32_t>(i)), static_cast<std::uint8_t>(i)),
                 i);
@@ -68,7 +68,7 @@ TEST_F(HeardVehicle, IsHeardAgainAfterItsCountHasGoneRound) {
   }
 }
 
-TEST_F(HeardVehicle, IsNotBelievedNonsense) {
+TEST_F(HeardVehicle, IgnoresInvalidValues) {
   GlobalPosition beyond;
   beyond.latitude = 900'000'001;
   state_.hear(make_frame(beyond, 101), 2.0);
@@ -91,7 +91,7 @@ TEST_F(HeardVehicle, IsNotBelievedNonsense) {
   EXPECT_EQ(state_.warning(), std::string(50, '?'));
 }
 
-TEST_F(HeardVehicle, GrowsOldWhereItsPositionStandsStill) {
+TEST_F(HeardVehicle, KeepsTimeOfRepeatedPosition) {
   GlobalPosition position;
   position.time_boot_ms = 7;
   position.latitude = 470'000'000;
@@ -106,7 +106,7 @@ TEST_F(HeardVehicle, GrowsOldWhereItsPositionStandsStill) {
   EXPECT_EQ(state_.position()->time, 2.0);
 }
 
-TEST_F(HeardVehicle, LooksWhereItsGimbalDoes) {
+TEST_F(HeardVehicle, ComputesGimbalPitch) {
   GimbalAttitude message;
   constexpr float half = 0.25F;  // pitched down by half a radian, turned by 2
   const Eigen::Quaternionf turn = Eigen::AngleAxisf(2.0F, Eigen::Vector3f::UnitZ()) *

@@ -34,13 +34,13 @@ struct Sample {
   FlightScript script;
 };
 
-class AScript : public testing::TestWithParam<const char*> {};
+class ExportedScript : public testing::TestWithParam<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(FlightScript, AScript,
+INSTANTIATE_TEST_SUITE_P(FlightScript, ExportedScript,
                          testing::Values("generic", "generic_ardupilot", "m350_rtk"),
                          [](const auto& parameter) { return std::string(parameter.param); });
 
-TEST_P(AScript, LeadsFromThePadThroughAllStationsAndBack) {
+TEST_P(ExportedScript, VisitsAllWaypointsAndReturnsToPad) {
   const Sample sample(GetParam());
   EXPECT_LT((sample.script.front().from - sample.plan.pad).norm(), rounding_bound);
   EXPECT_LT((sample.script.back().to - sample.plan.pad).norm(), 2.0 * rounding_bound);
@@ -62,12 +62,12 @@ TEST_P(AScript, LeadsFromThePadThroughAllStationsAndBack) {
 }
 
 // The plan's time is computed from the route, the script's from the file.
-TEST_P(AScript, TakesThePlansTime) {
+TEST_P(ExportedScript, MatchesFlightTimeOfPlan) {
   const Sample sample(GetParam());
   EXPECT_NEAR(duration(sample.script) / flight_time(sample.plan), 1.0, 0.02);
 }
 
-TEST_P(AScript, MovesAlongItsLegsWithinTheirLimits) {
+TEST_P(ExportedScript, KeepsSpeedAndAccelerationLimits) {
   const Sample sample(GetParam());
   for (const ScriptedLeg& leg : testing_support::not_empty(sample.script)) {
     EXPECT_LT((set_point(leg, sample.jerk(), 0.0).position - leg.from).norm(), 1e-9);
@@ -81,7 +81,7 @@ TEST_P(AScript, MovesAlongItsLegsWithinTheirLimits) {
 }
 
 // Property: wherever a leg is given up, the vehicle comes to rest on it.
-TEST_P(AScript, IsGivenUpWithoutLeavingItsLeg) {
+TEST_P(ExportedScript, BrakesToRestOnItsLeg) {
   const Sample sample(GetParam());
   for (const ScriptedLeg& leg : testing_support::not_empty(sample.script)) {
     const Vector3d displacement = leg.to - leg.from;
@@ -100,7 +100,7 @@ TEST_P(AScript, IsGivenUpWithoutLeavingItsLeg) {
 }
 
 // A file that flies at half the speed takes longer, by what its legs' own law says.
-TEST(FlightScript, FliesAtTheSpeedOfTheFile) {
+TEST(FlightScript, UsesSpeedOfFile) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
   MavlinkMission file = sample_file(AutopilotType::px4);
   file.items[find_index(file, command::change_speed)].params[1] =

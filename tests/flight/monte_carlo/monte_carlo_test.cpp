@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Property: the least distance of all steps, to the last bit, as if each had been asked for.
-TEST(NearestPass, FindsTheNearestOfAllSteps) {
+TEST(NearestPass, FindsMinDistanceOfAllSteps) {
   std::mt19937_64 random(4);
   Obstacles obstacles;
   obstacles.mesh = scenes::boxes(random, 12);
@@ -61,7 +61,7 @@ class SampleFlight : public testing::TestWithParam<AutopilotType> {
 INSTANTIATE_TEST_SUITE_P(FlyTest, SampleFlight,
                          testing::Values(AutopilotType::px4, AutopilotType::ardupilot));
 
-TEST_P(SampleFlight, KeepsItsClearanceInALightWind) {
+TEST_P(SampleFlight, KeepsClearanceInLightWind) {
   const FlyTest test =
       fly_test(mission(), criteria_, {.flights = 12, .returns = 500, .wind_speed = 3});
   ASSERT_EQ(test.flights.size(), 12U);
@@ -75,7 +75,7 @@ TEST_P(SampleFlight, KeepsItsClearanceInALightWind) {
   }
 }
 
-TEST_P(SampleFlight, IsSameForAnyThreadCount) {
+TEST_P(SampleFlight, DoesNotDependOnThreadCount) {
   const FlyTest one = fly_test(mission(), criteria_, {.flights = 6, .returns = 50, .threads = 1});
   const FlyTest four = fly_test(mission(), criteria_, {.flights = 6, .returns = 50, .threads = 4});
   ASSERT_FALSE(one.flights.empty());
@@ -88,7 +88,7 @@ TEST_P(SampleFlight, IsSameForAnyThreadCount) {
   EXPECT_EQ(one.returns[0].nearest.distance, four.returns[0].nearest.distance);
 }
 
-TEST_P(SampleFlight, CollidesWithATreeThatNobodyKnewOf) {
+TEST_P(SampleFlight, CollidesWithUnknownTree) {
   Obstacles site = site_;
   const SimulatedMission simulated = mission();
   const ScriptedLeg& leg = simulated.script[simulated.script.size() / 2];
@@ -105,7 +105,7 @@ TEST_P(SampleFlight, CollidesWithATreeThatNobodyKnewOf) {
 }
 
 // The review's worst: a height of return in the middle of the building.
-TEST_P(SampleFlight, ReturnsThatAreTooLowAreFound) {
+TEST_P(SampleFlight, DetectsReturnsThatAreTooLow) {
   SimulatedMission simulated = mission();
   simulated.rtl_profile->level = 8.0;
   const FlyTest test =
@@ -119,7 +119,7 @@ TEST_P(SampleFlight, ReturnsThatAreTooLowAreFound) {
   }
 }
 
-TEST_P(SampleFlight, EndsWhenItIsStopped) {
+TEST_P(SampleFlight, EndsWhenStopIsRequested) {
   std::stop_source stop;
   FlyTestOptions options{.flights = 1000, .threads = 1, .stop = stop.get_token()};
   options.report = [&](std::size_t simulated) {

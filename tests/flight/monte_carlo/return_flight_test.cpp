@@ -27,16 +27,16 @@ double outside(const std::vector<ReturnSegment>& segments, const Vector3d& posit
   return min;
 }
 
-class AReturn : public testing::TestWithParam<AutopilotType> {
+class SampledReturn : public testing::TestWithParam<AutopilotType> {
  protected:
   RtlProfile rtl_profile() const { return {{GetParam()}, level, {{0, 0, 0}, {60, 10, 1}}, 5.0}; }
 };
 
-INSTANTIATE_TEST_SUITE_P(ReturnFlight, AReturn,
+INSTANTIATE_TEST_SUITE_P(ReturnFlight, SampledReturn,
                          testing::Values(AutopilotType::px4, AutopilotType::ardupilot,
                                          AutopilotType::dji));
 
-TEST_P(AReturn, StaysWithinWhatIsProven) {
+TEST_P(SampledReturn, StaysWithinVerifiedSegments) {
   geometry::RandomNumbers draws(7, 1);
   for (int i = 0; i < 2000; ++i) {
     const Vector3d position{draws.between(-70, 90), draws.between(-70, 70), draws.between(6, 50)};
@@ -60,7 +60,7 @@ TEST_P(AReturn, StaysWithinWhatIsProven) {
   }
 }
 
-TEST_P(AReturn, ComesDownAtTheNearestLandingPlace) {
+TEST_P(SampledReturn, LandsAtNearestLandingPoint) {
   geometry::RandomNumbers draws(8, 1);
   for (int i = 0; i < 200; ++i) {
     const Vector3d position{draws.between(70, 90), draws.between(-20, 20), draws.between(6, 30)};
@@ -69,7 +69,7 @@ TEST_P(AReturn, ComesDownAtTheNearestLandingPlace) {
   }
 }
 
-TEST_P(AReturn, TakesAsLongAsItsParts) {
+TEST_P(SampledReturn, HasDurationOfItsParts) {
   geometry::RandomNumbers draws(9, 1), same(9, 1);
   const Motion motion(vehicle_profile("generic"), {});
   const Vector3d position(80, -40, 12);

@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 constexpr double step = 0.04;
 
-class AVehicleModel : public testing::Test {
+class VehicleModelFlight : public testing::Test {
  protected:
   void fly(const SetPoint& target, double time, const Vector3d& air = Vector3d::Zero()) {
     for (double t = 0.0; t < time; t += step) model_.fly(target, error_, air, step);
@@ -22,27 +22,27 @@ class AVehicleModel : public testing::Test {
   Vector3d error_ = Vector3d::Zero();
 };
 
-TEST_F(AVehicleModel, HoversForThePowerOfHovering) {
+TEST_F(VehicleModelFlight, UsesHoverPowerWhenHovering) {
   fly({{1, 2, 30}}, 100.0);
   EXPECT_EQ(model_.position(), Vector3d(1, 2, 30));
   EXPECT_NEAR(model_.energy(), 100.0 * motion_.hover_power(), 2.0 * step * motion_.hover_power());
 }
 
-TEST_F(AVehicleModel, ReturnsToItsPlaceInSteadyWind) {
+TEST_F(VehicleModelFlight, ReturnsToSetPointInSteadyWind) {
   fly({{1, 2, 30}}, 2.0, {8, 0, 0});
   EXPECT_GT(model_.position().x(), 1.01);  // pushed away first
   fly({{1, 2, 30}}, 60.0, {8, 0, 0});
   EXPECT_NEAR((model_.position() - Vector3d(1, 2, 30)).norm(), 0.0, 0.005);
 }
 
-TEST_F(AVehicleModel, IsAsFarOffAsItTakesItselfToBe) {
+TEST_F(VehicleModelFlight, IsDisplacedByPositionError) {
   error_ = {0.2, -0.1, 0.3};
   fly({{1, 2, 30}}, 60.0);
   EXPECT_NEAR((model_.position() - (Vector3d(1, 2, 30) - error_)).norm(), 0.0, 0.005);
 }
 
 // A set point that moves steadily is followed without falling behind.
-TEST_F(AVehicleModel, KeepsUpWithASteadySetPoint) {
+TEST_F(VehicleModelFlight, FollowsSteadySetPointWithoutLag) {
   SetPoint target{{1, 2, 30}, {3, 0, 0}};
   for (int i = 0; i < 1500; ++i) {
     model_.fly(target, error_, Vector3d::Zero(), step);

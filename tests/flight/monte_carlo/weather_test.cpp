@@ -30,7 +30,7 @@ TEST(RandomNumbers, AreNormalAndUniformBySeedAndStream) {
 
 // MIL-F-8785C at 20 ft, where W20 is measured: with h = 20, shape = 0.19346, sigma_w = 0.1 W20,
 // sigma_u = sigma_w / shape^0.4 = 0.1929 W20. A wind of 10 m/s from the west.
-TEST(Weather, GustsAreAsStrongAsTheDrydenModelSays) {
+TEST(Weather, HasDrydenGustStrength) {
   geometry::RandomNumbers random(1, 1);
   Weather weather({10.0, 0.0}, random);
   Vector3d sum = Vector3d::Zero(), squares = Vector3d::Zero();
@@ -47,14 +47,14 @@ TEST(Weather, GustsAreAsStrongAsTheDrydenModelSays) {
   EXPECT_NEAR((sum / count).norm(), 0.0, 0.1);
 }
 
-TEST(Weather, IsStillWithoutWind) {
+TEST(Weather, IsCalmWithoutWind) {
   geometry::RandomNumbers random(1, 1);
   Weather weather({0.0, 0.0}, random);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(weather.next(0.1, 10.0, 3.0), Vector3d::Zero());
 }
 
 // Property: never beyond the bound, near it at times, and no jumps.
-TEST(ReceiverError, StaysWithinItsBoundAndChangesSlowly) {
+TEST(ReceiverError, StaysWithinBoundAndChangesSlowly) {
   geometry::RandomNumbers random(2, 1);
   ReceiverError receiver(0.3, random);
   double max = 0.0;

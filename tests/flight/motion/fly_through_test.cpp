@@ -37,7 +37,7 @@ std::optional<FlyThrough> pass(const Round& round, const PassRules& rules, const
   return pass_through(round.points, round.views, open_air(), 1.0, 2.0, motion, rules);
 }
 
-TEST(FlyThrough, OfASquareStopsNowhereAndIsFasterThanStopping) {
+TEST(FlyThrough, PassesSquareWithoutStops) {
   const Round round;
   const Motion motion = calm();
   const auto fly_through = pass(round, easy, motion);
@@ -66,7 +66,7 @@ TEST(FlyThrough, OfASquareStopsNowhereAndIsFasterThanStopping) {
 
 // Over 12.5 m, at 2 m/s: what is exposed for so long that the image would move by more than a pixel
 // at any higher speed.
-TEST(FlyThrough, IsNoFasterThanPicturesStaySharp) {
+TEST(FlyThrough, KeepsSharpImageSpeed) {
   PassRules slow = easy;
   slow.speed = 2.0;
   const auto fly_through = pass(Round(), slow, calm());
@@ -80,7 +80,7 @@ TEST(FlyThrough, IsNoFasterThanPicturesStaySharp) {
 
 // The camera turns by a quarter between corners, at no more than its rate, and stands still around
 // each picture.
-TEST(FlyThrough, TurnsTheCameraBetweenPicturesAndNotDuringThem) {
+TEST(FlyThrough, TurnsCameraOnlyBetweenCaptures) {
   const Motion motion = calm();
   PassRules long_exposure = easy;
   long_exposure.exposure = 0.5;
@@ -102,7 +102,7 @@ TEST(FlyThrough, TurnsTheCameraBetweenPicturesAndNotDuringThem) {
 }
 
 // Two views 2 m apart that look in opposite directions: half a second's flight does not do.
-TEST(FlyThrough, WaitsWhereTheCameraCannotTurnInTime) {
+TEST(FlyThrough, StopsWhereCameraCannotTurnInTime) {
   const std::vector<Vector3d> points{{0, 0, 10}, {30, 0, 10}, {32, 0, 10}, {60, 0, 10}};
   const std::vector<FlyThroughView> views{{1, {0.0, 0.0}}, {2, {M_PI, 0.0}}};
   const Motion motion = calm();
@@ -114,7 +114,7 @@ TEST(FlyThrough, WaitsWhereTheCameraCannotTurnInTime) {
   EXPECT_LT((fly_through->views[0].position - points[1]).norm(), 1e-9);
 }
 
-TEST(FlyThrough, TakesSeveralPicturesInOnePlaceOneAfterTheOther) {
+TEST(FlyThrough, CapturesSeveralViewsAtOnePosition) {
   const std::vector<Vector3d> points{{0, 0, 10}, {30, 0, 10}, {30, 30, 10}};
   const std::vector<FlyThroughView> views{{1, {0.0, 0.0}}, {1, {1.0, 0.0}}, {1, {2.0, 0.5}}};
   const Motion motion = calm();
@@ -130,7 +130,7 @@ TEST(FlyThrough, TakesSeveralPicturesInOnePlaceOneAfterTheOther) {
 }
 
 // A ball inside of the corner, its clearance touching both arms: the corner is not cut.
-TEST(FlyThrough, GivesWayToWhatIsInsideOfACorner) {
+TEST(FlyThrough, KeepsClearanceFromObstacleInsideCorner) {
   Obstacles obstacles;
   obstacles.cloud.radius = 0.1;
   obstacles.cloud.points.push_back({18.89F, -18.89F, 10.0F});
@@ -147,7 +147,7 @@ TEST(FlyThrough, GivesWayToWhatIsInsideOfACorner) {
   }
 }
 
-TEST(FlyThrough, NothingToPassIsANormalAnswer) {
+TEST(FlyThrough, ReturnsNoFlightWithoutViews) {
   const Round round;
   EXPECT_FALSE(pass_through(round.points, {}, open_air(), 1.0, 2.0, calm(), easy));
   const std::vector<FlyThroughView> at_end{{5, {}}};

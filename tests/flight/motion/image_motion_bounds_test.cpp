@@ -22,7 +22,7 @@ geometry::Camera wide_camera() {
 }
 
 // At the middle of the image: 0.2 m/s at 10 m and 0.03 rad/s turn the line of sight by 0.05 rad/s.
-TEST(ImageMotionBounds, OfANarrowCameraAreThoseOfItsMiddle) {
+TEST(ImageMotionBounds, MatchClosedFormForNarrowCamera) {
   geometry::CameraConfig config;
   config.width = 1000;
   config.height = 1000;
@@ -37,7 +37,7 @@ TEST(ImageMotionBounds, OfANarrowCameraAreThoseOfItsMiddle) {
 }
 
 // Random small motions of that size move no pixel farther, and some nearly as far.
-TEST(ImageMotionBounds, HoldForAnyMotionAndPixel) {
+TEST(ImageMotionBounds, BoundRandomMotionsAtAllCorners) {
   const geometry::Camera camera = wide_camera();
   const Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.02};
   constexpr double exposure = 0.01, distance = 8.0;
@@ -64,7 +64,7 @@ TEST(ImageMotionBounds, HoldForAnyMotionAndPixel) {
 }
 
 // At that speed the image moves by a pixel while it is exposed, or from the first row to the last.
-TEST(ImageMotionBounds, ArePixelsAtTheSharpSpeed) {
+TEST(ImageMotionBounds, AreOnePixelAtSharpSpeed) {
   const geometry::Camera camera = wide_camera();
   Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.002};
   for (const geometry::Shutter& shutter :
@@ -80,7 +80,7 @@ TEST(ImageMotionBounds, ArePixelsAtTheSharpSpeed) {
   EXPECT_EQ(sharp_speed(vehicle, camera, {10.0, 0.0}, 12.0), 0.0) << "not even at rest";
 }
 
-TEST(ImageMotionBounds, AreSharpUpToAPixel) {
+TEST(ImageMotionBounds, AreSharpUpToOnePixel) {
   EXPECT_TRUE((ImageMotionBounds{1.0, 0.0, 5.0}).is_sharp());
   EXPECT_FALSE((ImageMotionBounds{1.01, 0.0, 5.0}).is_sharp());
   EXPECT_FALSE((ImageMotionBounds{0.0, 1.01, 5.0}).is_sharp());

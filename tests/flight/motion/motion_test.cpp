@@ -32,7 +32,7 @@ double distance_covered(double time, double speed, double acceleration, double j
   return 2 * half;
 }
 
-TEST(RestToRest, CoversTheDistanceInAllRegimes) {
+TEST(RestToRest, CoversDistanceInAllRegimes) {
   for (const double distance : {0.01, 0.3, 2.0, 5.0, 20.0, 300.0}) {
     for (const double speed : {1.0, 4.0, 15.0}) {
       const double time = rest_to_rest_time(distance, speed, 2.0, 4.0);
@@ -43,7 +43,7 @@ TEST(RestToRest, CoversTheDistanceInAllRegimes) {
   }
 }
 
-TEST(RestToRest, IsMonotonousAndContinuousAcrossRegimes) {
+TEST(RestToRest, IsMonotonicAndContinuousAcrossRegimes) {
   double before = 0.0;
   for (double distance = 0.001; distance < 60.0; distance *= 1.01) {
     const double time = rest_to_rest_time(distance, 4.0, 2.0, 4.0);
@@ -60,7 +60,7 @@ TEST(Turn, IsTriangularThenTrapezoidal) {
   EXPECT_DOUBLE_EQ(turn_time(0.125, 1.0, 2.0), 0.5);
 }
 
-TEST(Motion, VerticalLegsHaveTheirOwnLimits) {
+TEST(Motion, HasSeparateLimitsForVerticalLegs) {
   Vehicle vehicle;
   vehicle.mode.max_descent = 2.0;  // up 3 m/s
   const Motion motion(vehicle, {.cruise_speed = 8.0});
@@ -73,7 +73,7 @@ TEST(Motion, VerticalLegsHaveTheirOwnLimits) {
 
 // Straight up the vertical acceleration, level the horizontal, and on a slope as much of both as
 // the one that is used up first allows.
-TEST(Motion, AccelerationsAreLimitedByTheSlowerAxis) {
+TEST(Motion, LimitsAccelerationBySlowerAxis) {
   Vehicle vehicle;
   vehicle.mode.acceleration = 2.5, vehicle.mode.vertical_acceleration = 1.0;
   const Motion motion(vehicle, {});
@@ -89,7 +89,7 @@ TEST(Motion, AccelerationsAreLimitedByTheSlowerAxis) {
 }
 
 // The trajectories that are written are the seven phases, which must end before the autopilot does.
-TEST(Motion, NoLawIsFasterThanTheSevenPhases) {
+TEST(Motion, IsNotFasterThanSevenPhases) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});
     for (const Vector3d& displacement :
@@ -115,7 +115,7 @@ TEST(Motion, LandsInTwoStages) {
 }
 
 // Aiming takes as long as the slowest of leg, heading and gimbal; DJI's gimbal starts on arrival.
-TEST(Motion, AimsOnTheWay) {
+TEST(Motion, AimsEnRoute) {
   Vehicle vehicle;
   vehicle.mode.yaw_rate = 1.0, vehicle.mode.yaw_acceleration = 2.0, vehicle.gimbal_rate = 0.5;
   const Motion other(vehicle, {});
@@ -126,7 +126,7 @@ TEST(Motion, AimsOnTheWay) {
   EXPECT_DOUBLE_EQ(Motion(vehicle, {}).aimed_time(9.0, 2.0, -1.0), 11.0);
 }
 
-TEST(Motion, HeadwindLimitsTheGroundSpeed) {
+TEST(Motion, LimitsGroundSpeedInHeadwind) {
   Vehicle vehicle;  // 10 m/s through the air
   const Motion motion(vehicle, {.wind = {0, -6}, .cruise_speed = 10.0});
   EXPECT_NEAR(motion.leg_speed({0, 1, 0}), 4.0, 1e-12);    // into it
@@ -135,7 +135,7 @@ TEST(Motion, HeadwindLimitsTheGroundSpeed) {
 }
 
 // The model's calibration: a full battery, to the last drop, hovers as long as the data sheet says.
-TEST(Motion, HoversAsLongAsTheDataSheetSays) {
+TEST(Motion, MatchesDataSheetEndurance) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {.reserve = 0.0});
     const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
@@ -146,7 +146,7 @@ TEST(Motion, HoversAsLongAsTheDataSheetSays) {
 
 // Momentum theory: power has its least at some speed, a little below hover, and rises steeply
 // after.
-TEST(Motion, ForwardFlightSavesALittleAndThenCosts) {
+TEST(Motion, HasMinPowerAtModerateForwardSpeed) {
   for (const Vehicle& vehicle : testing_support::not_empty(vehicle_profiles())) {
     const Motion motion(vehicle, {});
     double min = motion.hover_power();
@@ -159,7 +159,7 @@ TEST(Motion, ForwardFlightSavesALittleAndThenCosts) {
   }
 }
 
-TEST(Motion, ClimbingCostsAtLeastThePotentialEnergy) {
+TEST(Motion, UsesMoreThanPotentialEnergyWhenClimbing) {
   const Vehicle vehicle;
   const Motion motion(vehicle, {});
   const double up = motion.leg_energy({0, 0, 50}, 0.0);
@@ -167,7 +167,7 @@ TEST(Motion, ClimbingCostsAtLeastThePotentialEnergy) {
   EXPECT_GT(up - level, vehicle.mass * 9.8 * 50);
 }
 
-TEST(Motion, ColdAndReserveLeaveLess) {
+TEST(Motion, ReducesUsableEnergyForColdReserveAndModelError) {
   const Vehicle vehicle;
   const double warm = Motion(vehicle, {.reserve = 0.0}).usable_energy();
   EXPECT_NEAR(Motion(vehicle, {.temperature_c = -5.0, .reserve = 0.0}).usable_energy(), 0.8 * warm,
@@ -182,7 +182,7 @@ std::string error_message(const Vehicle& vehicle, const Conditions& conditions) 
   return testing_support::thrown_message([&] { const Motion motion(vehicle, conditions); });
 }
 
-TEST(Motion, AbsurdLimitsAreNamed) {
+TEST(Motion, RejectsInvalidLimits) {
   const Vehicle good;
   EXPECT_EQ(error_message(good, {}), "");
   EXPECT_THAT(error_message(good, {.wind = {20, 0}}), HasSubstr("the wind is 20"));

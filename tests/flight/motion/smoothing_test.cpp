@@ -70,7 +70,7 @@ void expect_rest_at_ends(const Curve& curve, const Vector3d& from, const Vector3
 // ---- curves ----------------------------------------------------------------------------------
 
 // The one quintic between the ends of a motion of constant jerk is that motion.
-TEST(Curve, APieceBetweenStatesOfACubicIsTheCubic) {
+TEST(Curve, MatchesCubicBetweenItsStates) {
   const Vector3d jerk(0.5, -1, 2);
   const auto cubic = [&](double t) -> CurveState {
     return {Vector3d(1, 2, 3) + t * Vector3d(1, 0, -1) + t * t * t / 6.0 * jerk,
@@ -86,7 +86,7 @@ TEST(Curve, APieceBetweenStatesOfACubicIsTheCubic) {
 
 // A minimum-jerk motion over 10 m in T seconds peaks at 15/8 of its mean speed and at
 // 10 / sqrt(3) L / T^2 of acceleration, 60 L / T^3 of jerk.
-TEST(Curve, SlowdownIsThatOfTheMinimumJerkMotion) {
+TEST(Curve, NeedsSlowdownOfMinimumJerkMotion) {
   const Motion motion = calm();
   const Curve curve{segment_between({Vector3d::Zero()}, {Vector3d(10, 0, 0)}, 1.0)};
   const double by_speed = 10.0 * 15.0 / 8.0 / motion.conditions().cruise_speed;
@@ -100,7 +100,7 @@ TEST(Curve, SlowdownIsThatOfTheMinimumJerkMotion) {
   EXPECT_LE(needed_slowdown(slowed(curve, bound), motion), 1.0 + 1e-12);
 }
 
-TEST(Curve, LengthIsTheChordsOnALineAndTheArcsOnABend) {
+TEST(Curve, HasLengthOfLineAndOfArc) {
   EXPECT_NEAR(length({segment_between({Vector3d::Zero()}, {Vector3d(3, 4, 12)}, 5.0)}), 13.0, 1e-6);
   // A quarter of a circle of radius 4 at 1 m/s is nearly a quintic between its end states.
   const double quarter = 2.0 * M_PI;
@@ -111,7 +111,7 @@ TEST(Curve, LengthIsTheChordsOnALineAndTheArcsOnABend) {
 }
 
 // A bend whose hull is 1 m deep passes an obstacle inside of it: only halving proves that it does.
-TEST(Curve, ProofHalvesAHullUntilItFits) {
+TEST(Curve, IsVerifiedBySubdividingItsHull) {
   const Curve bend = blend_corners(right_angle, air_with({}), 1.0, calm()).curve;
   double nearest = 1e9;
   const Vector3d inside(18, 2, 10);
@@ -126,7 +126,7 @@ TEST(Curve, ProofHalvesAHullUntilItFits) {
 
 // ---- blends ----------------------------------------------------------------------------------
 
-TEST(Blend, OfARightAngleIsShorterFasterAndInsideTheCorner) {
+TEST(Blend, IsShorterAndFasterInsideRightAngle) {
   const Motion motion = calm();
   const auto leg = smooth(right_angle, air_with({}), 1.0, 2.0, motion, FlightStyle::blend);
   ASSERT_TRUE(leg);
@@ -147,7 +147,7 @@ TEST(Blend, OfARightAngleIsShorterFasterAndInsideTheCorner) {
   }
 }
 
-TEST(Blend, GivesWayToAnObstacleInTheCornerAndStopsWhereNoneFits) {
+TEST(Blend, AvoidsObstacleInCornerOrStops) {
   const Motion motion = calm();
   const auto time = [&](const std::vector<Vector3d>& balls) {
     const auto leg = smooth(right_angle, air_with(balls), 1.0, 2.0, motion, FlightStyle::blend);
@@ -162,7 +162,7 @@ TEST(Blend, GivesWayToAnObstacleInTheCornerAndStopsWhereNoneFits) {
   EXPECT_LE(blocked, stopping_time(right_angle, motion));
 }
 
-TEST(Blend, KeepsLimitsUpAndDownAndAgainstTheWind) {
+TEST(Blend, KeepsLimitsOnVerticalLegsAndInWind) {
   Conditions windy;
   windy.wind = {-6.0, 3.0};
   const Motion motion(Vehicle{}, windy);
@@ -178,7 +178,7 @@ TEST(Blend, KeepsLimitsUpAndDownAndAgainstTheWind) {
 
 // ---- smoothing -------------------------------------------------------------------------------
 
-TEST(Smooth, IsNoSlowerThanTheBlendAndMostlyFaster) {
+TEST(Smooth, IsFasterThanBlend) {
   const Motion motion = calm();
   const std::vector<Vector3d> zigzag{
       {0, 0, 10}, {8, 3, 10}, {12, -3, 12}, {20, 0, 11}, {24, 9, 10}};
@@ -197,7 +197,7 @@ TEST(Smooth, IsNoSlowerThanTheBlendAndMostlyFaster) {
   expect_rest_at_ends(curve->curve, zigzag.front(), zigzag.back());
 }
 
-TEST(Smooth, IsTheSameEveryTime) {
+TEST(Smooth, IsDeterministic) {
   const Motion motion = calm();
   const KnownSpace air = air_with({{15, 5, 10}});
   for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {
@@ -212,7 +212,7 @@ TEST(Smooth, IsTheSameEveryTime) {
   }
 }
 
-TEST(Smooth, NothingToSmoothIsANormalAnswer) {
+TEST(Smooth, ReturnsNoCurveWithoutCorners) {
   const Motion motion = calm();
   const KnownSpace air = air_with({});
   EXPECT_FALSE(smooth(right_angle, air, 1.0, 2.0, motion, FlightStyle::stop));
@@ -224,7 +224,7 @@ TEST(Smooth, NothingToSmoothIsANormalAnswer) {
 
 // Random scenes: what is accepted keeps its clearance at places so dense (1 cm) that nothing nearer
 // than the least clearance stated, less half of that, could pass between them.
-TEST(Smooth, NoAcceptedCurveIsRefusedByDenseExactDistances) {
+TEST(Smooth, KeepsClearanceAtDenseSamplesOfRandomScenes) {
   std::mt19937_64 random(7);
   const Motion motion = calm();
   constexpr double clearance = 1.0;

@@ -41,7 +41,7 @@ double round_corner(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
          std::sqrt(b.squaredNorm() - radius * radius) + radius * arc;
 }
 
-TEST(Path, IsTheStraightLineWhereThatIsFree) {
+TEST(Path, IsStraightLineWhenFree) {
   const KnownSpace space = make_space(scenes::box({0, 0, 0}, {10, 10, 10}));
   PathFinder finder(space, 2.0);
   const Path path = finder.find({-5, -5, 5}, {20, -5, 5});
@@ -52,7 +52,7 @@ TEST(Path, IsTheStraightLineWhereThatIsFree) {
 
 // A high box, from one face to the neighbouring one: tangent, arc of the clearance round the edge,
 // tangent. Within 2 % of it (the bar).
-TEST(Path, RoundTheEdgeOfABoxIsWithinTwoPercentOfTheShortest) {
+TEST(Path, IsWithinTwoPercentOfShortestAroundOneEdge) {
   const KnownSpace space = make_space(scenes::box({0, 0, -300}, {40, 40, 300}));
   for (const double clearance : {0.5, 2.0, 5.0}) {
     PathFinder finder(space, clearance);
@@ -66,7 +66,7 @@ TEST(Path, RoundTheEdgeOfABoxIsWithinTwoPercentOfTheShortest) {
 }
 
 // Symmetric to the far face: two edges to go round.
-TEST(Path, ToTheFarSideOfABoxIsWithinTwoPercentOfTheShortest) {
+TEST(Path, IsWithinTwoPercentOfShortestAroundTwoEdges) {
   const KnownSpace space = make_space(scenes::box({0, 0, -300}, {40, 40, 300}));
   const double clearance = 2.0;
   PathFinder finder(space, clearance);
@@ -81,7 +81,7 @@ TEST(Path, ToTheFarSideOfABoxIsWithinTwoPercentOfTheShortest) {
 
 // A wall too large to go round, 1 m thick, with a window 6 m wide, flown through at 2 m. The path
 // is in a plane of symmetry and bends round both edges of the window's left side.
-TEST(Path, FindsTheWindowInAWall) {
+TEST(Path, FindsWindowInWall) {
   geometry::Mesh wall = scenes::box({-200, 0, -200}, {0, 1, 200});
   geometry::append(wall, scenes::box({6, 0, -200}, {200, 1, 200}));
   geometry::append(wall, scenes::box({0, 0, -200}, {6, 1, -3}));
@@ -98,7 +98,7 @@ TEST(Path, FindsTheWindowInAWall) {
 }
 
 // A corridor with a right angle, 5 m wide and closed above and below, flown at 2 m.
-TEST(Path, FollowsABentCorridor) {
+TEST(Path, FollowsCorridorWithRightAngle) {
   geometry::Mesh walls = scenes::box({0, 5, 0}, {25, 30, 5});    // inner block
   geometry::append(walls, scenes::box({0, -1, 0}, {31, 0, 5}));  // outer walls
   geometry::append(walls, scenes::box({30, 0, 0}, {31, 30, 5}));
@@ -118,7 +118,7 @@ TEST(Path, FollowsABentCorridor) {
   EXPECT_EQ(finder.find(from, {27.5, 40, 2.5}).status, PathStatus::unreachable);
 }
 
-TEST(Path, IsTheSameEveryTimeAndWhateverWasAskedBefore) {
+TEST(Path, IsIndependentOfEarlierQueries) {
   std::mt19937_64 random(3);
   const KnownSpace space = make_space(scenes::boxes(random, 40));
   const Eigen::AlignedBox3d around(Vector3d::Zero(), Vector3d::Constant(60));
@@ -134,7 +134,7 @@ TEST(Path, IsTheSameEveryTimeAndWhateverWasAskedBefore) {
   EXPECT_GT(found, 10);
 }
 
-TEST(Path, ReturnsNotFoundWithoutPath) {
+TEST(Path, ReportsUnreachableGoalAndBlockedEnds) {
   geometry::Mesh cage = scenes::box({-5, -5, -5}, {5, 5, 5});
   Obstacles obstacles;
   obstacles.mesh = cage;
@@ -146,14 +146,14 @@ TEST(Path, ReturnsNotFoundWithoutPath) {
   EXPECT_EQ(PathFinder(full, 1.0).find({20, 0, 0}, {5.5, 0, 0}).status, PathStatus::goal_not_free);
 }
 
-TEST(Path, AFenceThatExcludesEverythingLeavesNoStart) {
+TEST(Path, HasNoFreeStartOutsideFence) {
   Obstacles obstacles;
   obstacles.fence = Prism{"far away", {{1000, 1000}, {1010, 1000}, {1010, 1010}}, 0, 50};
   const KnownSpace space(obstacles);
   EXPECT_EQ(PathFinder(space, 1.0).find({0, 0, 10}, {5, 0, 10}).status, PathStatus::start_not_free);
 }
 
-TEST(Path, PullingTightKeepsTheEndsAndNeverLengthens) {
+TEST(Path, KeepsEndsAndShortensWhenPulledTight) {
   std::mt19937_64 random(5);
   const KnownSpace space = make_space(scenes::box({0, 0, -50}, {10, 10, 50}));
   const std::vector<Vector3d> detour{
@@ -164,7 +164,7 @@ TEST(Path, PullingTightKeepsTheEndsAndNeverLengthens) {
   EXPECT_LT(length(tight), 0.75 * length(detour));
 }
 
-TEST(Path, AbsurdOptionsAreNamed) {
+TEST(Path, RejectsInvalidOptions) {
   const KnownSpace space = make_space(scenes::box({0, 0, 0}, {1, 1, 1}));
   EXPECT_THAT(testing_support::thrown_message([&] { PathFinder(space, -1.0); }),
               testing::HasSubstr("the clearance is -1.0"));

@@ -35,18 +35,18 @@ Obstacles building() {
   return obstacles;
 }
 
-TEST(SamplingPath, BitStarAgreesWithTheGridRoundABuilding) {
+TEST(SamplingPath, MatchesGridPathWithBitStar) {
   expect_agreement(building(), {10, -6, 0}, {26, 14, 0}, 2.0, {});
 }
 
-TEST(SamplingPath, AitStarAgreesWithTheGridRoundABuilding) {
+TEST(SamplingPath, MatchesGridPathWithAitStar) {
   expect_agreement(building(), {10, -6, 0}, {26, 14, 0}, 2.0,
                    {.planner = SamplingPlanner::ait_star, .max_checks = 1500});
 }
 
 // From one side of the window to the same side behind the wall: the straight line is in the way of
 // the wall, so the hole must be found, and by every seed, not only a lucky one.
-TEST(SamplingPath, FindsTheWindowInAWallWithEverySeed) {
+TEST(SamplingPath, FindsWindowInWallWithEverySeed) {
   const KnownSpace space(scenes::wall_with_window());
   const Vector3d from(-8, -6, 20), to(-8, 7, 20);
   const Path grid = PathFinder(space, 2.0).find(from, to);
@@ -60,7 +60,7 @@ TEST(SamplingPath, FindsTheWindowInAWallWithEverySeed) {
   }
 }
 
-TEST(SamplingPath, IsTheSameWhateverWasAskedBefore) {
+TEST(SamplingPath, IsIndependentOfEarlierQueries) {
   const KnownSpace space(building());
   const SamplingOptions brief{.max_checks = 500};
   const auto find = [&] {
@@ -75,7 +75,7 @@ TEST(SamplingPath, IsTheSameWhateverWasAskedBefore) {
               testing::HasSubstr("the seed of a sampling search is 0"));
 }
 
-TEST(SamplingPath, ReturnsNotFoundWithoutPath) {
+TEST(SamplingPath, ReportsUnreachableGoalAndBlockedEnds) {
   Obstacles cage;
   cage.mesh = scenes::box({-5, -5, -5}, {5, 5, 5});
   cage.mesh_is_solid = false;

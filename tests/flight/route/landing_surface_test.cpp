@@ -40,7 +40,7 @@ std::vector<Vector3d> read_positions(const Plane& plane) {
   return positions;
 }
 
-TEST(LandingSurface, FindsThePlaneThatItIsGiven) {
+TEST(LandingSurface, ComputesSlopeAndRiseOfPlane) {
   for (const Plane& plane : {Plane{0.0, 0.0}, {7.0, 0.1}, {35.0, -0.8}}) {
     const auto ground = pad_ground(pad, read_positions(plane), GroundSource::terrain);
     ASSERT_TRUE(ground);
@@ -52,7 +52,7 @@ TEST(LandingSurface, FindsThePlaneThatItIsGiven) {
 }
 
 // A chequered ground of steps of 2 h is h off its plane everywhere.
-TEST(LandingSurface, IsAsUnevenAsItsSteps) {
+TEST(LandingSurface, ComputesUnevennessOfSteps) {
   std::vector<Vector3d> positions;
   for (int x = -4; x < 4; ++x) {
     for (int y = -4; y < 4; ++y) {
@@ -65,7 +65,7 @@ TEST(LandingSurface, IsAsUnevenAsItsSteps) {
   EXPECT_NEAR(ground->unevenness, 0.05, 1e-3);
 }
 
-TEST(LandingSurface, IsNotKnownFromFewPlacesOrALineOrNoise) {
+TEST(LandingSurface, IsUnknownForFewCollinearOrNoisyPoints) {
   std::vector<Vector3d> positions = read_positions({5.0, 0.0});
   EXPECT_FALSE(pad_ground(pad, std::span(positions).first(5), GroundSource::measured));
   for (Vector3d& position : positions) position.y() = pad.y() + 2.0 * (position.x() - pad.x());
@@ -78,7 +78,7 @@ TEST(LandingSurface, IsNotKnownFromFewPlacesOrALineOrNoise) {
   EXPECT_FALSE(pad_ground(pad, positions, GroundSource::measured));
 }
 
-TEST(LandingSurface, IsUnfitWhereItIsSteepUnevenOrElsewhere) {
+TEST(LandingSurface, IsUnsuitableWhenSteepUnevenOrOffset) {
   const PadLimits limits{10.0 * radians_per_degree, 0.0};
   const auto reason = [&](const LandingSurface& ground, const PadLimits& max) {
     return unfit_reason(ground, max);
@@ -100,7 +100,7 @@ TEST(LandingSurface, IsUnfitWhereItIsSteepUnevenOrElsewhere) {
 }
 
 // Noise of 3 cm on a ramp, and what stands beside the pad or hangs over it.
-TEST(PadScan, MeasuresTheSlopeUnderNoiseAndLeavesTheRestOut) {
+TEST(PadScan, MeasuresSlopeUnderNoiseAndIgnoresOtherPoints) {
   const Plane plane{12.0, 0.1};
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> spread(-3.0, 3.0);

@@ -53,7 +53,7 @@ Route plan(const std::vector<CapturePoint>& capture_points, const Obstacles& obs
   return plan_route(capture_points, vehicle, space, &pad_space, how);
 }
 
-TEST(Route, VisitsAllStationsOnCertifiedLegs) {
+TEST(Route, VisitsAllCapturePointsOnVerifiedLegs) {
   const Obstacles obstacles = site();
   const Route route = plan(ring(12, 16, 8), obstacles);
   EXPECT_EQ(route.capture_points.size(), 12U);
@@ -94,7 +94,7 @@ class UnprovableGate : public KnownSpace {
   }
 };
 
-TEST(Route, LeavesOutLegsThatAreNotProven) {
+TEST(Route, OmitsCapturePointsWithoutVerifiedPath) {
   const UnprovableGate space;
   // From the pad at (-30, -30) the ways to the first two pass below the gate, to the third through
   // it; so does the straight line from the first to the second.
@@ -116,7 +116,7 @@ TEST(Route, LeavesOutLegsThatAreNotProven) {
 
 // Corner stations make straight legs cut through the building: the complaint that views stand off
 // and legs do not.
-TEST(Route, LegsGoRoundWhatTheStraightLineWouldHit) {
+TEST(Route, RoutesLegsAroundObstacles) {
   std::vector<CapturePoint> capture_points{{look_at({0, -14, 8}, {0, 0, 8})},
                                            {look_at({0, 14, 8}, {0, 0, 8})}};
   const Route route = plan(capture_points, site());
@@ -126,7 +126,7 @@ TEST(Route, LegsGoRoundWhatTheStraightLineWouldHit) {
 }
 
 // The grid is made too coarse for the window, which leaves it to the second engine.
-TEST(Route, PassagesTooNarrowForTheGridAreFoundBySampling) {
+TEST(Route, FindsNarrowPassagesBySampling) {
   const Obstacles obstacles = scenes::wall_with_window();
   RouteOptions how = options();
   how.takeoff = {-8, -6, 15};
@@ -171,7 +171,7 @@ TEST(Route, KeepsSurveyPathsInSurveyOrder) {
   EXPECT_LT(shortest.legs[0].length, route.legs[0].length);
 }
 
-TEST(Route, FindsAnotherWayToAStationWhoseOwnIsNotFree) {
+TEST(Route, FindsOtherPathWhenApproachPathIsBlocked) {
   const KnownSpace space(scenes::wall_with_window());
   RouteOptions how = options();
   how.takeoff = {-8, -6, 15};
@@ -185,7 +185,7 @@ TEST(Route, FindsAnotherWayToAStationWhoseOwnIsNotFree) {
 }
 
 // A tree over a rally point, too low for the returns that come from above and too high to land in.
-TEST(Route, RallyPointsLieUnderNothingThatTheClimbWouldMeet) {
+TEST(Route, RejectsRallyPointWithObstacleAbove) {
   Obstacles obstacles = site();
   RouteOptions how = options();
   how.returns = ReturnOptions{{AutopilotType::px4}, 60.0, {Vector3d(30, 30, 0)}};
@@ -200,7 +200,7 @@ TEST(Route, RallyPointsLieUnderNothingThatTheClimbWouldMeet) {
 }
 
 // A window that leaves 5 mm beside the clearance: neither engine finds through, the survey did.
-TEST(Route, ReachesWhatOnlyTheSurveyFoundAWayTo) {
+TEST(Route, UsesSurveyPathWhenPathFindersFail) {
   Obstacles obstacles = scenes::wall_with_window();
   for (const double side : {-1.0, 1.0}) {
     const double edge = 2.005 * side, far = 4.0 * side;
@@ -226,7 +226,7 @@ TEST(Route, ReachesWhatOnlyTheSurveyFoundAWayTo) {
 }
 
 // What the survey's way came through is not proven by that: it is proven anew.
-TEST(Route, DoesNotTrustTheWaysOfTheSurvey) {
+TEST(Route, ReplacesSurveyPathThatIsNotFree) {
   const KnownSpace space(scenes::wall_with_window());
   RouteOptions how = options();
   how.takeoff = {-8, -6, 15};
@@ -243,7 +243,7 @@ TEST(Route, DoesNotTrustTheWaysOfTheSurvey) {
 }
 
 // Sorties are split for stops; a curve must fit into what they have set aside for its leg.
-TEST(Route, CurvesTakeNoMoreTimeAndEnergyThanTheStopsTheyReplace) {
+TEST(Route, UsesLessTimeAndEnergyForCurvesThanForStops) {
   const std::vector<CapturePoint> capture_points{{look_at({0, -14, 8}, {0, 0, 8})},
                                                  {look_at({0, 14, 8}, {0, 0, 8})}};
   const Route stops = plan(capture_points, site());
@@ -261,14 +261,14 @@ TEST(Route, CurvesTakeNoMoreTimeAndEnergyThanTheStopsTheyReplace) {
 }
 
 // The sorties' times are those of the files: stops in corners included.
-TEST(Route, SortiesLastAsLongAsTheirPlans) {
+TEST(Route, HasSortieDurationsOfFlightPlans) {
   const Route route = plan(ring(8, 16, 8), site());
   ASSERT_EQ(route.sorties.size(), 1U);
   const FlightPlan exported = flight_plan(route, 0, "ring", {{51.75, -1.25, 100.0}, {}}, site());
   EXPECT_NEAR(route.sorties[0].duration, flight_time(exported), 1e-6);
 }
 
-TEST(Route, AViewThatCannotBeReachedIsReportedAndTheRestIsFlown) {
+TEST(Route, ReportsUnreachableViewsAndVisitsTheRest) {
   std::vector<CapturePoint> capture_points = ring(6, 16, 8);
   capture_points.insert(capture_points.begin() + 2,
                         {look_at({0, 0, 5}, {1, 0, 5}), 2, 1, 77});  // inside
@@ -284,7 +284,7 @@ TEST(Route, AViewThatCannotBeReachedIsReportedAndTheRestIsFlown) {
 }
 
 // The bar: a small battery, no sortie below its reserve, at most 15 % over the printed bound.
-TEST(Route, SplitsIntoSortiesThatKeepTheirReserve) {
+TEST(Route, SplitsIntoSortiesThatKeepReserve) {
   Vehicle small;
   small.battery_wh = 12.0, small.endurance_min = 3.6;
   const Route route = plan(ring(60, 18, 8), site(), options(), small);
@@ -303,14 +303,14 @@ TEST(Route, SplitsIntoSortiesThatKeepTheirReserve) {
   EXPECT_LE(route.duration, 1.15 * route.duration_bound);
 }
 
-TEST(Route, WaypointLimitsSplitToo) {
+TEST(Route, SplitsAtWaypointLimit) {
   Vehicle old;
   old.max_waypoints = 94;  // ten stations
   const Route route = plan(ring(24, 18, 8), site(), options(), old);
   EXPECT_EQ(route.sorties.size(), 3U);
 }
 
-TEST(Route, AStationBeyondTheBatteryIsReported) {
+TEST(Route, ReportsCapturePointOutOfBatteryRange) {
   std::vector<CapturePoint> capture_points = ring(3, 18, 8);
   capture_points.push_back({look_at({40000, 0, 50}, {0, 0, 8}), 1, 1, 9});
   const Route route = plan(capture_points, site());
@@ -318,7 +318,7 @@ TEST(Route, AStationBeyondTheBatteryIsReported) {
   EXPECT_THAT(route.unreached[0].reason, HasSubstr("Wh above its reserve"));
 }
 
-TEST(Route, AFreeOrderIsShorterAndItsBoundHolds) {
+TEST(Route, ShortensRouteWithFreeOrderAndKeepsBound) {
   std::vector<CapturePoint> shuffled;
   for (const CapturePoint& capture_point : ring(20, 18, 8)) {
     shuffled.insert(
@@ -333,7 +333,7 @@ TEST(Route, AFreeOrderIsShorterAndItsBoundHolds) {
   EXPECT_LE(ordered.order_length, 1.1 * ordered.order_bound);
 }
 
-TEST(Route, ABlockedPadIsRefusedWithAReason) {
+TEST(Route, RejectsBlockedTakeOffPoint) {
   RouteOptions inside = options();
   inside.takeoff = {0, 0, 0};
   EXPECT_THAT(testing_support::thrown_message([&] { plan(ring(3, 18, 8), site(), inside); }),
@@ -349,7 +349,7 @@ TEST(Route, ABlockedPadIsRefusedWithAReason) {
 }
 
 // Above the pad's own ground the climb is certified as legs are, in what is known of the air.
-TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
+TEST(Route, RejectsTakeOffClimbNearMeasuredTree) {
   const auto plan_at_distance = [](double distance) {
     Obstacles with_tree = site();
     const double west = -30.0 - distance;
@@ -367,7 +367,7 @@ TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
   }
 }
 
-TEST(Route, AbsurdOptionsAreNamed) {
+TEST(Route, RejectsInvalidOptions) {
   RouteOptions negative = options();
   negative.clearance.margin = -1;
   EXPECT_THAT(testing_support::thrown_message([&] { plan({}, site(), negative); }),
@@ -379,7 +379,7 @@ TEST(Route, AbsurdOptionsAreNamed) {
   EXPECT_TRUE(plan({}, site()).sorties.empty());  // nothing to do is fine
 }
 
-TEST(CheckRoute, ListsLegPlaceAndDistance) {
+TEST(CheckRoute, ReportsLegPositionAndDistance) {
   const KnownSpace space(site());
   const std::vector<Violation> violations =
       check_route({{-20, -20, 8}, {20, -20, 8}, {20, 20, 8}, {-20, -20, 8}}, space, 2.0);
@@ -394,7 +394,7 @@ TEST(CheckRoute, ListsLegPlaceAndDistance) {
               testing::HasSubstr("point 0 of the route is not a finite position"));
 }
 
-TEST(CapturePoint, YawIsClockwiseFromNorthAndPitchFromTheHorizon) {
+TEST(CapturePoint, HasYawClockwiseFromNorthAndPitchFromHorizon) {
   const Vector3d eye = Vector3d::Zero();
   EXPECT_DOUBLE_EQ(compute_yaw(look_at(eye, {0, 5, 0})), 0.0);
   EXPECT_DOUBLE_EQ(compute_yaw(look_at(eye, {5, 0, 0})), std::numbers::pi / 2);

@@ -38,7 +38,7 @@ double compute_cost(const std::vector<Vector3d>& where, const std::vector<std::u
   return sum + (where[0] - where[at]).norm();
 }
 
-TEST(Tour, VisitsEveryPlaceOnceAtTheCostItSays) {
+TEST(Tour, VisitsEveryPositionOnceAtStatedCost) {
   const auto where = positions(1, 100);
   const Tour tour = compute_tour(where);
   std::vector<std::uint32_t> sorted = tour.order;
@@ -51,7 +51,7 @@ TEST(Tour, VisitsEveryPlaceOnceAtTheCostItSays) {
 }
 
 // Against all 40,320 orders of nine places: the bound is one, and the tour is close to the best.
-TEST(Tour, IsNearTheOptimumOfSmallCasesAndItsBoundHolds) {
+TEST(Tour, IsNearOptimumOfSmallCasesAndKeepsBound) {
   double worst = 1.0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const auto where = positions(seed, 9);
@@ -70,12 +70,12 @@ TEST(Tour, IsNearTheOptimumOfSmallCasesAndItsBoundHolds) {
   EXPECT_LE(worst, 1.05);
 }
 
-TEST(Tour, GapToTheBoundIsSmallForAHundredPlaces) {
+TEST(Tour, HasSmallGapToBoundForManyPositions) {
   const Tour tour = compute_tour(positions(5, 150));
   EXPECT_LE(tour.cost, 1.08 * tour.lower_bound);  // 2-opt with Or-opt is 5 % above the optimum
 }
 
-TEST(Tour, OfHardlyAnyPlacesIsTrivial) {
+TEST(Tour, HandlesOneToThreePositions) {
   EXPECT_TRUE(compute_tour(positions(1, 1)).order.empty());
   EXPECT_EQ(compute_tour(positions(1, 2)).order, std::vector<std::uint32_t>{1});
   EXPECT_EQ(compute_tour(positions(1, 3)).order.size(), 2U);
@@ -115,7 +115,7 @@ double best_by_trying_all(const SplitProblem& problem) {
   return best;
 }
 
-TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
+TEST(SortieSplit, MatchesBestOfAllSplits) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> uniform(1.0, 10.0);
   int split_cases = 0;
@@ -156,7 +156,7 @@ TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
   EXPECT_EQ(pads_used.size(), 3U);
 }
 
-TEST(SortieSplit, SaysWhenAStationIsOutOfReach) {
+TEST(SortieSplit, IsEmptyWhenCapturePointIsOutOfReach) {
   SplitProblem problem;
   problem.pads = {{.out = {{1, 20}}, .back = {{1, 20}}}};
   problem.capture_point = {{1, 1}};

@@ -38,7 +38,7 @@ const std::vector<Segment> leg{{{0, 0, 10}, {0, 3, 12}}};
 
 // Over a tower of 30 m at 2 m the middle of the band must pass at 32 m and a bit: with bands of 2
 // and 0.8 m the heights are 34 and 32.8, and whole metres above that.
-TEST(MinReturnAltitude, PassesOverATowerAtTheLeastWholeMetre) {
+TEST(MinReturnAltitude, IsSmallestWholeMetreAboveTower) {
   const KnownSpace space(tower(30.0));
   for (const auto& [autopilot, height] :
        {std::pair(AutopilotType::ardupilot, 35.0), std::pair(AutopilotType::px4, 33.0)}) {
@@ -53,7 +53,7 @@ TEST(MinReturnAltitude, PassesOverATowerAtTheLeastWholeMetre) {
 
 // A route at 11.3 m where nothing above 5 m is looked for: the metre above it, or, under a fence's
 // ceiling that leaves 11.5 m, its own height.
-TEST(MinReturnAltitude, IsNoLowerThanTheRouteItself) {
+TEST(MinReturnAltitude, IsNotBelowRoute) {
   const std::vector<Segment> high{{{0, 0, 11.3}, {0, 3, 11.3}}};
   Obstacles obstacles = tower(3.0);
   const ReturnSearch open = min_return_altitude(
@@ -74,7 +74,7 @@ TEST(MinReturnAltitude, IsNoLowerThanTheRouteItself) {
 }
 
 // All whole metres above the route tried one after the other give the same answer as the search.
-TEST(MinReturnAltitude, IsTheFirstHeightThatIsProven) {
+TEST(MinReturnAltitude, MatchesSearchOverAllWholeMetres) {
   for (const double top : {8.0, 17.3, 24.0, 41.9}) {
     const KnownSpace space(tower(top));
     const ReturnSearch search =
@@ -93,7 +93,7 @@ TEST(MinReturnAltitude, IsTheFirstHeightThatIsProven) {
 // A wall beside the whole way keeps 1 cm more than is asked for: too little for balls of 5 cm,
 // which planned legs may meet, and enough for smaller ones. At less than is asked for nothing
 // helps.
-TEST(MinReturnAltitude, IsProvenWhereTheRoomIsLessThanTheSlackOfPlanning) {
+TEST(MinReturnAltitude, IsVerifiedWithLessRoomThanPlanningSlack) {
   const auto beside = [](double distance) {
     Obstacles obstacles;
     obstacles.ground_height = 0.0;
@@ -117,7 +117,7 @@ TEST(MinReturnAltitude, IsProvenWhereTheRoomIsLessThanTheSlackOfPlanning) {
 
 // Airspace that is forbidden up to any height lies between the route and the pad: nobody returns
 // over it, but to a rally point on this side.
-TEST(MinReturnAltitude, RallyPointsServeWhereThePadCannot) {
+TEST(MinReturnAltitude, UsesRallyPointWhenPadIsUnreachable) {
   Obstacles obstacles;
   obstacles.ground_height = 0.0;
   obstacles.no_fly = {{"airport", {{-35, -90}, {-25, -90}, {-25, 90}, {-35, 90}}}};
@@ -134,7 +134,7 @@ TEST(MinReturnAltitude, RallyPointsServeWhereThePadCannot) {
   EXPECT_FALSE(min_return_altitude(space, leg, rtl_profile, 60.0, clearance).found);
 }
 
-TEST(MinReturnAltitude, SaysWhatIsInTheWayUnderACeilingThatIsTooLow) {
+TEST(MinReturnAltitude, NamesObstacleWhenCeilingIsTooLow) {
   Obstacles obstacles = tower(30.0);
   obstacles.fence = Prism{"site", {{-90, -90}, {90, -90}, {90, 90}, {-90, 90}}, -1.0, 33.0};
   const KnownSpace space(obstacles);
@@ -145,7 +145,7 @@ TEST(MinReturnAltitude, SaysWhatIsInTheWayUnderACeilingThatIsTooLow) {
 }
 
 // DJI's applications take 20 m or more.
-TEST(MinReturnAltitude, IsAtLeastTwentyMetresForDji) {
+TEST(MinReturnAltitude, IsTwentyMetresOrMoreForDji) {
   const KnownSpace space(tower(1.0));
   const ReturnSearch search =
       min_return_altitude(space, leg, make_rtl_profile({AutopilotType::dji}), 60.0, clearance);
@@ -172,7 +172,7 @@ RouteOptions options_with_returns() {
 }
 
 // Where nobody has looked up there is no way home, and the station is named with the reason.
-TEST(ReturnPaths, StationsUnderUnknownSpaceAreLeftOut) {
+TEST(ReturnPaths, OmitCapturePointsUnderUnknownSpace) {
   const MeasuredSpace measured = cellar();
   Obstacles rules;
   rules.ground_height = 0.0;
@@ -197,7 +197,7 @@ TEST(ReturnPaths, StationsUnderUnknownSpaceAreLeftOut) {
 }
 
 // The straight leg between two shafts leads under what nobody has seen: it goes over it instead.
-TEST(ReturnPaths, LegsLeadWhereEveryPointHasAWayHome) {
+TEST(ReturnPaths, KeepLegsWhereEveryPointHasVerifiedReturn) {
   MeasuredSpace measured = cellar();
   measured.declare_free(Eigen::AlignedBox3d(Vector3d(-20, -20, 0), Vector3d(-8, 20, 30)));
   Obstacles rules;
@@ -225,7 +225,7 @@ TEST(ReturnPaths, LegsLeadWhereEveryPointHasAWayHome) {
 
 // The way with returns is half as long again. Whatever the battery, each view is flown or named:
 // one that has become too far does not cost all of them.
-TEST(ReturnPaths, AViewTooFarForTheBatteryIsLeftOutAndNamed) {
+TEST(ReturnPaths, ReportViewsOutOfBatteryRange) {
   MeasuredSpace measured = cellar();
   measured.declare_free(Eigen::AlignedBox3d(Vector3d(-20, -20, 0), Vector3d(-8, 20, 30)));
   Obstacles rules;
@@ -255,7 +255,7 @@ TEST(ReturnPaths, AViewTooFarForTheBatteryIsLeftOutAndNamed) {
   EXPECT_GT(left_out, 2);
 }
 
-TEST(ReturnPaths, RefusesARouteWithoutASafeHeightOfReturn) {
+TEST(ReturnPaths, RejectCapturePointsWithoutVerifiedReturnAltitude) {
   Obstacles obstacles = tower(30.0);
   obstacles.fence = Prism{"site", {{-90, -90}, {90, -90}, {90, 90}, {-90, 90}}, -1.0, 33.0};
   const KnownSpace space(obstacles);
@@ -273,7 +273,7 @@ TEST(ReturnPaths, RefusesARouteWithoutASafeHeightOfReturn) {
 
 // A way that is pulled tight ends where a rule begins: at the 50 m within which DJI's vehicles fly
 // home level. The route's own proof divides its legs otherwise, and must not fail there.
-TEST(ReturnPaths, LegsThatPassWhereARuleBeginsAreProvenInTheEndToo) {
+TEST(ReturnPaths, AreVerifiedAtDjiLevelReturnDistance) {
   RouteOptions options;
   options.takeoff = {-60, 0, 0};
   options.returns = ReturnOptions{{AutopilotType::dji}, 36.0};
@@ -300,7 +300,7 @@ TEST(ReturnPaths, LegsThatPassWhereARuleBeginsAreProvenInTheEndToo) {
 }
 
 // Climb and level flight by hand, in still air; hover for the waits and the descent.
-TEST(ReturnEnergy, IsThatOfThePiecesAndTheWaits) {
+TEST(ReturnEnergy, IsSumOfSegmentsAndWaits) {
   const Motion motion({}, {});
   RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4});
   rtl_profile.level = 30.0;

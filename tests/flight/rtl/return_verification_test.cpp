@@ -33,7 +33,7 @@ Obstacles wall_at(double x, double height = 60.0) {
 
 // The column over a place beside a wall keeps the distance that the place has; so does the whole
 // return to a pad farther off.
-TEST(ReturnVerification, KeepsTheDistanceOfAColumnBesideAWall) {
+TEST(ReturnVerification, ComputesClearanceOfReturnAlongWall) {
   const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4}, 30.0, {-40, 0, 0});
   const Segment position{{0, 0, 10}, {0, 0, 10}};
   const KnownSpace enough(wall_at(2.0 + 1e-3, 20.0)), too_near(wall_at(2.0 - 1e-3, 20.0));
@@ -44,7 +44,7 @@ TEST(ReturnVerification, KeepsTheDistanceOfAColumnBesideAWall) {
 }
 
 // A leg along a wall is proven to within the slack, and refused at less than the clearance.
-TEST(ReturnVerification, ProvesALegBesideAWallToWithinTheSlack) {
+TEST(ReturnVerification, AcceptsLegAlongWallWithinSlack) {
   const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::ardupilot}, 30.0, {-40, 0, 0});
   const Segment leg{{0, -20, 10}, {0, 20, 12}};
   const KnownSpace enough(wall_at(2.0 + return_slack + 1e-3, 20.0));
@@ -56,7 +56,7 @@ TEST(ReturnVerification, ProvesALegBesideAWallToWithinTheSlack) {
   EXPECT_FALSE(verify_returns(too_near, leg, rtl_profile, clearance).is_verified);
 }
 
-TEST(ReturnVerification, NamesThePieceThePlaceAndTheObstacle) {
+TEST(ReturnVerification, ReportsSegmentPositionAndObstacle) {
   const KnownSpace space(wall_at(-20.0, 20.0));  // between the place and the pad
   const Segment position{{0, 0, 10}, {0, 0, 10}};
   const ReturnVerification low = verify_returns(
@@ -71,7 +71,7 @@ TEST(ReturnVerification, NamesThePieceThePlaceAndTheObstacle) {
 }
 
 // DJI's vehicles fly home level when near; with the wall between, no height of return helps them.
-TEST(ReturnVerification, RefusesALevelReturnOfDjiThroughAWallAtAnyHeight) {
+TEST(ReturnVerification, RejectsDjiLevelReturnThroughWall) {
   const KnownSpace space(wall_at(-20.0, 20.0));
   const Segment position{{0, 0, 10}, {0, 0, 10}};
   const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::dji}, 40.0, {-40, 0, 0});
@@ -83,7 +83,7 @@ TEST(ReturnVerification, RefusesALevelReturnOfDjiThroughAWallAtAnyHeight) {
 }
 
 // Unknown is never free: over a place from which nobody has looked up there is no return.
-TEST(ReturnVerification, RefusesToClimbThroughWhatWasNeverSeen) {
+TEST(ReturnVerification, RejectsClimbThroughUnobservedSpace) {
   MeasuredSpaceConfig config;
   config.region = {Vector3d(-10, -10, 0), Vector3d(10, 10, 40)};
   MeasuredSpace space(config);
@@ -113,11 +113,11 @@ double sampled_distance(const FreeSpace& space, const std::vector<ReturnSegment>
 }
 
 /// The pieces that an autopilot flies: of DJI's two ways home, either.
-class RandomScenes : public testing::TestWithParam<int> {};
+class RandomSceneReturnVerification : public testing::TestWithParam<int> {};
 
 // No return from a point of a proven leg comes nearer than what was proven; and a leg that is
 // refused has a return nearer than the slack above the clearance.
-TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
+TEST_P(RandomSceneReturnVerification, MatchesSampledReturns) {
   std::mt19937_64 random(static_cast<std::uint64_t>(GetParam()));
   Obstacles obstacles;
   obstacles.mesh = scenes::boxes(random, 12);
@@ -151,7 +151,7 @@ TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
   EXPECT_GT(rejected, 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(ReturnVerification, RandomScenes, testing::Range(1, 6));
+INSTANTIATE_TEST_SUITE_P(ReturnVerification, RandomSceneReturnVerification, testing::Range(1, 6));
 
 }  // namespace
 }  // namespace skycap::flight

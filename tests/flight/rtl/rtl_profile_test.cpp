@@ -37,7 +37,7 @@ void expect_line(const ReturnSegment* segment, const Vector3d& from, const Vecto
 
 // By hand, from mode_rtl.cpp with RTL_ALT 40, RTL_CONE_SLOPE 0: up at the place, level at 40, where
 // the corner is cut by at most WP_RADIUS = 2: the band from 38 to 40.
-TEST(RtlProfile, ArduCopterClimbsAndFliesLevelInABandOfTwoMetres) {
+TEST(RtlProfile, HasClimbAndTwoMetreLevelBandForArduCopter) {
   const auto segments = return_segments(make_rtl_profile({AutopilotType::ardupilot}), {30, 40, 12});
   ASSERT_THAT(segments, SizeIs(2));
   expect_line(find(segments, ReturnPart::climb), {30, 40, 12}, {30, 40, 40}, 0.0);
@@ -46,7 +46,7 @@ TEST(RtlProfile, ArduCopterClimbsAndFliesLevelInABandOfTwoMetres) {
 
 // rtl_direct.cpp: the climb counts as done NAV_MC_ALT_RAD = 0.8 below, and the descent begins
 // within NAV_ACC_RAD = 1 of the landing place.
-TEST(RtlProfile, Px4FliesLevelUpToEightTenthsBelowAndLandsWithinAMetre) {
+TEST(RtlProfile, HasLevelBandAndLandingRadiusForPx4) {
   const RtlProfile rtl_profile = make_rtl_profile({AutopilotType::px4});
   const auto segments = return_segments(rtl_profile, {3, 4, 12});
   ASSERT_THAT(segments, SizeIs(2));
@@ -63,7 +63,7 @@ struct DjiCase {
 
 // The manuals: over 50 m it climbs first; from 5 to 50 m it may fly home as high as it is; nearer
 // than 5 m it may land where it is. Three metres are added to both.
-TEST(RtlProfile, DjiStaysLevelWithinFiftyMetresAndLandsWithinFive) {
+TEST(RtlProfile, HasLevelAndLandingDistancesForDji) {
   for (const DjiCase& expected :
        {DjiCase{60, false, false}, DjiCase{53.1, false, false}, DjiCase{52.9, true, false},
         DjiCase{20, true, false}, DjiCase{8.1, true, false}, DjiCase{7.9, true, true},
@@ -80,13 +80,13 @@ TEST(RtlProfile, DjiStaysLevelWithinFiftyMetresAndLandsWithinFive) {
   }
 }
 
-TEST(RtlProfile, AVehicleAboveTheHeightOfReturnStaysAsHigh) {
+TEST(RtlProfile, KeepsHeightAboveReturnAltitude) {
   const auto segments = return_segments(make_rtl_profile({AutopilotType::px4}), {30, 40, 70});
   expect_line(find(segments, ReturnPart::climb), {30, 40, 70}, {30, 40, 70}, 0.0);
   expect_line(find(segments, ReturnPart::level), {30, 40, 69.6}, {0, 0, 69.6}, 0.4);
 }
 
-TEST(RtlProfile, GoesToTheNearestLandingAndToBothWhereThatIsInDoubt) {
+TEST(RtlProfile, UsesNearestLandingOrBothWhenAmbiguous) {
   RtlProfile rtl_profile = make_rtl_profile({AutopilotType::ardupilot});
   rtl_profile.landings.emplace_back(100, 0, 3);
   EXPECT_THAT(return_segments(rtl_profile, {30, 0, 10}), SizeIs(2));
@@ -114,7 +114,7 @@ double distance_to_counterpart(const ReturnSegment& segment,
 
 // The property that the proof rests on: whatever is within reach has its ways home within the same
 // distance of those given for the reach.
-TEST(RtlProfile, IsOneLipschitz) {
+TEST(RtlProfile, IsOneLipschitzInStartPosition) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> coordinate(-80, 80), height(5, 60), unit(-1, 1);
   RtlProfile rtl_profile =

@@ -28,7 +28,7 @@ AttributedCloud three_points() {
           {{255, 0, 1}, {2, 3, 4}, {5, 6, 7}}};
 }
 
-TEST(CloudIo, RoundTripKeepsEveryAttribute) {
+TEST(CloudIo, RoundTripsAllAttributes) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
   const AttributedCloud cloud = three_points();
@@ -40,7 +40,7 @@ TEST(CloudIo, RoundTripKeepsEveryAttribute) {
   EXPECT_EQ(again.colours, cloud.colours);
 }
 
-TEST(CloudIo, TellsFormatsByEndingsInAnyCase) {
+TEST(CloudIo, DetectsFormatByExtensionInAnyCase) {
   const TemporaryFolder folder;
   const AttributedCloud cloud = three_points();
   write_cloud(folder.path() / "cloud.ply", make_columns(cloud));
@@ -51,7 +51,7 @@ TEST(CloudIo, TellsFormatsByEndingsInAnyCase) {
   EXPECT_EQ(lower_extension("folder.d/a"), "");
 }
 
-TEST(CloudIo, AbsentAttributesStayAbsent) {
+TEST(CloudIo, KeepsAbsentAttributesAbsent) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
   const AttributedCloud cloud = three_points();
@@ -62,7 +62,7 @@ TEST(CloudIo, AbsentAttributesStayAbsent) {
 }
 
 // What we write is read by an independent reader, CGAL's.
-TEST(CloudIo, IsReadByCgal) {
+TEST(CloudIo, WritesFilesThatCgalReads) {
   using Kernel = CGAL::Simple_cartesian<float>;
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
@@ -89,7 +89,7 @@ TEST(CloudIo, IsReadByCgal) {
   }
 }
 
-TEST(CloudIo, ReadsOtherPropertyOrdersTypesAndTheVerticesOfAMesh) {
+TEST(CloudIo, ReadsAnyPropertyOrderAndTypeAndMeshVertices) {
   const TemporaryFolder folder;
   const AttributedCloud cloud = read_cloud(
       folder.file("a.ply",
@@ -145,7 +145,7 @@ std::string las_bytes(int format, std::size_t points, std::size_t declared) {
   return bytes;
 }
 
-TEST(CloudIo, ReadsLasPointsByScaleAndOffset) {
+TEST(CloudIo, ReadsLasPointsWithScaleAndOffset) {
   const TemporaryFolder folder;
   std::string bytes = las_bytes(7, 3, 3);
   bytes[375 + 36 + 15] = 4;  // the second is withheld
@@ -156,7 +156,7 @@ TEST(CloudIo, ReadsLasPointsByScaleAndOffset) {
   EXPECT_TRUE(read_cloud(folder.file("b.las", las_bytes(6, 1, 1))).colours.empty());
 }
 
-TEST(CloudIo, ReadsLasOfOldVersionsAndFormats) {
+TEST(CloudIo, ReadsAllLasVersionsAndPointFormats) {
   const TemporaryFolder folder;
   const struct {
     int minor, format;
@@ -188,7 +188,7 @@ TEST(CloudIo, ReadsLasOfOldVersionsAndFormats) {
   }
 }
 
-TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
+TEST(CloudIo, ReportsCauseForInvalidLasFiles) {
   const TemporaryFolder folder;
   const auto with = [](std::size_t offset, int value) {
     std::string bytes = las_bytes(6, 2, 2);
@@ -218,7 +218,7 @@ TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
   }
 }
 
-TEST(CloudIo, SaysWhatIsWrongWithAPcdFile) {
+TEST(CloudIo, ReportsCauseForInvalidPcdFiles) {
   const TemporaryFolder folder;
   const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
   const std::string head = fields + "WIDTH 2\nHEIGHT 1\nPOINTS 2\n";
@@ -252,7 +252,7 @@ TEST(CloudIo, SaysWhatIsWrongWithAPcdFile) {
   }
 }
 
-TEST(CloudIo, SaysWhatIsWrongWithAFile) {
+TEST(CloudIo, ReportsCauseForInvalidPlyAndTextFiles) {
   const TemporaryFolder folder;
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\n"
@@ -286,7 +286,7 @@ TEST(CloudIo, SaysWhatIsWrongWithAFile) {
 }
 
 // Withheld points take part in neither.
-TEST(ReadPositions, OfLasFilesAreThoseOfTheCloud) {
+TEST(ReadPositions, MatchesReadCloudForLasFiles) {
   const TemporaryFolder folder;
   std::string bytes = las_bytes(6, 5, 5);
   bytes[375 + 2 * 30 + 15] = 4;
@@ -301,7 +301,7 @@ TEST(ReadPositions, OfLasFilesAreThoseOfTheCloud) {
 }
 
 // In two pieces and their order; what is read of the file grows to all of it.
-TEST(ReadPositions, HandsOutTheCloudInPieces) {
+TEST(ReadPositions, PassesCloudInChunks) {
   const TemporaryFolder folder;
   AttributedCloud cloud;
   for (int i = 0; i < 1'200'000; ++i) cloud.positions.emplace_back(0.001F * float(i), 0.0F, 1.0F);
@@ -319,7 +319,7 @@ TEST(ReadPositions, HandsOutTheCloudInPieces) {
   EXPECT_EQ(shares[1], 1.0);
 }
 
-TEST(ReadPositions, HandsOutTextInPieces) {
+TEST(ReadPositions, PassesTextInChunks) {
   const TemporaryFolder folder;
   std::string text = "# x y z\n";
   for (int i = 0; i < 1'200'000; ++i) text += "1 2 3\n";
@@ -336,7 +336,7 @@ TEST(ReadPositions, HandsOutTextInPieces) {
   EXPECT_EQ(shares[1], 1.0);
 }
 
-TEST(ReadPositions, CountsThePointsOfAllPieces) {
+TEST(ReadPositions, CountsPointsAcrossChunks) {
   const TemporaryFolder folder;
   AttributedCloud cloud;
   cloud.positions.assign(1'200'000, Vector3f::Zero());

@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using namespace testing_support;
 
-TEST_F(E57, WhoseByteOfAPageIsDamagedIsRefused) {
+TEST_F(E57, RejectsDamagedPages) {
   E57Triples points(500, {1.0, 2.0, 3.0});
   const std::string whole = make_e57_from_points(points);
   ASSERT_GT(whole.size(), 10 * e57_page);
@@ -46,7 +46,7 @@ std::string with_bytes(const std::string& bytes, std::size_t offset, const std::
   return e57_pages(content);
 }
 
-TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
+TEST_F(E57, ReportsCauseForInvalidFiles) {
   const std::string whole = make_e57_from_points(three_points);
   const std::string eight(8, '\xFF');
   // Header of the file, of the records at 48, of the first packet at 80.
@@ -117,7 +117,7 @@ TEST_F(E57, IsRefusedForWhatIsWrongWithIt) {
 }
 
 // A short file that tells of any number of points that take no bits at all.
-TEST_F(E57, CannotTellOfMorePointsThanItHasBits) {
+TEST_F(E57, RejectsMorePointsThanItsBytesCanContain) {
   E57Scan scan;
   for (const char* name : {"cartesianX", "cartesianY", "cartesianZ"}) {
     scan.streams.push_back(e57_integers(name, 5, 5, {}));
@@ -135,7 +135,7 @@ TEST_F(E57, CannotTellOfMorePointsThanItHasBits) {
   EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("which is room for 65536"));
 }
 
-TEST_F(E57, HasNoUseForEntitiesAndDepth) {
+TEST_F(E57, IgnoresEntitiesAndDeepNesting) {
   const std::string whole = make_e57_from_points(three_points);
   std::string bomb = "<!DOCTYPE e57Root [<!ENTITY a \"ha\">";
   for (char c = 'b'; c < 'z'; ++c) {

@@ -21,14 +21,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using namespace testing_support;
 
-TEST_F(E57, HasItsPointsAsTheyAre) {
+TEST_F(E57, ReadsExactCoordinates) {
   EXPECT_THAT(read(make_e57_from_points(three_points)).positions,
               ElementsAre(Vector3d(1, 2, 3), Vector3d(-4.5, 1e-3, 6), Vector3d(0.1, 0.2, 1e4)));
 }
 
 // Of each width from none to 64 bits, in packets whose streams are cut within values; x, y and z
 // are read with y of that width between two of others.
-TEST_F(E57, IntegersMayHaveAnyNumberOfBits) {
+TEST_F(E57, ReadsIntegersOfAnyBitWidth) {
   std::mt19937_64 random(1);
   for (unsigned bits = 0; bits <= 64; ++bits) {
     const std::uint64_t span = bits == 0 ? 0 : ~std::uint64_t{0} >> (64 - bits);
@@ -56,14 +56,14 @@ TEST_F(E57, IntegersMayHaveAnyNumberOfBits) {
 }
 
 // Without a minimum or a maximum an integer has 64 bits.
-TEST_F(E57, IntegersWithoutAnIntervalHaveAllBits) {
+TEST_F(E57, ReadsIntegersWithoutRangeAsSixtyFourBits) {
   E57Stream x{"<cartesianX type=\"Integer\"/>", {}};
   x.add(static_cast<std::uint64_t>(-7) + (std::uint64_t{1} << 63), 64);
   const E57Scan scan{{x, e57_doubles("cartesianY", {8.0}), e57_doubles("cartesianZ", {9.0})}, 1};
   EXPECT_THAT(read(make_e57({scan})).positions, ElementsAre(Vector3d(-7, 8, 9)));
 }
 
-TEST_F(E57, ScaledIntegersAreMultiplesFromAnOffset) {
+TEST_F(E57, ReadsScaledIntegersWithScaleAndOffset) {
   const auto axis = [](const std::string& name, const std::string& more) {
     return e57_integers(name, -500, 500, {-500, 7, 500}, "ScaledInteger", more);
   };
@@ -77,7 +77,7 @@ TEST_F(E57, ScaledIntegersAreMultiplesFromAnOffset) {
 }
 
 // r, azimuth from x to y, elevation from that plane to z.
-TEST_F(E57, SphericalPointsAreTurnedIntoCartesianOnes) {
+TEST_F(E57, ConvertsSphericalToCartesianCoordinates) {
   const double quarter = std::acos(0.0);
   const E57Scan scan{{e57_doubles("sphericalAzimuth", {0, quarter, 0.3, -2 * quarter}),
                       e57_doubles("sphericalElevation", {0, 0, quarter, -quarter / 2}),
@@ -91,7 +91,7 @@ TEST_F(E57, SphericalPointsAreTurnedIntoCartesianOnes) {
   }
 }
 
-TEST_F(E57, CartesianCoordinatesComeBeforeSphericalOnes) {
+TEST_F(E57, PrefersCartesianToSphericalCoordinates) {
   E57Scan scan{{e57_doubles("sphericalRange", {9}), e57_doubles("sphericalAzimuth", {9}),
                 e57_doubles("sphericalElevation", {9}), e57_doubles("cartesianZ", {3}),
                 e57_doubles("cartesianY", {2}), e57_doubles("cartesianX", {1}),
@@ -101,7 +101,7 @@ TEST_F(E57, CartesianCoordinatesComeBeforeSphericalOnes) {
 }
 
 // 1 is a direction without a range, 2 is nothing at all; scanners write NaN, too.
-TEST_F(E57, InvalidPointsArePassedOver) {
+TEST_F(E57, SkipsInvalidPoints) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const bool is_spherical : {false, true}) {
     const std::string kind = is_spherical ? "spherical" : "cartesian";
@@ -123,7 +123,7 @@ E57Scan make_single_point_scan(double x, double y, double z, const std::string& 
 }
 
 // A quarter about z, a half about x, nothing but a way, nothing at all.
-TEST_F(E57, ScansStandWhereTheirPosesSay) {
+TEST_F(E57, AppliesScanPoses) {
   const std::string half_root = "0.70710678118654752";
   const Read all = read(make_e57(
       {make_single_point_scan(1, 0, 0, make_pose(half_root + " 0 0 " + half_root, "10 20 30")),
@@ -138,7 +138,7 @@ TEST_F(E57, ScansStandWhereTheirPosesSay) {
   EXPECT_THAT(all.scans, ElementsAre(0, 1, 2, 3));
 }
 
-TEST_F(E57, ScansWithoutPointsAreLeftOut) {
+TEST_F(E57, SkipsScansWithoutPoints) {
   E57Scan empty = make_single_point_scan(0, 0, 0, "");
   empty.records = 0;
   const Read all = read(make_e57({empty, make_single_point_scan(1, 2, 3, ""), empty}));
@@ -149,7 +149,7 @@ TEST_F(E57, ScansWithoutPointsAreLeftOut) {
 }
 
 // Packets begin and end anywhere in pages, and indices and unused room stand between them.
-TEST_F(E57, PacketsMayBeCutByPagesAnywhere) {
+TEST_F(E57, ReadsPacketsAcrossPages) {
   constexpr int count = 5000;
   std::vector<double> x;
   std::vector<std::int64_t> y;
@@ -180,7 +180,7 @@ TEST_F(E57, PacketsMayBeCutByPagesAnywhere) {
 }
 
 // Text has no fixed length; a coordinate of an extension is none of the point.
-TEST_F(E57, OtherFieldsArePassedOver) {
+TEST_F(E57, IgnoresOtherFields) {
   E57Scan scan = make_single_point_scan(1, 2, 3, "");
   E57Stream text{"<name type=\"String\"/>", {}};
   for (const char c : std::string("\x0A"
@@ -198,7 +198,7 @@ std::vector<E57Stream> make_colours(std::int64_t max, std::int64_t red, std::int
           e57_integers("colorBlue", 0, max, {blue})};
 }
 
-TEST_F(E57, ColoursGoFromTheirLeastToTheirMost) {
+TEST_F(E57, ScalesColoursFromMinToMax) {
   const auto colour = [&](const std::vector<E57Stream>& streams, const std::string& more) {
     E57Scan scan = make_single_point_scan(1, 2, 3, more);
     scan.streams.insert(scan.streams.end(), streams.begin(), streams.end());
@@ -221,7 +221,7 @@ TEST_F(E57, ColoursGoFromTheirLeastToTheirMost) {
 }
 
 // Those that one scan lacks nobody has.
-TEST_F(E57, AttributesAreThoseThatAllScansHave) {
+TEST_F(E57, ReadsOnlyAttributesOfAllScans) {
   E57Scan coloured = make_single_point_scan(1, 2, 3, ""),
           turned = make_single_point_scan(1, 2, 3, make_pose("0 0 0 1", ""));
   for (E57Scan* scan : {&coloured, &turned}) {
@@ -235,7 +235,7 @@ TEST_F(E57, AttributesAreThoseThatAllScansHave) {
   EXPECT_THAT(all.normals, ElementsAre(Vector3f(0.6F, 0, 0.8F), Vector3f(-0.6F, 0, 0.8F)));
 }
 
-TEST_F(E57, IsReadAsACloudWithAViewForEachScan) {
+TEST_F(E57, ReadsCloudWithOneViewPerScan) {
   const auto path = folder_.file("two.e57", make_e57({make_single_point_scan(1, 2, 3, ""),
                                                       make_single_point_scan(4, 5, 6, "")}));
   const AttributedCloud cloud = read_cloud(path);
@@ -256,7 +256,7 @@ TEST_F(E57, IsReadAsACloudWithAViewForEachScan) {
               testing::ThrowsMessage<Error>(HasSubstr("no points")));
 }
 
-TEST_F(E57, MayBeCompressedByGzip) {
+TEST_F(E57, ReadsGzipFiles) {
   const std::string path = folder_.path() / "a.e57.gz", bytes = make_e57_from_points(three_points);
   const gzFile file = gzopen(path.c_str(), "wb");
   gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
@@ -264,7 +264,7 @@ TEST_F(E57, MayBeCompressedByGzip) {
   EXPECT_EQ(read_cloud(path).positions.size(), 3U);
 }
 
-TEST_F(E57, TellsItsReferenceSystem) {
+TEST_F(E57, ReadsReferenceSystem) {
   const auto path = folder_.file(
       "a.e57",
       make_e57_from_points(three_points,

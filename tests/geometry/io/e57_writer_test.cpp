@@ -16,7 +16,7 @@ namespace {
 using namespace testing_support;
 
 // RFC 3720, appendix B.4, and the sum of the nine digits that every description of a CRC gives.
-TEST(Crc32c, HasItsKnownAnswers) {
+TEST(Crc32c, MatchesPublishedValues) {
   EXPECT_EQ(e57::crc32c("123456789"), 0xE3069283U);
   EXPECT_EQ(e57::crc32c(std::string(32, '\0')), 0x8A9136AAU);
   EXPECT_EQ(e57::crc32c(std::string(32, '\xFF')), 0x62A8AB43U);
@@ -25,7 +25,7 @@ TEST(Crc32c, HasItsKnownAnswers) {
   EXPECT_EQ(e57::crc32c(ascending), 0x46DD794EU);
 }
 
-TEST(Crc32c, IsThatOfItsDefinitionAtAnyLength) {
+TEST(Crc32c, MatchesDefinitionForAnyLength) {
   std::string bytes;
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(e57::crc32c(bytes), slow_crc32c(bytes)) << i;
@@ -45,7 +45,7 @@ AttributedCloud some_cloud(std::size_t count) {
 }
 
 // 10,000 points are five packets with all attributes.
-TEST_F(E57, IsReadAsItWasWritten) {
+TEST_F(E57, RoundTripsThroughWriter) {
   for (const std::size_t count : {1U, 2U, 43U, 10'000U}) {
     const AttributedCloud cloud = some_cloud(count);
     const auto path = folder_.path() / "written.e57";
@@ -61,7 +61,7 @@ TEST_F(E57, IsReadAsItWasWritten) {
   }
 }
 
-TEST_F(E57, IsWrittenInPagesThatAgreeWithTheirChecksums) {
+TEST_F(E57, WritesPagesWithCorrectChecksums) {
   const auto path = folder_.path() / "written.e57";
   write_cloud(path, make_columns(some_cloud(10'000)));
   const std::string bytes = read_file(path);
@@ -81,7 +81,7 @@ std::vector<std::string> read_guids(const std::filesystem::path& path) {
 }
 
 // The bytes follow from the cloud alone, and its identifiers with it.
-TEST_F(E57, IsWrittenTheSameEachTime) {
+TEST_F(E57, WritesSameBytesForSameCloud) {
   AttributedCloud cloud = some_cloud(100);
   const auto write = [&](const std::string& name) {
     write_cloud(folder_.path() / name, make_columns(cloud));

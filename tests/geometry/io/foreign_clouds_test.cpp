@@ -79,7 +79,7 @@ class ForeignCloud : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ForeignCloud, ReadsTextWithMarksAndAnyEndsOfLines) {
+TEST_F(ForeignCloud, ReadsTextWithByteOrderMarksAndAnyLineEnds) {
   const std::string text = lines(" ", " 7 # a comment");
   expect_corners("a.xyz", text);
   expect_corners("a.xyz", "\xEF\xBB\xBF" + text);
@@ -116,7 +116,7 @@ TEST_F(ForeignCloud, ReadsTextWithHeadersAndOtherSeparators) {
   expect_corners("a.pts", "4\n" + two_scans.substr(0, half) + "4\n" + two_scans.substr(half));
 }
 
-TEST_F(ForeignCloud, RefusesTextThatItDoesNotUnderstand) {
+TEST_F(ForeignCloud, RejectsInvalidText) {
   EXPECT_THAT(error_message("a.csv", "lat,lon,alt\n1,2,3\n"),
               HasSubstr("line 1: is a header that does not name the columns x, y and z"));
   EXPECT_THAT(error_message("a.pts", "9\n" + lines(" ")),
@@ -131,7 +131,7 @@ TEST_F(ForeignCloud, RefusesTextThatItDoesNotUnderstand) {
               HasSubstr("line 2: '2,5' has a comma for the decimal point"));
 }
 
-TEST_F(ForeignCloud, SkipsAndCountsWhatIsNotFinite) {
+TEST_F(ForeignCloud, SkipsAndCountsPointsThatAreNotFinite) {
   expect_corners("a.xyz",
                  lines(" ") + "nan nan nan\n0 0 inf\n-nan(ind) 0 0\n0 1.#QNAN 0\n1e999 0 0\n", 5);
   expect_corners("a.csv", lines(",") + "0,0,-Inf\n", 1);
@@ -145,7 +145,7 @@ TEST_F(ForeignCloud, SkipsAndCountsWhatIsNotFinite) {
               HasSubstr("contains no points but 1 that are NaN or infinite"));
 }
 
-TEST_F(ForeignCloud, ReadsPcdOfOldVersionsAndOtherSystems) {
+TEST_F(ForeignCloud, ReadsPcdOfOldVersionsAndWithOtherLineEnds) {
   const std::string pcd =
       "# .PCD v.5\nVERSION .5\nCOLUMNS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 8\n"
       "HEIGHT 1\nPOINTS 8\nDATA ASCII\n" +
@@ -169,13 +169,13 @@ std::string binary_ply(const std::string& properties, const std::string& point_b
 }
 
 // The first byte of the data is the end of a line, which belongs to no line here.
-TEST_F(ForeignCloud, ReadsBinaryPlyBehindAHeaderOfAnyLineEnds) {
+TEST_F(ForeignCloud, ReadsBinaryPlyAfterHeaderWithAnyLineEnds) {
   for (const char* line_end : {"\n", "\r\n", "\r"}) {
     expect_corners("a.ply", binary_ply("property uchar q\n", "\n", line_end));
   }
 }
 
-TEST_F(ForeignCloud, TakesColoursInTheScaleOfTheirTypeOrNone) {
+TEST_F(ForeignCloud, ScalesColoursByTypeOrIgnoresThem) {
   const auto make_colour = [&](const char* type, auto red, auto green, auto blue) {
     std::string properties, values;
     for (const auto& [name, value] : {std::pair{"red", red}, {"green", green}, {"blue", blue}}) {
@@ -230,13 +230,13 @@ std::string make_las(std::uint32_t old_count, std::uint64_t count, std::uint16_t
   return bytes;
 }
 
-TEST_F(ForeignCloud, ReadsLasWhoseNewCountIsNotFilledIn) {
+TEST_F(ForeignCloud, ReadsLasWithOnlyOnePointCount) {
   expect_corners("a.las", make_las(8, 0, 256));
   expect_corners("a.las", make_las(0, 8, 256));
   expect_corners("a.las", make_las(5, 8, 256));  // the new one counts
 }
 
-TEST_F(ForeignCloud, ReadsLasColoursOfEightBits) {
+TEST_F(ForeignCloud, ReadsEightBitLasColours) {
   for (const std::uint16_t scale : {std::uint16_t{1}, std::uint16_t{256}}) {
     const AttributedCloud cloud = read_cloud(folder_.file("a.las", make_las(8, 8, scale)));
     EXPECT_THAT(cloud.colours.at(0), ElementsAre(200, 60, 20)) << scale;
@@ -253,7 +253,7 @@ std::string e57_with(const std::string& rotation, double last_x) {
   return testing_support::make_e57({scan});
 }
 
-TEST_F(ForeignCloud, TakesAnE57RotationOfZerosForNone) {
+TEST_F(ForeignCloud, TreatsZeroE57RotationAsIdentity) {
   const std::string zeros = "<rotation><w>0</w><x>0</x><y>0</y><z>0</z></rotation>";
   for (const std::string& rotation : {std::string(), zeros, std::string("<rotation></rotation>")}) {
     const AttributedCloud cloud = read_cloud(folder_.file("a.e57", e57_with(rotation, 0.0)));

@@ -121,7 +121,7 @@ class ForeignMesh : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ForeignMesh, ReadsOffWhoseCountsStandAnywhere) {
+TEST_F(ForeignMesh, ReadsOffWithCountsOnAnyLine) {
   expect_box("a.off", off_text());
   expect_box("a.off", "OFF8 6 0\n" + vertex_lines() + face_lines("4 ", "", 0));
   expect_box("a.off", "COFF8 6 0\n" + vertex_lines("", " 255 0 0 255") + face_lines("4 ", "", 0));
@@ -134,7 +134,7 @@ TEST_F(ForeignMesh, ReadsOffWhoseCountsStandAnywhere) {
   expect_box("a.off", "\xEF\xBB\xBF" + replaced(all, "\n", "\r"));
 }
 
-TEST_F(ForeignMesh, ReadsAsciiStlOfAllSpellings) {
+TEST_F(ForeignMesh, ReadsAllAsciiStlVariants) {
   const std::string stl = ascii_stl();
   std::string upper = stl;
   for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -148,7 +148,7 @@ TEST_F(ForeignMesh, ReadsAsciiStlOfAllSpellings) {
   }
 }
 
-TEST_F(ForeignMesh, ReadsBinaryStlByItsLengthWhereTheCountIsUnknown) {
+TEST_F(ForeignMesh, ReadsBinaryStlByFileLengthWhenCountIsUnknown) {
   constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
   for (const char* header : {"exported", "solid box"}) {
     expect_box("a.stl", binary_stl(header, 12, ""));
@@ -161,7 +161,7 @@ TEST_F(ForeignMesh, ReadsBinaryStlByItsLengthWhereTheCountIsUnknown) {
               HasSubstr("declares 13 triangles in binary STL"));
 }
 
-TEST_F(ForeignMesh, NamesMaterialsByTheirWholeLine) {
+TEST_F(ForeignMesh, NamesMaterialsByWholeLine) {
   std::string text = vertex_lines("v ");
   const std::string lines = face_lines("f ", "", 1);
   text += "usemtl Curtain Wall Panel\n" + lines.substr(0, lines.find('\n') + 1);
@@ -175,7 +175,7 @@ TEST_F(ForeignMesh, NamesMaterialsByTheirWholeLine) {
 }
 
 // The first of nine vertices is used by no face: a lost line would be another solid.
-TEST_F(ForeignMesh, LosesNoLineToAMarkOrABareReturn) {
+TEST_F(ForeignMesh, ReadsObjWithByteOrderMarksAndAnyLineEnds) {
   const std::string unused = vertex_lines("v ") + "v 9 9 9\n" + face_lines("f ", "", 1);
   expect_box("a.obj", "\xEF\xBB\xBF" + unused);
   expect_box("a.obj", replaced(unused, "\n", "\r"));
@@ -232,7 +232,7 @@ TEST_F(ForeignMesh, ReadsPlyWithListsOfOtherNamesAndTypes) {
               HasSubstr("face has a list with 1.5"));
 }
 
-TEST_F(ForeignMesh, ReadsStripsOfTriangles) {
+TEST_F(ForeignMesh, ReadsTriangleStrips) {
   const std::vector<std::int64_t> strips = {0, 1, 4, 5, -1, 1, 2, 5, 6, -1, 2, 3, 6, 7, -1,
                                             3, 0, 7, 4, -1, 4, 5, 7, 6, -1, 0, 3, 1, 2};
   std::string ascii =
@@ -262,7 +262,7 @@ TEST_F(ForeignMesh, ReadsStripsOfTriangles) {
   EXPECT_NEAR(std::abs(volume), 24.0, 1e-9);
 }
 
-TEST_F(ForeignMesh, SkipsFacesThatAreNotFiniteAndCountsThemIfItCanSaySo) {
+TEST_F(ForeignMesh, SkipsFacesThatAreNotFiniteWhenNotesAreEnabled) {
   for (const auto& [name, text] : std::initializer_list<std::pair<const char*, std::string>>{
            {"a.obj", replaced(obj_text(), "v 4 3 2", "v nan 3 2")},
            {"a.off", replaced(off_text(), "4 3 2\n0 3 2", "1.#QNAN 3 2\n0 3 2")},

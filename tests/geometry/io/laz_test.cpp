@@ -64,7 +64,7 @@ void expect_formula(LasReader& reader, std::size_t chunk) {
 
 class Laz : public testing::TestWithParam<const char*> {};
 
-TEST_P(Laz, IsReadAsTheReferenceCompressorWroteIt) {
+TEST_P(Laz, ReadsFilesOfReferenceCompressor) {
   for (const std::size_t chunk : {1, 7, 1000}) {
     SCOPED_TRACE(chunk);
     LasReader reader(find_test_file(GetParam()));
@@ -74,7 +74,7 @@ TEST_P(Laz, IsReadAsTheReferenceCompressorWroteIt) {
   }
 }
 
-TEST_P(Laz, IsReadAsACloud) {
+TEST_P(Laz, ReadsCloud) {
   const AttributedCloud cloud = read_cloud(find_test_file(GetParam()));
   ASSERT_EQ(cloud.positions.size(), point_count - 5U);
   EXPECT_TRUE(cloud.positions[7].isApprox(make_position(7).cast<float>()));
@@ -162,7 +162,7 @@ class CorruptedLaz : public testing::Test {
   }();
 };
 
-TEST_F(CorruptedLaz, SaysWhatCannotBeRead) {
+TEST_F(CorruptedLaz, ReportsUnsupportedCompression) {
   for (const int format : {4, 5, 9, 10}) {
     expect_rejection(104, static_cast<std::uint8_t>(0x80 | format),
                      "points of format " + std::to_string(format) + ", compressed (LAZ); only");
@@ -179,7 +179,7 @@ TEST_F(CorruptedLaz, SaysWhatCannotBeRead) {
   expect_rejection(105, std::uint16_t{37}, "LAZ items do not match point format 7 and 37");
 }
 
-TEST_F(CorruptedLaz, SaysWhereItsChunksAreNot) {
+TEST_F(CorruptedLaz, ReportsInvalidChunkTable) {
   expect_rejection(points_, std::uint64_t{7}, "has no table of its compressed chunks: byte 7");
   expect_rejection(points_, std::uint64_t{1} << 60, "has no table of its compressed chunks");
   expect_rejection(table_, std::uint32_t{1}, "its version is not 0");

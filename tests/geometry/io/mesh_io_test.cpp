@@ -68,7 +68,7 @@ class MeshIoRoundTrip : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Formats, MeshIoRoundTrip, testing::Values("ply", "obj", "stl", "off"),
                          [](const auto& format) { return std::string(format.param); });
 
-TEST_P(MeshIoRoundTrip, GivesTheSameMeshBack) {
+TEST_P(MeshIoRoundTrip, KeepsTheMesh) {
   const TemporaryFolder folder;
   const auto path = folder.path() / (std::string("mesh.") + GetParam());
   write_mesh(path, pyramid());
@@ -81,7 +81,7 @@ TEST_P(MeshIoRoundTrip, GivesTheSameMeshBack) {
 }
 
 // What we write is read by an independent reader, CGAL's.
-TEST_P(MeshIoRoundTrip, IsReadByCgal) {
+TEST_P(MeshIoRoundTrip, WritesFilesThatCgalReads) {
   using Point = CGAL::Simple_cartesian<double>::Point_3;
   const TemporaryFolder folder;
   const auto path = folder.path() / (std::string("mesh.") + GetParam());
@@ -101,7 +101,7 @@ TEST_P(MeshIoRoundTrip, IsReadByCgal) {
   EXPECT_DOUBLE_EQ(volume(read), pyramid_volume);
 }
 
-TEST_F(MeshIo, CoordinatesThatFloatCannotHoldSurviveExactly) {
+TEST_F(MeshIo, KeepsDoublePrecisionCoordinates) {
   Mesh mesh = pyramid();
   mesh.vertices[4] = {0.1, 1e7 + 0.3, 1.0 / 3.0};
   for (const char* name : {"mesh.ply", "mesh.obj", "mesh.off"}) {
@@ -117,7 +117,7 @@ constexpr std::string_view ascii_ply =
     "property list uchar uint vertex_index\r\nproperty float quality\r\nend_header\r\n"
     "7 5 0 0\r\n7 5 1 0\r\n7 5 1 +1\r\n7 5 0 1e0\r\n0 1\r\n2 0.5 nan 4 0 1 2 3 9.5\r\n";
 
-TEST_F(MeshIo, PlyPropertiesMayComeInAnyOrderAndUnknownOnesArePassedOver) {
+TEST_F(MeshIo, ReadsPlyPropertiesInAnyOrder) {
   const Mesh mesh = read("a.ply", ascii_ply);
   EXPECT_EQ(mesh.vertices[2], Vector3d(1, 1, 5));
   EXPECT_EQ(mesh.triangles.size(), 2U);
@@ -125,7 +125,7 @@ TEST_F(MeshIo, PlyPropertiesMayComeInAnyOrderAndUnknownOnesArePassedOver) {
 }
 
 // The same file in both byte orders, put together here byte by byte.
-TEST_F(MeshIo, PlyIsReadInBothByteOrders) {
+TEST_F(MeshIo, ReadsPlyInBothByteOrders) {
   for (const bool big : {false, true}) {
     std::string bytes = "ply\nformat binary_";
     bytes += big ? "big" : "little";
@@ -150,7 +150,7 @@ TEST_F(MeshIo, PlyIsReadInBothByteOrders) {
   }
 }
 
-TEST_F(MeshIo, ObjTakesNegativeIndicesSlashesPolygonsAndForwardReferences) {
+TEST_F(MeshIo, ReadsObjIndicesPolygonsAndForwardReferences) {
   const Mesh mesh = read("a.obj",
                          "# square\nmtllib x.mtl\no thing\nv 0 0 0\nv 1 0 0 1.0\nvt 0 0\nvn 0 0 1\n"
                          "v 1 1 0\nv 0 1 0\nf -4/1/1 -3//1 \\\n 3 4\nf 1 2 5\nv 0 0 1\n");
@@ -158,7 +158,7 @@ TEST_F(MeshIo, ObjTakesNegativeIndicesSlashesPolygonsAndForwardReferences) {
   EXPECT_DOUBLE_EQ(surface_area(mesh), 1.5);
 }
 
-TEST_F(MeshIo, OffTakesCommentsColoursAndCountsOnTheFirstLine) {
+TEST_F(MeshIo, ReadsOffCommentsColoursAndFirstLineCounts) {
   for (const char* head : {"OFF\n# c\n4 1 0\n", "COFF 4 1 0\n", "# c\nOFF\n\n4 1 0 # e\n"}) {
     const Mesh mesh = read(
         "a.off", std::string(head) + "0 0 0 255 0 0\n1 0 0\n\n1 1 0\n0 1 0\n4 0 1 2 3 9 9 9\n");
@@ -166,7 +166,7 @@ TEST_F(MeshIo, OffTakesCommentsColoursAndCountsOnTheFirstLine) {
   }
 }
 
-TEST_F(MeshIo, AsciiStlIsWelded) {
+TEST_F(MeshIo, MergesVerticesOfAsciiStl) {
   const Mesh mesh = read("a.stl",
                          "solid a b c\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n"
                          "   vertex 1 0 0\n   vertex 1 1 0\n  endloop\n endfacet\n"
@@ -176,7 +176,7 @@ TEST_F(MeshIo, AsciiStlIsWelded) {
   EXPECT_DOUBLE_EQ(surface_area(mesh), 1.0);
 }
 
-TEST_F(MeshIo, BinaryStlMayBeginWithTheWordSolid) {
+TEST_F(MeshIo, ReadsBinaryStlThatBeginsWithSolid) {
   const auto path = folder_.path() / "mesh.stl";
   write_mesh(path, pyramid());
   {
@@ -187,7 +187,7 @@ TEST_F(MeshIo, BinaryStlMayBeginWithTheWordSolid) {
 }
 
 // An L cut from its reflex corner's wrong side would cover more than its area.
-TEST_F(MeshIo, ConcavePolygonsKeepTheirAreaAndSide) {
+TEST_F(MeshIo, KeepsAreaAndOrientationOfConcavePolygons) {
   const Mesh mesh = read("a.off",
                          "OFF 8 2 0\n0 0 2\n3 0 2\n3 1 2\n1 1 2\n1 3 2\n0 3 2\n0 0 0\n0 3 0\n"
                          "6 0 1 2 3 4 5\n4 0 5 7 6\n");
@@ -199,7 +199,7 @@ TEST_F(MeshIo, ConcavePolygonsKeepTheirAreaAndSide) {
   }
 }
 
-TEST_F(MeshIo, UnusedVerticesAndTrianglesWithoutAreaAreDropped) {
+TEST_F(MeshIo, RemovesUnusedVerticesAndTrianglesWithoutArea) {
   const Mesh mesh = read("a.off",
                          "OFF 5 4 0\n0 0 0\nnan 0 0\n1 0 0\n0 1 0\n2 0 0\n3 0 2 3\n3 0 0 2\n"
                          "3 0 2 4\n2 0 2\n");
@@ -207,7 +207,7 @@ TEST_F(MeshIo, UnusedVerticesAndTrianglesWithoutAreaAreDropped) {
   EXPECT_EQ(mesh.triangles.size(), 1U);
 }
 
-TEST_F(MeshIo, InsideOutFilesAreTurnedOnRequest) {
+TEST_F(MeshIo, OrientsInvertedMeshesOnRequest) {
   Mesh inside_out = pyramid();
   for (auto& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
   const auto path = folder_.path() / "mesh.ply";
@@ -216,7 +216,7 @@ TEST_F(MeshIo, InsideOutFilesAreTurnedOnRequest) {
   EXPECT_DOUBLE_EQ(volume(read_mesh(path, {.orient_outward = true})), pyramid_volume);
 }
 
-TEST_F(MeshIo, GzipIsReadAndADamagedOneRefused) {
+TEST_F(MeshIo, ReadsGzipAndRejectsTruncatedGzip) {
   const auto path = folder_.path() / "mesh.ply.gz";
   gzFile file = gzopen(path.c_str(), "wb");
   ASSERT_EQ(gzwrite(file, ascii_ply.data(), static_cast<unsigned>(ascii_ply.size())),
@@ -249,7 +249,7 @@ std::string draco_pyramid() {
   return {buffer.data(), buffer.size()};
 }
 
-TEST_F(MeshIo, DracoIsDecoded) {
+TEST_F(MeshIo, DecodesDraco) {
   const Mesh mesh = read("a.drc", draco_pyramid());
   EXPECT_EQ(mesh.vertices.size(), 5U);
   EXPECT_EQ(mesh.triangles.size(), 6U);
@@ -258,7 +258,7 @@ TEST_F(MeshIo, DracoIsDecoded) {
 }
 
 // Draco would read any byte as true or false, which none but 0 and 1 are.
-TEST_F(MeshIo, DracoOfTruthsInPlaceOfPlacesIsRefused) {
+TEST_F(MeshIo, RejectsDracoWithBooleanPositions) {
   constexpr std::string_view digits =
       "445241434f02020100000004040100010200020302012a0100030101000b03000000000000000000"
       "000000001f8b000000000000803f000000000000803f000000000000000000000800000000000000"
@@ -271,7 +271,7 @@ TEST_F(MeshIo, DracoOfTruthsInPlaceOfPlacesIsRefused) {
               testing::ThrowsMessage<Error>(HasSubstr("has positions of an unknown type")));
 }
 
-TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
+TEST_F(MeshIo, ReportsCauseForInvalidFiles) {
   const auto ply = [](std::string_view rest) {
     return "ply\nformat ascii 1.0\n" + std::string(rest);
   };
@@ -354,7 +354,7 @@ TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
 
 // Whatever bytes come, the reader returns a mesh that can be used or throws its one exception; any
 // other exception, a crash, a hang or a sanitizer report fails the test.
-TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
+TEST_F(MeshIo, ReadsOrRejectsDamagedFiles) {
   std::mt19937_64 random(7);
   std::vector<std::pair<std::string, std::string>> originals{{"a.ply", std::string(ascii_ply)},
                                                              {"a.drc", draco_pyramid()}};
@@ -386,7 +386,7 @@ TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
   EXPECT_GT(read_anyway, 50);  // a changed coordinate of a binary file
 }
 
-TEST_F(MeshIo, WriterRefusesWhatItCannotWrite) {
+TEST_F(MeshIo, RejectsUnknownExtensionAndUnwritablePath) {
   EXPECT_THAT([&] { write_mesh(folder_.path() / "mesh.doc", pyramid()); },
               testing::ThrowsMessage<Error>(HasSubstr("must end in .ply, .obj, .stl or .off")));
   write_mesh(folder_.path() / "file.ply", pyramid());

@@ -48,7 +48,7 @@ std::vector<TwoTriangles> all_formats() {
           {"binary.stl", parse_stl, binary_stl(2)}};
 }
 
-TEST(MeshLimits, LetInWhatReachesThem) {
+TEST(MeshLimits, AcceptFilesAtTheLimit) {
   const MeshLimits limits{
       .faces = 2, .vertices = 6, .corners = 6, .face_corners = 3, .materials = 0};
   for (const TwoTriangles& file : all_formats()) {
@@ -59,7 +59,7 @@ TEST(MeshLimits, LetInWhatReachesThem) {
   }
 }
 
-TEST(MeshLimits, RefuseWhatGoesBeyondThem) {
+TEST(MeshLimits, RejectFilesBeyondTheLimit) {
   const struct Case {
     MeshLimits limits;
     const char* message;
@@ -78,7 +78,7 @@ TEST(MeshLimits, RefuseWhatGoesBeyondThem) {
   }
 }
 
-TEST(MeshLimits, CountMaterials) {
+TEST(MeshLimits, LimitNumberOfMaterials) {
   const std::string two = "usemtl a\nusemtl b\nusemtl a\n";
   EXPECT_THAT(parse_obj("a.obj", two, {.materials = 2}).materials, testing::ElementsAre("a", "b"));
   EXPECT_THAT([&] { parse_obj("a.obj", two, {.materials = 1}); },
@@ -86,7 +86,7 @@ TEST(MeshLimits, CountMaterials) {
 }
 
 /// A list is refused by its length, not by what it has taken.
-TEST(MeshLimits, RefuseAPlyFaceOfMoreCornersThanAnyHas) {
+TEST(MeshLimits, RejectPlyFaceWithTooManyCorners) {
   const std::uint32_t corners = 1'000'001;
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
@@ -100,7 +100,7 @@ TEST(MeshLimits, RefuseAPlyFaceOfMoreCornersThanAnyHas) {
 }
 
 /// Property: the pieces that a file is read in join without a seam.
-TEST(MeshLimits, PlyOfSeveralPiecesIsReadWhole) {
+TEST(MeshLimits, KeepLargePlyComplete) {
   constexpr std::uint32_t vertices = 1'000'003, faces = 400'000;
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +

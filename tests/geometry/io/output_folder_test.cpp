@@ -40,7 +40,7 @@ void commit_pair(const fs::path& folder, const std::string& content) {
 
 // Every place at which a kill can cut a commit short: the journal stands, and the first `done` of
 // the renames are made. Whoever looks next finds the whole new result and nothing else.
-TEST(OutputFolder, FinishesACommitThatWasCutShortAnywhere) {
+TEST(OutputFolder, CompletesCommitInterruptedAtAnyStep) {
   const std::string journal = ".part-7-cloud\0cloud\0.part-7-summary\0summary\0\0gone\0"s;
   const std::vector<std::pair<std::string, std::string>> renames = {
       {"summary", ".old-summary"}, {"cloud", ".old-cloud"},        {"gone", ".old-gone"},
@@ -62,7 +62,7 @@ TEST(OutputFolder, FinishesACommitThatWasCutShortAnywhere) {
   }
 }
 
-TEST(OutputFolder, ObeysNoJournalThatNamesFilesElsewhere) {
+TEST(OutputFolder, IgnoresJournalThatNamesFilesOutside) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "in");
   folder.file("victim", "mine");
@@ -72,7 +72,7 @@ TEST(OutputFolder, ObeysNoJournalThatNamesFilesElsewhere) {
   EXPECT_EQ(read_file(folder.path() / "victim"), "mine");
 }
 
-TEST(OutputFolder, AFailedCommitLeavesTheEarlierResults) {
+TEST(OutputFolder, KeepsEarlierResultsAfterFailedCommit) {
   const TemporaryFolder folder;
   commit_pair(folder.path(), "old");
   fs::create_directory(folder.path() / "notes");
@@ -86,7 +86,7 @@ TEST(OutputFolder, AFailedCommitLeavesTheEarlierResults) {
   EXPECT_THAT(names_in(folder.path()), ElementsAre("cloud", "notes", "summary"));
 }
 
-TEST(OutputFolder, SweepsWhatAKilledProgramLeft) {
+TEST(OutputFolder, RemovesFilesOfKilledProgram) {
   const TemporaryFolder folder;
   for (const char* name : {".part-1-cloud", ".part-0-summary", ".old-cloud", "mine"}) {
     folder.file(name, "x");
@@ -95,14 +95,14 @@ TEST(OutputFolder, SweepsWhatAKilledProgramLeft) {
   EXPECT_THAT(names_in(folder.path()), ElementsAre("mine"));
 }
 
-TEST(OutputFolder, LetsOneWriterInAtATime) {
+TEST(OutputFolder, AllowsOneWriterAtATime) {
   const TemporaryFolder folder;
   const OutputFolder first(folder.path());
   EXPECT_THAT([&] { OutputFolder(folder.path()); },
               ThrowsMessage<Error>(HasSubstr("is in use by another skycap")));
 }
 
-TEST(OutputFolder, CommitsWhatIsOnTheDiskAlready) {
+TEST(OutputFolder, CommitsFilesStagedOnDisk) {
   const TemporaryFolder folder;
   {
     OutputFolder out(folder.path());
@@ -116,7 +116,7 @@ TEST(OutputFolder, CommitsWhatIsOnTheDiskAlready) {
   EXPECT_THAT(names_in(folder.path()), ElementsAre("image"));
 }
 
-TEST(OutputFolder, MovesWhatIsStagedIntoAFolderWithin) {
+TEST(OutputFolder, MovesStagedFilesIntoSubfolder) {
   const TemporaryFolder folder;
   commit_pair(folder.path(), "whole");
   {
@@ -130,7 +130,7 @@ TEST(OutputFolder, MovesWhatIsStagedIntoAFolderWithin) {
   EXPECT_THAT(names_in(folder.path()), ElementsAre("cloud", "interrupted", "summary"));
 }
 
-TEST(WriteFile, UsesUpWhatAKilledProgramLeft) {
+TEST(WriteFile, OverwritesTemporaryFileOfKilledProgram) {
   const TemporaryFolder folder;
   folder.file(".part-0-a", "a longer text than the new one");
   write_file(folder.path() / "a", "new");
@@ -138,7 +138,7 @@ TEST(WriteFile, UsesUpWhatAKilledProgramLeft) {
   EXPECT_THAT(names_in(folder.path()), ElementsAre("a"));
 }
 
-TEST(ReadFile, RefusesWhatMayNeverEnd) {
+TEST(ReadFile, RejectsPipesDevicesAndLinkLoops) {
   const TemporaryFolder folder;
   const fs::path pipe = folder.path() / "pipe", zeros = folder.path() / "zeros";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -151,7 +151,7 @@ TEST(ReadFile, RefusesWhatMayNeverEnd) {
               ThrowsMessage<Error>(HasSubstr("cannot be opened")));
 }
 
-TEST(ReadFile, StopsDecompressingAtItsLimit) {
+TEST(ReadFile, StopsDecompressingAtLimit) {
   const TemporaryFolder folder;
   const fs::path bomb = folder.path() / "bomb.gz";
   gzFile file = gzopen(bomb.c_str(), "wb");

@@ -12,7 +12,7 @@
 namespace skycap::geometry {
 namespace {
 
-TEST(PlainText, HasNoMarkAndOneEndOfLines) {
+TEST(PlainText, RemovesByteOrderMarkAndNormalisesLineEnds) {
   for (const std::string text : {"a\nb\n\nc",
                                  "\xEF\xBB\xBF"
                                  "a\nb\n\nc",
@@ -24,7 +24,7 @@ TEST(PlainText, HasNoMarkAndOneEndOfLines) {
 }
 
 // U+00E4, U+20AC and U+1F600 take two, three and four bytes.
-TEST(PlainText, ReadsSixteenBitsInBothOrders) {
+TEST(PlainText, ReadsUtf16InBothByteOrders) {
   const std::string utf8 = "a\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80";
   const std::u16string units = u"a\u00E4\u20AC\U0001F600";
   for (const bool is_big_endian : {false, true}) {
@@ -41,7 +41,7 @@ TEST(PlainText, ReadsSixteenBitsInBothOrders) {
   EXPECT_EQ(as_utf8(std::string("\0<\0?", 4)), "<?");
 }
 
-TEST(PlainText, ReadsNumbersAsProgramsWriteThem) {
+TEST(PlainText, ReadsNumbersInCommonNotations) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(number_in("+1.5e2"), 150.0);
   EXPECT_EQ(number_in("-.25"), -0.25);
@@ -67,7 +67,7 @@ TEST(PlainText, ReadsNumbersAsProgramsWriteThem) {
   EXPECT_FALSE(has_decimal_comma("0.5"));
 }
 
-TEST(TextScanner, CountsLinesWhateverEndsThem) {
+TEST(TextScanner, CountsLinesWithAnyLineEnds) {
   for (const std::string text : {"\xEF\xBB\xBF"
                                  "a b\n\nc\n",
                                  "a b\r\n\r\nc\r\n", "a b\r\rc\r"}) {

@@ -35,7 +35,7 @@ class RecordLogFile : public testing::Test {
   fs::path file_ = folder_.path() / "log";
 };
 
-TEST_F(RecordLogFile, GivesBackWhatWasAppended) {
+TEST_F(RecordLogFile, ReturnsAppendedRecords) {
   EXPECT_THAT(read_records(file_).records, ElementsAre("one", "", "three {\"3\": 0.1}"));
   RecordLog log(file_);
   log.append("four");
@@ -43,15 +43,15 @@ TEST_F(RecordLogFile, GivesBackWhatWasAppended) {
 }
 
 /// The digits of the first record, by another implementation: Python's zlib.crc32(b"1 one").
-TEST_F(RecordLogFile, HasTheUsualChecksum) { EXPECT_THAT(bytes(), HasSubstr("7f7c96f6 1 one\n")); }
+TEST_F(RecordLogFile, UsesZlibCrc32) { EXPECT_THAT(bytes(), HasSubstr("7f7c96f6 1 one\n")); }
 
-TEST(RecordLog, OfNoFileIsEmpty) {
+TEST(RecordLog, IsEmptyWithoutFile) {
   const testing_support::TemporaryFolder folder;
   EXPECT_THAT(read_records(folder.path() / "log").records, IsEmpty());
 }
 
 /// A kill while the last record is written leaves any beginning of it.
-TEST_F(RecordLogFile, WhatIsTornOfTheLastRecordIsDropped) {
+TEST_F(RecordLogFile, DiscardsIncompleteLastRecord) {
   const std::string whole = bytes();
   const std::size_t two_records = whole.find("three") - std::string("12345678 3 ").size();
   for (std::size_t size = two_records; size < whole.size(); ++size) {
@@ -65,7 +65,7 @@ TEST_F(RecordLogFile, WhatIsTornOfTheLastRecordIsDropped) {
 }
 
 /// A power cut may leave a block of zeros, or of what the disk held before.
-TEST_F(RecordLogFile, GarbageAtTheEndIsDropped) {
+TEST_F(RecordLogFile, DiscardsGarbageAtEnd) {
   const std::string whole = bytes();
   put(whole + std::string(5000, '\0'));
   EXPECT_EQ(RecordLog(file_).records().size(), 3);
@@ -74,7 +74,7 @@ TEST_F(RecordLogFile, GarbageAtTheEndIsDropped) {
   EXPECT_EQ(bytes(), whole);
 }
 
-TEST_F(RecordLogFile, EveryChangedByteBeforeTheLastRecordIsFound) {
+TEST_F(RecordLogFile, DetectsEveryChangedByteBeforeLastRecord) {
   const std::string whole = bytes();
   const std::size_t two_records = whole.find("three") - std::string("12345678 3 ").size();
   for (std::size_t at = 0; at + 1 < two_records; ++at) {
@@ -87,7 +87,7 @@ TEST_F(RecordLogFile, EveryChangedByteBeforeTheLastRecordIsFound) {
   }
 }
 
-TEST_F(RecordLogFile, AMissingOrDoubledRecordIsFound) {
+TEST_F(RecordLogFile, DetectsMissingOrRepeatedRecord) {
   const std::string whole = bytes();
   const std::string second =
       whole.substr(whole.find('\n') + 1, std::string("12345678 2 \n").size());
@@ -103,7 +103,7 @@ TEST_F(RecordLogFile, AMissingOrDoubledRecordIsFound) {
   }
 }
 
-TEST_F(RecordLogFile, HasOneWriter) {
+TEST_F(RecordLogFile, RejectsSecondWriter) {
   const RecordLog log(file_);
   try {
     RecordLog second(file_);
@@ -113,7 +113,7 @@ TEST_F(RecordLogFile, HasOneWriter) {
   }
 }
 
-TEST(RecordLog, InAFolderThatIsNotThereIsRefused) {
+TEST(RecordLog, RejectsMissingFolder) {
   EXPECT_THAT(testing_support::thrown_message([&] { RecordLog("/nowhere/to/be/found/log"); }),
               testing::HasSubstr("/nowhere/to/be/found/log: "));
 }

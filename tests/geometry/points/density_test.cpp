@@ -54,7 +54,7 @@ std::vector<std::uint32_t> frontiers(const std::vector<PointLabel>& labels) {
 
 // Sparse noise around a sphere, in batches: points turn core late, through neighbours of
 // neighbours. On one thread, and on several.
-TEST(DensityMap, LabelsEqualAFullRecomputationAfterEveryUpdate) {
+TEST(DensityMap, MatchesFullRecomputationAfterEveryUpdate) {
   for (const int threshold : {4, 5, 8}) {
     DensityMap map({.radius = 0.12, .core_threshold = threshold, .spacing = 0.02});
     std::vector<std::uint32_t> frontiers_before;
@@ -80,7 +80,7 @@ TEST(DensityMap, LabelsEqualAFullRecomputationAfterEveryUpdate) {
 }
 
 // A point can turn core through new points that its neighbour's neighbours never came near.
-TEST(DensityMap, ReachesTwoHopsFromNewPoints) {
+TEST(DensityMap, UpdatesLabelsTwoHopsFromNewPoints) {
   DensityMap map({.radius = 1.0, .core_threshold = 4, .spacing = 0.01});
   // A chain: 0 - 1 - 2, and points that make 1 core only when 3 and 4 arrive near it alone.
   map.insert(std::vector<Vector3f>{{0, 0, 0}, {0.9F, 0, 0}, {-0.5F, 0, 0}}, 0);
@@ -92,7 +92,7 @@ TEST(DensityMap, ReachesTwoHopsFromNewPoints) {
 }
 
 // Trap T2 of the specification: fewer than four leaves no room for a frontier.
-TEST(DensityMap, HasNoFrontiersBelowFour) {
+TEST(DensityMap, HasNoFrontiersForCoreThresholdBelowFour) {
   DensityMap three({.radius = 0.12, .core_threshold = 3, .spacing = 0.02});
   DensityMap four({.radius = 0.12, .core_threshold = 4, .spacing = 0.02});
   for (std::uint32_t batch = 0; batch < 4; ++batch) {
@@ -107,7 +107,7 @@ TEST(DensityMap, HasNoFrontiersBelowFour) {
 }
 
 // Trap T3: the order of a scan's points decides which are kept, but never a label.
-TEST(DensityMap, LabelsDoNotDependOnTheOrderOfPoints) {
+TEST(DensityMap, LabelsPointsIndependentlyOfOrder) {
   auto points = tests::noisy_sphere(800, 0.05, 9);
   DensityMap forwards({.radius = 0.1, .core_threshold = 4, .spacing = 0.0});
   forwards.insert(points, 0);
@@ -124,7 +124,7 @@ TEST(DensityMap, LabelsDoNotDependOnTheOrderOfPoints) {
 }
 
 // Trap T4: what was given up stays so until a point arrives within r of it.
-TEST(DensityMap, RemembersGivenUpFrontiersUntilSomethingNewIsNear) {
+TEST(DensityMap, KeepsFrontiersDiscardedUntilNewPointIsNear) {
   DensityMap map({.radius = 1.0, .core_threshold = 5, .spacing = 0.01});
   // Core: the first five. Frontier: 5, beside core 4 and outlier 6.
   const std::vector<Vector3f> first = {{0, 0, 0},    {-0.3F, 0, 0}, {0, 0.3F, 0}, {0, -0.3F, 0},
@@ -143,7 +143,7 @@ TEST(DensityMap, RemembersGivenUpFrontiersUntilSomethingNewIsNear) {
 }
 
 // R2 of the specification: an outlier that is tested again finds itself among the outliers.
-TEST(DensityMap, TheLabelledRuleLetsALonelyOutlierBecomeAFrontier) {
+TEST(DensityMap, TurnsIsolatedOutlierIntoFrontierByLabelledRule) {
   const std::vector<Vector3f> core_group = {{0, 0, 0}, {0, 0.3F, 0}, {0, -0.3F, 0}, {0.3F, 0, 0}};
   for (const OutlierRule rule : {OutlierRule::non_core, OutlierRule::labelled}) {
     DensityMap map({.radius = 1.0, .core_threshold = 4, .spacing = 0.01, .rule = rule});
@@ -156,7 +156,7 @@ TEST(DensityMap, TheLabelledRuleLetsALonelyOutlierBecomeAFrontier) {
   }
 }
 
-TEST(DensityMap, KeepsTheSamePointsOnAnyNumberOfThreads) {
+TEST(DensityMap, DoesNotDependOnThreadCount) {
   DensityMap one({.radius = 0.02, .core_threshold = 4, .spacing = 0.01});
   DensityMap three({.radius = 0.02, .core_threshold = 4, .spacing = 0.01});
   for (std::uint32_t view = 0; view < 3; ++view) {
@@ -171,7 +171,7 @@ TEST(DensityMap, KeepsTheSamePointsOnAnyNumberOfThreads) {
 }
 
 // Pixels without a return lie between the others; a fifth of the rows has none at all.
-TEST(DensityMap, KeepsTheSamePointsOfAnImageAndOfAList) {
+TEST(DensityMap, KeepsSamePointsForImageAndList) {
   const DensityConfig config{.radius = 0.02, .core_threshold = 4, .spacing = 0.01};
   DensityMap list(config), one(config), three(config);
   for (std::uint32_t view = 0; view < 3; ++view) {
@@ -191,7 +191,7 @@ TEST(DensityMap, KeepsTheSamePointsOfAnImageAndOfAList) {
   }
 }
 
-TEST(DensityMap, KeepsTheSpacingAndTheScanOfEachPoint) {
+TEST(DensityMap, KeepsSpacingAndScanOfEachPoint) {
   DensityMap map({.radius = 0.5, .core_threshold = 4, .spacing = 0.1});
   map.insert(std::vector<Vector3f>{{0, 0, 0}, {0.05F, 0, 0}, {0.2F, 0, 0}}, 7);
   map.insert(std::vector<Vector3f>{{0.01F, 0, 0}, {0.4F, 0, 0}}, 8);

@@ -85,7 +85,7 @@ int observable(const Registration& found) {
 }
 
 /// Also where one square is 13 cm off and the other two fit already (seed 11).
-TEST(Registration, FindsEveryErrorInACorner) {
+TEST(Registration, CorrectsAllErrorsInCorner) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     for (const double noise : {0.0, 0.01, 0.02}) {
       const Outcome outcome = registered({0, 1, 2}, make_error(seed), seed, noise);
@@ -98,7 +98,7 @@ TEST(Registration, FindsEveryErrorInACorner) {
 }
 
 /// One wall shows how far it is away and how it is turned, and no more.
-TEST(Registration, CorrectsNothingThatAPlaneDoesNotShow) {
+TEST(Registration, CorrectsOnlyObservableDirectionsOfPlane) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Outcome outcome = registered({2}, make_error(seed), seed, 0.01);
     ASSERT_EQ(observable(outcome.found), 3) << seed;
@@ -118,13 +118,13 @@ TEST(Registration, CorrectsNothingThatAPlaneDoesNotShow) {
 }
 
 /// In a gutter of two planes a scan slides along the edge.
-TEST(Registration, SaysWhichWayAnEdgeLetsSlide) {
+TEST(Registration, ReportsUnobservableDirectionAlongEdge) {
   const Outcome outcome = registered({0, 2}, make_error(3), 3, 0.01);
   ASSERT_EQ(observable(outcome.found), 5);
   EXPECT_GT(std::abs(outcome.found.directions[0].displacement.y()), 0.95);
 }
 
-TEST(Registration, LeavesAlone) {
+TEST(Registration, KeepsCorrectPose) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Outcome outcome = registered({0, 1, 2}, Isometry3d::Identity(), seed, 0.01);
     EXPECT_LT(outcome.shift(), 0.003);
@@ -132,7 +132,7 @@ TEST(Registration, LeavesAlone) {
   }
 }
 
-TEST(Registration, NeedsSomethingInCommon) {
+TEST(Registration, ReturnsIdentityWithoutOverlap) {
   Isometry3d far_off = Isometry3d::Identity();
   far_off.translation() = Vector3d(9.0, 9.0, 9.0);
   const Outcome outcome = registered({0, 1, 2}, far_off, 1, 0.01);
@@ -140,7 +140,7 @@ TEST(Registration, NeedsSomethingInCommon) {
   EXPECT_TRUE(outcome.found.correction.isApprox(Isometry3d::Identity(), 0.0));
 }
 
-TEST(SurfaceMap, KeepsTheSidesOfAThinWallApart) {
+TEST(SurfaceMap, SeparatesSidesOfThinWall) {
   SurfaceMap map(radius);
   std::vector<Vector3f> above = squares({2}, 1, 0.001), below = squares({2}, 2, 0.001);
   for (Vector3f& point : above) point.z() += 0.03F;
@@ -158,7 +158,7 @@ TEST(SurfaceMap, KeepsTheSidesOfAThinWallApart) {
   EXPECT_EQ(map.nearest({{1.0, 1.0, 0.02}, Vector3d::UnitX(), 0.0}, 0.2), nullptr);
 }
 
-TEST(FitPatch, TakesPlanesAlone) {
+TEST(FitPatch, AcceptsOnlyPlanes) {
   std::vector<Vector3f> line, blob;
   std::mt19937_64 random(1);
   std::normal_distribution<float> number(0.0F, 0.1F);

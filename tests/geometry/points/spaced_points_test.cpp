@@ -16,7 +16,7 @@ using tests::random_points;
 
 // Brute-force twin: what is kept is what comparing with every point kept before would keep,
 // whatever the width of the cells.
-TEST(SpacedPoints, KeepsWhatAComparisonWithAllOfThemWouldKeep) {
+TEST(SpacedPoints, MatchesComparisonWithAllPoints) {
   constexpr double spacing = 0.07;
   const std::vector<Vector3f> points = random_points(5'000, 0.3, 5);
   std::vector<Vector3f> expected;
@@ -63,7 +63,7 @@ std::vector<Vector3f> filter_scans(const std::vector<std::vector<Vector3f>>& sca
 }
 
 // Columns and threads are only a way to find out sooner.
-TEST(SpacedPoints, KeepsOfScansWhatOnePointAfterTheOtherWouldKeep) {
+TEST(SpacedPoints, MatchesPointwiseFilterForScans) {
   std::vector<std::vector<Vector3f>> scans = {
       random_points(4'000, 0.3, 1), {}, random_points(5'000, 0.4, 2)};
   scans.push_back(scans.front());  // nothing new

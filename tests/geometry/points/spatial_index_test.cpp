@@ -34,7 +34,7 @@ std::vector<std::uint32_t> collect_indices(const std::vector<Neighbour>& neighbo
 /// Each query beside brute force, while the cloud grows through several sizes of the forest.
 class SpatialIndexReference : public testing::TestWithParam<double> {};
 
-TEST_P(SpatialIndexReference, AgreesWithBruteForceAsItGrows) {
+TEST_P(SpatialIndexReference, MatchesBruteForceAsIndexGrows) {
   const double cell = GetParam();
   SpatialIndex index(cell);
   const auto points = random_points(20'000, 1.0, 1);
@@ -66,7 +66,7 @@ TEST_P(SpatialIndexReference, AgreesWithBruteForceAsItGrows) {
 
 INSTANTIATE_TEST_SUITE_P(CellSizes, SpatialIndexReference, testing::Values(0.02, 0.1, 0.7));
 
-TEST(SpatialIndex, IsEmptyAtFirst) {
+TEST(SpatialIndex, IsEmptyInitially) {
   const SpatialIndex index(0.1);
   EXPECT_FALSE(index.any_within({0, 0, 0}, 0.1));
   EXPECT_TRUE(index.within({0, 0, 0}, 100.0).empty());
@@ -74,7 +74,7 @@ TEST(SpatialIndex, IsEmptyAtFirst) {
 }
 
 // A ball is closed: a point at exactly the radius is inside. 0.25 and its square are exact.
-TEST(SpatialIndex, CountsAPointAtExactlyTheRadius) {
+TEST(SpatialIndex, IncludesPointAtExactRadius) {
   SpatialIndex index(0.25);
   index.insert({1.0F, 0.0F, 0.0F});
   EXPECT_TRUE(index.any_within({1.25F, 0.0F, 0.0F}, 0.25));
@@ -82,7 +82,7 @@ TEST(SpatialIndex, CountsAPointAtExactlyTheRadius) {
 }
 
 // Points on the walls between cells, on both sides of zero, where rounding would show.
-TEST(SpatialIndex, FindsNeighboursAcrossCellWalls) {
+TEST(SpatialIndex, FindsNeighboursAcrossCellBoundaries) {
   SpatialIndex index(0.1);
   std::vector<Vector3f> points;
   for (float x = -3; x <= 3; ++x) {
@@ -94,7 +94,7 @@ TEST(SpatialIndex, FindsNeighboursAcrossCellWalls) {
   }
 }
 
-TEST(SpatialIndex, HandlesCoordinatesFarFromTheOrigin) {
+TEST(SpatialIndex, FindsPointsFarFromOrigin) {
   SpatialIndex index(0.01);
   const Vector3f far_away(3e7F, -3e7F, 12.0F);
   index.insert(far_away);
@@ -102,7 +102,7 @@ TEST(SpatialIndex, HandlesCoordinatesFarFromTheOrigin) {
   EXPECT_FALSE(index.any_within({0, 0, 0}, 0.01));
 }
 
-TEST(PointGrid, BatchesMarkWhatIsBesideThem) {
+TEST(PointGrid, DetectsPointsNearBatch) {
   PointGrid grid(0.1);
   const Vector3f old_point(0.05F, 0.05F, 0.05F), far_point(0.95F, 0.05F, 0.05F);
   grid.begin_batch();
@@ -118,7 +118,7 @@ TEST(PointGrid, BatchesMarkWhatIsBesideThem) {
 }
 
 // Property: no point is within a cell's width of the stretch that is said to be empty.
-TEST(PointGrid, EmptyLengthsAreEmpty) {
+TEST(PointGrid, ReturnsEmptyLengthWithoutNearbyPoints) {
   PointGrid grid(0.05);
   const auto points = random_points(60, 1.0, 3);
   for (const Vector3f& p : points) grid.insert(p);

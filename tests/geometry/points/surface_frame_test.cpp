@@ -25,7 +25,7 @@ void expect_orthonormal(const SurfaceFrame& frame) {
 const std::vector<Vector3f> plane_edge = {
     {0, 0, 0}, {-1, 0.5F, 0}, {-1, -0.5F, 0}, {-2, 0.1F, 0}, {-2, -0.1F, 0}};
 
-TEST(SurfaceFrame, PointsToTheSensorAndOutOfTheMeasuredSide) {
+TEST(SurfaceFrame, PointsToSensorAndOutwardFromMeasuredSide) {
   const SurfaceFrame frame = surface_frame({0, 0, 0}, plane_edge, {3, 0, 9});
   expect_orthonormal(frame);
   EXPECT_TRUE(frame.normal.isApprox(Vector3d::UnitZ(), single_precision));
@@ -33,12 +33,12 @@ TEST(SurfaceFrame, PointsToTheSensorAndOutOfTheMeasuredSide) {
 }
 
 // Trap T6: the normal is on the free side.
-TEST(SurfaceFrame, FlipsTheNormalWithTheSensor) {
+TEST(SurfaceFrame, FlipsNormalWithSensor) {
   const SurfaceFrame frame = surface_frame({0, 0, 0}, plane_edge, {3, 0, -9});
   EXPECT_TRUE(frame.normal.isApprox(-Vector3d::UnitZ(), single_precision));
 }
 
-TEST(SurfaceFrame, TurnsWithTheScene) {
+TEST(SurfaceFrame, RotatesWithScene) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(1.1, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   std::vector<Vector3f> turned;
@@ -49,7 +49,7 @@ TEST(SurfaceFrame, TurnsWithTheScene) {
   EXPECT_TRUE(frame.outward.isApprox(turn * straight.outward, single_precision));
 }
 
-TEST(SurfaceFrame, OfPointsOnALineLooksFromTheSensorAcrossTheLine) {
+TEST(SurfaceFrame, PointsAcrossLineForCollinearPoints) {
   const std::vector<Vector3f> line = {{0, 0, 0}, {-1, 0, 0}, {-2, 0, 0}, {-3, 0, 0}};
   const SurfaceFrame frame = surface_frame({0, 0, 0}, line, {5, 0, 5});
   expect_orthonormal(frame);
@@ -57,12 +57,12 @@ TEST(SurfaceFrame, OfPointsOnALineLooksFromTheSensorAcrossTheLine) {
   EXPECT_TRUE(frame.outward.isApprox(Vector3d::UnitX(), single_precision));
 }
 
-TEST(SurfaceFrame, OfALineTowardsTheSensorIsStillAFrame) {
+TEST(SurfaceFrame, IsOrthonormalForLineTowardsSensor) {
   const std::vector<Vector3f> line = {{0, 0, 0}, {-1, 0, 0}, {-2, 0, 0}};
   expect_orthonormal(surface_frame({0, 0, 0}, line, {5, 0, 0}));
 }
 
-TEST(SurfaceFrame, OfTooFewOrIdenticalPointsFacesTheSensor) {
+TEST(SurfaceFrame, FacesSensorForTooFewOrIdenticalPoints) {
   const std::vector<std::vector<Vector3f>> poor = {
       {}, {{1, 1, 1}}, {{1, 1, 1}, {2, 1, 1}}, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
   for (const auto& neighbours : poor) {
@@ -73,7 +73,7 @@ TEST(SurfaceFrame, OfTooFewOrIdenticalPointsFacesTheSensor) {
 }
 
 // A point amid its neighbours has no outer side; the axis of the middle spread stands in.
-TEST(SurfaceFrame, OfACentredPointTakesTheMiddleAxis) {
+TEST(SurfaceFrame, UsesMiddleAxisForCentredPoint) {
   const std::vector<Vector3f> centred = {{0, 0, 0}, {2, 0, 0}, {-2, 0, 0}, {0, 1, 0}, {0, -1, 0}};
   const SurfaceFrame frame = surface_frame({0, 0, 0}, centred, {0, 0, 5});
   expect_orthonormal(frame);

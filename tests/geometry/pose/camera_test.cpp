@@ -25,14 +25,14 @@ const Camera camera{CameraConfig{.width = 101,
                                  .min_range = 0.3,
                                  .max_range = 20.0}};
 
-TEST(Camera, OpticalAxisMeetsTheImageCentre) {
+TEST(Camera, ProjectsOpticalAxisToImageCentre) {
   const auto pixel = camera.project({0.0, 0.0, 5.0});
   ASSERT_TRUE(pixel);
   EXPECT_TRUE(pixel->isApprox(Vector2d(50.0, 25.0)));
 }
 
 // Property: projecting any point on a pixel's ray gives that pixel back.
-TEST(Camera, RayInvertsProject) {
+TEST(Camera, InvertsProjectionByRay) {
   for (int u = 0; u <= 100; u += 10) {
     for (int v = 0; v <= 50; v += 10) {
       const auto pixel = camera.project(7.0 * camera.ray({u, v}));
@@ -43,7 +43,7 @@ TEST(Camera, RayInvertsProject) {
 }
 
 // The outer edges of the outermost pixels subtend the angles of view.
-TEST(Camera, FrustumHasTheAnglesOfView) {
+TEST(Camera, HasFrustumOfFieldOfView) {
   const double just_inside = std::tan(0.5 - 1e-6), just_outside = std::tan(0.5 + 1e-6);
   EXPECT_TRUE(camera.project(Vector3d(-just_inside, 0, 1)));
   EXPECT_FALSE(camera.project(Vector3d(-just_outside, 0, 1)));
@@ -51,7 +51,7 @@ TEST(Camera, FrustumHasTheAnglesOfView) {
   EXPECT_FALSE(camera.project(Vector3d(0, -std::tan(0.35 + 1e-6), 1)));
 }
 
-TEST(Camera, PointsBehindTooNearTooFarAndNaNAreOutside) {
+TEST(Camera, RejectsPointsBehindTooNearTooFarAndNan) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(camera.project({0, 0, -5}));
   EXPECT_FALSE(camera.project({0, 0, 0.29}));
@@ -60,7 +60,7 @@ TEST(Camera, PointsBehindTooNearTooFarAndNaNAreOutside) {
   EXPECT_FALSE(camera.project({0, 0, nan}));
 }
 
-TEST(Camera, RejectsAFieldOfViewOfHalfATurn) {
+TEST(Camera, RejectsFieldOfViewOf180Degrees) {
   const CameraConfig config{.horizontal_fov = 3.1416};
   try {
     config.validate();
@@ -72,7 +72,7 @@ TEST(Camera, RejectsAFieldOfViewOfHalfATurn) {
 }
 
 // Known answers: the paper's formula at its published settings (spec see.md §1.3).
-TEST(ViewDistance, MatchesThePublishedSettings) {
+TEST(ViewDistance, MatchesPublishedSettings) {
   const Camera d435(CameraConfig{});
   EXPECT_NEAR(view_distance(d435, 146'000), 1.980, 5e-4);
   EXPECT_NEAR(view_distance(d435, 1e6), 1.043, 5e-4);

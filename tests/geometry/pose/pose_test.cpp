@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(CameraPose, IsARotationWhoseAxisIsTheViewingDirection) {
+TEST(CameraPose, RoundTripsViewAndIsRotation) {
   for (const Vector3d& direction :
        {Vector3d(1, 2, 3), Vector3d(-1, 0, 0), Vector3d(0, 0, 1), Vector3d(0, 0, -1)}) {
     const View view{{4, 5, 6}, direction.normalized()};
@@ -22,7 +22,7 @@ TEST(CameraPose, IsARotationWhoseAxisIsTheViewingDirection) {
   }
 }
 
-TEST(CameraPose, KeepsTheTopOfTheImageUp) {
+TEST(CameraPose, KeepsImageTopUp) {
   const Eigen::Isometry3d pose = camera_pose({{0, 0, 0}, Vector3d(0, 1, 0)});
   EXPECT_TRUE((pose.linear() * Vector3d(1, 0, 0)).isApprox(Vector3d(1, 0, 0)));   // right: east
   EXPECT_TRUE((pose.linear() * Vector3d(0, 1, 0)).isApprox(Vector3d(0, 0, -1)));  // down
@@ -30,7 +30,7 @@ TEST(CameraPose, KeepsTheTopOfTheImageUp) {
   EXPECT_TRUE((nadir.linear() * Vector3d(0, -1, 0)).isApprox(Vector3d(0, 1, 0)));  // top: north
 }
 
-TEST(AnyOrthogonal, IsAUnitVectorAcrossTheAxis) {
+TEST(AnyOrthogonal, IsUnitVectorOrthogonalToAxis) {
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, -1, 0), Vector3d(1, 1, 1)}) {
     const Vector3d across = any_orthogonal(axis.normalized());
     EXPECT_NEAR(across.norm(), 1.0, 1e-12);

@@ -25,7 +25,7 @@ bool is_in_notched(const Vector2d& p) {
 }
 
 // Coordinates are multiples of 1/2: every product is exact, so the border is met to the bit.
-TEST(Contains, AgreesWithInequalitiesInsideOutsideAndOnTheBorder) {
+TEST(Contains, MatchesInequalitiesInsideOutsideAndOnBorder) {
   for (const auto& polygon : {notched, reversed(notched)}) {
     for (int i = -4; i <= 20; ++i) {
       for (int j = -4; j <= 20; ++j) {
@@ -36,7 +36,7 @@ TEST(Contains, AgreesWithInequalitiesInsideOutsideAndOnTheBorder) {
   }
 }
 
-TEST(Contains, TheBorderBelongsToAPolygonWhicheverEdgeItIs) {
+TEST(Contains, IncludesPointsOnEveryEdge) {
   for (const auto& polygon : {square, reversed(square)}) {
     for (const Vector2d& p : {Vector2d(0, 5), Vector2d(10, 5), Vector2d(5, 0), Vector2d(5, 10),
                               Vector2d(0, 0), Vector2d(10, 0), Vector2d(10, 10), Vector2d(0, 10)}) {
@@ -47,7 +47,7 @@ TEST(Contains, TheBorderBelongsToAPolygonWhicheverEdgeItIs) {
   }
 }
 
-TEST(Prism, ItsFloorAndCeilingBelongToIt) {
+TEST(Prism, ContainsItsFloorAndCeiling) {
   const Prism prism{"square", square, 0, 10};
   EXPECT_TRUE(contains(prism, {0, 5, 0}));
   EXPECT_TRUE(contains(prism, {10, 10, 10}));

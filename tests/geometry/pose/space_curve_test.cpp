@@ -10,7 +10,7 @@
 namespace skycap::geometry {
 namespace {
 
-TEST(SpaceCurve, VisitsTheCellsOfACubeEighthByEighth) {
+TEST(SpaceCurve, VisitsCellsOctantByOctant) {
   const CurveGrid grid{Eigen::Vector3d::Zero(), 1.0};
   EXPECT_EQ(grid.key({0.5F, 0.5F, 0.5F}), 0U);
   EXPECT_EQ(grid.key({1.5F, 0.5F, 0.5F}), 1U);
@@ -20,7 +20,7 @@ TEST(SpaceCurve, VisitsTheCellsOfACubeEighthByEighth) {
 }
 
 // Property: each point once, keys never falling, equal ones as they were.
-TEST(SpaceCurve, SortsAllPoints) {
+TEST(SpaceCurve, SortsPointsByKeyAndIndex) {
   std::mt19937_64 random(1);
   std::uniform_int_distribution<int> coordinate(0, 40);
   std::vector<Eigen::Vector3f> points;
@@ -38,7 +38,7 @@ TEST(SpaceCurve, SortsAllPoints) {
   EXPECT_EQ(std::ranges::count(is_there, true), 5000);
 }
 
-TEST(SpaceCurve, TakesPointsThatAreNoPlaces) {
+TEST(SpaceCurve, AcceptsNanAndInfiniteCoordinates) {
   constexpr float infinity = std::numeric_limits<float>::infinity(),
                   none = std::numeric_limits<float>::quiet_NaN();
   const CurveGrid grid{Eigen::Vector3d::Zero(), 1.0};

@@ -140,7 +140,7 @@ class EvenSphere : public testing::TestWithParam<Spread> {};
 INSTANTIATE_TEST_SUITE_P(Spreads, EvenSphere, testing::ValuesIn(all_spreads));
 
 // Wherever a search starts: asking for caps that there are not, knowing little, or the answer.
-TEST_P(EvenSphere, NoCapIsCentredWhereClearingsWereGivenUp) {
+TEST_P(EvenSphere, HasAllClearCapsInsideClearings) {
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 3; ++trial) {
     const Directions occluded = spread_out(GetParam(), random);
@@ -165,7 +165,7 @@ TEST_P(EvenSphere, NoCapIsCentredWhereClearingsWereGivenUp) {
   }
 }
 
-TEST_P(EvenSphere, TheLargestCapIsThatOfTheFullHull) {
+TEST_P(EvenSphere, MatchesFullHullForLargestCap) {
   std::mt19937_64 random(2);
   for (int trial = 0; trial < 3; ++trial) {
     const Directions occluded = spread_out(GetParam(), random);
@@ -195,7 +195,7 @@ TEST_P(EvenSphere, SelectsCapNearestToClearDirectionWhenEqual) {
   }
 }
 
-TEST(Clearings, OfARandomSphereAreFewAndSmall) {
+TEST(Clearings, AreFewAndSmallOnRandomSphere) {
   std::mt19937_64 random(4);
   Directions occluded;
   for (int i = 0; i < 20'000; ++i) occluded.push_back(random_direction(random));
@@ -206,7 +206,7 @@ TEST(Clearings, OfARandomSphereAreFewAndSmall) {
   for (const SpherePart& part : clearings.parts) EXPECT_LT(part.radius, 0.2 * cap_radius);
 }
 
-TEST(Clearings, OfManyEqualCapsAreTheWholeSphere) {
+TEST(Clearings, AreWholeSphereForManyEqualCaps) {
   const Directions occluded = spiral(20'000);
   DirectionIndex index(occluded);
   const Clearings clearings = find_clearings(index, h(occluded, Vector3d::UnitX()));
@@ -217,7 +217,7 @@ TEST(Clearings, OfManyEqualCapsAreTheWholeSphere) {
   }
 }
 
-TEST(Clearings, MeetTheCapsThatReachThem) {
+TEST(Clearings, IntersectCapsThatReachThem) {
   const Clearings clearings{{{Vector3d::UnitX(), 0.1}, {Vector3d::UnitZ(), 0.1}}, 0.9};
   const auto cap_at = [](double angle) {
     return Vector3d(std::cos(angle), std::sin(angle), 0.0);  // of radius 0.2, from the first part

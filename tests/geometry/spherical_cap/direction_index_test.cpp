@@ -28,7 +28,7 @@ void expect_equal_to_brute_force(const std::vector<Vector3d>& directions, const 
 }
 
 // Sets from one direction to enough for the finest grid, spread out and in a tight bundle.
-TEST(DirectionIndex, NearestEqualsBruteForce) {
+TEST(DirectionIndex, MatchesBruteForce) {
   std::mt19937_64 random(1);
   for (const int count : {1, 2, 7, 100, 3000, 60'000}) {
     for (const double spread : {1.0, 1e-3}) {
@@ -48,7 +48,7 @@ TEST(DirectionIndex, NearestEqualsBruteForce) {
 }
 
 // Coordinates of exactly 1 and just above it lie on the rim of the grid.
-TEST(DirectionIndex, TheAxesAreMembersLikeAnyOther) {
+TEST(DirectionIndex, MatchesBruteForceForAxes) {
   std::vector<Vector3d> axes;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double length : {-1.0 - 5e-7, -1.0, 1.0, 1.0 + 5e-7}) {

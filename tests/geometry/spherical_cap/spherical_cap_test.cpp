@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, ExactCap, testing::Values(CapPolicy::local, C
                            return policy.param == CapPolicy::local ? "Local" : "Global";
                          });
 
-TEST_P(ExactCap, OctahedronGivesTheFacetOnTheClearSide) {
+TEST_P(ExactCap, IsFacetOnClearSideOfOctahedron) {
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
       for (const double z : {-1.0, 1.0}) {
@@ -102,7 +102,7 @@ TEST_P(ExactCap, OctahedronGivesTheFacetOnTheClearSide) {
   }
 }
 
-TEST_P(ExactCap, TetrahedronGivesAFacet) {
+TEST_P(ExactCap, IsFacetOfTetrahedron) {
   for (const Vector3d& vertex : tetrahedron()) {
     const auto found = cap(tetrahedron(), (Vector3d(0.1, 0.2, 0.3) - vertex).normalized());
     EXPECT_NEAR(found.cosine, 1.0 / 3.0, rounding);
@@ -110,13 +110,13 @@ TEST_P(ExactCap, TetrahedronGivesAFacet) {
   }
 }
 
-TEST_P(ExactCap, RingAboveTheEquatorGivesTheFarPole) {
+TEST_P(ExactCap, IsFarPoleOfRingAboveEquator) {
   const auto found = cap(ring(std::numbers::pi / 3.0, 50), Vector3d::UnitX());
   EXPECT_LT((found.direction + Vector3d::UnitZ()).norm(), rounding);
   EXPECT_NEAR(found.cosine, -0.5, rounding);
 }
 
-TEST_P(ExactCap, GreatCircleGivesThePoleOnTheClearSide) {
+TEST_P(ExactCap, IsPoleOnClearSideOfGreatCircle) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond(0.3, -0.2, 0.8, 0.4).normalized();
   Directions circle = ring(std::numbers::pi / 2.0, 37);
   for (Vector3d& q : circle) q = turn * q;
@@ -128,7 +128,7 @@ TEST_P(ExactCap, GreatCircleGivesThePoleOnTheClearSide) {
   }
 }
 
-TEST_P(ExactCap, ClosedHemisphereGivesItsPole) {
+TEST_P(ExactCap, IsPoleOfClosedHemisphere) {
   Directions half = ring(std::numbers::pi / 2.0, 24);
   for (const double polar : {0.3, 0.8, 1.2}) {
     const Directions more = ring(polar, 24);
@@ -139,13 +139,13 @@ TEST_P(ExactCap, ClosedHemisphereGivesItsPole) {
   EXPECT_NEAR(found.cosine, 0.0, rounding);
 }
 
-TEST_P(ExactCap, SingleDirectionGivesItsAntipode) {
+TEST_P(ExactCap, IsAntipodeOfSingleDirection) {
   const Vector3d q = Vector3d(1, 2, 3).normalized();
   EXPECT_LT((cap({q}, Vector3d::UnitX()).direction + q).norm(), rounding);
   EXPECT_LT((cap(Directions(500, q), Vector3d::UnitX()).direction + q).norm(), rounding);
 }
 
-TEST_P(ExactCap, AntipodalPairGivesTheNearestDirectionAtRightAngles) {
+TEST_P(ExactCap, IsNearestOrthogonalDirectionForAntipodalPair) {
   const Vector3d q = Vector3d(1, 2, 3).normalized();
   const Vector3d clear = Vector3d(1, 0, 1).normalized();
   const auto found = cap({q, -q, q, -q}, clear);
@@ -155,19 +155,19 @@ TEST_P(ExactCap, AntipodalPairGivesTheNearestDirectionAtRightAngles) {
   EXPECT_NEAR(cap({q, -q}, q).direction.dot(q), 0.0, rounding);
 }
 
-TEST_P(ExactCap, CoplanarDirectionsGiveTheAxisOfTheirCircle) {
+TEST_P(ExactCap, IsCircleAxisForCoplanarDirections) {
   const auto found = cap(ring(2.5, 3), Vector3d::UnitX());
   EXPECT_LT((found.direction - Vector3d::UnitZ()).norm(), rounding);
   EXPECT_NEAR(found.cosine, std::cos(2.5), rounding);
 }
 
-TEST_P(ExactCap, EmptySetGivesTheClearDirection) {
+TEST_P(ExactCap, IsClearDirectionForEmptySet) {
   const auto found = cap({}, Vector3d::UnitY());
   EXPECT_EQ(found.direction, Vector3d::UnitY());
   EXPECT_EQ(found.cosine, -1.0);
 }
 
-TEST_P(ExactCap, DuplicatesChangeNothing) {
+TEST_P(ExactCap, IgnoresDuplicates) {
   std::mt19937_64 random(3);
   Directions once, thrice;
   for (int i = 0; i < 60; ++i) once.push_back(random_direction(random));
@@ -176,7 +176,7 @@ TEST_P(ExactCap, DuplicatesChangeNothing) {
   EXPECT_LT((cap(once, clear).direction - cap(thrice, clear).direction).norm(), rounding);
 }
 
-TEST_P(ExactCap, NoDirectionAroundTheFoundOneIsClearer) {
+TEST_P(ExactCap, IsLocalOptimum) {
   std::mt19937_64 random(5);
   for (int trial = 0; trial < 50; ++trial) {
     Directions occluded;
@@ -192,7 +192,7 @@ TEST_P(ExactCap, NoDirectionAroundTheFoundOneIsClearer) {
 
 // The answer turns with its question. The tolerance is that of the tie rules, which none of these
 // sets should need.
-TEST_P(ExactCap, TurnsWithTheDirections) {
+TEST_P(ExactCap, RotatesWithDirections) {
   std::mt19937_64 random(8);
   for (int trial = 0; trial < 40; ++trial) {
     const Directions occluded = random_set(static_cast<Kind>(trial % 4), 300, random);
@@ -206,7 +206,7 @@ TEST_P(ExactCap, TurnsWithTheDirections) {
   }
 }
 
-TEST_P(ExactCap, IsTheSameForAnyOrderOfTheDirections) {
+TEST_P(ExactCap, DoesNotDependOnOrderOfDirections) {
   std::mt19937_64 random(9);
   Directions occluded = random_set(Kind::clusters, 2000, random);
   const Vector3d clear = random_direction(random);
@@ -216,7 +216,7 @@ TEST_P(ExactCap, IsTheSameForAnyOrderOfTheDirections) {
   EXPECT_LT((before.direction - after.direction).norm(), rounding);
 }
 
-TEST_P(ExactCap, ADenseSphereHasNoClearDirection) {
+TEST_P(ExactCap, IsSmallOnDenseSphere) {
   std::mt19937_64 random(10);
   const auto found = cap(random_set(Kind::everywhere, 20'000, random), Vector3d::UnitX());
   EXPECT_GT(found.cosine, std::cos(0.06));  // the mean spacing is 0.025 rad
@@ -224,7 +224,7 @@ TEST_P(ExactCap, ADenseSphereHasNoClearDirection) {
 
 // Directions that all but lie in one plane with the origin: it is next to the boundary of their
 // hull. Cosines up to 1e-6 count as equal (cap_tolerance), so the pole is found to that.
-TEST_P(ExactCap, OriginNextToTheBoundaryIsNoTrouble) {
+TEST_P(ExactCap, IsStableWhenOriginIsNextToHullBoundary) {
   std::mt19937_64 random(11);
   for (const double thickness : {0.0, 1e-16, 1e-12, 1e-9, 1e-7, 1e-5}) {
     Directions circle = ring(std::numbers::pi / 2.0, 100);
@@ -255,7 +255,7 @@ double smallest_facet_offset(const Directions& occluded) {
 }
 
 // CGAL's hull of all directions, and a dense search over the sphere, are independent of our method.
-TEST(GlobalCap, EqualsTheFullHullAndIsNeverWorseThanADenseSearch) {
+TEST(GlobalCap, MatchesFullHullAndDenseSearch) {
   std::mt19937_64 random(12);
   Directions grid;
   for (int i = 0; i < 20'000; ++i) grid.push_back(random_direction(random));
@@ -286,7 +286,7 @@ TEST(GlobalCap, SelectsCapNearestToClearDirectionWhenEqual) {
 // The program ends where a constraint may be violated by 1e-3. As |n| = h at its optimum, that
 // leaves h uncertain by 1e-3 / h. It is a local method with steps of its own making, so now and
 // then it finds another, larger cap: in 2 of 6,400 such sets when LOCAL was made.
-TEST(LocalCap, IsNoWorseThanThePapersProgramFromTheSameStart) {
+TEST(LocalCap, IsNotWorseThanNonlinearProgram) {
   std::mt19937_64 random(13);
   int compared = 0, better = 0;
   for (int trial = 0; trial < 400; ++trial) {
@@ -306,7 +306,7 @@ TEST(LocalCap, IsNoWorseThanThePapersProgramFromTheSameStart) {
 
 // The paper's basin: a clear hole is not left for a larger one on the far side, where the object's
 // unseen inside may be.
-TEST(LocalCap, StaysInTheHoleAroundTheClearDirection) {
+TEST(LocalCap, StaysInHoleAroundClearDirection) {
   std::mt19937_64 random(14);
   const Vector3d near = Vector3d::UnitZ(), far(std::sin(2.2), 0, std::cos(2.2));
   Directions occluded;
@@ -322,7 +322,7 @@ TEST(LocalCap, StaysInTheHoleAroundTheClearDirection) {
   EXPECT_LT((largest->direction - far).norm(), 0.05);
 }
 
-TEST(NonlinearProgram, SolvesBothProgramsAndFailsOnAGreatCircle) {
+TEST(NonlinearProgram, SolvesBothProgramsAndFailsOnGreatCircle) {
   const CapConfig program{CapPolicy::nonlinear_program};
   const Vector3d middle = Vector3d(1, 1, 1).normalized();
   const auto facet =
@@ -335,7 +335,7 @@ TEST(NonlinearProgram, SolvesBothProgramsAndFailsOnAGreatCircle) {
   EXPECT_FALSE(clearest_direction(ring(std::numbers::pi / 2.0, 40), Vector3d::UnitZ(), program));
 }
 
-TEST(CapConfig, RefusesNoEvaluations) {
+TEST(CapConfig, RejectsZeroEvaluations) {
   const CapConfig config{.max_evaluations = 0};
   EXPECT_THAT([&] { config.validate(); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("max_evaluations is 0")));

@@ -62,7 +62,7 @@ double brute_force(const Mesh& mesh, const Vector3d& p) {
   return nearest;
 }
 
-TEST(MeshDistance, OfPointsEqualsBruteForce) {
+TEST(MeshDistance, MatchesBruteForceForPoints) {
   std::mt19937_64 random(1);
   const Mesh mesh = random_soup(random, 300);
   const MeshDistance surface(mesh);
@@ -92,7 +92,7 @@ void expect_single_point_distances(const Mesh& mesh, const std::vector<Eigen::Ve
 }
 
 // However they lie: in the order of a scan, jumping about, far away, on corners and edges.
-TEST(MeshDistance, OfManyPointsEqualsThatOfEach) {
+TEST(MeshDistance, MatchesSinglePointDistancesForManyPoints) {
   std::mt19937_64 random(2);
   const Mesh mesh = random_soup(random, 200);
   std::vector<Eigen::Vector3f> points;
@@ -104,7 +104,7 @@ TEST(MeshDistance, OfManyPointsEqualsThatOfEach) {
   expect_single_point_distances(mesh, points);
 }
 
-TEST(MeshDistance, OfFewPointsEqualsThatOfEach) {
+TEST(MeshDistance, MatchesSinglePointDistancesForFewPoints) {
   std::mt19937_64 random(6);
   const Mesh mesh = random_soup(random, 3);
   for (const int count : {0, 1, 15, 17}) {
@@ -116,7 +116,7 @@ TEST(MeshDistance, OfFewPointsEqualsThatOfEach) {
 }
 
 // Boxes are kept in single precision, which rounds by millimetres here; distances are not.
-TEST(MeshDistance, IsExactFarFromTheOrigin) {
+TEST(MeshDistance, IsExactFarFromOrigin) {
   std::mt19937_64 random(3);
   Mesh mesh = random_soup(random, 300);
   const Vector3d there(15000.0, -12000.0, 300.0);
@@ -129,7 +129,7 @@ TEST(MeshDistance, IsExactFarFromTheOrigin) {
 }
 
 // Needles a metre long and a nanometre thick are as near as the edges that they are made of.
-TEST(MeshDistance, HasTheAnswersOfNeedles) {
+TEST(MeshDistance, MatchesEdgeDistancesForNeedleTriangles) {
   std::mt19937_64 random(4);
   Mesh needles;
   for (int i = 0; i < 50; ++i) {
@@ -156,7 +156,7 @@ TEST(MeshDistance, HasTheAnswersOfNeedles) {
   expect_single_point_distances(needles, points);
 }
 
-TEST(MeshDistance, NamesTheFirstOfEquallyNearTriangles) {
+TEST(MeshDistance, ReturnsFirstOfEquallyNearTriangles) {
   const Mesh fan{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
                  {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}};
   EXPECT_EQ(MeshDistance(fan).closest({0, 0, 1}).triangle, 0U);
@@ -164,7 +164,7 @@ TEST(MeshDistance, NamesTheFirstOfEquallyNearTriangles) {
 }
 
 // Against dense samples: between them the distance changes by half their spacing at most.
-TEST(MeshDistance, TellsWhichWaysKeepADistance) {
+TEST(MeshDistance, DetectsPathsThatKeepDistance) {
   std::mt19937_64 random(5);
   const Mesh mesh = random_soup(random, 60);
   const MeshDistance surface(mesh);
@@ -190,7 +190,7 @@ TEST(MeshDistance, TellsWhichWaysKeepADistance) {
   EXPECT_GT(rejected, 20);
 }
 
-TEST(MeshDistance, HasTheAnswersOfASquare) {
+TEST(MeshDistance, MatchesKnownDistancesToSquare) {
   const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                     {{0, 1, 2}, {0, 2, 3}, {0, 1, 1}}};
   const MeshDistance surface(square);
@@ -199,7 +199,7 @@ TEST(MeshDistance, HasTheAnswersOfASquare) {
   EXPECT_EQ(surface.closest({0.9, 0.1, 7}).triangle, 0U);
 }
 
-TEST(MeshDistance, EndsWithCoordinatesThatNoFloatHolds) {
+TEST(MeshDistance, IsFiniteForCoordinatesBeyondSinglePrecision) {
   for (const double far_off : {1e37, 1e39, 1e60}) {
     Mesh mesh;
     for (int i = 0; i < 200; ++i) {
@@ -216,7 +216,7 @@ TEST(MeshDistance, EndsWithCoordinatesThatNoFloatHolds) {
   }
 }
 
-TEST(MeshDistance, RefusesAMeshWithoutSurface) {
+TEST(MeshDistance, RejectsMeshWithoutSurface) {
   EXPECT_THAT(testing_support::thrown_message([&] { MeshDistance(Mesh{}); }),
               testing::HasSubstr("there is no triangle with a positive area"));
 }

@@ -29,7 +29,7 @@ double volume(const Mesh& mesh) {
 
 constexpr double octahedron_volume = 4.0 / 3.0;
 
-TEST(MeshRepair, WeldJoinsEqualVerticesAndDropsUnusedOnes) {
+TEST(MeshRepair, MergesEqualVerticesAndRemovesUnusedOnes) {
   Mesh mesh{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-0.0, 1, 0}, {1, 1, 0}},
             {{1, 2, 3}, {4, 6, 5}}};
   weld_vertices(mesh);
@@ -38,7 +38,7 @@ TEST(MeshRepair, WeldJoinsEqualVerticesAndDropsUnusedOnes) {
   EXPECT_EQ(mesh.triangles[1], (std::array<std::uint32_t, 3>{1, 3, 2}));
 }
 
-TEST(MeshRepair, OnlyTrianglesWithoutAreaAreDropped) {
+TEST(MeshRepair, RemovesOnlyTrianglesWithoutArea) {
   Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1e-12, 0}}, {{0, 1, 1}, {0, 1, 2}, {0, 2, 3}}};
   drop_degenerate_triangles(mesh);
   ASSERT_EQ(mesh.triangles.size(), 1U);
@@ -46,7 +46,7 @@ TEST(MeshRepair, OnlyTrianglesWithoutAreaAreDropped) {
 }
 
 // Any turning of the triangles of separate closed bodies is undone.
-TEST(MeshRepair, RandomlyTurnedBodiesFaceOutwardAgain) {
+TEST(MeshRepair, OrientsRandomlyFlippedSolidsOutward) {
   std::mt19937_64 random(11);
   for (int trial = 0; trial < 20; ++trial) {
     Mesh mesh = octahedron({0, 0, 0});
@@ -60,7 +60,7 @@ TEST(MeshRepair, RandomlyTurnedBodiesFaceOutwardAgain) {
   }
 }
 
-TEST(MeshRepair, AnOpenShellFacesAwayFromItsInside) {
+TEST(MeshRepair, OrientsOpenShellOutward) {
   Mesh shell = octahedron({5, 5, 5});
   shell.triangles.resize(6);
   Mesh turned = shell;
@@ -75,7 +75,7 @@ TEST(MeshRepair, AnOpenShellFacesAwayFromItsInside) {
   }
 }
 
-TEST(MeshRepair, EdgesOfMoreThanTwoTrianglesDoNotJoinParts) {
+TEST(MeshRepair, SeparatesPartsAtNonManifoldEdges) {
   Mesh fan{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
            {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}};
   const auto before = fan.triangles;

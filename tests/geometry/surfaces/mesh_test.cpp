@@ -26,14 +26,14 @@ std::string error_message(const Mesh& mesh) {
   return testing_support::thrown_message([&] { validate(mesh); });
 }
 
-TEST(Mesh, MeasuresAreaAndBoxOfWhatTrianglesUse) {
+TEST(Mesh, MeasuresAreaAndBoxOfUsedVertices) {
   Mesh mesh = two_triangles();
   mesh.vertices.emplace_back(99, 99, 99);  // used by no triangle
   EXPECT_DOUBLE_EQ(surface_area(mesh), 2.0);
   EXPECT_EQ(bounding_box(mesh).max(), Vector3d(8, 1, 0));
 }
 
-TEST(Mesh, ValidateNamesWhatIsWrong) {
+TEST(Mesh, ReportsTheInvalidElement) {
   EXPECT_EQ(error_message(two_triangles()), "");
   Mesh bad_index = two_triangles();
   bad_index.triangles[1][2] = 6;
@@ -44,14 +44,14 @@ TEST(Mesh, ValidateNamesWhatIsWrong) {
   EXPECT_THAT(error_message(Mesh{}), HasSubstr("no triangle"));
 }
 
-TEST(Mesh, AReflectionKeepsTrianglesFacingOutward) {
+TEST(Mesh, KeepsOrientationUnderReflection) {
   Mesh mesh = two_triangles();
   transform(mesh, Eigen::Affine3d(Eigen::Scaling(1.0, 1.0, -1.0)));
   const SurfaceSamples samples = sample_surface(mesh, 1, 1);
   EXPECT_GT(-samples.normals[0].z(), 0.0);  // +z before, so -z in the mirror
 }
 
-TEST(Mesh, AppendKeepsBothParts) {
+TEST(Mesh, KeepsBothPartsWhenAppended) {
   Mesh mesh = two_triangles();
   append(mesh, two_triangles());
   EXPECT_DOUBLE_EQ(surface_area(mesh), 4.0);

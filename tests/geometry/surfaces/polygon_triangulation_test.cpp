@@ -35,21 +35,21 @@ std::vector<Vector3d> square(double low, double high) {
 
 double area(const Mesh& mesh) { return mesh.triangles.empty() ? 0.0 : surface_area(mesh); }
 
-TEST(PolygonTriangulation, CutsHolesOutWhicheverWayTheyTurn) {
+TEST(PolygonTriangulation, CutsHolesOfBothOrientations) {
   std::vector<Vector3d> hole = square(2, 4);
   EXPECT_DOUBLE_EQ(area(Polygon().ring(square(0, 10)).ring(hole).mesh()), 96.0);
   std::reverse(hole.begin(), hole.end());
   EXPECT_DOUBLE_EQ(area(Polygon().ring(square(0, 10)).ring(hole).mesh()), 96.0);
 }
 
-TEST(PolygonTriangulation, FillsWhatAnOddNumberOfRingsSurrounds) {
+TEST(PolygonTriangulation, FillsAreasInsideOddNumberOfRings) {
   EXPECT_DOUBLE_EQ(area(Polygon().ring(square(0, 10)).ring(square(1, 9)).ring(square(2, 8)).mesh()),
                    100.0 - 64.0 + 36.0);
   // A hole that shares two edges with the outline leaves an L.
   EXPECT_DOUBLE_EQ(area(Polygon().ring(square(0, 10)).ring(square(0, 5)).mesh()), 75.0);
 }
 
-TEST(PolygonTriangulation, TurnsAsTheOutlineDoesOnAnyPlane) {
+TEST(PolygonTriangulation, KeepsOrientationOfOutlineOnAnyPlane) {
   const Vector3d right(0.0, 0.6, 0.8), up(1.0, 0.0, 0.0), shift(1e6, -2e6, 300.0);
   std::vector<Vector3d> outline;
   for (const Vector3d& p : {Vector3d(0, 0, 0), Vector3d(9, 0, 0), Vector3d(9, 9, 0),
@@ -65,7 +65,7 @@ TEST(PolygonTriangulation, TurnsAsTheOutlineDoesOnAnyPlane) {
   }
 }
 
-TEST(PolygonTriangulation, TakesRingsThatCloseTouchOrCross) {
+TEST(PolygonTriangulation, AcceptsClosedTouchingAndCrossingRings) {
   std::vector<Vector3d> closed = square(0, 3);
   closed.push_back(closed[0]);
   EXPECT_DOUBLE_EQ(area(Polygon().ring(closed).mesh()), 9.0);
@@ -74,7 +74,7 @@ TEST(PolygonTriangulation, TakesRingsThatCloseTouchOrCross) {
   EXPECT_NEAR(area(bow), 0.5 * 2.0 * 2.0 + 0.5 * 4.0 * 4.0, 1e-9);
 }
 
-TEST(PolygonTriangulation, AddsNothingForWhatHasNoArea) {
+TEST(PolygonTriangulation, AddsNoTrianglesForRingsWithoutArea) {
   EXPECT_EQ(area(Polygon().ring({{0, 0, 0}, {1, 1, 1}}).mesh()), 0.0);
   EXPECT_EQ(area(Polygon().ring({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}).mesh()), 0.0);
   EXPECT_EQ(area(Polygon().mesh()), 0.0);
@@ -83,7 +83,7 @@ TEST(PolygonTriangulation, AddsNothingForWhatHasNoArea) {
 }
 
 /// The area of a star-shaped polygon by the shoelace formula, an independent way.
-TEST(PolygonTriangulation, KeepsTheAreaOfRandomStars) {
+TEST(PolygonTriangulation, KeepsAreaOfRandomStars) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> radius(1.0, 5.0);
   for (int trial = 0; trial < 100; ++trial) {

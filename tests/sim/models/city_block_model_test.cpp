@@ -58,7 +58,7 @@ TEST(CityBlock, HasNineToSixteenSeparateBuildingsOnItsGround) {
   EXPECT_GT(counts.size(), 2U);  // the seed decides how many
 }
 
-TEST(CityBlock, EveryPartIsClosedAndFacesOutwards) {
+TEST(CityBlock, HasClosedPartsThatFaceOutward) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for (const models::Part& part :
          testing_support::not_empty(models::city_block({seed, {0.02}}))) {
@@ -67,7 +67,7 @@ TEST(CityBlock, EveryPartIsClosedAndFacesOutwards) {
   }
 }
 
-TEST(CityBlock, NoRayFromAboveMeetsABackFace) {
+TEST(CityBlock, ShowsNoBackFaceFromAbove) {
   const Scene scene(builtin_model("city-block"));
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> coordinate(-100.0, 100.0), height(0.5, 60.0);
@@ -84,7 +84,7 @@ TEST(CityBlock, NoRayFromAboveMeetsABackFace) {
   EXPECT_EQ(backs, 0);
 }
 
-TEST(CityBlock, EveryArcadeIsOpenAlongItsWalkAndThroughItsArches) {
+TEST(CityBlock, HasArcadesThatAreOpenAlongWalkAndThroughArches) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(seed);
     const models::Parts parts = models::city_block({seed, {0.02}});
@@ -109,7 +109,7 @@ TEST(CityBlock, EveryArcadeIsOpenAlongItsWalkAndThroughItsArches) {
   }
 }
 
-TEST(CityBlock, CourtsAreEnclosedByWingsAndOpenToTheSky) {
+TEST(CityBlock, HasCourtsEnclosedByWingsAndOpenToSky) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const models::Parts parts = models::city_block({seed, {0.02}});
     const Scene scene(join(parts));
@@ -128,7 +128,7 @@ TEST(CityBlock, CourtsAreEnclosedByWingsAndOpenToTheSky) {
   }
 }
 
-TEST(CityBlock, TheSeedDecides) {
+TEST(CityBlock, DependsOnlyOnSeed) {
   ModelOptions options;
   options.detail = LevelOfDetail::coarse;
   options.seed = 4;
@@ -138,7 +138,7 @@ TEST(CityBlock, TheSeedDecides) {
   EXPECT_NE(builtin_model("city-block", options).vertices.size(), one.vertices.size());
 }
 
-TEST(BuiltinModel, PutsItsGroundUnderItOnDemand) {
+TEST(BuiltinModel, HasGroundOnRequest) {
   ModelOptions options;
   options.detail = LevelOfDetail::coarse;
   for (const std::string_view name : testing_support::not_empty(builtin_models())) {
@@ -154,7 +154,7 @@ TEST(BuiltinModel, PutsItsGroundUnderItOnDemand) {
   }
 }
 
-TEST(BuiltinModel, NamesItsModelsWhenItDoesNotKnowOne) {
+TEST(BuiltinModel, ListsModelsWhenNameIsUnknown) {
   try {
     builtin_model("bodleian");
     FAIL() << "made a model without a name";

@@ -51,7 +51,7 @@ class Positions {
   std::mt19937_64 random_{7};
 };
 
-TEST_P(Families, AreClosedSolidsThatFaceOutwards) {
+TEST_P(Families, AreClosedSolidsThatFaceOutward) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     for (const Part& part : testing_support::not_empty(make_scene(seed).parts)) {
       ASSERT_EQ(closedness_error(part.mesh), "") << part.name << ", seed " << seed;
@@ -59,7 +59,7 @@ TEST_P(Families, AreClosedSolidsThatFaceOutwards) {
   }
 }
 
-TEST_P(Families, StandOnTheGroundAroundTheOrigin) {
+TEST_P(Families, AreOnGroundAroundOrigin) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const AlignedBox3d box = bounding_box(join(make_scene(seed).parts));
     EXPECT_NEAR(box.min().z(), 0.0, 1e-9) << seed;
@@ -69,13 +69,13 @@ TEST_P(Families, StandOnTheGroundAroundTheOrigin) {
   }
 }
 
-TEST_P(Families, AreDrawnFromTheSeedAlone) {
+TEST_P(Families, DependOnlyOnSeed) {
   const geometry::Mesh one = join(make_scene(1).parts);
   EXPECT_EQ(join(make_scene(1).parts).vertices, one.vertices);
   EXPECT_NE(join(make_scene(2).parts).vertices, one.vertices);
 }
 
-TEST_P(Families, LetNoRayIntoSealedRoomsAndSomeIntoOpenOnes) {
+TEST_P(Families, BlockRaysIntoSealedRoomsOnly) {
   Positions positions;
   std::size_t rooms = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -99,7 +99,7 @@ TEST_P(Families, LetNoRayIntoSealedRoomsAndSomeIntoOpenOnes) {
   if (rooms == 0) GTEST_SKIP() << "a family without rooms";
 }
 
-TEST(FamilyScenes, SomeHaveRooms) {
+TEST(FamilyScenes, HaveSealedAndOpenRooms) {
   std::size_t sealed = 0, open = 0;
   for (const Family& family : families()) {
     geometry::RandomNumbers draw(1);
@@ -134,7 +134,7 @@ FamilyScene drawn(FamilyScene (*make)(geometry::RandomNumbers&, const Fineness&)
   return make(draw, coarse);
 }
 
-TEST(FamilyScenes, HaveWhatTheyAreNamedAfter) {
+TEST(FamilyScenes, HaveTheNamedObjects) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     for (const Part& part : testing_support::not_empty(drawn(factory, seed).parts)) {
       const Vector3d size = bounding_box(part.mesh).sizes();
@@ -155,7 +155,7 @@ TEST(FamilyScenes, HaveWhatTheyAreNamedAfter) {
   }
 }
 
-TEST(FamilyScenes, LanesOfTheOldTownAreWideEnoughToFlyThrough) {
+TEST(FamilyScenes, HaveOldTownLanesWideEnoughToFlyThrough) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     std::vector<AlignedBox3d> houses;
     for (const Part& part : drawn(old_town, seed).parts) {
@@ -170,7 +170,7 @@ TEST(FamilyScenes, LanesOfTheOldTownAreWideEnoughToFlyThrough) {
   }
 }
 
-TEST(FamilyScenes, OnlyTheGlassHouseHasGlassAndAMirror) {
+TEST(FamilyScenes, HaveGlassAndMirrorInGlassHouseOnly) {
   for (const std::string_view name : testing_support::not_empty(model_families())) {
     const std::vector<Surface> surfaces = builtin_surfaces(name);
     if (name != "glass-house") {

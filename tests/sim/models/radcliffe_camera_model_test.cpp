@@ -79,7 +79,7 @@ TEST(RadcliffeCamera, IsFortyMetresTall) {
   EXPECT_NEAR(2 * radius_at(0.0, 6.2), 30.48, 0.4);  // on a keystone or beside it
 }
 
-TEST(RadcliffeCamera, ItsStagesHaveTheHeightsOfTheTable) {
+TEST(RadcliffeCamera, HasStageHeightsOfTable) {
   // Stated: 80 ft to the balustrade and 60 ft above it.
   EXPECT_NEAR(table.balustrade_top(), 24.4, 0.02);
   EXPECT_NEAR(table.total_height - table.balustrade_top(), 60 * 0.3048, 0.05);
@@ -100,7 +100,7 @@ TEST(RadcliffeCamera, ItsStagesHaveTheHeightsOfTheTable) {
   EXPECT_LT(radius_at(pi / 8, table.column_foot() + 0.03), table.wall_radius + 0.3);
 }
 
-TEST(RadcliffeCamera, ItsStagesHaveTheRadiiOfTheTable) {
+TEST(RadcliffeCamera, HasStageRadiiOfTable) {
   const double niche_bay = pi / 8;
   EXPECT_NEAR(radius_at(niche_bay + 0.09, 3.0), 14.0, facet);  // beside the niche
   EXPECT_NEAR(radius_at(niche_bay, 8.3), 14.3, facet);         // plinth
@@ -109,7 +109,7 @@ TEST(RadcliffeCamera, ItsStagesHaveTheRadiiOfTheTable) {
   EXPECT_NEAR(radius_at(pi / 4, 39.0), table.lantern_radius - 0.25, 0.02);  // in an opening
 }
 
-TEST(RadcliffeCamera, HasSixteenBaysInTurn) {
+TEST(RadcliffeCamera, HasSixteenAlternatingBays) {
   EXPECT_EQ(count_beyond(14.8, 6.1), 8);  // projections
   EXPECT_EQ(count_within(14.8, 6.1), 8);  // and bays between them
   EXPECT_EQ(count_within(13.6, 3.0), 8);  // their niches
@@ -137,7 +137,7 @@ TEST(RadcliffeCamera, HasWindowsAndNichesInTwoTiers) {
   EXPECT_EQ(stretches(foot + table.mezzanine_sill + 0.4, is_open), 16);
 }
 
-TEST(RadcliffeCamera, CrownsTheColumnsWithVasesAndTheDrumWithButtresses) {
+TEST(RadcliffeCamera, HasVasesOnColumnsAndButtressesOnDrum) {
   EXPECT_EQ(count_beyond(13.3, table.balustrade_top() + 0.7), 32);  // vases
   EXPECT_EQ(count_beyond(9.3, table.balustrade_top() + 2.2), 8);    // buttresses
   EXPECT_EQ(count_within(8.3, table.balustrade_top() + 2.9), 8);    // drum windows
@@ -146,7 +146,7 @@ TEST(RadcliffeCamera, CrownsTheColumnsWithVasesAndTheDrumWithButtresses) {
   EXPECT_EQ(count_beyond(14.06, top - 0.71), 16 * table.dentils_in_a_bay);
 }
 
-TEST(RadcliffeCamera, HasARibbedDomeAndAnOpenLantern) {
+TEST(RadcliffeCamera, HasRibbedDomeAndOpenLantern) {
   // At a height on the dome the shell is where no rib or roll is: the least radius of the ring.
   const double z = table.dome_foot() + 3.0;
   double shell = 100.0;
@@ -156,7 +156,7 @@ TEST(RadcliffeCamera, HasARibbedDomeAndAnOpenLantern) {
   EXPECT_EQ(count_within(table.lantern_radius - 0.15, table.lantern_foot() + 1.2), 8);
 }
 
-TEST(RadcliffeCamera, IsEightfoldBarTheEntrance) {
+TEST(RadcliffeCamera, IsSymmetricExceptForEntrance) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> azimuth(-pi / 8, pi / 8), height(1.0, 42.0);
   for (int i = 0; i < 500; ++i) {
@@ -170,7 +170,7 @@ TEST(RadcliffeCamera, IsEightfoldBarTheEntrance) {
   }
 }
 
-TEST(RadcliffeCamera, EveryPartIsClosedAndFacesOutwards) {
+TEST(RadcliffeCamera, HasClosedPartsThatFaceOutward) {
   for (const bool is_fluted : {false, true}) {
     for (const double chord_error : {0.1, 0.02, 0.004}) {
       std::set<std::string> failures;
@@ -254,7 +254,7 @@ RayCounts cast_rays(const Scene& model, const Eigen::AlignedBox3d& box, long cou
 }
 
 // SKYCAP_MODEL_RAYS=10000000 runs the long version.
-TEST(RadcliffeCamera, NoRayFromOutsideEntersItOrMeetsABackFace) {
+TEST(RadcliffeCamera, BlocksRaysFromOutsideAndShowsNoBackFace) {
   const char* enabled = std::getenv("SKYCAP_MODEL_RAYS");
   const long count = enabled != nullptr ? std::atol(enabled) : 300000;
   const RayCounts counts = cast_rays(scene(), bounding_box(building()), count);
@@ -263,7 +263,7 @@ TEST(RadcliffeCamera, NoRayFromOutsideEntersItOrMeetsABackFace) {
   EXPECT_EQ(counts.entered, 0);
 }
 
-TEST(RadcliffeCamera, NoRayEntersItAtAnyLevelOfDetailOrWithFlutes) {
+TEST(RadcliffeCamera, BlocksRaysAtAllLevelsOfDetailAndWithFlutes) {
   for (const auto& [detail, is_fluted] :
        {std::pair(LevelOfDetail::coarse, false), std::pair(LevelOfDetail::fine, false),
         std::pair(LevelOfDetail::standard, true)}) {
@@ -277,7 +277,7 @@ TEST(RadcliffeCamera, NoRayEntersItAtAnyLevelOfDetailOrWithFlutes) {
   }
 }
 
-TEST(RadcliffeCamera, LevelsOfDetailKeepTheShape) {
+TEST(RadcliffeCamera, KeepsShapeAtAllLevelsOfDetail) {
   const auto at = [](LevelOfDetail detail) {
     ModelOptions options;
     options.detail = detail;
@@ -308,13 +308,13 @@ TEST(RadcliffeCamera, LevelsOfDetailKeepTheShape) {
   EXPECT_LT(differences[differences.size() * 9 / 10], 0.16);
 }
 
-TEST(RadcliffeCamera, IsTheSameEveryTime) {
+TEST(RadcliffeCamera, IsDeterministic) {
   const geometry::Mesh again = builtin_model("radcliffe-camera");
   EXPECT_EQ(again.vertices, building().vertices);
   EXPECT_EQ(again.triangles, building().triangles);
 }
 
-TEST(RadcliffeCamera, TheTableDrivesTheShape) {
+TEST(RadcliffeCamera, FollowsTable) {
   models::RadcliffeTable wider = table;
   wider.longest_side = table.total_height;  // full size
   wider.projection_front = 16.0;

@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-TEST(Fineness, ChordsStayWithinTheirError) {
+TEST(Fineness, KeepsChordErrorWithMinChordCount) {
   for (const double radius : {0.1, 1.0, 14.0}) {
     for (const double error : {1e-4, 1e-3, 1e-2}) {
       const int chords = Fineness{error}.chords(radius, 2 * pi);
@@ -33,7 +33,7 @@ TEST(Fineness, ChordsStayWithinTheirError) {
   }
 }
 
-TEST(Profile, AnArcKeepsItsDistanceFromItsCentre) {
+TEST(Profile, KeepsArcRadius) {
   // A quarter turn to the left from (1, 0) to (0, 1) is the unit circle's.
   const Polyline2 arc = Profile(Fineness{1e-4}, 1, 0).arc_to(0, 1, pi / 2).points();
   EXPECT_GT(arc.size(), 20U);
@@ -65,7 +65,7 @@ double shoelace_area(const Polyline2& polygon) {
 }
 
 // Property: n - 2 counter-clockwise triangles whose areas add up to the polygon's (shoelace).
-TEST(Triangulate, CoversStarsWithCornersInStraightSides) {
+TEST(Triangulate, CoversStarsWithCollinearCorners) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> radius(0.3, 1.0);
   for (int round = 0; round < 50; ++round) {
@@ -108,7 +108,7 @@ TEST(Triangulate, CoversArcadesOfAnyWidth) {
   }
 }
 
-TEST(Solids, HaveTheirVolumesAndAreClosed) {
+TEST(Solids, HaveCorrectVolumesAndAreClosed) {
   const Mesh cuboid = box({1, 2, 3}, {2, 4, 6});
   EXPECT_EQ(closedness_error(cuboid), "");
   EXPECT_NEAR(signed_volume(cuboid), 6.0, 1e-12);
@@ -130,7 +130,7 @@ TEST(Solids, HaveTheirVolumesAndAreClosed) {
   EXPECT_NEAR(signed_volume(frame), 6 * 6 - 4 * 4, 1e-12);
 }
 
-TEST(PlanCurve, MitresCornersAndStaysRound) {
+TEST(PlanCurve, MitresCornersAndKeepsRadius) {
   const PlanCurve plan = PlanCurve::with_projections(10, 4, 4, 12);
   EXPECT_NEAR((plan.point(2.0, 0.5) - Vector2d(12.5, 2.5)).norm(), 0, 1e-12);  // outer corner
   EXPECT_TRUE(plan.is_corner(2.0));
@@ -161,7 +161,7 @@ double volume_with(Opening opening, Joint joint = {}) {
   return signed_volume(mesh);
 }
 
-TEST(Wall, OpeningsTakeTheirVolumeOutOfTheSolid) {
+TEST(Wall, RemovesVolumeOfOpenings) {
   EXPECT_NEAR(volume_with(rectangular(1.0, 0.8, 0.5, 2.0, 0.3)), 24 - 0.8 * 1.5 * 0.3, 1e-9);
 
   const Fineness fine{1e-4};
@@ -177,7 +177,7 @@ TEST(Wall, OpeningsTakeTheirVolumeOutOfTheSolid) {
 
 // A ring of blocks with V-joints: compared with its smooth cylinder it lacks the grooves, whose
 // section is half width times depth for a full V.
-TEST(Wall, JointsCutGroovesBetweenTheStones) {
+TEST(Wall, RemovesVolumeOfJointGrooves) {
   const Fineness fine{1e-5};
   Wall wall{PlanCurve::circle(10), 0, 2, {}, {}, {0.03, 0.05}};
   add_ring_courses(0, 0.5, 4, 20, fine, wall);
@@ -189,7 +189,7 @@ TEST(Wall, JointsCutGroovesBetweenTheStones) {
   EXPECT_NEAR(signed_volume(mesh), pi * 100 * 2 - grooves, 0.012 * grooves + 0.003);
 }
 
-TEST(CorinthianColumn, IsMadeOfClosedSolidsOfTheOrdersHeight) {
+TEST(CorinthianColumn, HasClosedSolidsAndHeightOfOrder) {
   for (const int flutes : {0, 24}) {
     const Parts parts = corinthian_column({11.3, 0.565, 0.475, flutes, pi + 0.1}, Fineness{0.005});
     int leaves = 0, volutes = 0;

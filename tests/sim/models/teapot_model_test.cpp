@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 // Newell's published extents. 3.434 is where the spout's curve turns back; its control points reach
 // to 3.525.
-TEST(Teapot, HasNewellsExtents) {
+TEST(Teapot, MatchesPublishedExtents) {
   const Eigen::AlignedBox3d box = bounding_box(teapot(16));
   EXPECT_NEAR(box.min().x(), -3.0, 1e-9);
   EXPECT_NEAR(box.max().x(), 3.434, 1e-3);
@@ -30,7 +30,7 @@ TEST(Teapot, HasNewellsExtents) {
 
 // 32 patches of 16 x 16 cells are 16,384 triangles; the knob's and the bottom's poles, where one
 // side of a patch is a point, collapse 16 for each of their 8 patches.
-TEST(Teapot, WeldsPatchesAndDropsCollapsedTriangles) {
+TEST(Teapot, MergesPatchesAndRemovesCollapsedTriangles) {
   const geometry::Mesh mesh = teapot(16);
   EXPECT_EQ(mesh.triangles.size(), 32U * 16 * 16 * 2 - 8 * 16);
   // Welded: no two vertices are at one place, none is left over.
@@ -44,14 +44,14 @@ TEST(Teapot, WeldsPatchesAndDropsCollapsedTriangles) {
   EXPECT_EQ(used.size(), mesh.vertices.size());
 }
 
-TEST(Teapot, RefinementConvergesToTheSmoothSurface) {
+TEST(Teapot, ConvergesToSmoothSurfaceUnderRefinement) {
   // The error of chords falls with the square of their length.
   const double coarse = surface_area(teapot(8)), middle = surface_area(teapot(16)),
                fine = surface_area(teapot(32));
   EXPECT_NEAR((middle - coarse) / (fine - middle), 4.0, 0.3);
 }
 
-TEST(Teapot, FacesOutwards) {
+TEST(Teapot, FacesOutward) {
   const Scene scene(teapot(16));
   // Level rays at the body and the lid from all sides, and one at the knob from above.
   for (const double z : {0.3, 1.0, 2.0, 2.6}) {
@@ -67,7 +67,7 @@ TEST(Teapot, FacesOutwards) {
   EXPECT_GT(knob->normal.z(), 0.9);
 }
 
-TEST(Teapot, NamesACellCountOutOfRange) {
+TEST(Teapot, RejectsCellCountOutOfRange) {
   try {
     teapot(0);
     FAIL() << "accepted 0 cells";

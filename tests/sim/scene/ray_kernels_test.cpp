@@ -56,7 +56,7 @@ std::vector<SingleRay> hard_rays(const Mesh& mesh, std::mt19937_64& random, std:
 
 // The nearest hit is that over all triangles, each asked alone, of equal distances that with the
 // smallest number: no tree and no order of visits changes it, bit for bit.
-TEST(RayKernels, MeetWhatIsNearestOfAllTrianglesAskedAlone) {
+TEST(RayKernels, MatchNearestHitOfAllSingleTriangles) {
   std::mt19937_64 random(1);
   const Mesh mesh = random_soup(random, 150);
   const Triangles all(mesh);
@@ -95,7 +95,7 @@ TEST(RayKernels, MeetWhatIsNearestOfAllTrianglesAskedAlone) {
 }
 
 // Each ray alone and in packets with any others, on every instruction set: bit for bit.
-TEST(RayKernels, AgreeInPacketsAloneAndOnEveryInstructionSet) {
+TEST(RayKernels, MatchSingleRaysInPacketsOnAllInstructionSets) {
   std::mt19937_64 random(2);
   const Mesh mesh = random_soup(random, 3000);
   const Triangles triangles(mesh);
@@ -152,7 +152,7 @@ std::int64_t volume(const std::array<std::int64_t, 3>& a, const std::array<std::
 // Exact oracle: with whole coordinates the volumes that tell on which side of an edge a ray passes
 // are whole numbers. Where none is zero the answer is certain, as the shear is off by some 1e-6 of
 // the coordinates and edges and rays that do not meet are farther than that apart.
-TEST(RayKernels, AgreeWithIntegersInsideAndOutside) {
+TEST(RayKernels, MatchExactIntegerArithmetic) {
   std::mt19937_64 random(3);
   std::uniform_int_distribution<std::int64_t> coordinate(-20, 20);
   using Point = std::array<std::int64_t, 3>;
@@ -223,7 +223,7 @@ Mesh random_fan(std::mt19937_64& random, int sides) {
 }
 
 // A closed ring of triangles around a vertex leaves no gap, however the rays round.
-TEST(RayKernels, NoRayPassesThroughTheHubOfAFan) {
+TEST(RayKernels, HaveNoGapAtHubOfFan) {
   std::mt19937_64 random(4);
   std::uniform_int_distribution<int> sides(3, 12);
   std::uniform_real_distribution<float> along(0.0F, 1.0F);
@@ -246,7 +246,7 @@ TEST(RayKernels, NoRayPassesThroughTheHubOfAFan) {
 
 // A rough sheet far from the origin, where coordinates are coarse, from where all of it is seen:
 // rays at its vertices and at points of its edges and diagonals all meet it.
-TEST(RayKernels, NoRayPassesThroughARoughSheet) {
+TEST(RayKernels, HaveNoGapInRoughSheet) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> height(-0.01, 0.01);
   std::uniform_real_distribution<float> along(0.0F, 1.0F);
@@ -287,7 +287,7 @@ TEST(RayKernels, NoRayPassesThroughARoughSheet) {
 }
 
 // Two squares in one plane, the later one in front by its number only.
-TEST(RayKernels, OfEquallyNearTrianglesTheSmallestNumberCounts) {
+TEST(RayKernels, ReturnSmallestIndexOfEquallyNearTriangles) {
   Mesh mesh = square({0, 0, 3}, {0, 0, 1}, 2.0);
   geometry::append(mesh, square({0.5, 0.5, 3}, {0, 0, 1}, 2.0));
   const Triangles triangles(mesh);
@@ -300,7 +300,7 @@ TEST(RayKernels, OfEquallyNearTrianglesTheSmallestNumberCounts) {
   }
 }
 
-TEST(RayTree, RefusesCoordinatesBeyondSinglePrecision) {
+TEST(RayTree, RejectsCoordinatesBeyondSinglePrecision) {
   try {
     const Triangles triangles(Mesh{{{0, 0, 0}, {1e39, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
     FAIL() << "accepted";

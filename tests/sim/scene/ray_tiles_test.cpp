@@ -39,7 +39,7 @@ std::vector<RayPacket> tile(std::mt19937_64& random, std::size_t count, float wi
 
 // Packets that go down the tree together, few and many, wide and narrow, among large and small
 // triangles: each ray meets what it meets alone, bit for bit.
-TEST(RayKernels, AgreeInTilesAndAlone) {
+TEST(RayKernels, MatchSingleRaysInTiles) {
   std::mt19937_64 random(7);
   int hits = 0;
   for (const std::size_t triangle_count : {2U, 40U, 3000U}) {

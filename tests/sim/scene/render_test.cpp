@@ -64,7 +64,7 @@ std::vector<bool> covered(const geometry::Mesh& mesh, const RenderView& view,
 
 // From distance d a unit ball fills a cone with tan = 1 / sqrt(d^2 - 1); around the optical axis
 // its outline is a circle of that many focal lengths.
-TEST(Render, ASpheresOutlineHasItsAnalyticArea) {
+TEST(Render, HasAnalyticAreaOfSphere) {
   const RenderOptions options = small_image();
   const double fov = 0.6, distance = 5.0;
   const RenderView view{geometry::look_at({0, -distance, 0}, {0, 0, 0}), fov};
@@ -78,7 +78,7 @@ TEST(Render, ASpheresOutlineHasItsAnalyticArea) {
   EXPECT_NEAR(count, pi * radius * radius, 5 * sigma);
 }
 
-TEST(Render, TheSideTowardsTheSunIsBrighter) {
+TEST(Render, IsBrighterTowardsTheSun) {
   RenderOptions options = small_image();
   options.sun_to_the_left = pi / 2;
   const RenderView view{geometry::look_at({0, -5, 0}, {0, 0, 0}), 0.6};
@@ -86,7 +86,7 @@ TEST(Render, TheSideTowardsTheSunIsBrighter) {
   EXPECT_GT(image.at(45, 45)[0], image.at(75, 45)[0] + 30);
 }
 
-TEST(Render, DoesNotDependOnThreads) {
+TEST(Render, DoesNotDependOnThreadCount) {
   RenderOptions options = small_image();
   options.samples_per_side = 1;
   options.threads = 1;
@@ -95,7 +95,7 @@ TEST(Render, DoesNotDependOnThreads) {
   EXPECT_EQ(render(unit_ball(), options).pixels, one.pixels);
 }
 
-TEST(Render, LaysViewsOutInRows) {
+TEST(Render, ArrangesViewsInRows) {
   RenderOptions options = small_image();
   options.samples_per_side = 1;
   const Image image = render(unit_ball(), options);
@@ -106,7 +106,7 @@ TEST(Render, LaysViewsOutInRows) {
   EXPECT_EQ(render(unit_ball(), options).width, 360);
 }
 
-TEST(Render, StandardViewsShowAllOfTheScene) {
+TEST(Render, ShowsWholeSceneInStandardViews) {
   for (const double aspect : {0.5, 1.0, 2.0}) {
     RenderOptions options = small_image();
     options.width = static_cast<int>(100 * aspect);
@@ -129,7 +129,7 @@ TEST(Render, StandardViewsShowAllOfTheScene) {
   }
 }
 
-TEST(Render, NamesTheOptionThatIsWrong) {
+TEST(Render, ReportsTheInvalidOption) {
   RenderOptions options;
   options.width = 0;
   EXPECT_THAT([&] { options.validate(); },
@@ -140,7 +140,7 @@ TEST(Render, NamesTheOptionThatIsWrong) {
               testing::ThrowsMessage<Error>(testing::HasSubstr("sun_elevation")));
 }
 
-TEST(Png, GivesBackWhatWasWritten) {
+TEST(Png, RoundTripsImage) {
   Image image{37, 11, {}};
   for (int i = 0; i < 37 * 11; ++i) {
     image.pixels.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(7 * i),
@@ -154,7 +154,7 @@ TEST(Png, GivesBackWhatWasWritten) {
   EXPECT_EQ(back.pixels, image.pixels);
 }
 
-TEST(Png, SaysWhichFileItCannotWriteOrRead) {
+TEST(Png, ReportsFileThatCannotBeWrittenOrRead) {
   const Image image{1, 1, {Rgb{1, 2, 3}}};
   EXPECT_THAT([&] { write_png(image, "/dev/null/picture.png"); },
               testing::ThrowsMessage<Error>(testing::HasSubstr("/dev/null/picture.png")));

@@ -25,7 +25,7 @@ Vector3d random_direction(std::mt19937_64& random) {
   return Vector3d{normal(random), normal(random), normal(random)}.normalized();
 }
 
-TEST(Scene, FirstHitIsTheNearerFaceOfACube) {
+TEST(Scene, HitsNearerFaceOfCube) {
   const Scene scene(cube({1, 2, 3}, 2.0), 1);
   const auto hit = scene.first_hit({-5, 2.3, 3.1}, {1, 0, 0});
   ASSERT_TRUE(hit);
@@ -36,7 +36,7 @@ TEST(Scene, FirstHitIsTheNearerFaceOfACube) {
 }
 
 // The distance counts in lengths of the direction, and so does its limit.
-TEST(Scene, DistanceIsInUnitsOfTheDirection) {
+TEST(Scene, MeasuresDistanceInLengthsOfDirection) {
   const Scene scene(cube({0, 0, 0}, 2.0), 1);
   for (const double length : {1e-6, 0.5, 3.0, 1e6}) {
     const auto hit = scene.first_hit({-5, 0.1, 0.2}, {length, 0, 0});
@@ -49,7 +49,7 @@ TEST(Scene, DistanceIsInUnitsOfTheDirection) {
 
 // Closed form: t = -b - sqrt(b^2 - c). Chords lie inside the sphere, so a ray from outside goes on
 // by at most the sagitta over the cosine of the incidence.
-TEST(Scene, RangesToASphereAreTheClosedFormOnes) {
+TEST(Scene, MatchesClosedFormRangesToSphere) {
   const Vector3d centre(3, -2, 1);
   const double radius = 2.0;
   const int splits = 6;
@@ -76,7 +76,7 @@ TEST(Scene, RangesToASphereAreTheClosedFormOnes) {
   EXPECT_GT(hits, 1500);
 }
 
-TEST(Scene, KnowsWhichSegmentsASurfaceCuts) {
+TEST(Scene, DetectsBlockedSegments) {
   const Scene scene(cube({0, 0, 0}, 2.0), 1);
   EXPECT_TRUE(scene.is_blocked({-5, 0, 0}, {5, 0, 0}));
   EXPECT_TRUE(scene.is_blocked({-5, 0, 0}, {0, 0, 0}));
@@ -86,7 +86,7 @@ TEST(Scene, KnowsWhichSegmentsASurfaceCuts) {
 }
 
 // A square hole of 0.2 m in a wall: exactly the rays that pass it reach the wall behind.
-TEST(Scene, AHoleLetsThroughExactlyTheRaysInsideIt) {
+TEST(Scene, PassesOnlyRaysInsideHole) {
   geometry::Mesh mesh;
   for (const auto& [y, z] : {std::pair{-1.1, 0.0}, {1.1, 0.0}, {0.0, -1.1}, {0.0, 1.1}}) {
     geometry::append(mesh, square({5, y, z}, {-1, 0, 0}, 2.0));
@@ -128,7 +128,7 @@ void expect_no_leaks(const Scene& scene, const Vector3d& origin,
 
 // Every ray aimed at a vertex of a closed surface, or at a point of an edge, must meet it there or
 // before, seen from inside and from outside.
-TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfAClosedSurface) {
+TEST(Scene, HasNoLeaksAtVerticesAndEdges) {
   const geometry::Mesh mesh = sphere({4, 5, 6}, 3.0, 5);
   const Scene scene(mesh, 1);
   std::vector<Vector3d> targets = mesh.vertices;
@@ -154,7 +154,7 @@ TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfAClosedSurface) {
 }
 
 // A scene in UTM coordinates, where single precision has steps of half a metre.
-TEST(Scene, FarFromTheOriginRangesStayThoseNearIt) {
+TEST(Scene, KeepsRangesFarFromOrigin) {
   const Vector3d far(474'500.0, 5'474'500.0, 120.0);
   const Scene here(sphere({0, 0, 0}, 20.0, 4), 1), there(sphere(far, 20.0, 4), 1);
   std::mt19937_64 random(3);
@@ -196,7 +196,7 @@ struct Copies {
 
 // Twin: the same surfaces as a single mesh. Single precision at 40 m leaves 4e-6 m, more where a
 // ray grazes; along edges either triangle may be the one that is met.
-TEST(Scene, OfCopiesIsMetWhereTheirOneMeshWouldBe) {
+TEST(Scene, MatchesSingleMeshForCopies) {
   const Copies copies;
   const geometry::Mesh mesh = copies.flattened();
   const Scene scene = copies.scene(), reference(mesh, 1);
@@ -229,7 +229,7 @@ TEST(Scene, OfCopiesIsMetWhereTheirOneMeshWouldBe) {
   EXPECT_LT(other_triangles, 10);
 }
 
-TEST(Scene, TellsOfManySightsWhatItTellsOfEach) {
+TEST(Scene, MatchesSingleSightLinesInBatches) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const Scene scene(sphere({0, 0, 0}, 1.0, 3));
@@ -255,7 +255,7 @@ TEST(Scene, TellsOfManySightsWhatItTellsOfEach) {
   EXPECT_LT(blocked, 3500U);
 }
 
-TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfACopy) {
+TEST(Scene, HasNoLeaksAtVerticesAndEdgesOfCopies) {
   const Copies copies;
   const Scene scene = copies.scene();
   for (const Eigen::Isometry3d& world_from_ball : copies.poses) {
@@ -273,7 +273,7 @@ TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfACopy) {
 }
 
 // 131,072 triangles take some ten megabytes; two hundred times, they would take two gigabytes.
-TEST(Scene, CopiesTakeNoMemoryToSpeakOf) {
+TEST(Scene, SharesMemoryAmongCopies) {
   const auto resident_bytes = [] {
     std::size_t pages = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> pages >> resident;
@@ -293,12 +293,12 @@ TEST(Scene, CopiesTakeNoMemoryToSpeakOf) {
   EXPECT_EQ(hit->triangle / ball.triangles.size(), 150U);
 }
 
-TEST(Scene, RejectsToHaveNoParts) {
+TEST(Scene, RejectsEmptyPartList) {
   EXPECT_THAT(testing_support::thrown_message([&] { Scene(std::span<const ScenePart>(), 1); }),
               testing::HasSubstr("the scene has no meshes"));
 }
 
-TEST(Scene, RejectsAMeshWithoutSurface) {
+TEST(Scene, RejectsMeshWithoutSurface) {
   EXPECT_THAT(testing_support::thrown_message([&] { Scene(geometry::Mesh{}, 1); }),
               testing::HasSubstr("there is no triangle with a positive area"));
 }

@@ -54,7 +54,7 @@ geometry::Mesh cylinder(double radius, double half_height, int sides) {
 
 // |o + t d| = r across the axis. From outside a tessellation lies behind the true surface, by at
 // most its sagitta r (1 - cos(pi / n)) over the cosine of incidence; from inside before it.
-TEST(ClosedForm, RangesToACylinder) {
+TEST(ClosedForm, MatchesRangesToCylinder) {
   constexpr double radius = 5.0;
   constexpr int sides = 360;
   const Scene scene(cylinder(radius, 10.0, sides), 1);
@@ -88,7 +88,7 @@ TEST(ClosedForm, RangesToACylinder) {
 
 // Seen from inside a box, the range is the least of those to three planes; into edges and corners
 // as well, where two or three are equal. All are exact to single precision.
-TEST(ClosedForm, RangesIntoTheCornersOfABox) {
+TEST(ClosedForm, MatchesRangesInsideBox) {
   const Scene scene(cube({1, 2, 3}, 8.0), 1);
   const Vector3d origin(0.5, 1.0, 4.0);
   std::vector<Vector3d> directions = random_directions(2000, 3);
@@ -110,7 +110,7 @@ TEST(ClosedForm, RangesIntoTheCornersOfABox) {
 }
 
 // Rays of no order, some of which miss: one at a time or in packets, bit for bit.
-TEST(ClosedForm, SingleRaysAndPacketsAgree) {
+TEST(ClosedForm, MatchesSingleRaysAndPackets) {
   const geometry::Mesh ball = sphere({3, 0, 0}, 2.0, 6);
   const Scene scene(ball, 1);
   const Vector3d origin(-5, 0.1, 0.2);
@@ -144,7 +144,7 @@ TEST(ClosedForm, SingleRaysAndPacketsAgree) {
 // sigma = gamma R / 4 tan(theta), of a Gaussian beam. Seven rays, the outer six at the 1/e^2
 // radius with weight e^-2, have the variance (gamma R tan(theta) / 2)^2 3 e^-2 / (1 + 6 e^-2):
 // 0.947 of the Gaussian's sigma. The pulse is so short that every ray is an echo.
-TEST(ClosedForm, ATiltedPlaneSpreadsTheEchoesOfABeam) {
+TEST(ClosedForm, MatchesEchoSpreadOnTiltedPlane) {
   constexpr double range = 80.0, gamma = 0.002;
   LidarConfig config;
   config.rotation_rate = 0.0;
@@ -182,7 +182,7 @@ TEST(ClosedForm, ATiltedPlaneSpreadsTheEchoesOfABeam) {
 // A line scanner looking down: along the track lines are v / (lines per second) apart, across it
 // shots are h dtheta / cos^2(theta) apart, and the mean density is the share of shots inside the
 // field of view over the area they sweep.
-TEST(ClosedForm, ALineScannersSpacingAndDensity) {
+TEST(ClosedForm, MatchesSpacingAndDensityOfLineScanner) {
   constexpr double height = 60.0, speed = 8.0, field = 80 * degree;
   LidarConfig config;
   config.firing_period = 1.0 / 40'000;
@@ -245,7 +245,7 @@ DepthCamera exact_camera() {
 // n . p = c for every return, turned and tilted as the sensor is. What is left is the rounding of
 // a coordinate of 100 m, of the direction, and of the distance; and that of the plane's own
 // corners, 350 m from its middle.
-TEST(ClosedForm, PointsOfATiltedPlaneAreOnItToAFewRoundings) {
+TEST(ClosedForm, MatchesPointsOnTiltedPlane) {
   const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized(), middle(100, 5, -3);
   const Scene scene(square(middle, normal, 500.0), 1);
   Isometry3d pose = geometry::camera_pose({{0.5, -0.3, 0.2}, Vector3d(1.0, 0.2, -0.1)});
@@ -260,7 +260,7 @@ TEST(ClosedForm, PointsOfATiltedPlaneAreOnItToAFewRoundings) {
 }
 
 // Straight down, all depths are the height, though ranges grow as one over the cosine.
-TEST(ClosedForm, LookingStraightDownEveryDepthIsTheHeight) {
+TEST(ClosedForm, MatchesDepthOfNadirView) {
   constexpr double height = 80.0;
   const Scene scene(square({0, 0, 0}, {0, 0, 1}, 1000.0), 1);
   const Isometry3d pose = geometry::camera_pose({{3, 4, height}, Vector3d(0, 0, -1)});
@@ -278,7 +278,7 @@ TEST(ClosedForm, LookingStraightDownEveryDepthIsTheHeight) {
 
 // From inside, a sphere of triangles is never farther than the sphere, and nearer by the sagitta
 // over the cosine of the incidence at most.
-TEST(ClosedForm, RangesFromInsideASphere) {
+TEST(ClosedForm, MatchesRangesInsideSphere) {
   constexpr double radius = 20.0;
   constexpr int splits = 5;
   const Scene scene(sphere({0, 0, 0}, radius, splits), 1);
@@ -298,7 +298,7 @@ TEST(ClosedForm, RangesFromInsideASphere) {
 
 // A depth image has the noise of its points, once: sigma along the axis, where a wall is faced
 // squarely. Four standard deviations of the estimate from N pixels; steps of 0.1 mm add nothing.
-TEST(ClosedForm, ADepthImageHasTheNoiseOnce) {
+TEST(ClosedForm, MatchesNoiseOfDepthImage) {
   constexpr double sigma = 0.01, wall = 6.0, unit = 1e-4;
   const Scene scene(square({wall, 0, 0}, {-1, 0, 0}, 100.0), 1);
   DepthCameraConfig config = exact_camera().config();

@@ -47,7 +47,7 @@ std::uint32_t pixel_number(const DepthCamera& camera, int column, int row) {
   return static_cast<std::uint32_t>(row) * camera.camera().width() + column;
 }
 
-TEST(DepthCamera, RangesToATiltedPlaneAreExactInEveryCornerOfTheImage) {
+TEST(DepthCamera, MeasuresTiltedPlaneExactlyInEveryCorner) {
   const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized();
   const Scene scene(square({10, 0, 0}, normal, 100.0), 1);
   const DepthCamera camera(exact_config());
@@ -72,7 +72,7 @@ TEST(DepthCamera, RangesToATiltedPlaneAreExactInEveryCornerOfTheImage) {
   }
 }
 
-TEST(DepthCamera, RangesToASphereAreTheClosedFormOnes) {
+TEST(DepthCamera, MatchesClosedFormRangesToSphere) {
   const Vector3d centre(10, 1, -1);
   const Scene scene(sphere(centre, 3.0, 8), 1);  // sagitta 3 (1 - cos(0.3 deg)) = 4e-5 m
   const DepthCamera camera(exact_config());
@@ -95,7 +95,7 @@ TEST(DepthCamera, RangesToASphereAreTheClosedFormOnes) {
 }
 
 // Every return is in the middle of its own pixel, and no pixel that should return is left out.
-TEST(DepthCamera, PointsProjectBackToTheirPixels) {
+TEST(DepthCamera, ReturnsPointsThatProjectToTheirPixels) {
   const Scene scene(sphere({10, 1, -1}, 4.0, 5), 1);
   const DepthCamera camera(exact_config());
   const Isometry3d pose = tilted_pose();
@@ -117,7 +117,7 @@ TEST(DepthCamera, PointsProjectBackToTheirPixels) {
   EXPECT_EQ(next, scan.points.size());
 }
 
-TEST(DepthCamera, RangeLimitsCountAlongTheOpticalAxis) {
+TEST(DepthCamera, AppliesRangeLimitsAlongOpticalAxis) {
   DepthCameraConfig config = exact_config();
   config.camera.min_range = 4.0;
   config.camera.max_range = 6.0;
@@ -134,7 +134,7 @@ TEST(DepthCamera, RangeLimitsCountAlongTheOpticalAxis) {
   EXPECT_EQ(returns_from_wall_at(6.01), 0U);
 }
 
-TEST(DepthCamera, WhatIsTooNearStillHidesWhatIsBehind) {
+TEST(DepthCamera, OccludesSurfacesBehindTooNearSurface) {
   DepthCameraConfig config = exact_config();
   config.camera.min_range = 4.0;
   geometry::Mesh mesh = square({2, 0, 0}, {-1, 0, 0}, 100.0);
@@ -144,7 +144,7 @@ TEST(DepthCamera, WhatIsTooNearStillHidesWhatIsBehind) {
 }
 
 // On a floor seen from height 2, the angle of incidence at distance d is atan(d / 2).
-TEST(DepthCamera, SlantedSurfacesGiveNoReturn) {
+TEST(DepthCamera, ReturnsNoPointsBeyondMaxIncidence) {
   DepthCameraConfig config = exact_config();
   config.max_incidence = 70 * degree;
   const Scene scene(square({0, 0, 0}, {0, 0, 1}, 80.0), 1);
@@ -203,7 +203,7 @@ class NoisyCamera : public testing::Test {
 // Bounds are four standard deviations of each statistic over N = 256,000 points: sigma / sqrt(N)
 // of a mean, sigma^2 sqrt(2/N) of a variance, sqrt(15/3N) and sqrt(96/3N) of the higher moments of
 // three axes.
-TEST_F(NoisyCamera, IsotropicNoiseHasSigmaOnEachAxis) {
+TEST_F(NoisyCamera, HasIsotropicNoiseWithSigmaOnEachAxis) {
   const Scan noisy = camera(NoiseDirection::isotropic).scan(scene, pose, 3, 1);
   ASSERT_EQ(noisy.pixels, exact.pixels);
   const Statistics s = statistics(
@@ -217,7 +217,7 @@ TEST_F(NoisyCamera, IsotropicNoiseHasSigmaOnEachAxis) {
   EXPECT_NEAR(s.excess_kurtosis, 0.0, 4.0 * std::sqrt(96.0 / (3.0 * n)));
 }
 
-TEST_F(NoisyCamera, NoiseAlongTheRayHasNothingAcrossIt) {
+TEST_F(NoisyCamera, HasNoNoiseAcrossRayForAlongRayNoise) {
   const Scan noisy = camera(NoiseDirection::along_ray).scan(scene, pose, 3, 1);
   ASSERT_EQ(noisy.pixels, exact.pixels);
   const Statistics s =
@@ -234,7 +234,7 @@ TEST_F(NoisyCamera, NoiseAlongTheRayHasNothingAcrossIt) {
   EXPECT_NEAR(s.excess_kurtosis, 0.0, 4.0 * std::sqrt(96.0 / n));
 }
 
-TEST_F(NoisyCamera, FrameAndSeedDecideTheNoise) {
+TEST_F(NoisyCamera, HasNoiseThatDependsOnFrameAndSeed) {
   const DepthCamera first = camera(NoiseDirection::isotropic);
   const Scan scan = first.scan(scene, pose, 3, 1);
   EXPECT_EQ(first.scan(scene, pose, 3, 1).points, scan.points);
@@ -245,7 +245,7 @@ TEST_F(NoisyCamera, FrameAndSeedDecideTheNoise) {
 // A wall that faces the camera at depth z has disparity f B / z: errors of s px in it, and only
 // multiples of the step. Four standard deviations of the variance of 256,000 pixels are 1.1 %; the
 // square of the step over 12 is added.
-TEST(DepthCamera, StereoErrorsAreThoseOfTheDisparity) {
+TEST(DepthCamera, HasStereoErrorsOfDisparity) {
   DepthCameraConfig config = exact_config(640, 400);
   config.stereo = {.focal_length_px = 424.0,
                    .baseline = 0.05,
@@ -270,7 +270,7 @@ TEST(DepthCamera, StereoErrorsAreThoseOfTheDisparity) {
 }
 
 // Also with rows and tiles without any return, which change where each band's points go.
-TEST(DepthCamera, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(DepthCamera, DoesNotDependOnThreadCount) {
   const Scene scene(sphere({10, 1, -1}, 2.0, 5), 2);
   DepthCameraConfig config = exact_config(501, 333);
   config.noise = {.sigma = 0.01, .seed = 9};
@@ -284,7 +284,7 @@ TEST(DepthCamera, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(DepthCamera, ARecycledScanLeavesNoTrace) {
+TEST(DepthCamera, IsIndependentOfReusedScan) {
   const Scene scene(sphere({10, 1, -1}, 2.0, 5), 1);
   const DepthCamera camera(exact_config());
   const Scan expected = camera.scan(scene, tilted_pose(), 1, 1);
@@ -295,7 +295,7 @@ TEST(DepthCamera, ARecycledScanLeavesNoTrace) {
 }
 
 // The kernel behind the points, on every instruction set, with and without gaps in the row.
-TEST(DepthCamera, PointsAreTheSameOnEveryInstructionSet) {
+TEST(DepthCamera, ReturnsSamePointsOnAllInstructionSets) {
   constexpr std::size_t width = 333;
   std::vector<float> depth(width), column(width);
   for (std::size_t i = 0; i < width; ++i) {
@@ -332,7 +332,7 @@ TEST(DepthCamera, PointsAreTheSameOnEveryInstructionSet) {
 }
 
 // Known answers: 1200 / tan 30 and 875 / tan 20; 424 / tan 34.7 and 240 / tan 21.25.
-TEST(DepthCamera, PresetsHaveThePublishedGeometry) {
+TEST(DepthCamera, HasPublishedGeometryInPresets) {
   const DepthCamera high(high_resolution()), small(d435());
   EXPECT_NEAR(high.camera().focal_length_px().x(), 2078.46, 0.01);
   EXPECT_NEAR(high.camera().focal_length_px().y(), 2404.04, 0.01);
@@ -342,7 +342,7 @@ TEST(DepthCamera, PresetsHaveThePublishedGeometry) {
   EXPECT_EQ(small.config().noise.sigma, 0.01);
 }
 
-TEST(DepthCamera, RejectsAnImpossibleIncidenceLimit) {
+TEST(DepthCamera, RejectsZeroMaxIncidence) {
   DepthCameraConfig config = exact_config();
   config.max_incidence = 0.0;
   try {

@@ -19,7 +19,7 @@ std::vector<RayHit> two_surfaces(float near_range, float far_range, float near_s
 
 // Check 13 of the specification: resolved surfaces give echoes at the true ranges with their
 // shares.
-TEST(Echoes, SurfacesFartherApartThanHalfAPulseGiveTwo) {
+TEST(Echoes, AreSeparateBeyondHalfPulseLength) {
   std::vector<RayHit> hits = two_surfaces(10.0F, 10.8F, 0.3F);
   const std::vector<Echo> echoes = form_echoes(hits, sees_all, beam);
   ASSERT_EQ(echoes.size(), 2U);
@@ -30,7 +30,7 @@ TEST(Echoes, SurfacesFartherApartThanHalfAPulseGiveTwo) {
   EXPECT_EQ(echoes[1].triangle, 7U);
 }
 
-TEST(Echoes, NearerSurfacesMixToOneAtTheEnergyWeightedRange) {
+TEST(Echoes, MergeAtEnergyWeightedRangeWithinHalfPulseLength) {
   std::vector<RayHit> hits = two_surfaces(10.0F, 10.5F, 0.3F);
   const std::vector<Echo> echoes = form_echoes(hits, sees_all, beam);
   ASSERT_EQ(echoes.size(), 1U);
@@ -38,7 +38,7 @@ TEST(Echoes, NearerSurfacesMixToOneAtTheEnergyWeightedRange) {
   EXPECT_EQ(echoes[0].triangle, 7U);  // of the stronger part
 }
 
-TEST(Echoes, AreChosenByThePolicyOfTheSensor) {
+TEST(Echoes, AreSelectedBySensorPolicy) {
   // Ranges 1..4 with energies 2, 4, 1, 3.
   const auto chosen = [](EchoChoice choice, int max) {
     std::vector<RayHit> hits = {
@@ -62,7 +62,7 @@ TEST(Echoes, AreChosenByThePolicyOfTheSensor) {
 }
 
 // Check 11: R_max = R_ref sqrt(rho cos / rho_ref). Ouster OS1: 40 m at 10 % gives 113 m at 80 %.
-TEST(ReceivedPower, FallsToOneAtTheRangeOfTheLidarEquation) {
+TEST(ReceivedPower, IsOneAtRangeOfLidarEquation) {
   const Sensitivity os1{.reference_range = 40.0, .reference_reflectance = 0.1};
   EXPECT_NEAR(received_power({113.137F, 1.0F, 0.8F, 1.0F, 0}, os1), 1.0, 1e-5);
   EXPECT_GT(received_power({113.0F, 1.0F, 0.8F, 1.0F, 0}, os1), 1.0F);
@@ -74,7 +74,7 @@ TEST(ReceivedPower, FallsToOneAtTheRangeOfTheLidarEquation) {
   EXPECT_NEAR(received_power({20.0F, 1.0F, 0.1F, 1.0F, 0}, hazy), 2.0, 1e-5);
 }
 
-TEST(RangeSigma, IsTheRootOfTheSumOfSquares) {
+TEST(RangeSigma, IsRootOfSumOfSquares) {
   const RangeErrors errors{.sigma = 0.03, .sigma_per_metre = 0.004};
   EXPECT_FLOAT_EQ(range_sigma(errors, 10.0F, 1.0F), 0.05F);
   // D435: z^2 s / (f B) with s = 0.08 px, f = 424 px, B = 0.05 m is 15 mm at 2 m.
@@ -85,7 +85,7 @@ TEST(RangeSigma, IsTheRootOfTheSumOfSquares) {
   EXPECT_TRUE(std::isfinite(range_sigma(slanted, 10.0F, 0.0F)));
 }
 
-TEST(BeamSamples, AreTheGaussianProfileUpToItsRadius) {
+TEST(BeamSamples, MatchGaussianProfileUpToRadius) {
   const std::vector<BeamSample> samples = beam_samples(2);
   ASSERT_EQ(samples.size(), 19U);
   double total = 0.0, mean = 0.0, variance = 0.0;

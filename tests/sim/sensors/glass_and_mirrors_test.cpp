@@ -44,7 +44,7 @@ geometry::Scan capture(const Scene& scene, double max_range = 100.0) {
   return camera.scan(scene, {Vector3d::Zero(), Vector3d::UnitX()}, 0, 1);
 }
 
-TEST(Glass, ReturnsNothingAndHidesWhatIsBehind) {
+TEST(Glass, GivesNoReturnAndOccludesSurfacesBehind) {
   const geometry::Mesh wall = square({20, 0, 0}, {-1, 0, 0}, 100.0);
   const SurfaceBefore before(Surface::glass, square({10, 0, 0}, {-1, 0, 0}, 2.0), wall);
   const geometry::Scan scan = capture(before.scene());
@@ -57,7 +57,7 @@ TEST(Glass, ReturnsNothingAndHidesWhatIsBehind) {
   }
 }
 
-TEST(Glass, ReturnsNothingToALaserScanner) {
+TEST(Glass, GivesNoReturnToLidar) {
   const auto pane = square({10, 0, 0}, {-1, 0, 0}, 400.0);
   const auto wall = square({-10, 0, 0}, {1, 0, 0}, 400.0);
   LidarConfig config;
@@ -75,7 +75,7 @@ TEST(Glass, ReturnsNothingToALaserScanner) {
   }
 }
 
-TEST(Mirror, ShowsTheWallBesideItStraightAhead) {
+TEST(Mirror, ShowsMirroredWallStraightAhead) {
   // A mirror at 45 degrees 10 m ahead, and a wall 7 m to its left: its image is 17 m ahead.
   const geometry::Mesh glass = square({10, 0, 0}, Vector3d(-1, 1, 0).normalized(), 40.0);
   const geometry::Mesh wall = square({10, 7, 0}, {0, -1, 0}, 60.0);
@@ -86,7 +86,7 @@ TEST(Mirror, ShowsTheWallBesideItStraightAhead) {
   EXPECT_TRUE(capture(before.scene(), 16.9).points.empty());  // the whole way counts
 }
 
-TEST(Mirror, TwoThatFaceEachOtherLoseARay) {
+TEST(Mirror, GivesNoReturnBetweenFacingMirrors) {
   const geometry::Mesh ahead = square({10, 0, 0}, {-1, 0, 0}, 1000.0);
   const geometry::Mesh behind = square({-1, 0, 0}, {1, 0, 0}, 1000.0);
   geometry::Mesh both = ahead;
@@ -96,7 +96,7 @@ TEST(Mirror, TwoThatFaceEachOtherLoseARay) {
   EXPECT_TRUE(capture(scene, 1e4).points.empty());
 }
 
-TEST(Mirror, LimitsOfIncidenceAreThoseOfWhatIsMirrored) {
+TEST(Mirror, AppliesIncidenceLimitToMirroredSurface) {
   // The wall's image is met head-on, though the mirror is met at 45 degrees.
   const geometry::Mesh glass = square({10, 0, 0}, Vector3d(-1, 1, 0).normalized(), 40.0);
   const geometry::Mesh wall = square({10, 7, 0}, {0, -1, 0}, 60.0);

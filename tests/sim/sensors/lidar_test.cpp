@@ -50,7 +50,7 @@ LidarReturns measure_standing(const LidarConfig& config, const Scene& scene,
 }
 
 // Single precision of triangles that reach 280 m has steps of 3e-5 m.
-TEST(Lidar, PointsLieOnATiltedWallInEveryDirection) {
+TEST(Lidar, MeasuresTiltedWallInEveryDirection) {
   const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized();
   const Scene scene(square({10, 0, 0}, normal, 400.0), 1);
   LidarConfig config = spinner();
@@ -68,7 +68,7 @@ TEST(Lidar, PointsLieOnATiltedWallInEveryDirection) {
 
 // Sampling in closed form: channels / firing period shots a second, all of which return inside a
 // sphere. OS1-128 at 2048 columns and 10 Hz: 2,621,440 a second; here a 64th of it.
-TEST(Lidar, ReturnsExactlyAsManyPointsAsTheSensorFires) {
+TEST(Lidar, ReturnsOnePointPerPulse) {
   LidarConfig config = spinner(128);
   for (int i = 0; i < 128; ++i)
     config.channels[i] = {.elevation = (i * 45.0 / 127 - 22.5) * degree};
@@ -98,7 +98,7 @@ class MovingLidar : public testing::Test {
 };
 
 // Every shot against the closed form: its own time, pose and direction, met with the wall.
-TEST_F(MovingLidar, EveryShotHasItsOwnTimeAndPose) {
+TEST_F(MovingLidar, HasOwnTimeAndPoseForEveryPulse) {
   ASSERT_GT(returns.size(), 5000U);
   const LidarConfig config = spinner();
   for (std::size_t i = 0; i < returns.size(); ++i) {
@@ -121,7 +121,7 @@ TEST_F(MovingLidar, EveryShotHasItsOwnTimeAndPose) {
 
 // Seen from the pose at the scan's start, points are displaced by exactly what the platform did
 // since: v t and the turn. Undoing it with the reported times restores the wall.
-TEST_F(MovingLidar, TheReportedTimesUndoTheMotion) {
+TEST_F(MovingLidar, ReportsTimesThatAllowMotionCorrection) {
   ASSERT_GT(returns.size(), 0U);
   for (std::size_t i = 0; i < returns.size(); i += 7) {
     const Isometry3d pose = trajectory.pose(returns.times[i]);
@@ -133,7 +133,7 @@ TEST_F(MovingLidar, TheReportedTimesUndoTheMotion) {
   }
 }
 
-TEST(Lidar, PartsOfAScanAreTheScan) {
+TEST(Lidar, MatchesWholeScanInParts) {
   LidarConfig config = spinner();
   config.errors = {.sigma = 0.01, .channel_bias_sigma = 0.01, .angle_sigma = 1e-4};
   const Scene scene(sphere({0, 0, 0}, 30.0, 3), 1);
@@ -156,7 +156,7 @@ TEST(Lidar, PartsOfAScanAreTheScan) {
 }
 
 // The last angle at which a floor returns is where R^2 / cos reaches R_ref^2 rho / rho_ref.
-TEST(Lidar, GrazingReturnsDropOutWhereTheLidarEquationSays) {
+TEST(Lidar, LosesGrazingReturnsAccordingToLidarEquation) {
   const double height = 4.0, reference = 20.0, reflectance = 0.3;
   const geometry::Mesh floor = square({0, 0, -height}, {0, 0, 1}, 4000.0);
   const Scene scene(floor, std::vector<float>{0.3F, 0.3F}, 1);
@@ -176,7 +176,7 @@ TEST(Lidar, GrazingReturnsDropOutWhereTheLidarEquationSays) {
 }
 
 // A hole of 1 cm in a wall, a beam of 13.5 cm: one ray falls through, the beam meets the wall too.
-TEST(Lidar, AWideBeamBlursASmallHole) {
+TEST(Lidar, ReturnsWallAndHoleForWideBeam) {
   geometry::Mesh mesh;
   for (const auto& [y, z] : {std::pair{-1.005, 0.0}, {1.005, 0.0}, {0.0, -1.005}, {0.0, 1.005}}) {
     geometry::append(mesh, square({10, y, z}, {-1, 0, 0}, 2.0));
@@ -204,7 +204,7 @@ TEST(Lidar, AWideBeamBlursASmallHole) {
 
 // gamma R / 2 across and gamma R / (2 cos theta) along the slope: half of the beam beyond an edge
 // that is moved through the footprint.
-TEST(Lidar, TheFootprintHasTheWidthOfTheDivergence) {
+TEST(Lidar, HasFootprintOfBeamDivergence) {
   LidarConfig config;
   config.rotation_rate = 0.0;
   config.beam = {
@@ -224,7 +224,7 @@ TEST(Lidar, TheFootprintHasTheWidthOfTheDivergence) {
   EXPECT_GT(share_beyond({0, 0, 10.22}), 0.0);
 }
 
-TEST(Lidar, RangesAreMultiplesOfTheRangeStep) {
+TEST(Lidar, ReturnsMultiplesOfRangeStep) {
   LidarConfig config = spinner();
   config.errors = {.sigma = 0.02, .range_step = 0.004};
   const LidarReturns returns = measure_standing(config, Scene(sphere({0, 0, 0}, 10.0, 5), 1));
@@ -239,7 +239,7 @@ TEST(Lidar, RangesAreMultiplesOfTheRangeStep) {
 
 // Range errors along the ray: the mean of each channel is its bias, the rest is the noise. Four
 // standard deviations of each statistic over N = 5000 firings.
-TEST(Lidar, SeparatesTheBiasOfAChannelFromTheNoiseOfAShot) {
+TEST(Lidar, SeparatesChannelBiasFromPulseNoise) {
   LidarConfig config = spinner(64);
   for (int i = 0; i < 64; ++i) config.channels[i] = {.elevation = 0.3 * i * degree};
   config.errors = {.sigma = 0.01, .channel_bias_sigma = 0.03};
@@ -265,7 +265,7 @@ TEST(Lidar, SeparatesTheBiasOfAChannelFromTheNoiseOfAShot) {
   EXPECT_NEAR(between, 9e-4, 4 * 9e-4 * std::sqrt(2.0 / 64.0));
 }
 
-TEST(Lidar, NoiseDoesNotDecideWhichRaysHit) {
+TEST(Lidar, HitsSameSurfacesWithNoise) {
   const Scene scene(sphere({5, 0, 0}, 3.0, 4), 1);
   LidarConfig config = spinner();
   const LidarReturns exact = measure_standing(config, scene);
@@ -278,7 +278,7 @@ TEST(Lidar, NoiseDoesNotDecideWhichRaysHit) {
 }
 
 // Straight down from height h: a roll of phi, believed to be zero, moves the point by h tan(phi).
-TEST(Lidar, UnknownRollLeverArmAndBoresightMoveThePointsAsTheyMust) {
+TEST(Lidar, DisplacesPointsByRollLeverArmAndBoresightErrors) {
   const double height = 40.0;
   const Scene scene(square({0, 0, 0}, {0, 0, 1}, 400.0), 1);
   LidarConfig config;
@@ -310,7 +310,7 @@ TEST(Lidar, UnknownRollLeverArmAndBoresightMoveThePointsAsTheyMust) {
   EXPECT_NEAR(world(off, off.true_points[0]).norm(), 0.0, 1e-5);
 }
 
-TEST(Lidar, FarFromTheOriginPointsStayThoseNearIt) {
+TEST(Lidar, KeepsPointsFarFromOrigin) {
   const Vector3d far(474'500.0, 5'474'500.0, 120.0);
   const Scene here(sphere({0, 0, 0}, 20.0, 4), 1), there(sphere(far, 20.0, 4), 1);
   const LidarReturns near_returns = measure_standing(spinner(), here, {1, 2, 3});
@@ -322,7 +322,7 @@ TEST(Lidar, FarFromTheOriginPointsStayThoseNearIt) {
   }
 }
 
-TEST(Lidar, WhatIsTooNearHidesWhatIsBehind) {
+TEST(Lidar, OccludesSurfacesBehindTooNearSurface) {
   geometry::Mesh mesh = sphere({0, 0, 0}, 1.0, 3);
   geometry::append(mesh, sphere({0, 0, 0}, 5.0, 3));
   LidarConfig config = spinner();
@@ -330,7 +330,7 @@ TEST(Lidar, WhatIsTooNearHidesWhatIsBehind) {
   EXPECT_EQ(measure_standing(config, Scene(mesh, 1)).size(), 0U);
 }
 
-TEST(Scene, RejectsReflectancesThatAreNotOneForEachTriangle) {
+TEST(Scene, RejectsWrongNumberOfReflectances) {
   EXPECT_THAT(testing_support::thrown_message([&] {
                 Scene(square({0, 0, 0}, {0, 0, 1}, 1.0), std::vector<float>{0.5F}, 1);
               }),

@@ -32,7 +32,7 @@ const Isometry3d pose = geometry::camera_pose({Vector3d::Zero(), Vector3d::UnitX
 
 Scene wall_at(double x) { return Scene(square({x, 0, 0}, -Vector3d::UnitX(), 200.0), 1); }
 
-TEST(MovingCamera, OneThatStandsMeasuresWhatAStandingOneDoes) {
+TEST(MovingCamera, MatchesStationaryCameraWithoutMotion) {
   const Scene scene(sphere({5, 0.3, -0.2}, 1.5, 3), 1);
   const DepthCamera camera = exact_camera();
   const Scan standing = camera.scan(scene, pose, 0, 1);
@@ -45,7 +45,7 @@ TEST(MovingCamera, OneThatStandsMeasuresWhatAStandingOneDoes) {
   }
 }
 
-TEST(MovingCamera, BlurAlongAPlaneDisplacesNothing) {
+TEST(MovingCamera, KeepsPointsWhenMovingAlongPlane) {
   const Scene scene(square({10, 0, 0}, Vector3d(-1.0, 0.3, 0.2).normalized(), 200.0), 1);
   const DepthCamera camera = exact_camera();
   const Scan standing = camera.scan(scene, pose, 0, 1);
@@ -59,7 +59,7 @@ TEST(MovingCamera, BlurAlongAPlaneDisplacesNothing) {
 }
 
 // Flying at a wall, the first row is read while it is farther, the last one while it is nearer.
-TEST(MovingCamera, ARollingShutterReadsEachRowWhereTheCameraIsThen) {
+TEST(MovingCamera, ReadsEachRowAtItsPoseWithRollingShutter) {
   const Scene scene = wall_at(10.0);
   constexpr double speed = 5.0, readout = 0.02;
   const Scan scan = exact_camera().scan(
@@ -74,7 +74,7 @@ TEST(MovingCamera, ARollingShutterReadsEachRowWhereTheCameraIsThen) {
 }
 
 // Turning to the left while the rows are read shifts what they see to the right, more and more.
-TEST(MovingCamera, ARollingShutterShearsWhatATurningCameraSees) {
+TEST(MovingCamera, SkewsImageWithRollingShutterWhenTurning) {
   const Scene scene(sphere({10, 0, 0}, 0.4, 4), 1);
   constexpr double rate = 2.0, readout = 0.05;
   const DepthCamera camera = exact_camera();
@@ -97,7 +97,7 @@ TEST(MovingCamera, ARollingShutterShearsWhatATurningCameraSees) {
   }
 }
 
-TEST(MovingCamera, AnErrorOfThePoseDisplacesAllPointsAlike) {
+TEST(MovingCamera, DisplacesAllPointsByPoseError) {
   const Scene scene = wall_at(10.0);
   Isometry3d nearer = pose;
   nearer.translation().x() += 0.25;
@@ -108,7 +108,7 @@ TEST(MovingCamera, AnErrorOfThePoseDisplacesAllPointsAlike) {
 }
 
 // A pole before a wall: what moves over its edges during the exposure sees both, and is left out.
-TEST(MovingCamera, PixelsThatSeeTwoSurfacesGiveNoReturn) {
+TEST(MovingCamera, GivesNoReturnForPixelsOnTwoSurfaces) {
   geometry::Mesh mesh = square({20, 0, 0}, -Vector3d::UnitX(), 200.0);
   const geometry::Mesh pole{{{10, -1, -50}, {10, 1, -50}, {10, 1, 50}, {10, -1, 50}},
                             {{4, 5, 6}, {4, 6, 7}}};
@@ -133,7 +133,7 @@ TEST(MovingCamera, PixelsThatSeeTwoSurfacesGiveNoReturn) {
   }
 }
 
-TEST(MovingCamera, APixelThatSeesTheSkyForMostOfTheExposureGivesNoReturn) {
+TEST(MovingCamera, GivesNoReturnForPixelsThatMainlySeeSky) {
   const Scene scene(square({10, 0, 0}, -Vector3d::UnitX(), 4.0), 1);
   const DepthCamera camera = exact_camera();
   const FrameMotion motion{
@@ -143,7 +143,7 @@ TEST(MovingCamera, APixelThatSeesTheSkyForMostOfTheExposureGivesNoReturn) {
   EXPECT_NEAR(moving, standing, 0.05 * standing);  // what one edge loses the other gains
 }
 
-TEST(MovingCamera, TheSameBytesForAnyNumberOfThreads) {
+TEST(MovingCamera, DoesNotDependOnThreadCount) {
   const Scene scene(sphere({5, 0.3, -0.2}, 1.5, 3), 1);
   const DepthCamera camera = exact_camera();
   const FrameMotion motion{.world_from_camera = pose,

@@ -39,7 +39,7 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b, std
 
 // The n-th moment of N normals scatters by sqrt(var(x^n) / N); var is 1, 2, 15, 96 for n = 1..4.
 // Each bound is four of these standard deviations.
-TEST(Noise, HasTheMomentsOfTheStandardNormal) {
+TEST(Noise, HasMomentsOfStandardNormal) {
   const double unit = 4.0 / std::sqrt(static_cast<double>(count));
   for (const std::uint64_t seed : {0, 1, 2}) {
     const std::vector<float> sample = normals(seed, 0, 7);
@@ -51,7 +51,7 @@ TEST(Noise, HasTheMomentsOfTheStandardNormal) {
 }
 
 // Kolmogorov-Smirnov: sqrt(N) D exceeds 1.95 once in a thousand samples.
-TEST(Noise, HasTheDistributionOfTheStandardNormal) {
+TEST(Noise, HasDistributionOfStandardNormal) {
   std::vector<float> sample = normals(5, 0, 0);
   std::sort(sample.begin(), sample.end());
   double largest = 0.0;
@@ -64,7 +64,7 @@ TEST(Noise, HasTheDistributionOfTheStandardNormal) {
 }
 
 // Of a million normals 63 are beyond 4 sigma (Poisson, so 63 +- 4 * 8) and 0.6 beyond 5.
-TEST(Noise, HasTheTailsOfTheStandardNormal) {
+TEST(Noise, HasTailsOfStandardNormal) {
   const std::vector<float> sample = normals(11, 0, 0);
   const auto beyond = [&](float limit) {
     return std::count_if(sample.begin(), sample.end(),
@@ -76,7 +76,7 @@ TEST(Noise, HasTheTailsOfTheStandardNormal) {
 
 // Independent normals correlate by less than 4 / sqrt(N) in 16,000 of 16,001 cases. Lags 16 and 32
 // are partners in Box and Muller's transform and neighbouring blocks; 2400 is the next image row.
-TEST(Noise, NeighboursStreamsFramesAndSeedsAreUncorrelated) {
+TEST(Noise, IsUncorrelatedAcrossLagsStreamsFramesAndSeeds) {
   const double limit = 4.0 / std::sqrt(static_cast<double>(count));
   const std::vector<float> sample = normals(1, 0, 1);
   for (const std::size_t lag : {1, 2, 3, 4, 15, 16, 17, 32, 64, 848, 2400}) {
@@ -88,7 +88,7 @@ TEST(Noise, NeighboursStreamsFramesAndSeedsAreUncorrelated) {
 }
 
 // Partners share their radius: their squares would correlate if the angle were not uniform.
-TEST(Noise, SquaresOfPartnersAreUncorrelated) {
+TEST(Noise, HasUncorrelatedSquaresOfBoxMullerPartners) {
   std::vector<float> squares = normals(21, 0, 0);
   for (float& value : squares) value = (value * value - 1.0F) / std::sqrt(2.0F);
   EXPECT_NEAR(correlation(squares, squares, 16), 0.0,
@@ -96,7 +96,7 @@ TEST(Noise, SquaresOfPartnersAreUncorrelated) {
 }
 
 // A normal depends on key and index alone, not on where the array that it is asked in begins.
-TEST(Noise, IsAFunctionOfKeyAndIndex) {
+TEST(Noise, DependsOnlyOnKeyAndIndex) {
   const NoiseKey key = noise_key(3, 1, 4);
   std::vector<float> whole(1000), part(777);
   fill_normals(key, 0, whole);
@@ -107,7 +107,7 @@ TEST(Noise, IsAFunctionOfKeyAndIndex) {
 }
 
 // Bit for bit, on every instruction set of this processor and for every length of array.
-TEST(Noise, IsTheSameOnEveryInstructionSet) {
+TEST(Noise, IsSameOnAllInstructionSets) {
   const NoiseKey key = noise_key(99, 2, 3);
   for (const std::size_t length : {1UL, 31UL, 32UL, 127UL, 128UL, 129UL, count}) {
     std::vector<float> expected(length), sample(length);
@@ -120,7 +120,7 @@ TEST(Noise, IsTheSameOnEveryInstructionSet) {
   }
 }
 
-TEST(NoiseConfig, RejectsANegativeSigma) {
+TEST(NoiseConfig, RejectsNegativeSigma) {
   try {
     NoiseConfig{.sigma = -0.01}.validate();
     FAIL() << "accepted";

@@ -36,7 +36,7 @@ Vector3d direction(const Pulses& pulses, std::size_t slot) {
 }
 
 // The direction at any time in closed form; a late block shows that time does not wear out.
-TEST(ScanPattern, SpinsByTheClosedForm) {
+TEST(ScanPattern, MatchesClosedFormRotation) {
   const LidarConfig config = spinner();
   const ScanPattern pattern(config);
   Pulses pulses;
@@ -62,7 +62,7 @@ TEST(ScanPattern, SpinsByTheClosedForm) {
   }
 }
 
-TEST(ScanPattern, EverySlotBelongsToOneShot) {
+TEST(ScanPattern, AssignsOneSlotPerPulse) {
   const ScanPattern pattern(spinner());
   std::set<std::size_t> slots;
   for (std::uint32_t firing = 0; firing < 32; ++firing) {
@@ -74,7 +74,7 @@ TEST(ScanPattern, EverySlotBelongsToOneShot) {
 }
 
 // Ouster's geometry: lasers on a circle that turns with the encoder.
-TEST(ScanPattern, LasersSitOffTheAxis) {
+TEST(ScanPattern, OffsetsLasersFromAxis) {
   LidarConfig config = spinner();
   config.radial_offset = 0.02767;
   for (Channel& channel : config.channels) channel.delay = 0.0;
@@ -91,7 +91,7 @@ TEST(ScanPattern, LasersSitOffTheAxis) {
 }
 
 // A line scanner that sees 100 of 360 degrees: that share of its shots leaves it.
-TEST(ScanPattern, ShootsOnlyInsideTheFieldOfView) {
+TEST(ScanPattern, EmitsOnlyInsideFieldOfView) {
   LidarConfig config;
   config.firing_period = 1e-5;
   config.rotation_rate = 100.0;  // 1000 shots a turn
@@ -110,7 +110,7 @@ TEST(ScanPattern, ShootsOnlyInsideTheFieldOfView) {
   EXPECT_NEAR(emitted, 4 * 1000 * 100.0 / 360.0, 4 * 2);  // up to two at the edges of a line
 }
 
-TEST(Refract, OnePrismTurnsTheBeamBySnellsLaw) {
+TEST(Refract, FollowsSnellsLawForOnePrism) {
   const double wedge = 12 * degree, index = 1.51;
   // Square at the entry: the beam meets the inclined face at `wedge` from inside the glass.
   const double expected = std::asin(index * std::sin(wedge)) - wedge;
@@ -121,7 +121,7 @@ TEST(Refract, OnePrismTurnsTheBeamBySnellsLaw) {
 }
 
 // Small wedges: theta = (n - 1) (w1 exp(i a1) + w2 exp(i a2)), the paraxial formula of a rosette.
-TEST(Refract, ThinPrismsFollowTheParaxialFormula) {
+TEST(Refract, FollowsParaxialFormulaForThinPrisms) {
   const double index = 1.51, wedge = 0.2 * degree;
   const std::vector<WedgePrism> prisms = {{wedge, index, -77.7, 0.3, false},
                                           {wedge, index, 121.6, 1.1, true}};
@@ -141,7 +141,7 @@ TEST(Refract, ThinPrismsFollowTheParaxialFormula) {
 }
 
 // Livox Mid-70: two prisms of 29.7 degrees reach the edge of a 70.4 degree field when aligned.
-TEST(Refract, MidSeventyReachesItsFieldOfView) {
+TEST(Refract, ReachesFieldOfViewOfMid70) {
   std::vector<WedgePrism> prisms = {{29.7 * degree, 1.51, 0.0, 0.0, false},
                                     {29.7 * degree, 1.51, 0.0, 0.0, true}};
   EXPECT_NEAR(std::acos(refract(prisms, 0.0, Vector3d::UnitX()).x()), 35.2 * degree, 0.1 * degree);
@@ -151,7 +151,7 @@ TEST(Refract, MidSeventyReachesItsFieldOfView) {
 
 // The share of a grid over the field that has been hit grows, and the second half of a second is
 // not a repetition of the first.
-TEST(ScanPattern, ARosetteCoversMoreAndMoreOfItsField) {
+TEST(ScanPattern, CoversFieldIncreasinglyWithRosette) {
   LidarConfig config;
   config.firing_period = 1e-5;
   config.prisms = {{29.7 * degree, 1.51, -77.733, 0.0, false},
@@ -176,7 +176,7 @@ TEST(ScanPattern, ARosetteCoversMoreAndMoreOfItsField) {
   EXPECT_GT(static_cast<double>(covered.back()), 0.9 * all);
 }
 
-TEST(LidarConfig, NamesTheFieldThatIsOutOfRange) {
+TEST(LidarConfig, ReportsTheInvalidField) {
   const auto expect_error = [](auto change, const char* message) {
     LidarConfig config;
     change(config);

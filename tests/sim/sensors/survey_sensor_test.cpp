@@ -47,7 +47,7 @@ SurveySensor make_sensor(const LidarConfig& lidar) {
   return SurveySensor(config, 1);
 }
 
-TEST(SurveySensor, AStandingScannerMeasuresAllAroundAndNamesNoPixels) {
+TEST(SurveySensor, MeasuresAllAroundWithoutPixelsForStationaryScanner) {
   const Scene scene(room());
   const geometry::View view = geometry::look_at({1, 2, 3}, {9, 4, 1});
   const geometry::Scan scan = make_sensor(scanner()).scan(scene, view, 0, 1);
@@ -60,7 +60,7 @@ TEST(SurveySensor, AStandingScannerMeasuresAllAroundAndNamesNoPixels) {
 }
 
 // The planner counts on what the forward camera would see: as many rays, in the same directions.
-TEST(SurveySensor, TheForwardCameraSeesWhatTheScannerMeasuresBeforeIt) {
+TEST(SurveySensor, MatchesScannerRaysInForwardCamera) {
   const Scene scene(room());
   const geometry::View view = geometry::look_at({1, 2, 3}, {9, 4, 1});
   const geometry::Scan scan = make_sensor(scanner()).scan(scene, view, 0, 1);
@@ -98,7 +98,7 @@ TEST(SurveySensor, TheForwardCameraSeesWhatTheScannerMeasuresBeforeIt) {
   EXPECT_NEAR(in_view, rays, 0.03 * rays);
 }
 
-TEST(SurveySensor, SweepsDependOnSeedAndFrameButNotOnThreads) {
+TEST(SurveySensor, DependsOnSeedAndFrameButNotOnThreadCount) {
   const Scene scene(room());
   const geometry::View view{{0, 0, 0}, {1, 0, 0}};
   LidarConfig lidar = scanner();
@@ -117,7 +117,7 @@ geometry::ScannerMount level_mount(double azimuth) {
                                          Eigen::AngleAxisd(90.0 * degree, Vector3d::UnitY())));
 }
 
-TEST(MountedScanner, LooksToTheLeftOfItsAxisWhereverTheNosePoints) {
+TEST(MountedScanner, LooksLeftOfItsAxisForAnyHeading) {
   const geometry::View north{{1, 2, 3}, {0, 1, 0}};
   const geometry::View west = geometry::scanner_view(level_mount(0.0), north);
   EXPECT_LT((west.direction - Vector3d(-1, 0, 0)).norm(), 1e-12);
@@ -138,7 +138,7 @@ TEST(MountedScanner, LooksToTheLeftOfItsAxisWhereverTheNosePoints) {
 }
 
 // A scan in flight stands for the turns around it: all rays lie in the ring about the axis.
-TEST(MountedScanner, SweepsARingAboutItsAxisOnceForEachTurnOfThePeriod) {
+TEST(MountedScanner, SweepsRingOnceForEachRevolutionOfPeriod) {
   const Scene scene(room());
   SurveySensorOptions config;
   config.scanner = scanner();
@@ -161,7 +161,7 @@ TEST(MountedScanner, SweepsARingAboutItsAxisOnceForEachTurnOfThePeriod) {
 }
 
 // The planner's camera promises nothing that the ring has not.
-TEST(MountedScanner, TheSideCameraSeesNoDirectionThatTheRingLeavesOut) {
+TEST(MountedScanner, HasSideCameraInsideScannedRing) {
   const geometry::Camera camera(side_camera(scanner()).camera);
   EXPECT_NEAR(camera.config().vertical_fov, 90.0 * degree, 1e-12);
   EXPECT_LE(camera.config().horizontal_fov, 2.0 * 14.5 * degree);

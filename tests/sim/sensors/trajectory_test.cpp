@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 Quaterniond yaw(double angle) { return Quaterniond(AngleAxisd(angle, Vector3d::UnitZ())); }
 
-TEST(Trajectory, InterpolatesPositionLinearlyAndTurnsAtConstantRate) {
+TEST(Trajectory, InterpolatesPositionAndAttitude) {
   const Trajectory trajectory({{1.0, {0, 0, 0}, yaw(0.2)}, {3.0, {4, 2, 0}, yaw(1.2)}});
   for (const double time : {1.0, 1.3, 2.0, 2.9, 3.0}) {
     const double share = (time - 1.0) / 2.0;
@@ -28,21 +28,21 @@ TEST(Trajectory, InterpolatesPositionLinearlyAndTurnsAtConstantRate) {
   }
 }
 
-TEST(Trajectory, StandsStillBeforeTheStartAndAfterTheEnd) {
+TEST(Trajectory, HoldsPoseBeforeStartAndAfterEnd) {
   const Trajectory trajectory({{1.0, {1, 0, 0}, yaw(0.2)}, {3.0, {4, 2, 0}, yaw(1.2)}});
   EXPECT_TRUE(trajectory.pose(0.0).isApprox(trajectory.pose(1.0)));
   EXPECT_TRUE(trajectory.pose(9.0).isApprox(trajectory.pose(3.0)));
 }
 
 // A quaternion and its negative are the same attitude; the way between must stay the short one.
-TEST(Trajectory, TakesTheShorterWayRound) {
+TEST(Trajectory, InterpolatesAlongShorterRotation) {
   Quaterniond negative = yaw(0.4);
   negative.coeffs() *= -1.0;
   const Trajectory trajectory({{0.0, {0, 0, 0}, yaw(0.2)}, {1.0, {0, 0, 0}, negative}});
   EXPECT_TRUE(trajectory.pose(0.5).linear().isApprox(yaw(0.3).toRotationMatrix(), 1e-12));
 }
 
-TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
+TEST(Trajectory, ReportsTheInvalidPose) {
   try {
     const Trajectory trajectory({{.time = 0.0}, {.time = 1.0}, {.time = 1.0}});
     FAIL() << "accepted";
@@ -63,7 +63,7 @@ TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
 // A Gauss-Markov process sampled every tau has correlation 1/e between neighbours; N = 40,000
 // samples with 1/e memory are as good as N (1 - 1/e^2) / (1 + 1/e^2) = 30,000 independent ones, so
 // four standard deviations of the variance are 4 sqrt(2 / 30,000) = 3.3 %.
-TEST(EstimatedTrajectory, HasErrorsOfTheStatedSizeAndMemory) {
+TEST(EstimatedTrajectory, HasErrorsOfGivenSizeAndCorrelationTime) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 40'000; ++i) poses.push_back({5.0 * i, {1, 2, 3}, yaw(0.7)});
   const Trajectory ground_truth(poses);
@@ -96,13 +96,13 @@ TEST(EstimatedTrajectory, HasErrorsOfTheStatedSizeAndMemory) {
   EXPECT_NEAR(neighbours / square.x(), std::exp(-1.0), 0.03);
 }
 
-TEST(EstimatedTrajectory, IsTheFlownOneWithoutErrors) {
+TEST(EstimatedTrajectory, EqualsGroundTruthWithoutErrors) {
   const Trajectory ground_truth({{0.0, {1, 2, 3}, yaw(0.7)}, {2.0, {2, 2, 3}, yaw(0.9)}});
   const Trajectory estimated = estimated_trajectory(ground_truth, {});
   EXPECT_TRUE(estimated.pose(1.3).isApprox(ground_truth.pose(1.3), 1e-15));
 }
 
-TEST(NavigationErrors, RejectsANegativeSigma) {
+TEST(NavigationErrors, RejectNegativeSigma) {
   try {
     NavigationErrors{.tilt_sigma = -1.0}.validate();
     FAIL() << "accepted";

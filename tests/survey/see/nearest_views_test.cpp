@@ -27,7 +27,7 @@ TEST(NearestViews, AreSortedByDistanceThenByIndex) {
   EXPECT_THAT(see::nearest_views(positions, {0, 0, 0}, 9), ElementsAre(1, 2, 3, 0));
 }
 
-TEST(NearestViews, NoneOfTheOthersIsNearer) {
+TEST(NearestViews, MatchBruteForce) {
   const auto positions = random_positions(300, 1);
   const Vector3d query(0.3, -2, 1);
   const auto nearest = see::nearest_views(positions, query, 20);
@@ -48,7 +48,7 @@ TEST(ApproximatelyNearestView, IsExactWithinALeaf) {
 
 // The child whose centre is nearest is entered, though the other one holds the nearer view. The
 // root grows from [-0.5, 0.5] to [-0.5, 1.5] on each axis; its lower child has the centre 0.
-TEST(ApproximatelyNearestView, EntersTheChildWithTheNearestCentre) {
+TEST(ApproximatelyNearestView, SearchesChildWithNearestCentre) {
   const std::vector<Vector3d> positions = {{0, 0, 0}, {0.55, 0, 0}};
   const Vector3d query(0.45, 0, 0);
   EXPECT_EQ(see::nearest_views(positions, query, 1)[0], 1U);

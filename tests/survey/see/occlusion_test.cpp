@@ -29,7 +29,7 @@ std::vector<Vector3f> wall(float height) {
 }
 
 // The definition: some sample zeta, zeta + r, ... up to psi has a point within r.
-TEST(OcclusionTest, AgreesWithTheDefinitionSampleBySample) {
+TEST(OcclusionTest, MatchesDefinition) {
   const auto points = tests::random_points(400, 1.0, 11);
   const double radius = 0.05;
   const geometry::PointGrid grid = make_grid(points, radius);
@@ -57,7 +57,7 @@ TEST(OcclusionTest, AgreesWithTheDefinitionSampleBySample) {
   EXPECT_LT(occluded, 100);
 }
 
-TEST(OcclusionTest, PointsBehindTheSensorDoNotOcclude) {
+TEST(OcclusionTest, IgnoresPointsBehindSensor) {
   const geometry::PointGrid grid = make_grid(wall(3.0F), 0.1);
   const see::OcclusionTest test(grid, {.radius = 0.1, .search_distance = 10.0});
   EXPECT_FALSE(test.is_occluded({0, 0, 0}, 0.0, {0, 0, 2.5}));
@@ -66,7 +66,7 @@ TEST(OcclusionTest, PointsBehindTheSensorDoNotOcclude) {
 
 // Trap T7: a wall farther away than psi is not noticed, so a target behind a building counts as
 // visible. With psi = d it is.
-TEST(OcclusionTest, SeesThroughWallsBeyondTheSearchDistance) {
+TEST(OcclusionTest, IgnoresWallsBeyondSearchDistance) {
   const geometry::PointGrid grid = make_grid(wall(3.0F), 0.1);
   const Vector3d frontier(0, 0, 0), sensor(0, 0, 41);
   const see::OcclusionTest near_only(grid, {.radius = 0.1, .search_distance = 1.0});
@@ -75,7 +75,7 @@ TEST(OcclusionTest, SeesThroughWallsBeyondTheSearchDistance) {
   EXPECT_TRUE(whole_line.is_occluded(frontier, 0.0, sensor));
 }
 
-TEST(OcclusionTest, TheReleasedMarchReachesFartherByTheOffset) {
+TEST(OcclusionTest, ReachesFartherByOffsetInReleasedVariant) {
   const geometry::PointGrid grid = make_grid(wall(1.45F), 0.1);
   const Vector3d frontier(0, 0, 0), sensor(0, 0, 5);
   see::OcclusionConfig config{.radius = 0.1, .search_distance = 1.0};
@@ -85,13 +85,13 @@ TEST(OcclusionTest, TheReleasedMarchReachesFartherByTheOffset) {
 }
 
 // The frontier itself fills the balls at 0 and r; the first clear one is at 2r.
-TEST(ClearOffset, IsTheFirstStepThatHoldsNoPoint) {
+TEST(ClearOffset, IsFirstStepWithoutPoints) {
   const geometry::PointGrid grid = make_grid({{0, 0, 0}}, 0.125);  // exact in binary
   const see::OcclusionTest test(grid, {.radius = 0.125, .search_distance = 1.0});
   EXPECT_EQ(test.clear_offset({0, 0, 0}, {0, 0, 1}, 10.0), 0.25);
 }
 
-TEST(ClearOffset, EndsAtTheLimitWhereNothingIsClear) {
+TEST(ClearOffset, IsLimitWhenNoStepIsClear) {
   std::vector<Vector3f> column;
   for (float z = 0; z < 5; z += 0.05F) column.emplace_back(0, 0, z);
   const geometry::PointGrid grid = make_grid(column, 0.1);

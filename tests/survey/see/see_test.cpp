@@ -76,7 +76,7 @@ std::vector<Vector3d> collect_positions(const std::vector<View>& views) {
   return positions;
 }
 
-TEST(SeePlanner, SurveysANoisySphereAndEndsByItself) {
+TEST(SeePlanner, SurveysNoisySphereAndEnds) {
   for (const bool plus_plus : {false, true}) {
     see::SeeConfig config = small_config();
     config.optimise_views = config.visibility_graph = plus_plus;
@@ -90,7 +90,7 @@ TEST(SeePlanner, SurveysANoisySphereAndEndsByItself) {
 // Trap T1: it is the noise that makes frontiers. At the published settings clean data end the
 // survey of a sphere after a few views, rightly. A threshold fit for clean data surveys the sphere
 // whole.
-TEST(SeePlanner, NeedsNoiseOrALargerThreshold) {
+TEST(SeePlanner, RequiresNoiseOrLargerThreshold) {
   const geometry::Camera d435(geometry::CameraConfig{});
   see::SeePlanner published(see::SeeConfig{}, d435);
   std::optional<View> next = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
@@ -107,7 +107,7 @@ TEST(SeePlanner, NeedsNoiseOrALargerThreshold) {
 }
 
 // Trap T2, and what the user is told.
-TEST(SeePlanner, RefusesParametersThatAdmitNoFrontier) {
+TEST(SeePlanner, RejectsParametersThatAdmitNoFrontier) {
   const auto error_message = [](const see::SeeConfig& config) -> std::string {
     try {
       config.validate();
@@ -126,7 +126,7 @@ TEST(SeePlanner, RefusesParametersThatAdmitNoFrontier) {
 
 // SEE flies to the nearest proposal. Refusing one view after the other lists them all, each time
 // the nearest of what is left, and without the frontier spacing there are as many as frontiers.
-TEST(SeePlanner, WithoutOptimiserAndGraphTakesTheNearestView) {
+TEST(SeePlanner, SelectsNearestViewWithoutOptimiserAndGraph) {
   see::SeeConfig config = small_config();
   config.optimise_views = config.visibility_graph = false;
   see::SeePlanner planner(config, small_camera);
@@ -145,7 +145,7 @@ TEST(SeePlanner, WithoutOptimiserAndGraphTakesTheNearestView) {
 }
 
 // The bar of the method: without optimiser and graph SEE++ is SEE, view for view.
-TEST(SeePlanner, WithoutOptimiserAndGraphIsSee) {
+TEST(SeePlanner, EqualsSeeWithoutOptimiserAndGraph) {
   see::SeeConfig config = small_config();
   config.optimise_views = config.visibility_graph = false;
   const Outcome exact = survey(config, 0.02, 12);
@@ -160,7 +160,7 @@ TEST(SeePlanner, WithoutOptimiserAndGraphIsSee) {
   EXPECT_EQ(exact.cloud, same.cloud);
 }
 
-TEST(SeePlanner, GivesTheSameViewsForTheSameScans) {
+TEST(SeePlanner, IsDeterministic) {
   const Outcome first = survey(small_config(), 0.02, 15), second = survey(small_config(), 0.02, 15);
   ASSERT_EQ(first.views.size(), second.views.size());
   for (std::size_t i = 0; i < first.views.size(); ++i) {
@@ -170,7 +170,7 @@ TEST(SeePlanner, GivesTheSameViewsForTheSameScans) {
 }
 
 // Trap T6: every proposal is at the view distance from the surface, outside, looking in.
-TEST(SeePlanner, ProposesViewsFromOutsideAtTheViewDistance) {
+TEST(SeePlanner, ProposesViewsFromOutsideAtViewDistance) {
   const Outcome run = survey(small_config(), 0.02, 15);
   ASSERT_GT(run.views.size(), 1U);
   for (std::size_t i = 1; i < run.views.size(); ++i) {
@@ -181,7 +181,7 @@ TEST(SeePlanner, ProposesViewsFromOutsideAtTheViewDistance) {
 }
 
 // Trap T9: the first scan must show something; a later empty one only costs the target.
-TEST(SeePlanner, SaysThatAnEmptyFirstScanIsTheUsersAffair) {
+TEST(SeePlanner, RejectsEmptyFirstScan) {
   see::SeePlanner planner(small_config(), small_camera);
   try {
     planner.next_view(geometry::Scan{});
@@ -192,7 +192,7 @@ TEST(SeePlanner, SaysThatAnEmptyFirstScanIsTheUsersAffair) {
   }
 }
 
-TEST(SeePlanner, EndsWhenEveryLaterScanIsEmpty) {
+TEST(SeePlanner, EndsWhenAllLaterScansAreEmpty) {
   see::SeePlanner planner(small_config(), small_camera);
   const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
   std::optional<View> next =
@@ -215,7 +215,7 @@ TEST(SeePlanner, StopsWhilePlanningView) {
   tests::expect_stop_while_planning(planner, scan);
 }
 
-TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
+TEST(SeePlanner, ProposesEveryFrontierWhenViewsAreRejected) {
   see::SeePlanner planner(small_config(), small_camera);
   const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
   std::optional<View> next =
@@ -231,7 +231,7 @@ TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
   EXPECT_EQ(offered.size(), frontiers);
 }
 
-TEST(SeePlanner, LooksAgainFromTheViewDistanceOrFromWhereItSawIfThatIsNearerOrHigher) {
+TEST(SeePlanner, ReobservesFromViewDistanceOrNearerOrHigherOrigin) {
   see::Frontier frontier{};
   frontier.position = {1, 0, 0};
   const auto again = [&](const Vector3d& seen_from, std::optional<double> min_height) {
@@ -251,7 +251,7 @@ TEST(SeePlanner, LooksAgainFromTheViewDistanceOrFromWhereItSawIfThatIsNearerOrHi
 }
 
 // What is put off comes back when nothing else is left, seen along the line that it was seen on.
-TEST(SeePlanner, OffersRefusedFrontiersAgainFromWhereTheyWereSeen) {
+TEST(SeePlanner, ProposesRejectedFrontiersAgainAlongTheirObservation) {
   see::SeeConfig config = small_config();
   config.still_occluded = see::StillOccluded::deferred;
   see::SeePlanner planner(config, small_camera);
@@ -273,7 +273,7 @@ TEST(SeePlanner, OffersRefusedFrontiersAgainFromWhereTheyWereSeen) {
   }
 }
 
-TEST(SeePlanner, DropsMeasurementsOutsideTheSceneBox) {
+TEST(SeePlanner, IgnoresMeasurementsOutsideSceneBox) {
   see::SeeConfig config = small_config();
   config.scene_box = Eigen::AlignedBox3d(Vector3d(-1, -1, 0), Vector3d(1, 1, 1));
   const Outcome run = survey(config, 0.02, 3);
@@ -281,7 +281,7 @@ TEST(SeePlanner, DropsMeasurementsOutsideTheSceneBox) {
   for (const Eigen::Vector3f& p : run.cloud) EXPECT_GE(p.z(), 0.0F);
 }
 
-TEST(SeePlanner, KeepsViewsAboveTheGroundClearance) {
+TEST(SeePlanner, KeepsViewsAboveMinHeight) {
   see::SeeConfig config = small_config();
   config.min_height = -0.2;
   const Outcome run = survey(config, 0.02, 40);
@@ -293,7 +293,7 @@ TEST(SeePlanner, KeepsViewsAboveTheGroundClearance) {
 
 // Every reading of the paper that a mission file can choose plans the same sphere whole, by views
 // of its own.
-TEST(SeePlanner, EveryAlternativeReadingWorks) {
+TEST(SeePlanner, CompletesSurveyWithEveryAlternativeConfiguration) {
   const std::vector<std::pair<const char*, void (*)(see::SeeConfig&)>> alternatives = {
       {"frame_neighbours", [](see::SeeConfig& c) { c.frame_neighbours = 16; }},
       {"free_space_normals", [](see::SeeConfig& c) { c.free_space_normals = true; }},

@@ -24,13 +24,13 @@ see::Frontier edge_frontier() {
 }
 
 // Trap T6: the sensor stands on the free side and looks back at the frontier.
-TEST(PlaceView, StandsAtTheDistanceAndLooksBack) {
+TEST(PlaceView, HasViewDistanceAndLooksBack) {
   const geometry::View view = see::place_view({1, 1, 1}, {0, 0, 1}, two_metres);
   EXPECT_TRUE(view.position.isApprox(Vector3d(1, 1, 3)));
   EXPECT_TRUE(view.direction.isApprox(Vector3d(0, 0, -1)));
 }
 
-TEST(PlaceView, SlidesUpToTheLowestHeightKeepingAzimuthAndDistance) {
+TEST(PlaceView, RisesToMinHeightKeepingAzimuthAndDistance) {
   const see::ViewPlacement placement{.distance = 5.0, .min_height = 2.0};
   const geometry::View view =
       see::place_view({0, 0, 0}, Vector3d(3, 4, -12).normalized(), placement);
@@ -47,7 +47,7 @@ TEST(PlaceView, SlidesUpToTheLowestHeightKeepingAzimuthAndDistance) {
 
 // What was seen lies at x < 0, so the view moves over the edge, to x > 0. Displacement and turn
 // about e_b add up: tan(alpha) = (s+1)a/d, theta = alpha - atan(a/d), angle = alpha + theta.
-TEST(AdjustView, MovesOverTheEdgeByTheReleasedAngles) {
+TEST(AdjustView, MovesOverEdgeByReleasedAngles) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record;
   const double a = 0.3, d = 2.0;
@@ -60,7 +60,7 @@ TEST(AdjustView, MovesOverTheEdgeByTheReleasedAngles) {
 }
 
 // Along e_b the turn takes back part of the shift: what is left is the angle of the centroid.
-TEST(AdjustView, AlongTheBoundaryTurnsByTheCentroidsAngle) {
+TEST(AdjustView, TurnsByCentroidAngleAlongBoundary) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record;
   ASSERT_TRUE(
@@ -70,7 +70,7 @@ TEST(AdjustView, AlongTheBoundaryTurnsByTheCentroidsAngle) {
       frontier.view.position.isApprox(2.0 * Vector3d(0, std::sin(beta), std::cos(beta)), 1e-12));
 }
 
-TEST(AdjustView, ShiftsWithoutTurningIfAsked) {
+TEST(AdjustView, ShiftsWithoutTurningWhenConfigured) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record;
   ASSERT_TRUE(see::adjust_view(frontier, record, {-0.3, 0, 0}, two_metres, see::Adjustment::shift));
@@ -78,7 +78,7 @@ TEST(AdjustView, ShiftsWithoutTurningIfAsked) {
 }
 
 // Nearer centroids adjust, with a gain that doubles; then one switch; then once more; then the end.
-TEST(AdjustView, TriesEachEndUntilItStopsGainingGround) {
+TEST(AdjustView, TriesEachSideUntilItStopsImproving) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record{.views = 7};
   const auto adjust = [&](double distance) {
@@ -96,7 +96,7 @@ TEST(AdjustView, TriesEachEndUntilItStopsGainingGround) {
   EXPECT_FALSE(adjust(0.9));
 }
 
-TEST(AdjustView, GivesUpAtOnceIfAsked) {
+TEST(AdjustView, StopsAtOnceWhenConfigured) {
   see::Frontier frontier = edge_frontier();
   see::AttemptRecord record;
   EXPECT_FALSE(see::adjust_view(frontier, record, {-1, 0, 0}, two_metres, see::Adjustment::none));

@@ -23,19 +23,19 @@ class SelectByCoverage : public testing::Test {
   std::vector<Vector3d> positions_ = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
 };
 
-TEST_F(SelectByCoverage, TakesTheNearestWhenNobodySeesIt) {
+TEST_F(SelectByCoverage, SelectsNearestWhenNoViewSeesIt) {
   graph_.set_edges(10, {20});
   graph_.set_edges(20, {30, 40});
   EXPECT_EQ(select(), 0U);
 }
 
-TEST_F(SelectByCoverage, TakesTheNearestWhenNobodySeesMoreThanIt) {
+TEST_F(SelectByCoverage, SelectsNearestWhenNoViewSeesMore) {
   graph_.set_edges(10, {20, 30});
   graph_.set_edges(20, {10, 30});  // as many: the comparison is strict
   EXPECT_EQ(select(), 0U);
 }
 
-TEST_F(SelectByCoverage, TakesTheMostFrontiersAMetreOfThoseThatSeeTheNearest) {
+TEST_F(SelectByCoverage, SelectsMaxFrontiersPerMetreAmongViewsOfNearest) {
   graph_.set_edges(10, {20});
   graph_.set_edges(20, {10, 30});      // 2 frontiers for 2 m
   graph_.set_edges(30, {10, 20, 40});  // 3 for 3 m: no better, and farther
@@ -44,14 +44,14 @@ TEST_F(SelectByCoverage, TakesTheMostFrontiersAMetreOfThoseThatSeeTheNearest) {
   EXPECT_EQ(select(), 2U);
 }
 
-TEST_F(SelectByCoverage, WorksWhereTheSensorStandsOnAProposal) {
+TEST_F(SelectByCoverage, AcceptsProposalAtSensorPosition) {
   positions_[1] = {0, 0, 0};
   graph_.set_edges(20, {10});
   graph_.set_edges(30, {10, 20, 40});
   EXPECT_EQ(select(), 1U);
 }
 
-TEST(VisibilityGraph, EdgesVanishWithTheirVertices) {
+TEST(VisibilityGraph, RemovesEdgesWithTheirVertices) {
   see::VisibilityGraph graph;
   graph.set_edges(1, {2, 3});
   graph.set_edges(2, {1});

@@ -17,7 +17,7 @@ const geometry::Camera camera{geometry::CameraConfig{.width = 212, .height = 120
 const geometry::View front = geometry::look_at({2.0, 0.0, 0.0}, {0, 0, 0});
 const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 about the origin
 
-TEST(BlockImage, ABlockCountsItsReturnsAndKnowsTheirMean) {
+TEST(BlockImage, ComputesCountAndMeanOfReturns) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, front);
   const surfel::BlockImage image =
       surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 10.0F});
@@ -40,7 +40,7 @@ TEST(BlockImage, ABlockCountsItsReturnsAndKnowsTheirMean) {
   }
 }
 
-TEST(BlockImage, NormalsOfASphereAreRadial) {
+TEST(BlockImage, HasRadialNormalsOnSphere) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, front);
   const surfel::BlockImage image =
       surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 0.2F});
@@ -56,7 +56,7 @@ TEST(BlockImage, NormalsOfASphereAreRadial) {
 }
 
 // Behind a small ball stands a large one: blocks on the small one's outline keep only it.
-TEST(BlockImage, ABlockOnAnEdgeKeepsTheNearerSurface) {
+TEST(BlockImage, KeepsNearerSurfaceInEdgeBlocks) {
   const std::vector<tests::Sphere> two = {{{0.5, 0, 0}, 0.2}, {{-5, 0, 0}, 3.0}};
   const geometry::Scan scan = tests::scan_spheres(two, camera, front);
   const surfel::BlockImage image =
@@ -71,7 +71,7 @@ TEST(BlockImage, ABlockOnAnEdgeKeepsTheNearerSurface) {
 }
 
 // On a surface across the optical axis at distance z, f_x f_y / z^2 rays meet a square metre.
-TEST(BlockImage, RayDensityIsThatOfThePinholeCamera) {
+TEST(BlockImage, HasRayDensityOfPinholeCamera) {
   const std::vector<tests::Sphere> wall = {{{-1000.0, 0, 0}, 1000.0}};
   const surfel::BlockImage image =
       surfel::make_block_image(tests::scan_spheres(wall, camera, front), camera, {.block_px = 4});
@@ -82,7 +82,7 @@ TEST(BlockImage, RayDensityIsThatOfThePinholeCamera) {
 
 // The same returns without their pixels: the cube's faces hold each of them once, and the density
 // of rays, now counted rather than known, is the camera's.
-TEST(BlockImage, ASweepIsSortedIntoTheFacesOfACube) {
+TEST(BlockImage, SortsSweepIntoCubeFaces) {
   geometry::Scan scan = tests::scan_spheres(ball, camera, front);
   const surfel::BlockImage organised =
       surfel::make_block_image(scan, camera, {.block_px = 8, .jump = 0.2F});
@@ -106,7 +106,7 @@ TEST(BlockImage, ASweepIsSortedIntoTheFacesOfACube) {
 
 // A miss is known only where the sensor is known to have shot: in the camera's view, of which no
 // block reaches out.
-TEST(BlockImage, ASweepsMissesAreKnownInFrontOnly) {
+TEST(BlockImage, MarksSweepMissesOnlyInFront) {
   geometry::Scan scan = tests::scan_spheres(ball, camera, front);
   scan.pixels.clear();
   const auto faces = surfel::make_cube_images(scan, camera, 32, {.jump = 10.0F});

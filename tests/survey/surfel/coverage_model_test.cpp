@@ -50,7 +50,7 @@ double tolerance(double share, int trials) {
 
 class CoverageModelAgainstSimulation : public testing::TestWithParam<double> {};
 
-TEST_P(CoverageModelAgainstSimulation, IsotropicNoiseAtEveryIncidence) {
+TEST_P(CoverageModelAgainstSimulation, MatchesForIsotropicNoiseAtEveryIncidence) {
   const surfel::Noise noise{.isotropic = GetParam() * radius};
   const surfel::CoverageModel coverage_model(radius, noise);
   constexpr int trials = 1500;
@@ -70,7 +70,7 @@ TEST_P(CoverageModelAgainstSimulation, IsotropicNoiseAtEveryIncidence) {
 INSTANTIATE_TEST_SUITE_P(NoiseInCoverageRadii, CoverageModelAgainstSimulation,
                          testing::Values(0.0, 0.5, 1.0, 2.0, 4.0));
 
-TEST(CoverageModel, NoiseAlongTheRayAgreesWithSimulation) {
+TEST(CoverageModel, MatchesSimulationForNoiseAlongRay) {
   const surfel::Noise noise{.along_ray = 2.0 * radius};
   const surfel::CoverageModel coverage_model(radius, noise);
   constexpr int trials = 4000;
@@ -111,7 +111,7 @@ double displaced_uncovered_share(double ray_density, const surfel::Noise& noise,
 }
 
 // Points of one look miss together: many rays do not help against an error of the pose.
-TEST(CoverageModel, ErrorsOfThePoseAgreeWithSimulation) {
+TEST(CoverageModel, MatchesSimulationForPoseErrors) {
   constexpr int observations = 4000;
   for (const double deviation : {0.5, 1.0, 3.0}) {
     for (const double sigma : {0.0, 0.5}) {
@@ -132,7 +132,7 @@ TEST(CoverageModel, ErrorsOfThePoseAgreeWithSimulation) {
 
 // A thousandth of a radian at ten metres is a centimetre across the ray: all of it across a surface
 // that is met flat, none across one that is faced.
-TEST(CoverageModel, ErrorsOfAnAngleGrowWithDepthAndCountAcrossTheRay) {
+TEST(CoverageModel, ScalesAngleErrorsWithDepthAcrossRay) {
   const surfel::Noise noise{.angle = 0.001};
   EXPECT_NEAR(noise.lateral_error(1.0, 10.0), 0.0, 1e-12);
   EXPECT_NEAR(noise.lateral_error(0.0, 10.0), 0.01, 1e-12);
@@ -148,7 +148,7 @@ TEST(CoverageModel, ErrorsOfAnAngleGrowWithDepthAndCountAcrossTheRay) {
 
 // The discs of radius r_d about a grid of spacing s cover the plane if s <= r_d sqrt(2), and
 // pi r_d^2 / s^2 of it if they do not touch.
-TEST(CoverageModel, CleanLooksCoverTheShareThatDiscsDo) {
+TEST(CoverageModel, MatchesDiscCoverageWithoutNoise) {
   const surfel::CoverageModel coverage_model(radius, {});
   EXPECT_EQ(coverage_model.hazard(static_cast<float>(1.0 / (radius * radius)), 1.0F),
             surfel::CoverageModel::max_hazard);
@@ -158,7 +158,7 @@ TEST(CoverageModel, CleanLooksCoverTheShareThatDiscsDo) {
       std::numbers::pi * sparse, 0.02);  // the grid's offset is sampled at 64 places
 }
 
-TEST(CoverageModel, NothingIsCoveredWithoutRaysAndMoreRaysCoverMore) {
+TEST(CoverageModel, IncreasesFromZeroWithRayDensity) {
   const surfel::CoverageModel coverage_model(radius, {.isotropic = 0.01});
   EXPECT_EQ(coverage_model.hazard(0.0F, 1.0F), 0.0F);
   float before = 0.0F;
@@ -171,7 +171,7 @@ TEST(CoverageModel, NothingIsCoveredWithoutRaysAndMoreRaysCoverMore) {
 }
 
 // Rays 1 mm apart at a metre: a spacing tells the depth, and the look counts with the noise there.
-TEST(CoverageModel, GrowingNoiseIsThatOfTheDepthWhichTheSpacingTells) {
+TEST(CoverageModel, DerivesDepthOfGrowingNoiseFromRaySpacing) {
   constexpr double ball = 0.02, spacing = 0.001;
   const surfel::Noise noise{.isotropic = 0.01, .growing = 1.0, .depth = 10.0};
   const surfel::CoverageModel growing(ball, noise, spacing);

@@ -45,7 +45,7 @@ std::vector<Vector3f> points_in_ball(float radius, int count) {
 
 const std::vector<Vector3d> around = {{2, 0, 0}, {-2, 0, 0}, {0, 2, 0}, {0, -2, 0.1}, {1, 1, 1.4}};
 
-TEST(FreeSpaceHistory, NeverCallsTheInsideOfASolidEmpty) {
+TEST(FreeSpaceHistory, NeverMarksInsideOfSolidAsEmpty) {
   for (const bool misses_are_empty : {false, true}) {
     const surfel::FreeSpaceHistory clean = make_history(around, 0.0, misses_are_empty);
     // Ranges are kept in single precision of a few tenths of a millimetre.
@@ -61,7 +61,7 @@ TEST(FreeSpaceHistory, NeverCallsTheInsideOfASolidEmpty) {
   }
 }
 
-TEST(FreeSpaceHistory, TellsEmptyMeasuredAndUnknownApart) {
+TEST(FreeSpaceHistory, DistinguishesEmptyMeasuredAndUnknown) {
   const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, false);
   EXPECT_EQ(history.query({1.0F, 0, 0}), surfel::SpaceState::empty);  // between sensor and ball
   EXPECT_EQ(history.query({0.5F, 0, 0}), surfel::SpaceState::measured);
@@ -72,7 +72,7 @@ TEST(FreeSpaceHistory, TellsEmptyMeasuredAndUnknownApart) {
   EXPECT_EQ(history.query({3.0F, 0, 0}), surfel::SpaceState::outside);  // behind the sensor
 }
 
-TEST(FreeSpaceHistory, RaysWithoutAReturnProveEmptySpaceOnlyIfToldSo) {
+TEST(FreeSpaceHistory, MarksNoReturnRaysAsEmptyOnlyWhenConfigured) {
   const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
   EXPECT_EQ(history.query({1.0F, 0, 0.35F}), surfel::SpaceState::empty);
   EXPECT_FALSE(history.is_verified_empty({1.0F, 0, 0.35F}, 0.02F));
@@ -88,7 +88,7 @@ std::vector<Vector3f> offset_points(int count) {
   return points;
 }
 
-TEST(FreeSpaceHistory, AMissTellsOnlyOfSurfaceThatFacesItOnceMissesHaveLied) {
+TEST(FreeSpaceHistory, LimitsMissesToFacingSurfacesAfterFalseMisses) {
   surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
   const Vector3f beside(0.3F, 0.8F, 0), before(1, 0, 0);
   const Vector3f front = Vector3f::UnitX(), back = -front, side = Vector3f::UnitZ();
@@ -106,7 +106,7 @@ TEST(FreeSpaceHistory, AMissTellsOnlyOfSurfaceThatFacesItOnceMissesHaveLied) {
   EXPECT_EQ(history.query_surface(before, back), surfel::SpaceState::empty);
 }
 
-TEST(FreeSpaceHistory, MissesLieOnlyWhereManyPointsShouldHaveReturnedThem) {
+TEST(FreeSpaceHistory, DetectsFalseMissesOnlyFromManyPoints) {
   const Vector3f front = Vector3f::UnitX(), side = Vector3f::UnitZ();
   const auto finds_false_misses = [](const std::vector<Vector3f>& points, const Vector3f& normal) {
     surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
@@ -125,7 +125,7 @@ TEST(FreeSpaceHistory, MissesLieOnlyWhereManyPointsShouldHaveReturnedThem) {
 }
 
 /// Twin: the one compares after every scan, the other all at the end.
-TEST(FreeSpaceHistory, ComparesEveryPointWithEveryImageOnce) {
+TEST(FreeSpaceHistory, ComparesEachPointWithEachImageOnce) {
   const std::vector<Vector3f> points = offset_points(40);
   const std::vector<Vector3f> normals(points.size(), Vector3f::UnitX());
   for (const std::size_t known : {std::size_t{0}, std::size_t{15}, std::size_t{29}}) {
@@ -140,7 +140,7 @@ TEST(FreeSpaceHistory, ComparesEveryPointWithEveryImageOnce) {
   }
 }
 
-TEST(FreeSpaceHistory, ABallIsProvenEmptyOnlyInFrontOfReturns) {
+TEST(FreeSpaceHistory, VerifiesBallsAsEmptyOnlyInFrontOfReturns) {
   const surfel::FreeSpaceHistory history = make_history({{2, 0, 0}}, 0.0, true);
   EXPECT_TRUE(history.is_verified_empty({1.0F, 0, 0}, 0.1F));
   EXPECT_FALSE(history.is_verified_empty({0.55F, 0, 0}, 0.1F));  // reaches into the ball
@@ -149,7 +149,7 @@ TEST(FreeSpaceHistory, ABallIsProvenEmptyOnlyInFrontOfReturns) {
 }
 
 /// Many looks at one side, and one at the other side long before.
-TEST(FreeSpaceHistory, ForgetsWhatOthersShowAsWell) {
+TEST(FreeSpaceHistory, RemovesRedundantImages) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-0.1, 0.1);
   std::vector<Vector3d> viewpoints = {{-2, 0, 0}, {0, 2, 0}};
@@ -174,7 +174,7 @@ TEST(FreeSpaceHistory, ForgetsWhatOthersShowAsWell) {
   }
 }
 
-TEST(FreeSpaceHistory, KeepsTheNewestHoweverLittleItMayKeep) {
+TEST(FreeSpaceHistory, KeepsNewestImageAtAnyMemoryLimit) {
   const surfel::FreeSpaceHistory history = make_history(around, 0.0, false, 1);
   EXPECT_EQ(history.image_count(), around.size());
   EXPECT_EQ(history.query({0.6F, 0.6F, 0.84F}), surfel::SpaceState::empty);

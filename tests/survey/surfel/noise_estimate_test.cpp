@@ -20,7 +20,7 @@ surfel::BlockImage make_image(const geometry::Scan& scan) {
   return surfel::make_block_image(scan, camera, {.block_px = 4, .jump = 0.1F});
 }
 
-TEST(NoiseEstimate, KnowsNothingBeforeTheFirstScan) {
+TEST(NoiseEstimate, IsEmptyBeforeFirstScan) {
   EXPECT_FALSE(surfel::NoiseEstimate().noise(0.0, 2.0));
 }
 
@@ -35,7 +35,7 @@ TEST(NoiseEstimate, FindsIsotropicNoise) {
   EXPECT_NEAR(noise->across(0.6), 0.01, 0.001);
 }
 
-TEST(NoiseEstimate, TellsNoiseAlongTheRayFromIsotropicNoise) {
+TEST(NoiseEstimate, DistinguishesAlongRayFromIsotropicNoise) {
   geometry::Scan scan = tests::scan_spheres(ball, camera, geometry::look_at({2, 0, 0}, {0, 0, 0}));
   std::mt19937_64 random(2);
   std::normal_distribution<float> normal(0.0F, 0.01F);
@@ -51,7 +51,7 @@ TEST(NoiseEstimate, TellsNoiseAlongTheRayFromIsotropicNoise) {
   EXPECT_GT(noise->along_ray, 2.0 * noise->isotropic);
 }
 
-TEST(NoiseEstimate, CallsNegligibleNoiseNone) {
+TEST(NoiseEstimate, IsZeroForNegligibleNoise) {
   surfel::NoiseEstimate estimate;
   estimate.add(
       make_image(tests::scan_spheres(ball, camera, geometry::look_at({2, 0, 0}, {0, 0, 0}))));
@@ -82,7 +82,7 @@ surfel::BlockImage make_depth_image(double constant, double growing) {
 }
 
 // 2 mm at a metre, 32 mm at four.
-TEST(NoiseEstimate, LearnsThatNoiseGrowsWithTheSquareOfTheRange) {
+TEST(NoiseEstimate, FindsNoiseThatGrowsWithSquareOfRange) {
   surfel::NoiseEstimate estimate;
   estimate.add(make_depth_image(0.0, 0.002));
   const auto noise = estimate.noise(0.0, 2.0);
@@ -94,7 +94,7 @@ TEST(NoiseEstimate, LearnsThatNoiseGrowsWithTheSquareOfTheRange) {
   }
 }
 
-TEST(NoiseEstimate, CallsConstantNoiseConstant) {
+TEST(NoiseEstimate, FindsNoGrowthForConstantNoise) {
   surfel::NoiseEstimate estimate;
   estimate.add(make_depth_image(0.01, 0.0));
   const auto noise = estimate.noise(0.0, 2.0);

@@ -30,7 +30,7 @@ struct Knowledge {
   }
 };
 
-TEST(PredictedSurface, ContinuesBeyondTheOutlineIntoTheUnknownOnly) {
+TEST(PredictedSurface, ContinuesBeyondOutlineIntoUnknownSpaceOnly) {
   Knowledge known;
   known.scan_from({2, 0, 0});
   surfel::PredictedSurface predicted({});
@@ -48,7 +48,7 @@ TEST(PredictedSurface, ContinuesBeyondTheOutlineIntoTheUnknownOnly) {
 }
 
 // Twin: the one predicted after every scan and asks only what is new; the other asks everything.
-TEST(PredictedSurface, RemembersWhatItAskedOfEarlierScans) {
+TEST(PredictedSurface, MatchesFullPredictionWhenUpdated) {
   Knowledge known;
   surfel::PredictedSurface old({});
   for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(1.4, 1.4, 0), Vector3d(0, 1.4, 1.4),
@@ -69,7 +69,7 @@ TEST(PredictedSurface, RemembersWhatItAskedOfEarlierScans) {
 
 // What rays without a return had refuted is open again as soon as they are found to pass through
 // surface; twin: one that never knew otherwise.
-TEST(PredictedSurface, ForgetsWhatMissesRefutedOnceTheyHaveLied) {
+TEST(PredictedSurface, RestoresPatchesRefutedByFalseMisses) {
   Knowledge known;
   for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)})
     known.scan_from(viewpoint);
@@ -101,7 +101,7 @@ int count_patches(const surfel::PredictedSurface& predicted, surfel::Continuatio
 }
 
 // From nearby, images cut the ball off; from afar, it ends within them.
-TEST(PredictedSurface, TellsWhatAnImageCutOffFromWhatItHides) {
+TEST(PredictedSurface, DistinguishesCutOffFromHiddenSurface) {
   Knowledge near, far;
   near.scan_from({0.9, 0, 0});
   far.scan_from({2, 0, 0});
@@ -127,7 +127,7 @@ TEST(PredictedSurface, TellsWhatAnImageCutOffFromWhatItHides) {
   EXPECT_EQ(count_patches(cut, surfel::Continuation::beyond), 0);
 }
 
-TEST(PredictedSurface, LearnsOfWhatImagesCutOffByItself) {
+TEST(PredictedSurface, LearnsSeparateHitRateForCutOffSurface) {
   Knowledge known;
   known.scan_from({0.9, 0, 0});
   surfel::PredictedSurface predicted({});
@@ -162,7 +162,7 @@ geometry::Scan scan_plate(const geometry::View& view) {
 }
 
 // Past the plate's rim there is nothing: it is thin, and has a back. A ball never is.
-TEST(PredictedSurface, GuessesTheBackOfWhatIsThin) {
+TEST(PredictedSurface, PredictsBackOfThinObjects) {
   Knowledge plate, solid;
   const auto scan_from = [&](const Vector3d& viewpoint) {
     const surfel::BlockImage image = surfel::make_block_image(
@@ -190,7 +190,7 @@ TEST(PredictedSurface, GuessesTheBackOfWhatIsThin) {
   EXPECT_EQ(count_patches(predicted, surfel::Continuation::back), 0);
 }
 
-TEST(PredictedSurface, IsGoneOnceAllWasSeen) {
+TEST(PredictedSurface, VanishesWhenAllSurfaceIsObserved) {
   Knowledge known;
   surfel::PredictedSurface predicted({});
   known.scan_from({2, 0, 0});
@@ -209,7 +209,7 @@ TEST(PredictedSurface, IsGoneOnceAllWasSeen) {
   EXPECT_LT(weight(), 0.05 * after_one);
 }
 
-TEST(PredictedSurface, RatesFollowWhatAppeared) {
+TEST(PredictedSurface, UpdatesHitRatesFromObservedSurface) {
   Knowledge known;
   known.scan_from({2, 0, 0});
   surfel::PredictedSurface hopeful({}), disappointed({}), stubborn({.learns_rates = false});
@@ -242,7 +242,7 @@ TEST(PredictedSurface, RatesFollowWhatAppeared) {
 }
 
 // What was hardly to be seen tells little by not having been seen.
-TEST(PredictedSurface, DisappointsByHowClearTheLookWas) {
+TEST(PredictedSurface, ReducesWeightByLineOfSightConfidence) {
   Knowledge known;
   known.scan_from({2, 0, 0});
   const auto weight_after = [&](float line_of_sight) {
@@ -268,7 +268,7 @@ std::vector<surfel::PredictedPatch> patches_at(const std::vector<Vector3f>& posi
   return patches;
 }
 
-TEST(LineOfSightModel, IsOneBeforeAllThatIsKnown) {
+TEST(LineOfSightModel, IsOneInFrontOfKnownSurface) {
   Knowledge seen;
   seen.scan_from({2, 0, 0});
   const auto patches = patches_at({{0.55F, 0, 0}});
@@ -278,7 +278,7 @@ TEST(LineOfSightModel, IsOneBeforeAllThatIsKnown) {
 }
 
 // The ball's radius is 0.5. The whole stretch before a place in its shadow is unknown from behind.
-TEST(LineOfSightModel, FallsWithUnknownSpaceOnTheWay) {
+TEST(LineOfSightModel, DecreasesWithUnknownSpaceOnRay) {
   Knowledge seen;
   seen.scan_from({2, 0, 0});
   const auto patches = patches_at({{-0.55F, 0, 0}, {0, 0.45F, 0}});
@@ -290,7 +290,7 @@ TEST(LineOfSightModel, FallsWithUnknownSpaceOnTheWay) {
   EXPECT_LT(line_of_sight.of(1, {0, 2, 0}), 1.0F);
 }
 
-TEST(LineOfSightModel, IsOneWithoutMemoryAndForWhatAPriorTells) {
+TEST(LineOfSightModel, IsOneWithoutImagesAndForPriors) {
   const Knowledge nothing;
   auto patches = patches_at({{0, 0, 0}});
   surfel::LineOfSightModel line_of_sight(scale);
@@ -304,7 +304,7 @@ TEST(LineOfSightModel, IsOneWithoutMemoryAndForWhatAPriorTells) {
 }
 
 // Twin: one is asked after every scan, with other patches before and beside; the other only once.
-TEST(LineOfSightModel, AsksOnlyWhatIsNewWithTheSameAnswers) {
+TEST(LineOfSightModel, MatchesFullEvaluationWhenUpdated) {
   Knowledge seen;
   const std::vector<Vector3f> positions = {
       {-0.55F, 0, 0}, {0, 0.55F, 0}, {0, 0, -0.52F}, {0.3F, -0.5F, 0.1F}};
@@ -333,7 +333,7 @@ TEST(LineOfSightModel, AsksOnlyWhatIsNewWithTheSameAnswers) {
   EXPECT_GT(between, 5);
 }
 
-TEST(PredictionYield, IsWhatCameOfThePromises) {
+TEST(PredictionYield, IsRatioOfObservedToPredictedArea) {
   surfel::PredictionYield yield;
   EXPECT_EQ(yield.value(), 1.0);
   yield.learn(2.0, 1.0, 0.0);
@@ -345,7 +345,7 @@ TEST(PredictionYield, IsWhatCameOfThePromises) {
 }
 
 // All that came of a hundred square metres says little of one: half of what is believed is new.
-TEST(PredictionYield, CountsThePastForAtMostTwiceThePresent) {
+TEST(PredictionYield, LimitsWeightOfPastToTwiceThePresent) {
   surfel::PredictionYield yield;
   yield.learn(100.0, 100.0, 0.0);
   EXPECT_EQ(yield.value(), 1.0);
@@ -356,7 +356,7 @@ TEST(PredictionYield, CountsThePastForAtMostTwiceThePresent) {
 }
 
 // Relief and noise beside what is known are worth no more than was promised.
-TEST(PredictionYield, IsAboveOneForNewTerritoryOnly) {
+TEST(PredictionYield, ExceedsOneForNewTerritoryOnly) {
   surfel::PredictionYield yield;
   yield.learn(1.0, 5.0, 0.1);
   EXPECT_DOUBLE_EQ(yield.value(), 1.0);
@@ -364,7 +364,7 @@ TEST(PredictionYield, IsAboveOneForNewTerritoryOnly) {
   EXPECT_DOUBLE_EQ(yield.value(), 0.7 / 1.6);
 }
 
-TEST(PredictionYield, NeitherEndsASurveyAtOnceNorKeepsItGoing) {
+TEST(PredictionYield, IsBoundedAndForgetsOldScans) {
   surfel::PredictionYield yield;
   yield.learn(1.0, 0.0, 0.0);
   EXPECT_DOUBLE_EQ(yield.value(), 0.15);

@@ -50,7 +50,7 @@ struct Knowledge {
   }
 };
 
-TEST(PriorPredictions, ArePatchesOfTheWholeArea) {
+TEST(PriorPredictions, CoverWholeAreaWithPatches) {
   const surfel::PriorPredictions predictions(sphere_at({0, 0, 0}, 0.0F), spacing);
   double area = 0.0;
   for (const surfel::PriorPatch& patch : predictions.patches()) {
@@ -63,7 +63,7 @@ TEST(PriorPredictions, ArePatchesOfTheWholeArea) {
 }
 
 // What one look from +x shows is found; the far side stays open.
-TEST(PriorPredictions, AreFoundWhereTheyAreMeasured) {
+TEST(PriorPredictions, AreFoundWhereMeasured) {
   Knowledge known;
   known.scan_from({2, 0, 0});
   surfel::PriorPredictions predictions(sphere_at({0, 0, 0}, 0.01F), spacing);
@@ -81,7 +81,7 @@ TEST(PriorPredictions, AreFoundWhereTheyAreMeasured) {
 }
 
 // The same in the planner's guesses: what was shown is not guessed, the far side is.
-TEST(PriorPredictions, AreGuessedOnlyWhereTheyAreOpen) {
+TEST(PriorPredictions, ArePredictedOnlyWhereOpen) {
   Knowledge known;
   known.scan_from({2, 0, 0});
   surfel::PredictedSurface predicted({});
@@ -97,7 +97,7 @@ TEST(PriorPredictions, AreGuessedOnlyWhereTheyAreOpen) {
 }
 
 // A sphere that is not there, beside the ball: the sensor sees through its place.
-TEST(PriorPredictions, AreRefutedWhereASensorSeesThroughThem) {
+TEST(PriorPredictions, AreRefutedWhereSensorSeesThroughThem) {
   Knowledge known;
   known.scan_from({2, 0, 0});
   surfel::PriorPredictions predictions(sphere_at({0.9F, 0.0F, 0.0F}, 0.01F), spacing);
@@ -135,7 +135,7 @@ double rate_after_observation(const Vector3f& centre) {
   return predicted.prior_hit_rate();
 }
 
-TEST(PredictedSurface, TrustsAPriorThatIsRightAndSoonGivesUpAWrongOne) {
+TEST(PredictedSurface, KeepsCorrectPriorAndDiscardsWrongPrior) {
   EXPECT_GT(rate_after_observation({0, 0, 0}), 0.85);
   EXPECT_LT(rate_after_observation({0.3F, 0.0F, 0.0F}), 0.5);
 }

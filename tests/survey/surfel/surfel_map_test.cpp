@@ -27,7 +27,7 @@ surfel::BlockImage image_from(const Vector3d& viewpoint, double sigma = 0.0,
 }
 
 // From all sides the surfels' areas add up to the sphere's; 15 % for packing and outlines.
-TEST(SurfelMap, AreasAddUpToTheSurface) {
+TEST(SurfelMap, HasTotalAreaOfSurface) {
   surfel::SurfelMap map(spacing);
   const surfel::CoverageModel coverage_model(0.005, {});
   for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(-2, 0, 0), Vector3d(0, 2, 0),
@@ -38,7 +38,7 @@ TEST(SurfelMap, AreasAddUpToTheSurface) {
   EXPECT_GT(map.covered_area() / map.area(), 0.97);  // clean and dense
 }
 
-TEST(SurfelMap, SurfelsKeepTheirDistanceAndFaceOutward) {
+TEST(SurfelMap, KeepsSurfelSpacingAndOutwardNormals) {
   surfel::SurfelMap map(spacing);
   map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, std::nullopt);
   const surfel::Surfels& surfels = map.surfels();
@@ -52,7 +52,7 @@ TEST(SurfelMap, SurfelsKeepTheirDistanceAndFaceOutward) {
 }
 
 // A second look from the same place adds as much hazard as the first, and coverage follows.
-TEST(SurfelMap, LooksAddUp) {
+TEST(SurfelMap, AddsHazardsOfObservations) {
   const surfel::CoverageModel coverage_model(0.005, {.isotropic = 0.01});
   surfel::SurfelMap map(spacing);
   map.add(image_from({2, 0, 0}, 0.01, 1), coverage_model, jump, std::nullopt);
@@ -74,7 +74,7 @@ TEST(SurfelMap, LooksAddUp) {
 }
 
 // Seen from one side, the surface is open exactly around its outline.
-TEST(SurfelMap, OnlyTheOutlineOfWhatWasSeenIsOpen) {
+TEST(SurfelMap, IsOpenOnlyAtOutlineOfObservedSurface) {
   surfel::SurfelMap map(spacing);
   map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, std::nullopt);
   const surfel::Surfels& surfels = map.surfels();
@@ -94,7 +94,7 @@ TEST(SurfelMap, OnlyTheOutlineOfWhatWasSeenIsOpen) {
 }
 
 // What was measured already stands for no area when surfels come to lie there, and stays so.
-TEST(SurfelMap, GapsInWhatWasMeasuredAreNoNewSurface) {
+TEST(SurfelMap, AddsNoAreaInGapsOfMeasuredSurface) {
   const auto is_upper = [](const Vector3f& p) { return p.z() > 0.0F; };
   surfel::SurfelMap map(spacing);
   for (const Vector3d& viewpoint : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)}) {
@@ -113,7 +113,7 @@ TEST(SurfelMap, GapsInWhatWasMeasuredAreNoNewSurface) {
 
 // A second look from the same place finds no new territory; one from the other side as much as the
 // first, which knew nothing before.
-TEST(SurfelMap, NewTerritoryIsWhatLiesBeyondTheKnown) {
+TEST(SurfelMap, CountsNewTerritoryBeyondKnownSurface) {
   const surfel::CoverageModel coverage_model(0.005, {});
   surfel::SurfelMap map(spacing);
   map.add(image_from({2, 0, 0}, 0.0, 1), coverage_model, jump, std::nullopt);
@@ -127,7 +127,7 @@ TEST(SurfelMap, NewTerritoryIsWhatLiesBeyondTheKnown) {
   EXPECT_NEAR(map.new_territory(first), first_half, 0.05 * first_half);
 }
 
-TEST(SurfelMap, LeavesOutWhatIsOutsideTheRegion) {
+TEST(SurfelMap, IgnoresPointsOutsideRegion) {
   surfel::SurfelMap map(spacing);
   const Eigen::AlignedBox3f upper(Vector3f(-1, -1, 0), Vector3f(1, 1, 1));
   map.add(image_from({2, 0, 0}), surfel::CoverageModel(0.005, {}), jump, upper);

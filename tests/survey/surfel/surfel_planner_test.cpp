@@ -77,7 +77,7 @@ double true_coverage(const surfel::SurfelPlanner& planner, const std::vector<tes
 
 class SurfelPlannerWithNoise : public testing::TestWithParam<double> {};
 
-TEST_P(SurfelPlannerWithNoise, CoversTheSceneAndStopsByItself) {
+TEST_P(SurfelPlannerWithNoise, CoversSceneAndStops) {
   for (const auto& scene : {ball, two_balls}) {
     surfel::SurfelPlanner planner(small_config(), camera);
     const Flight flight = fly(planner, scene, GetParam());
@@ -93,7 +93,7 @@ TEST_P(SurfelPlannerWithNoise, CoversTheSceneAndStopsByItself) {
 INSTANTIATE_TEST_SUITE_P(Sigmas, SurfelPlannerWithNoise, testing::Values(0.0, 0.01, 0.03));
 
 // What was seen on the way need not be looked at again.
-TEST(SurfelPlanner, LearnsFromScansOnTheWay) {
+TEST(SurfelPlanner, UsesEnRouteScans) {
   surfel::SurfelPlanner standing(small_config(), camera), moving(small_config(), camera);
   const Flight stops = fly(standing, two_balls, 0.01);
   std::size_t views = 0;
@@ -115,7 +115,7 @@ TEST(SurfelPlanner, LearnsFromScansOnTheWay) {
   EXPECT_NEAR(moving.predicted_coverage(), coverage, 0.05);
 }
 
-TEST(SurfelPlanner, RepeatsItselfBitForBitOnAnyNumberOfThreads) {
+TEST(SurfelPlanner, DoesNotDependOnThreadCount) {
   surfel::SurfelConfig config = small_config();
   surfel::SurfelPlanner one(config, camera);
   config.threads = 3;
@@ -130,7 +130,7 @@ TEST(SurfelPlanner, RepeatsItselfBitForBitOnAnyNumberOfThreads) {
   EXPECT_EQ(one.predicted_coverage(), three.predicted_coverage());
 }
 
-TEST(SurfelPlanner, KeepsMeasurementsAtTheSpacing) {
+TEST(SurfelPlanner, KeepsPointSpacing) {
   surfel::SurfelConfig config = small_config();
   config.spacing = 0.015;
   surfel::SurfelPlanner planner(config, camera);
@@ -143,7 +143,7 @@ TEST(SurfelPlanner, KeepsMeasurementsAtTheSpacing) {
   EXPECT_EQ(planner.cloud().views.size(), planner.cloud().size());
 }
 
-TEST(SurfelPlanner, ObeysTheLimits) {
+TEST(SurfelPlanner, KeepsViewLimits) {
   surfel::SurfelConfig config = small_config();
   config.limits.min_height = -0.3;
   config.limits.max_height = 1.9;
@@ -164,7 +164,7 @@ TEST(SurfelPlanner, ObeysTheLimits) {
   }
 }
 
-TEST(SurfelPlanner, StopsAtTheBudgetsTheUserStates) {
+TEST(SurfelPlanner, StopsAtConfiguredBudgets) {
   surfel::SurfelConfig config = small_config();
   config.stop.max_length = 4.0;
   surfel::SurfelPlanner brief(config, camera);
@@ -189,7 +189,7 @@ TEST(SurfelPlanner, StopsAtTheBudgetsTheUserStates) {
   EXPECT_NEAR(content.estimate().coverage, content.predicted_coverage(), 1e-12);
 }
 
-TEST(SurfelPlanner, ProposesOthersInsteadOfViewsThatCannotBeReached) {
+TEST(SurfelPlanner, ProposesAlternativesToUnreachableViews) {
   surfel::SurfelPlanner planner(small_config(), camera);
   const auto first = planner.next_view(tests::scan_spheres(ball, camera, start, 0.01));
   ASSERT_TRUE(first);
@@ -210,7 +210,7 @@ TEST(SurfelPlanner, StopsWhilePlanningView) {
   tests::expect_stop_while_planning(planner, scan);
 }
 
-TEST(SurfelPlanner, ProposesOnlyViewsThatItIsToKeepTo) {
+TEST(SurfelPlanner, ProposesOnlyViewsInPermittedRegion) {
   surfel::SurfelPlanner planner(small_config(), camera);
   planner.keep_to(
       [](const Vector3d& position) { return position.x() > 0.0 && position.z() > 0.2; });
@@ -222,7 +222,7 @@ TEST(SurfelPlanner, ProposesOnlyViewsThatItIsToKeepTo) {
   }
 }
 
-TEST(SurfelPlanner, SaysWhatIsMissingAndWhy) {
+TEST(SurfelPlanner, ReportsMissingSurfaceWithReason) {
   surfel::SurfelConfig config = small_config();
   config.limits.min_height = 0.3;
   config.limits.max_pitch = -0.5;  // only looks down: the lower half cannot be seen
@@ -247,7 +247,7 @@ TEST(SurfelPlanner, SaysWhatIsMissingAndWhy) {
 
 // The first scan is from a place that the fence forbids: what it saw too thinly for the noise, no
 // view that is allowed sees again. What the allowed views see is none of that.
-TEST(SurfelPlanner, CallsUnreachableWhatNoAllowedViewSees) {
+TEST(SurfelPlanner, ReportsUnreachableSurface) {
   surfel::SurfelConfig config = small_config();
   config.coverage_radius = 0.005;  // far less than the noise: one look covers little
   config.limits.geofence = {{-9, -9}, {-1, -9}, {-1, 9}, {-9, 9}};
@@ -268,7 +268,7 @@ TEST(SurfelPlanner, CallsUnreachableWhatNoAllowedViewSees) {
 }
 
 // A sensor that gets no return from slanted surfaces covers less of a ball with a view.
-TEST(SurfelPlanner, ExpectsNothingBeyondTheSensorsIncidence) {
+TEST(SurfelPlanner, PredictsNoCoverageBeyondMaxIncidence) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, start, 0.01);
   const auto next_gain = [&](double max_incidence) {
     surfel::SurfelConfig config = small_config();
@@ -281,13 +281,13 @@ TEST(SurfelPlanner, ExpectsNothingBeyondTheSensorsIncidence) {
   EXPECT_EQ(next_gain(1.4), next_gain(1.5707));  // so far off nothing is counted on anyway
 }
 
-TEST(SurfelPlanner, PlansFromSweepsWithoutAnImage) {
+TEST(SurfelPlanner, PlansFromSweepsWithoutPixels) {
   surfel::SurfelPlanner planner(small_config(), camera);
   fly(planner, ball, 0.01, 15, false);
   EXPECT_GT(true_coverage(planner, ball, 0.02), 0.95);
 }
 
-TEST(SurfelPlanner, RefusesAFirstScanWithoutAPoint) {
+TEST(SurfelPlanner, RejectsFirstScanWithoutPoints) {
   surfel::SurfelPlanner planner(small_config(), camera);
   try {
     planner.next_view(tests::scan_spheres({}, camera, start));
@@ -298,7 +298,7 @@ TEST(SurfelPlanner, RefusesAFirstScanWithoutAPoint) {
   }
 }
 
-TEST(SurfelPlanner, SurvivesALaterScanWithoutAPoint) {
+TEST(SurfelPlanner, AcceptsLaterScanWithoutPoints) {
   surfel::SurfelPlanner planner(small_config(), camera);
   ASSERT_TRUE(planner.next_view(tests::scan_spheres(ball, camera, start, 0.01)));
   const std::size_t points = planner.cloud().size();
@@ -307,7 +307,7 @@ TEST(SurfelPlanner, SurvivesALaterScanWithoutAPoint) {
 }
 
 // A switch that does nothing would leave the flight as it is.
-TEST(SurfelPlanner, EveryIdeaCanBeSwitchedOff) {
+TEST(SurfelPlanner, ChangesPlanWithEveryAblationSwitch) {
   const auto executed_positions = [](const surfel::SurfelConfig& config) {
     surfel::SurfelPlanner planner(config, camera);
     std::vector<Vector3d> positions;

@@ -51,7 +51,7 @@ double covered(const Problem& problem, const std::vector<std::size_t>& views) {
 }
 
 // Brute-force twin: every pick anew, from what all picks cover together.
-TEST(PickBatch, IsTheGreedyCoverComputedFromScratch) {
+TEST(PickBatch, MatchesBruteForceGreedyCover) {
   const Vector3d position(1, 2, 3);
   const surfel::BatchSettings settings{.size = 6, .view_price = 3.0, .min_fraction = 0.2};
   std::size_t full = 0, cut_short = 0;
@@ -91,7 +91,7 @@ TEST(PickBatch, IsTheGreedyCoverComputedFromScratch) {
   EXPECT_GT(cut_short, 0U);
 }
 
-TEST(PickBatch, GainsAddUpToWhatTheBatchCovers) {
+TEST(PickBatch, HasGainsThatSumToBatchCoverage) {
   const Problem problem = random_problem(7);
   double sum = 0.0;
   std::vector<std::size_t> picked;
@@ -102,7 +102,7 @@ TEST(PickBatch, GainsAddUpToWhatTheBatchCovers) {
   EXPECT_NEAR(sum, covered(problem, picked), 1e-5 * sum);  // single against double precision
 }
 
-TEST(PickBatch, IsEmptyWhereNothingIsToBeSeen) {
+TEST(PickBatch, IsEmptyWithoutVisibleTargets) {
   EXPECT_THAT(surfel::pick_batch({}, {}, Vector3d::Zero(), {}), testing::IsEmpty());
   const std::vector<BatchView> blind = {{Vector3d::Zero(), {}}};
   EXPECT_THAT(surfel::pick_batch(blind, {1.0F}, Vector3d::Zero(), {}), testing::IsEmpty());
@@ -127,7 +127,7 @@ double min_cost(const Problem& problem, const std::vector<Stop>& batch,
   return best;
 }
 
-TEST(FirstStop, BeginsATourThatIsAsCheapAsAny) {
+TEST(FirstStop, StartsTourOfMinCost) {
   const Vector3d position(4, -4, 0);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Problem problem = random_problem(seed);
@@ -152,7 +152,7 @@ TEST(FirstStop, BeginsATourThatIsAsCheapAsAny) {
 }
 
 // On a line from 0, stops at 2 and -3: the short way first, unless nearly all gain is at -3.
-TEST(FirstStop, WeighsEarlyGainAgainstTheWay) {
+TEST(FirstStop, WeighsEarlyGainAgainstPathLength) {
   const std::vector<BatchView> views = {{{2, 0, 0}, {}}, {{-3, 0, 0}, {}}};
   const auto first = [&](double gain_at_2, double gain_at_3, double impatience) {
     return first_stop(views, std::vector<Stop>{{0, gain_at_2}, {1, gain_at_3}}, Vector3d::Zero(),

@@ -42,7 +42,7 @@ struct Known {
   surfel::PredictedSurface predicted{{}};
 };
 
-TEST(GainField, SeesOnlyWhatFacesTheView) {
+TEST(GainField, SeesOnlyTargetsThatFaceTheView) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   const geometry::View front = geometry::look_at({2, 0, 0}, {0, 0, 0});
@@ -63,7 +63,7 @@ TEST(GainField, SeesOnlyWhatFacesTheView) {
   }
 }
 
-TEST(GainField, SeesNothingBeyondTheIncidence) {
+TEST(GainField, SeesNoTargetsBeyondMaxIncidence) {
   const Known known({2, 0, 0});
   const surfel::GainField field(known.map, known.predicted.patches(), camera, known.coverage_model,
                                 {.view_distance = 2.0, .max_incidence = 0.7F});
@@ -79,7 +79,7 @@ TEST(GainField, SeesNothingBeyondTheIncidence) {
 
 // Half a ball of radius 0.5 m and a little more is seen from 2 m: 1.2 m^2, whether it was news or
 // not.
-TEST(GainField, KnownSurfaceIsAllThatWasSeen) {
+TEST(GainField, HasAreaOfAllObservedSurface) {
   for (const bool is_news : {true, false}) {
     const surfel::BlockImage image = surfel::make_block_image(
         tests::scan_spheres(ball, camera, from, 0.0), camera, {.block_px = 4, .jump = 0.1F});
@@ -95,7 +95,7 @@ TEST(GainField, KnownSurfaceIsAllThatWasSeen) {
   }
 }
 
-TEST(GainField, TheGainIsTheSumOfItsSights) {
+TEST(GainField, HasGainEqualToSumOfVisibleTargets) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   const geometry::View view = geometry::look_at({1, 1.6, 0.4}, {0, 0, 0});
@@ -108,7 +108,7 @@ TEST(GainField, TheGainIsTheSumOfItsSights) {
 }
 
 // Seen from an empty cloud, what was measured already counts in full; the guesses do not count.
-TEST(GainField, OfTheKnownSurfaceWeighsAllOfIt) {
+TEST(GainField, WeighsKnownSurfaceInFull) {
   const Known known({2, 0, 0});
   const surfel::GainSettings settings{.view_distance = 2.0};
   const double area = known.map.area();
@@ -123,7 +123,7 @@ TEST(GainField, OfTheKnownSurfaceWeighsAllOfIt) {
   }
 }
 
-TEST(GainField, LooksCarryTheHazardsOfTheirShares) {
+TEST(GainField, HasObservationHazardsOfCoveredFractions) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   const geometry::View view = geometry::look_at({1, 1.6, 0.4}, {0, 0, 0});
@@ -138,7 +138,7 @@ TEST(GainField, LooksCarryTheHazardsOfTheirShares) {
 }
 
 // What unknown space may hide counts for less, known surface in full.
-TEST(GainField, CountsGuessesByTheirClearness) {
+TEST(GainField, WeighsPredictionsByLineOfSightConfidence) {
   const Known known({2, 0, 0});
   surfel::LineOfSightModel line_of_sight_probability(0.3F);
   line_of_sight_probability.update(known.predicted.patches(), known.space);
@@ -167,7 +167,7 @@ TEST(GainField, CountsGuessesByTheirClearness) {
 }
 
 // A small ball in front hides a part of a large one, whose surfels it must not see.
-TEST(GainField, NearSurfacesHideFarOnes) {
+TEST(GainField, OccludesFarSurfaceBehindNearSurface) {
   const std::vector<tests::Sphere> two = {{{0, 0, 0}, 0.5}, {{1.2, 0, 0}, 0.2}};
   const surfel::CoverageModel coverage_model(0.005, {.isotropic = 0.01});
   surfel::SurfelMap map(spacing);
@@ -192,7 +192,7 @@ TEST(GainField, NearSurfacesHideFarOnes) {
 }
 
 // Near a surface its surfels lie many pixels apart, and no ray passes between them for that.
-TEST(GainField, ASurfaceHidesWhatIsBehindItFromNearby) {
+TEST(GainField, OccludesPatchesBehindSurfaceAtShortDistance) {
   const Known known({2, 0, 0});
   std::vector<surfel::PredictedPatch> inside;
   for (float y = -0.2F; y <= 0.2F; y += 0.02F) {
@@ -220,7 +220,7 @@ std::optional<surfel::Choice> choose(const surfel::GainField& field,
   return surfel::choose_view(field, {}, admits, from, max_path_length, settings, nothing);
 }
 
-TEST(ViewSelector, GoesWhereSomethingIsMissing) {
+TEST(ViewSelector, SelectsViewOfMissingSurface) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   const auto choice = choose(field, anywhere, infinity, {});
@@ -236,7 +236,7 @@ TEST(ViewSelector, GoesWhereSomethingIsMissing) {
 
 // Among the same candidates, wherever they are: who expects nothing of guesses takes the view that
 // covers most of what is known.
-TEST(ViewSelector, PrefersKnownSurfaceWhereGuessesCameToNothing) {
+TEST(ViewSelector, PrefersKnownSurfaceAtZeroPredictionYield) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   const auto gain_at = [&](double yield) {
@@ -263,7 +263,7 @@ TEST(ViewSelector, DoesNotDependOnThreadCount) {
 
 // Every view is refused as soon as it is chosen, until there is none: with the memory of all
 // choices before, the same views and figures as with none.
-TEST(ViewSelector, ChoosesTheSameWhateverItRemembers) {
+TEST(ViewSelector, SelectsSameViewWithAndWithoutCache) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   surfel::ViewSelectorSettings settings;
@@ -292,7 +292,7 @@ TEST(ViewSelector, ChoosesTheSameWhateverItRemembers) {
   }
 }
 
-TEST(ViewSelector, StaysInReachAndWhereItIsAdmitted) {
+TEST(ViewSelector, SelectsOnlyViewsInReachAndAdmitted) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   const auto near = choose(field, anywhere, 0.7, {});
@@ -307,7 +307,7 @@ TEST(ViewSelector, StaysInReachAndWhereItIsAdmitted) {
   EXPECT_FALSE(choose(field, [](const geometry::View&) { return false; }, infinity, {}));
 }
 
-TEST(ViewSelector, TurnsEvenlyOnTheWay) {
+TEST(ViewSelector, InterpolatesViewsEvenlyAlongLeg) {
   const geometry::View east_down{{0, 0, 10}, Vector3d(1, 0, -1).normalized()};
   const geometry::View north{{6, 3, 4}, {0, 1, 0}};
   const auto frames = surfel::views_between(east_down, north, 3);
@@ -319,7 +319,7 @@ TEST(ViewSelector, TurnsEvenlyOnTheWay) {
   EXPECT_TRUE((frames[0].position + frames[2].position).isApprox(2.0 * frames[1].position));
 }
 
-TEST(ViewSelector, FramesOnTheWaySeeWhatAnyOfThemSees) {
+TEST(ViewSelector, CombinesCoverageOfEnRouteFrames) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   const geometry::View to = geometry::look_at({0.5, 2, 0.3}, {0, 0, 0});
@@ -343,7 +343,7 @@ TEST(ViewSelector, FramesOnTheWaySeeWhatAnyOfThemSees) {
 }
 
 // Of the best views by themselves it takes the one that yields most with its way.
-TEST(ViewSelector, CountsWhatTheWayShows) {
+TEST(ViewSelector, IncludesGainOfEnRouteFrames) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   surfel::ViewSelectorSettings settings{.view_price = 0.5, .batch = 1};
@@ -367,7 +367,7 @@ TEST(ViewSelector, CountsWhatTheWayShows) {
 
 // Known answer: a line that moves along itself sweeps nothing; one that moves across itself sweeps
 // as much, whichever way round; and so does one that turns on the spot, by the angle times d.
-TEST(ViewSelector, LinesSeeWhatTheySweep) {
+TEST(ViewSelector, ComputesCoverageOfSweptLines) {
   const Known known({2, 0, 0});
   const surfel::GainField field = known.field();
   constexpr double frame_spacing = 0.05, d = 2.0;

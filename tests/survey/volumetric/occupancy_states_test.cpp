@@ -18,7 +18,7 @@ double occupancy_after(int count, double each, double clamping_min, double clamp
   return std::min(std::max(odds / (1.0 + odds), clamping_min), clamping_max);
 }
 
-TEST(OccupancyStates, FollowTheSensorModelUpToItsClamps) {
+TEST(OccupancyStates, FollowSensorModelUpToItsClamps) {
   volumetric::OccupancyStates states({});
   Code hits = volumetric::OccupancyStates::untouched,
        misses = volumetric::OccupancyStates::untouched;
@@ -30,7 +30,7 @@ TEST(OccupancyStates, FollowTheSensorModelUpToItsClamps) {
   }
 }
 
-TEST(OccupancyStates, CallOccupiedFromTheSecondHitAndFreeFromTheFourthMiss) {
+TEST(OccupancyStates, AreOccupiedFromSecondHitAndFreeFromFourthMiss) {
   volumetric::OccupancyStates states({});
   Code hits = volumetric::OccupancyStates::untouched,
        misses = volumetric::OccupancyStates::untouched;
@@ -46,7 +46,7 @@ TEST(OccupancyStates, CallOccupiedFromTheSecondHitAndFreeFromTheFourthMiss) {
   }
 }
 
-TEST(OccupancyStates, HaveTheEntropyOfTheirOccupancy) {
+TEST(OccupancyStates, HaveEntropyOfTheirOccupancy) {
   volumetric::OccupancyStates states({});
   const volumetric::VoxelState& untouched = states.state(volumetric::OccupancyStates::untouched);
   EXPECT_EQ(untouched.entropy, std::log(2.0));
@@ -55,7 +55,7 @@ TEST(OccupancyStates, HaveTheEntropyOfTheirOccupancy) {
   EXPECT_NEAR(states.state(code).entropy, 0.366925, 1e-6);  // H(0.12), by hand
 }
 
-TEST(OccupancyStates, StartFromThePriorWhenAShadowIsMeasured) {
+TEST(OccupancyStates, StartFromPriorWhenShadowIsMeasured) {
   volumetric::OccupancyStates states({});
   for (const Code depth : {Code{1}, Code{17}, volumetric::OccupancyStates::deepest_shadow}) {
     EXPECT_EQ(states.state(depth).kind, volumetric::VoxelKind::shadowed);
@@ -66,7 +66,7 @@ TEST(OccupancyStates, StartFromThePriorWhenAShadowIsMeasured) {
 }
 
 // When the table is full, a value is off by at most the gap between numbered ones.
-TEST(OccupancyStates, ReplaceNewValuesByTheNearestWhenTheTableIsFull) {
+TEST(OccupancyStates, ReplaceNewValuesByNearestWhenTableIsFull) {
   const std::size_t values = 30;
   volumetric::OccupancyStates states({}, volumetric::OccupancyStates::deepest_shadow + 1 + values);
   Code code = volumetric::OccupancyStates::untouched;

@@ -29,7 +29,7 @@ double entropy(double p) { return -p * std::log(p) - (1.0 - p) * std::log(1.0 - 
 // Log-odds are single precision: probabilities, and so gains, are right to about 1e-7.
 constexpr double single = 1e-6;
 
-TEST(RayPattern, HasThePublishedNumberOfRays) {
+TEST(RayPattern, HasPublishedNumberOfRays) {
   const Camera d435({});
   EXPECT_EQ(volumetric::ray_directions(d435, {}).size(), 43U * 25U);
   EXPECT_EQ(volumetric::ray_directions(d435, {0.1, 0.0, 1.0}).size(), 85U * 49U);
@@ -38,7 +38,7 @@ TEST(RayPattern, HasThePublishedNumberOfRays) {
   EXPECT_EQ(volumetric::ray_directions(building, {0.1, 0.0, 1.0}).size(), 241U * 176U);
 }
 
-TEST(RayPattern, GoesThroughWholePixelsColumnByColumn) {
+TEST(RayPattern, PassesThroughPixelCentresColumnByColumn) {
   const Camera camera({.width = 100, .height = 50});
   const auto directions = volumetric::ray_directions(camera, {0.1, 0.25, 0.75});
   ASSERT_EQ(directions.size(), 6U * 3U);
@@ -50,7 +50,7 @@ TEST(RayPattern, GoesThroughWholePixelsColumnByColumn) {
   }
 }
 
-TEST(AreaReward, HasTheCheckValuesOfTheTwoCubics) {
+TEST(AreaReward, MatchesCheckValuesOfBothCubics) {
   EXPECT_DOUBLE_EQ(volumetric::area_reward(0.2, 0.2), 1.0);
   EXPECT_DOUBLE_EQ(volumetric::area_reward(0.8, 0.8), 1.0);
   EXPECT_DOUBLE_EQ(volumetric::area_reward(0.1, 0.2), 0.5);
@@ -93,7 +93,7 @@ class AfterOneScan : public testing::TestWithParam<Scene> {
 
 // Before a view in unmeasured space the weights are a geometric series of 1/2, so the sum is
 // 2 ln 2 a ray, whatever lies behind: 1490.27 for the D435's rays, 14761.3 for the building's.
-TEST_P(AfterOneScan, OnlyProximityAndAreaTellViewsApart) {
+TEST_P(AfterOneScan, DistinguishesViewsOnlyByProximityAndArea) {
   const double rays = static_cast<double>(volumetric::ray_directions(GetParam().camera, {}).size());
   const double distance = GetParam().distance;
   for (const Vector3d& towards :
@@ -143,7 +143,7 @@ class OneRay : public testing::Test {
   volumetric::VolumetricMap map_{0.1, 0.7};  // shadows of six voxels, ceiling 14
 };
 
-TEST_F(OneRay, FromBehindCountsTheRearSideOnceTheSurfaceIsCertain) {
+TEST_F(OneRay, CountsRearSideFromBehindWhenSurfaceIsOccupied) {
   measure(1);
   EXPECT_EQ(gain(rear_side_voxel, 25, 15), 0.0);  // p = 0.7 is not occupied yet
   measure(1);
@@ -155,14 +155,14 @@ TEST_F(OneRay, FromBehindCountsTheRearSideOnceTheSurfaceIsCertain) {
 }
 
 // Five unmeasured voxels and then the surface, seen twice: V = 1, 1/2, ..., 1/32.
-TEST_F(OneRay, RearSideEntropySumsTheUncertainRunAndTheSurface) {
+TEST_F(OneRay, SumsRearSideEntropyOfUncertainVoxelsAndSurface) {
   measure(2);
   const double p = 0.49 / (0.49 + 0.09);
   const double expected = ln_2 * (2.0 - 1.0 / 16.0) + entropy(p) / 32.0;
   EXPECT_NEAR(gain(rear_side_entropy, 25, 15), expected, single);
 }
 
-TEST_F(OneRay, RearSideEntropyOfAFrontDependsOnTheEndRule) {
+TEST_F(OneRay, AppliesEndRuleToRearSideEntropyOfFront) {
   measure(5);
   double visibility = 1.0;
   for (int i = 0; i < 10; ++i) visibility *= 0.12;
@@ -173,7 +173,7 @@ TEST_F(OneRay, RearSideEntropyOfAFrontDependsOnTheEndRule) {
   EXPECT_EQ(gain(rear_side_entropy, 10, 25, published), 0.0);
 }
 
-TEST_F(OneRay, OcclusionAwareWeighsByThePassedOccupancies) {
+TEST_F(OneRay, WeighsOcclusionAwareGainByPassedOccupancies) {
   measure(5);  // free voxels at 0.12, surface at 0.97
   for (const auto& [factor, kept] : {std::pair{volumetric::VisibilityFactor::occupancy, 0.12},
                                      {volumetric::VisibilityFactor::freedom, 0.88}}) {
@@ -187,7 +187,7 @@ TEST_F(OneRay, OcclusionAwareWeighsByThePassedOccupancies) {
   }
 }
 
-TEST_F(OneRay, UnobservedVoxelsAreWeighedByEverythingBeforeThem) {
+TEST_F(OneRay, WeighsUnobservedVoxelsByAllVoxelsBeforeThem) {
   measure(5);
   map_.insert({2.05F, 0.05F, 1.05F}, std::vector<Vector3f>{{2.05F, 0.05F, -1.05F}});
   // Six untouched voxels 0 to 5, uncertain only; the ray ends there.
@@ -196,7 +196,7 @@ TEST_F(OneRay, UnobservedVoxelsAreWeighedByEverythingBeforeThem) {
   EXPECT_NEAR(gain(unobserved_voxel, 0, 15), ln_2 * (2.0 - 1.0 / 512.0), 1e-12);
 }
 
-TEST_F(OneRay, ProximityCountsShadowsByDepth) {
+TEST_F(OneRay, CountsProximityByShadowDepth) {
   measure(1);
   // From behind: depths 6, 5, ..., 1 and the ceiling 14; the shadow's end voxel 27 is not marked.
   double expected = 0.0;
@@ -205,14 +205,14 @@ TEST_F(OneRay, ProximityCountsShadowsByDepth) {
   EXPECT_EQ(gain(proximity_count, 10, 35), 0.0);  // the surface is before them
 }
 
-TEST_F(OneRay, AverageEntropyIsTheMeanOfRaysThatEndOnASurface) {
+TEST_F(OneRay, AveragesEntropyOfRaysThatEndOnSurface) {
   measure(5);
   const double expected = (10.0 * entropy(0.12) + entropy(0.97)) / 11.0;
   EXPECT_NEAR(gain(average_entropy, 10, 25), expected, single);
   EXPECT_EQ(gain(average_entropy, 10, 18), 0.0);
 }
 
-TEST_F(OneRay, AreaFactorVotesForWhatARayMeetsFirst) {
+TEST_F(OneRay, ComputesAreaFactorFromFirstVoxelMet) {
   measure(5);
   // Only occupied votes: the share is 1, wanted is 0.2, and the reward is zero for both.
   EXPECT_NEAR(gain(area_factor, 10, 25), 0.0, 1e-12);
@@ -221,7 +221,7 @@ TEST_F(OneRay, AreaFactorVotesForWhatARayMeetsFirst) {
 }
 
 // Two rays: one meets the surface from free space, one meets nothing.
-TEST_F(OneRay, AreaFactorTakesSharesOfAllRaysOrOfHittingOnes) {
+TEST_F(OneRay, ComputesAreaFactorOfAllRaysOrHittingRays) {
   measure(5);
   const View view{centre(10).cast<double>(), Vector3d::UnitX()};
   const std::vector<Vector3d> directions{Vector3d::UnitZ(), Vector3d(1.0, 0.0, 0.2).normalized()};
@@ -235,7 +235,7 @@ TEST_F(OneRay, AreaFactorTakesSharesOfAllRaysOrOfHittingOnes) {
 
 // Independent twin on OctoMap. The sums are taken in another order: n eps for a thousand rays of
 // some hundred voxels.
-TEST(InformationGain, AgreesWithATwinOnOctoMap) {
+TEST(InformationGain, MatchesOctoMapReference) {
   const double resolution = 0.04;
   volumetric::VolumetricMap map(resolution, 18.0 * resolution);
   tests::ShadowTree tree(resolution, 18.0 * resolution);
@@ -263,7 +263,7 @@ TEST(InformationGain, AgreesWithATwinOnOctoMap) {
   }
 }
 
-TEST(InformationGain, OfAnEmptyMapIsThatOfUnmeasuredSpace) {
+TEST(InformationGain, MatchesUnmeasuredSpaceForEmptyMap) {
   const volumetric::VolumetricMap map(0.1, 1.8);
   const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
   const auto directions = volumetric::ray_directions(Camera({.width = 64, .height = 48}), {});

@@ -52,10 +52,10 @@ std::vector<Scan> recorded_scans() {
   return scans;
 }
 
-class AgainstOctoMap : public testing::TestWithParam<double> {};
+class OctoMapComparison : public testing::TestWithParam<double> {};
 
 // Independent twin: same voxels, same values, to the last bit.
-TEST_P(AgainstOctoMap, HoldsTheSameVoxelsAfterEveryScan) {
+TEST_P(OctoMapComparison, HasSameVoxelsAfterEveryScan) {
   const double resolution = GetParam();
   volumetric::VolumetricMap map(resolution, 18.0 * resolution);
   octomap::OcTree tree = octomap_with_the_same_model(resolution);
@@ -93,7 +93,7 @@ TEST_P(AgainstOctoMap, HoldsTheSameVoxelsAfterEveryScan) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Resolutions, AgainstOctoMap, testing::Values(0.05, 0.034));
+INSTANTIATE_TEST_SUITE_P(Resolutions, OctoMapComparison, testing::Values(0.05, 0.034));
 
 /// The voxels that a walk over bricks and their voxels passes.
 std::vector<volumetric::VoxelIndex> passed(const Vector3f& origin, const Vector3f& end,
@@ -133,7 +133,7 @@ std::vector<std::pair<Vector3f, Vector3f>> segments() {
 }
 
 // Brute force: every passed voxel meets the segment, and neighbours share a face.
-TEST(VoxelWalk, PassesFaceToFaceThroughVoxelsThatTheSegmentMeets) {
+TEST(VoxelWalk, PassesAdjacentVoxelsThatIntersectSegment) {
   const double resolution = 0.1;
   const auto points = tests::random_points(200, 1.3, 4);
   for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
@@ -162,7 +162,7 @@ TEST(VoxelWalk, PassesFaceToFaceThroughVoxelsThatTheSegmentMeets) {
 
 // Twin: the one walks four rays at a time from voxel to voxel over the whole segments, and the rest
 // one by one; the other begins anew in every brick.
-TEST(VoxelWalk, PassesTheSameVoxelsAsAScan) {
+TEST(VoxelWalk, PassesSameVoxelsAsScan) {
   for (const double resolution : {0.1, 0.06}) {
     for (const auto& [origin, end] : segments()) {
       const Vector3f ray = end - origin;
@@ -185,7 +185,7 @@ TEST(VoxelWalk, PassesTheSameVoxelsAsAScan) {
   }
 }
 
-TEST(VoxelWalk, KnowsWhatLiesBehindABrickWithoutLookingIntoIt) {
+TEST(VoxelWalk, SkipsBricksToTheCorrectNextVoxel) {
   std::size_t skipped = 0;
   for (const auto& [origin, end] : segments()) {
     const double resolution = 0.03;
@@ -212,12 +212,12 @@ TEST(VoxelWalk, KnowsWhatLiesBehindABrickWithoutLookingIntoIt) {
   EXPECT_GT(skipped, 1000U);
 }
 
-TEST(VoxelWalk, WithinOneVoxelPassesNothing) {
+TEST(VoxelWalk, PassesNoVoxelsWithinOneVoxel) {
   EXPECT_TRUE(
       volumetric::VoxelLine({0.01F, 0.02F, 0.03F}, {0.09F, 0.01F, 0.05F}, 0.1).is_in_one_voxel());
 }
 
-TEST(ScanVoxels, RefusesMoreVoxelsThanMemoryHolds) {
+TEST(ScanVoxels, RejectsMoreVoxelsThanMemoryCanContain) {
   const std::vector<Vector3f> far_away{{9e3F, 9e3F, 9e3F}};
   EXPECT_THAT(testing_support::thrown_message([&] {
                 volumetric::ScanVoxels({0.0F, 0.0F, 0.0F}, far_away, {}, 0.01, 0.1);
@@ -225,7 +225,7 @@ TEST(ScanVoxels, RefusesMoreVoxelsThanMemoryHolds) {
               testing::HasSubstr("choose a larger planner.resolution_radius"));
 }
 
-TEST(VoxelWalk, AlongAnAxisPassesOneRowInBothSenses) {
+TEST(VoxelWalk, PassesOneRowAlongAxisInBothDirections) {
   const auto there = passed({0.05F, 0.05F, 0.05F}, {2.05F, 0.05F, 0.05F}, 0.1);
   const auto back = passed({2.05F, 0.05F, 0.05F}, {0.05F, 0.05F, 0.05F}, 0.1);
   ASSERT_EQ(there.size(), 20U);
@@ -244,7 +244,7 @@ volumetric::VoxelState state_on_x(const volumetric::VolumetricMap& map, int voxe
 const Vector3f at_origin(0.05F, 0.05F, 0.05F);
 const Vector3f ten_ahead(1.05F, 0.05F, 0.05F);
 
-TEST(VolumetricMap, MarksShadowsByTheirDepthInVoxels) {
+TEST(VolumetricMap, MarksShadowsWithDepthInVoxels) {
   volumetric::VolumetricMap map(0.1, 0.5);
   map.insert(at_origin, std::vector{ten_ahead});
   EXPECT_EQ(map.max_shadow(), 10.0);
@@ -256,7 +256,7 @@ TEST(VolumetricMap, MarksShadowsByTheirDepthInVoxels) {
   EXPECT_EQ(state_on_x(map, 15).kind, volumetric::VoxelKind::untouched);
 }
 
-TEST(VolumetricMap, KeepsTheSmallestShadowDepthUntilTheVoxelIsMeasured) {
+TEST(VolumetricMap, KeepsMinShadowDepthUntilVoxelIsMeasured) {
   volumetric::VolumetricMap map(0.1, 0.5);
   map.insert(at_origin, std::vector{ten_ahead});
   map.insert({2.45F, 0.05F, 0.05F}, std::vector<Vector3f>{{1.55F, 0.05F, 0.05F}});
@@ -268,7 +268,7 @@ TEST(VolumetricMap, KeepsTheSmallestShadowDepthUntilTheVoxelIsMeasured) {
   EXPECT_EQ(state_on_x(map, 12).kind, volumetric::VoxelKind::uncertain);  // passed once
 }
 
-TEST(VolumetricMap, LeavesMeasuredVoxelsOutOfShadows) {
+TEST(VolumetricMap, ExcludesMeasuredVoxelsFromShadows) {
   volumetric::VolumetricMap map(0.1, 0.5);
   map.insert({1.35F, 1.05F, 0.05F}, std::vector<Vector3f>{{1.35F, -1.05F, 0.05F}});
   map.insert(at_origin, std::vector{ten_ahead});
@@ -277,7 +277,7 @@ TEST(VolumetricMap, LeavesMeasuredVoxelsOutOfShadows) {
   EXPECT_EQ(state_on_x(map, 14).kind, volumetric::VoxelKind::shadowed);
 }
 
-TEST(VolumetricMap, ChangesAVoxelOnceAScan) {
+TEST(VolumetricMap, UpdatesVoxelOncePerScan) {
   volumetric::VolumetricMap once(0.1, 0.5), often(0.1, 0.5);
   once.insert(at_origin, std::vector{ten_ahead});
   often.insert(at_origin, std::vector(50, ten_ahead));
@@ -286,7 +286,7 @@ TEST(VolumetricMap, ChangesAVoxelOnceAScan) {
   }
 }
 
-TEST(VolumetricMap, TakesEmptySegmentsAsFreeWithoutASurface) {
+TEST(VolumetricMap, MarksEmptySegmentsAsFreeWithoutSurface) {
   volumetric::VolumetricMap map(0.1, 0.5);
   map.insert(at_origin, {}, std::vector{ten_ahead});
   EXPECT_LT(state_on_x(map, 9).occupancy, 0.5);
@@ -295,7 +295,7 @@ TEST(VolumetricMap, TakesEmptySegmentsAsFreeWithoutASurface) {
   EXPECT_TRUE(map.surface_box().isEmpty());
 }
 
-TEST(VolumetricMap, BoxesEverythingThatStopsRays) {
+TEST(VolumetricMap, BoundsAllVoxelsThatStopRays) {
   volumetric::VolumetricMap map(0.1, 0.5);
   const auto points = tests::random_points(300, 3.0, 9);
   map.insert({9.0F, 1.0F, 2.0F}, points);

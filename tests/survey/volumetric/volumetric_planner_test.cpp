@@ -57,7 +57,7 @@ double compute_length(const std::vector<View>& views) {
   return length;
 }
 
-TEST(SelectBest, WeighsSharesOfGainAgainstSharesOfTheWay) {
+TEST(SelectBest, WeighsGainFractionAgainstDistanceFraction) {
   const std::vector<double> gains{1.0, 3.0}, distances{1.0, 9.0};
   EXPECT_EQ(volumetric::select_best(gains, distances, 0.0, volumetric::TieRule::first),
             1U);  // 0.25 and 0.75
@@ -67,19 +67,19 @@ TEST(SelectBest, WeighsSharesOfGainAgainstSharesOfTheWay) {
             0U);  // 0.15 and -0.15
 }
 
-TEST(SelectBest, WithoutGainOrWayLooksAtTheOther) {
+TEST(SelectBest, UsesDistanceWithoutGainAndGainWithoutDistance) {
   const std::vector<double> none{0.0, 0.0}, some{2.0, 1.0};
   EXPECT_EQ(volumetric::select_best(none, some, 1.0, volumetric::TieRule::first), 1U);
   EXPECT_EQ(volumetric::select_best(some, none, 1.0, volumetric::TieRule::first), 0U);
 }
 
-TEST(SelectBest, BreaksTiesAsToldTo) {
+TEST(SelectBest, BreaksTiesByRule) {
   const std::vector<double> gains{1.0, 1.0, 1.0}, distances{3.0, 2.0, 2.0};
   EXPECT_EQ(volumetric::select_best(gains, distances, 0.0, volumetric::TieRule::first), 0U);
   EXPECT_EQ(volumetric::select_best(gains, distances, 0.0, volumetric::TieRule::nearest), 1U);
 }
 
-TEST(SphereViews, LookAtTheCentreFromTheSphere) {
+TEST(SphereViews, LookAtCentreFromSphere) {
   const Vector3d centre(1.0, -2.0, 3.0);
   for (const View& view :
        testing_support::not_empty(volumetric::sphere_views(100, centre, 4.0, std::nullopt, 3))) {
@@ -90,7 +90,7 @@ TEST(SphereViews, LookAtTheCentreFromTheSphere) {
 
 // Uniform on a sphere each coordinate is uniform (Archimedes), so its mean is 0 and its variance
 // 1/3. Five standard deviations of both for 20,000 views.
-TEST(SphereViews, AreUniform) {
+TEST(SphereViews, AreUniformlyDistributed) {
   const std::size_t count = 20'000;
   Vector3d mean = Vector3d::Zero(), squares = Vector3d::Zero();
   for (const View& view : volumetric::sphere_views(count, Vector3d::Zero(), 1.0, std::nullopt, 5)) {
@@ -102,7 +102,7 @@ TEST(SphereViews, AreUniform) {
   EXPECT_LT((squares.array() - 1.0 / 3.0).abs().maxCoeff(), 5.0 * std::sqrt(4.0 / 45.0 / n));
 }
 
-TEST(SphereViews, StayAboveTheLeastHeight) {
+TEST(SphereViews, StayAboveMinHeight) {
   for (const View& view :
        testing_support::not_empty(volumetric::sphere_views(200, Vector3d::Zero(), 2.0, 0.5, 5))) {
     EXPECT_GE(view.position.z(), 0.5);
@@ -124,7 +124,7 @@ TEST(VolumetricPlanner, VisitsEveryCandidateOnce) {
 
 // Where all gains tie, as OA's and UV's do between unvisited views, the way decides: the survey is
 // the nearest-neighbour tour of the candidates.
-TEST(VolumetricPlanner, WithTiedGainsGoesToTheNearestCandidate) {
+TEST(VolumetricPlanner, SelectsNearestCandidateWhenGainsTie) {
   volumetric::VolumetricConfig config = config_for(rear_side_voxel);
   config.settings.rays = {1.0, 0.0, 0.01};  // one ray past the scene: no gain anywhere
   const std::vector<View> views = surveyed(config);
@@ -136,7 +136,7 @@ TEST(VolumetricPlanner, WithTiedGainsGoesToTheNearestCandidate) {
   }
 }
 
-TEST(VolumetricPlanner, ProposesTheSameViewsForAnyNumberOfThreads) {
+TEST(VolumetricPlanner, DoesNotDependOnThreadCount) {
   for (const volumetric::VolumetricMetric metric :
        {rear_side_voxel, rear_side_entropy, occlusion_aware, unobserved_voxel, proximity_count,
         area_factor, average_entropy}) {
@@ -158,14 +158,14 @@ TEST(VolumetricPlanner, StopsWhilePlanningView) {
   tests::expect_stop_while_planning(planner, scan);
 }
 
-TEST(VolumetricPlanner, TravelsFartherWithoutACostOfTheWay) {
+TEST(VolumetricPlanner, TravelsFartherWithoutPathCost) {
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
   const double with_cost = compute_length(surveyed(config));
   config.settings.cost_weight = 0.0;
   EXPECT_GT(compute_length(surveyed(config)), 1.5 * with_cost);
 }
 
-TEST(VolumetricPlanner, KeepsPointsAtTheSpacing) {
+TEST(VolumetricPlanner, KeepsPointSpacing) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
   const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
   const auto scan = tests::scan_spheres({{}}, camera, view, 0.01);
@@ -179,7 +179,7 @@ TEST(VolumetricPlanner, KeepsPointsAtTheSpacing) {
   EXPECT_EQ(planner.last_step().points_new, 0U);
 }
 
-TEST(VolumetricPlanner, TakesThinnedScansIntoTheMapIfAsked) {
+TEST(VolumetricPlanner, InsertsDownsampledScansWhenConfigured) {
   const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
   const auto scan = tests::scan_spheres({{}}, camera, view);
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
@@ -194,7 +194,7 @@ TEST(VolumetricPlanner, TakesThinnedScansIntoTheMapIfAsked) {
   }
 }
 
-TEST(VolumetricPlanner, CarvesPixelsWithoutReturnIfAsked) {
+TEST(VolumetricPlanner, CarvesNoReturnPixelsWhenConfigured) {
   const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
   const auto scan = tests::scan_spheres({{}}, camera, view);
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
@@ -207,7 +207,7 @@ TEST(VolumetricPlanner, CarvesPixelsWithoutReturnIfAsked) {
   }
 }
 
-TEST(VolumetricPlanner, DropsMeasurementsOutsideTheBox) {
+TEST(VolumetricPlanner, IgnoresMeasurementsOutsideSceneBox) {
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
   config.scene_box = Eigen::AlignedBox3d(Vector3d(-1, -1, 0), Vector3d(1, 1, 1));
   volumetric::VolumetricPlanner planner(config, camera);
@@ -216,7 +216,7 @@ TEST(VolumetricPlanner, DropsMeasurementsOutsideTheBox) {
   EXPECT_EQ(planner.map().state_at({0.45F, 0.0F, -0.2F}).kind, volumetric::VoxelKind::untouched);
 }
 
-TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {
+TEST(VolumetricPlanner, ProposesNextBestForRejectedView) {
   volumetric::VolumetricConfig config = config_for(proximity_count);
   config.candidates = 3;
   volumetric::VolumetricPlanner planner(config, camera);
@@ -229,13 +229,13 @@ TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {
   EXPECT_FALSE(planner.next_alternative_view());
 }
 
-TEST(VolumetricPlanner, RefusesAFirstScanWithoutTheScene) {
+TEST(VolumetricPlanner, RejectsFirstScanWithoutScenePoints) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
   EXPECT_THAT(testing_support::thrown_message([&] { planner.next_view(geometry::Scan{}); }),
               testing::HasSubstr("the first scan contains no point of the scene"));
 }
 
-TEST(VolumetricConfig, NamesTheFieldThatIsWrong) {
+TEST(VolumetricConfig, ReportsTheInvalidField) {
   const auto message = [](auto change) -> std::string {
     volumetric::VolumetricConfig config = config_for(occlusion_aware);
     change(config);

@@ -68,7 +68,7 @@ class VisibilityKernels : public testing::Test {
 };
 
 // Twin in double precision. Coordinates within a thousandth of a pixel's edge may round either way.
-TEST_F(VisibilityKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
+TEST_F(VisibilityKernels, ProjectPointsLikePinholeCamera) {
   std::vector<std::uint32_t> pixels(count);
   std::vector<float> depths(count);
   std::vector<std::int32_t> sizes(count);
@@ -101,7 +101,7 @@ TEST_F(VisibilityKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
 
 // Twin: each square drawn pixel by pixel. Points come as near as a few centimetres, where squares
 // are wider than the raster.
-TEST_F(VisibilityKernels, DepthsAreThoseOfTheNearestSquares) {
+TEST_F(VisibilityKernels, DrawDepthsOfNearestSquares) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<float> nearness(0.02F, 1.0F);
   for (std::size_t i = 0; i < count; ++i) {
@@ -141,7 +141,7 @@ TEST_F(VisibilityKernels, DepthsAreThoseOfTheNearestSquares) {
   }
 }
 
-TEST_F(VisibilityKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {
+TEST_F(VisibilityKernels, FindTargetsThatFaceSensorInsideFrustum) {
   std::vector<std::uint32_t> in_view(count), pixels(count);
   std::vector<float> depths(count), cosines(count), densities(count), slopes(count);
   surfel::project_targets(raster, 1e4F, count, to_arrays(positions), to_arrays(normals),
