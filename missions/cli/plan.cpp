@@ -10,6 +10,7 @@
 #include "geometry/io/output_folder.h"
 #include "missions/batch/benchmark/benchmark_report.h"
 #include "missions/cli/commands.h"
+#include "missions/cli/printable.h"
 #include "missions/cli/survey_batch.h"
 #include "missions/cli/write_page.h"
 #include "missions/config/resolve.h"
@@ -136,6 +137,13 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
       is_over &&
       (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1) &&
       (!flight || flight->failure.empty());
+  if (options.is_quiet && is_over && !went_through) {
+    const bool has_failure = flight && !flight->failure.empty();
+    console.err << printable_line("skycap: error: " + options.mission.string() + ": no route: " +
+                                  (has_failure ? flight->failure : "no view is reachable"))
+                << "\n"
+                << std::flush;
+  }
   return went_through ? 0 : 1;
 }
 

@@ -387,11 +387,23 @@ TEST(FlightPackage, ReportsMissingDataOfFormats) {
 TEST(FlightPackage, KeepsSurveyWithoutRoute) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", flight_mission());
-  const auto run =
-      run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "4", "--set",
-                  "flight.unknown_box.max=[9.3, 11, 13]", "--set", "flight.takeoff=[11.6, 0, 0]",
-                  "--set", "flight.takeoff_climb=7.4", "--set", "start.position=[32, 0, 8]",
-                  "--set", "start.look_at=[0, 0, 5]"});
+  const auto plan = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"plan",        mission,
+                                          "--out",       folder / out,
+                                          "--max-views", "4",
+                                          "--set",       "flight.unknown_box.max=[9.3, 11, 13]",
+                                          "--set",       "flight.takeoff=[11.6, 0, 0]",
+                                          "--set",       "flight.takeoff_climb=7.4",
+                                          "--set",       "start.position=[32, 0, 8]",
+                                          "--set",       "start.look_at=[0, 0, 5]"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_skycap(arguments);
+  };
+  const auto quiet = plan("quiet", {"--quiet"});
+  EXPECT_EQ(quiet.exit_code, 1);
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_THAT(quiet.err, HasSubstr("m.yaml: no route: the point above the take-off point"));
+  const auto run = plan("out", {});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_THAT(run.out, HasSubstr("flight    none: the point above the take-off point"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
