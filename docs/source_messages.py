@@ -111,16 +111,21 @@ def texts_in(source):
             yield "".join(text_of(term) for term in terms)
 
 
+def rule_sentence(rule):
+    """A rule for a value as a sentence: some rules are sentences of their own."""
+    return rule if " must " in rule else f"it must be {rule}"
+
+
 def texts_of_call(arguments):
     """The texts among a call's arguments. require("width", value, value > 0, "positive") prints a
     sentence with the field's name and the rule; refuse("width", "is missing") prints both."""
     texts = [text_of(argument) for argument in arguments if any(map(is_literal, argument))]
     if len(texts) == 1 and RULE.match(texts[0]) and len(arguments) > 2:
-        return [f"{VALUE} is {VALUE}; it must be {texts[0]}"]
+        return [f"{VALUE} is {VALUE}; {rule_sentence(texts[0])}"]
     if len(texts) < 2 or not re.fullmatch(f"{VALUE}?[a-z_.]+", texts[0]):
         return texts
     if RULE.match(texts[-1]):
-        return [f"{texts[0]} is {VALUE}; it must be {texts[-1]}"]
+        return [f"{texts[0]} is {VALUE}; {rule_sentence(texts[-1])}"]
     return [f"{texts[0]}: {text}" for text in texts[1:]]
 
 
