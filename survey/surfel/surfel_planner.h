@@ -4,8 +4,8 @@
 /// and a prediction of unobserved surface (surface_prediction.h). The gain of a view is the area
 /// that it is expected to cover newly. The next view is the first stop of a short tour through
 /// complementary views. No parameter needs tuning to a scene: all lengths derive from the sensor,
-/// the coverage radius and the first scan. docs/explanation/skycap-planner-formulas.md contains the formulas
-/// and an ablation study.
+/// the coverage radius and the first scan. docs/explanation/skycap-planner-formulas.md contains the
+/// formulas and an ablation study.
 #pragma once
 
 #include <memory>
