@@ -55,7 +55,7 @@ class Survey {
       sockaddr_un socket_address{};
       socket_address.sun_family = AF_UNIX;
       if (address.size() - 5 >= sizeof socket_address.sun_path) {
-        throw std::runtime_error("the path of the socket is too long");
+        throw std::runtime_error("the socket path is too long");
       }
       std::strncpy(socket_address.sun_path, address.c_str() + 5,
                    sizeof socket_address.sun_path - 1);
@@ -131,7 +131,7 @@ class Survey {
                   sizeof socket_address) == 0)
       return;
     ::close(socket_);
-    throw std::runtime_error("no server at this address");
+    throw std::runtime_error("cannot connect to a server at this address");
   }
 
   /// Returns the shortest text from which the same number can be read.
@@ -170,7 +170,7 @@ class Survey {
     };
     const std::size_t scans = at("scans"), en_route = at("en_route");
     if (scans == std::string::npos)
-      throw std::runtime_error("the answer contains no number of scans");
+      throw std::runtime_error("the answer does not contain the number of scans");
     scans_ = number(scans);
     en_route_ = en_route == std::string::npos ? 0 : number(en_route);
   }

@@ -58,7 +58,7 @@ Array<std::uint32_t> indices_in(const py::object& numbers, const std::string& na
            array.attr("max")().cast<py::int_>() <= py::int_(0xFFFFFFFFU);
   };
   if (array.size() > 0 && (!is_whole || !fits())) {
-    throw py::value_error(name + " must be integers of 32 bits");
+    throw py::value_error(name + " must be 32-bit integers");
   }
   return Array<std::uint32_t>(array);
 }
@@ -77,8 +77,8 @@ Eigen::Isometry3d pose_in(const Array<double>& matrix, const std::string& name) 
   if (!turns || !pose.translation().allFinite() ||
       pose.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw py::value_error(name +
-                          " must be a rotation and a translation: the last row 0 0 0 1, the rest a "
-                          "right-handed rotation");
+                          " must be a rigid transformation: a right-handed rotation, a translation "
+                          "and the last row 0 0 0 1");
   }
   return pose;
 }

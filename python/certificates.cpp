@@ -86,20 +86,20 @@ void bind_certificate(py::module_& module) {
           "Verified lower bound of the distance over the leg, in metres; at most 10 m above "
           "the\nrequired clearance.")
       .def_readonly("obstacle", &Certificate::obstacle,
-                    "Name of the nearest obstacle; '' if nothing is that near.")
+                    "Name of the nearest obstacle; '' if nothing is in range.")
       .def_property_readonly(
           "on_leg",
           [find_point](const Certificate& c) {
             return find_point(c, c.verification.closest.on_leg);
           },
-          "Point of the leg nearest to the obstacle: float64, shape (3,); None if nothing is that "
-          "near.")
+          "Point of the leg nearest to the obstacle: float64, shape (3,); None if nothing is in "
+          "range.")
       .def_property_readonly(
           "on_obstacle",
           [find_point](const Certificate& c) {
             return find_point(c, c.verification.closest.on_obstacle);
           },
-          "Nearest point of the obstacle: float64, shape (3,); None if nothing is that near.");
+          "Nearest point of the obstacle: float64, shape (3,); None if nothing is in range.");
 }
 
 }  // namespace
@@ -108,8 +108,8 @@ void bind_certificates(py::module_& module) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   py::class_<Prism>(
       module, "Prism",
-      "An upright volume over a simple polygon: Prism(name, footprint, floor=-inf,\nceiling=inf), "
-      "the footprint (N, 2) and heights in metres, world frame.")
+      "An upright prism over a simple polygon: Prism(name, footprint, floor=-inf,\n"
+      "ceiling=inf). The footprint has the shape (N, 2). All values are in metres, world frame.")
       .def(py::init(&prism_from), py::arg("name"), py::arg("footprint"),
            py::arg("floor") = -infinity, py::arg("ceiling") = infinity)
       .def_readonly("name", &Prism::name, "Name used in messages.")

@@ -34,9 +34,10 @@ void raise(const Error& error) {
 void bind_errors(py::module_& module) {
   static py::exception<Error> type(module, "Error");
   type.doc() =
-      "An operation that failed, with the reason as a sentence for the user.\n\n`kind` is "
-      "'bad_config' (a key or a setting), 'bad_file' (cannot be read or written),\n'bad_geometry' "
-      "(an unusable mesh, cloud or scan) or 'bad_usage'.";
+      "Error of a failed operation. The message states the reason in one sentence.\n"
+      "\n"
+      "`kind` is 'bad_config' (a key or a setting), 'bad_file' (cannot be read or written),\n"
+      "'bad_geometry' (an unusable mesh, cloud or scan) or 'bad_usage'.";
   error_type = type.ptr();
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {

@@ -119,8 +119,9 @@ void bind_simulation(py::module_& module) {
 
 void bind_missions(py::module_& module) {
   py::class_<Mission>(module, "Mission",
-                      "A mission file, read, checked and completed as by `skycap plan`. Immutable. "
-                      "Created by\nMission.load and Mission.parse.")
+                      "A mission file, read, checked and completed with defaults as `skycap plan` "
+                      "does. Immutable. Created by\n"
+                      "Mission.load and Mission.parse.")
       .def_static("load", &load, py::arg("file"), py::arg("set") = py::none(),
                   "load(file, set=None)\n--\n\nReads a mission file. `set` maps keys such as "
                   "'planner.name' to values that override the\nfile: strings, numbers, bools, "
@@ -139,9 +140,13 @@ void bind_missions(py::module_& module) {
       .def_property_readonly("coverage_distance", &Mission::coverage_distance,
                              "Coverage distance: a surface sample within this distance of a "
                              "measurement is covered,\nin metres.")
-      .def("model", &Mission::model, py::call_guard<py::gil_scoped_release>(),
-           "model($self)\n--\n\nThe model of the scene, placed, without ground: the ground truth, "
-           "which planners do not\nuse.")
+      .def(
+          "model", &Mission::model, py::call_guard<py::gil_scoped_release>(),
+          "model($self)\n"
+          "--\n"
+          "\n"
+          "The placed model of the scene, without ground: the ground truth, which planners do not\n"
+          "use.")
       .def("__repr__",
            [](const Mission& mission) { return "<skycap.Mission " + mission.name() + ">"; });
   bind_simulation(module);
@@ -150,8 +155,10 @@ void bind_missions(py::module_& module) {
   module.def(
       "camera", [](const std::string& name) { return missions::api::depth_camera(name).camera; },
       py::arg("name"),
-      "camera(name)\n--\n\nThe depth camera with that preset name, or from a .yaml sensor file; "
-      "see sensors().");
+      "camera(name)\n"
+      "--\n"
+      "\n"
+      "The depth camera preset of that name, or the camera in a .yaml sensor file; see sensors().");
 }
 
 }  // namespace skycap::python

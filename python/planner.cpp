@@ -97,7 +97,7 @@ class Planner {
     py::gil_scoped_acquire to_raise;
     PyErr_SetString(
         PyExc_BufferError,
-        "arrays of cloud() are still in use and would move; delete them, or keep copies");
+        "arrays of cloud() are still in use and would become invalid; delete them or keep copies");
     throw py::error_already_set();
   }
 
@@ -117,22 +117,24 @@ py::dict times_to_dict(const PlanningStep& step) {
 
 void bind_step(py::module_& module) {
   py::class_<PlanningStep>(module, "PlanningStep", "Statistics of the planner's last step.")
-      .def_readonly("points_new", &PlanningStep::points_new, "Number of points kept of the scan.")
+      .def_readonly("points_new", &PlanningStep::points_new, "Number of points kept from the scan.")
       .def_readonly("frontiers", &PlanningStep::frontiers, "Number of frontiers.")
       .def_readonly("frontiers_resolved", &PlanningStep::frontiers_resolved,
                     "Number of frontiers resolved by this scan.")
       .def_readonly("target_resolved", &PlanningStep::target_resolved,
                     "Whether the target of the view was resolved; None if the view had no target.")
-      .def_property_readonly("times", &times_to_dict,
-                             "Seconds of each part, in order; their sum is the planning time.");
+      .def_property_readonly(
+          "times", &times_to_dict,
+          "Time of each part in seconds, in order; the sum is the planning time.");
 }
 
 void bind_clouds(py::module_& module) {
   const char* xyz = "World frame, in metres: float32, shape (N, 3); read-only, not copied.";
   const char* views = "0-based number of the scan of each point: uint32, shape (N,); read-only.";
-  py::class_<ShownCloud>(module, "PlannerCloud",
-                         "The measurements kept by a planner. While this or an array of it is "
-                         "alive, the planner\naccepts no scan.")
+  py::class_<ShownCloud>(
+      module, "PlannerCloud",
+      "The measurements kept by a planner. While this object or one of its arrays is alive, the\n"
+      "planner does not accept scans.")
       .def_property_readonly(
           "xyz",
           [](const py::object& self) {
@@ -186,8 +188,10 @@ void bind_planner(py::module_& module) {
           "no\nimage.\n\nRaises Error for an unusable scan, and BufferError while arrays of "
           "cloud() are alive.\nOther threads must not modify the arrays during the call.")
       .def("replacement_view", &Planner::next_alternative_view,
-           "replacement_view($self)\n--\n\nAnother view instead of the last one, which is "
-           "unreachable; None when there is none left.")
+           "replacement_view($self)\n"
+           "--\n"
+           "\n"
+           "Another view instead of the last one, which is unreachable; None if no views are left.")
       .def(
           "next_view_instead",
           [](Planner& planner) {
@@ -196,7 +200,10 @@ void bind_planner(py::module_& module) {
           },
           "next_view_instead($self)\n--\n\nFormer name of replacement_view.")
       .def("cloud", &Planner::cloud,
-           "cloud($self)\n--\n\nThe measurements kept so far, as PlannerCloud, without a copy.")
+           "cloud($self)\n"
+           "--\n"
+           "\n"
+           "The measurements kept so far, as a PlannerCloud, without a copy.")
       .def_property_readonly("last_step", &Planner::last_step,
                              "Statistics of the last next_view().");
 }

@@ -97,17 +97,23 @@ void bind_scans(py::module_& module) {
                          "An iterator over the pieces of a laser scanner's flight; see scan().")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &ScanChunks::next);
-  module.def("scan", &scan, py::arg("mission"), py::arg("sensor") = py::none(),
-             py::arg("route") = py::none(),
-             "scan(mission, sensor=None, route=None)\n--\n\nSimulates the flight of a laser "
-             "scanner over the mission's scene, as `skycap scan`:\nan iterator of structured "
-             "arrays of some hundred thousand returns, in the order of\nmeasurement. Memory use "
-             "does not depend on the length of the flight.\n\nsensor: a name of sensors() or the "
-             "path of a sensor file. route: a file accepted by\n`skycap scan --route`. None: from "
-             "the mission.\n\nFields: xyz (3 x float64, world frame, in metres), time (float64, of "
-             "the pulse, in\nseconds), intensity (float32, in [0, 1]), scan_angle (float32, "
-             "azimuth in the\nsensor's frame, in radians), triangle (uint32, of the scene), "
-             "channel (uint16),\nreturn_number (uint8, from 1), returns_of_shot (uint8).");
+  module.def(
+      "scan", &scan, py::arg("mission"), py::arg("sensor") = py::none(),
+      py::arg("route") = py::none(),
+      "scan(mission, sensor=None, route=None)\n"
+      "--\n"
+      "\n"
+      "Simulates the flight of a laser scanner over the mission's scene, as `skycap scan`\n"
+      "does. Returns an iterator of structured arrays of several hundred thousand returns, in\n"
+      "the order of measurement. Memory use does not depend on the length of the flight.\n"
+      "\n"
+      "sensor: a name of sensors() or the path of a sensor file. route: a file accepted by\n"
+      "`skycap scan --route`. None: from the mission.\n"
+      "\n"
+      "Fields: xyz (3 x float64, world frame, in metres); time (float64, of the pulse, in\n"
+      "seconds); intensity (float32, in [0, 1]); scan_angle (float32, azimuth in the\n"
+      "sensor's frame, in radians); triangle (uint32, of the scene); channel (uint16);\n"
+      "return_number (uint8, from 1); returns_of_shot (uint8).");
 }
 
 }  // namespace skycap::python

@@ -73,9 +73,12 @@ void bind_evaluation(py::module_& module) {
   module.def(
       "evaluate", &evaluate, py::arg("points"), py::arg("model"), py::arg("distance"),
       py::arg("samples") = missions::api::EvaluationRequest{}.samples,
-      "evaluate(points, model, distance, samples=100000)\n--\n\nEvaluates a cloud, (N, 3) in the "
-      "frame of the mesh `model`, as `skycap evaluate`.\nA surface sample is covered if a point is "
-      "within `distance` metres; `samples` samples\nare used. float32 arrays are not copied.");
+      "evaluate(points, model, distance, samples=100000)\n"
+      "--\n"
+      "\n"
+      "Evaluates a cloud, (N, 3) in the frame of the mesh `model`, as `skycap evaluate` does.\n"
+      "A surface sample is covered if a point is within `distance` metres; `samples` samples\n"
+      "are used. float32 arrays are not copied.");
 }
 
 }  // namespace
@@ -83,8 +86,8 @@ void bind_evaluation(py::module_& module) {
 void bind_surfaces(py::module_& module) {
   py::class_<Mesh>(
       module, "Mesh",
-      "A triangle mesh: Mesh(vertices, triangles), of (N, 3) float64 in metres, z up,\n"
-      "and (M, 3) uint32, anticlockwise seen from outside; both are copied.")
+      "A triangle mesh: Mesh(vertices, triangles). The vertices are (N, 3) float64 in metres,\n"
+      "z up. The triangles are (M, 3) uint32, anticlockwise seen from outside. Both are copied.")
       .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly(
           "vertices",
@@ -100,7 +103,11 @@ void bind_surfaces(py::module_& module) {
       py::arg("file"), py::call_guard<py::gil_scoped_release>(),
       "read_mesh(file)\n--\n\nReads a mesh from a PLY, OBJ, STL, OFF or Draco file, without "
       "changes.");
-  module.def("models", &model_names, "models()\n--\n\nNames of the scenes of model().");
+  module.def("models", &model_names,
+             "models()\n"
+             "--\n"
+             "\n"
+             "Names of the scenes available to model().");
   module.def(
       "model", [](const std::string& name) { return sim::builtin_model(name); }, py::arg("name"),
       py::call_guard<py::gil_scoped_release>(),

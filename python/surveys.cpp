@@ -54,7 +54,7 @@ void bind_surveyed_view(py::module_& module) {
 
 void bind_surveys(py::module_& module) {
   bind_surveyed_view(module);
-  py::class_<Survey>(module, "Survey", "A survey from its first view to its last.")
+  py::class_<Survey>(module, "Survey", "A survey from its first to its last view.")
       .def_property_readonly(
           "end", [](const Survey& whole) { return survey::to_string(whole.end); },
           "Stop reason: 'complete', 'view_limit', 'distance_limit', 'time_limit' "
@@ -82,16 +82,23 @@ void bind_surveys(py::module_& module) {
           },
           "Contents of summary.json, as a dict: all values and the complete settings.")
       .def_readonly("failure", &Survey::failure,
-                    "Reason why there is no route; '' if there is one.");
+                    "Reason why no route was planned; '' if the survey has a route.");
   module.def(
       "plan", &plan, py::arg("mission"), py::arg("out") = py::none(),
       py::arg("progress") = py::none(),
-      "plan(mission, out=None, progress=None)\n--\n\nSurveys the mission's scene in simulation, as "
-      "`skycap plan`.\n\nout: folder for the mission package, the same bytes as the program's "
-      "except for times\nand without its report. None: nothing is written, and no route is "
-      "planned.\nprogress: called with each SurveyedView and the covered fraction after it; "
-      "an\nexception raised by it ends the survey.\n\nCtrl-C ends the survey after the view that "
-      "is being planned; the results so far are\nwritten, then KeyboardInterrupt is raised.");
+      "plan(mission, out=None, progress=None)\n"
+      "--\n"
+      "\n"
+      "Surveys the mission's scene in simulation, as `skycap plan` does.\n"
+      "\n"
+      "out: folder for the mission package. It has the same bytes as the package of the program,\n"
+      "except for times and without the report. None: nothing is written, and no route is "
+      "planned.\n"
+      "progress: called with each SurveyedView and the covered fraction after it; an\n"
+      "exception raised by it ends the survey.\n"
+      "\n"
+      "Ctrl-C ends the survey after the view that is being planned; the results so far are\n"
+      "written, then KeyboardInterrupt is raised.");
 }
 
 }  // namespace skycap::python

@@ -27,19 +27,19 @@ void ViewLimits::validate() const {
       min_standoff >= 0.0 && std::isfinite(min_standoff),
       "stand_off is " + std::to_string(min_standoff) + "; it must be zero or more metres");
   require_limit(!min_height || !max_height || *min_height < *max_height,
-                "least_height must be less than most_height; no airspace is left");
+                "least_height must be less than most_height; otherwise no airspace is left");
   require_limit(
       min_pitch < max_pitch && std::abs(min_pitch) < 1.5708 && std::abs(max_pitch) < 1.5708,
-      "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
-  require_limit(
-      geofence.empty() || geofence.size() >= 3,
-      "geofence has " + std::to_string(geofence.size()) + " corners; at least three are required");
+      "least_pitch must be below most_pitch; both must be between -pi/2 and pi/2");
+  require_limit(geofence.empty() || geofence.size() >= 3,
+                "geofence has " + std::to_string(geofence.size()) +
+                    " corners; at least three corners are required");
   for (const geometry::Prism& prism : no_fly) {
-    require_limit(prism.footprint.size() >= 3, "no_fly has a volume of " +
+    require_limit(prism.footprint.size() >= 3, "a no_fly volume has " +
                                                    std::to_string(prism.footprint.size()) +
-                                                   " corners; at least three are required");
+                                                   " corners; at least three corners are required");
     require_limit(prism.floor < prism.ceiling,
-                  "no_fly has a volume whose floor is not below its ceiling");
+                  "the floor of a no_fly volume must be below its ceiling");
   }
 }
 

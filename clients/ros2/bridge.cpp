@@ -47,8 +47,7 @@ std::string escaped(const std::string& text) {
 void require_same(std::string& kept, const std::string& name, const std::string& what) {
   if (kept.empty()) kept = name;
   if (kept == name) return;
-  throw Error(ErrorKind::bad_geometry,
-              what + " is '" + name + "'; it was '" + kept + "' until now, and must stay");
+  throw Error(ErrorKind::bad_geometry, what + " is '" + name + "'; it must remain '" + kept + "'");
 }
 
 }  // namespace
@@ -93,7 +92,7 @@ void Bridge::add_odometry(const Odometry& odometry) {
   require_same(world_frame_, printable_text(odometry.header.frame_id), "its frame");
   require_same(body_frame_, printable_text(odometry.child_frame_id), "its child frame");
   if (history_.add(stamp, pose) == PoseHistory::Added::contradicts) {
-    throw Error(ErrorKind::bad_geometry, "another pose has the same stamp");
+    throw Error(ErrorKind::bad_geometry, "a different pose has the same stamp");
   }
   newest_pose_ = stamp;
   locate();
@@ -154,8 +153,8 @@ void Bridge::add_scan(const Header& header, double now, const std::function<Sens
   if (!wants_scan(now)) return;
   if (stamp <= last_added_) {
     throw Error(ErrorKind::bad_geometry,
-                "its stamp is not after that of the last accepted scan: duplicate, late, or the "
-                "robot's clock was set back");
+                "its stamp must be later than that of the last accepted scan; it is a duplicate, "
+                "arrived late, or the robot's clock was set back");
   }
   waiting_ = Waiting{stamp, now, scan()};
 }
@@ -214,7 +213,7 @@ bool Bridge::has_settled(Stamp stamp) const {
   }
   if (gap.empty()) return true;
   throw Error(ErrorKind::bad_geometry,
-              "ignored: the sensor's position during the settling time is unknown: " + gap);
+              "ignored: sensor position unknown during the settling time: " + gap);
 }
 
 void Bridge::proceed(double now) {
@@ -291,7 +290,7 @@ void Bridge::obey(const std::string& command) {
                          escaped(command.substr(reject.size()))));
   } else {
     throw Error(ErrorKind::bad_usage,
-                "'" + command + "': unknown command; expected take, refuse REASON or finish");
+                "unknown command '" + command + "'; expected take, refuse REASON or finish");
   }
 }
 

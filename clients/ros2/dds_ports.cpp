@@ -30,7 +30,7 @@ dds_entity_t topic(const Participant& participant, const dds_topic_descriptor_t&
                    const std::string& name) {
   if (name.size() < 2 || name.front() != '/') {
     throw Error(ErrorKind::bad_usage,
-                "the topic '" + name + "' must begin with /, for example /odom");
+                "the topic '" + name + "' must begin with '/', for example '/odom'");
   }
   const dds_entity_t handle =
       dds_create_topic(participant.handle(), &type, ("rt" + name).c_str(), nullptr, nullptr);

@@ -48,7 +48,7 @@ BodyPose checked_pose(const Vector3d& position, const QuaternionMessage& given) 
   if (position.cwiseAbs().maxCoeff() > farthest)
     reject("its position is more than 1e7 m from the origin");
   const Quaterniond turn(given.w, given.x, given.y, given.z);
-  if (!is_unit_length(turn)) reject("its quaternion must have length one");
+  if (!is_unit_length(turn)) reject("its quaternion must have unit length");
   return {.position = position, .turn = turn.normalized(), .covariance = {}};
 }
 
@@ -106,9 +106,8 @@ Isometry3d parse_extrinsic(const std::string& text, const std::string& what) {
   std::vector<double> n;
   for (double number = 0.0; stream >> number;) n.push_back(number);
   if (!stream.eof() || n.size() != 7 || !is_unit_length({n[6], n[3], n[4], n[5]})) {
-    throw Error(
-        ErrorKind::bad_usage,
-        what + " is '" + text + "'; it must be x y z qx qy qz qw, with a quaternion of length one");
+    throw Error(ErrorKind::bad_usage,
+                what + " is '" + text + "'; it must be x y z qx qy qz qw, with a unit quaternion");
   }
   return isometry(Quaterniond(n[6], n[3], n[4], n[5]).normalized().toRotationMatrix(),
                   {n[0], n[1], n[2]});

@@ -53,10 +53,11 @@ void add_topics(CLI::App& app, Options& options) {
   app.add_option("--cloud", node.cloud, "sensor_msgs/PointCloud2")->capture_default_str();
   app.add_option("--image", node.image,
                  "Topic of depth images (sensor_msgs/Image), instead of point clouds");
-  app.add_option("--camera-info", node.camera_info,
-                 "Topic of the image's CameraInfo (default: camera_info beside the image)");
+  app.add_option(
+      "--camera-info", node.camera_info,
+      "Topic of the image's CameraInfo (default: camera_info in the namespace of the image)");
   app.add_option("--fixed-frame", node.bridge.world,
-                 "Fixed frame of TF, for example map: poses come from TF instead of odometry");
+                 "Fixed TF frame, for example map. Poses are read from TF instead of odometry");
   app.add_option("--base-frame", node.bridge.body, "Base frame of the robot, with --fixed-frame")
       ->capture_default_str();
   app.add_option("--tf", node.transforms, "tf2_msgs/TFMessage")->capture_default_str();
@@ -76,9 +77,9 @@ void add_rules(CLI::App& app, Options& options) {
           std::map<std::string, Axes>{{"optical", Axes::optical}, {"flu", Axes::flu}}))
       ->option_text("optical|flu");
   app.add_flag("--rectified", bridge.is_rectified,
-               "The image is rectified (use P of its CameraInfo, ignore D)");
+               "The images are rectified (use P of the CameraInfo and ignore D)");
   app.add_option("--trigger", bridge.taking,
-                 "Which scans are used: arrival, always or command (default: arrival)")
+                 "Trigger for accepting scans: arrival, always or command (default: arrival)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Taking>{
           {"arrival", Taking::arrived}, {"always", Taking::every}, {"command", Taking::command}}))
       ->option_text("arrival|always|command");
@@ -194,8 +195,8 @@ int main(int argc, char** argv) {
     std::cerr << "skycap_ros2: error: " << failure.what() << "\n";
     return failure.kind() == skycap::ErrorKind::bad_usage ? 2 : 1;
   } catch (const std::exception& failure) {
-    std::cerr << "skycap_ros2: error: the survey at " << options.node.address << ": "
-              << failure.what() << "; the accepted scans are in its folder\n";
+    std::cerr << "skycap_ros2: error: survey at " << options.node.address << ": " << failure.what()
+              << "; the accepted scans are saved in its folder\n";
     return 1;
   }
 }

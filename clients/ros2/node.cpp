@@ -193,7 +193,7 @@ void run_node(const NodeConfig& config, const std::atomic<bool>& stop) {
     }
     if (stop) bridge.set_status("stopped");
   } catch (const std::exception&) {
-    bridge.set_status("connection to the survey's server lost");
+    bridge.set_status("lost the connection to the survey server");
     throw;
   }
 }

@@ -31,7 +31,7 @@ BodyPose between(const BodyPose& a, const BodyPose& b, double share) {
 
 Stamp to_stamp(const Header& header) {
   if (header.stamp.nanosec >= 1'000'000'000U) {
-    throw Error(ErrorKind::bad_geometry, "its stamp has more than 1e9 nanoseconds");
+    throw Error(ErrorKind::bad_geometry, "its stamp has 1e9 or more nanoseconds");
   }
   const Stamp stamp = Stamp{header.stamp.sec} * 1'000'000'000 + header.stamp.nanosec;
   if (stamp <= 0) throw Error(ErrorKind::bad_geometry, "its stamp is not set");
@@ -77,7 +77,8 @@ PoseMatch PoseHistory::at(Stamp stamp) const {
   if (speed > config_.max_speed || turn > config_.max_turn_rate) {
     return {rejected,
             {},
-            "it jumps there, as if at " + rounded(speed, "m/s") + " and " + rounded(turn, "rad/s")};
+            "it jumps at an implausible speed of " + rounded(speed, "m/s") + " and " +
+                rounded(turn, "rad/s")};
   }
   return {known, between(a, b, from_before / time), {}};
 }

@@ -51,7 +51,7 @@ Coordinate coordinate(const PointCloud2& cloud, const std::string& name) {
       reject("its field " + name + " has the type " + std::to_string(field.datatype) +
              "; it must be FLOAT32 (7) or FLOAT64 (8)");
     }
-    if (field.count > 1) reject("its field " + name + " has more than one number per point");
+    if (field.count > 1) reject("its field " + name + " has more than one value per point");
     found = {field.offset, field.datatype == float64};
     const std::uint64_t end = std::uint64_t{field.offset} + (found->is_double ? 8 : 4);
     if (end > cloud.point_step) {
@@ -110,7 +110,7 @@ void require_image(const Image& image, std::uint32_t pixel, const CameraIntrinsi
   if (image.width < 1 || image.height < 1 || image.width > largest_side ||
       image.height > largest_side) {
     reject("its size is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-           "; each side must be from 1 to 32768");
+           "; each side must be from 1 to 32768 pixels");
   }
   if (image.width != intrinsics.width || image.height != intrinsics.height) {
     reject("its size is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
@@ -150,7 +150,7 @@ std::vector<double> read_distortion(const CameraInfo& info) {
   // The first five coefficients of rational_polynomial are those of plumb_bob.
   if ((model != "plumb_bob" && model != "rational_polynomial" && !model.empty()) || d.size() > 5) {
     reject("its distortion is '" + model + "' with " + std::to_string(d.size()) +
-           " numbers; it must be plumb_bob with k1 k2 p1 p2 k3, or the image rectified");
+           " coefficients; use plumb_bob with k1 k2 p1 p2 k3, or send rectified images");
   }
   d.resize(5, 0.0);
   return d;

@@ -59,14 +59,13 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
   }
   Frame& frame = known->second;
   if (frame.parent != parent) {
-    reject(what + " is now in '" + parent + "'; it was in '" + frame.parent +
-           "' until now, and must stay");
+    reject(what + " has the parent '" + parent + "'; it must remain '" + frame.parent + "'");
   }
-  if (frame.fixed.has_value() != is_static) reject(what + " must not be static and moving");
+  if (frame.fixed.has_value() != is_static) reject(what + " must not be both static and moving");
   if (is_static) {
     frame.fixed = pose;
   } else if (frame.history.add(stamp, pose) == PoseHistory::Added::contradicts) {
-    reject(what + " has another pose with the same stamp");
+    reject(what + " has a different pose with the same stamp");
   }
   frame.last = pose;
   frame.last_stamp = stamp;
@@ -93,10 +92,10 @@ Transforms::Found Transforms::find(const std::string& target, const std::string&
   using enum PoseMatch::State;
   const std::vector<std::string> up = up_from(source), down = up_from(target);
   if (up.empty() || down.empty()) {
-    return {{rejected,
-             {},
-             "the frames above '" + source + "' and '" + target +
-                 "' have no end, or are more than 64"}};
+    return {
+        {rejected,
+         {},
+         "the frames above '" + source + "' and '" + target + "' form a loop or are more than 64"}};
   }
   const auto meeting = std::ranges::find_first_of(up, down);
   if (meeting == up.end()) {

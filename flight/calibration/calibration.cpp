@@ -37,7 +37,7 @@ bool is_any(const Vector3d&) { return true; }
 constexpr std::array needed{
     Needed{"steady flight", 120.0, is_any,
            "hover for 60 s and fly 4 level legs of 100 m at 5 m/s, one in each direction"},
-    Needed{"hovering", 20.0, is_hover, "hover for 30 s at one place"},
+    Needed{"hovering", 20.0, is_hover, "hover in place for 30 s"},
     Needed{"level flight faster than 2.5 m/s", 30.0, is_cruise,
            "fly 4 level legs of 100 m at 5 m/s, one in each direction"}};
 
@@ -70,7 +70,7 @@ void require_power(const std::vector<LogSample>& samples) {
   const auto count = static_cast<std::size_t>(std::ranges::count_if(samples, is_some));
   if (2 * count > samples.size()) return;
   throw Error(ErrorKind::bad_file,
-              "measures no power: current or voltage are zero in " +
+              "contains no power measurements: current or voltage is zero in " +
                   std::to_string(samples.size() - count) + " of " + std::to_string(samples.size()) +
                   " readings; a current sensor is required (BATT_MONITOR 4 or higher)");
 }
@@ -104,8 +104,9 @@ Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_powe
     if (is_physical()) {
       warnings.push_back("rotor_diameter is set to " + fixed(vehicle.rotor_diameter, 3) +
                          " m: " + to_string(initial) + " need at least " +
-                         fixed(min_rotor_power(initial), 0) + " W to hover, but the log has " +
-                         fixed(hover_power, 0) + " W; set the diameter of the vehicle that flew");
+                         fixed(min_rotor_power(initial), 0) + " W to hover, but the log shows " +
+                         fixed(hover_power, 0) +
+                         " W; set the rotor diameter of the logged vehicle");
       return vehicle;
     }
   }
@@ -113,7 +114,7 @@ Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_powe
       ErrorKind::bad_file,
       "hover power of " + fixed(hover_power, 1) + " W is too low: " + to_string(initial) +
           " need at least " + fixed(min_rotor_power(initial), 1) +
-          " W; set the mass that flew (--mass), or calibrate the current sensor (BATT_AMP_PERVLT)");
+          " W; set the take-off mass (--mass) or calibrate the current sensor (BATT_AMP_PERVLT)");
 }
 
 /// Returns the relative energy error of each fifth of the windows, predicted by a fit of the others
@@ -142,16 +143,17 @@ double cross_validation_error(const std::vector<LogWindow>& windows, const Vehic
 void require_fit(const Calibration& fit) {
   if (fit.scatter > max_scatter * fit.hover_power) {
     throw Error(ErrorKind::bad_file,
-                "fits no power model: the power scatters by " + fixed(fit.scatter, 0) +
-                    " W around a hover of " + fixed(fit.hover_power, 0) +
-                    " W; check the current sensor, or calibrate with another log");
+                "cannot be fitted by a power model: the power scatters by " +
+                    fixed(fit.scatter, 0) + " W around a hover power of " +
+                    fixed(fit.hover_power, 0) +
+                    " W; check the current sensor or calibrate with another log");
   }
   if (fit.energy_error > max_unseen_error) {
-    throw Error(
-        ErrorKind::bad_file,
-        "fits no power model: the energy of its parts differs by " +
-            fixed(100.0 * fit.energy_error, 0) +
-            "% from a fit of the others; calibrate with a flight on one battery, in steady wind");
+    throw Error(ErrorKind::bad_file,
+                "cannot be fitted by a power model: the energy of its parts differs by up to " +
+                    fixed(100.0 * fit.energy_error, 0) +
+                    "% from a fit to the other parts; calibrate with a flight on one battery in "
+                    "steady wind");
   }
 }
 
@@ -160,12 +162,12 @@ std::vector<std::string> make_warnings(const PowerFit& fit, const Vehicle& vehic
   for (const std::string& name : fit.at_bound) {
     if (name == "rotors") {
       warnings.push_back(
-          "the rotors' efficiency is at its limit of 1: " + to_string(vehicle) +
-          " may differ from the vehicle that flew; set --mass, and check the current sensor");
+          "rotor efficiency is at its limit of 1: " + to_string(vehicle) +
+          " may differ from the logged vehicle; set --mass and check the current sensor");
     } else {
       warnings.push_back(name +
-                         " is at its limit of 0: the log does not show it; fly level legs at "
-                         "several speeds up to 8 m/s");
+                         " is at its limit of 0, because the log contains too little data to "
+                         "estimate it; fly level legs at several speeds up to 8 m/s");
     }
   }
   return warnings;

@@ -215,11 +215,11 @@ class LogBuilder {
   /// Returns the log. `skipped` is the number of bytes outside of messages.
   FlightLog finish(std::size_t skipped) {
     const std::string damage =
-        skipped == 0 ? "" : "; " + std::to_string(skipped) + " of its bytes are damaged";
+        skipped == 0 ? "" : "; " + std::to_string(skipped) + " damaged bytes";
     add_samples();
     if (!has_velocity_) {
       throw Error(ErrorKind::bad_file,
-                  "contains no velocity (XKF1); log the estimator's state" + damage);
+                  "contains no velocity (XKF1); enable logging of the estimator state" + damage);
     }
     if (log_.samples.empty() && has_voltage_ && !has_current_) {
       throw Error(ErrorKind::bad_file,
@@ -375,7 +375,7 @@ FlightLog read_dataflash(std::string_view bytes, std::size_t max_entries) {
   if (!has_format) {
     const std::string kind = foreign_kind(bytes);
     throw Error(ErrorKind::bad_file, kind.empty()
-                                         ? "is not a dataflash log: it defines no message"
+                                         ? "is not a dataflash log: it defines no messages"
                                          : "is not an ArduPilot dataflash log: it is " + kind);
   }
   return builder.finish(skipped);

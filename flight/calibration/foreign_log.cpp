@@ -17,11 +17,11 @@ std::string foreign_kind(std::string_view bytes) {
   static const std::array kinds{
       Kind{"ULog\x01\x12\x35",
            "a PX4 ULog; use a CSV table with time_s, east_m_s, north_m_s, up_m_s and power_w"},
-      Kind{"FMT,", "an ArduPilot text log; use the .bin file that it was made from"},
+      Kind{"FMT,", "an ArduPilot text log; use the .bin file that it was converted from"},
       Kind{"\x1f\x8b", "gzip-compressed; unpack it first"},
       Kind{"PK\x03\x04", "a zip archive; unpack it first"},
       Kind{"#ROSBAG", "a ROS bag; use the vehicle's own .bin log"},
-      Kind{"MATLAB", "a MATLAB file; use the .bin file that it was made from"},
+      Kind{"MATLAB", "a MATLAB file; use the .bin file that it was converted from"},
       Kind{"H Product:Blackbox",
            "a Betaflight or INAV Blackbox log; use a CSV table with time_s, east_m_s, north_m_s, "
            "up_m_s and power_w"}};
@@ -40,7 +40,7 @@ std::string foreign_kind(std::string_view bytes) {
   const bool is_text = !start.empty() && std::ranges::all_of(start, [](char c) {
     return c == '\t' || c == '\n' || c == '\r' || (c >= ' ' && c <= '~');
   });
-  if (is_text) return "a text file; a CSV table's name must end in .csv";
+  if (is_text) return "a plain-text file; the name of a CSV table must end in .csv";
   return bytes.empty() ? "empty" : "";
 }
 

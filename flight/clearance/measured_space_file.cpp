@@ -87,7 +87,7 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
     throw Error(ErrorKind::bad_file, name + ": " + error.what());
   }
   if (head.blocks > max_blocks) {
-    throw Error(ErrorKind::bad_file, name + ": is damaged: its header has " +
+    throw Error(ErrorKind::bad_file, name + ": is damaged: its header declares " +
                                          std::to_string(head.blocks) + " blocks; at most " +
                                          std::to_string(max_blocks) + " are allowed");
   }
@@ -96,7 +96,7 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
     if (!read_record(stream, block)) {
       throw Error(ErrorKind::bad_file, name + ": is truncated after " + std::to_string(i) + " of " +
                                            std::to_string(head.blocks) +
-                                           " blocks; copy it again, or plan again");
+                                           " blocks; restore it from a copy or plan again");
     }
     const Vector3d low = unpack_cell(block.key).cast<double>() * 8.0 * head.voxel;
     if (!geometry::is_valid_position(low)) {

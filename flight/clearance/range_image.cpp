@@ -50,7 +50,7 @@ RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camer
     throw Error(ErrorKind::bad_geometry,
                 "a scan has " + std::to_string(scan.points.size()) + " points but " +
                     std::to_string(scan.pixels.size()) +
-                    " pixels; only an organised scan can establish free space");
+                    " pixels; determining free space requires one pixel per point");
   }
   const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   std::vector<float> depths(count, static_cast<float>(std::min(depth_without_return, max_depth)));

@@ -23,8 +23,8 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
   for (const MeasuredSpace& space : spaces) {
     if (!space.config().region.isEmpty()) continue;
     throw Error(ErrorKind::bad_config,
-                "a measured space without a region cannot be merged with others: only what it has "
-                "measured is free in it");
+                "a measured space without a region cannot be merged with others, because only its "
+                "observed space is free");
   }
   std::vector<AlignedBox3d> known;
   known.reserve(spaces.size());

@@ -66,7 +66,7 @@ std::vector<std::string> make_plan_notes(const FlightPlan& plan) {
   for (const std::string& name : flat_no_fly(plan).left_out) {
     notes.push_back(
         "no-fly volume \"" + name +
-        "\" is left out: the route passes over or under it, and the format has no heights");
+        "\" is omitted: the route passes over or under it, and the format has no heights");
   }
   return notes;
 }
@@ -74,7 +74,7 @@ std::vector<std::string> make_plan_notes(const FlightPlan& plan) {
 std::vector<std::string> make_litchi_notes(const FlightPlan&) {
   return {
       "Litchi's mission settings are not in the file: set heading mode \"Custom\" and path mode "
-      "\"Straight Lines\"; the gimbal pitch has whole degrees"};
+      "\"Straight Lines\"; the gimbal pitch is rounded to whole degrees"};
 }
 
 /// All formats, in the order of Format. A new format requires a row here, an enumerator, and a

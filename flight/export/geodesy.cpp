@@ -24,9 +24,10 @@ void Site::validate() const {
 
 double Site::undulation_for(const std::string& who) const {
   if (geoid_undulation) return *geoid_undulation;
-  throw Error(ErrorKind::bad_config, who +
-                                         " requires heights above mean sea level, but the geoid "
-                                         "undulation of the site is unknown; set it");
+  throw Error(ErrorKind::bad_config,
+              who +
+                  " requires heights above mean sea level, but the geoid undulation of the site is "
+                  "unknown; set site.geoid_undulation");
 }
 
 struct LocalFrame::Impl {

@@ -114,10 +114,11 @@ class GeoJsonChecker {
       problems.emplace_back("the file is not a GeoJSON FeatureCollection");
       return;
     }
-    if (file.contains("crs")) problems.emplace_back("crs is no longer part of GeoJSON; remove it");
+    if (file.contains("crs"))
+      problems.emplace_back("crs is not allowed in GeoJSON (RFC 7946); remove it");
     for (std::size_t i = 0; i < file["features"].size(); ++i) check_feature(file["features"][i], i);
     if (problems.empty() && route.points.empty()) {
-      problems.emplace_back("no LineString, and therefore no flight");
+      problems.emplace_back("the file contains no LineString; a flight requires at least one");
     }
   }
 
@@ -164,7 +165,7 @@ class GeoJsonChecker {
 
   void check_line(const Json& line, const std::string& who) {
     if (!line.is_array() || line.size() < 2) {
-      problems.push_back(who + " is a LineString of fewer than two positions");
+      problems.push_back(who + " is a LineString with fewer than two positions");
       return;
     }
     std::vector<FilePoint> points;
@@ -188,7 +189,7 @@ class GeoJsonChecker {
     for (std::size_t r = 0; r < polygon.size(); ++r) {
       const Json& ring = polygon[r];
       if (!ring.is_array() || ring.size() < 4 || ring.front() != ring.back()) {
-        problems.push_back(who + " has a ring that is not closed, or of fewer than 4 positions");
+        problems.push_back(who + " has a ring that is not closed or has fewer than 4 positions");
         return;
       }
       double twice_area = 0.0;

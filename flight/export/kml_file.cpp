@@ -201,7 +201,7 @@ class KmlChecker {
     }
     for (const pugi::xpath_node node : document_.select_nodes("//Placemark")) check(node.node());
     if (route.points.size() < 2) {
-      problems.emplace_back("no Placemark named \"path\" with a LineString of two points");
+      problems.emplace_back("missing Placemark \"path\" with a LineString of at least two points");
     }
   }
 
@@ -279,13 +279,14 @@ class KmlChecker {
       return static_cast<std::size_t>(std::distance(children.begin(), children.end()));
     };
     if (moments.empty() || count("gx:coord") != moments.size()) {
-      problems.push_back("\"" + name + "\" must have as many gx:coord as when");
+      problems.push_back("\"" + name + "\" must have as many gx:coord elements as when elements");
     }
     if (count("gx:angles") != 0 && count("gx:angles") != moments.size()) {
-      problems.push_back("\"" + name + "\" must have as many gx:angles as when, or none");
+      problems.push_back("\"" + name +
+                         "\" must have as many gx:angles elements as when elements, or none");
     }
     if (!std::is_sorted(moments.begin(), moments.end())) {
-      problems.push_back("\"" + name + "\" has times that go back");
+      problems.push_back("\"" + name + "\" has times that are not in ascending order");
     }
   }
 

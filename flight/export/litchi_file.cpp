@@ -44,10 +44,9 @@ std::string format_actions(const Waypoint& waypoint) {
   for (int capture = 0; capture < waypoint.captures; ++capture) act(photo, "0");
   if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));
   if (used > actions_per_line) {
-    throw Error(ErrorKind::bad_config,
-                "a waypoint with " + std::to_string(waypoint.captures) +
-                    " shots cannot be written for Litchi, whose maximum is " +
-                    std::to_string(actions_per_line - 3));
+    throw Error(ErrorKind::bad_config, "a waypoint with " + std::to_string(waypoint.captures) +
+                                           " photos cannot be written for Litchi; the maximum is " +
+                                           std::to_string(actions_per_line - 3));
   }
   for (; used < actions_per_line; ++used) text += ",-1,0";
   return text;
@@ -60,7 +59,7 @@ struct LitchiParser {
   explicit LitchiParser(const std::string& text) {
     const std::vector<std::string> lines = split_lines(text);
     if (lines.empty() || geometry::trimmed(lines[0]) != header()) {
-      problems.emplace_back("line 1 is not Litchi's header");
+      problems.emplace_back("line 1 is not the Litchi header");
       return;
     }
     for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -124,7 +123,7 @@ std::string write_litchi(const FlightPlan& plan) {
     throw Error(
         ErrorKind::bad_config,
         "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
-            " waypoints; the limit of Litchi is 99: use a vehicle with fewer max_waypoints");
+            " waypoints; the limit of Litchi is 99. Use a vehicle with a lower max_waypoints");
   }
   const LocalFrame frame(plan.site.origin);
   const double pad_height = frame.to_geodetic(plan.pad).height;

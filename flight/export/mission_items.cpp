@@ -151,20 +151,21 @@ class ItemChecker {
 
   void check_position(std::size_t i) {
     const MissionItem& item = items_[i];
-    if (item.frame == frame::mission) add_problem(i, "has a position but frame 2, which has none");
+    if (item.frame == frame::mission)
+      add_problem(i, "has a position, but frame 2 does not allow one");
     if (!(std::abs(item.params[4]) <= 90.0)) add_problem(i, "has a latitude outside [-90, 90]");
     if (!(std::abs(item.params[5]) <= 180.0)) add_problem(i, "has a longitude outside [-180, 180]");
     if (!(item.params[6] >= -500.0 && item.params[6] <= 10000.0)) {
       add_problem(i, "has a height outside [-500, 10000] m");
     }
     if (item.command == command::waypoint && !(item.params[0] >= 0.0)) {
-      add_problem(i, "has a hold time below zero");
+      add_problem(i, "has a negative hold time");
     }
   }
 
   void check_for_px4(std::size_t i) {
     if (items_[i].command == command::condition_yaw) {
-      add_problem(i, "is a CONDITION_YAW, for which PX4 rejects the whole mission");
+      add_problem(i, "is a CONDITION_YAW; PX4 rejects missions with this command");
     }
     if (items_[i].frame == frame::terrain)
       add_problem(i, "has frame 10, which PX4 does not support");
@@ -182,7 +183,9 @@ class ItemChecker {
       }
     }
     if (item.command == command::gimbal_pitch_yaw && item.params[0] != std::round(item.params[0])) {
-      add_problem(i, "has a fraction of a degree, which ArduPilot discards; use DO_MOUNT_CONTROL");
+      add_problem(i,
+                  "sets an angle with a fraction of a degree, which ArduPilot discards; use "
+                  "DO_MOUNT_CONTROL");
     }
   }
 
@@ -192,16 +195,17 @@ class ItemChecker {
       if (is_navigation(items_[i].command)) navigation.push_back(i);
     }
     if (navigation.empty()) {
-      problems_.emplace_back("no item flies anywhere");
+      problems_.emplace_back("the mission contains no navigation item");
       return;
     }
     if (items_[navigation.front()].command != command::takeoff) {
-      add_problem(navigation.front(), "comes first; a mission must begin with a take-off (22)");
+      add_problem(navigation.front(),
+                  "is the first item; a mission must begin with a take-off (22)");
     }
     const int last = items_[navigation.back()].command;
     if (last != command::land && last != command::return_to_launch) {
       add_problem(navigation.back(),
-                  "comes last; a mission must end with a landing (21) or return (20)");
+                  "is the last item; a mission must end with a landing (21) or return (20)");
     }
   }
 
@@ -218,7 +222,7 @@ class ItemChecker {
       }
       if (is_gimbal(c)) has_aimed = true;
       if (is_capture_command(c) && !has_aimed)
-        add_problem(i, "captures without a gimbal command for its position");
+        add_problem(i, "captures an image without a gimbal command for its position");
     }
   }
   bool aimed_after(std::size_t from, std::size_t to) const {
@@ -250,8 +254,9 @@ bool has_coordinates(const MissionItem& item) {
 
 std::vector<MissionItem> mission_items(const FlightPlan& plan) {
   if (plan.vehicle.autopilot == AutopilotType::dji) {
-    throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
-                                           "\" does not fly MAVLink missions; use --format kmz");
+    throw Error(ErrorKind::bad_config,
+                "vehicle \"" + plan.vehicle.name +
+                    "\" does not support MAVLink missions; use --format kmz");
   }
   std::vector<MissionItem> items = ItemWriter(plan).write();
   if (items.size() > static_cast<std::size_t>(plan.vehicle.max_waypoints)) {

@@ -66,13 +66,14 @@ class ParameterWriter {
     comment("Mission \"" + plan_.name + "\": return altitude " + plain(returns_.height) +
             " m above take-off, verified at this altitude only.");
     comment(
-        "Order: load these parameters; restart the autopilot if the station asks for it; read "
-        "back");
+        "Order: load these parameters; restart the autopilot if the ground station requests it; "
+        "read back");
     comment(std::string(is_px4_ ? "RTL_RETURN_ALT and RTL_CONE_ANG"
                                 : "RTL_ALT (cm) or RTL_ALT_M (m), and RTL_CONE_SLOPE") +
-            "; upload fence, rally points, mission.");
+            "; upload the fence, rally points and mission.");
     comment(
-        "After arming, check that home is within 2 m of the take-off point: returns end at home.");
+        "After arming, check that the home position is within 2 m of the take-off point; returns "
+        "end there.");
     comment("");
     if (is_px4_) comment("Vehicle-Id Component-Id Name Value Type");
     is_px4_ ? write_px4() : write_ardupilot();
@@ -112,8 +113,9 @@ class ParameterWriter {
 
   void write_ardupilot() {
     comment(
-        "Return: names and centimetres up to 4.6, names and metres since 4.7. The autopilot knows");
-    comment("one of each pair; the station may report that the other is missing.");
+        "Return: ArduPilot up to 4.6 uses the names in centimetres, 4.7 and later those in "
+        "metres.");
+    comment("The ground station may report that the other name of each pair is missing.");
     both("RTL_ALT", "RTL_ALT_M", returns_.height);
     set("RTL_CONE_SLOPE", 0);  // Otherwise it climbs less near home.
     both("RTL_CLIMB_MIN", "RTL_CLIMB_MIN_M", 0);
@@ -135,15 +137,16 @@ class ParameterWriter {
     both("LAND_ALT_LOW", "LAND_ALT_LOW_M", mode.landing_height);
     set("WP_YAW_BEHAVIOR", 0);  // The mission sets the headings.
     set("OA_TYPE", 0);          // Only verified paths.
-    comment("Link to the pilot or the station lost: return");
+    comment("Loss of the link to the pilot or to the ground station: return");
     set("FS_THR_ENABLE", 1);
     set("FS_GCS_ENABLE", 1);
     set("FS_OPTIONS", 0);
     comment(
-        "Battery low: return; critical: land on the spot. Set BATT_CAPACITY to the pack's [mAh],");
+        "Battery low: return; critical: land in place. Set BATT_CAPACITY [mAh] to the battery "
+        "capacity,");
     comment("BATT_LOW_MAH to " + plain(std::ceil(100.0 * battery_share())) +
-            "% of it (energy of the most expensive return), and BATT_CRT_MAH to the need of a "
-            "landing.");
+            "% of it (maximum energy of a return), and BATT_CRT_MAH to the charge that a landing "
+            "requires.");
     set("BATT_FS_LOW_ACT", 2);
     set("BATT_FS_CRT_ACT", 1);
     set("RALLY_INCL_HOME", 1);
@@ -154,8 +157,7 @@ class ParameterWriter {
   void write_ardupilot_fence() {
     if (!plan_.fence && plan_.no_fly.empty()) return;
     constexpr int altitude = 1, polygon = 4;
-    comment(
-        "Fence: the polygons are in the .plan file. On a breach: return, which is verified from");
+    comment("Fence: the polygons are in the .plan file. Breach: return. Returns are verified from");
     comment("points of the route only, not from outside the fence.");
     set("FENCE_ENABLE", 1);
     set("FENCE_TYPE", polygon + (ceiling() > 0.0 ? altitude : 0));
@@ -181,24 +183,21 @@ class ParameterWriter {
     real("MPC_ACC_HOR", mode.acceleration);
     real("MPC_JERK_AUTO", mode.jerk);
     real("MPC_LAND_SPEED", mode.landing_speed);
-    comment("Headings are set by the mission; views are captured within a degree of their heading");
+    comment("The mission sets the headings; views are captured within 1 degree of their heading");
     set("MPC_YAW_MODE", 0);
     real("MIS_YAW_ERR", 1);
     real("MIS_YAW_TMT", 10);
-    comment("Link to the pilot or the station lost: return");
+    comment("Loss of the link to the pilot or to the ground station: return");
     set("NAV_RCL_ACT", 2);
     set("NAV_DLL_ACT", 2);
     set("COM_RCL_EXCEPT", 0);
-    comment(
-        "Battery critical: return (threshold: energy of the most expensive return). Emergency: "
-        "land.");
+    comment("Battery critical: return (threshold: maximum energy of a return). Emergency: land.");
     set("COM_LOW_BAT_ACT", 3);
     const double share = std::ceil(100.0 * battery_share()) / 100.0;
     real("BAT_CRIT_THR", share);
     real("BAT_LOW_THR", std::min(share + 0.05, 0.5));
     if (!plan_.fence && plan_.no_fly.empty()) return;
-    comment(
-        "Fence: the polygons are in the .plan file. On a breach: return, which is verified from");
+    comment("Fence: the polygons are in the .plan file. Breach: return. Returns are verified from");
     comment("points of the route only, not from outside the fence.");
     set("GF_ACTION", 3);
     if (ceiling() > 0.0) real("GF_MAX_VER_DIST", std::floor(ceiling()));
@@ -253,9 +252,10 @@ std::vector<Parameter> read_parameters(const std::string& text) {
     if (geometry::trimmed(line).empty() || geometry::trimmed(line).starts_with('#')) continue;
     const std::optional<Parameter> parameter = parameter_in(line);
     if (!parameter) {
-      throw Error(ErrorKind::bad_file,
-                  "line " + std::to_string(number) + " is \"" + line +
-                      "\"; it must be NAME,VALUE or QGroundControl's five fields between tabs");
+      throw Error(
+          ErrorKind::bad_file,
+          "line " + std::to_string(number) + " is \"" + line +
+              "\"; it must be NAME,VALUE or the five tab-separated fields of QGroundControl");
     }
     parameters.push_back(*parameter);
   }

@@ -123,7 +123,7 @@ class PlanChecker {
       file_.autopilot = AutopilotType::ardupilot;
     }
     if (!mission.contains("items") || !mission["items"].is_array() || mission["items"].empty()) {
-      add_problem("mission.items must be a list of at least one item");
+      add_problem("mission.items must be a list with at least one item");
       return;
     }
     const std::size_t before = problems_.size();
@@ -139,7 +139,7 @@ class PlanChecker {
                             (are_numbers(home, 3) && home[0] == 0.0 && home[1] == 0.0);
     if (!is_strict_ && is_unknown) return;
     if (!are_numbers(home, 3)) {
-      return add_problem("mission.plannedHomePosition must be three numbers");
+      return add_problem("mission.plannedHomePosition must be a list of three numbers");
     }
     file_.home = GeodeticPoint{home[0], home[1], home[2]};
   }
@@ -181,7 +181,7 @@ class PlanChecker {
     if (is_integer && json["doJumpId"] > Json(before) && json["doJumpId"] < Json(1'000'000)) {
       return true;
     }
-    add_problem(who + ".doJumpId must be an integer greater than that of the item before");
+    add_problem(who + ".doJumpId must be an integer greater than that of the previous item");
     return false;
   }
 
@@ -207,14 +207,14 @@ class PlanChecker {
     }
     if (file_.items.size() != i || !check_jump_id(json, i, who)) return;
     const Json params = parse_params(json);
-    if (params.is_null()) return add_problem(who + ".params must be 7 numbers or nulls");
+    if (params.is_null()) return add_problem(who + ".params must be a list of 7 numbers or nulls");
     const std::size_t number =
         json.contains("doJumpId") ? json["doJumpId"].get<std::size_t>() : i + 1;
     MissionItem item{json["command"], json["frame"], {}, json["autoContinue"], number};
     for (std::size_t p = 0; p < 7; ++p) {
       const Json& value = params[p];
       if (!value.is_number() && !value.is_null()) {
-        return add_problem(who + ".params must be 7 numbers or nulls");
+        return add_problem(who + ".params must be a list of 7 numbers or nulls");
       }
       item.params[p] = value.is_null() ? unspecified : value.get<double>();
     }
@@ -228,22 +228,22 @@ class PlanChecker {
     if (!has_mode && !has_height && !has_terrain) return;
     if (!is_strict_ && !has_mode) return;  // Frame and params suffice.
     if (is_strict_ && !(has_mode && has_height && has_terrain)) {
-      return add_problem(who +
-                         " must have all of AltitudeMode, Altitude, AMSLAltAboveTerrain or none");
+      return add_problem(
+          who + " must have all or none of AltitudeMode, Altitude and AMSLAltAboveTerrain");
     }
     const Json mode = json["AltitudeMode"], above = json.value("AMSLAltAboveTerrain", Json());
     const Json height = json.value("Altitude", Json(item.params[6]));
     if (!mode.is_number_integer() || !height.is_number() ||
         !(above.is_null() || above.is_number())) {
       return add_problem(who +
-                         " has an AltitudeMode, Altitude or AMSLAltAboveTerrain of a wrong type");
+                         " has an AltitudeMode, Altitude or AMSLAltAboveTerrain of the wrong type");
     }
     const bool agrees = (mode == 1 && item.frame == frame::relative) ||
                         ((mode == 2 || mode == 3) && item.frame == frame::global) ||
                         (mode == 4 && item.frame == frame::terrain);
     if (!agrees) add_problem(who + " has an AltitudeMode that conflicts with its frame");
     if (mode == 1 && height != Json(item.params[6])) {
-      add_problem(who + ".Altitude must be the height in its params");
+      add_problem(who + ".Altitude must equal the height in its params");
     }
   }
 
@@ -263,7 +263,8 @@ class PlanChecker {
   void check_area(const Json& area, bool is_polygon, const std::string& who) {
     require_version(area, who + ".version", 1);
     if (!area.contains("inclusion") || !area["inclusion"].is_boolean()) {
-      return add_problem(who + ".inclusion must be true or false; programs differ in the default");
+      return add_problem(who +
+                         ".inclusion must be true or false; its default depends on the program");
     }
     FenceArea found{who, area["inclusion"], {}};
     if (is_polygon) {

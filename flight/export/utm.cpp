@@ -18,9 +18,9 @@ int compute_utm_zone(const Site& site) {
   const int zone =
       GeographicLib::UTMUPS::StandardZone(site.origin.latitude_deg, site.origin.longitude_deg);
   if (zone > 0) return zone;
-  throw Error(ErrorKind::bad_config, "the site's latitude is " +
-                                         std::to_string(site.origin.latitude_deg) +
-                                         "; UTM is from 80 degrees south to 84 degrees north");
+  throw Error(ErrorKind::bad_config,
+              "the site's latitude is " + std::to_string(site.origin.latitude_deg) +
+                  "; UTM is defined from 80 degrees south to 84 degrees north");
 }
 
 std::string authority(int code) { return "AUTHORITY[\"EPSG\",\"" + std::to_string(code) + "\"]"; }

@@ -56,7 +56,7 @@ struct WaypointsParser {
     if (is_wpl && (words[2] == "100" || words[2] == "101")) {
       problems.push_back(
           who + "has version " + words[2] +
-          ", whose columns have another order; save the mission again as QGC WPL 110");
+          ", whose columns are in a different order; save the mission as QGC WPL 110");
     } else {
       problems.push_back(who + "must be \"QGC WPL 110\"");
     }
@@ -90,7 +90,7 @@ struct WaypointsParser {
       problems.push_back(who + "has index " + fields[0] + "; it must be " + std::to_string(index));
     }
     if (is_strict && values[1] != (index == 0 ? 1.0 : 0.0)) {
-      problems.push_back(who + "must be current (1) on the first line only");
+      problems.push_back(who + "must have the current flag (1) on the first line only");
     }
     for (const std::size_t whole : {2U, 3U, 11U}) {
       if (values[whole] != std::floor(values[whole]) || std::abs(values[whole]) > 1e5) {
@@ -111,7 +111,7 @@ Problems find_problems(WaypointsParser& parser, std::optional<AutopilotType> aut
     parser.problems.emplace_back("line 2 must be home: frame 0, command 16");
   }
   if (autopilot == AutopilotType::px4 && parser.home) {
-    parser.problems.emplace_back("line 2 is a home position, which PX4's files do not have");
+    parser.problems.emplace_back("line 2 is a home position, which PX4 files must not contain");
   }
   for (const std::string& problem : check_items(parser.items, autopilot)) {
     parser.problems.push_back(problem);

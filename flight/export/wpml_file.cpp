@@ -45,7 +45,7 @@ class WpmlChecker {
     if (value.empty()) return add_problem("has no wpml:" + std::string(name));
     if (!values.contains(value)) {
       add_problem("has wpml:" + std::string(name) + " \"" + value +
-                  "\", which is not one of its values");
+                  "\", which is not a valid value");
     }
   }
 
@@ -170,7 +170,7 @@ class WpmlChecker {
     require_number(turn, "waypointTurnDampingDist", 0, 10000);
     if (child_text(turn, "waypointTurnMode") != wpml::stop_turn) {
       add_problem(
-          "has a turn mode that leaves the straight legs, so that no clearance can be verified");
+          "has a turn mode that leaves the straight legs; its clearance cannot be verified");
     }
   }
 
@@ -214,7 +214,7 @@ class WpmlChecker {
 std::string write_kmz(const FlightPlan& plan) {
   if (plan.vehicle.autopilot != AutopilotType::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
-                                           "\" does not fly DJI missions; use --format plan");
+                                           "\" does not support DJI missions; use --format plan");
   }
   if (plan.waypoints.size() > static_cast<std::size_t>(plan.vehicle.max_waypoints)) {
     throw Error(ErrorKind::bad_config,
@@ -252,7 +252,7 @@ bool agree(const WpmlChecker& edited, const WpmlChecker& executed) {
 Problems find_problems(const KmzContent& content, bool is_strict) {
   const WpmlChecker executed(content.waylines_wpml, "waylines.wpml", is_strict);
   if (content.template_kml.empty()) {
-    if (is_strict) return {"wpmz/template.kml is missing"};
+    if (is_strict) return {"the file wpmz/template.kml is missing"};
     return executed.problems;
   }
   const WpmlChecker edited(content.template_kml, "template.kml", is_strict);

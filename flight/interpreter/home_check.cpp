@@ -50,12 +50,12 @@ Problems check_rally(const MavlinkMission& file, const FlightFacts& facts) {
     if (std::abs(file.rally[i].height) <= pad_height_tolerance) continue;
     problems.push_back(
         name + " is " + fixed(file.rally[i].height, 1) +
-        " m above home, which raises PX4's returns by the same height; it must be 0");
+        " m above home; it must be at 0 m, because PX4 raises its returns by this height");
   }
   if (missing.empty()) return problems;
   problems.push_back("the file does not contain " + std::to_string(missing.size()) +
                      " of the mission's " + std::to_string(facts.rally.size()) +
-                     " rally points, to which returns are verified");
+                     " rally points that are used for verified returns");
   return problems;
 }
 

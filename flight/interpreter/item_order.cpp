@@ -21,7 +21,7 @@ std::string what_is_wrong(const MissionItem& jump, const std::vector<MissionItem
   const double repeats = jump.params[1];
   if (find_jump_target(jump, items) == items.size()) return "jumps to an item that does not exist";
   if (!(repeats >= 0.0 && repeats <= max_repeats) || repeats != std::floor(repeats)) {
-    return "jumps " + fixed(repeats, 1) + " times; it must be a whole number from 0 to 20";
+    return "jumps " + fixed(repeats, 1) + " times; the count must be an integer from 0 to 20";
   }
   return "";
 }

@@ -96,7 +96,7 @@ class MissionFlight {
     if (has_position(row.meaning)) {
       if (is_above_sea(item) || is_above_home(item)) return check_position(item, row);
       add_problem(item, "has frame " + std::to_string(item.frame) +
-                            ", which is not supported; use 3 (above home) or 0 (sea level)");
+                            ", which is not supported; use 3 (above home) or 0 (AMSL)");
       return false;
     }
     if (autopilot_ != AutopilotType::px4 || item.frame == frame::mission) return true;
@@ -108,10 +108,10 @@ class MissionFlight {
   bool check_position(const MissionItem& item, const CommandRow& row) {
     const bool is_nowhere = !has_coordinates(item) && !uses_current_position(row);
     if (is_nowhere)
-      add_problem(item, "has no position: latitude and longitude 0 mean \"as before\"");
+      add_problem(item, "has no position: latitude and longitude 0 mean the previous position");
     const bool is_without_height = row.meaning == Meaning::fly_to && item.params[6] == 0.0;
     if (is_without_height)
-      add_problem(item, "has height 0, which ArduPilot reads as \"as before\"");
+      add_problem(item, "has height 0, which ArduPilot interprets as the previous height");
     return !is_nowhere && !is_without_height;
   }
 
@@ -162,9 +162,8 @@ class MissionFlight {
 
   Vector3d position_from_item(const MissionItem& item) const {
     double height = item.params[6];
-    height += is_above_sea(item)
-                  ? facts_.site.undulation_for(item_label(item) + ", above sea level,")
-                  : frame_.to_geodetic(facts_.pad).height;
+    height += is_above_sea(item) ? facts_.site.undulation_for(item_label(item) + " (AMSL)")
+                                 : frame_.to_geodetic(facts_.pad).height;
     GeodeticPoint position{item.params[4], item.params[5], height};
     if (!has_coordinates(item)) {
       const GeodeticPoint here = current_position();
@@ -218,7 +217,8 @@ class MissionFlight {
     if (is_early && departure.length() > 0.0) {
       add_problem(
           item,
-          "is passed without a stop right after another; the resulting curve cannot be verified");
+          "is passed without a stop directly after another such waypoint; the resulting curve "
+          "cannot be verified");
     }
     arrive(item, departure, stops && radius <= acceptance_radius);
   }
@@ -271,7 +271,7 @@ class MissionFlight {
     append_column(route_, {above, ground}, {item_label(item), "the ground"}, facts_.takeoff_climb);
     if (const double away = (position - pad_).head<2>().norm(); away > pad_tolerance) {
       add_problem(item, "lands " + fixed(away, 1) +
-                            " m from the take-off point, without verification of the " + "ground");
+                            " m from the take-off point; the ground there is not " + "verified");
     }
   }
 
@@ -280,15 +280,14 @@ class MissionFlight {
     if (!(seconds > 0.0 && seconds <= longest_wait)) {
       return add_problem(
           item, "waits for " + fixed(seconds, 1) +
-                    " s; it must be above 0 and at most 600, otherwise it is a time of day");
+                    " s; it must be above 0 and at most 600 (other values set a time of day)");
     }
     if (departure_.length() == 0.0) hold_ += seconds;
     route_.segments.back().hold += seconds;
   }
 
   void turn(const MissionItem& item) {
-    if (item.params[3] != 0.0)
-      return add_problem(item, "turns by an angle instead of to a heading");
+    if (item.params[3] != 0.0) return add_problem(item, "sets a relative yaw instead of a heading");
     if (!(item.params[0] >= 0.0 && item.params[0] <= 360.0)) {
       return add_problem(item, "turns to a heading outside [0, 360] degrees");
     }
@@ -320,18 +319,18 @@ class MissionFlight {
     if (is_speed_set_ || speed <= facts_.cruise_speed) return;
     is_speed_set_ = true;  // Reported once.
     add_problem(item, "is flown to at " + autopilot_name() + "'s default of " + fixed(speed, 0) +
-                          " m/s: no item before it sets the speed (178)");
+                          " m/s, because no previous item sets the speed (178)");
   }
 
   void aim(const MissionItem& item, Meaning meaning) {
     const auto& p = item.params;
     if (meaning == Meaning::aim_by_mount) {
-      if (p[6] != aims_by_angles) return add_problem(item, "must aim by angles (mode 2)");
+      if (p[6] != aims_by_angles) return add_problem(item, "must set the gimbal angles (mode 2)");
       if (p[1] != 0.0 || p[2] != 0.0) {
-        return add_problem(item, "rolls or turns the gimbal; only pitch is supported");
+        return add_problem(item, "sets gimbal roll or yaw; only pitch is supported");
       }
     } else if (p[1] != 0.0 && !std::isnan(p[1])) {
-      return add_problem(item, "turns the gimbal; only pitch is supported");
+      return add_problem(item, "sets gimbal yaw; only pitch is supported");
     }
     pitch_deg_ = p[0];
   }
@@ -339,7 +338,7 @@ class MissionFlight {
   void photograph(const MissionItem& item, Meaning meaning) {
     if (meaning == Meaning::take_photo && item.params[2] != 1.0) {
       return add_problem(item, "takes " + fixed(item.params[2], 0) +
-                                   " images; more than one cannot be taken in motion");
+                                   " images; exactly one per command is supported");
     }
     if (meaning == Meaning::trigger_photo && item.params[4] != 1.0) return;  // Focus or zoom.
     if (!is_exact_) return add_problem(item, "captures an image where the vehicle does not stop");
@@ -383,7 +382,7 @@ InterpretedRoute interpret(const MavlinkMission& file, const FlightFacts& facts)
       file.autopilot.value_or(supported_by.value_or(AutopilotType::px4));
   InterpretedRoute route = MissionFlight(file, autopilot, facts).fly();
   if (!file.autopilot && !supported_by) {
-    route.problems.insert(route.problems.begin(), "the file does not state its autopilot");
+    route.problems.insert(route.problems.begin(), "the file does not specify its autopilot");
   }
   if (supported_by && *supported_by != autopilot) {
     route.problems.insert(route.problems.begin(),

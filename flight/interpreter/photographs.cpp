@@ -40,11 +40,11 @@ std::string compare(const InterpretedStop& stop, const std::vector<geometry::Vie
     is_matched = true;
     turned = std::min(turned, angle_between(compute_direction(stop), view.direction));
   }
-  if (!is_matched) return "captures an image away from all views of the mission";
+  if (!is_matched) return "captures an image at a position that is not a view of the mission";
   if (std::isnan(stop.yaw_deg)) return "captures an image without a heading";
   if (std::isnan(stop.pitch_deg)) return "captures an image without a gimbal pitch";
   if (turned <= direction_tolerance) return "";
-  return "captures an image " + fixed(turned / degree, 1) + " degrees beside its view";
+  return "captures an image " + fixed(turned / degree, 1) + " degrees away from its view";
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ Problems check_photographs(const std::vector<InterpretedStop>& stops, const Flig
       problems.push_back(stop.item + " " + what);
     };
     if (stop.hold < facts.hold - hold_tolerance) {
-      add_problem("holds " + fixed(stop.hold, 2) + " s before its image; the mission's hold is " +
+      add_problem("holds " + fixed(stop.hold, 2) + " s before its image; the mission requires " +
                   fixed(facts.hold, 2) + " s");
     }
     if (facts.vehicle) {

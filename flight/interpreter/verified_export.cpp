@@ -32,7 +32,8 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
     throw Error(ErrorKind::bad_geometry,
-                path.string() + " was not written: read back, " + problems.front());
+                path.string() +
+                    " was not written: verification of its contents failed: " + problems.front());
   };
   geometry::write_file(temporary, write(plan, format));
   const std::string content = geometry::read_file(temporary);

@@ -29,30 +29,31 @@ struct OnlyValue {
 };
 
 constexpr std::array mission_rules{
-    OnlyValue{"flyToWaylineMode", "safely", "flies a slant to the first waypoint"},
+    OnlyValue{"flyToWaylineMode", "safely", "flies diagonally to the first waypoint"},
     OnlyValue{"exitOnRCLost", "executeLostAction", "continues without a link"},
-    OnlyValue{"executeRCLostAction", "goBack", "hovers or lands where the link is lost"}};
+    OnlyValue{"executeRCLostAction", "goBack", "hovers or lands at the position of the link loss"}};
 
 constexpr std::array template_rules{
     OnlyValue{"globalWaypointTurnMode", "toPointAndStopWithDiscontinuityCurvature",
               "leaves the straight legs"},
     OnlyValue{"globalUseStraightLine", "1", "leaves the straight legs"},
-    OnlyValue{"caliFlightEnable", "0", "flies a calibration that is not verified"},
+    OnlyValue{"caliFlightEnable", "0", "starts a calibration flight, which is not verified"},
     OnlyValue{"gimbalPitchMode", "manual", "pitches the gimbal between waypoints"}};
 
 constexpr std::array template_waypoint_rules{
-    OnlyValue{"useGlobalHeight", "0", "sets another height"},
-    OnlyValue{"useGlobalSpeed", "1", "sets a speed of its own"},
-    OnlyValue{"useGlobalTurnParam", "1", "sets a turn mode of its own"},
+    OnlyValue{"useGlobalHeight", "0", "overrides the height of the mission"},
+    OnlyValue{"useGlobalSpeed", "1", "overrides the speed of the mission"},
+    OnlyValue{"useGlobalTurnParam", "1", "overrides the turn mode of the mission"},
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
 
 constexpr std::array wayline_waypoint_rules{
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
 
-constexpr std::array group_rules{OnlyValue{"actionGroupMode", "sequence", "acts at any time"}};
+constexpr std::array group_rules{
+    OnlyValue{"actionGroupMode", "sequence", "is triggered at any time"}};
 
 constexpr std::array gimbal_rules{
-    OnlyValue{"gimbalRotateMode", "absoluteAngle", "pitches by an angle instead of to one"},
+    OnlyValue{"gimbalRotateMode", "absoluteAngle", "sets a relative instead of an absolute pitch"},
     OnlyValue{"gimbalRollRotateEnable", "0", "rolls the gimbal"},
     OnlyValue{"gimbalYawRotateEnable", "0", "turns the gimbal away from the heading"}};
 
@@ -247,8 +248,8 @@ class WpmlFlight {
     if (!facts_.vehicle || facts_.vehicle->autopilot != AutopilotType::dji) return;
     const std::string drone = child_text(config_.child("wpml:droneInfo"), "droneEnumValue");
     if (drone == std::to_string(facts_.vehicle->wpml.drone)) return;
-    add_problem("is for the aircraft with droneEnumValue " + drone + "; \"" + facts_.vehicle->name +
-                "\" is " + std::to_string(facts_.vehicle->wpml.drone));
+    add_problem("requires the aircraft with droneEnumValue " + drone + "; \"" +
+                facts_.vehicle->name + "\" has " + std::to_string(facts_.vehicle->wpml.drone));
   }
 
   // Adds the climb of flyToWaylineMode "safely": up, level, then down to the first waypoint if it
@@ -272,8 +273,8 @@ class WpmlFlight {
     const double away = (last - pad).head<2>().norm();
     if (away <= pad_tolerance) return;
     add_problem(
-        "is the last, " + fixed(away, 1) +
-            " m from the take-off point: neither the return nor the ground below is verified",
+        "is the last waypoint, " + fixed(away, 1) +
+            " m from the take-off point; neither the return nor the ground below it is verified",
         who);
   }
 

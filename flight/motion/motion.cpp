@@ -54,7 +54,7 @@ void Conditions::validate(const Vehicle& vehicle) const {
   }
   if (!(longest_flight >= 1.0)) {
     fail("the longest flight is " + std::to_string(longest_flight) +
-         " times the estimate; it must be 1 or more");
+         " times the estimated time; it must be at least 1");
   }
   if (!(air_density > 0.3 && air_density < 2.0)) {
     fail("the air density is " + std::to_string(air_density) + " kg/m^3; it must be in (0.3, 2)");
@@ -139,11 +139,11 @@ Motion::Motion(const Vehicle& vehicle, const Conditions& conditions)
   const double rotor_power = data_sheet_power(vehicle) - vehicle.avionics_power;
   efficiency_ = ideal_power(vehicle) / ((1.0 - profile_share) * rotor_power);
   if (!(rotor_power > 0.0) || !(efficiency_ < 1.0)) {
-    throw Error(ErrorKind::bad_config, "vehicle \"" + vehicle.name + "\": an endurance of " +
-                                           std::to_string(vehicle.endurance_min) +
-                                           " min requires " +
-                                           std::to_string(data_sheet_power(vehicle)) +
-                                           " W, less than its mass needs to hover");
+    throw Error(ErrorKind::bad_config,
+                "vehicle \"" + vehicle.name + "\": an endurance of " +
+                    std::to_string(vehicle.endurance_min) + " min requires " +
+                    std::to_string(data_sheet_power(vehicle)) +
+                    " W, which is less than hovering with its mass requires");
   }
   const double density_ratio = conditions.air_density / sea_level_density;
   induced_speed_ = std::sqrt(thrust / (2.0 * conditions.air_density * disc_area(vehicle)));

@@ -18,7 +18,7 @@ void check_climb(const FreeSpace& space, const std::string& position, const Segm
   throw Error(ErrorKind::bad_config,
               "the climb from " + position + " comes within " + length_text(closest.distance) +
                   " of " + space.name(closest) + " at " + position_text(closest.on_leg) +
-                  "; the clearance is " + length_text(clearance) + ": move it");
+                  "; the clearance is " + length_text(clearance) + "; move it");
 }
 
 }  // namespace
@@ -30,10 +30,10 @@ void check_pad(const FreeSpace& space, const FreeSpace* pad_space, const RouteOp
   if (!space.is_free({home, home}, clearance)) {
     const Closest closest = space.closest({home, home}, clearance + 1.0);
     throw Error(ErrorKind::bad_config,
-                "the point above the take-off point, " + position_text(home) + ", is " +
+                "the end of the take-off climb, " + position_text(home) + ", is " +
                     length_text(closest.distance) + " from " + space.name(closest) +
                     "; the clearance is " + length_text(clearance) +
-                    ": move the take-off point or raise flight.takeoff_climb");
+                    "; move the take-off point or raise flight.takeoff_climb");
   }
   check_landing_surfaces(options.landing_surfaces, options.ground_limits);
   const double min = clearance + pad_roughness + options.ground_limits.height_error;

@@ -80,8 +80,9 @@ class RoutePlanner {
       split_once();
     } while (reroute_for_returns());
     if (route_.sorties.empty() && !route_.capture_points.empty()) {
-      throw Error(ErrorKind::bad_config,
-                  "no division of the route into sorties fits the battery; lower flight.reserve");
+      throw Error(
+          ErrorKind::bad_config,
+          "the route cannot be divided into sorties of one battery each; lower flight.reserve");
     }
   }
 
@@ -186,9 +187,9 @@ Route plan_route(std::vector<CapturePoint> capture_points, const Vehicle& vehicl
     if (!capture_point.view.position.allFinite() || !capture_point.view.direction.allFinite() ||
         !(capture_point.hold >= 0.0) || !(capture_point.hold_after >= 0.0) ||
         capture_point.captures < 0) {
-      throw Error(ErrorKind::bad_geometry,
-                  "view " + std::to_string(capture_point.view_index) +
-                      " has a pose that is not finite, or a negative hold or number of shots");
+      throw Error(ErrorKind::bad_geometry, "view " + std::to_string(capture_point.view_index) +
+                                               " has a pose that is not finite, a negative hold "
+                                               "time or a negative number of photos");
     }
   }
   return RoutePlanner(vehicle, space, options).plan(std::move(capture_points), pad_space);

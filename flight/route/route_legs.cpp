@@ -148,11 +148,11 @@ std::string RouteLegs::range_error(const CapturePoint& capture_point, const Ends
   const double needed = std::max(total.energy, total.emergency);
   const double held = plannable_energy(motion_), longest = options_.conditions.longest_flight;
   if (needed <= held) return "";
-  return "the flight there and back needs " + std::to_string(needed / 3600) +
+  return "the flight to it and back requires " + std::to_string(needed / 3600) +
          " Wh; the battery has " + std::to_string(held / 3600) + " Wh above its reserve" +
-         (longest > 1.0 ? " for a flight that may take " + std::to_string(longest) +
-                              " times the estimated time"
-                        : "");
+         (longest > 1.0
+              ? " for a flight of up to " + std::to_string(longest) + " times the estimated time"
+              : "");
 }
 
 bool RouteLegs::drop_out_of_range() {

@@ -95,7 +95,8 @@ ReturnSearch min_verified_return(MinReturnAltitude search, const std::vector<Seg
                                  RtlProfile rtl_profile, double max_height) {
   const double ground = rtl_profile.landings.front().z();
   char text[96];
-  std::snprintf(text, sizeof text, "no return altitude fits below %.1f m", max_height);
+  std::snprintf(text, sizeof text, "no return altitude below %.1f m keeps the clearance",
+                max_height);
   ReturnSearch result{.found = std::nullopt, .reason = text};
   double top = ground;
   for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});

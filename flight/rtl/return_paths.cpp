@@ -40,7 +40,7 @@ std::string ReturnPaths::no_return_reason(const Vector3d& position) const {
     const Segment leg{over[i - 1], over[i]};
     const LegVerification verification = verify(space_, leg, clearance_, clearance_);
     if (!verification.is_verified) {
-      return "the return straight up and over to the take-off point comes within " +
+      return "the return vertically up and horizontally to the take-off point comes within " +
              length_text(verification.closest.distance) + " of " +
              space_.name(verification.closest) + " at " +
              position_text(verification.closest.on_leg);

@@ -81,13 +81,13 @@ const char* to_string(ReturnPart part) {
     case ReturnPart::level:
       return "the level flight";
     case ReturnPart::level_as_it_is:
-      return "the level flight without a climb (as within 50 m of the take-off point)";
+      return "the level flight without a climb (possible within 50 m of the take-off point)";
     case ReturnPart::descent:
       return "the descent";
     case ReturnPart::landing:
       break;
   }
-  return "the landing on the spot";
+  return "the landing in place";
 }
 
 std::vector<ReturnSegment> return_segments(const RtlProfile& rtl_profile, const Vector3d& position,

@@ -126,7 +126,7 @@ void read_ply_chunks(const fs::path& path, std::string_view bytes, const ChunkCa
     } while (first < element.count);
     return;
   }
-  fail_cloud(path, "there is no element 'vertex'; a cloud must have one");
+  fail_cloud(path, "missing element 'vertex'");
 }
 
 AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
@@ -213,8 +213,8 @@ void require_few_points(const fs::path& path, std::size_t points) {
 
 void fail_without_points(const fs::path& path, std::size_t skipped) {
   fail_cloud(path, skipped == 0 ? std::string("contains no points")
-                                : "contains no points but " + std::to_string(skipped) +
-                                      " that are NaN or infinite");
+                                : "contains no valid points; " + std::to_string(skipped) +
+                                      " points are NaN or infinite");
 }
 
 AttributedCloud read_cloud(const fs::path& path) {
@@ -226,8 +226,8 @@ AttributedCloud read_cloud(const fs::path& path) {
                                             : nullptr;
   if (parser == nullptr && !piecewise) {
     fail_cloud(path,
-               "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt, .asc, .pts or "
-               ".csv (or with .gz after it)");
+               "the name of a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt, "
+               ".asc, .pts or .csv, optionally followed by .gz");
   }
   AttributedCloud cloud = piecewise ? piecewise->cloud(path) : parser(path, whole_file(path));
   if (cloud.positions.empty()) fail_without_points(path, cloud.skipped);

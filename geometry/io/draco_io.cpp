@@ -28,17 +28,17 @@ Mesh decode_draco(std::string_view name, std::string_view bytes) {
   const draco::PointAttribute* const positions =
       source.GetNamedAttribute(draco::GeometryAttribute::POSITION);
   if (positions == nullptr || positions->num_components() != 3) {
-    fail("has no positions of three coordinates");
+    fail("has no positions with three coordinates");
   }
   // Draco reads any byte as a valid value of this type.
-  if (positions->data_type() == draco::DT_BOOL) fail("has positions of an unknown type");
+  if (positions->data_type() == draco::DT_BOOL) fail("has positions of an unsupported type");
 
   Mesh mesh;
   mesh.vertices.resize(positions->size());
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const draco::AttributeValueIndex index(v);
     if (!positions->ConvertValue<double>(index, 3, mesh.vertices[v].data())) {
-      fail("has positions of an unknown type");
+      fail("has positions of an unsupported type");
     }
   }
   mesh.triangles.reserve(source.num_faces());

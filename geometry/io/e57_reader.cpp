@@ -55,7 +55,7 @@ e57::Description read_description(e57::Pages& pages, const e57::FileHeader& head
   if (header.description_size > e57::longest_description ||
       header.description_size > pages.size() - offset) {
     e57::throw_bad_file("has XML of " + std::to_string(header.description_size) +
-                        " bytes; it must end within the file and have at most " +
+                        " bytes; it must end inside the file, and its maximum size is " +
                         std::to_string(e57::longest_description));
   }
   return e57::parse_description(pages.bytes(offset, header.description_size));

@@ -45,7 +45,7 @@ std::string find_corner_list(std::string_view name, const PlyElement& element) {
   std::string all;
   for (const std::string& list : lists) all += (all.empty() ? "" : ", ") + list;
   fail_mesh(name, "the element '" + element.name + "' has the lists " + all +
-                      "; the one of its corners must be called vertex_indices");
+                      "; the list of corners must be named vertex_indices");
 }
 
 /// Converts strips to triangles with uniform orientation; -1 begins a new strip.
@@ -117,7 +117,7 @@ PolygonSoup parse_ply(std::string_view name, std::string_view bytes, const MeshL
       std::find_if(reader.elements().begin(), reader.elements().end(),
                    [](const PlyElement& element) { return element.name == "vertex"; });
   if (vertex_element == reader.elements().end()) {
-    fail_mesh(name, "there is no element 'vertex'; a mesh must have one");
+    fail_mesh(name, "missing element 'vertex'");
   }
   const std::uint64_t vertex_count = vertex_element->count;
   for (const PlyElement& element : reader.elements()) {

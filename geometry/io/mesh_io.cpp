@@ -53,7 +53,9 @@ PolygonSoup parse(const fs::path& path) {
                       : format == ".off" ? parse_off
                                          : nullptr;
   if (parser == nullptr) {
-    fail(path, "a mesh file must end in .ply, .obj, .stl, .off or .drc (or with .gz after it)");
+    fail(path,
+         "the name of a mesh file must end in .ply, .obj, .stl, .off or .drc, optionally followed "
+         "by .gz");
   }
   const bool is_always_text = format == ".obj" || format == ".off";
   std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
@@ -212,7 +214,7 @@ Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
                  " faces skipped (a corner is NaN or infinite); their area is unknown");
   }
   Mesh mesh = clean_mesh(path, std::move(soup));
-  if (mesh.triangles.empty()) fail(path, "contains no triangle with an area");
+  if (mesh.triangles.empty()) fail(path, "contains no triangle with a positive area");
   if (options.orient_outward) orient_outward(mesh);
   return mesh;
 }
@@ -228,7 +230,7 @@ std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
     if (mesh.triangles.empty()) continue;
     parts.push_back({materials.empty() ? "" : materials[i], std::move(mesh)});
   }
-  if (parts.empty()) fail(path, "contains no triangle with an area");
+  if (parts.empty()) fail(path, "contains no triangle with a positive area");
   return parts;
 }
 
@@ -238,7 +240,7 @@ void write_mesh(const fs::path& path, const Mesh& mesh) {
   if (format == ".obj") return write_file(path, format_obj(mesh));
   if (format == ".off") return write_file(path, format_off(mesh));
   if (format == ".stl") return write_file(path, format_stl(mesh));
-  fail(path, "a mesh file to be written must end in .ply, .obj, .stl or .off");
+  fail(path, "the name of an output mesh file must end in .ply, .obj, .stl or .off");
 }
 
 }  // namespace skycap::geometry

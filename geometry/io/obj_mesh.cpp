@@ -105,9 +105,9 @@ class ObjReader {
     const auto count = static_cast<std::int64_t>(soup_.vertices.size());
     const std::int64_t vertex = index > 0 ? index - 1 : index + count;
     if (index == 0 || vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max()) {
-      scanner_.fail("the face has vertex " + std::to_string(index) + ", but the " +
-                    std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
-                    "backwards");
+      scanner_.fail("the face refers to vertex " + std::to_string(index) + ", but the " +
+                    std::to_string(count) + " preceding vertices are counted from 1, or " +
+                    "backwards from -1");
     }
     return static_cast<std::uint32_t>(vertex);
   }
@@ -118,7 +118,7 @@ class ObjReader {
       for (std::size_t i = soup_.polygon_begin[polygon]; i < soup_.polygon_begin[polygon + 1];
            ++i) {
         if (soup_.corners[i] < soup_.vertices.size()) continue;
-        scanner_.fail_at(lines_[polygon], "the face has vertex " +
+        scanner_.fail_at(lines_[polygon], "the face refers to vertex " +
                                               std::to_string(soup_.corners[i] + std::uint64_t{1}) +
                                               ", but there are only " +
                                               std::to_string(soup_.vertices.size()));

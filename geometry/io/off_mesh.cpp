@@ -70,12 +70,12 @@ class OffReader {
     const auto word = next();
     const std::optional<OffHeader> header = parse_header(word.value_or(""));
     if (!header) {
-      scanner_.fail("an OFF file of points in space begins with 'OFF', 'COFF', 'NOFF' or 'STOFF'");
+      scanner_.fail("a supported OFF file begins with 'OFF', 'COFF', 'NOFF' or 'STOFF'");
     }
     header_ = *header;
     const auto count = header_.glued.empty() ? next() : std::optional(header_.glued);
     if (count == "BINARY") {
-      scanner_.fail("binary OFF is not supported; save it as ascii OFF or as PLY");
+      scanner_.fail("binary OFF is not supported; save it as ASCII OFF or PLY");
     }
     vertices_ = scanner_.number<std::uint64_t>(count, "the number of vertices");
     faces_ = scanner_.number<std::uint64_t>(next(), "the number of faces");
@@ -147,7 +147,7 @@ class OffReader {
   void read_face() {
     begin_thing();
     const auto corners =
-        scanner_.number<std::uint32_t>(next_on_line(), "the number of a face's corners");
+        scanner_.number<std::uint32_t>(next_on_line(), "the number of corners of a face");
     for (std::uint32_t i = 0; i < corners; ++i) {
       const auto vertex = scanner_.number<std::int64_t>(next_on_line(), "a vertex index");
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertices_) {

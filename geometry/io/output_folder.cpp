@@ -144,7 +144,8 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
 void OutputFolder::lock_and_clean() {
   lock_ = locked(folder_);
   if (lock_ < 0) {
-    fail_at(folder_, "is in use by another skycap; wait for it or use another folder");
+    fail_at(folder_,
+            "is in use by another skycap process; wait for it to finish or use another folder");
   }
   try {
     finish_journal(folder_);
@@ -235,7 +236,7 @@ void OutputFolder::commit() {
   for (const auto& [name, is_on_disk] : staged_) {
     if (!is_on_disk) sync_to_disk(temporary(name));
     if (fs::is_directory(fs::symlink_status(folder_ / name))) {
-      fail_at(folder_ / name, "is a folder with the name of a result file; move it");
+      fail_at(folder_ / name, "is a folder, but a result file requires this name; move the folder");
     }
     changes.push_back({temporary(name).filename().string(), name});
   }

@@ -60,8 +60,7 @@ void lay_out(TextScanner& scanner, PcdHeader& header) {
         (field.size == 1 || field.size == 2 || field.size == 4 || field.size == 8);
     if ((!is_real && !is_whole) || field.count > 1'000'000) {
       scanner.fail("the field '" + field.name +
-                   "' has a SIZE, TYPE and COUNT that PCD does not "
-                   "have");
+                   "' has a combination of SIZE, TYPE and COUNT that PCD does not support");
     }
     field.before = header.point_size;
     field.column = column;
@@ -134,7 +133,7 @@ PcdHeader parse_header(const fs::path& path, const std::string& name, std::strin
 
 // LZF of M. Lehmann: literal runs, and copies of up to 264 bytes with offsets of up to 8 KiB.
 std::string decompressed(const fs::path& path, std::string_view from, std::size_t size) {
-  const auto damaged = [&]() { fail_cloud(path, "has compressed data that are damaged"); };
+  const auto damaged = [&]() { fail_cloud(path, "contains damaged compressed data"); };
   constexpr std::size_t max_expansion = 132;  // a copy of 264 bytes needs at least two bytes
   if (size / max_expansion > from.size()) damaged();
   std::string to;

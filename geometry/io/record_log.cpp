@@ -80,7 +80,7 @@ RecordedLines records_in(std::string_view bytes, const std::filesystem::path& fi
     if (!record || record->number != number) {
       throw Error(ErrorKind::bad_file,
                   file.string() + ": line " + std::to_string(number) +
-                      " is damaged, and is not the last; restore the file from a copy");
+                      " is damaged and is not the last line; restore the file from a copy");
     }
     found.records.emplace_back(record->text);
     found.whole_bytes += end + 1;
@@ -109,7 +109,7 @@ RecordLog::RecordLog(std::filesystem::path file) : file_(std::move(file)) {
   if (handle_ < 0) fail("cannot be opened for writing: " + std::generic_category().message(errno));
   try {
     if (::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      fail("is being written to by another skycap; wait for it to end");
+      fail("is being written by another skycap process; wait for it to finish");
     }
     found_ = records_in(read_bytes(file_), file_);
     size_ = found_.whole_bytes;
@@ -130,7 +130,7 @@ void RecordLog::fail(const std::string& what) const {
 
 void RecordLog::cut(std::size_t size) {
   if (::ftruncate(handle_, static_cast<off_t>(size)) == 0) return;
-  fail("cannot be cut to its whole records: " + std::generic_category().message(errno));
+  fail("cannot be truncated to its complete records: " + std::generic_category().message(errno));
 }
 
 void RecordLog::append(std::string_view text) {

@@ -105,7 +105,7 @@ PolygonSoup parse_stl(std::string_view name, std::string_view bytes, const MeshL
     return parse_binary_stl(name, bytes, count, limits);
   if (is_ascii_stl(bytes)) return AsciiStl(name, bytes, limits).read();
   if (!has_count) {
-    fail_mesh(name, "is neither ascii STL, which begins with 'solid', nor binary STL");
+    fail_mesh(name, "is neither ASCII STL, which begins with 'solid', nor binary STL");
   }
   // Writers without random access cannot set the count; such files contain as many triangles as
   // fit.

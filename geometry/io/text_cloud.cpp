@@ -179,7 +179,7 @@ class TextCloud {
     const std::vector<string_view> fields = split_fields(line, layout_->separator);
     if (fields.size() > max_columns) {
       scanner_.fail("has " + std::to_string(fields.size()) +
-                    " numbers; a text cloud has one point in a line");
+                    " numbers; a point cloud in text format must have one point per line");
     }
     std::array<double, 3> point{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -213,7 +213,8 @@ class TextCloud {
     const bool is_second = has_count_ && points_ + skipped_ == 0;
     if (is_second) {
       scanner_.fail(
-          "is a second number alone, as in PTX, which is not supported; save it as E57 or PTS");
+          "contains a second point count, as in PTX files, which are not supported; save the cloud "
+          "as E57 or PTS");
     }
     has_count_ = true;
     declared_ += std::stoull(std::string(line));
@@ -243,7 +244,7 @@ class TextCloud {
     constexpr std::size_t three_points = 9;
     if (points_ == 1 && columns_of_last_ > three_points && columns_of_last_ % 3 == 0) {
       fail_cloud(path_, "has " + std::to_string(columns_of_last_) +
-                            " numbers in its only line; write one point in a line");
+                            " numbers in its only line; write one point per line");
     }
   }
 

@@ -29,7 +29,7 @@ void require_points(std::span<const Eigen::Vector3f> points) {
                                                  static_cast<Eigen::Index>(3 * points.size()));
   if (numbers.abs().maxCoeff<Eigen::PropagateNaN>() <= farthest_point) return;
   const auto bad = std::ranges::find_if_not(points, is_usable) - points.begin();
-  reject("has point " + std::to_string(bad) + " that is not finite or more than " +
+  reject("has point " + std::to_string(bad) + ", which is not finite or is more than " +
          std::to_string(farthest) + " m from the origin; use a local frame");
 }
 
@@ -37,7 +37,7 @@ void require_points(std::span<const Eigen::Vector3f> points) {
 
 void require_usable(const ScanSpan& scan, const CameraConfig& camera) {
   if (!(scan.sensor_position().array().abs() <= farthest).all()) {
-    reject("has a position that is not finite or more than " + std::to_string(farthest) +
+    reject("has a position that is not finite or is more than " + std::to_string(farthest) +
            " m from the origin; use a local frame");
   }
   require_points(scan.points);
@@ -50,7 +50,7 @@ void require_usable(const ScanSpan& scan, const CameraConfig& camera) {
   const bool ascends =
       std::ranges::adjacent_find(scan.pixels, std::ranges::greater_equal{}) == scan.pixels.end();
   if (!ascends || scan.pixels.back() >= all) {
-    reject("has pixels that are not ascending, or are outside the mission's camera of " +
+    reject("has pixel indices that are not ascending or are outside the mission's camera of " +
            std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels");
   }
 }

@@ -73,7 +73,7 @@ void validate(const Mesh& mesh, unsigned threads) {
     areas[block] = area;
   });
   if (!(std::accumulate(areas.begin(), areas.end(), 0.0) > 0.0)) {
-    throw Error(ErrorKind::bad_geometry, "there is no triangle with a positive area");
+    throw Error(ErrorKind::bad_geometry, "the mesh contains no triangle with a positive area");
   }
 }
 

@@ -33,7 +33,7 @@ sim::DepthCameraConfig depth_camera(const std::string& name_or_file) {
 
 sim::LidarConfig laser_scanner(const std::string& name_or_file) {
   return sensor_as<sim::LidarConfig>(name_or_file,
-                                     " is a camera; a scan in pieces requires a laser scanner");
+                                     " is a camera; scanning in pieces requires a laser scanner");
 }
 
 }  // namespace skycap::missions::api

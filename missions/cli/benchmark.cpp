@@ -103,7 +103,7 @@ std::vector<Entry> make_entries(const BenchmarkOptions& options, const Console& 
         if (!is_new && known->second != file) {
           throw Error(ErrorKind::bad_usage,
                       file.string() + " and " + known->second.string() +
-                          " have the same name; set the key name in one of them");
+                          " have the same name; set the key 'name' in one of them");
         }
         entries.push_back(std::move(entry));
       }

@@ -56,7 +56,7 @@ std::string report(const Calibration& calibration, const flight::Vehicle& before
   if (calibration.outliers > 0) {
     text += fmt::format("  damage    {} readings skipped\n", calibration.outliers);
   }
-  text += fmt::format("  times     {} of the autopilot's parameters", calibration.parameters);
+  text += fmt::format("  times     from {} autopilot parameters", calibration.parameters);
   if (calibration.settling) {
     text += fmt::format(", settling time {:.2f} s from {} legs\n", *calibration.settling,
                         calibration.legs);
@@ -87,8 +87,7 @@ void require_readable(const std::string& text, const std::string& name) {
 
 int calibrate(const CalibrateOptions& options, const Console& console) {
   if (options.vehicle.ends_with(".yaml")) {
-    throw Error(ErrorKind::bad_usage,
-                "--vehicle is " + options.vehicle + "; it must be a preset to inherit from");
+    throw Error(ErrorKind::bad_usage, "--vehicle is " + options.vehicle + "; it must be a preset");
   }
   flight::Vehicle vehicle = config::find_vehicle(options.vehicle);
   if (options.battery_wh) vehicle.battery_wh = *options.battery_wh;

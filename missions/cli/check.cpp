@@ -77,7 +77,7 @@ bool check_pads(const std::string& file, const flight::FlightOptions& flight,
     const std::string reason = unfit_reason(ground, flight.ground_limits());
     if (reason.empty()) continue;
     are_fit = false;
-    console.out << file << ": not safe, the landing point at "
+    console.out << file << ": not verified: the landing point at "
                 << flight::position_text(ground.position) << " " << reason << "\n";
   }
   return are_fit;
@@ -100,9 +100,10 @@ int check_timetable(const CheckOptions& options, const flight::FlightOptions& fl
               << fmt::format(
                      "{}, {} sorties of {} vehicles in {:.0f} s, separation at least {:.2f} m at "
                      "all times, each up to {} s early or late; required {} m\n",
-                     verification.problems.empty() ? "verified" : "not safe", verification.sorties,
-                     flight.fleet.vehicles.size(), verification.makespan, verification.distance,
-                     support::short_text(rule.tolerance), support::short_text(rule.distance))
+                     verification.problems.empty() ? "verified" : "not verified",
+                     verification.sorties, flight.fleet.vehicles.size(), verification.makespan,
+                     verification.distance, support::short_text(rule.tolerance),
+                     support::short_text(rule.distance))
               << std::flush;
   return verification.problems.empty() ? 0 : 1;
 }
@@ -127,15 +128,14 @@ int check_route_file(const CheckOptions& options, const flight::FlightOptions& g
     for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }
   const bool is_fine = route.problems.empty() && verification.problems.empty();
-  console.out << file << ": " << (is_fine ? "verified" : "not safe") << ", "
+  console.out << file << ": " << (is_fine ? "verified" : "not verified") << ", "
               << verification.problems.size() << " of " << route.segments.size()
               << " legs violate the clearance of " << support::short_text(asked_for)
               << " m, minimum " << support::short_text(verification.clearance) << " m; "
               << support::short_text(flight::length(route)) << " m long";
   if (!route.problems.empty()) console.out << "; " << route.problems.size() << " other problems";
   if (facts.views.empty() && !route.stops.empty()) {
-    console.out
-        << "; the directions of its photos are not checked, because it is not in its package";
+    console.out << "; photo directions not checked, because the file is outside its package";
   }
   console.out << "\n";
   const package::ReturnCheck returns = package::check_returns(

@@ -51,7 +51,7 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   command->add_option("--max-views", keys->max_views, "Maximum number of views");
   command
       ->add_option("--trials", options->trials,
-                   "Run this many seeds and write trials.csv and trials.json")
+                   "Number of seeds to run; writes trials.csv and trials.json")
       ->check(CLI::Range(1, 100'000));
   command->add_flag("--resume", options->resumes,
                     "Resume an interrupted survey in the results folder");
@@ -60,7 +60,7 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   command->add_flag("--use-prior-as-truth", keys->uses_prior_as_truth,
                     "Simulate with the target prior data as ground truth");
   command->add_flag("--verbose", options->is_verbose,
-                    "Print the planning time of each view by part, and lower bounds");
+                    "Print the planning time per view and part, and lower bounds");
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, plan, console, action);
 }
@@ -73,12 +73,12 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   command->add_option("missions", options->missions, "Mission files")->required();
   command
       ->add_option("--planners", options->planners,
-                   "all (the planners of the paper), or names such as see++,oa,skycap")
+                   "Planners: all (those of the paper) or names such as see++,oa,skycap")
       ->delimiter(',');
   command
       ->add_option("--scenes", options->scenes,
-                   "all scene families, or names such as garage,church. Each replaces the scenes "
-                   "of the missions and is generated for each seed")
+                   "Scene families: all, or names such as garage,church. Each family replaces the "
+                   "scenes of the missions and is generated for each seed")
       ->delimiter(',');
   command
       ->add_option("--trials", options->trials,
@@ -91,7 +91,7 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
       ->add_option("--threads", options->threads, "Number of parallel surveys (0: all processors)")
       ->check(CLI::Range(0, 1024));
   command->add_option("--seed", keys->seed, "First seed; overrides the mission files");
-  command->add_option("--max-views", keys->max_views, "Maximum number of views of every survey");
+  command->add_option("--max-views", keys->max_views, "Maximum number of views per survey");
   command->add_flag("!--no-report", options->has_report, "Do not write the HTML report");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   add_set_option(*command, *keys);
@@ -120,9 +120,8 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
   CLI::Option* const resumes = command->add_flag(
       "--resume", options->resumes, "Resume an interrupted scan in the results folder");
   command
-      ->add_option(
-          "--pieces", options->shards,
-          "Split the flight into this many pieces and merge them; the result has the same bytes")
+      ->add_option("--pieces", options->shards,
+                   "Number of pieces to split the flight into; does not affect the merged result")
       ->check(CLI::Range(1, 1'000'000))
       ->excludes(resumes);
   add_task_options(*command, options->task, "piece");
@@ -178,7 +177,7 @@ void add_fly_test(CLI::App& app, const Console& console, Action& action) {
       "fly-test", "Simulate a planned flight many times with wind and failsafes");
   const auto options = std::make_shared<FlyTestCommandOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  command->add_option("package", options->package, "Folder that plan wrote")->required();
+  command->add_option("package", options->package, "Results folder of plan")->required();
   command
       ->add_option("--flights", options->flights, "Simulated flights per route file (default: 100)")
       ->check(CLI::Range(1, 1'000'000));
@@ -192,15 +191,17 @@ void add_fly_test(CLI::App& app, const Console& console, Action& action) {
                    "at least 5)")
       ->check(number_between(0.0, 100.0));
   command
-      ->add_option("--position-error", options->position_error,
-                   "Maximum position error of the receiver in metres (default: from the mission)")
+      ->add_option(
+          "--position-error", options->position_error,
+          "Maximum position error of the GNSS receiver in metres (default: from the mission)")
       ->check(number_between(0.0, 1000.0));
   command
       ->add_option("--return-altitude", options->return_height,
                    "Return (RTL/RTH) altitude set on the vehicle, in metres above take-off")
       ->check(number_between(0.0, 10'000.0));
-  command->add_option("--truth", options->truth,
-                      "Mission file: also check the flights against its scene (ground truth)");
+  command->add_option(
+      "--truth", options->truth,
+      "Mission file with a scene (ground truth) that the flights are also checked against");
   command->add_option("--out", options->out, "Folder for fly_test.json (default: the package)");
   command->add_option("--seed", keys->seed, "Random seed; overrides the mission file");
   command->add_option("--threads", keys->threads, "Number of threads (0: all processors)");
@@ -250,7 +251,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
       ->check(CLI::Range(100, 10'000'000));
   command
       ->add_option("--pieces", options->shards,
-                   "Split the cloud into this many pieces; the values are the same")
+                   "Number of pieces to split the cloud into; does not affect the result")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--out", options->out,
                       "Folder for the pieces and the merged evaluation.json");
@@ -268,19 +269,19 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
   const auto options = std::make_shared<ReconstructOptions>();
   command
       ->add_option("cloud", options->cloud,
-                   "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), with normals or without")
+                   "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), with or without normals")
       ->required();
   command->add_option("--out", options->out, "PLY, OBJ, STL or OFF file (default: CLOUD_mesh.ply)");
   command->add_option("--spacing", options->spacing, "Voxel size of downsampling in metres")
       ->check(number_between(0.0, 1e6));
   command
       ->add_option("--depth", options->depth,
-                   "Octree depth, 2^depth cells a side (default: from the point spacing)")
+                   "Octree depth: 2^depth cells per side (default: from the point spacing)")
       ->check(CLI::Range(0, 12));
   command
       ->add_option("--trim", options->min_density,
-                   "Remove surface whose point density is below this fraction of the usual density "
-                   "(default: 0.2)")
+                   "Remove surface whose point density is below this fraction of the typical "
+                   "density (default: 0.2)")
       ->check(number_between(0.0, 0.99));
   command->add_option("--threads", options->threads, "Number of threads (0: all processors)")
       ->check(CLI::Range(0, 1024));
@@ -290,7 +291,7 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
 void add_report(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command = app.add_subcommand("report", "Write the HTML report of a results folder");
   const auto options = std::make_shared<ReportOptions>();
-  command->add_option("folder", options->folder, "Folder that plan, scan or benchmark wrote")
+  command->add_option("folder", options->folder, "Results folder of plan, scan or benchmark")
       ->required();
   command->add_option("--out", options->out, "HTML file (default: in the folder)");
   command
@@ -310,7 +311,7 @@ void add_view(CLI::App& app, const Console& console, Action& action) {
           "what", options->what,
           "Results folder, point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), or mission file")
       ->required();
-  command->add_option("--out", options->out, "HTML file (default: beside the input)");
+  command->add_option("--out", options->out, "HTML file (default: next to the input)");
   add_set_option(*command, *keys);
   run_with_keys(*command, options, keys, view, console, action);
 }
@@ -337,7 +338,7 @@ int report_failure(const Console& console, const std::string& message, int exit_
 }
 
 int parse_and_run(const std::vector<std::string>& arguments, const Console& console) {
-  CLI::App app("Skycap plans aerial surveys of buildings and simulates them.", "skycap");
+  CLI::App app("Skycap plans and simulates aerial surveys of buildings.", "skycap");
   app.set_version_flag("--version", build_text(), "Print version, commit, compiler and build");
   app.require_subcommand(0, 1);
   app.get_formatter()->column_width(28);

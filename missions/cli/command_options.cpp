@@ -29,7 +29,7 @@ void add_set_option(CLI::App& command, KeyOptions& keys) {
   command
       .add_option(
           "--set", keys.set,
-          "KEY=VALUE: set any key of the mission file, for example planner.density=213; repeatable")
+          "Set any key of the mission file: KEY=VALUE, for example planner.density=213; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
 }
@@ -42,10 +42,10 @@ std::vector<CLI::Option*> add_task_options(CLI::App& command, TaskOptions& optio
       command.add_option("--index", options.index,
                          "Run one task: its 0-based index, or slurm, mpi, kubernetes, parallel or "
                          "auto to read it from the scheduler's environment"),
-      command.add_flag("--collect", options.collects, "Merge what is complete"),
+      command.add_flag("--collect", options.collects, "Merge completed results"),
       command
           .add_option("--submit", options.engine,
-                      "Submit to slurm, parallel or mpi; writes the job script")
+                      "Submit to slurm, parallel or mpi and write the job script")
           ->check(CLI::IsMember({"slurm", "parallel", "mpi"}))};
   for (CLI::Option* one : all) {
     for (CLI::Option* other : all) {

@@ -59,7 +59,7 @@ std::string bash_script(const CLI::App& app) {
   for (const CompletedOption& option : list_options(app)) {
     own += (own.empty() ? "" : " ") + option.name;
   }
-  return "# Completion of skycap for bash: source <(skycap completion bash)\n"
+  return "# Bash completion for skycap: source <(skycap completion bash)\n"
          "_skycap() {\n"
          "  local current=${COMP_WORDS[COMP_CWORD]} command= options='" +
          own +
@@ -108,7 +108,8 @@ std::string zsh_script(const CLI::App& app) {
              " \\\n        '*:file:_files' ;;\n";
   }
   return "#compdef skycap\n"
-         "# Completion of skycap for zsh: source <(skycap completion zsh), or a file _skycap in a\n"
+         "# Zsh completion for skycap: source <(skycap completion zsh), or save this as _skycap in "
+         "a\n"
          "# folder of $fpath\n"
          "_skycap() {\n"
          "  local -a commands\n"
@@ -131,7 +132,7 @@ std::string zsh_script(const CLI::App& app) {
 }
 
 std::string fish_script(const CLI::App& app) {
-  std::string text = "# Completion of skycap for fish: skycap completion fish | source\n";
+  std::string text = "# Fish completion for skycap: skycap completion fish | source\n";
   for (const CompletedOption& option : list_options(app)) {
     text += "complete -c skycap -n __fish_use_subcommand -l " + option.name.substr(2) + " -d " +
             quoted(option.description, "\\") + "\n";

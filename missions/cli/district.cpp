@@ -70,7 +70,7 @@ int run_district_command(const BatchOptions& options, const Console& console) {
 
 void add_district(CLI::App& app, const Console& console, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "district", "Survey several buildings of a map and plan one flight for all");
+      "district", "Survey several buildings of a map and plan one flight for all of them");
   const auto options = std::make_shared<BatchOptions>();
   add_batch_options(*command, *options, "District file (docs/reference/batch-files.md)");
   run(*command, options, run_district_command, console, action);

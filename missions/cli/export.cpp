@@ -30,7 +30,7 @@ Task remaining_task(const ExportOptions& options, const package::PackagedSurvey&
   const std::size_t lost = *options.lost - 1, count = flight.fleet.vehicles.size();
   if (!flight.is_fleet() || lost >= count) {
     throw Error(ErrorKind::bad_usage, "--lost " + std::to_string(*options.lost) +
-                                          ": flight.vehicles of the package has " +
+                                          ": the number of vehicles in the package is " +
                                           std::to_string(count));
   }
   const std::filesystem::path table = options.package / package::timetable_name;
@@ -46,8 +46,9 @@ Task remaining_task(const ExportOptions& options, const package::PackagedSurvey&
     });
   });
   if (task.capture_points.empty()) {
-    throw Error(ErrorKind::bad_usage, "--lost " + std::to_string(*options.lost) +
-                                          ": it had captured all of its views by then");
+    throw Error(ErrorKind::bad_usage,
+                "--lost " + std::to_string(*options.lost) +
+                    ": the vehicle has captured all of its views by this time");
   }
   std::vector<std::size_t> kept;
   for (std::size_t v = 0; v < count; ++v) {
@@ -119,7 +120,7 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
       "export", "Export a planned flight in another format or for another vehicle");
   const auto options = std::make_shared<ExportOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  command->add_option("package", options->package, "Folder that plan wrote")->required();
+  command->add_option("package", options->package, "Results folder of plan")->required();
   command
       ->add_option(
           "--format", options->formats,

@@ -155,8 +155,8 @@ std::string format_report(const TestedFile& file) {
   const Distribution all = distribution(file, flight_energy_wh, any);
   const Distribution off_line = distribution(file, max_cross_track, any);
   text += fmt::format(
-      "  battery   minimum {:.0f}% left, {} flights beyond it\n  off track median {:.2f} m, 95% "
-      "below {:.2f}, maximum {:.2f}\n",
+      "  battery   minimum {:.0f}% left, {} flights with an empty battery\n"
+      "  off track median {:.2f} m, 95% below {:.2f}, maximum {:.2f}\n",
       100.0 * (1.0 - all.percentile(100) * joules_per_wh / file.battery), empty_batteries(file),
       off_line.percentile(50), off_line.percentile(95), off_line.percentile(100));
   for (std::size_t j = 0; j < file.criteria.size(); ++j) text += criterion_text(file, j);

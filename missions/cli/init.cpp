@@ -132,7 +132,7 @@ std::string head_text(const InitOptions& options) {
          "scene:\n"
          "  model: " +
          model_text(options.target, options.out) +
-         "  # in metres, z up; else set scene.scale and scene.up_axis\n"
+         "  # in metres, z up; otherwise set scene.scale and scene.up_axis\n"
          "  ground: true  # the sensor also sees the ground\n";
 }
 
@@ -172,15 +172,17 @@ std::string planner_text(const InitOptions& options, const Proposal& proposal) {
       "  resolution_radius: {:g}  # metres, in which points are counted\n"
       "  spacing: {:g}  # metres, minimum distance of stored points\n"
       "evaluation:\n"
-      "  coverage_distance: {:g}  # metres; a surface point with a measurement within it is "
-      "covered\n",
+      "  coverage_distance: {:g}  # metres; a surface point with a measurement within this "
+      "distance is covered\n",
       box_text(scene), options.is_room() ? "" : ", without the ground", proposal.view_distance,
       0.36 / (distance * distance), 3.0 * distance, 0.5 * distance, distance);
 }
 
 std::string limits_text(const InitOptions& options, const Proposal& proposal) {
   const AlignedBox3d& room = proposal.target;
-  std::string text = "limits:\n  max_views: 150  # the survey ends earlier if nothing is missing\n";
+  std::string text =
+      "limits:\n"
+      "  max_views: 150  # the survey ends earlier if it is complete\n";
   if (!options.has_vehicle()) {
     text +=
         fmt::format("  stand_off: {:g}  # metres, minimum distance of a view from any surface\n",
@@ -238,7 +240,7 @@ int init(const InitOptions& options, const Console& console) {
   }
   if (fs::exists(options.out)) {
     throw Error(ErrorKind::bad_usage,
-                options.out.string() + " exists; choose another --out, or remove it");
+                options.out.string() + " already exists; choose another --out or remove the file");
   }
   const Proposal proposal = proposal_for(options);
   const std::string text = head_text(options) + sensor_text(options, proposal) +

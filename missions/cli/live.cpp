@@ -78,8 +78,8 @@ std::string left_out_text(const online::ScanFound& found) {
     if (count > 0) text += fmt::format(", {} {}", count, what);
   };
   add(found.without_return, "no-return pixels");
-  add(found.out_of_view, "outside the camera's view ignored");
-  add(found.hidden, "hidden behind others in their pixels ignored");
+  add(found.out_of_view, "points outside the camera's view ignored");
+  add(found.hidden, "points hidden by others in the same pixel ignored");
   add(found.left_out.flying, "flying pixels removed");
   add(found.left_out.isolated, "isolated returns removed");
   return text;
@@ -95,7 +95,7 @@ void add_scan(const NextOptions& options, const std::string& name, const online:
   if (options.is_quiet) return;
   const bool is_aside = is_new && survey.proposal().has_pose_warning();
   console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
-                             is_new ? "" : "; known already, ignored",
+                             is_new ? "" : "; already known, ignored",
                              is_aside ? "; rejected, pose inconsistent with the map" : "",
                              left_out_text(found))
               << std::flush;
@@ -196,8 +196,8 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
       "and live.pose_sigma_deg)");
   command->add_option(
       "--pose-covariance", options->pose_covariance,
-      "Covariance of the pose, instead of --pose-sigma: 36 numbers, row by row, of x "
-      "y z rx ry rz in the mission frame [m, rad], or the 21 of its upper triangle");
+      "Covariance of the pose, instead of --pose-sigma: 36 numbers, row by row, of x y z rx ry rz "
+      "in the mission frame [m, rad], or the 21 numbers of its upper triangle");
   command->add_option(
       "--intrinsics", options->intrinsics,
       "Camera intrinsics of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 "
@@ -215,13 +215,16 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
       "--dataset", options->dataset,
       "Recording whose frames are added one by one: a TUM RGB-D folder (depth.txt, "
       "groundtruth.txt), a 7-Scenes folder (frame-NNNNNN.depth.png, .pose.txt), or an MRPT rawlog");
-  command->add_option("--sensor", options->sensor, "Label of the sensor in a rawlog with several");
+  command->add_option("--sensor", options->sensor,
+                      "Sensor label, for a rawlog with several sensors");
   command->add_option("--poses", options->poses,
                       "TUM trajectory of the optical frame, instead of the rawlog's poses");
-  command->add_option("--max-frames", options->until, "Maximum number of frames of the recording")
+  command
+      ->add_option("--max-frames", options->until,
+                   "Maximum number of frames to read from the recording")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--refuse", options->rejection_reason,
-                      "Reject the proposed view for this reason and request another");
+                      "Reject the proposed view for this reason and request another view");
   command->add_flag("--json", options->is_json, "Print the result as JSON");
   command->add_flag("--quiet", options->is_quiet, "Print the result and errors only");
   run_with_keys(*command, options, keys, next, console, action);
@@ -233,8 +236,9 @@ void add_serve(CLI::App& app, const Console& console, Action& action) {
   const auto options = std::make_shared<ServeOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*command, *options, *keys);
-  command->add_option("--socket", options->socket, "Path of a Unix socket, accessible only to you");
-  command->add_option("--port", options->port, "TCP port of this machine; 0: any free port");
+  command->add_option("--socket", options->socket,
+                      "Path of a Unix socket, accessible only to the current user");
+  command->add_option("--port", options->port, "TCP port on this machine; 0: any free port");
   command->add_flag("--quiet", options->is_quiet, "Print the address and errors only");
   run_with_keys(*command, options, keys, serve, console, action);
 }
@@ -282,7 +286,7 @@ int finish(const LiveOptions& options, const Console& console) {
   if (survey->views().empty()) {
     throw Error(
         ErrorKind::bad_usage,
-        options.survey.string() + ": contains no scan yet; add scans with skycap next --scan");
+        options.survey.string() + ": contains no scans yet; add scans with skycap next --scan");
   }
   const Finished finished = write_package(options, setup, *survey, console);
   console.out << finished.text << std::flush;
@@ -385,13 +389,14 @@ void add_fly(CLI::App& app, const Console& console, Action& action) {
                    "MAVLink connection: udp:127.0.0.1:14550 to listen, udpout:HOST:PORT or "
                    "tcp:HOST:PORT to connect")
       ->required();
-  command->add_option("--sensor", options->sensor,
-                      "simulated (default; the mission requires a scene), or a folder to which "
-                      "another program writes scans");
+  command->add_option(
+      "--sensor", options->sensor,
+      "Scan source: simulated (default; the mission requires a scene), or a folder to "
+      "which another program writes scans");
   command
       ->add_option("--on-failure", options->on_failure,
-                   "hold (default): hold position until a pilot takes control; return: return "
-                   "along the verified path where possible")
+                   "Action on failure. hold (default): hold position until a pilot takes control. "
+                   "return: return along the verified path where possible")
       ->check(CLI::IsMember({"hold", "return"}));
   command->add_option("--intrinsics", options->intrinsics,
                       "Camera intrinsics of depth images, as for next");

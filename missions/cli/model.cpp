@@ -35,7 +35,7 @@ geometry::Mesh make_mesh(const std::string& model, const std::optional<std::stri
   if (detail) {
     if (!model.starts_with("builtin:")) {
       throw Error(ErrorKind::bad_config,
-                  "--detail requires a builtin model; " + model + " has the detail of its file");
+                  "--detail requires a builtin model; " + model + " has a fixed level of detail");
     }
     scene.detail = level_of_detail(*detail);
   }

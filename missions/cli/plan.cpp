@@ -84,7 +84,7 @@ std::string summary_text(const std::string& name, const PlanOptions& options,
                      simulation.scene, simulation.evaluation.registration_distance,
                      record.cloud.positions));
   if (simulation.scene.model == "prior") {
-    text += "  scene     the targets' prior data, used as ground truth\n";
+    text += "  scene     prior data of the targets, used as ground truth\n";
   }
   text += "  planning  " + seconds(record.planning_time());
   if (options.is_verbose) text += planning_text(record);

@@ -96,7 +96,7 @@ int propose_site(const SiteOptions& options, const Console& console) {
   for (const fs::path& result : {file, page_path}) {
     if (!fs::exists(result)) continue;
     throw Error(ErrorKind::bad_usage,
-                result.string() + " exists; use another --out, or move the file");
+                result.string() + " already exists; use another --out or move the file");
   }
   ProgressLine progress(console, false);
   progress.show("reading " + options.map.filename().string());
@@ -139,18 +139,21 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
       ->type_size(1)
       ->allow_extra_args(false);
   command->add_option("--crs", options->crs,
-                      "Coordinate reference system of the files, if they do not contain it");
+                      "Coordinate reference system of the files, if they do not contain one");
   command
       ->add_option("--vertical", options->vertical,
-                   "Vertical datum of the files, if they do not contain it: ellipsoid or geoid")
+                   "Vertical datum of the files, if they do not contain one: ellipsoid or geoid")
       ->check(CLI::IsMember({to_string(datums[0]), to_string(datums[1])}));
-  command->add_option("--base", options->base, "Base height of outlines, in --vertical, in metres")
+  command
+      ->add_option("--base", options->base,
+                   "Base height of outlines in the datum of --vertical, in metres")
       ->check(number_between(-1e4, 1e4));
   command
       ->add_option("--height", options->height,
-                   "Height of outlines without a height of their own, in metres")
+                   "Height of outlines that contain no height, in metres")
       ->check(number_between(0.01, 1e4));
-  command->add_option("--terrain", options->terrain, "Terrain file, on which outlines stand");
+  command->add_option("--terrain", options->terrain,
+                      "Terrain file; sets the base height of outlines");
   command->add_option("--obstacle", options->obstacles, "Further file with obstacles")
       ->type_size(1)
       ->allow_extra_args(false);

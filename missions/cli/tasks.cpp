@@ -48,7 +48,8 @@ int run_task(const TaskWork& work, const TaskOptions& options, const Console& co
   const batch::ItemRange range =
       batch::items_in_task(task, std::max<std::size_t>(1, options.chunk), work.job.items);
   if (range.size() == 0) {
-    warn(console, fmt::format("task {} has no runs; there are {}", task, work.job.items));
+    warn(console,
+         fmt::format("task {} has no runs; the total number of runs is {}", task, work.job.items));
     return 0;
   }
   const std::size_t done = work.work(range);

@@ -53,9 +53,9 @@ Key fleet_key(std::string fallback, Key key) {
 /// Creates the key `flight.vehicles`: a list of strings without a unit.
 Key vehicles_key() {
   Key key = list_key("flight.vehicles", KeyType::texts, fleet(&flight::FleetOptions::names),
-                     "Several vehicles, each as in flight.vehicle, that share the mission's views. "
-                     "A name may be listed twice. The first vehicle flies the survey. A list of "
-                     "one is the same as flight.vehicle.");
+                     "Fleet of vehicles that share the mission's views, each specified as in "
+                     "flight.vehicle. A name may be listed twice. The first vehicle flies the "
+                     "survey. A list of one vehicle is equivalent to flight.vehicle.");
   key.fallback = "none";
   return key;
 }
@@ -74,20 +74,22 @@ std::vector<Key> fleet_keys() {
   return {
       vehicles_key(),
       pads_key(),
-      fleet_key("makespan",
-                choice_key("flight.fleet_goal", {"makespan", "total_time"},
-                           fleet(&flight::FleetOptions::goal),
-                           "Goal of the distribution of views over flight.vehicles: the "
-                           "earliest last landing, or the least total flight time.")),
+      fleet_key(
+          "makespan",
+          choice_key("flight.fleet_goal", {"makespan", "total_time"},
+                     fleet(&flight::FleetOptions::goal),
+                     "Objective for distributing the views over flight.vehicles: the earliest "
+                     "last landing or the minimum total flight time.")),
       fleet_key("10 m",
                 number_key("flight.separation", "m", above(0, 10'000),
                            fleet(&flight::FleetOptions::separation),
                            "Minimum planned separation between any two airborne vehicles of "
                            "flight.vehicles, at all times. Includes their radii and errors.")),
-      fleet_key("10 s", number_key("flight.timing_tolerance", "s", between(0, 3600),
-                                   fleet(&flight::FleetOptions::timing_tolerance),
-                                   "Time by which each of flight.vehicles may be early or late, "
-                                   "anywhere in its flight, and still keep flight.separation.")),
+      fleet_key("10 s",
+                number_key("flight.timing_tolerance", "s", between(0, 3600),
+                           fleet(&flight::FleetOptions::timing_tolerance),
+                           "Maximum time by which each vehicle of flight.vehicles may be early or "
+                           "late during its flight without violating flight.separation.")),
   };
 }
 
@@ -95,9 +97,9 @@ std::vector<Key> fleet_keys() {
 Key extra_unknown_boxes_key() {
   Key key = metre_list_key(
       "flight.extra_unknown_boxes", KeyType::vectors, section(&FlightSection::extra_unknown_boxes),
-      "Further boxes in which unknown space is treated as occupied, for example around "
-      "neighbours that are surveyed as well: lower and upper corner of each, one after "
-      "the other. The package keeps what was measured in them for the joint flight.");
+      "Additional boxes in which unknown space is treated as occupied, for example around "
+      "neighbouring targets: the lower and upper corner of each box. The package stores the "
+      "measured space in these boxes for the joint flight.");
   key.range = between(-1e6, 1e6);
   return key;
 }
@@ -108,8 +110,8 @@ std::vector<Key> safety_keys() {
       text_key(
           "flight.vehicle", flight(&flight::FlightOptions::vehicle_name),
           "Vehicle: a preset of flight/motion/presets, or the path of a vehicle file (NAME.yaml), "
-          "relative to the mission file. With a vehicle, the survey goes only where the vehicle "
-          "can fly, and the package contains the route. none: the sensor can reach every view."),
+          "relative to the mission file. With a vehicle, the survey uses only views that the "
+          "vehicle can reach, and the package contains the route. none: every view is reachable."),
       number_key("flight.clearance", "m", above(0, 1000), flight(&flight::FlightOptions::clearance),
                  "Minimum distance between the vehicle's centre and anything not known to be free, "
                  "verified for every leg. Includes the vehicle radius and the position, tracking "
@@ -129,23 +131,23 @@ std::vector<Key> safety_keys() {
           "planner.scene_box",
           box_corner("flight.unknown_box.min", section(&FlightSection::unknown_box), false,
                      "Lower corner of the box in which unknown space is treated as occupied. "
-                     "Outside it, airspace above the ground is assumed free, except for obstacles "
-                     "that have been measured or are in prior data; the pilot must check it.")),
+                     "Outside it, airspace above the ground is assumed free, except for measured "
+                     "obstacles and obstacles in prior data; the pilot must check it.")),
       otherwise("planner.scene_box",
                 box_corner("flight.unknown_box.max", section(&FlightSection::unknown_box), true,
                            "Upper corner of the unknown box.")),
       extra_unknown_boxes_key(),
       number_key("flight.no_return_free_range", "m", between(0, 1e4),
                  flight(&flight::FlightOptions::free_without_return),
-                 "Depth up to which no-return pixels count as free space. 0: they do not; right "
-                 "for sensors that may miss dark, shiny or thin surfaces."),
+                 "Depth up to which no-return pixels count as free space. 0: no-return pixels are "
+                 "ignored, as required for sensors that may miss dark, shiny or thin surfaces."),
   };
 }
 
 /// Returns the keys that determine how legs are flown.
 std::vector<Key> conduct_keys() {
   return {
-      otherwise("on the ground beside unknown_box, near the first view",
+      otherwise("on the ground next to unknown_box, near the first view",
                 vector_key("flight.takeoff", "m", between(-1e6, 1e6),
                            flight(&flight::FlightOptions::takeoff),
                            "Take-off point, where the vehicle also lands.")),
@@ -155,7 +157,7 @@ std::vector<Key> conduct_keys() {
                            "Vertical climb above the take-off point before the first leg.")),
       rally_key(),
       otherwise(
-          "from the prior terrain, where it is not measured",
+          "from the prior terrain if not measured",
           angle_key("flight.pad_slope_deg", between(0, 60),
                     flight(&flight::FlightOptions::pad_slope),
                     "Slope of the ground at the take-off point and the rally points, as inspected "
@@ -166,8 +168,8 @@ std::vector<Key> conduct_keys() {
       number_key("flight.cruise_speed", "m/s", above(0, 100),
                  flight(&flight::FlightOptions::cruise_speed), "Cruise speed on legs."),
       number_key("flight.hold", "s", between(0, 3600), flight(&flight::FlightOptions::hold),
-                 "Hover time at each view before the capture, after the vehicle has settled and "
-                 "heading and gimbal have turned."),
+                 "Hover time at each view before the capture, after the vehicle, its heading and "
+                 "the gimbal have settled."),
       number_key("flight.hold_after", "s", between(0, 3600),
                  flight(&flight::FlightOptions::hold_after),
                  "Hover time after the capture, for shutter lag, exposure and readout."),
@@ -199,10 +201,10 @@ std::vector<Key> conduct_keys() {
                  "survey."),
       choice_key("flight.style", {"stop", "blend", "smooth", "fly-through"},
                  flight(&flight::FlightOptions::style),
-                 "Flight through corners of a leg. stop: stop in each corner. blend: round the "
-                 "corners. smooth: one smooth curve, where it is verified and faster. fly-through: "
-                 "fly-through capture, past the views without a stop, at a speed at which images "
-                 "stay sharp (sensor.exposure). Trajectories (csv, ned-csv, tum) and KML hold "
+                 "Flight style at the corners of a leg. stop: stop in each corner. blend: round "
+                 "the corners. smooth: one smooth curve, where it is verified and faster. "
+                 "fly-through: fly-through capture without stops at views, at a speed that keeps "
+                 "images sharp (sensor.exposure). Trajectories (csv, ned-csv, tum) and KML contain "
                  "curves; the other files stop in corners and at views."),
   };
 }
@@ -213,11 +215,12 @@ std::vector<Key> site_keys() {
   return {
       metre_list_key(
           "site.geofence", KeyType::polygon, [](auto& m) -> auto& { return m.site.geofence; },
-          "Geofence: polygon of [east, north] in the mission frame that contains all views."),
+          "Geofence: polygon of [east, north] positions in the mission frame that contains all "
+          "views."),
       metre_list_key(
           "site.no_fly", KeyType::volumes, [](auto& m) -> auto& { return m.site.no_fly; },
-          "No-fly volumes: upright prisms that contain no view; floor and ceiling are z in the "
-          "mission frame."),
+          "No-fly volumes: upright prisms that no view or leg may enter; floor and ceiling are z "
+          "in the mission frame."),
       otherwise("unlimited", number_key(
                                  "site.min_height", "m", between(-1e6, 1e6),
                                  [](auto& m) -> auto& { return m.site.min_height; },
@@ -232,7 +235,7 @@ std::vector<Key> site_keys() {
               "site.latitude_deg", "degrees", between(-90, 90),
               [](auto& m) -> auto& { return m.georeference.latitude_deg; },
               "WGS84 latitude of the origin of the mission frame (x east, y north, z up). Without "
-              "a georeference no mission files are written, only local coordinates.")),
+              "a georeference, only local coordinates are written, and no mission files.")),
       otherwise("unknown", number_key(
                                "site.longitude_deg", "degrees", between(-180, 180),
                                [](auto& m) -> auto& { return m.georeference.longitude_deg; },
@@ -247,7 +250,7 @@ std::vector<Key> site_keys() {
               "site.geoid_undulation", "m", between(-120, 120),
               [](auto& m) -> auto& { return m.georeference.geoid_undulation; },
               "Height of the geoid (EGM96) above the ellipsoid at the site. Formats with heights "
-              "above mean sea level require it where PROJ's EGM96 grid is not installed.")),
+              "above mean sea level require it if PROJ's EGM96 grid is not installed.")),
   };
 }
 

@@ -91,7 +91,7 @@ class Renaming {
     if (count < 2) return;
     throw Error(ErrorKind::bad_config, name_ + ":" + std::to_string(entry.line) + ": key " +
                                            former + " is now " + current +
-                                           ", which is set, too; remove one of them");
+                                           ", which is also set; remove one of them");
   }
 
   const std::string& name_;
@@ -215,9 +215,8 @@ std::vector<FormerName> former_names_in(std::span<const KeyOverride> overrides) 
 std::string with_current_names(const std::string& text, const std::string& name) {
   YamlNode expected = support::parse_yaml(text, name);
   if (expected.kind != YamlNode::Kind::map) {
-    throw Error(ErrorKind::bad_config, name +
-                                           ":1: is not a map; a mission is a list of "
-                                           "'key: value'");
+    throw Error(ErrorKind::bad_config,
+                name + ":1: is not a map; a mission must consist of 'key: value' lines");
   }
   Renaming renaming(name);
   renaming.rename(expected, "");
@@ -238,10 +237,9 @@ std::string with_current_names(const std::string& text, const std::string& name)
   std::string result;
   for (const std::string& line : lines) result += line;
   if (!are_equal(support::parse_yaml(result, name), expected)) {
-    throw Error(ErrorKind::bad_config,
-                name +
-                    ": cannot be rewritten, keys of the same name are in one line; write each "
-                    "key in a line of its own");
+    throw Error(ErrorKind::bad_config, name +
+                                           ": cannot be rewritten, because keys of the same name "
+                                           "are on one line; write each key on a separate line");
   }
   return result;
 }

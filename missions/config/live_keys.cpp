@@ -18,16 +18,16 @@ std::vector<Key> live_keys() {
                   "warning)."),
       number_key(
           "live.pose_sigma", "m", between(0, 100), live(&online::LiveOptions::pose_sigma),
-          "Standard deviation of the position along each axis, for scans that do not state it."),
+          "Standard deviation of the position along each axis, for scans that do not specify it."),
       angle_key(
           "live.pose_sigma_deg", between(0, 90), live(&online::LiveOptions::pose_sigma_angle),
-          "Standard deviation of the rotation about each axis, for scans that do not state it."),
+          "Standard deviation of the rotation about each axis, for scans that do not specify it."),
       boolean_key("live.registration", live(&online::LiveOptions::registers),
                   "Scan-to-map registration: correct the pose of each scan to fit the map, within "
                   "its standard deviations."),
-      boolean_key(
-          "live.remove_flying_pixels", live(&online::LiveOptions::removes_flying_pixels),
-          "Remove pixels between two surfaces and isolated returns from scans with pixels."),
+      boolean_key("live.remove_flying_pixels", live(&online::LiveOptions::removes_flying_pixels),
+                  "Remove flying pixels (between two surfaces) and isolated returns from scans "
+                  "with pixels."),
   };
 }
 

@@ -76,7 +76,7 @@ void collect(const support::YamlNode& map, const std::string& prefix, const Know
     } else if (entry.value.kind == support::YamlNode::Kind::map) {
       collect(entry.value, path + ".", known, values);
     } else {
-      fail(location, known.of + path, "is a section; put its keys below it, indented");
+      fail(location, known.of + path, "is a section; indent its keys below it");
     }
   }
 }
@@ -300,8 +300,9 @@ ParsedValues collected(const std::string& text, const std::string& name,
                                            "and evaluation.coverage_distance");
   }
   if (root.kind != support::YamlNode::Kind::map) {
-    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
-                                           ": is not a map; a mission is a list of 'key: value'");
+    throw Error(ErrorKind::bad_config,
+                name + ":" + std::to_string(root.line) +
+                    ": is not a map; a mission must consist of 'key: value' lines");
   }
   replace_former_names(root, "", name);
   ParsedValues values;
@@ -387,7 +388,7 @@ MissionDocument read_mission_document(const std::filesystem::path& file,
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > largest_file) reject("is larger than 1 MiB; this is not a mission file");
-  if (text.find('\0') != std::string::npos) reject("is not text; expected a mission file");
+  if (text.find('\0') != std::string::npos) reject("contains binary data; expected a mission file");
   return parse_mission_document(text, file.string(), overrides);
 }
 

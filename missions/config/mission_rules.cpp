@@ -82,10 +82,10 @@ void check_required_pads(const MissionDocument& document) {
   if (pads.size() != flight.fleet.names.size()) {
     document.reject("flight.pads", "has " + std::to_string(pads.size()) + " take-off points for " +
                                        std::to_string(flight.fleet.names.size()) +
-                                       " vehicles of flight.vehicles; list one for each");
+                                       " vehicles in flight.vehicles; list one point per vehicle");
   }
   if (flight.takeoff && *flight.takeoff != pads.front()) {
-    document.reject("flight.takeoff", "must be the first of flight.pads; remove it");
+    document.reject("flight.takeoff", "must be the first position in flight.pads; remove it");
   }
 }
 
@@ -102,7 +102,7 @@ void check_scene(const MissionDocument& document) {
   if (scene.model.starts_with(builtin)) check_builtin(document, scene.model.substr(builtin.size()));
   if (document.has("scene.detail") && !scene.model.starts_with("builtin:")) {
     document.reject("scene.detail",
-                    "requires a builtin model; " + scene.model + " has the detail of its file");
+                    "requires a builtin model; " + scene.model + " has a fixed level of detail");
   }
   if (scene.longest_side && scene.scale) {
     document.reject("scene.scale", "conflicts with scene.longest_side; remove one of the two");
@@ -161,7 +161,7 @@ void check_sensor(const MissionDocument& document) {
   if (static_cast<double>(camera.width) * camera.height > 1e8) {
     document.reject(
         "sensor.width",
-        "image of more than 1e8 pixels (sensor.width times sensor.height); reduce the size");
+        "the image has more than 1e8 pixels (sensor.width times sensor.height); reduce its size");
   }
   check_capture(document);
 }
@@ -213,14 +213,14 @@ void check_flight(const MissionDocument& document) {
   check_views(document);
   if (flight.style == flight::FlightStyle::pass && document.sensor.options.settle > 0.0) {
     document.reject("flight.style",
-                    "fly-through conflicts with a sensor that must rest before each capture "
+                    "fly-through conflicts with a sensor that must be at rest before each capture "
                     "(sensor.settle); choose stop, blend or smooth");
   }
   if (const double climb = flight.climb(); climb <= flight.clearance) {
     document.reject(
         "flight.takeoff_climb",
         "a climb of " + short_text(climb) +
-            " m ends within the clearance of the ground; set more than flight.clearance");
+            " m ends within the clearance of the ground; it must be greater than flight.clearance");
   }
   if (!flight.rally.empty() && flight.required_vehicle().autopilot == flight::AutopilotType::dji) {
     document.reject("flight.rally",
@@ -259,7 +259,7 @@ void lead_fleet(MissionDocument& document) {
     return;
   }
   if (document.flight.has_vehicle() && flight.vehicle_name != fleet.names.front()) {
-    document.reject("flight.vehicle", "must be the first of flight.vehicles; remove it");
+    document.reject("flight.vehicle", "must be the first vehicle in flight.vehicles; remove it");
   }
   check_required_pads(document);
   flight.vehicle_name = fleet.names.front();
@@ -278,14 +278,15 @@ void check_fleet(const MissionDocument& document) {
   }
   const flight::FlightOptions& flight = document.flight.options;
   if (flight.style != flight::FlightStyle::stop) {
-    document.reject("flight.style",
-                    "conflicts with flight.vehicles: the separation is verified for flights with "
-                    "stops; remove it");
+    document.reject(
+        "flight.style",
+        "conflicts with flight.vehicles: the separation is verified only for flights with "
+        "stops; remove it");
   }
   if (const double min = min_separation(flight); flight.fleet.separation < min) {
     document.reject(
         "flight.separation",
-        "must be at least the sum of two vehicles' radii, position and tracking errors: " +
+        "must be at least the sum of both vehicles' radii, position errors and tracking errors: " +
             support::short_text(min) + " m; raise it");
   }
   for (std::size_t v = 1; v < flight.fleet.names.size(); ++v) {
@@ -300,7 +301,8 @@ void check_view_limits(const MissionDocument& document) {
   if (limits.min_height && limits.max_height && *limits.min_height >= *limits.max_height) {
     document.reject(
         "site.max_height",
-        "must be greater than site.min_height and limits.ground_clearance; no airspace is left");
+        "must be greater than site.min_height and limits.ground_clearance; otherwise no "
+        "airspace is left");
   }
   if (limits.min_pitch >= limits.max_pitch) {
     document.reject("limits.max_pitch_deg", "must be greater than limits.min_pitch_deg; raise it");

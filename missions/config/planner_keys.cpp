@@ -47,15 +47,15 @@ std::vector<Key> which_planner() {
       choice_key(
           "planner.preset", {"paper", "building"},
           [](auto& m) -> auto& { return m.planner.preset; },
-          "Values that the keys below override. paper: as published. building: tuned for "
+          "Preset whose values the keys below override. paper: as published. building: tuned for "
           "buildings."),
       otherwise(
           "minutes with sensor.capture: moving, otherwise views",
           choice_key(
               "planner.goal", {"minutes", "views"}, [](auto& m) -> auto& { return m.planner.goal; },
               "Goal of the planner skycap: minimise the flight time or the number of views. "
-              "minutes: a view costs its stop, or without a vehicle one view distance of path. "
-              "views: a view costs three view distances.")),
+              "minutes: the cost of a view is its stop, or one view distance of path without a "
+              "vehicle. views: the cost of a view is three view distances.")),
   };
 }
 
@@ -80,11 +80,11 @@ std::vector<Key> density_keys() {
                     "planner.core_threshold", "points", between(1, 1e6), see(&See::core_threshold),
                     "k: minimum number of points within r, including itself, of a core point.")),
       otherwise(
-          "rho^(-1/2), or 0.8 evaluation.coverage_distance if smaller, but at least the "
-          "distance between a camera's rays at the view distance",
+          "rho^(-1/2), or 0.8 evaluation.coverage_distance if smaller, but at least the distance "
+          "between adjacent camera rays at the view distance",
           number_key("planner.spacing", "m", above(0, 1e3), sampling(&SamplingSection::spacing),
                      "epsilon: minimum spacing of stored measurements.")),
-      otherwise("from the sensor and rho",
+      otherwise("derived from the sensor and rho",
                 number_key("planner.view_distance", "m", above(0, 1e6),
                            sampling(&SamplingSection::view_distance),
                            "d: distance between a frontier and the view proposed for it.")),
@@ -95,10 +95,10 @@ std::vector<Key> density_keys() {
               "Lower corner of the region of interest. Measurements outside it are discarded.")),
       otherwise("unlimited", box_corner("planner.scene_box.max", scene_box, true,
                                         "Upper corner of the region of interest.")),
-      choice_key(
-          "planner.outlier_rule", {"non_core", "labelled"}, see(&See::outlier_rule),
-          "Neighbours that make a point beside a core point a frontier. non_core: any other that "
-          "is not core. labelled: one labelled outlier (released code, depends on the order)."),
+      choice_key("planner.outlier_rule", {"non_core", "labelled"}, see(&See::outlier_rule),
+                 "Neighbours that turn a point near a core point into a frontier. non_core: any "
+                 "other non-core point. labelled: a point labelled as an outlier (released code; "
+                 "depends on the order)."),
       otherwise(
           "k",
           integer_key(
@@ -126,7 +126,7 @@ std::vector<Key> occlusion_keys() {
           [](auto& m) -> auto& { return m.planner.see.cap.policy; },
           "Choice of the unoccluded direction. local: downhill from the observing direction. "
           "global: centre of the largest empty cap. nonlinear_program: solution of the published "
-          "program with NLopt."),
+          "nonlinear program with NLopt."),
       integer_key(
           "planner.cap.max_evaluations", "", between(1, 1e6),
           [](auto& m) -> auto& { return m.planner.see.cap.max_evaluations; },
@@ -136,12 +136,12 @@ std::vector<Key> occlusion_keys() {
                  "Observing direction of a point: its ray or the optical axis."),
       number_key("planner.occluder_spacing", "m", above(0, 1e3), see(&See::occluder_spacing),
                  "Spacing of the sparse cloud used to find the unoccluded direction."),
-      otherwise("give_up; in preset building defer",
+      otherwise("give_up; with the preset building: defer",
                 choice_key("planner.still_occluded", {"give_up", "defer", "keep"},
                            see(&See::still_occluded),
                            "Treatment of frontiers that are still occluded after view "
-                           "optimisation: give_up (discard), defer (observe last, from where "
-                           "they were first seen) or keep (observe anyway).")),
+                           "optimisation: give_up (discard), defer (observe last, from the "
+                           "position of their first observation) or keep (observe anyway).")),
   };
 }
 
@@ -151,15 +151,15 @@ std::vector<Key> view_selection_keys() {
       boolean_key("planner.visibility_graph", see(&See::visibility_graph),
                   "Weight views by the number of frontiers that they observe (SEE++)."),
       boolean_key("planner.facing_test", see(&See::facing_test),
-                  "Count a frontier as seen only from the side of its normal."),
+                  "Count a frontier as seen only if it is viewed from the side of its normal."),
       boolean_key("planner.field_of_view_test", see(&See::field_of_view_test),
-                  "Count a frontier as seen only inside the view's image."),
-      number_key("planner.first_view_weight", "", between(0, 1e6), see(&See::first_view_weight),
-                 "SEE adds this factor times the distance to the first view when it searches for "
-                 "the nearest view."),
+                  "Count a frontier as seen only if it is inside the image of the view."),
+      number_key(
+          "planner.first_view_weight", "", between(0, 1e6), see(&See::first_view_weight),
+          "Weight of the distance to the first view when SEE searches for the nearest view."),
       choice_key("planner.nearest", {"exact", "octree"}, see(&See::nearest),
-                 "Search for the nearest view. exact: exact. octree: approximate octree, as in the "
-                 "released code."),
+                 "Search method for the nearest view. exact: exact search. octree: approximate "
+                 "octree search, as in the released code."),
       choice_key("planner.adjustment", {"rotation", "shift", "none"}, see(&See::adjustment),
                  "Adjustment of a view that failed to resolve its frontier."),
       choice_key("planner.adjustment_centroid", {"whole_scan", "accepted_points"},
@@ -169,9 +169,9 @@ std::vector<Key> view_selection_keys() {
                   "Maximum number of views of one frontier before it is discarded."),
       boolean_key("planner.stay_on_target", see(&See::stay_on_target),
                   "Aim at one frontier until it is resolved or discarded."),
-      number_key(
-          "planner.frontier_spacing", "m", between(0, 1e3), see(&See::frontier_spacing),
-          "Propose views for one frontier only within this distance; 0: for every frontier."),
+      number_key("planner.frontier_spacing", "m", between(0, 1e3), see(&See::frontier_spacing),
+                 "Distance within which views are proposed for one frontier only. 0: views are "
+                 "proposed for every frontier."),
   };
 }
 
@@ -187,19 +187,19 @@ std::vector<Key> skycap_keys() {
           "The survey ends when skycap estimates that this fraction of the surface is covered."),
       number_key("planner.min_gain", "share", between(0, 1), stop(&Stop::min_gain),
                  "The survey ends when no view is predicted to add at least this fraction of the "
-                 "known surface. If seven times the largest area that one view has covered is "
-                 "smaller, the fraction is of that area. Planner skycap only."),
+                 "known surface. If seven times the largest area covered by one view is smaller "
+                 "than the known surface, the fraction refers to that area. Planner skycap only."),
       ablation_switch(
           "coverage_model", &Switches::coverage_model,
-          "weight observations of a surface by the noise; off: one observation covers it."),
+          "weight surface observations by their noise; off: one observation is sufficient."),
       ablation_switch("unseen_surface", &Switches::surface_prediction,
                       "predict where the surface continues."),
       ablation_switch("free_space", &Switches::free_space,
-                      "discard predicted surface that the sensor saw through."),
+                      "discard predicted surface that rays have passed through."),
       ablation_switch("learned_rates", &Switches::learned_rates,
                       "weight predicted surface by the success of earlier predictions."),
       ablation_switch("targeted_views", &Switches::targeted_views,
-                      "propose views of missing surface; off: from fixed directions only."),
+                      "propose views of missing surface; off: use fixed directions only."),
       ablation_switch("refinement", &Switches::refinement,
                       "optimise the best views around their target."),
       ablation_switch("batch", &Switches::batch,

@@ -142,16 +142,17 @@ std::vector<Key> source_pose_keys() {
           "role", to_strings({Role::target, Role::obstacle, Role::terrain, Role::truth}),
           source(&Source::role),
           "Role in the survey. target: the object to survey; predicted surface where it is not "
-          "measured yet. obstacle: to be avoided by every leg. terrain: the ground. truth: ground "
-          "truth for the simulated sensor, instead of scene.model. No role makes space free.")),
+          "measured yet. obstacle: every leg avoids it. terrain: the ground. truth: ground truth "
+          "for the simulated sensor, instead of scene.model. No role marks space as free.")),
       optional_text_key("crs", "from the file; without one the mission frame", source(&Source::crs),
                         "Coordinate reference system, horizontal or compound, for example "
-                        "EPSG:25832+7837; any that PROJ knows."),
+                        "EPSG:25832+7837; all systems that PROJ supports."),
       vertical_key(),
-      otherwise("-", source_pose_key("place.position", KeyType::vector, "m", between(-1e6, 1e6),
-                                     1.0, &site_data::SourcePose::position,
-                                     "Origin of a file without coordinate reference system, in the "
-                                     "mission frame; excludes crs.")),
+      otherwise("-",
+                source_pose_key("place.position", KeyType::vector, "m", between(-1e6, 1e6), 1.0,
+                                &site_data::SourcePose::position,
+                                "Position of the origin of a file without a coordinate reference "
+                                "system, in the mission frame; conflicts with crs.")),
       otherwise("0",
                 source_pose_key("place.heading_deg", KeyType::number, "degrees", between(-360, 360),
                                 geometry::radians_per_degree, &site_data::SourcePose::heading,
@@ -179,11 +180,11 @@ std::vector<Key> selection_keys() {
       all(list_key("select.attribute", KeyType::pairs, selection(&Selection::attributes),
                    "Only objects with these attributes.")),
       all(path_key("select.within", selection(&Selection::within),
-                   "Only what is inside the polygons of this file.")),
+                   "Only data inside the polygons of this file.")),
       classes,
       optional_text_key("select.layer", "all", selection(&Selection::layer),
                         "Only this layer of the file."),
-      otherwise("the highest of each object",
+      otherwise("the highest level of each object",
                 number_key("select.lod", "", between(0, 4), selection(&Selection::lod),
                            "Only this level of detail.")),
   };
@@ -195,9 +196,10 @@ std::vector<Key> meaning_keys() {
       base_key(),
       otherwise("from the file", number_key("height", "m", above(0, 1e4), source(&Source::height),
                                             "Height of polygons above their base.")),
-      optional_text_key("height_attribute", "height and its variants, then storeys",
+      optional_text_key("height_attribute",
+                        "height and its variants, otherwise the number of storeys",
                         source(&Source::height_attribute),
-                        "Attribute of a map that contains the height of a polygon above its base."),
+                        "Map attribute that contains the height of a polygon above its base."),
       number_key("min_height", "m", between(0, 1e4), source(&Source::min_height),
                  "Height of the lower edge of polygons above their base."),
       otherwise("0.3; 1 for extruded polygons",
@@ -216,7 +218,8 @@ std::vector<Key> meaning_keys() {
 std::vector<Key> prior_keys() {
   Key key = key_for(
       "prior", KeyType::sources, [](auto& m) -> auto& { return m.prior; },
-      "Prior data: what is known about the site before the survey (docs/howto/use-prior-data.md).");
+      "Prior data: information about the site that is known before the survey "
+      "(docs/howto/use-prior-data.md).");
   key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     return mission.prior.empty() ? std::nullopt : std::optional<KeyValue>(mission.prior);
   };

@@ -27,7 +27,7 @@ void make_absolute(std::filesystem::path& path, const std::filesystem::path& fol
 void check_source(const MissionDocument& document, std::size_t i) {
   const Source& source = document.prior[i];
   if (source.pose && !source.crs.empty()) {
-    document.reject(make_key(i, "crs"), "conflicts with place; keep one of the two");
+    document.reject(make_key(i, "crs"), "conflicts with place; remove one of the two");
   }
   if (!source.crs.empty() && !is_georeferenced(document)) {
     document.reject(make_key(i, "crs"),

@@ -92,15 +92,15 @@ void mount_scanner(MissionDocument& document) {
   constexpr double max_slope = 75.0 * std::numbers::pi / 180.0;
   if (!spins && std::abs(mount.linear()(2, 0)) > std::sin(max_slope)) {
     document.reject("scan.mount.rotation_deg",
-                    "the scanner must not look up or down by more than 75 degrees in planned "
+                    "the scanner must not point up or down by more than 75 degrees in planned "
                     "flights; remove the key, or set [0, 30, 90] (to the left, 30 degrees down)");
   }
   sensor.mount = scanner_mount(lidar, mount);
   if (find_scanner_kind(lidar) == ScannerKind::line && document.has("sensor.capture") &&
       !sensor.is_moving()) {
     document.reject("sensor.capture",
-                    "stops conflicts with a single-line LiDAR, which measures next to nothing at "
-                    "a stop; remove it");
+                    "stops conflicts with a single-line LiDAR, which measures almost nothing when "
+                    "stationary; remove it");
   }
   if (!document.has("sensor.capture")) sensor.capture = sim::Capture::moving;
   if (!document.has("sensor.frame_period")) sensor.frame_period = sim::scanner_period;
@@ -463,7 +463,8 @@ MissionSetup read_mission(const std::filesystem::path& file,
             (has_target(document)
                  ? ", or plan with --use-prior-as-truth, which uses the targets as ground truth"
                  : "") +
-            ". A mission without a scene is a live survey: skycap next, serve and finish");
+            ". A mission without a scene is a live survey, which requires skycap next, serve and "
+            "finish");
   }
   return resolve(std::move(document), report);
 }

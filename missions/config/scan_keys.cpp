@@ -25,7 +25,8 @@ std::vector<Key> orbit_keys() {
       number_key("scan.orbit.max_height", "m", between(-1e4, 1e4), orbit(&Orbit::max_height),
                  "Height of the last circle."),
       integer_key("scan.orbit.circles", "", between(1, 1000), orbit(&Orbit::circles),
-                  "Number of circles, evenly spaced in height; a single one is the lowest."),
+                  "Number of circles, evenly spaced in height. A single circle is at the height of "
+                  "the first circle."),
       number_key("scan.orbit.speed", "m/s", above(0, 100), orbit(&Orbit::speed),
                  "Speed along the circles and the climbs between them."),
       angle_key("scan.orbit.start_deg", between(-360, 360), orbit(&Orbit::start),
@@ -64,9 +65,10 @@ std::vector<Key> source_keys() {
       text_key("scan.sensor", scan(&scan::ScanFlightOptions::sensor),
                "Sensor of skycap scan: a preset of sim/sensors/presets, or the path of a sensor "
                "file (NAME.yaml), relative to the mission file."),
-      otherwise("the orbit below",
-                text_key("scan.route", scan(&scan::ScanFlightOptions::route),
-                         "Route file to fly, relative to the mission file; the same as --route.")),
+      otherwise(
+          "the orbit below",
+          text_key("scan.route", scan(&scan::ScanFlightOptions::route),
+                   "Route file to fly, relative to the mission file; equivalent to --route.")),
   };
 }
 
@@ -77,7 +79,7 @@ std::vector<Key> platform_keys() {
                  "in the zone of the site, which requires a georeference. Heights are above the "
                  "EGM96 geoid if site.geoid_undulation is known, otherwise above the ellipsoid."),
       number_key("scan.speed", "m/s", above(0, 100), scan(&scan::ScanFlightOptions::speed),
-                 "Speed along a route whose file has no times."),
+                 "Speed along a route whose file contains no times."),
       vector_key("scan.mount.position", "m", between(-10, 10),
                  scan(&scan::ScanFlightOptions::mount_position),
                  "Position of the sensor in the platform frame (x forward, y left, z up)."),

@@ -10,8 +10,8 @@ namespace {
 Key copies_key() {
   Key key = key_for(
       "scene.copies", KeyType::vectors, [](auto& m) -> auto& { return m.scene.copies; },
-      "Copies of the model, each [east, north, turn_deg]: metres from position, and a rotation "
-      "anticlockwise about the vertical.");
+      "Copies of the model, each [east, north, turn_deg]: offset from position in metres and "
+      "anticlockwise rotation about the vertical axis.");
   key.range = between(-1e6, 1e6);
   const auto turned = [](const KeyValue& value, double factor) {
     auto copies = std::get<std::vector<Eigen::Vector3d>>(value);
@@ -31,7 +31,8 @@ Key detail_key() {
   Key key = choice_key(
       "scene.detail", {"coarse", "standard", "fine"},
       [](auto& m) -> auto& { return m.scene.detail; },
-      "Level of detail of a builtin model: the same shape with more and smaller triangles.");
+      "Level of detail of a builtin model. Finer levels have the same shape with more, smaller "
+      "triangles.");
   key.get = [get = key.get](const MissionDocument& mission) -> std::optional<KeyValue> {
     if (!mission.scene.model.starts_with("builtin:")) return std::nullopt;
     return get(mission);
@@ -57,10 +58,10 @@ Key drawn_key() {
 Key model_key() {
   Key key = text_key(
       "scene.model", [](auto& m) -> auto& { return m.scene.model; },
-      "Scene to survey: builtin:NAME, model:NAME, the path of a PLY, OBJ, STL or OFF file relative "
-      "to the mission file, or a tile list NAME.tiles (docs/reference/batch-files.md). prior: the "
-      "targets in the prior data, used as ground truth. A mission without a scene is a live survey "
-      "(docs/howto/use-your-own-sensor.md).");
+      "Scene to survey: builtin:NAME, model:NAME, a PLY, OBJ, STL or OFF file, or a tile list "
+      "NAME.tiles (docs/reference/batch-files.md). File paths are relative to the mission file. "
+      "prior: the targets in the prior data, used as ground truth. A mission without a scene is a "
+      "live survey (docs/howto/use-your-own-sensor.md).");
   key.fallback = "none";
   key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     if (mission.scene.model.empty()) return std::nullopt;
@@ -78,7 +79,7 @@ std::vector<Key> general_keys() {
                                        "Name of the mission and of its results folder.")),
       integer_key(
           "seed", "", between(0, 1e15), [](auto& m) -> auto& { return m.seed; },
-          "Random seed of the start view and the sensor noise. The same seed gives the same "
+          "Random seed of the start view and the sensor noise. The same seed produces the same "
           "results."),
       integer_key(
           "threads", "", between(0, 1024), [](auto& m) -> auto& { return m.threads; },
@@ -110,7 +111,7 @@ std::vector<Key> scene_keys() {
       vector_key(
           "scene.position", "m", between(-1e6, 1e6),
           [](auto& m) -> auto& { return m.scene.position; },
-          "Position of the centre of the base of the model's bounding box."),
+          "Position of the base centre of the model's bounding box."),
       copies_key(),
       boolean_key(
           "scene.ground", [](auto& m) -> auto& { return m.scene.ground; },

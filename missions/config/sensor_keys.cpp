@@ -32,10 +32,10 @@ Key lidar_key() {
       "-", text_key(
                "sensor.lidar", [](auto& m) -> auto& { return m.sensor.lidar; },
                "Laser scanner instead of a depth camera: a preset of sim/sensors/presets, or the "
-               "path of a sensor file (NAME.yaml), relative to the mission file. With a vehicle it "
-               "measures all the way, mounted as in scan.mount. Without one it stops at each view "
-               "for one revolution or half a second. A single-line LiDAR requires a vehicle. Of "
-               "the section sensor only capture and frame_period apply."));
+               "path of a sensor file (NAME.yaml), relative to the mission file. With a vehicle, "
+               "it measures along the whole route, mounted as in scan.mount. Without a vehicle, it "
+               "stops at each view for one revolution or half a second. A single-line LiDAR "
+               "requires a vehicle. Only capture and frame_period of the section sensor apply."));
 }
 
 }  // namespace
@@ -45,9 +45,9 @@ std::vector<Key> sensor_keys() {
       choice_key(
           "sensor.preset", {"d435", "high_resolution"},
           [](auto& m) -> auto& { return m.sensor.preset; },
-          "Depth camera whose values the keys below override. d435: Intel RealSense D435 (848 x "
-          "480 pixels, 69.4 x 42.5 degrees). high_resolution: camera of the paper for buildings "
-          "(2400 x 1750 pixels, 60 x 40 degrees)."),
+          "Depth camera preset whose values the keys below override. d435: Intel RealSense D435 "
+          "(848 x 480 pixels, 69.4 x 42.5 degrees). high_resolution: camera of the paper for "
+          "buildings (2400 x 1750 pixels, 60 x 40 degrees)."),
       lidar_key(),
       integer_key("sensor.width", "px", between(1, 32768), image(&geometry::CameraConfig::width),
                   "Image width."),
@@ -65,13 +65,13 @@ std::vector<Key> sensor_keys() {
       angle_key(
           "sensor.max_incidence_deg", above(0, 90),
           [](auto& m) -> auto& { return m.sensor.options.camera.max_incidence; },
-          "Maximum angle of incidence: surfaces with a larger angle between normal and ray give no "
-          "return. 90: no limit."),
+          "Maximum angle of incidence: surfaces with a larger angle between normal and ray produce "
+          "no return. 90: no limit."),
       number_key(
           "sensor.exposure", "s", between(0, 10),
           [](auto& m) -> auto& { return m.sensor.options.shutter.exposure; },
-          "Exposure time of an image. A flown view lasts at least as long as exposure and readout; "
-          "the summary states the motion blur."),
+          "Exposure time of an image. A flown view takes at least the exposure plus the readout "
+          "time; the summary states the motion blur."),
       number_key(
           "sensor.readout", "s", between(0, 10),
           [](auto& m) -> auto& { return m.sensor.options.shutter.readout; },
@@ -84,8 +84,8 @@ std::vector<Key> sensor_keys() {
       choice_key(
           "sensor.capture", {"stops", "moving"},
           [](auto& m) -> auto& { return m.sensor.options.capture; },
-          "Capture of a flown survey. stops: at views only. moving: also en route between views; "
-          "requires a vehicle and the planner skycap."),
+          "Capture mode of a flown survey. stops: at views only. moving: also en route between "
+          "views; requires a vehicle and the planner skycap."),
       frame_period_key(),
       number_key("sensor.noise.sigma", "m", between(0, 1e3), noise(&sim::NoiseConfig::sigma),
                  "Standard deviation of the Gaussian noise of the measured points."),

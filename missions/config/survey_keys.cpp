@@ -14,9 +14,9 @@ std::vector<Key> start_keys() {
       otherwise("random", vector_key(
                               "start.position", "m", between(-1e6, 1e6),
                               [](auto& m) -> auto& { return m.start.position; },
-                              "Position of the first view. Random: in a direction drawn from the "
-                              "seed, at the view distance plus the surface's mean distance from "
-                              "its centroid, looking at the centroid.")),
+                              "Position of the first view. Random: in a direction derived from the "
+                              "seed, at the view distance plus the mean distance of the surface "
+                              "from its centroid, looking at the centroid.")),
       otherwise("-", vector_key(
                          "start.look_at", "m", between(-1e6, 1e6),
                          [](auto& m) -> auto& { return m.start.look_at; },
@@ -33,12 +33,12 @@ std::vector<Key> limits_keys() {
       integer_key(
           "limits.max_views", "", between(1, 1e6),
           [](auto& m) -> auto& { return m.limits.options.max_views; }, "Maximum number of views."),
-      otherwise("unlimited",
-                number_key(
-                    "limits.max_distance", "m", above(0, 1e9),
-                    [](auto& m) -> auto& { return m.limits.options.max_distance; },
-                    "Maximum length of the survey, as the sum of straight lines between views.")),
-      otherwise("with a vehicle flight.clearance + 0.01, with ground 0, otherwise unlimited",
+      otherwise("unlimited", number_key(
+                                 "limits.max_distance", "m", above(0, 1e9),
+                                 [](auto& m) -> auto& { return m.limits.options.max_distance; },
+                                 "Maximum length of the survey, as the sum of the straight-line "
+                                 "distances between views.")),
+      otherwise("with a vehicle: flight.clearance + 0.01; with ground: 0; otherwise unlimited",
                 number_key(
                     "limits.ground_clearance", "m", between(-1e6, 1e6),
                     [](auto& m) -> auto& { return m.limits.ground_clearance; },
@@ -46,8 +46,8 @@ std::vector<Key> limits_keys() {
       number_key(
           "limits.stand_off", "m", between(0, 1e4),
           [](auto& m) -> auto& { return m.limits.min_standoff; },
-          "Minimum distance from a view to any measured surface. With the planner skycap, inside "
-          "planner.scene_box, also to unknown space."),
+          "Minimum distance from a view to any measured surface. With the planner skycap, it also "
+          "applies to unknown space inside planner.scene_box."),
       angle_key(
           "limits.min_pitch_deg", between(-right_angle, right_angle),
           [](auto& m) -> auto& { return m.limits.min_pitch; },
@@ -59,7 +59,7 @@ std::vector<Key> limits_keys() {
                 number_key(
                     "limits.max_minutes", "min", above(0),
                     [](auto& m) -> auto& { return m.limits.max_minutes; },
-                    "Maximum duration of the survey, computed with the two keys below.")),
+                    "Maximum duration of the survey, computed from the two keys below.")),
       number_key(
           "limits.speed", "m/s", above(0, 1e3),
           [](auto& m) -> auto& { return m.limits.options.speed; },
@@ -81,45 +81,45 @@ std::vector<Key> evaluation_keys() {
       integer_key(
           "evaluation.samples", "", between(100, 1e7),
           [](auto& m) -> auto& { return m.evaluation.samples; },
-          "Number of samples, evenly spread over the surface, used to measure coverage."),
+          "Number of samples, evenly distributed over the surface, used to measure coverage."),
       integer_key(
           "evaluation.visible_directions", "", between(1, 1e4),
           [](auto& m) -> auto& { return m.evaluation.visible_directions; },
-          "Number of directions on the sphere from which visibility of a sample at the view "
-          "distance is tested. A sample without a free direction is not visible surface."),
+          "Number of directions in which the visibility of a sample from the view distance is "
+          "tested. A sample without an unoccluded direction is not visible surface."),
       integer_key(
           "evaluation.attainable_views", "", between(0, 1e4),
           [](auto& m) -> auto& { return m.evaluation.attainable_views; },
           "Number of views used to compute the attainable coverage; 0: not computed."),
-      otherwise("with a vehicle flight.clearance, otherwise limits.stand_off",
+      otherwise("with a vehicle: flight.clearance; otherwise limits.stand_off",
                 number_key(
                     "evaluation.passage_radius", "m", between(0, 1e3),
                     [](auto& m) -> auto& { return m.evaluation.radius; },
-                    "Radius of the sphere that must fit through a passage for a place behind it to "
-                    "count as reachable. 0: any gap is passable.")),
+                    "Radius of the sphere that must fit through a passage for the space behind it "
+                    "to count as reachable. 0: any gap is passable.")),
   };
 }
 
 std::vector<Key> paper_keys() {
   const std::string tables_row =
-      "Table 1 of the SEE++ paper for a mission with that name, otherwise -";
+      "from Table 1 of the SEE++ paper for a mission of that name, otherwise -";
   return {
       otherwise(tables_row,
                 number_key(
                     "paper.views", "", above(0), [](auto& m) -> auto& { return m.paper.views; },
-                    "Number of views in the publication, printed beside the results of trials.")),
+                    "Published number of views, printed next to the results of trials.")),
       otherwise(tables_row, number_key(
                                 "paper.coverage", "share", between(0, 1),
                                 [](auto& m) -> auto& { return m.paper.coverage; },
-                                "Coverage in the publication.")),
+                                "Published coverage of a survey.")),
       otherwise(tables_row, number_key(
                                 "paper.planning_time", "s", above(0),
                                 [](auto& m) -> auto& { return m.paper.planning_time; },
-                                "Planning time of a survey in the publication.")),
+                                "Published planning time of a survey.")),
       otherwise(tables_row, number_key(
                                 "paper.distance", "m", above(0),
                                 [](auto& m) -> auto& { return m.paper.distance; },
-                                "Path length in the publication.")),
+                                "Published path length of a survey.")),
   };
 }
 

@@ -137,7 +137,7 @@ class VehicleReader {
     std::optional<support::YamlSection> section = part("wpml");
     if (!section) {
       if (vehicle_.wpml.drone <= 0)
-        root_.fail_at("wpml", "is missing; vehicles of DJI require their codes");
+        root_.fail_at("wpml", "is missing; DJI vehicles require their product codes");
       return;
     }
     flight::WpmlCodes& codes = vehicle_.wpml;
@@ -146,7 +146,7 @@ class VehicleReader {
     codes.drone_variant = section->integer("drone_variant", codes.drone_variant);
     codes.payload = section->integer("payload", codes.payload);
     section->finish();
-    if (codes.drone <= 0) root_.fail_at("wpml", "must contain DJI's number of the drone");
+    if (codes.drone <= 0) root_.fail_at("wpml", "must contain the DJI product number of the drone");
   }
 
   support::YamlSection& root_;

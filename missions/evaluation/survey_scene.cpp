@@ -180,9 +180,9 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
     if (!reachable().is_empty()) return *start;
     throw Error(
         ErrorKind::bad_config,
-        "start.position is inside the model, or enclosed by it: a sphere of radius " +
+        "start.position is inside the model or enclosed by it: a sphere with a radius of " +
             metres_text(radius_ + reachable().cell()) +
-            " m does not fit through any opening; move it, or lower evaluation.passage_radius");
+            " m does not fit through any opening; move it or lower evaluation.passage_radius");
   }
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;
@@ -197,7 +197,7 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
     }
   }
   throw Error(ErrorKind::bad_config,
-              "no random start at the view distance of " + metres_text(view_distance_) +
+              "no random start view at the view distance of " + metres_text(view_distance_) +
                   " m satisfies limits.ground_clearance, the gimbal's pitch limits, "
                   "evaluation.passage_radius, the "
                   "site and flight.unknown_box; relax them or set start.position");

@@ -147,8 +147,8 @@ flight::FleetSplit share(flight::FleetGoal goal, flight::VerifiedCosts& costs,
   }
   if (!split.parts.empty()) return split;
   throw Error(ErrorKind::bad_config,
-              "the views cannot be distributed over flight.vehicles: too many of them are "
-              "unreachable for one of the vehicles");
+              "the views cannot be distributed over flight.vehicles: at least one of the vehicles "
+              "cannot reach enough of them");
 }
 
 void stage_fleet(const std::string& name, FleetMission& fleet,
@@ -171,7 +171,7 @@ void stage_fleet(const std::string& name, FleetMission& fleet,
     std::string reason;
     for (const std::string& note : fleet.members[row.vehicle].files.notes) reason += "; " + note;
     throw Error(ErrorKind::bad_config, "vehicle " + std::to_string(row.vehicle + 1) +
-                                           " of the fleet has no " + row.file + reason);
+                                           " of the fleet lacks the file " + row.file + reason);
   }
   folder.write(timetable_name, timetable_csv(fleet.timetable));
 }

@@ -50,8 +50,8 @@ std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
       fleet.members.size(), fleet.makespan / 60.0, fleet.total_flight_time / 60.0);
   if (is_verbose) {
     text += fmt::format(
-        "            above the lower bounds on legs like these by {:.1f}% and {:.1f}%, on any legs "
-        "by {:.1f}% and {:.1f}%\n",
+        "            excess over the lower bounds: {:.1f}% and {:.1f}% with similar legs, {:.1f}% "
+        "and {:.1f}% with any legs\n",
         gap(fleet.makespan, fleet.bound.makespan),
         gap(fleet.total_flight_time, fleet.bound.total_flight_time),
         gap(fleet.makespan, fleet.lower_bound.makespan),
@@ -67,7 +67,7 @@ std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
                     fmt::format("vehicle {}", row.vehicle + 1), row.start, row.landing, row.file);
   }
   for (const flight::Unreached& missed : fleet.unreached) {
-    text += fmt::format("  skipped   view {}, by the fleet: {}\n", missed.capture_point.view_index,
+    text += fmt::format("  skipped   view {} (by the fleet): {}\n", missed.capture_point.view_index,
                         missed.reason);
   }
   return text;

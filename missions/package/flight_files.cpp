@@ -101,7 +101,7 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
   const flight::AutopilotType autopilot = plan.vehicle.autopilot;
   const std::vector<flight::Parameter> read = flight::read_parameters(text);
   flight::throw_first(flight::return_problems(read, autopilot),
-                      "the return parameters are not those that were verified");
+                      "the return parameters differ from the verified ones");
   if (flight::return_height(read, autopilot) != plan.returns->height) {
     throw Error(ErrorKind::bad_file, "the parameters do not contain the verified return altitude");
   }
@@ -186,7 +186,7 @@ class RouteFiles {
       const bool is_fly_through = options_.style == flight::FlightStyle::pass;
       notes.push_back(stem_ + info.extension + " stops " +
                       (is_fly_through ? "at every view and " : "") +
-                      "in every corner: the format cannot define curves");
+                      "in every corner, because the format cannot define curves");
     }
     const auto corners = supports_curves ? flight::Corners::rounded : flight::Corners::stopped_in;
     flight::FlightPlan plan = adapt_to_autopilot(

@@ -76,7 +76,9 @@ std::string survey_flight_text(const flight::FlightOptions& options,
       text += fmt::format(", rolling-shutter skew up to {:.2f} px", bounds.shear_px);
     text += fmt::format(" at {:.1f} m", bounds.distance);
     if (!bounds.is_sharp()) text += ": more than one pixel; shorten sensor.exposure";
-    text += "\n            the exported mission captures at its views only, and covers less";
+    text +=
+        "\n"
+        "            the exported mission captures at its views only and covers less";
   }
   return text + "\n";
 }

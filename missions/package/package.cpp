@@ -51,8 +51,8 @@ Json parse_summary(const std::string& text, const std::string& name) {
   use_current_fields(summary);
   if (summary.is_object()) return summary;
   fail(name,
-       "is not a package's summary: not JSON, or nested too deep; give the folder of a mission "
-       "package");
+       "is not the summary of a package (not JSON or nested too deeply); specify the folder of a "
+       "mission package");
 }
 
 /// Returns the path to a view from its entry in the summary of a flown survey.
@@ -105,7 +105,7 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
                              flown_paths(flight_record), flight_record.landing_surfaces, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
     const flight::Unreached& first = flight.route.unreached.front();
-    throw Error(ErrorKind::bad_config, "no view can be part of the flight; view " +
+    throw Error(ErrorKind::bad_config, "no view can be included in the flight; view " +
                                            std::to_string(first.capture_point.view_index) + ": " +
                                            first.reason);
   }
@@ -130,7 +130,7 @@ void attempt(SurveyMission& flight, Work work) {
   try {
     work();
   } catch (const Interrupted&) {
-    flight.failure = "interrupted; skycap export creates it";
+    flight.failure = "interrupted; run skycap export to create it";
   } catch (const Error& error) {
     flight.failure = error.what();
   }

@@ -68,13 +68,14 @@ std::vector<std::string> ardupilot_steps(const Part& part) {
     const double height = part.route.returns->height;
     steps.push_back("Load " + parameters +
                     " into the autopilot (Mission Planner or QGroundControl: load parameters from "
-                    "file). Restart the autopilot if the station asks for it.");
+                    "file). Restart the autopilot if the ground station requests it.");
     steps.push_back(fmt::format(
         "Read back the return altitude: RTL_ALT {:.0f} cm or RTL_ALT_M {} m above take-off ({}), "
         "and RTL_CONE_SLOPE 0.",
         100.0 * height, flight::return_altitude_text(height), verified));
-    steps.push_back("Set BATT_CAPACITY, BATT_LOW_MAH and BATT_CRT_MAH as the comments in " +
-                    parameters + " state.");
+    steps.push_back(
+        "Set BATT_CAPACITY, BATT_LOW_MAH and BATT_CRT_MAH according to the comments in " +
+        parameters + ".");
   }
   const std::string plan = join_names(part.files, ".plan");
   const std::string waypoints = join_names(part.files, ".waypoints");
@@ -95,7 +96,7 @@ std::vector<std::string> px4_steps(const Part& part) {
   if (!parameters.empty()) {
     steps.push_back("Load " + parameters +
                     " in QGroundControl (Vehicle Setup, Parameters, Tools, Load from file). "
-                    "Restart the autopilot if the station asks for it.");
+                    "Restart the autopilot if the ground station requests it.");
     steps.push_back(fmt::format(
         "Read back the return altitude: RTL_RETURN_ALT {} m above take-off ({}), and RTL_CONE_ANG "
         "0.",
@@ -145,9 +146,11 @@ std::vector<std::string> pilot_steps(const Part& part) {
   }
   steps.push_back("Take off at " + takeoff_text(part) + ".");
   if (part.route.vehicle.autopilot == AutopilotType::dji) {
-    steps.back() += " Check that the home point is there.";
+    steps.back() += " Check that the home point is at this position.";
   } else {
-    steps.back() += " After arming, check that home is within 2 m of it: returns end at home.";
+    steps.back() +=
+        " After arming, check that the home position is within 2 m of this point; returns end at "
+        "home.";
   }
   return steps;
 }
@@ -164,8 +167,8 @@ std::string part_text(const Part& part, const std::string& whom) {
 /// Lists the limits of the verification that the pilot must check.
 std::string limits_text(const flight::FlightOptions& options, const SurveyMission& flight) {
   std::string text =
-      "Not verified; the pilot must check: moving obstacles, landings at other places than the "
-      "take-off point";
+      "Not verified; the pilot must check: moving obstacles, landings other than at the take-off "
+      "point";
   const bool has_rally =
       flight.route.options.returns && !flight.route.options.returns->rally.empty();
   if (has_rally) text += " and the rally points";

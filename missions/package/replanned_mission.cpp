@@ -152,13 +152,12 @@ std::optional<CapturePlan> replanned_capture_points(const Json& json, const std:
 
 std::string replanned_text(const ReplannedMission& mission) {
   const package::MissionChoice& choice = mission.choice;
-  std::string text = choice.is_replanned
-                         ? "  replanned " + figures_text(choice.replanned) +
-                               "; survey views: " + figures_text(choice.survey)
-                         : "  replanned no faster plan found than the survey views: " +
-                               figures_text(choice.survey);
+  std::string text = choice.is_replanned ? "  replanned " + figures_text(choice.replanned) +
+                                               "; survey views: " + figures_text(choice.survey)
+                                         : "  replanned no plan is faster than the survey views: " +
+                                               figures_text(choice.survey);
   text += "\n  coverage  " + percent(choice.replanned.predicted_coverage) +
-          " predicted of the measured surface, survey views " +
+          " of the measured surface predicted; survey views: " +
           percent(choice.survey.predicted_coverage);
   if (mission.again) text += "; " + again_text(*mission.again);
   if (mission.survey_again) text += "; survey views: " + again_text(*mission.survey_again);

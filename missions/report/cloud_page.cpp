@@ -79,7 +79,7 @@ std::string mission_page(const std::string& name, const session::SurveyOptions& 
                          const std::optional<Eigen::Vector3d>& pad) {
   const Json data = {{"kind", "mission"},
                      {"title", name},
-                     {"facts", {scene.model, "not yet measured: the model of the simulation"}},
+                     {"facts", {scene.model, "model of the simulation, not yet measured"}},
                      {"scene", scene_outline(survey, scene, pad)}};
   return page_text(name, data, {{"model", encode_cloud(surface, {}, default_report_points)}});
 }

@@ -24,8 +24,8 @@ Verdict district_verdict(const Json& summary) {
     const auto views = flight.at("views").get<std::size_t>();
     const auto visited = flight.at("views_flown").get<std::size_t>();
     verdict.lights = {
-        {"views in the flight of " + std::to_string(views), "flight.views_flown", "count", visited,
-         visited == views ? "green" : "amber", "green: all of them"},
+        {"views in the flight, out of " + std::to_string(views), "flight.views_flown", "count",
+         visited, visited == views ? "green" : "amber", "green: all of them"},
         {"minimum clearance (verified)", "flight.min_clearance_m", "metres",
          flight.at("min_clearance_m"), "green", "green: every leg keeps the required clearance"},
         {"sorties", "flight.sorties", "count", flight.at("sorties"), "none", ""},

@@ -31,8 +31,8 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
     names += (names.empty() ? "" : ", ") + page.results;
   }
   throw Error(ErrorKind::bad_file, folder.string() +
-                                       ": contains no results; give a folder written by plan, "
-                                       "scan, benchmark or finish, with one of " +
+                                       ": contains no results; specify a folder written by plan, "
+                                       "scan, benchmark or finish that contains one of " +
                                        names);
 }
 
@@ -77,8 +77,8 @@ std::vector<MadePage> made_pages(const fs::path& folder, std::size_t max_points,
   if (found.empty()) reject_folder(folder);
   if (out && found.size() > 1) {
     throw Error(ErrorKind::bad_usage, folder.string() +
-                                          ": contains several reports; remove --out, or move one "
-                                          "of the results to a folder of its own");
+                                          ": contains several reports; remove --out or move one of "
+                                          "the results to a separate folder");
   }
   std::vector<MadePage> pages;
   pages.reserve(found.size());

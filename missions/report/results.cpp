@@ -32,10 +32,9 @@ Json read_results(const fs::path& file) {
   Json json = geometry::parse_json<Json>(results_text(file));
   package::use_current_fields(json);
   if (json.is_object()) return json;
-  throw Error(
-      ErrorKind::bad_file,
-      file.string() +
-          ": is not a JSON object, or nested too deep; give a results folder written by skycap");
+  throw Error(ErrorKind::bad_file, file.string() +
+                                       ": is not a JSON object or is nested too deeply; specify a "
+                                       "results folder written by skycap");
 }
 
 void reject_results(const fs::path& file, std::string_view reason) {

@@ -141,7 +141,7 @@ std::string live_page(const std::string& summary_text, const session::SurveyOpti
   const bool goes_on = next.view.has_value();
   shown["answer"] = goes_on ? "running" : "over";
   shown["because"] = support::counted(so_far.views.size(), "scan") + " so far" +
-                     (goes_on ? "" : "; skycap finish writes the package");
+                     (goes_on ? "" : "; run skycap finish to write the package");
   shown["light"] = "none";
   const auto name = summary.at("mission").get<std::string>();
   const Json data = {{"kind", "survey"},

@@ -47,7 +47,7 @@ void add_coverage(const Json& summary, std::vector<Light>& lights) {
     lights.push_back(
         coverage("Coverage of visible surface (ground truth)", "coverage_visible", visible));
   } else if (const Json all = at(summary, "/coverage"); all.is_number()) {
-    lights.push_back({"Coverage of all surface (ground truth)", "coverage", "share", all});
+    lights.push_back({"Coverage of the whole surface (ground truth)", "coverage", "share", all});
   }
 }
 

@@ -10,7 +10,7 @@ namespace skycap::missions::scan {
 void CoordinateGrid::validate() const {
   if (!(scale > 0.0 && std::isfinite(scale))) {
     throw Error(ErrorKind::bad_config,
-                "scale is " + std::to_string(scale) + "; it must be above zero");
+                "scale is " + std::to_string(scale) + "; it must be a finite number above zero");
   }
   if (!offset.allFinite()) throw Error(ErrorKind::bad_config, "offset is not finite");
 }
@@ -20,7 +20,7 @@ Eigen::AlignedBox3d CoordinateGrid::bounds(const Eigen::AlignedBox3d& units) con
   if (!(units.min().array() >= -max).all() || !(units.max().array() <= max).all()) {
     throw Error(ErrorKind::bad_geometry,
                 "a point is more than " + std::to_string(max * scale) +
-                    " m from the file's offset; set an offset near the scene");
+                    " m from the coordinate offset of the file; set an offset near the scene");
   }
   Eigen::AlignedBox3d written;
   for (const Eigen::Vector3d& corner : {units.min(), units.max()}) {

@@ -81,7 +81,7 @@ void LasConfig::validate() const {
           "las.point_format is " + std::to_string(point_format) + "; it must be 6 or 7");
   grid.validate();
   require(grid.crs_wkt.size() < 65535, "las.crs_wkt is " + std::to_string(grid.crs_wkt.size()) +
-                                           " bytes long; a record holds 65534");
+                                           " bytes long; the maximum is 65534");
 }
 
 std::shared_ptr<const CloudFormat> las_format(const LasConfig& config) {

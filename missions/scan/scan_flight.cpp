@@ -94,12 +94,11 @@ void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& ground_t
   const double duration = ground_truth.end() - ground_truth.start();
   const double firings = duration / lidar.config().firing_period;
   if (firings <= max_firings) return;
-  throw Error(ErrorKind::bad_config, "scan: the route takes " + support::short_text(duration) +
-                                         " s, in which the sensor's " + "firing period of " +
-                                         support::short_text(lidar.config().firing_period) +
-                                         " s results in " + support::short_text(firings) +
-                                         " firings; at most " + support::short_text(max_firings) +
-                                         " can be simulated");
+  throw Error(ErrorKind::bad_config,
+              "scan: the route takes " + support::short_text(duration) + " s; the sensor's " +
+                  "firing period of " + support::short_text(lidar.config().firing_period) +
+                  " s results in " + support::short_text(firings) + " firings; at most " +
+                  support::short_text(max_firings) + " can be simulated");
 }
 
 }  // namespace skycap::missions::scan

@@ -66,7 +66,7 @@ void ScanJournal::begin(const std::string& identity) {
   close();
   std::error_code failure;
   fs::create_directories(folder_, failure);
-  require_success(failure, folder_, "cannot be made");
+  require_success(failure, folder_, "cannot be created");
   geometry::sync_to_disk(folder_.parent_path());
   log_.emplace(file_);
   log_->append(identity);

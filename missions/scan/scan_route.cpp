@@ -79,7 +79,7 @@ std::vector<View> parse_views(const std::string& text) {
     if (!numbers) throw Error(ErrorKind::bad_file, problems.front());
     const Vector3d direction((*numbers)[3], (*numbers)[4], (*numbers)[5]);
     if (direction.norm() < 1e-6) {
-      throw Error(ErrorKind::bad_file, location + " has a direction of zero length");
+      throw Error(ErrorKind::bad_file, location + " has a direction vector of zero length");
     }
     views.push_back(
         {Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]), direction.normalized()});
@@ -147,7 +147,7 @@ std::vector<std::filesystem::path> sorties_in(const std::filesystem::path& folde
     throw Error(ErrorKind::bad_file,
                 folder.string() +
                     ": contains a flight, but no mission.csv; export one (skycap export " +
-                    folder.string() + " --format csv), and use that file");
+                    folder.string() + " --format csv) and use that file");
   }
   return files;
 }
@@ -230,10 +230,10 @@ sim::Trajectory orbit_trajectory(const OrbitOptions& orbit) {
   constexpr double max_poses = 3e6;  // 16 hours.
   if (!(duration / interval <= max_poses)) {
     throw Error(ErrorKind::bad_config,
-                "scan.orbit.speed: these circles take " + support::short_text(duration) +
+                "scan.orbit.speed: these circles require " + support::short_text(duration) +
                     " s and " + support::short_text(duration / interval) +
                     " poses; the maximum is " + support::short_text(max_poses) +
-                    "; fly faster, or fewer or smaller circles");
+                    "; raise the speed, or fly fewer or smaller circles");
   }
   std::vector<sim::StampedPose> poses;
   double time = 0.0;

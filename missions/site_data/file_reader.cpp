@@ -173,7 +173,7 @@ struct Opened {
 Opened open_file(const fs::path& file, Role role) {
   std::error_code failure;
   if (!fs::is_regular_file(file, failure))
-    fail_file(file, "does not exist, or is not a regular file");
+    fail_file(file, "does not exist or is not a regular file");
   const std::string beginning = read_head(file);
   const bool is_streamed = starts_with_any(beginning, {"LASF", "ASTM-E57"});
   if (!is_streamed && fs::file_size(file, failure) > max_bytes) {

@@ -248,11 +248,11 @@ std::string make_note(const Lattice& lattice, const Gaps& gaps, double plane_z) 
     cells += gap.cells;
   }
   std::string note = fmt::format(
-      "outside the terrain files the ground is assumed to be the plane z = {:.2f} m", plane_z);
+      "outside the terrain files, the ground is assumed to be the plane z = {:.2f} m", plane_z);
   if (holes > 0) {
     note += fmt::format(
-        "; {} holes of {:.0f} m^2 in them are assumed to be as high as the highest ground beside "
-        "each",
+        "; {} holes of {:.0f} m^2 in them are assumed to be as high as the highest ground around "
+        "them",
         holes, static_cast<double>(cells) * lattice.cell_area());
   }
   return note;
@@ -265,7 +265,7 @@ UnknownGround::UnknownGround(const std::vector<flight::PriorObstacleConfig>& ter
     : plane_z_(plane_z) {
   const Lattice lattice(terrain);
   const Gaps gaps(lattice);
-  obstacle_.name = "the ground where the terrain is unknown";
+  obstacle_.name = "the ground in unknown terrain";
   obstacle_.is_ground = true;
   for (const flight::PriorObstacleConfig& part : terrain) {
     obstacle_.uncertainty = std::max(obstacle_.uncertainty, part.uncertainty);

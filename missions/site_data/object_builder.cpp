@@ -94,7 +94,7 @@ double ObjectBuilder::compute_height(const FileObject& object) const {
   if (!object.height_problem.empty()) {
     throw Error(ErrorKind::bad_config, name + one_line(object.id) + " " +
                                            one_line(object.height_problem) +
-                                           "; correct it, or exclude the object with select");
+                                           "; correct it or exclude the object with select");
   }
   std::optional<double> height = source_.height ? source_.height : object.height;
   // Obstacles get the maximum of all stated heights.
@@ -118,8 +118,8 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
   if (!(height > min)) {
     throw Error(ErrorKind::bad_config, source_.file.string() + ": the height of " +
                                            one_line(object.id) + ", " + std::to_string(height) +
-                                           " m, must be above its base, " + std::to_string(min) +
-                                           " m");
+                                           " m, must be greater than that of its base, " +
+                                           std::to_string(min) + " m");
   }
   has_extruded_ = true;
   Rings bottom = make_rings(object), top = bottom;
@@ -149,9 +149,9 @@ void ObjectBuilder::add_draped(const FileObject& object, Object& result) {
     if (notes_.empty()) {
       notes_.emplace_back(
           is_obstacle
-              ? "unknown terrain there: extruded polygons extend 100 m below the assumed ground "
+              ? "unknown terrain below some polygons: they extend 100 m below the assumed ground "
                 "plane"
-              : "unknown terrain there: extruded polygons extend to the assumed ground plane");
+              : "unknown terrain below some polygons: they extend to the assumed ground plane");
     }
   }
   Rings bottom = top;
@@ -192,9 +192,9 @@ void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, d
   } else if (has_heights) {
     for (const Vector3d& corner : bottom.corners) base = std::min(base, corner.z());
   } else {
-    throw Error(
-        ErrorKind::bad_config,
-        source_.file.string() + ": outlines without a base; set base to a height or to terrain");
+    throw Error(ErrorKind::bad_config,
+                source_.file.string() +
+                    ": the outlines have no base height; set base to a height or to terrain");
   }
   for (Vector3d& corner : bottom.corners) corner.z() = base + min / unit;
   for (Vector3d& corner : top.corners) corner.z() = base + max / unit;
@@ -211,7 +211,7 @@ void ObjectBuilder::place_on_terrain(Rings& bottom, Rings& top, double min, doub
   const double base = ground_below(bottom.corners);
   if (!std::isfinite(base)) {
     throw Error(ErrorKind::bad_config,
-                source_.file.string() + ": an outline stands where the terrain is unknown");
+                source_.file.string() + ": an outline is located on unknown terrain");
   }
   top.corners = bottom.corners;
   for (Vector3d& corner : bottom.corners) corner.z() = base + min;

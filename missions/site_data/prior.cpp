@@ -78,10 +78,10 @@ double add_objects(const Source& source, const SiteFrame& site, const FileConten
     prior.notes.insert(prior.notes.end(), notes.begin(), notes.end());
   }
   if (outside > 0)
-    prior.notes.push_back(std::to_string(outside) + " objects outside within ignored");
+    prior.notes.push_back(std::to_string(outside) + " objects ignored (outside select.within)");
   if (without_level > 0) {
     prior.notes.push_back(std::to_string(without_level) +
-                          " objects without surfaces of that lod ignored");
+                          " objects ignored (no surfaces of this lod)");
   }
   if (builder.has_extruded()) prior.uncertainty = 1.0;
   return builder.transform().substitution_error();
@@ -133,12 +133,12 @@ void drop_impossible_heights(const Source& source, const SiteTransform& transfor
   const std::string example = fmt::format("{:.6g} m", first);
   if (kept == 0) {
     throw Error(ErrorKind::bad_config, source.file.string() +
-                                           ": heights must be from -500 to 9000 m; one is " +
-                                           example + "; set unit, or correct its heights");
+                                           ": heights must be from -500 to 9000 m; one height is " +
+                                           example + "; set unit or correct the heights");
   }
   prior.notes.push_back(std::to_string(dropped) +
-                        " cells without ground ignored: heights such as " + example +
-                        " are not from -500 to 9000 m");
+                        " cells without valid ground height ignored: heights such as " + example +
+                        " are outside -500 to 9000 m");
 }
 
 void add_grid(FileContents& contents, const SiteTransform& transform, const Region& region,
@@ -221,9 +221,9 @@ void note_flat_objects(const Source& source, Prior& prior) {
   const auto count = std::ranges::count_if(prior.objects, is_nothing);
   if (count == 0) return;
   if (count == std::ssize(prior.objects) && prior.points.empty() && prior.grid.nodes.empty()) {
-    fail_file(source.file, "contains no surface with an area");
+    fail_file(source.file, "contains no surface with a positive area");
   }
-  prior.notes.push_back(std::to_string(count) + " objects without an area are ignored");
+  prior.notes.push_back(std::to_string(count) + " objects ignored (no surface area)");
 }
 
 /// Throws unless the file contains the data that its role requires.
@@ -232,7 +232,7 @@ void require_use(const Source& source, const Prior& prior) {
     throw Error(ErrorKind::bad_config, source.file.string() + ": " + what);
   };
   if (source.role == Role::target && prior.objects.empty()) {
-    reject("contains no surfaces of objects; a target requires them. Use role: obstacle");
+    reject("contains no object surfaces; a target requires them. Use role: obstacle");
   }
   const auto is_surface = [](const Object& object) { return has_area(object.mesh); };
   if (source.role == Role::terrain && prior.points.empty() && prior.grid.nodes.empty() &&
@@ -318,7 +318,7 @@ flight::GeodeticPoint compute_centre(const Source& source, const FileContents& c
     if (!first) first = pose.x();
     box.extend(Vector2d(*first + std::remainder(pose.x() - *first, 360.0), pose.y()));
   }
-  if (box.isEmpty()) fail_file(source.file, "contains nothing with a geographic position");
+  if (box.isEmpty()) fail_file(source.file, "contains no data with a geographic position");
   return {box.center().y(), std::remainder(box.center().x(), 360.0), 0.0};
 }
 

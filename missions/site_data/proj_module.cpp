@@ -197,8 +197,8 @@ System make_reference_system(PJ_CONTEXT* context, const std::string& crs) {
   if (!is_known()) {
     const std::string likely = likely_name(crs);
     fail("PROJ does not know " + quoted + "; " +
-         (likely.empty() ? std::string("set crs to its name in PROJ")
-                         : "set crs: " + likely + " if that is meant"));
+         (likely.empty() ? std::string("set crs to its PROJ name")
+                         : "set crs: " + likely + " if this system is intended"));
   }
   ObjectPtr plain = unbound(context, ObjectPtr(proj_clone(context, system.whole.get())));
   if (proj_get_type(plain.get()) == PJ_TYPE_COMPOUND_CRS) {
@@ -226,7 +226,7 @@ System make_reference_system(PJ_CONTEXT* context, const std::string& crs) {
 
 std::string substitute(const char* standing, const std::string& what, const Operation& operation) {
   return std::string(standing) + " is used instead of " + what +
-         "; its accuracy by PROJ: " + stated(operation.accuracy);
+         "; accuracy according to PROJ: " + stated(operation.accuracy);
 }
 
 /// Applies the vertical datum `vertical` instead of that of the system.
@@ -242,7 +242,7 @@ void add_stated_heights(Chain& chain, const OperationFinder& finder,
   if (!operation.object || !operation.is_best) {
     throw Error(ErrorKind::bad_file, "PROJ's EGM96 grid is not installed (proj-data)");
   }
-  result.notes.push_back("heights above the geoid refer to EGM96; its accuracy by PROJ: " +
+  result.notes.push_back("heights above the geoid refer to EGM96; accuracy according to PROJ: " +
                          stated(operation.accuracy));
   result.substitution_error += std::max(0.0, operation.accuracy);
   chain.height = std::move(operation.object);

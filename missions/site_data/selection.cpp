@@ -21,7 +21,7 @@ Indices lineage(const Source& source, const FileContents& contents, std::size_t 
     result.push_back(*parent);
     if (result.size() > deepest) {
       fail_file(source.file, "has the object " + contents.objects[object].id +
-                                 ", which contains itself or is nested deeper than 64 levels");
+                                 ", which contains itself or is nested more than 64 levels deep");
     }
   }
   return result;
@@ -142,7 +142,7 @@ void reject_unused(const Source& source, const FileContents& contents) {
       {"uncertainty", source.uncertainty.has_value(), has_uncertainty_in_use,
        "data other than ground truth"},
       {"vertical", source.vertical.has_value(), !is_on_terrain,
-       "heights, but these outlines stand on the terrain"},
+       "data with heights; these outlines stand on the terrain"},
   }};
   for (const KeyUse& use : uses) {
     if (!use.is_set || use.is_used) continue;

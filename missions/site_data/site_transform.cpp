@@ -61,13 +61,13 @@ SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
       const Vector3d& some =
           contents.nodes.empty() ? contents.corners.front() : contents.nodes.front();
       throw Error(ErrorKind::bad_config,
-                  file_.string() + ": missing coordinate reference system, and its coordinates (" +
+                  file_.string() + ": missing coordinate reference system; the coordinates (" +
                       decimal(some.x(), 4) + ", " + decimal(some.y(), 4) +
-                      ") may be degrees; set crs: EPSG:4326, or place if they are metres");
+                      ") may be degrees; set crs: EPSG:4326, or set place if they are in metres");
     }
     prepare_pose(source, contents);
     if (!source.pose && !contents.is_local_frame) {
-      notes_.push_back("missing coordinate reference system: the mission frame is assumed");
+      notes_.push_back("missing coordinate reference system; the mission frame is assumed");
     }
   } else {
     prepare_crs(source, contents, site);
@@ -86,12 +86,12 @@ void SiteTransform::prepare_pose(const Source& source, const FileContents& conte
   require_unit(source, contents);
   if (!source.crs.empty()) {
     throw Error(ErrorKind::bad_config,
-                file_.string() + ": place conflicts with crs; keep one of them");
+                file_.string() + ": place conflicts with crs; remove one of them");
   }
   if (source.vertical) {
     throw Error(ErrorKind::bad_config, file_.string() +
                                            ": vertical requires a coordinate reference system; "
-                                           "without one heights are z in the mission frame");
+                                           "without one, heights are z in the mission frame");
   }
   const SourcePose pose = source.pose.value_or(SourcePose{});
   const double unit = source.unit.value_or(contents.unit.value_or(1.0));
@@ -139,7 +139,7 @@ void SiteTransform::prepare_crs(const Source& source, const FileContents& conten
 void SiteTransform::prepare_units(const Source& source, const FileContents& contents) {
   if (!geodetic_->has_own_heights) require_unit(source, contents);
   if (contents.unit && !contents.is_scene && *contents.unit != 1.0) {
-    notes_.push_back("its linear unit is not applied: crs defines the unit");
+    notes_.push_back("its linear unit is not applied, because crs defines the unit");
   }
   if (source.unit && geodetic_->has_own_heights && !contents.is_scene) {
     throw Error(ErrorKind::bad_config, file_.string() + ": unit conflicts with " + name_ +
@@ -156,7 +156,7 @@ void SiteTransform::prepare_units(const Source& source, const FileContents& cont
   }
   if (needs_heights_ && across != 1.0 && !source.unit && up == across) {
     notes_.push_back("heights are read in units of " + decimal(across, 6) +
-                     " m, as the map; set unit to change it");
+                     " m, like the map coordinates; set unit to change this");
   }
   base_transform_ =
       Eigen::Translation3d(source.offset) *
@@ -229,7 +229,7 @@ void SiteTransform::reject(const Vector3d& coordinate, const Vector3d& pose) con
           farthest_from_site;
   throw Error(ErrorKind::bad_config,
               message + (is_swapped ? "; the axes may be swapped: east must come first"
-                                    : "; check crs and the site's position"));
+                                    : "; check crs and the position of the site"));
 }
 
 }  // namespace skycap::missions::site_data

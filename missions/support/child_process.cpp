@@ -129,7 +129,7 @@ void ChildProcess::fail_by_end() {
   const int status = wait();
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
     fail("timeout: " + context_.library + " took more than " + std::to_string(context_.seconds) +
-         " s, too long for an intact file of its size");
+         " s, which is too long for an intact file of this size");
   }
   fail("is damaged: " + context_.library + " stopped while reading it");
 }

@@ -29,7 +29,7 @@ void require_same_format(const std::string& file, const Json& found, const Json&
   throw Error(ErrorKind::bad_file,
               file + ": was written by version " +
                   (theirs.is_string() ? theirs.get<std::string>() : "(unknown)") +
-                  ", whose journals this version cannot continue; " + cure);
+                  ", whose journals cannot be resumed by this version; " + cure);
 }
 
 }  // namespace

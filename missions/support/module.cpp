@@ -51,8 +51,8 @@ void* module_symbol(const std::string& module, const std::string& function) {
   void* const symbol = handle != nullptr ? ::dlsym(handle, function.c_str()) : nullptr;
   if (symbol == nullptr) {
     throw Error(ErrorKind::bad_file,
-                path + ": cannot load this part of the program (" + ::dlerror() +
-                    "); put it beside the program, or set $SKYCAP_PLUGINS to its folder");
+                path + ": cannot load this program module (" + ::dlerror() +
+                    "); copy it to the program's folder, or set $SKYCAP_PLUGINS to its folder");
   }
   return symbol;
 }

@@ -14,7 +14,7 @@ YamlNode parse_map(const std::string& text, const std::string& name, const std::
   YamlNode root = parse_yaml(text, name);
   if (root.kind == YamlNode::Kind::map) return root;
   throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) + ": is not a map; " +
-                                         what + " is a list of 'key: value'");
+                                         what + " must consist of 'key: value' lines");
 }
 
 YamlSection::YamlSection(const YamlNode& node, std::string path, const std::string& file)

@@ -83,12 +83,14 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void reject_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
     if (anchor == YAML::NullAnchor) return;
-    fail(line_number(mark), "anchors ('&name') are not supported in mission files; remove it");
+    fail(line_number(mark),
+         "anchors ('&name') are not supported in mission files; remove the anchor");
   }
 
   void reject_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?") return;
-    fail(line_number(mark), "tags ('" + tag + "') are not supported in mission files; remove it");
+    fail(line_number(mark),
+         "tags ('" + tag + "') are not supported in mission files; remove the tag");
   }
 
   void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -97,7 +99,7 @@ class TreeBuilder final : public YAML::EventHandler {
     reject_tag(mark, tag);
     if (open_.size() == deepest_nesting) {
       fail(line_number(mark),
-           "lists and maps are nested deeper than 16 levels; a mission file needs 3");
+           "lists and maps are nested more than 16 levels deep; a mission file requires 3");
     }
     open_.push_back({node_at(mark, kind), false, {}});
   }
@@ -124,12 +126,12 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void add_key(const YamlNode& key) {
-    if (key.kind != YamlNode::Kind::scalar) fail(key.line, "a key must be a plain word");
+    if (key.kind != YamlNode::Kind::scalar) fail(key.line, "a key must be a plain scalar");
     constexpr std::size_t longest = 1000;
     if (key.text.size() > longest) fail(key.line, "a key has more than 1000 characters");
     const auto [same, is_new] = open_.back().lines.emplace(key.text, key.line);
     if (!is_new) {
-      fail(key.line, "key " + key.text + " is given twice, first in line " +
+      fail(key.line, "key " + key.text + " is set twice, first in line " +
                          std::to_string(same->second) + "; keep one");
     }
     open_.back().node.entries.push_back({key.text, key.line, {}});

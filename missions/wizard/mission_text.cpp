@@ -43,9 +43,9 @@ std::string source_text(const Source& source, const std::filesystem::path& missi
 const char* describe_purpose(site_data::Role role) {
   switch (role) {
     case site_data::Role::target:
-      return "what is surveyed; its coverage is reported";
+      return "surveyed object; its coverage is reported";
     case site_data::Role::obstacle:
-      return "avoided by every leg, enlarged by its uncertainty; makes no space free";
+      return "avoided by every leg, enlarged by its uncertainty; does not mark space as free";
     case site_data::Role::terrain:
       return "the ground: legs stay above it, the take-off point is on it";
     case site_data::Role::truth:
@@ -104,8 +104,8 @@ std::string flight_section(const MissionValues& values) {
   }
   if (!corners.empty()) {
     text +=
-        "  # The same for neighbours that are surveyed as well: the corners of each box.\n  "
-        "extra_unknown_boxes: [" +
+        "  # The same for neighbouring targets: the corners of each box.\n"
+        "  extra_unknown_boxes: [" +
         corners + "]\n";
   }
   return text;
@@ -143,11 +143,13 @@ double sensor_range(const MissionValues& values) { return 4.0 * values.view_dist
 std::string mission_text(const MissionValues& values) {
   const std::string name = values.file.stem().string();
   return fmt::format(
-             "# First mission, proposed by `{}`. It runs as it is. Values that the files do not "
-             "contain are\n# estimates: check every line before you fly. `skycap check` prints "
-             "what the files contain.\nname: {}  # of the results\n# Simulation: {} the ground "
-             "truth. Remove `scene` for a live survey.\nscene: {{model: prior, ground: "
-             "true{}{}}}\n",
+             "# First mission, proposed by `{}`. It can be run unchanged. Values that the files do "
+             "not contain are\n"
+             "# estimates: check every line before you fly. `skycap check` prints what the files "
+             "contain.\n"
+             "name: {}  # of the results\n"
+             "# Simulation: {} the ground truth. Remove `scene` for a live survey.\n"
+             "scene: {{model: prior, ground: true{}{}}}\n",
              values.command, yaml_quoted(name),
              values.sees_neighbours ? "the target and its neighbours are" : "the target is",
              values.sees_neighbours ? ", neighbours: true" : "",

@@ -22,7 +22,7 @@ struct MissionValues {
   std::string vehicle;
   std::vector<site_data::Source> sources;
   flight::GeodeticPoint origin;
-  std::string origin_is = "the centre of the target, at its lowest point";
+  std::string origin_is = "the base centre of the target";
   double ground = 0.0;           ///< z of the ground if the sources contain none [m]
   bool sees_neighbours = false;  ///< whether the dry run simulates measurements of other sources
   Eigen::AlignedBox3d unknown;   ///< box in which unobserved space is occupied

@@ -93,8 +93,8 @@ std::string propose_mission(const SiteRequest& request, const std::filesystem::p
                        .find_pad_beside(values.unknown, compute_max_climb_altitude(values));
   if (!pad) {
     throw Error(ErrorKind::bad_config, request.map.string() +
-                                           ": no take-off point within 100 m of the target is "
-                                           "free, level and even; exclude obstacles with select");
+                                           ": no free, level and even take-off point within 100 m "
+                                           "of the target; exclude obstacles with select");
   }
   return mission_text(with_pad(std::move(values), *pad));
 }

@@ -141,8 +141,9 @@ float fill_boxes(const RoundedMesh& mesh, std::size_t first, std::span<RTCBuildP
     const AlignedBox3f box = mesh.box(first + i);
     const float reach = compute_extent(box);
     if (!std::isfinite(reach)) {
-      throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(first + i) +
-                                               " has a coordinate that is beyond single precision");
+      throw Error(ErrorKind::bad_geometry,
+                  "triangle " + std::to_string(first + i) +
+                      " has a coordinate outside the single-precision range");
     }
     extent = std::max(extent, reach);
     boxes[i] = build_primitive(box, first + i);

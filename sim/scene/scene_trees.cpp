@@ -147,7 +147,7 @@ Scene SceneBuilder::finish() {
   if (growth_->first_triangle > max) {
     throw Error(ErrorKind::bad_geometry,
                 "the scene's copies have " + std::to_string(growth_->first_triangle) +
-                    " triangles in all; " + std::to_string(max) + " is the maximum");
+                    " triangles in total; " + std::to_string(max) + " is the maximum");
   }
   Scene::Trees& trees = *growth_->trees;
   if (!trees.copies.empty()) {

@@ -130,8 +130,8 @@ ScannerKind find_scanner_kind(const LidarConfig& lidar) {
   if (!lidar.prisms.empty()) return ScannerKind::rosette;
   if (lidar.rotation_rate == 0.0) {
     throw Error(ErrorKind::bad_config,
-                "a survey requires a scanner that spins or has prisms, such as ouster_os1_128 or "
-                "livox_avia");
+                "a survey requires a spinning scanner or one with prisms, such as ouster_os1_128 "
+                "or livox_avia");
   }
   const auto [min_elevation, max_elevation] = elevations(lidar);
   constexpr double min_spread = 0.01;

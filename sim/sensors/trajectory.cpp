@@ -30,9 +30,9 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
     require_pose(std::isfinite(pose.time) && pose.attitude.coeffs().allFinite(), i,
                  "has a value that is not a finite number");
     geometry::require_valid_position(pose.position, "trajectory pose " + std::to_string(i));
-    require_pose(pose.attitude.norm() > 1e-6, i, "has an attitude of length zero");
+    require_pose(pose.attitude.norm() > 1e-6, i, "has an attitude quaternion of zero length");
     require_pose(i == 0 || pose.time > poses_[i - 1].time, i,
-                 "is not later than the one before it");
+                 "is not later than the previous pose");
     pose.attitude.normalize();
   }
 }

@@ -43,8 +43,8 @@ struct Maker {
     const volumetric::VolumetricSettings& given = config.settings;
     if ((!given.sphere_centre || !given.sphere_radius) && !run.sphere) {
       throw Error(ErrorKind::bad_config,
-                  "the planner requires volumetric.sphere_centre and volumetric.sphere_radius "
-                  "where there is no model to derive them from; set both");
+                  "the planner requires volumetric.sphere_centre and volumetric.sphere_radius if "
+                  "they cannot be derived from a model; set both");
     }
     config.sphere_centre = given.sphere_centre ? *given.sphere_centre : run.sphere->centre;
     config.sphere_radius = given.sphere_radius ? *given.sphere_radius : run.sphere->radius;

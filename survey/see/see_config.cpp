@@ -42,14 +42,13 @@ void SeeConfig::validate() const {
           static_cast<double>(visibility_update_limit), "at least 1");
   require(std::isfinite(effective_spacing()) && effective_spacing() >= 0.0, "spacing",
           effective_spacing(), "zero or a positive number of metres");
-  require(effective_spacing() < resolution_radius, "spacing", effective_spacing(),
-          "less than resolution_radius, otherwise no point has neighbours (by default it is "
-          "density^(-1/2))");
+  require(
+      effective_spacing() < resolution_radius, "spacing", effective_spacing(),
+      "less than resolution_radius; otherwise no point has neighbours (default: density^(-1/2))");
   require(!view_distance || is_length(*view_distance), "view_distance", view_distance.value_or(0.0),
           length);
   if (scene_box && (scene_box->isEmpty() || !scene_box->diagonal().allFinite())) {
-    throw Error(ErrorKind::bad_config,
-                "scene_box is empty; it must be a box whose minimum is below its maximum");
+    throw Error(ErrorKind::bad_config, "scene_box is empty; its minimum must be below its maximum");
   }
   require(!frame_neighbours || *frame_neighbours >= 3, "frame_neighbours",
           frame_neighbours.value_or(0), "at least 3");
@@ -68,15 +67,16 @@ void SeeConfig::validate() const {
 
   const int k = effective_core_threshold();
   if (core_threshold) {
-    require(k >= 4, "core_threshold", k, "at least 4, otherwise no point can be a frontier");
+    require(k >= 4, "core_threshold", k, "at least 4; otherwise no point can be a frontier");
   } else if (k < 4) {
     std::ostringstream message;
-    message << "density " << density << " and resolution_radius " << resolution_radius
-            << " give a core threshold of " << k
-            << ", which admits no frontier; with this radius the density must be above "
-            << 9.0 / (4.0 * std::numbers::pi * std::pow(resolution_radius, 3))
-            << ", or with this density the radius above "
-            << std::cbrt(9.0 / (4.0 * std::numbers::pi * density));
+    message
+        << "density " << density << " and resolution_radius " << resolution_radius
+        << " result in a core threshold of " << k
+        << ", with which no point can be a frontier; with this radius, the density must be above "
+        << 9.0 / (4.0 * std::numbers::pi * std::pow(resolution_radius, 3))
+        << ", or with this density, the radius must be above "
+        << std::cbrt(9.0 / (4.0 * std::numbers::pi * density));
     throw Error(ErrorKind::bad_config, message.str());
   }
 }

@@ -133,7 +133,7 @@ ScanVoxels::ScanVoxels(const Vector3f& origin, std::span<const Vector3f> returns
   if (voxels > max_voxels) {
     std::ostringstream message;
     message << "a scan spans " << voxels << " voxels of " << resolution
-            << " m; choose a larger planner.resolution_radius, or a smaller sensor.max_range";
+            << " m; raise planner.resolution_radius or lower sensor.max_range";
     throw Error(ErrorKind::bad_config, message.str());
   }
   marks_.resize(static_cast<std::size_t>(voxels));

@@ -22,7 +22,7 @@ void VolumetricConfig::validate() const {
           "zero or a positive number of metres");
   require(is_length(sphere_radius), "sphere_radius", sphere_radius, length);
   require(candidates >= 1, "candidates_per_view", settings.candidates_per_view,
-          "large enough for one candidate");
+          "large enough for at least one candidate");
   require(std::isfinite(settings.cost_weight) && settings.cost_weight >= 0.0, "cost_weight",
           settings.cost_weight, "zero or more");
   require(is_length(ray_depth()), "ray_depth", ray_depth(), length);

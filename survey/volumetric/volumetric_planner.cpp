@@ -53,8 +53,8 @@ std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double
   for (std::size_t attempt = 0; views.size() < count; ++attempt) {
     if (attempt == max_attempts) {
       std::ostringstream message;
-      message << "the candidates' sphere reaches up to " << centre.z() + radius
-              << " m, of which less than a thousandth is above the minimum height of "
+      message << "the top of the candidate sphere is at " << centre.z() + radius
+              << " m; less than a thousandth of the sphere is above the minimum height of "
               << min_height.value_or(0.0) << " m; lower limits.ground_clearance";
       throw Error(ErrorKind::bad_config, message.str());
     }

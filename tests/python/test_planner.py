@@ -147,8 +147,8 @@ class Arrays(SmallMission):
                 ((points, pose, pixels[:-1]), skycap.Error, "each point requires one"),
                 ((points, pose, pixels[::-1]), skycap.Error, "are not ascending"),
                 ((np.zeros((0, 3)), pose), skycap.Error, "no point of the scene"),
-                ((points, pose, pixels.astype(np.int64) + 2**32), ValueError, "integers of 32 bits"),
-                ((points, pose, pixels.astype(np.int64) - 2**31), ValueError, "integers of 32 bits"),
+                ((points, pose, pixels.astype(np.int64) + 2**32), ValueError, "32-bit integers"),
+                ((points, pose, pixels.astype(np.int64) - 2**31), ValueError, "32-bit integers"),
                 ((points, pose, pixels + 0.5), ValueError, "integers"),
                 ((points, far, pixels), skycap.Error, "has a position"),
                 (("points", pose), TypeError, "")):

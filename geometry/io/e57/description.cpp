@@ -115,9 +115,9 @@ Eigen::Isometry3d parse_pose(const pugi::xml_node& pose) {
                                   child_number(rotation, "y"), child_number(rotation, "z"));
     constexpr double tolerance = 0.01;  // tolerance of rounded quaternions
     if (std::abs(turn.norm() - 1.0) > tolerance) {
-      throw_bad_file("has a scan whose rotation is a quaternion of length " +
+      throw_bad_file("has a scan whose rotation quaternion has length " +
                      std::to_string(turn.norm()) +
-                     "; it must be 1: save the scan again with a valid pose, or without one");
+                     "; it must be 1: save the scan again with a valid pose or without a pose");
     }
     file_from_scan.linear() = turn.normalized().toRotationMatrix();
   }
@@ -146,7 +146,7 @@ ScanDescription parse_scan(const pugi::xml_node& node, const pugi::xml_node& poi
     if (field.type() != pugi::node_element) continue;
     scan.fields.push_back(parse_field(field));
     if (scan.fields.size() > max_fields) {
-      throw_bad_file("has records of more than " + std::to_string(max_fields) + " fields");
+      throw_bad_file("has records with more than " + std::to_string(max_fields) + " fields");
     }
   }
   const pugi::xml_node limits = node.child("colorLimits");
@@ -193,11 +193,11 @@ Description parse_description(std::string xml) {
   const pugi::xml_parse_result result = document.load_buffer_inplace(
       xml.data(), xml.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result) {
-    throw_bad_file("has XML that is damaged at its byte " + std::to_string(result.offset) + ": " +
+    throw_bad_file("has damaged XML at byte " + std::to_string(result.offset) + ": " +
                    result.description());
   }
   const pugi::xml_node root = document.child("e57Root");
-  if (!root) throw_bad_file("has XML without the element e57Root");
+  if (!root) throw_bad_file("has no XML element e57Root");
   Description description;
   description.reference_system = trimmed(root.child("coordinateMetadata").text().get());
   for (const pugi::xml_node node : root.child("data3D").children()) {

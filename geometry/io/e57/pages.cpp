@@ -38,15 +38,16 @@ FileHeader parse_file_header(std::string_view beginning, std::uint64_t file_size
   if (!std::has_single_bit(found.page_size) || found.page_size < min_page ||
       found.page_size > largest_page) {
     throw_bad_file("has pages of " + std::to_string(found.page_size) +
-                   " bytes; they must have 1024, or another power of two from 128 to 1048576");
+                   " bytes; the page size must be a power of two from 128 to 1048576");
   }
   if (found.file_size > file_size) {
     throw_bad_file("ends after " + std::to_string(file_size) + " of its " +
                    std::to_string(found.file_size) + " bytes");
   }
   if (found.file_size == 0 || found.file_size % found.page_size != 0) {
-    throw_bad_file("says to have " + std::to_string(found.file_size) +
-                   " bytes; it must have whole pages of " + std::to_string(found.page_size));
+    throw_bad_file("declares " + std::to_string(found.file_size) +
+                   " bytes; its size must be a multiple of the page size, " +
+                   std::to_string(found.page_size));
   }
   return found;
 }
@@ -60,8 +61,8 @@ Pages::Pages(ReadBytes read, const FileHeader& header)
 std::uint64_t Pages::logical(std::uint64_t physical, const std::string& what) const {
   const std::uint64_t page = physical / page_size_, in_page = physical % page_size_;
   if (physical >= file_size_ || in_page >= content_) {
-    throw_bad_file("says that " + what + " is at byte " + std::to_string(physical) + ", which is " +
-                   (physical >= file_size_ ? "after its end" : "in a checksum"));
+    throw_bad_file("declares that " + what + " is at byte " + std::to_string(physical) +
+                   ", which is " + (physical >= file_size_ ? "after its end" : "in a checksum"));
   }
   return page * content_ + in_page;
 }
@@ -93,7 +94,7 @@ void Pages::read_window(std::uint64_t offset) {
     const std::string_view page = pages.substr(begin, page_size_);
     if (crc32c(page.substr(0, content_)) != stored_checksum(page)) {
       window_.clear();
-      throw_bad_file("is damaged: its page at byte " + std::to_string(first + begin) +
+      throw_bad_file("is damaged: the page at byte " + std::to_string(first + begin) +
                      " has a wrong checksum");
     }
     window_ += page.substr(0, content_);

@@ -38,20 +38,20 @@ RecordStream::RecordStream(Pages& pages, const ScanDescription& scan,
       left_(scan.records) {
   for (const std::size_t field : fields) columns_.emplace_back(scan.fields[field].bits());
   const std::uint64_t begin = pages.logical(scan.section, "a scan");
-  if (pages.size() - begin < section::size) throw_bad_file("ends within the header of a scan");
+  if (pages.size() - begin < section::size) throw_bad_file("ends inside a scan header");
   const std::string head = pages.bytes(begin, section::size);
   if (head[section::kind] != section::compressed_vector) {
-    throw_bad_file("has no records" + at(begin) + ", where a scan says to have them");
+    throw_bad_file("has no records" + at(begin) + ", where a scan declares them");
   }
   const auto length = value_at<std::uint64_t>(head.data(), section::length);
   if (length < section::size || length > pages.size() - begin) {
-    throw_bad_file("has a scan" + at(begin) + " that does not end within it");
+    throw_bad_file("has a scan" + at(begin) + " that extends beyond the end of the file");
   }
   end_ = begin + length;
   const std::uint64_t capacity = max_records(scan, length);
   if (scan.records > capacity) {
-    throw_bad_file("says to have " + std::to_string(scan.records) + " points in a scan of " +
-                   std::to_string(length) + " bytes, which is room for " +
+    throw_bad_file("declares " + std::to_string(scan.records) + " points in a scan of " +
+                   std::to_string(length) + " bytes, which has space for at most " +
                    std::to_string(capacity));
   }
   next_packet_ =
@@ -90,12 +90,12 @@ void RecordStream::read_packet() {
       std::size_t{value_at<std::uint16_t>(head.data(), packet::size_less_one)} + 1;
   if (size % packet::min_size != 0 || size > end_ - next_packet_) {
     throw_bad_file("has a packet" + at(next_packet_) + " of " + std::to_string(size) +
-                   " bytes; it must be a multiple of 4, and end within its scan");
+                   " bytes; its size must be a multiple of 4, and it must end inside its scan");
   }
   const auto kind = value_at<std::uint8_t>(head.data(), packet::kind);
   if (kind > packet::empty) {
     throw_bad_file("has a packet" + at(next_packet_) + " of kind " + std::to_string(kind) +
-                   "; there are kinds 0, 1 and 2");
+                   "; valid kinds are 0, 1 and 2");
   }
   if (kind == packet::data) read_streams(pages_->bytes(next_packet_, size), next_packet_);
   next_packet_ += size;
@@ -105,8 +105,9 @@ void RecordStream::read_streams(std::string_view packet, std::uint64_t offset) {
   const std::size_t streams = scan_->fields.size();
   const std::size_t begin = packet::lengths + 2 * streams;
   if (packet.size() < begin || value_at<std::uint16_t>(packet.data(), packet::streams) != streams) {
-    throw_bad_file("has a packet" + at(offset) + " without a stream for each of the " +
-                   std::to_string(streams) + " fields");
+    throw_bad_file("has a packet" + at(offset) +
+                   " that does not contain one stream for each of the " + std::to_string(streams) +
+                   " fields");
   }
   std::vector<std::size_t> begins{begin};  // offsets of the streams and of their end
   for (std::size_t i = 0; i < streams; ++i) {
@@ -114,7 +115,7 @@ void RecordStream::read_streams(std::string_view packet, std::uint64_t offset) {
                      value_at<std::uint16_t>(packet.data(), packet::lengths + 2 * i));
   }
   if (begins.back() > packet.size()) {
-    throw_bad_file("has a packet" + at(offset) + " whose streams are longer than it is");
+    throw_bad_file("has a packet" + at(offset) + " whose streams are longer than the packet");
   }
   // In valid files, the values of a record are in the same packet or in the next one.
   constexpr std::size_t max_pending = 16 << 20;

@@ -11,7 +11,7 @@ constexpr std::uint32_t max_count =
 constexpr std::uint32_t max_count_bits = 1 << 13;
 
 [[noreturn]] void reject_value() {
-  throw_bad_file("has compressed points that are damaged: their bytes decode to nothing");
+  throw_bad_file("has damaged compressed points: their bytes cannot be decoded");
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ void ByteWindow::take(char* bytes, std::size_t count) {
 
 ByteWindow ByteWindow::part(std::uint64_t begin, std::uint64_t count) const {
   if (begin > end_ || count > end_ - begin) {
-    throw_bad_file("has compressed points that are damaged: the part at byte " +
-                   std::to_string(begin) + " does not end within its chunk");
+    throw_bad_file("has damaged compressed points: the section at byte " + std::to_string(begin) +
+                   " extends beyond its chunk");
   }
   return {*read_, begin, begin + count};
 }
@@ -26,8 +26,8 @@ void ByteWindow::read_chunk() {
   position_ = 0;
   if (unread_ < end_) chunk_ = (*read_)(unread_, std::min(max_chunk_bytes, end_ - unread_));
   if (chunk_.empty()) {
-    throw_bad_file("has compressed points that are damaged: their bytes end at byte " +
-                   std::to_string(unread_) + ", within a point");
+    throw_bad_file("has damaged compressed points: the data end at byte " +
+                   std::to_string(unread_) + ", inside a point");
   }
   unread_ += chunk_.size();
 }

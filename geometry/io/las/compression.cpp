@@ -36,7 +36,7 @@ std::vector<Item> standard_items(int format, std::size_t point_size) {
 constexpr std::size_t compressor_offset = 0, coder_offset = 2, chunk_size_offset = 12,
                       item_count_offset = 32, items_offset = 34, item_size = 6;
 
-constexpr std::string_view damaged = "has a record of its compression that is damaged: ";
+constexpr std::string_view damaged = "has a damaged LAZ record: ";
 
 }  // namespace
 
@@ -51,10 +51,9 @@ Compression parse_compression(std::string_view record, int format, std::size_t p
   const bool is_layered = format >= 6;
   const int compressor = number(compressor_offset), expected = is_layered ? 3 : 2;
   if (compressor != expected || number(coder_offset) != 0) {
-    throw_bad_file("is compressed by method " + std::to_string(compressor) +
-                   " of LAZ; points of format " + std::to_string(format) +
-                   " can be read if compressed by method " + std::to_string(expected) +
-                   ": compress it again, for example with laszip");
+    throw_bad_file("is compressed by LAZ method " + std::to_string(compressor) +
+                   "; points of format " + std::to_string(format) + " require method " +
+                   std::to_string(expected) + "; compress it again, for example with laszip");
   }
   std::vector<Item> items;
   int version = is_layered ? 3 : 2;
@@ -64,17 +63,16 @@ Compression parse_compression(std::string_view record, int format, std::size_t p
     const int found = number(offset + 4);
     if (is_layered && i == 0 && found == 4) version = 4;
     if (found == version) continue;
-    throw_bad_file("is compressed by version " + std::to_string(found) +
-                   " of LAZ's items; points of format " + std::to_string(format) +
-                   " can be read in version " + (is_layered ? "3 or 4" : "2") +
-                   ", all alike: compress it again, for example with laszip");
+    throw_bad_file("has LAZ items of version " + std::to_string(found) + "; points of format " +
+                   std::to_string(format) + " require version " + (is_layered ? "3 or 4" : "2") +
+                   " for all items; compress it again, for example with laszip");
   }
   if (items != standard_items(format, point_size)) {
     throw_bad_file(std::string(damaged) + "LAZ items do not match point format " +
                    std::to_string(format) + " and " + std::to_string(point_size) + " bytes");
   }
   const auto chunk_size = value_at<std::uint32_t>(record.data(), chunk_size_offset);
-  if (chunk_size == 0) throw_bad_file(std::string(damaged) + "its chunks have no points");
+  if (chunk_size == 0) throw_bad_file(std::string(damaged) + "its chunk size is zero");
   return {.version = version, .chunk_size = chunk_size};
 }
 
@@ -90,19 +88,20 @@ ChunkTable::ChunkTable(const ReadBytes& read, std::uint64_t file_size, std::uint
   constexpr std::uint64_t elsewhere = ~std::uint64_t{0};
   if (end_ == elsewhere) end_ = offset_at(file_size - sizeof(std::uint64_t));
   if (end_ < begin_ || end_ > file_size) {
-    throw_bad_file("has no table of its compressed chunks: byte " + std::to_string(end_) +
-                   ", where it says that one is, is not behind its points");
+    throw_bad_file("has no chunk table: byte " + std::to_string(end_) +
+                   ", its declared offset, is not after the points");
   }
   ByteWindow table(read, end_, file_size);
   if (table.value<std::uint32_t>() != 0) {
-    throw_bad_file("has a table of compressed chunks that is damaged: its version is not 0");
+    throw_bad_file("has a damaged chunk table: its version is not 0");
   }
   unread_ = table.value<std::uint32_t>();
   if (unread_ > 0) decoder_ = ArithmeticDecoder(std::move(table));
 }
 
 ChunkTable::Chunk ChunkTable::next() {
-  if (unread_ == 0) throw_bad_file("has fewer chunks of compressed points than points ask for");
+  if (unread_ == 0)
+    throw_bad_file("has fewer compressed chunks than its number of points requires");
   --unread_;
   if (compression_.has_various_chunks()) {
     last_points_ = numbers_.read(decoder_, last_points_, 0);
@@ -111,9 +110,8 @@ ChunkTable::Chunk ChunkTable::next() {
   }
   last_size_ = numbers_.read(decoder_, last_size_, 1);
   if (last_size_ > end_ - begin_) {
-    throw_bad_file("has a table of compressed chunks that is damaged: a chunk of " +
-                   std::to_string(last_size_) + " bytes at byte " + std::to_string(begin_) +
-                   " does not end before the table");
+    throw_bad_file("has a damaged chunk table: a chunk of " + std::to_string(last_size_) +
+                   " bytes at byte " + std::to_string(begin_) + " extends into the table");
   }
   begin_ += last_size_;
   return {.begin = begin_ - last_size_, .end = begin_, .points = last_points_};

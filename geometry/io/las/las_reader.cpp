@@ -28,12 +28,11 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
   const bool has_waveforms = format == 4 || format == 5 || format == 9 || format == 10;
   if (major != 1 || minor > 4 || format > 10 || (is_compressed && has_waveforms)) {
     fail_cloud(
-        path,
-        "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
-            " with points of format " + std::to_string(format) +
-            (is_compressed ? ", compressed (LAZ)" : "") +
-            "; only LAS 1.0 to 1.4 with points of format 0 to 10 can be read, and compressed ones "
-            "of format 0 to 3 and 6 to 8: convert it, for example with `pdal translate` or laszip");
+        path, "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
+                  " with points of format " + std::to_string(format) +
+                  (is_compressed ? ", compressed (LAZ)" : "") +
+                  "; supported are LAS 1.0 to 1.4 with point formats 0 to 10, or 0 to 3 and 6 to 8 "
+                  "if compressed. Convert the file, for example with `pdal translate` or laszip");
   }
   const std::size_t size = minor == 4 ? las::header::end : las::header::old_end;
   if (beginning.size() < size) fail_cloud(path, "ends within the header");
@@ -79,11 +78,11 @@ LasHeader parse_header(const std::filesystem::path& path, std::string_view begin
   }
   if (!header.scale.allFinite() || !(header.scale.array() > 0.0).all() ||
       !header.offset.allFinite()) {
-    fail_cloud(path, "has a scale or an offset of coordinates that is not a valid number");
+    fail_cloud(path, "has a coordinate scale or offset that is not a valid number");
   }
   const std::size_t header_end = header.minor == 4 ? las::header::end : las::header::old_end;
   if (header.first_point < header_end) {
-    fail_cloud(path, "says that its points begin within its header");
+    fail_cloud(path, "has a point offset inside its header");
   }
   const std::uint64_t available_bytes =
       file_size < header.first_point ? 0 : file_size - header.first_point;
@@ -215,8 +214,7 @@ std::string LasReader::compression_record() {
     if (id == las::compression_id && user.starts_with(las::compression_user)) record = content;
     return !record;
   });
-  if (!record)
-    fail_cloud(file_->path(), "is compressed (LAZ), but the record of its compression is missing");
+  if (!record) fail_cloud(file_->path(), "is compressed (LAZ), but the LAZ record is missing");
   return *record;
 }
 

@@ -36,7 +36,7 @@ std::uint64_t TimeDecoder::read(ArithmeticDecoder& decoder) {
       return sequences_[current_].time;
     }
   }
-  throw_bad_file("has compressed points that are damaged: a time belongs to no sequence");
+  throw_bad_file("has damaged compressed points: a time stamp does not belong to any sequence");
 }
 
 bool TimeDecoder::read_first_step(ArithmeticDecoder& decoder) {

@@ -109,7 +109,7 @@ PlyProperty parse_property(TextScanner& scanner) {
   if (type == "list") {
     property.count_type = parse_type(scanner, scanner.word_in_line());
     if (!is_integer(*property.count_type)) {
-      scanner.fail("the length of a list must be of an integer type");
+      scanner.fail("the length of a list must have an integer type");
     }
     type = scanner.word_in_line();
   }
@@ -185,7 +185,7 @@ void PlyReader::fail(const std::string& what) const {
 void PlyReader::read_header() {
   TextScanner scanner(name_, bytes_);
   if (scanner.word_in_line() != "ply") {
-    scanner.fail("a PLY file begins with a line 'ply'; this one does not");
+    scanner.fail("the first line of a PLY file must be 'ply'");
   }
   bool has_format = false;
   while (true) {
@@ -220,7 +220,7 @@ void PlyReader::read_header() {
                    "obj_info or end_header");
     }
   }
-  if (!has_format) scanner.fail("the header must have a line 'format ...'");
+  if (!has_format) scanner.fail("the header must contain a line 'format ...'");
   const std::size_t end = bytes_.size() - scanner.remaining();
   scanner.next_line();
   at_ = bytes_.size() - scanner.remaining();

@@ -83,7 +83,7 @@ class TextScanner {
   [[noreturn]] void fail_on_word(std::string_view word, std::string_view what) const {
     const std::string quoted = "'" + std::string(word.substr(0, 40)) + "'";
     if (has_decimal_comma(word)) {
-      fail(quoted + " has a comma for the decimal point; write numbers with points");
+      fail(quoted + " has a decimal comma; use decimal points");
     }
     fail(quoted + " is found where " + std::string(what) + " is expected");
   }

@@ -545,26 +545,46 @@ std::string all_trials_csv(const std::vector<BenchmarkCell>& cells, Times times)
 
 std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::string& title,
                             Times times) {
-  std::string text =
-      "# " + title +
-      "\n\nMeans over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width "
-      "of the 95% interval of the mean, sd the standard deviation over the trials. × is the ratio "
-      "to the paper. Definitions: docs/howto/compare-planners.md.\n\n## Table 1\n\n" +
-      table_1(cells, times);
+  std::string text = "# " + title +
+                     "\n"
+                     "\n"
+                     "Means over the trials, with the values of the SEE++ paper (100 trials) in "
+                     "brackets. The symbol ± precedes the half width of the 95% confidence "
+                     "interval of the mean, and × precedes the ratio to the paper. sd: standard "
+                     "deviation over the trials. Definitions: docs/howto/compare-planners.md.\n"
+                     "\n"
+                     "## Table 1\n"
+                     "\n" +
+                     table_1(cells, times);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {
     text += "\n### " + mission + "\n\n" + details(cells, mission, times);
     const std::string reach = reach_table(cells, mission, times);
     if (!reach.empty())
-      text += "\nUntil a coverage is reached; × is the ratio to the whole survey:\n\n" + reach;
+      text +=
+          "\n"
+          "Effort until a coverage is reached. The symbol × precedes the ratio to the complete "
+          "survey:\n"
+          "\n" +
+          reach;
   }
   const auto has_standard_see = [](const BenchmarkCell& cell) {
     return is_standard_model(cell.mission) && paper_view_result(cell.planner) &&
            !cell.trials.empty();
   };
   if (std::ranges::any_of(cells, has_standard_see)) {
-    text += "\n## Table 2\n\nPer view, over the standard models.\n\n" + table_2(cells) +
-            "\n## Figure 6\n\nTarget frontiers of views, until one was observed.\n\n" +
-            figure_6(cells);
+    text +=
+        "\n"
+        "## Table 2\n"
+        "\n"
+        "Means per view over the standard models.\n"
+        "\n" +
+        table_2(cells) +
+        "\n"
+        "## Figure 6\n"
+        "\n"
+        "Effort until the target frontier of a view was observed.\n"
+        "\n" +
+        figure_6(cells);
   }
   return text;
 }

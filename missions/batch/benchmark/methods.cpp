@@ -64,7 +64,7 @@ std::vector<const Method*> methods_by_name(const std::vector<std::string>& names
   for (const std::string& name : names) {
     if (name == "all" || find_method(name)) continue;
     throw Error(ErrorKind::bad_usage,
-                "unknown planner '" + name + "'; expected all or some of " + known);
+                "unknown planner '" + name + "'; expected all or names from " + known);
   }
   return chosen;
 }

@@ -73,7 +73,7 @@ class CampaignReader {
       const std::string title = mission_title(path);
       if (!is_plain(title)) {
         root_.fail_at("missions",
-                      path + " has a name that cannot be used in tables; " + plain_names);
+                      path + " must have a name that can be used in tables; " + plain_names);
       }
       const auto [known, is_new] = paths_by_title.emplace(title, path);
       if (is_new) continue;
@@ -119,7 +119,7 @@ class CampaignReader {
                                               const std::string& path) const {
     static const FollowingKeys following{
         {"name", "seed", "threads", "planner.name"},
-        "the campaign; set its own name, planners, seeds or first_seed"};
+        "the campaign; set name, planners, seeds or first_seed of the campaign instead"};
     return key_changes(entries, path, file_, following);
   }
 
@@ -129,8 +129,10 @@ class CampaignReader {
                          static_cast<double>(std::max<std::size_t>(1, campaign_.planners.size())) *
                          static_cast<double>(campaign_.seeds);
     if (items <= static_cast<double>(max_items)) return;
-    root_.fail_at("missions", "together with variants, planners and seeds more than " +
-                                  std::to_string(max_items) + " runs; use fewer");
+    root_.fail_at(
+        "missions",
+        "multiplied by the variants, planners and seeds, the number of runs exceeds the limit of " +
+            std::to_string(max_items) + " runs; use fewer");
   }
 
   YamlSection root_;

@@ -154,7 +154,7 @@ std::string started(const Words& command, const std::stop_token& stop,
   const support::ProgramResult result = support::run_external_program(command, ".", stop);
   if (result.exit_code == 127 && result.output.empty()) {
     throw Error(ErrorKind::bad_usage,
-                "unknown program " + command[0] + "; install the scheduler, or use another one");
+                "unknown program " + command[0] + "; install the scheduler or use another one");
   }
   if (result.exit_code != 0 && !stop.stop_requested()) {
     warn(fmt::format("{} ended with {}: {}", command[0], result.exit_code, result.output));
@@ -178,7 +178,7 @@ std::size_t task_index(const std::string& index, const Environment& environment)
   if (engine == engines.end()) return number_in(index, 0, "--index");
   if (const auto task = find_task(*engine, environment)) return *task;
   reject("--index " + index + ": " + engine->variable +
-         " is not set; this is not a task of that scheduler");
+         " is not set; this process is not a task of that scheduler");
 }
 
 ItemRange items_in_task(std::size_t task, std::size_t chunk, std::size_t items) {

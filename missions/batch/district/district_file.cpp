@@ -112,7 +112,7 @@ class DistrictReader {
          "site.latitude_deg", "site.longitude_deg", "site.ellipsoid_height", "site.geofence",
          "flight.vehicle", "flight.vehicles", "flight.takeoff", "flight.rally",
          "flight.unknown_box", "flight.extra_unknown_boxes", "flight.order"},
-        "the district's files, targets, pads, vehicle, planner and seed; set those"};
+        "the district's files, targets, pads, vehicle, planner and seed; set those instead"};
     district_.set = key_changes(root_.entries("set"), "set.", file_, following);
   }
 

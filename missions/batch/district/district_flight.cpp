@@ -135,7 +135,7 @@ class FlightPlanner {
         capture_points_, target_indices_, district_plan_.pads, options.takeoff_climb, motion);
     for (const std::uint32_t i : sorties.unreachable) {
       flight_.capture_points[i].skip_reason =
-          "the flight there and back needs more than one battery, from every take-off point";
+          "the flight to it and back requires more than one battery from every take-off point";
     }
     order_ = sorties.order;
     flight_.order_length = sorties.length;
@@ -277,7 +277,8 @@ SurveyFigures compute_figures(const fs::path& folder, const TrialRecord& record)
     return figures;
   } catch (const nlohmann::json::exception& error) {
     throw Error(ErrorKind::bad_file, file.string() + ": is not a survey's summary (" +
-                                         error.what() + "); remove its folder, and run again");
+                                         error.what() +
+                                         "); remove its folder and run the command again");
   }
 }
 

@@ -357,13 +357,13 @@ class Preparer {
 
   void place_pads() {
     report_progress_(
-        fmt::format("searching for take-off points beside {} targets", values_.size()));
+        fmt::format("searching for take-off points next to {} targets", values_.size()));
     PadChoice choice(district_, draft_.flight(), chosen_.origin, district_plan_.targets);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const auto pad = choice.find_pad(i, wizard::compute_max_climb_altitude(values_[i]));
       if (!pad) {
         district_plan_.targets[i].rejection_reason =
-            "no take-off point within 100 m of it is free, level and even; set pads";
+            "no free, level and even take-off point within 100 m of the target; set pads";
         continue;
       }
       district_plan_.targets[i].pad = *pad;
@@ -530,7 +530,7 @@ DistrictPlan read_district_plan(const fs::path& file) {
     return district_plan;
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::bad_file, file.string() + ": is damaged (" + error.what() +
-                                         "); remove it; skycap district creates it again");
+                                         "); remove it and run skycap district to create it again");
   }
 }
 

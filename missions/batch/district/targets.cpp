@@ -75,8 +75,8 @@ GeodeticPoint compute_origin(const std::vector<AlignedBox3d>& boxes,
   }
   if (!has_terrain && max_height - min_height > max_unevenness) {
     throw Error(ErrorKind::bad_config,
-                fmt::format("{}: the heights of its targets differ by {:.1f} m, and the ground "
-                            "between them is unknown; set terrain, or choose targets within {:g} m",
+                fmt::format("{}: the target heights differ by {:.1f} m, and the ground between the "
+                            "targets is unknown; set terrain or choose targets within {:g} m",
                             map, max_height - min_height, max_unevenness));
   }
   GeodeticPoint origin = frame.to_geodetic(all.center());
@@ -153,7 +153,7 @@ ChosenTargets choose_targets(const DistrictFile& district,
     throw Error(
         ErrorKind::bad_config,
         fmt::format(
-            "{}: key targets leaves none of the {} objects of {}; enlarge the box or the distance",
+            "{}: key targets selects none of the {} objects of {}; enlarge the box or the distance",
             district.file.string(), objects.size(), map));
   }
   std::vector<std::string> sorted = chosen.ids;

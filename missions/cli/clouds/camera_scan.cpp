@@ -28,7 +28,7 @@ std::vector<double> image_times(const scan::ScanRoute& route, double period) {
   if (!(duration / period <= max_images)) {
     throw Error(ErrorKind::bad_config,
                 "scan.frame_period: one image every " + support::short_text(period) +
-                    " s of a flight of " + support::short_text(duration) + " s would be " +
+                    " s of a flight of " + support::short_text(duration) + " s results in " +
                     support::short_text(duration / period) + " images; at most " +
                     support::short_text(max_images) + " are allowed");
   }

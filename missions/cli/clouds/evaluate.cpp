@@ -161,7 +161,8 @@ void print_evaluation(const EvaluateOptions& options, const Truth& truth,
       file.filename().string(), evaluated.points, options.model,
       truth.surroundings.triangles.empty()
           ? ""
-          : fmt::format("; {} more on the ground and on neighbours", evaluated.surroundings),
+          : fmt::format("; {} other points on the ground and on neighbours",
+                        evaluated.surroundings),
       100.0 * evaluated.coverage, truth.registration_distance,
       visible ? fmt::format(", {:.2f}% of the visible surface", 100.0 * *visible) : "",
       accuracy.mean, accuracy.root_mean_square, accuracy.median, accuracy.percentile_95,

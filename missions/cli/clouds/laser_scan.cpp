@@ -97,7 +97,7 @@ std::vector<scan::LaserOutput> output_files(const ScanCommandOptions& options,
   const auto add = [&](const std::string& name, const auto& format, scan::ReturnPosition position) {
     for (const scan::LaserOutput& output : outputs) {
       if (output.name == name) {
-        throw Error(ErrorKind::bad_usage, "--format conflicts: two formats have the file name " +
+        throw Error(ErrorKind::bad_usage, "--format conflicts: two formats use the file name " +
                                               name + "; remove one of them");
       }
     }

@@ -23,11 +23,10 @@ std::string describe_failures(const AimErrors& errors, double arrival) {
                     degrees(aim_tolerance)));
   }
   if (std::abs(errors.pitch - errors.asked_pitch) > aim_tolerance) {
-    add(
-        fmt::format("gimbal pitch {:.1f} degrees instead of {:.1f} (at most {:.0f} off), the "
-                    "vehicle's own pitch {:.1f}",
-                    degrees(errors.pitch), degrees(errors.asked_pitch), degrees(aim_tolerance),
-                    degrees(errors.vehicle_pitch)));
+    add(fmt::format(
+        "gimbal pitch {:.1f} degrees instead of {:.1f} (tolerance {:.0f}), vehicle pitch {:.1f}",
+        degrees(errors.pitch), degrees(errors.asked_pitch), degrees(aim_tolerance),
+        degrees(errors.vehicle_pitch)));
   }
   return text;
 }

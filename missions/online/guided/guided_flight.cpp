@@ -267,7 +267,7 @@ MaybeFailure GuidedFlight::settle(const geometry::View& view) {
     if (link_.now() > end) {
       return rejected("timeout: the camera did not settle at " + position_text(position_) +
                       " on the requested direction: " +
-                      (failures.empty() ? "it did not stay there for flight.hold" : failures));
+                      (failures.empty() ? "it did not remain there for flight.hold" : failures));
     }
   }
   return std::nullopt;
@@ -388,7 +388,7 @@ MaybeFailure GuidedFlight::watch(const flight::Segment& leg) const {
   const double battery = this->battery().value_or(0.0);
   if (battery < battery_needed_) {
     return FlightFailure{FailureKind::battery,
-                         fmt::format("battery at {:.0f}%; the return needs {:.0f}%",
+                         fmt::format("battery at {:.0f}%; the return requires {:.0f}%",
                                      100.0 * battery, 100.0 * battery_needed_)};
   }
   return std::nullopt;

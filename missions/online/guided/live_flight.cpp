@@ -114,11 +114,10 @@ MaybeFailure LiveFlight::check_battery() {
       there + share_for(home_) + share_for({above_pad_, pad_}) + motion_.conditions().reserve;
   const double left = vehicle_.battery().value_or(0.0);
   if (left < there + return_energy) {
-    return FlightFailure{
-        FailureKind::battery,
-        fmt::format(
-            "battery at {:.0f}%; the next view and the return from it, with reserve, need {:.0f}%",
-            100.0 * left, 100.0 * (there + return_energy))};
+    return FlightFailure{FailureKind::battery,
+                         fmt::format("battery at {:.0f}%; the next view and the return from it, "
+                                     "including the reserve, require {:.0f}%",
+                                     100.0 * left, 100.0 * (there + return_energy))};
   }
   vehicle_.need_battery(return_energy);
   return std::nullopt;

@@ -63,8 +63,8 @@ MaybeFailure find_vehicle(mavlink::AutopilotLink& link, double patience,
   const auto late = [&](const mavlink::VehicleState&) {
     return FlightFailure{
         FailureKind::link,
-        fmt::format("timeout: no autopilot was heard for {:.0f} s; check that it sends "
-                    "MAVLink 2 to the address in --connect",
+        fmt::format("timeout: no message from an autopilot for {:.0f} s; check that it "
+                    "sends MAVLink 2 to the address in --connect",
                     patience)};
   };
   if (MaybeFailure failure = wait_until(link, patience, stop, is_heard, late)) return failure;
@@ -98,9 +98,9 @@ MaybeFailure check_pad(const mavlink::VehicleState& state, const FlightFrame& fr
   if (horizontal <= limits.pad_radius && std::abs(off.z()) <= limits.pad_height)
     return std::nullopt;
   return rejected(
-      fmt::format("the vehicle reports a position {:.1f} m beside and {:.1f} m above the take-off "
-                  "point ({:.1f}, {:.1f}, {:.1f}); put it there, or correct flight.takeoff or the "
-                  "site's latitude and longitude",
+      fmt::format("the vehicle reports a position that is {:.1f} m horizontally and {:.1f} m "
+                  "vertically from the take-off point ({:.1f}, {:.1f}, {:.1f}); move the vehicle "
+                  "there, or correct flight.takeoff or the site's latitude and longitude",
                   horizontal, off.z(), pad.x(), pad.y(), pad.z()));
 }
 

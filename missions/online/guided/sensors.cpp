@@ -55,15 +55,16 @@ Sensor folder_sensor(const flight::FlightOptions& flight, const LiveOptions& liv
                      const fs::path& folder, ScanInput input, double patience,
                      std::stop_token stop) {
   if (!fs::is_directory(folder)) {
-    throw Error(ErrorKind::bad_file,
-                folder.string() + ": is not a folder; give the folder that scans are written to");
+    throw Error(
+        ErrorKind::bad_file,
+        folder.string() + ": is not a folder; specify the folder to which scans are written");
   }
   return [flight, live, folder, input = std::move(input), patience, stop = std::move(stop)](
              const geometry::View&, const geometry::View& actual_view, std::size_t number) {
     const std::string name = fmt::format("scan-{:04}", number);
     if (const auto old = scan_in(folder, name)) {
       throw Error(ErrorKind::bad_file,
-                  old->string() + ": existed before the scan was taken; empty the folder");
+                  old->string() + ": already existed before the scan was taken; empty the folder");
     }
     ScanInput requested = input;
     requested.world_from_sensor = geometry::camera_pose(actual_view);

@@ -73,8 +73,8 @@ std::string motion_text(const PoseFinding& pose) {
 
 std::string pose_text(const PoseFinding& pose) {
   if (pose.is_wrong) {
-    const std::string seen =
-        fmt::format("{:.0f}% of the expected surface was seen through", 100.0 * pose.seen_through);
+    const std::string seen = fmt::format("the scan passes through {:.0f}% of the predicted surface",
+                                         100.0 * pose.seen_through);
     return "; warning: scan rejected: pose inconsistent with the map (" +
            (pose.is_checked ? "best fit " + motion_text(pose) + ", " + seen : seen) +
            "). Hold position, correct the pose, scan again";

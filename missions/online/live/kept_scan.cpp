@@ -35,13 +35,13 @@ geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
   };
-  if (reader.elements().size() != 1) fail("is not a scan of a survey");
+  if (reader.elements().size() != 1) fail("is not a scan file of a survey");
   const geometry::PlyTable table = reader.read_element(keys);
   const std::vector<double>&x = table.columns[0], &y = table.columns[1], &z = table.columns[2],
         &pixels = table.columns[3];
   if (y.size() != x.size() || z.size() != x.size() ||
       (!pixels.empty() && pixels.size() != x.size())) {
-    fail("is not a scan of a survey");
+    fail("is not a scan file of a survey");
   }
   geometry::Scan scan;
   scan.points.reserve(x.size());
@@ -50,7 +50,7 @@ geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
   }
   for (const double pixel : pixels) {
     if (!(pixel >= 0.0 && pixel <= std::numeric_limits<std::uint32_t>::max())) {
-      fail("has an invalid pixel number");
+      fail("has an invalid pixel index");
     }
     scan.pixels.push_back(static_cast<std::uint32_t>(pixel));
   }

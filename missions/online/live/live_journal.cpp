@@ -61,7 +61,7 @@ ScanRecord parse_scan(const Json& json) {
   if (json.contains("found")) scan.pose = parse_finding(json["found"]);
   const std::filesystem::path file = scan.file;
   if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
-    throw Error(ErrorKind::bad_file, "its scan is outside the folder");
+    throw Error(ErrorKind::bad_file, "its scan file is outside the survey folder");
   }
   return scan;
 }
@@ -168,7 +168,7 @@ Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::stri
   const auto reject = [&](const std::string& reason) {
     throw Error(ErrorKind::bad_file, what + " " + reason);
   };
-  if (numbers.size() != 12) reject("must have twelve numbers, [rotation | position] row by row");
+  if (numbers.size() != 12) reject("must have twelve numbers: the rows of [rotation | position]");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (int i = 0; i < 12; ++i) pose(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
   const Eigen::Matrix3d turn = pose.linear();

@@ -125,7 +125,7 @@ struct LiveSurvey::Impl {
         throw Error(
             ErrorKind::bad_file,
             log.file().string() + ": proposal " + std::to_string(proposal.number) +
-                " differs from the one recorded; use the program version that began the survey");
+                " differs from the recorded one; use the program version that started the survey");
       }
     }
   }
@@ -268,8 +268,8 @@ struct LiveSurvey::Impl {
     const auto reject = [](const std::string& what) { throw Error(ErrorKind::bad_usage, what); };
     if (options.flight.has_vehicle() && proposal.end) {
       reject(
-          "the survey is complete, and no path to the pose of this scan was verified; finish the "
-          "survey");
+          "the survey is complete, and the path to the pose of this scan is not verified; finish "
+          "the survey");
     }
     if (!is_en_route) return;
     if (!options.flight.capture.is_moving) {

@@ -110,10 +110,11 @@ PoseCovariance parse_pose_sigma(const std::string& text, const std::string& what
 PoseCovariance parse_pose_covariance(const std::string& text, const std::string& what) {
   const std::vector<double> numbers = parse_numbers(text, what);
   if (numbers.size() != 36 && numbers.size() != 21) {
-    throw Error(ErrorKind::bad_usage,
-                fmt::format("{}: has {} numbers; it must have the 36 of a covariance of x y z rx "
-                            "ry rz [m, rad] row by row, or the 21 of its upper triangle",
-                            what, numbers.size()));
+    throw Error(
+        ErrorKind::bad_usage,
+        fmt::format("{}: has {} numbers; it must contain a covariance of x y z rx ry rz [m, rad]: "
+                    "all 36 numbers row by row, or the 21 numbers of its upper triangle",
+                    what, numbers.size()));
   }
   const Matrix matrix = to_matrix(numbers);
   const std::string fault = find_defect(matrix);

@@ -27,7 +27,7 @@ Isometry3d make_pose(const std::vector<double>& n, const std::string& what) {
   const Eigen::Quaterniond turn(n[6], n[3], n[4], n[5]);
   if (!(std::abs(turn.norm() - 1.0) < 1e-2)) {
     throw Error(ErrorKind::bad_file,
-                what + ": the quaternion must have length one; order x y z qx qy qz qw");
+                what + ": the quaternion must have unit length; the order is x y z qx qy qz qw");
   }
   Isometry3d pose = Isometry3d::Identity();
   pose.translation() = Vector3d(n[0], n[1], n[2]);
@@ -124,11 +124,12 @@ void require_same_size(const geometry::DepthImage& image, const CameraIntrinsics
   if (!(size > 0.0) || is_same_size || !(skew < same && skew > 1.0 / same)) return;
   throw Error(
       ErrorKind::bad_file,
-      fmt::format("the intrinsics are those of an image of about {:.0f} x {:.0f} pixels (principal "
-                  "point {:g}, {:g}), but the image has {} x {}; multiply fx fy cx cy by {:.3g}",
-                  2.0 * intrinsics.principal_point_px.x(), 2.0 * intrinsics.principal_point_px.y(),
-                  intrinsics.principal_point_px.x(), intrinsics.principal_point_px.y(), image.width,
-                  image.height, size));
+      fmt::format(
+          "the intrinsics belong to an image of about {:.0f} x {:.0f} pixels (principal point "
+          "{:g}, {:g}), but the image has {} x {} pixels; multiply fx fy cx cy by {:.3g}",
+          2.0 * intrinsics.principal_point_px.x(), 2.0 * intrinsics.principal_point_px.y(),
+          intrinsics.principal_point_px.x(), intrinsics.principal_point_px.y(), image.width,
+          image.height, size));
 }
 
 }  // namespace
@@ -148,7 +149,7 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& wh
   while (const auto word = scanner.word()) {
     numbers.push_back(scanner.number<double>(word, "a number"));
     if (!std::isfinite(numbers.back()) || numbers.size() > 36) {
-      throw Error(ErrorKind::bad_file, what + ": must be a short row of finite numbers");
+      throw Error(ErrorKind::bad_file, what + ": must be a list of at most 36 finite numbers");
     }
   }
   return numbers;
@@ -174,15 +175,14 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
   if (numbers.size() == 16) {
     if (!std::equal(numbers.begin() + 12, numbers.end(), std::begin({0.0, 0.0, 0.0, 1.0}))) {
       throw Error(ErrorKind::bad_file,
-                  what + ": the fourth row must be 0 0 0 1; give the matrix row by row");
+                  what + ": the fourth row must be 0 0 0 1; write the matrix row by row");
     }
     numbers.resize(12);
   }
   if (numbers.size() == 12) return parse_pose(numbers, what);
-  throw Error(
-      ErrorKind::bad_file,
-      what + ": has " + std::to_string(numbers.size()) +
-          " numbers; it must be x y z qx qy qz qw, or a matrix of three or four rows of four");
+  throw Error(ErrorKind::bad_file, what + ": has " + std::to_string(numbers.size()) +
+                                       " numbers; it must be x y z qx qy qz qw, or a matrix of "
+                                       "three or four rows with four numbers each");
 }
 
 std::vector<Vector3d> unproject_points(const geometry::DepthImage& image,

@@ -106,7 +106,7 @@ class Client {
     if (!is_readable(handle_.get(), poll_period)) {
       const bool is_late = reader_.is_within_message() && Clock::now() - heard_ > patience;
       if (!is_late) return true;
-      reason = "timeout: an incomplete message for 30 s";
+      reason = "timeout: message incomplete after 30 s";
       dismiss(handle_.get(), error_message(reason));
       return false;
     }
@@ -125,7 +125,7 @@ class Client {
   bool answer(Session& session, std::string& reason) {
     while (const std::optional<Message> message = reader_.next()) {
       if (!send_all(handle_.get(), session.answer(*message))) {
-        reason = "does not receive its answer";
+        reason = "did not receive its answer";
         return false;
       }
       session.settle();

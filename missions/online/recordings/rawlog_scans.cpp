@@ -54,7 +54,9 @@ std::string find_defect(const mrpt::img::TCamera& camera) {
   const std::span<const double> others = std::span(camera.dist).subspan(5);
   const bool is_known = std::ranges::all_of(known, [](double k) { return std::isfinite(k); }) &&
                         std::ranges::all_of(others, [](double k) { return k == 0.0; });
-  return is_known ? "" : "distortion coefficients beyond k1 k2 p1 p2 k3, or not finite";
+  return is_known ? ""
+                  : "distortion coefficients other than k1 k2 p1 p2 k3, or coefficients that are "
+                    "not finite";
 }
 
 /// Returns true if the name is within the folder of the rawlog's images. Other paths on this
@@ -122,7 +124,7 @@ RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
   if (observation.hasPoints3D && observation.points3D_isExternallyStored()) {
     scan.fault = find_load_error(observation, observation.points3D_getExternalStorageFile());
   }
-  if (!observation.hasPoints3D) scan.fault = "neither range image nor points";
+  if (!observation.hasPoints3D) scan.fault = "contains neither a range image nor points";
   if (scan.fault.empty()) {
     put_points(scan, observation.points3D_x, observation.points3D_y, observation.points3D_z);
   }

@@ -84,7 +84,7 @@ void RawlogSequence::choose_sensor(const std::vector<std::string>& labels) {
   }
   const bool is_chosen = !choice_.sensor.empty();
   if (!is_chosen && labels.size() > 1) {
-    throw Error(ErrorKind::bad_usage, file_.string() + ": has scans of several sensors, " +
+    throw Error(ErrorKind::bad_usage, file_.string() + ": contains scans of several sensors: " +
                                           quoted(labels) + "; choose one with --sensor");
   }
   if (is_chosen && std::ranges::find(labels, choice_.sensor) == labels.end()) {
@@ -110,9 +110,9 @@ void RawlogSequence::choose_poses(bool has_movements) {
     pose_source_ = "its CObservationRobotPose";
     poses_ = estimates;
   } else if (has_movements) {
-    pose_source_ = "the movements of its actions, accumulated (with drift)";
+    pose_source_ = "the accumulated movements of its actions (with drift)";
   } else if (!odometry.empty()) {
-    pose_source_ = "its CObservationOdometry (wheel odometry in the plane, with drift)";
+    pose_source_ = "its CObservationOdometry (planar wheel odometry, with drift)";
     poses_ = odometry;
   } else {
     fail(
@@ -131,7 +131,7 @@ Isometry3d RawlogSequence::compute_pose(const RawlogScan& scan) const {
   geometry::require_valid_position(world_from_sensor.translation(), "its pose");
   const Eigen::Matrix3d turn = world_from_sensor.linear();
   if (!(turn * turn.transpose()).isIdentity(1e-6)) {
-    throw Error(ErrorKind::bad_file, "its pose is not a rotation without scale");
+    throw Error(ErrorKind::bad_file, "its pose is not a rigid transformation");
   }
   return world_from_sensor;
 }

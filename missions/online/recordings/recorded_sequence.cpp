@@ -87,7 +87,7 @@ RecordedSequence read_sequence(const fs::path& folder, std::size_t count) {
   const auto reject = [&](const std::string& reason) {
     throw Error(ErrorKind::bad_file, folder.string() + ": " + reason);
   };
-  if (!fs::is_directory(folder)) reject("is not a folder; give the folder of a recording");
+  if (!fs::is_directory(folder)) reject("is not a folder; specify the folder of a recording");
   RecordedSequence sequence;
   if (fs::exists(folder / "depth.txt")) {
     sequence = read_tum(folder, count);

@@ -23,7 +23,7 @@ StampedList read_list(const std::filesystem::path& file) {
     const bool is_later = list.lines.empty() || time > list.lines.back().time;
     if (!std::isfinite(time) || !(is_same || is_later)) {
       scanner.fail("time " + std::string(*word) +
-                   " is not later than the one before; sort the list");
+                   " is not later than the previous one; sort the list");
     }
     std::string rest;
     while (const auto more = scanner.word_in_line()) {

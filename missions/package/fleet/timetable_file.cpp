@@ -58,7 +58,7 @@ class RowReader {
 
   std::size_t index(const std::string& field, const std::string& name) const {
     const auto index = index_in(field);
-    if (!index) fail(name + " is \"" + field + "\"; it must be an integer from 1");
+    if (!index) fail(name + " is \"" + field + "\"; it must be an integer of at least 1");
     return *index;
   }
 
@@ -113,7 +113,7 @@ std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
     const bool is_twice = std::ranges::any_of(rows, [&](const TimetableRow& other) {
       return other.vehicle == row.vehicle && other.sortie == row.sortie;
     });
-    if (is_twice) throw Error(ErrorKind::bad_file, location + "the sortie is listed twice");
+    if (is_twice) throw Error(ErrorKind::bad_file, location + "a sortie is listed twice");
     rows.push_back(std::move(row));
   }
   if (!rows.empty()) return rows;

@@ -24,7 +24,7 @@ ReturnCheck check_returns(const std::filesystem::path& file,
   const std::optional<AutopilotType> autopilot =
       options.has_vehicle() ? autopilot_for_file(file, options.required_vehicle()) : std::nullopt;
   if (!autopilot || points.size() < 2) {
-    return {true, "returns not checked: no autopilot returns by this file"};
+    return {true, "returns not checked: the file is not for an autopilot"};
   }
   std::vector<flight::Segment> legs;
   for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
@@ -41,7 +41,7 @@ ReturnCheck check_returns(const std::filesystem::path& file,
 
   const auto stated = stated_height(file, return_height, *autopilot);
   if (stated && !stated->problems.empty()) {
-    return {false, "not safe, " + stated->by + ": " + stated->problems.front()};
+    return {false, "not verified: " + stated->by + ": " + stated->problems.front()};
   }
   std::string fault;
   if (stated) {
@@ -51,20 +51,21 @@ ReturnCheck check_returns(const std::filesystem::path& file,
       return {true, "all returns verified at " + metres(stated->height) + " (" + stated->by +
                         "), minimum clearance " + metres(verification.found->clearance)};
     }
-    fault = "not safe, at " + metres(stated->height) + " (" + stated->by + ") " +
+    fault = "not verified: at " + metres(stated->height) + " (" + stated->by + ") " +
             verification.reason + "; ";
   }
   const double top = space.extent().isEmpty() ? ground : space.extent().max().z();
   const flight::ReturnSearch min = min_return_altitude(
       space, legs, rtl_profile, options.max_return_altitude(ground, top), clearance);
   if (!min.found) {
-    return {false, fault.empty() ? "not safe, no return altitude is: " + min.reason
-                                 : fault + " no other altitude is safe"};
+    return {false, fault.empty()
+                       ? "not verified: no return altitude keeps the clearance: " + min.reason
+                       : fault + " no other altitude can be verified"};
   }
   const std::string needed = metres(min.found->height);
-  if (!fault.empty()) return {false, fault + "the lowest safe return altitude is " + needed};
+  if (!fault.empty()) return {false, fault + "the lowest verified return altitude is " + needed};
   return {true, "the file does not contain the vehicle's return altitude: set it to " + needed +
-                    " above take-off, the lowest verified one"};
+                    " above take-off, the lowest verified altitude"};
 }
 
 }  // namespace skycap::missions::package

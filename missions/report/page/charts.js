@@ -109,7 +109,7 @@ function reliability_chart(data) {
   if (!bands) return null;
   const seen = bands.filter((band) => band.share > 0);
   return chart("Calibration of the coverage estimate",
-    "Share of surface that is covered, by the probability that the planner estimated. On the diagonal the estimate is exact.",
+    "Covered fraction of the surface against the estimated probability of coverage. On the diagonal, the estimate is exact.",
     "line", [line("covered", seen.map((band) => [percent(band.estimated), percent(band.covered)])),
       line("ideal", [[0, 0], [100, 100]], 4)], { x: "% estimated", y: "% covered", y_more: { min: 0 } });
 }
@@ -120,9 +120,9 @@ function survey_charts(data) {
   const is_known = typeof views[0].coverage === "number";  // not of a real place
   const charts = [
     is_known ? coverage_chart(data, "Coverage vs. views", (view, i) => i + 1, "views") : null,
-    is_known ? coverage_chart(data, "Coverage vs. path length", (view) => view.distance_m, "metres, straight from view to view") : null,
+    is_known ? coverage_chart(data, "Coverage vs. path length", (view) => view.distance_m, "path length in metres (straight lines)") : null,
     chart("Points", null, "line", [line("points kept", views.map((view, i) => [i + 1, view.points])),
-      line("new with the view", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
+      line("new in the view", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
     chart("Planning time", "Planning time per view on this machine.", "line",
       [line("planning", views.map((view, i) => [i + 1, view.planning_time_s]))], { x: "views", y: "s" }),
     clearance_chart(data), energy_chart(data), reliability_chart(data)];
@@ -133,7 +133,7 @@ function survey_charts(data) {
 function histogram_chart(title, note, { counts, low, high }, x, colour = 0) {
   const width = (high - low) / counts.length, all = counts.reduce((sum, count) => sum + count, 0) || 1;
   const digits = width >= 1 ? 0 : width >= 0.1 ? 1 : 2;
-  return chart(title, note, "bar", [{ label: "share of the points", categoryPercentage: 1, barPercentage: 0.94,
+  return chart(title, note, "bar", [{ label: "fraction of the points", categoryPercentage: 1, barPercentage: 0.94,
     data: counts.map((count) => percent(count / all)), backgroundColor: chart_colours[colour] }],
     { labels: counts.map((_, i) => (low + (i + 0.5) * width).toFixed(digits)), x, y: "% of the points" });
 }

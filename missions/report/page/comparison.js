@@ -90,7 +90,7 @@ function trials_chart(cells) {
     data: one.cell.each_trial.map((trial) => ({ x: trial.distance_m, y: percent(trial.coverage) })),
     backgroundColor: one.colour, borderColor: one.colour, pointRadius: 3.5 }));
   return sets.length ? chart("Each survey", "One point per trial.", "scatter", sets,
-    { x: "metres, straight from view to view", y: "% of the surface", is_free: true }) : null;
+    { x: "path length in metres (straight lines)", y: "% of the surface", is_free: true }) : null;
 }
 
 /// The means with their 95 % intervals, one planner beside the other.
@@ -142,7 +142,7 @@ function reach_table(data, cells) {
     }));
   if (!rows.length) return [];
   const number = (content) => ({ number: content });
-  return [element("h3", {}, "Until a given coverage is reached"), table(["coverage of", "planner", number("trials that reach it"),
+  return [element("h3", {}, "Effort until a given coverage is reached"), table(["coverage of", "planner", number("trials that reach it"),
     number("views"), number("distance"), number("planning")], rows)];
 }
 

@@ -131,14 +131,14 @@ function district_flight_section(data) {
     pad.parameters.join(", ")]);
   return element("section", { id: "flight" }, element("h2", {}, "Flight of all targets"),
     element("p", {}, "By " + flight.vehicle + ": ", figure(data, "flight.views_flown", "count"), " of ", figure(data, "flight.views", "count"), " views, ",
-      figure(data, "flight.length_m", "metres"), " in ", figure(data, "flight.duration_s", "minutes"), ". Clearance, verified for every leg: ", figure(data, "flight.clearance_m", "metres"), "."),
+      figure(data, "flight.length_m", "metres"), " in ", figure(data, "flight.duration_s", "minutes"), ". Minimum clearance, verified for every leg: ", figure(data, "flight.clearance_m", "metres"), "."),
     table(["sortie", number("views"), number("length"), number("time"), number("energy"), number("left"), number("minimum clearance"), "files"], rows),
     element("h3", {}, "Return to launch"), table(["from", number("views"), number("return altitude"), number("minimum clearance"), "parameters"], homes),
     flight.notes.length ? element("ul", {}, [...new Set(flight.notes)].map((note) => element("li", {}, note))) : null);
 }
 
 const how_district = [
-  ["Covered", "Share of samples, evenly spread over the buildings of a target as mapped, that have a measurement within the coverage distance, in simulation."],
+  ["Covered", "Fraction of samples, evenly distributed over the mapped buildings of a target, that have a measurement within the coverage distance in the simulation."],
   ["Separate flight", "Flight time of the target's own mission, from its own take-off point."],
   ["Views in the flight", "Views of this target that are part of the joint flight. Every leg keeps the clearance from all measured points, from unknown space inside the unknown boxes, and from the map, enlarged by its uncertainty."],
 ];

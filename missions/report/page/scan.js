@@ -46,15 +46,15 @@ function scan_charts(data) {
   return element("section", { id: "curves" }, element("h2", {}, "Curves"), element("div", { class: "charts" },
     chart("Height of the sensor", null, "line", [line("height", places.map((place, i) => [times[i] - start, place.z]), 0, plain)], { x, y: "m", is_free: true }),
     chart("Speed", null, "line", [line("speed", speeds, 0, plain)], { x, y: "m/s" }),
-    pieces.length > 1 ? chart("Points over time", "Points of the preview, per " + data.piece + ".", "line", [line("points", pieces, 0, plain)], { x, y: "points" }) : null,
-    apart.some(([, off]) => off > 1) ? chart("Position error of the navigation solution", "Distance between true and estimated sensor position.",
+    pieces.length > 1 ? chart("Points over time", "Preview points per " + data.piece + ".", "line", [line("points", pieces, 0, plain)], { x, y: "points" }) : null,
+    apart.some(([, off]) => off > 1) ? chart("Position error of the navigation solution", "Distance between the true and the estimated sensor position.",
       "line", [line("error", apart, 0, plain)], { x, y: "mm" }) : null));
 }
 
 const how_scanned = [
-  ["Points", "Points of all pulses or pixels with a return. The page shows a preview: an even selection, at their estimated positions."],
-  ["Incidence", "Angle between the normal of the plane through a point's neighbours and the direction to the sensor at the middle of its piece of the flight."],
-  ["Range", "Distance from a point to the sensor at the middle of its piece of the flight."],
-  ["Speed", "Computed from consecutive poses of the trajectory, an even selection of which is in the page."],
-  ["Density", "Number of neighbours of a preview point within " + density_reach + " times the usual spacing, divided by the area of that disc; scaled up if the page shows only some of the points."],
+  ["Points", "Points of all pulses or pixels with a return. The page shows a preview: an evenly distributed subset of the points at their estimated positions."],
+  ["Incidence", "Angle between the local surface normal at a point (plane through its neighbours) and the direction to the sensor at the middle of its flight segment."],
+  ["Range", "Distance from a point to the sensor at the middle of its flight segment."],
+  ["Speed", "Computed from consecutive poses of the trajectory. The page contains an evenly distributed subset of them."],
+  ["Density", "Number of neighbours of a preview point within " + density_reach + " times the typical point spacing, divided by the area of that disc. Scaled up if the page shows a subset of the points."],
 ];

@@ -49,7 +49,7 @@ function holes_section(data, on_pick) {
   rows.push(wide((rest.length + surface.smaller.holes) + " smaller gaps", rest_area));
   rows.push(wide("scattered gaps", surface.rest_m2, "surface.rest_m2"));
   rows.push(wide("total uncovered", total));
-  const headings = ["Reason", number("Area"), number("Share of surface"), "Centre x, y, z [m]", ...(has_places ? ["Latitude, longitude, height"] : []),
+  const headings = ["Reason", number("Area"), number("Fraction of surface"), "Centre x, y, z [m]", ...(has_places ? ["Latitude, longitude, height"] : []),
     number("Nearest view"), "Suggested viewpoint"];
   const who = surface.known_by === "planner" ? "planner estimate" : "ground truth";
   return element("section", { id: "holes" }, element("h2", {}, "Uncovered surface"),
@@ -76,7 +76,7 @@ function targets_section(data) {
   const dry = data.summary.settings["scene.model"] === "prior"
     ? " They were also the ground truth of the simulated sensor." : "";
   return element("section", { id: "targets" }, element("h2", {}, "Targets"),
-    element("p", {}, "Surface of the target prior data, and the share of it that is covered." + dry),
+    element("p", {}, "Surface of the target prior data and its covered fraction." + dry),
     table(["Object", number("Area"), number("Covered"), number("Coverage distance")], rows));
 }
 
@@ -97,7 +97,7 @@ function passage_parts(data) {
     const f = (path, form) => figure(data, "flight.route.sorties." + i + ".passage." + path, form);
     return element("p", {}, "Fly-through capture of sortie " + (i + 1) + " (trajectory and KML files only): ", f("length_m", "metres"),
       " in ", f("duration_s", "minutes"), ", clearance at least ", f("clearance_m", "metres"), "; stops: ",
-      f("stops", "count"), ". The other files stop at each view.");
+      f("stops", "count"), ". In the other files, the vehicle stops at each view.");
   }).filter(Boolean);
 }
 
@@ -113,7 +113,7 @@ function anew_parts(data) {
   return [element("h3", {}, "Replanned views"),
     table(["", "Views", "Segments", "Length", "Time", "Predicted coverage"].map((name, i) => (i ? number(name) : name)),
       [row("Survey views", "survey"), row(anew.is_flown ? "Replanned, in the mission" : "No faster plan found", "replanned")]),
-    typeof again === "number" ? element("p", {}, "In a simulated re-flight the mission covers ",
+    typeof again === "number" ? element("p", {}, "In a simulated re-flight, the mission covers ",
       figure(data, "flight.replanned.reflight.coverage_visible", "share"), " of the visible surface.") : null].filter(Boolean);
 }
 
@@ -149,7 +149,7 @@ function surveyed_part(data) {
   const frames = (data.summary.per_view || []).reduce((sum, view) => sum + (view.en_route_frames || 0), 0);
   return element("p", {}, "The survey flew ", figure(data, "flight.survey.length_m", "metres"), " in ",
     figure(data, "flight.survey.duration_s", "minutes"), ", from take-off to the last view" +
-    (frames ? ", with " + frames + " en-route frames. The mission captures at its views only, and covers less." : "."));
+    (frames ? ", with " + frames + " en-route frames. The mission captures at its views only and covers less." : "."));
 }
 
 function flight_section(data) {
@@ -213,7 +213,7 @@ function accuracy_section(data) {
     element("div", { class: "charts" },
       error_m ? histogram_chart("Predicted error of the surface", "Standard error if the points within the coverage distance are averaged, with the " +
         (is_learnt ? "noise estimated by the planner." : "noise of the mission (sensor.noise)."), millimetres, "mm", 3) : null,
-      incidence_deg ? histogram_chart("Angle of incidence", "Angle between surface normal and ray. Large angles give large errors.", incidence_deg, "degrees", 0) : null,
+      incidence_deg ? histogram_chart("Angle of incidence", "Angle between surface normal and ray. Large angles cause large errors.", incidence_deg, "degrees", 0) : null,
       range_m ? histogram_chart("Range", "Distance between sensor and points.", range_m, "m", 2) : null));
 }
 
@@ -236,23 +236,23 @@ function settings_section(data) {
 
 /// Definitions of the figures, for readers who have only the page.
 const how_surveyed = [
-  ["Coverage (planner estimate)", "Area of measured and predicted surface, each piece weighted by the probability that it has a measurement within the coverage distance, divided by the total area."],
-  ["Coverage (ground truth)", "Share of samples, evenly spread over the surface of the simulated model, that have a measurement within the coverage distance. The planner does not use it. Visible surface: samples that a sensor can see from an admissible view."],
-  ["Uncovered surface", "Pieces of surface that are more likely uncovered than covered, grouped by neighbourhood and reason. The area of a gap is the uncovered part of its pieces. Scattered gaps are the expected uncovered part of covered surface. The total is the surface area times (1 - coverage)."],
+  ["Coverage (planner estimate)", "Area of measured and predicted surface, weighted by the probability that it has a measurement within the coverage distance, divided by the total area."],
+  ["Coverage (ground truth)", "Fraction of samples, evenly distributed over the surface of the simulated model, that have a measurement within the coverage distance. It is not used by the planner. Visible surface: samples that a sensor can see from an admissible view."],
+  ["Uncovered surface", "Surface patches that are more likely uncovered than covered, grouped by neighbourhood and reason. The area of a gap is the uncovered part of its patches. Scattered gaps are the predicted uncovered part of covered surface. The total is the surface area times (1 - coverage)."],
   ["Verified clearance", "Lower bound of the distance from the vehicle centre to any measured point, no-fly volume or unknown space, over the whole leg."],
-  ["Times and energy", "Estimates from the vehicle file, with stops, turns and hovering, at the wind and battery temperature of the mission."],
-  ["Predicted error", "Standard error of the mean, at a sample of the points, if all points within the coverage distance are averaged. Uses the noise estimated by the planner, otherwise sensor.noise; noise along a ray is multiplied by the cosine of the incidence. Correlated errors, such as a wrong sensor position, are not included."],
+  ["Times and energy", "Estimates from the vehicle file, including stops, turns and hovering, at the wind and battery temperature of the mission."],
+  ["Predicted error", "Standard error of the mean if all points within the coverage distance are averaged, for a sample of the points. It uses the noise estimated by the planner, otherwise sensor.noise; noise along a ray is multiplied by the cosine of the incidence. Correlated errors, such as a wrong sensor position, are not included."],
   ["Incidence and range", "Computed from the normal of each point (plane through its neighbours) and the sensor position of its scan."],
-  ["Free-space boundary", "Faces between free voxels and unknown or occupied ones; an even selection if there are many. The route is verified to keep its clearance from all of them."],
-  ["Density", "Number of neighbours within " + density_reach + " times the usual spacing, divided by the area of that disc; scaled up if the page shows only some of the points."],
+  ["Free-space boundary", "Faces between free voxels and unknown or occupied voxels; an evenly distributed subset if there are many. The route is verified to keep its clearance from all of them."],
+  ["Density", "Number of neighbours within " + density_reach + " times the typical point spacing, divided by the area of that disc. Scaled up if the page shows a subset of the points."],
 ];
 
 const how_compared = [
   ["Mean, ± and sd", "Mean over the trials, half width of its 95% confidence interval (Student's t), and standard deviation. Bands around curves are one standard deviation."],
-  ["Coverage", "Share of samples, evenly spread over the surface of the simulated model, that have a measurement within the coverage distance. Visible surface: samples that a sensor can see from an admissible view. Attainable coverage: coverage by all admissible views together. Along a curve, a completed survey keeps its coverage."],
-  ["Distance", "Sum of straight lines between consecutive views."],
-  ["Planning", "Processor time of the planner for all views of a survey, without sensing and files."],
-  ["Paper", "Means of 100 surveys each in Border and Gammell, SEE++ (2020), for its models, or values of the mission file."],
+  ["Coverage", "Fraction of samples, evenly distributed over the surface of the simulated model, that have a measurement within the coverage distance. Visible surface: samples that a sensor can see from an admissible view. Attainable coverage: coverage by all admissible views together. In the curves, a completed survey keeps its final coverage."],
+  ["Distance", "Sum of the straight-line distances between consecutive views."],
+  ["Planning", "Processor time of the planner for all views of a survey, without sensing and file access."],
+  ["Paper", "Means of 100 surveys per model in Border and Gammell, SEE++ (2020), or values from the mission file."],
 ];
 
 function how_section(how) {

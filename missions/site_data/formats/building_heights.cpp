@@ -270,12 +270,12 @@ class HeightReader {
     const auto add = [&](std::size_t count, const char* what) {
       if (count > 0) contents_.notes.push_back(std::to_string(count) + what);
     };
-    add(thin_, " points and lines ignored: unknown height");
-    add(by_height_, " outlines have a height of their own");
-    add(by_levels_, " outlines state storeys only: 3 m each are assumed");
-    add(with_roof_, " of these have a roof above their storeys, which is added");
-    add(without_meaning_, " outlines have a height of 0 or less, which counts as unknown");
-    add(without_min_, " outlines have an invalid min_height: they begin at their base");
+    add(thin_, " points and lines ignored (unknown height)");
+    add(by_height_, " outlines specify a height");
+    add(by_levels_, " outlines specify only a number of storeys; 3 m per storey are assumed");
+    add(with_roof_, " of these have a roof above their storeys; its height is added");
+    add(without_meaning_, " outlines have a height of 0 or less, which is treated as unknown");
+    add(without_min_, " outlines have an invalid min_height; they start at their base");
   }
 
   FileContents& contents_;

@@ -279,7 +279,7 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   }
   if (numbers_.empty()) ++rings_without_position_;
   if (contents_.corners.size() + numbers_.size() / width > max_corners) {
-    fail_file(file_, "has more than a thousand million corners");
+    fail_file(file_, "has more than 1e9 corners");
   }
   for (std::size_t i = 0; i < numbers_.size(); i += width) {
     contents_.corners.emplace_back(numbers_[i], numbers_[i + 1], numbers_[i + 2]);
@@ -314,14 +314,14 @@ void Walker::finish() {
   }
   if (rings_without_position_ > 0) {
     contents_.notes.push_back(std::to_string(rings_without_position_) +
-                              " rings without straight lines ignored");
+                              " rings ignored (not composed of straight lines)");
   }
   if (rings_without_heights_ == 0) return;
   if (contents_.corners.empty()) {
     fail_file(file_, "has only coordinates without heights (srsDimension 2)");
   }
   contents_.notes.push_back(std::to_string(rings_without_heights_) +
-                            " rings without heights ignored (srsDimension 2)");
+                            " rings ignored (no heights, srsDimension 2)");
 }
 
 /// Returns the version from the namespaces of the root.

@@ -204,7 +204,7 @@ void Reader::read_instance(const Json& geometry, FileObject& object) {
   placed_.pretranslate(transform_.at(geometry.at("boundaries").at(0).get<std::size_t>()));
   const Json& original = templates_.at("templates").at(geometry.at("template").get<std::size_t>());
   if (original.at("type") == "GeometryInstance") {
-    fail_file(file_, "has a geometry template that contains a template");
+    fail_file(file_, "has a geometry template that contains another template");
   }
   transform_ = {&templates_.at("vertices-templates"), Vector3d::Ones(), Vector3d::Zero()};
   read_geometry(original, object);
@@ -249,7 +249,7 @@ void Reader::read_surface(const Json& rings, const Json* value) {
   polygon.lod = lod_;
   for (const Json& ring : rings) {
     if (contents_.corners.size() + ring.size() > max_json_corners) {
-      fail_file(file_, "has more than 16 million corners of polygons; split the file");
+      fail_file(file_, "has more than 16 million polygon corners; split the file");
     }
     for (const Json& index : ring) {
       contents_.corners.push_back(placed_ * transform_.at(index.get<std::size_t>()));
@@ -261,19 +261,19 @@ void Reader::read_surface(const Json& rings, const Json* value) {
 void Reader::finish() {
   if (left_out_ > 0) {
     contents_.notes.push_back(std::to_string(left_out_) +
-                              " rooms, inner and closing surfaces ignored");
+                              " rooms, interior surfaces and closure surfaces ignored");
   }
   if (without_surfaces_ > 0) {
     contents_.notes.push_back(std::to_string(without_surfaces_) +
-                              " geometries of points or lines ignored");
+                              " geometries ignored (points or lines)");
   }
   if (without_level_ > 0) {
     contents_.notes.push_back(std::to_string(without_level_) +
-                              " geometries have an invalid lod: used for all levels");
+                              " geometries have an invalid lod and are used for all levels");
   }
   if (without_kind_ > 0) {
     contents_.notes.push_back(std::to_string(without_kind_) +
-                              " semantics are incomplete: surfaces without a kind");
+                              " semantics are incomplete (surfaces without a type)");
   }
 }
 

@@ -94,14 +94,14 @@ void apply_dxf_unit(const std::filesystem::path& file, string_view text, bool ha
   const Header header = parse_header(text);
   if (header.thick > 0) {
     contents.notes.push_back(std::to_string(header.thick) +
-                             " entities have a thickness, which is ignored: set height");
+                             " entities have a thickness, which is ignored; set height");
   }
   if (has_unit) return;
   if (header.unit.value_or(0) == 0) {
-    contents.notes.push_back(std::string("missing unit ($INSUNITS): metres are assumed") +
+    contents.notes.push_back(std::string("missing unit ($INSUNITS); metres are assumed") +
                              (header.is_imperial
-                                  ? ", although $MEASUREMENT is imperial; set unit to change it"
-                                  : "; set unit to change it"));
+                                  ? ", although $MEASUREMENT is imperial; set unit to change this"
+                                  : "; set unit to change this"));
     return;
   }
   const auto unit = std::ranges::find(units, *header.unit, &Unit::number);

@@ -21,8 +21,9 @@ FileContents read_e57(const std::filesystem::path& file, const CloudDownsampling
   }
   note_skipped(input.skipped(), contents);
   if (input.zero_rotations() > 0) {
-    contents.notes.push_back(std::to_string(input.zero_rotations()) +
-                             " scans have a rotation of four zeros, which counts as no rotation");
+    contents.notes.push_back(
+        std::to_string(input.zero_rotations()) +
+        " scans have a rotation of four zeros, which is treated as no rotation");
   }
   return contents;
 }

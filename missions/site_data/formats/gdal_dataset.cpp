@@ -96,7 +96,7 @@ fs::path OpenDataset::readable(const fs::path& file) {
         copy_file(file, file.string() + more, copy.string() + more);
       }
     }
-    notes_.emplace_back("read from a copy, with the changes of its log file");
+    notes_.emplace_back("read from a copy that includes the changes in its log file");
     return copy;
   }
   std::string extension = file.extension().string();
@@ -114,7 +114,7 @@ fs::path OpenDataset::readable(const fs::path& file) {
     }
   }
   CPLSetConfigOption("SHAPE_RESTORE_SHX", "YES");
-  notes_.emplace_back("read from a copy, whose missing index (.shx) was rebuilt");
+  notes_.emplace_back("read from a copy with a rebuilt index (.shx)");
   return copy;
 }
 

@@ -246,7 +246,7 @@ void MapReader::add_corner(double x, double y, double z) {
   const Eigen::Vector3d corner(x, y, z);
   if (!corner.allFinite()) fail_file(file_, "has a corner that is not finite");
   if (contents_.corners.size() == max_corners) {
-    fail_file(file_, "has more than a thousand million corners");
+    fail_file(file_, "has more than 1e9 corners");
   }
   contents_.corners.push_back(corner);
 }
@@ -315,20 +315,21 @@ void MapReader::add_notes() {
     if (count > 0) notes.push_back(std::to_string(count) + what);
   };
   add(others_, " points and lines ignored", left_out);
-  add(cables_, " power lines and cableways ignored: no height", left_out);
-  add(no_structures_, " areas ignored: neither buildings nor other structures", left_out);
-  add(without_geometry_, " objects ignored: empty or unsupported geometry", left_out);
+  add(cables_, " power lines and cableways ignored (no height)", left_out);
+  add(no_structures_, " areas ignored (neither buildings nor other structures)", left_out);
+  add(without_geometry_, " objects ignored (empty or unsupported geometry)", left_out);
   if (contents_.objects.empty() && !left_out.empty()) {
     std::string all;
     for (const std::string& note : left_out) all += (all.empty() ? "" : ", ") + note;
-    fail_file(file_, "contains no outlines and nothing else with a height (" + all + ")");
+    fail_file(file_, "contains no outlines and no other objects with a height (" + all + ")");
   }
   contents_.notes.insert(contents_.notes.end(), left_out.begin(), left_out.end());
   add(thin_, " points and lines with a height are read as poles and walls of 0.5 to 1 m",
       contents_.notes);
-  add(extruded_, " polygons with extrude extend from their altitude to the ground",
+  add(extruded_, " polygons with the attribute extrude extend from their altitude to the ground",
       contents_.notes);
-  add(raised_, " polygons above the ground without extrude are assumed to stand on it",
+  add(raised_,
+      " polygons above the ground without the attribute extrude are assumed to stand on the ground",
       contents_.notes);
 }
 

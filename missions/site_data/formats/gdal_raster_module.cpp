@@ -145,7 +145,7 @@ void reject_images(const std::filesystem::path& file, GDALRasterBand& band) {
       meaning >= GCI_PaletteIndex && meaning <= GCI_BlackBand && meaning != GCI_AlphaBand;
   if (is_colour) fail_file(file, "is an image; expected a raster of heights");
   if (GDALDataTypeIsComplex(band.GetRasterDataType()) != 0) {
-    fail_file(file, "has complex numbers; expected a raster of heights");
+    fail_file(file, "contains complex numbers; expected a raster of heights");
   }
 }
 

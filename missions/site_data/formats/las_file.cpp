@@ -25,7 +25,7 @@ void name_reference_system(const geometry::LasReferenceSystem& stated, FileConte
   }
   if (stated.wkt.empty() && horizontal == 0 && stated.is_user_defined) {
     contents.notes.push_back(
-        "its reference system is given by GeoTIFF parameters, which are not supported");
+        "its reference system is defined by GeoTIFF parameters, which are not supported");
   }
   contents.height_unit = find_metres_per_unit(stated.vertical_unit);
 }

@@ -223,7 +223,7 @@ void note_map_conversion(const Entities& entities, SceneFacts& facts) {
   facts.notes.push_back(one_line(
       "it contains a georeference (IfcMapConversion), which is not applied: its origin is at " +
       number(parts[2]) + " " + number(parts[3]) + " " + number(parts[4]) + " in " + system +
-      (is_turned ? ", rotated against the map; set place"
+      (is_turned ? ", rotated relative to the map; set place"
                  : "; set crs, vertical and offset, or place")));
 }
 
@@ -245,7 +245,7 @@ SceneFacts gltf_facts(const std::filesystem::path& file, string_view json) {
   const auto scenes = root.find("scenes");
   if (scenes != root.end() && scenes->is_array() && scenes->size() > 1) {
     facts.notes.push_back("it contains " + std::to_string(scenes->size()) +
-                          " scenes, of which the first one that it names is read");
+                          " scenes; only the default scene is read");
   }
   return facts;
 }
@@ -255,7 +255,7 @@ SceneFacts ifc_facts(const std::filesystem::path& file, string_view text, bool h
   const Entities entities(text);
   const std::optional<LengthUnit> unit = length_unit(entities);
   if (!has_unit && (!unit || (!unit->is_si && !unit->metres))) {
-    fail_file(file, (unit ? "has the unknown unit of length '" + unit->name + "'"
+    fail_file(file, (unit ? "has the unknown linear unit '" + unit->name + "'"
                           : std::string("has no linear unit")) +
                         "; set unit, its length in metres");
   }

@@ -183,7 +183,7 @@ class WallBuilder {
           return std::abs(turns - std::round(turns)) * wall_.plan.length() < same &&
                  std::abs(low.y() - opening.sill) < same;
         });
-    assert(found != wall_.openings.end() && "the tiles leave a gap that is no opening");
+    assert(found != wall_.openings.end() && "each gap between the tiles must be an opening");
     const Opening& opening = *found;
     const double shift = std::round(turns_to(opening)) * wall_.plan.length();
     for (Vector2d& position : outline) position.x() -= shift;
@@ -215,13 +215,15 @@ class WallBuilder {
     std::vector<std::size_t> sill{start};
     while (is_sill(outline[(sill.back() + 1) % size])) sill.push_back((sill.back() + 1) % size);
     const std::size_t rows = (size - sill.size()) / 2 + 1;  // Number of rows below the crown.
-    assert((size - sill.size()) % 2 == 1 && "a niche's sides mirror each other below one crown");
+    assert((size - sill.size()) % 2 == 1 &&
+           "the sides of a niche must mirror each other below one crown");
 
     const int chords = std::max<int>(4, static_cast<int>(rows));
     const auto row_at = [&](std::size_t i) {
       const std::size_t left = (start + size - i) % size, right = (sill.back() + i) % size;
       const double z = outline[left].y();
-      assert(std::abs(outline[right].y() - z) < same && "a niche's sides mirror each other");
+      assert(std::abs(outline[right].y() - z) < same &&
+             "the sides of a niche must mirror each other");
       const double half_width = outline[right].x() - opening.centre;
       Loop row{loop[left]};
       for (int j = 1; j < chords; ++j) {

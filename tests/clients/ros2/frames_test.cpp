@@ -165,7 +165,7 @@ TEST(PoseHistory, ReportsReasonForUnknownPose) {
   expect(9.95, PoseMatch::State::open, "before it");
   expect(10.05, PoseMatch::State::open, "after it");
   expect(10.25, PoseMatch::State::open, "before it");
-  expect(10.32, PoseMatch::State::rejected, "as if at 200 m/s");
+  expect(10.32, PoseMatch::State::rejected, "at an implausible speed of 200 m/s");
   expect(10.38, PoseMatch::State::rejected, "60 rad/s");
   expect(10.45, PoseMatch::State::open, "after it");
 }

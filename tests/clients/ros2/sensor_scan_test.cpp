@@ -99,7 +99,7 @@ TEST(CloudScan, RejectsMessagesWithInconsistentSizes) {
       {"field z ends at byte 17 of points of 16", [](SampleCloud& c) { c.fields[2].offset = 13; }},
       {"field x ends at byte 4294967299", [](SampleCloud& c) { c.fields[0].offset = 0xFFFFFFFF; }},
       {"field y has the type 2", [](SampleCloud& c) { c.fields[1].datatype = 2; }},
-      {"field y has more than one number", [](SampleCloud& c) { c.fields[1].count = 3; }},
+      {"field y has more than one value", [](SampleCloud& c) { c.fields[1].count = 3; }},
       {"field x is listed twice", [](SampleCloud& c) { c.fields.push_back(c.fields[0]); }},
       {"missing field z", [](SampleCloud& c) { c.fields.pop_back(); }},
       {"missing field x", [](SampleCloud& c) { c.fields[0].name = nullptr; }},

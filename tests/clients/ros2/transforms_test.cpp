@@ -95,7 +95,7 @@ TEST_F(TransformTree, RejectsCyclesAndTooLongChains) {
   add(0.0, {"b", "c"}, true);
   add(0.0, {"c", "a"}, true);
   EXPECT_EQ(at("map", "a", 1.0).state, State::rejected);
-  EXPECT_THAT(at("map", "a", 1.0).reason, HasSubstr("have no end"));
+  EXPECT_THAT(at("map", "a", 1.0).reason, HasSubstr("form a loop"));
   EXPECT_THAT(error_message(0.0, {"d", "d"}, true), HasSubstr("is its own parent"));
   for (int i = 0; i < 65; ++i) {
     add(0.0, {"f" + std::to_string(i), "f" + std::to_string(i + 1)}, true);
@@ -108,10 +108,9 @@ TEST_F(TransformTree, RejectsInvalidTransforms) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   add(10.0, {"base_link", "gimbal"});
   EXPECT_THAT(error_message(10.0, {"base_link", "gimbal", {1, 0, 0}}), HasSubstr("the same stamp"));
-  EXPECT_THAT(error_message(10.1, {"mast", "gimbal"}),
-              HasSubstr("it was in 'base_link' until now"));
+  EXPECT_THAT(error_message(10.1, {"mast", "gimbal"}), HasSubstr("it must remain 'base_link'"));
   EXPECT_THAT(error_message(10.1, {"base_link", "gimbal"}, true),
-              HasSubstr("must not be static and moving"));
+              HasSubstr("must not be both static and moving"));
   EXPECT_THAT(error_message(10.1, {"", "x"}), HasSubstr("parent has no name"));
   EXPECT_THAT(error_message(10.1, {"x", ""}), HasSubstr("child has no name"));
   EXPECT_THAT(error_message(10.1, {"x", std::string(101, 'y')}),

@@ -202,7 +202,7 @@ TEST(CalibrationBounds, KeepsHoverPowerAndWarnsAtRotorEfficiencyLimit) {
         calibrate(read_dataflash(log), vehicle_profile("generic_ardupilot"), 1.225);
     EXPECT_NEAR(found.hover_power, scale * Motion(vehicle, {}).hover_power(),
                 0.005 * scale * 250.0);
-    EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("rotors' efficiency is at its limit")));
+    EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("rotor efficiency is at its limit")));
     EXPECT_NO_THROW(Motion(found.vehicle, {}));
   }
 }
@@ -263,19 +263,21 @@ TEST(CalibrationErrors, NameTheCause) {
                 vehicle_profile("generic_ardupilot"), 1.225);
     });
   };
-  EXPECT_THAT(error_message([](double) { return 0.0; }), HasSubstr("measures no power"));
-  EXPECT_THAT(error_message([](double) { return 0.02; }), HasSubstr("measures no power"));
+  EXPECT_THAT(error_message([](double) { return 0.0; }),
+              HasSubstr("contains no power measurements"));
+  EXPECT_THAT(error_message([](double) { return 0.02; }),
+              HasSubstr("contains no power measurements"));
   EXPECT_THAT(error_message([](double) { return std::nan(""); }), HasSubstr("contains no current"));
   EXPECT_THAT(
       error_message([](double amperes) { return 0.3 * amperes; }),
       HasSubstr(
-          "2.00 kg on 4 rotors of 0.300 m need at least 130.5 W; set the mass that flew (--mass)"));
+          "2.00 kg on 4 rotors of 0.300 m need at least 130.5 W; set the take-off mass (--mass)"));
   EXPECT_THAT(error_message([&](double amperes) {
                 static int count = 0;
                 const double swing = count++ / 60 % 2 == 0 ? 1.7 : 1.0;  // each 6 s
                 return swing * amperes;
               }),
-              HasSubstr("fits no power model: the power scatters by"));
+              HasSubstr("cannot be fitted by a power model: the power scatters by"));
 }
 
 TEST(CalibrationErrors, NameTheRequiredFlight) {
@@ -289,7 +291,7 @@ TEST(CalibrationErrors, NameTheRequiredFlight) {
   brief.samples.resize(300);
   EXPECT_THAT(error_message(hovering),
               HasSubstr("required: at least 30 s: fly 4 level legs of 100 m"));
-  EXPECT_THAT(error_message(level), HasSubstr("required: at least 20 s: hover for 30 s"));
+  EXPECT_THAT(error_message(level), HasSubstr("required: at least 20 s: hover in place for 30 s"));
   EXPECT_THAT(error_message(brief),
               HasSubstr("required: at least 120 s: hover for 60 s and fly 4"));
 }
@@ -305,7 +307,7 @@ TEST(ForeignLogs, AreRejectedWithTheNameOfTheirFormat) {
   EXPECT_THAT(kind("\0\5\xE2\x1F\x3A\x10\x20\x30\xFE\x09rest"s), HasSubstr("(.tlog)"));
   EXPECT_THAT(kind("\x1f\x8b\x08"), HasSubstr("gzip-compressed; unpack it first"));
   EXPECT_THAT(kind("H Product:Blackbox flight data recorder"), HasSubstr("Blackbox log"));
-  EXPECT_THAT(kind("time_s,power_w\n1,2\n"), HasSubstr("a CSV table's name must end in .csv"));
+  EXPECT_THAT(kind("time_s,power_w\n1,2\n"), HasSubstr("the name of a CSV table must end in .csv"));
   EXPECT_THAT(kind(""), HasSubstr("it is empty"));
 }
 

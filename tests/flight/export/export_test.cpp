@@ -169,7 +169,7 @@ TEST(Export, NotesElementsThatFormatCannotContain) {
   const KnownSpace space(sample_site());
   const ExportResult plan = export_flight(sample_plan(vehicle_profile("generic")), Format::plan,
                                           space, scratch / "mission.plan");
-  EXPECT_THAT(plan.notes, testing::ElementsAre(HasSubstr("\"shed\" is left out")));
+  EXPECT_THAT(plan.notes, testing::ElementsAre(HasSubstr("\"shed\" is omitted")));
 }
 
 TEST(Export, RejectsUnknownFormatsAndFiles) {
@@ -288,7 +288,7 @@ TEST(Trajectory, RoundTripsThroughTumWithWLast) {
 
 TEST(Trajectory, RejectsInvalidFilesWithLineNumber) {
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"),
-              testing::Contains(HasSubstr("line 2 goes back")));
+              testing::Contains(HasSubstr("line 2 is not later")));
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 2\n"), testing::Contains(HasSubstr("length 2")));
   EXPECT_THAT(validate_tum("0 0 0 0 0 0 1\n"), testing::Contains(HasSubstr("7 numbers")));
   EXPECT_THAT(validate_tum("0 0 x 0 0 0 0 1\n"), testing::Contains(HasSubstr("\"x\"")));

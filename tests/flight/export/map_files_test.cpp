@@ -87,7 +87,7 @@ TEST(Kmz, ReportsInvalidWaypoints) {
   EXPECT_THAT(with_waylines("<wpml:waypointSpeed>4.00", "<wpml:waypointSpeed>0"),
               Contains(HasSubstr("waypointSpeed 0")));
   EXPECT_THAT(with_waylines("toPointAndStopWithDiscontinuityCurvature", "coordinateTurn"),
-              Contains(HasSubstr("no clearance can be verified")));
+              Contains(HasSubstr("its clearance cannot be verified")));
   EXPECT_THAT(with_waylines("<wpml:waypointHeadingAngle>", "<wpml:waypointHeadingAngle>9"),
               Contains(HasSubstr("waypointHeadingAngle")));
   EXPECT_THAT(with_template("<wpml:height>", "<wpml:height>1"),
@@ -129,7 +129,7 @@ TEST(Kmz, ContainsAnglesCapturesAndHoldsOfPlan) {
   }
   EXPECT_THAT(
       testing_support::thrown_message([&] { write_kmz(sample_plan(vehicle_profile("generic"))); }),
-      testing::HasSubstr("does not fly DJI missions"));
+      testing::HasSubstr("does not support DJI missions"));
 }
 
 // ---- KML -------------------------------------------------------------------------------------
@@ -148,10 +148,12 @@ TEST(Kml, ReportsInvalidElements) {
               Contains(HasSubstr("must be absolute")));
   EXPECT_THAT(with("<coordinates>-1", "<coordinates> , -1"),
               Contains(HasSubstr("longitude,latitude,height")));
-  EXPECT_THAT(with("<name>path</name>", "<name>way</name>"), Contains(HasSubstr("named \"path\"")));
-  EXPECT_THAT(with("<when>2000", "<when>2001"), Contains(HasSubstr("has times that go back")));
+  EXPECT_THAT(with("<name>path</name>", "<name>way</name>"),
+              Contains(HasSubstr("missing Placemark \"path\"")));
+  EXPECT_THAT(with("<when>2000", "<when>2001"),
+              Contains(HasSubstr("has times that are not in ascending order")));
   EXPECT_THAT(with("<gx:coord>", "<gx:coord>0 0 0</gx:coord><gx:coord>"),
-              Contains(HasSubstr("as many gx:coord as when")));
+              Contains(HasSubstr("as many gx:coord elements as when elements")));
   EXPECT_THAT(with("<tilt>", "<tilt>9"), Contains(HasSubstr("tilt")));
   EXPECT_THAT(with("<LinearRing>\n            <coordinates>",
                    "<LinearRing>\n            <coordinates>0,0,0 "),
@@ -240,7 +242,7 @@ TEST(Litchi, RejectsTooManyCapturesOrWaypoints) {
   FlightPlan plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints[1].captures = 20;
   EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),
-              testing::HasSubstr("a waypoint with 20 shots cannot be written for Litchi"));
+              testing::HasSubstr("a waypoint with 20 photos cannot be written for Litchi"));
   plan = sample_plan(vehicle_profile("generic"));
   plan.waypoints.resize(120, plan.waypoints[0]);
   EXPECT_THAT(testing_support::thrown_message([&] { write_litchi(plan); }),

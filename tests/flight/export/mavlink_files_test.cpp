@@ -89,7 +89,7 @@ TEST(PlanFile, ReportsInvalidItems) {
   EXPECT_THAT(after([](json& p) { item(p, 0)["AltitudeMode"] = 2; }),
               Contains(HasSubstr("conflicts with its frame")));
   EXPECT_THAT(after([](json& p) { item(p, 0)["Altitude"] = 99; }),
-              Contains(HasSubstr("must be the height in its params")));
+              Contains(HasSubstr("must equal the height in its params")));
 }
 
 TEST(PlanFile, ReportsInvalidItemContent) {
@@ -113,14 +113,14 @@ TEST(PlanFile, ReportsInvalidItemContent) {
                   if (i["command"] == 205) i["command"] = 530;
                 }
               }),
-              Contains(HasSubstr("captures without a gimbal command")));
+              Contains(HasSubstr("captures an image without a gimbal command")));
   EXPECT_THAT(after([](json& p) {
                 item(p, 1)["command"] = 177;
                 item(p, 1)["params"][0] = 500;
               }),
               Contains(HasSubstr("jumps to item 500")));
   EXPECT_THAT(after([](json& p) { item(p, 1)["command"] = 115; }),
-              Contains(HasSubstr("PX4 rejects the whole mission")));
+              Contains(HasSubstr("PX4 rejects missions with this command")));
 }
 
 TEST(PlanFile, ReportsInvalidFencePolygons) {
@@ -284,7 +284,7 @@ TEST(MissionItems, RejectMoreItemsThanVehicleAccepts) {
               testing::HasSubstr("mission items; vehicle \"generic\" accepts 10"));
   EXPECT_THAT(
       testing_support::thrown_message([&] { write_plan(sample_plan(vehicle_profile("m30t"))); }),
-      testing::HasSubstr("does not fly MAVLink missions"));
+      testing::HasSubstr("does not support MAVLink missions"));
 }
 
 // ---- .waypoints ------------------------------------------------------------------------------

@@ -116,7 +116,7 @@ TEST(Utm, RejectsPolarLatitudes) {
       [] {
         UtmProjection({{85.5, 0.0, 0.0}, {}});
       },
-      testing::ThrowsMessage<Error>(HasSubstr("UTM is from 80 degrees south to 84")));
+      testing::ThrowsMessage<Error>(HasSubstr("UTM is defined from 80 degrees south to 84")));
   EXPECT_THAT(testing_support::thrown_message([&] {
                 UtmProjection({{95.0, 0.0, 0.0}, {}});
               }),

@@ -105,8 +105,8 @@ TEST(RejectedWaypointsFiles, NameTheCause) {
     return testing_support::thrown_message([&] { read_waypoints(text); });
   };
   EXPECT_THAT(error_message(all_replaced(our_waypoints(), "WPL 110", "WPL 100")),
-              HasSubstr("line 1 has version 100, whose columns have another order; save the "
-                        "mission again as QGC WPL 110"));
+              HasSubstr("line 1 has version 100, whose columns are in a different order; save the "
+                        "mission as QGC WPL 110"));
   EXPECT_THAT(error_message("1,2,3\n"), HasSubstr("line 1 must be \"QGC WPL 110\""));
   EXPECT_THAT(error_message(with_line(our_waypoints(), 4, "2 0 3")),
               HasSubstr("line 4 has 3 fields separated by tabs or blanks; it must have 12"));

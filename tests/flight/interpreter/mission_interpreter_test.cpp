@@ -130,7 +130,7 @@ TEST_P(MissionInterpreter, RejectsChangedHoldsRadiiAndSpeeds) {
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[speed].params[0] = 4.0; }),
               names(good(), speed, "speed type"));
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items.erase(f.items.begin() + speed); }),
-              Contains(HasSubstr("no item before it sets the speed")));
+              Contains(HasSubstr("no previous item sets the speed")));
 }
 
 TEST_P(MissionInterpreter, RejectsCapturesThatDifferFromViews) {
@@ -142,16 +142,17 @@ TEST_P(MissionInterpreter, RejectsCapturesThatDifferFromViews) {
                 double& heading = f.items[yaw].params[field];
                 heading = std::fmod(heading + 90.0, 360.0);
               }),
-              names(good(), waypoint_index, "degrees beside its view"));
+              names(good(), waypoint_index, "degrees away from its view"));
   const std::size_t mount = find_index(good(), command::mount_control);
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[mount].params[0] -= 3.0; }),
-              names(good(), waypoint_index, "degrees beside its view"));
+              names(good(), waypoint_index, "degrees away from its view"));
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[mount].params[0] = -100.0; }),
               names(good(), waypoint_index, "cannot"));
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[mount].params[6] = 3.0; }),
-              names(good(), mount, "must aim by angles"));
+              names(good(), mount, "must set the gimbal angles"));
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[waypoint_index].params[6] += 0.5; }),
-              names(good(), waypoint_index, "away from all views of the mission"));
+              names(good(), waypoint_index,
+                    "captures an image at a position that is not a view of the mission"));
 }
 
 TEST_P(MissionInterpreter, RejectsHomeAwayFromTakeOffPoint) {
@@ -193,13 +194,13 @@ TEST_P(MissionInterpreter, AppliesAltitudeReferencePerItem) {
   FlightFacts facts = sample_facts(GetParam());
   facts.site.geoid_undulation.reset();
   EXPECT_THAT(testing_support::thrown_message([&] { interpret(file, facts); }),
-              testing::HasSubstr(", above sea level, requires"));
+              testing::HasSubstr(" (AMSL) requires"));
 }
 
 TEST_P(MissionInterpreter, RejectsZeroPositionsAndHeights) {
   const std::size_t i = find_index(good(), command::waypoint, 1);
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[i].params[4] = f.items[i].params[5] = 0.0; }),
-              names(good(), i, "as before"));
+              names(good(), i, "mean the previous position"));
   EXPECT_THAT(after([&](MavlinkMission& f) { f.items[i].params[6] = 0.0; }),
               names(good(), i, "height 0"));
 }

@@ -200,12 +200,12 @@ TEST(CloudIo, ReportsCauseForInvalidLasFiles) {
   } cases[] = {
       {"LASF", "is not a LAS file"},
       {std::string(500, 'x'), "is not a LAS file"},
-      {with(25, 5), "is LAS 1.5 with points of format 6; only LAS 1.0 to 1.4"},
-      {with(104, 11), "is LAS 1.4 with points of format 11; only LAS 1.0 to 1.4"},
-      {with(104, 0x86), "is compressed (LAZ), but the record of its compression is missing"},
+      {with(25, 5), "is LAS 1.5 with points of format 6; supported are LAS 1.0 to 1.4"},
+      {with(104, 11), "is LAS 1.4 with points of format 11; supported are LAS 1.0 to 1.4"},
+      {with(104, 0x86), "is compressed (LAZ), but the LAZ record is missing"},
       {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
-      {with(96, 0), "its points begin within its header"},
-      {with(138, -1), "a scale or an offset"},  // the sign and exponent of the scale of x
+      {with(96, 0), "has a point offset inside its header"},
+      {with(138, -1), "a coordinate scale or offset"},  // the sign and exponent of the scale of x
       {las_bytes(6, 2, 5), "ends after 2 of its 5 points"},
       {las_bytes(6, 0, std::size_t{1} << 62), "ends after 0 of its 4611686018427387904 points"},
       {las_bytes(6, 1, 1).substr(0, 200), "ends within the header"},
@@ -231,19 +231,19 @@ TEST(CloudIo, ReportsCauseForInvalidPcdFiles) {
       {"FIELDS x y z\nSIZE 4 4\n", "line 2: SIZE has 2 entries for 3 fields"},
       {"FIELDS x y z\nSIZE 4 four 4\n", "line 2: 'four' is found where a number of SIZE"},
       {"FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n", "the fields x, y and z"},
-      {"FIELDS x\nSIZE 3\nTYPE F\nDATA ascii\n", "'x' has a SIZE, TYPE and COUNT"},
+      {"FIELDS x\nSIZE 3\nTYPE F\nDATA ascii\n", "'x' has a combination of SIZE, TYPE and COUNT"},
       {fields + "DATA ascii\n1 2 3\n", "neither POINTS nor WIDTH and HEIGHT"},
       {head + "DATA zipped\n", "DATA is 'zipped'; it must be ascii, binary or"},
       {head + "DATA ascii\n1 2 3\n", "ends after 1 of its 2 points"},
       {head + "DATA ascii\n1 2 3\n1 2\n", "line 10: ends where z is expected"},
       {head + "DATA ascii\n1 nan 3\n1 2 inf\n",
-       "contains no points but 2 that are NaN or infinite"},
+       "contains no valid points; 2 points are NaN or infinite"},
       {head + "DATA ascii\n1 2 3\n1 2 1e9\n", "coordinates must be local"},
       {head + "DATA binary\n" + std::string(13, '\0'), "ends after 1 of its 2 points"},
       {head + "DATA binary_compressed\n1234", "ends before its compressed data"},
       {head + "DATA binary_compressed\n" + sizes, "ends within its compressed data"},
       {head + "DATA binary_compressed\n" + std::string("\2\0\0\0\30\0\0\0\40\5", 10),
-       "compressed data that are damaged"},  // a copy from before the beginning
+       "damaged compressed data"},  // a copy from before the beginning
   };
   for (const auto& broken : cases) {
     EXPECT_THAT([&] { read_cloud(folder.file("cloud.pcd", broken.bytes)); },
@@ -268,12 +268,12 @@ TEST(CloudIo, ReportsCauseForInvalidPlyAndTextFiles) {
       {"word.xyz", "1 2 3\n1 two 3\n", "line 2: 'two' is found where a coordinate is expected"},
       {"short.xyz", "1 2\n", "line 1: ends where a coordinate is expected"},
       {"nan.ply", head + "end_header\n0 nan 0\n",
-       "contains no points but 1 that are NaN or infinite"},
+       "contains no valid points; 1 points are NaN or infinite"},
       {"far.ply", head + "end_header\n0 4512345.5 0\n", "coordinates must be local"},
       {"view.ply", head + "property float view\nend_header\n0 0 0 1.5\n",
        "point 0 has the view 1.5"},
       {"faces.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int a\nend_header\n",
-       "there is no element 'vertex'"},
+       "missing element 'vertex'"},
       {"cloud.doc", "ASTM",
        "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt, .asc, .pts or "
        ".csv"},

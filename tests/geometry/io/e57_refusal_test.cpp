@@ -23,7 +23,7 @@ TEST_F(E57, RejectsDamagedPages) {
       std::string bytes = whole;
       bytes[page * e57_page + offset] = static_cast<char>(bytes[page * e57_page + offset] ^ 0x10);
       EXPECT_THAT(rejection(bytes),
-                  HasSubstr("its page at byte " + std::to_string(page * e57_page) +
+                  HasSubstr("the page at byte " + std::to_string(page * e57_page) +
                             " has a wrong checksum"));
     }
   }
@@ -58,29 +58,29 @@ TEST_F(E57, ReportsCauseForInvalidFiles) {
       {with_bytes(whole, 0, "ASTM-E58"), "is not an E57 file"},
       {with_bytes(whole, 8, "\x02"), "is E57 of version 2; it must be 1"},
       {with_bytes(whole, 16, eight), "ends after 1024 of its 18446744073709551615 bytes"},
-      {with_bytes(whole, 16, std::string(8, '\0')), "says to have 0 bytes"},
+      {with_bytes(whole, 16, std::string(8, '\0')), "declares 0 bytes"},
       {with_bytes(whole, 40, std::string("\x00\x03\0\0", 4)), "has pages of 768 bytes"},
       {with_bytes(whole, 40, eight), "has pages of 18446744073709551615 bytes"},
       {with_bytes(whole, 24, eight),
        "its XML is at byte 18446744073709551615, which is after its end"},
       {with_bytes(whole, 24, std::string("\xFD\x03\0\0", 4)), "byte 1021, which is in a checksum"},
       {with_bytes(whole, 32, eight), "has XML of 18446744073709551615 bytes"},
-      {with_bytes(whole, 32, std::string("\x10\0\0\0", 4)), "has XML that is damaged at its byte"},
-      {with(whole, "</data3D>", "</data2D>"), "has XML that is damaged at its byte"},
+      {with_bytes(whole, 32, std::string("\x10\0\0\0", 4)), "has damaged XML at byte"},
+      {with(whole, "</data3D>", "</data2D>"), "has damaged XML at byte"},
       {with(with(whole, "<e57Root", "<E57Root"), "</e57Root>", "</E57Root>\n</e57Root>"),
-       "has XML that is damaged"},
+       "has damaged XML"},
       {with(whole, "fileOffset=\"48\"", "fileOffset=\"99999999\""),
        "a scan is at byte 99999999, which is after its end"},
       {with(whole, "fileOffset=\"48\"", "fileOffset=\"-48\""), "has the fileOffset of 'points'"},
       {with(whole, "fileOffset=\"48\"", "fileOffset=\"52\""), "has no records at byte 52"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"9223372036854775808\""),
-       "says to have 9223372036854775808 points in a scan of"},
+       "declares 9223372036854775808 points in a scan of"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"99999999999999999999\""),
        "which is not a valid number"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"4\""),
        "ends after 3 of the 4 points of a scan"},
       {with(whole, "recordCount=\"3\"", "recordCount=\"6\""),
-       "says to have 6 points in a scan of 116 bytes, which is room for 4"},
+       "declares 6 points in a scan of 116 bytes, which has space for at most 4"},
       {with(whole, "cartesianX", "cartesianA"), "has a scan whose points have neither"},
       {with(whole, "type=\"Float\"", "type=\"Blob\""), "a field 'cartesianX' of type 'Blob'"},
       {with(whole, "type=\"Float\"", "type=\"Float\" precision=\"half\""), "of type 'Float'"},
@@ -93,18 +93,18 @@ TEST_F(E57, ReportsCauseForInvalidFiles) {
       {with(whole, "type=\"Float\"", "type=\"Integer\" maximum=\"many\""),
        "the maximum of 'cartesianX' 'many', which is not a valid number"},
       {with(whole, "<points", make_pose("2 0 0 0", "") + "<points"),
-       "quaternion of length 2.000000"},
+       "quaternion has length 2.000000"},
       {with(whole, "<points", make_pose("", "nan 0 0") + "<points"),
        "x of a translation that is not"},
       {with_bytes(whole, 48, "\x02"), "has no records at byte 48"},
-      {with_bytes(whole, 56, eight), "at byte 48 (not counting checksums) that does not end"},
+      {with_bytes(whole, 56, eight), "at byte 48 (not counting checksums) that extends beyond"},
       {with_bytes(whole, 64, eight), "the data of a scan is at byte 18446744073709551615"},
       {with_bytes(whole, 64, std::string(8, '\0')), "E57 is refused for its packets"},
-      {with_bytes(whole, 80, "\x03"), "of kind 3; there are kinds 0, 1 and 2"},
-      {with_bytes(whole, 82, "\xFF\xFF"), "of 65536 bytes; it must be a multiple of 4"},
-      {with_bytes(whole, 82, "\x01"), "of 2 bytes; it must be a multiple of 4"},
-      {with_bytes(whole, 84, "\x02"), "without a stream for each of the 3 fields"},
-      {with_bytes(whole, 86, "\xFF\xFF"), "whose streams are longer than it is"},
+      {with_bytes(whole, 80, "\x03"), "of kind 3; valid kinds are 0, 1 and 2"},
+      {with_bytes(whole, 82, "\xFF\xFF"), "of 65536 bytes; its size must be a multiple of 4"},
+      {with_bytes(whole, 82, "\x01"), "of 2 bytes; its size must be a multiple of 4"},
+      {with_bytes(whole, 84, "\x02"), "that does not contain one stream for each of the 3 fields"},
+      {with_bytes(whole, 86, "\xFF\xFF"), "whose streams are longer than the packet"},
       {with_bytes(whole, 80, "\x02"), "ends after 0 of the 3 points of a scan"},
   };
   for (const auto& broken : cases) {
@@ -126,13 +126,13 @@ TEST_F(E57, RejectsMorePointsThanItsBytesCanContain) {
   EXPECT_THAT(read(make_e57({scan})).positions,
               testing::ElementsAre(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(5, 5, 5)));
   scan.records = std::uint64_t{1} << 60;
-  EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("says to have 1152921504606846976 points"));
+  EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("declares 1152921504606846976 points"));
   // Nor of so many more than it has bytes that they fill the memory.
   scan.streams[0] = e57_integers("cartesianX", 0, 1, std::vector<std::int64_t>(80'000, 1));
   scan.records = 65'536;
   EXPECT_EQ(read(make_e57({scan})).positions.size(), 65'536U);
   scan.records = 80'000;
-  EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("which is room for 65536"));
+  EXPECT_THAT(rejection(make_e57({scan})), HasSubstr("which has space for at most 65536"));
 }
 
 TEST_F(E57, IgnoresEntitiesAndDeepNesting) {
@@ -149,8 +149,7 @@ TEST_F(E57, IgnoresEntitiesAndDeepNesting) {
             3U);
   std::string deep;
   for (int i = 0; i < 200'000; ++i) deep += "<a>";
-  EXPECT_THAT(rejection(with(whole, "<data3D", deep + "<data3D")),
-              HasSubstr("XML that is damaged"));
+  EXPECT_THAT(rejection(with(whole, "<data3D", deep + "<data3D")), HasSubstr("damaged XML"));
   for (int i = 0; i < 200'000; ++i) deep += "</a>";
   EXPECT_EQ(read(with(whole, "<data3D", deep + "<data3D")).positions.size(), 3U);
 }

@@ -90,7 +90,7 @@ TEST_F(ForeignCloud, ReadsTextWithByteOrderMarksAndAnyLineEnds) {
   for (const char c : text) wide += std::string{'\0', c};
   expect_corners("a.xyz", wide);
   EXPECT_THAT(error_message("a.xyz", replaced(lines(" "), "\n", " ")),
-              HasSubstr("has 24 numbers in its only line; write one point in a line"));
+              HasSubstr("has 24 numbers in its only line; write one point per line"));
 }
 
 TEST_F(ForeignCloud, ReadsTextWithHeadersAndOtherSeparators) {
@@ -122,13 +122,13 @@ TEST_F(ForeignCloud, RejectsInvalidText) {
   EXPECT_THAT(error_message("a.pts", "9\n" + lines(" ")),
               HasSubstr("ends after 8 of its 9 points"));
   EXPECT_THAT(error_message("a.xyz", "4\n2\n0 0 0\n"),
-              HasSubstr("line 2: is a second number alone"));
+              HasSubstr("line 2: contains a second point count"));
   EXPECT_THAT(error_message("a.csv", "1,2\n"),
               HasSubstr("line 1: ends where a coordinate is expected"));
   EXPECT_THAT(error_message("a.csv", "1,2,3\n1,,3\n"),
               HasSubstr("line 2: ends where a coordinate is expected"));
   EXPECT_THAT(error_message("a.xyz", "1 2 3\n1 2,5 3\n"),
-              HasSubstr("line 2: '2,5' has a comma for the decimal point"));
+              HasSubstr("line 2: '2,5' has a decimal comma"));
 }
 
 TEST_F(ForeignCloud, SkipsAndCountsPointsThatAreNotFinite) {
@@ -142,7 +142,7 @@ TEST_F(ForeignCloud, SkipsAndCountsPointsThatAreNotFinite) {
       "property float z\nend_header\n";
   expect_corners("a.ply", ply + "nan 0 0\n" + lines(" "), 1);
   EXPECT_THAT(error_message("a.xyz", "nan nan nan\n"),
-              HasSubstr("contains no points but 1 that are NaN or infinite"));
+              HasSubstr("contains no valid points; 1 points are NaN or infinite"));
 }
 
 TEST_F(ForeignCloud, ReadsPcdOfOldVersionsAndWithOtherLineEnds) {

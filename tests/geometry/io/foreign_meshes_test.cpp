@@ -197,7 +197,7 @@ TEST_F(ForeignMesh, ReadsObjOfCadPrograms) {
   open_end.back() = '\\';
   expect_box("a.obj", open_end);
   EXPECT_THAT(error_message("a.obj", replaced(v, " 4", " 4,0")),
-              HasSubstr("line 2: '4,0' has a comma for the decimal point"));
+              HasSubstr("line 2: '4,0' has a decimal comma"));
   EXPECT_THAT(error_message("a.obj", v + "surf 0 1 0 1 1 2 3 4\n"),
               HasSubstr("line 9: free-form surfaces (surf) are not supported"));
   EXPECT_THAT(error_message("a.obj", "call other.obj\n"), HasSubstr("includes another file"));
@@ -219,12 +219,11 @@ TEST_F(ForeignMesh, ReadsPlyWithListsOfOtherNamesAndTypes) {
     expect_box("a.ply", replaced(text, "\n", "\r"));
     expect_box("a.ply", "\xEF\xBB\xBF" + text);
   }
-  EXPECT_THAT(
-      error_message("a.ply", ply_header("ascii",
-                                        "element face 6\nproperty list uchar int a\n"
-                                        "property list uchar int b\n") +
-                                 body),
-      HasSubstr("has the lists a, b; the one of its corners must be called vertex_indices"));
+  EXPECT_THAT(error_message("a.ply", ply_header("ascii",
+                                                "element face 6\nproperty list uchar int a\n"
+                                                "property list uchar int b\n") +
+                                         body),
+              HasSubstr("has the lists a, b; the list of corners must be named vertex_indices"));
   EXPECT_THAT(error_message("a.ply", ply_header("ascii",
                                                 "element face 1\nproperty list uchar float "
                                                 "vertex_indices\n") +

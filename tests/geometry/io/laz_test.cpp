@@ -168,25 +168,25 @@ TEST_F(CorruptedLaz, ReportsUnsupportedCompression) {
                      "points of format " + std::to_string(format) + ", compressed (LAZ); only");
   }
   expect_rejection(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); only");
-  expect_rejection(record_ - 54 + 18, std::uint16_t{1}, "the record of its compression is missing");
+  expect_rejection(record_ - 54 + 18, std::uint16_t{1}, "the LAZ record is missing");
   expect_rejection(record_ - 54 + 20, std::uint16_t{40}, "it ends too early");
-  expect_rejection(record_, std::uint16_t{1}, "is compressed by method 1 of LAZ");
-  expect_rejection(record_ + 2, std::uint16_t{1}, "is compressed by method 3 of LAZ");
-  expect_rejection(record_ + 12, std::uint32_t{0}, "its chunks have no points");
+  expect_rejection(record_, std::uint16_t{1}, "is compressed by LAZ method 1");
+  expect_rejection(record_ + 2, std::uint16_t{1}, "is compressed by LAZ method 3");
+  expect_rejection(record_ + 12, std::uint32_t{0}, "its chunk size is zero");
   expect_rejection(record_ + 32, std::uint16_t{1}, "LAZ items do not match point format 7");
   expect_rejection(record_ + 34, std::uint16_t{11}, "LAZ items do not match point format 7");
-  expect_rejection(record_ + 38, std::uint16_t{2}, "by version 2 of LAZ's items");
+  expect_rejection(record_ + 38, std::uint16_t{2}, "has LAZ items of version 2");
   expect_rejection(105, std::uint16_t{37}, "LAZ items do not match point format 7 and 37");
 }
 
 TEST_F(CorruptedLaz, ReportsInvalidChunkTable) {
-  expect_rejection(points_, std::uint64_t{7}, "has no table of its compressed chunks: byte 7");
-  expect_rejection(points_, std::uint64_t{1} << 60, "has no table of its compressed chunks");
+  expect_rejection(points_, std::uint64_t{7}, "has no chunk table: byte 7");
+  expect_rejection(points_, std::uint64_t{1} << 60, "has no chunk table");
   expect_rejection(table_, std::uint32_t{1}, "its version is not 0");
-  expect_rejection(table_ + 4, std::uint32_t{2}, "has fewer chunks of compressed points");
-  expect_rejection(table_ + 4, std::uint32_t{0}, "has fewer chunks of compressed points");
-  expect_rejection(247, std::uint64_t{1} << 62, "has fewer chunks of compressed points");
-  expect_rejection(points_ + 8 + 36 + 4, std::uint32_t{1} << 31, "does not end within its chunk");
+  expect_rejection(table_ + 4, std::uint32_t{2}, "has fewer compressed chunks");
+  expect_rejection(table_ + 4, std::uint32_t{0}, "has fewer compressed chunks");
+  expect_rejection(247, std::uint64_t{1} << 62, "has fewer compressed chunks");
+  expect_rejection(points_ + 8 + 36 + 4, std::uint32_t{1} << 31, "extends beyond its chunk");
 }
 
 }  // namespace

@@ -268,7 +268,7 @@ TEST_F(MeshIo, RejectsDracoWithBooleanPositions) {
     bytes.push_back(static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16)));
   }
   EXPECT_THAT([&] { read("bools.drc", bytes); },
-              testing::ThrowsMessage<Error>(HasSubstr("has positions of an unknown type")));
+              testing::ThrowsMessage<Error>(HasSubstr("has positions of an unsupported type")));
 }
 
 TEST_F(MeshIo, ReportsCauseForInvalidFiles) {
@@ -287,8 +287,8 @@ TEST_F(MeshIo, ReportsCauseForInvalidFiles) {
     std::string name, bytes, message;
   } cases[] = {
       {"empty.ply", "", "is empty"},
-      {"not.ply", "solid x", "line 1: a PLY file begins with a line 'ply'"},
-      {"no_format.ply", "ply\nend_header\n", "the header must have a line 'format"},
+      {"not.ply", "solid x", "line 1: the first line of a PLY file must be 'ply'"},
+      {"no_format.ply", "ply\nend_header\n", "the header must contain a line 'format"},
       {"no_end.ply", "ply\nformat ascii 1.0\n", "the header ends without a line 'end_header'"},
       {"format.ply", "ply\nformat binary_pdp 1.0\n", "line 2: the format 'binary_pdp' is unknown"},
       {"type.ply", ply("element vertex 3\nproperty flot x\n"), "line 4: the property type 'flot'"},
@@ -297,7 +297,7 @@ TEST_F(MeshIo, ReportsCauseForInvalidFiles) {
       {"count.ply", ply("element vertex many\n"),
        "line 3: 'many' is found where a number of elements"},
       {"list.ply", ply("element face 1\nproperty list float int vertex_indices\nend_header\n"),
-       "the length of a list must be of an integer type"},
+       "the length of a list must have an integer type"},
       {"huge.ply", ply("element vertex 30000000\nproperty float x\nend_header\n1\n"),
        "declares 30000000 of element 'vertex', but the file is too short"},
       {"vertices.ply", ply("element vertex 120000001\nproperty float x\nend_header\n1\n"),
@@ -308,7 +308,7 @@ TEST_F(MeshIo, ReportsCauseForInvalidFiles) {
        "contains more than 40000000 faces"},
       {"xy.ply", ply("element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n"),
        "must have the properties x, y and z"},
-      {"no_vertex.ply", ply(face + "3 0 1 2\n"), "there is no element 'vertex'"},
+      {"no_vertex.ply", ply(face + "3 0 1 2\n"), "missing element 'vertex'"},
       {"index.ply", ply(three + face + points + "3 0 1 3\n"),
        "face 0 has vertex 3, but there are 3 vertices, counted from 0"},
       {"negative.ply", ply(three + face + points + "3 0 -1 2\n"), "face 0 has vertex -1"},
@@ -318,22 +318,22 @@ TEST_F(MeshIo, ReportsCauseForInvalidFiles) {
       {"nan.ply", ply(three + face + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), "face 0: vertex 1 is ("},
       {"cloud.ply", ply(three + "end_header\n" + points), "contains no faces"},
       {"flat.ply", ply(three + face + "0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n"),
-       "contains no triangle with an area"},
+       "contains no triangle with a positive area"},
       {"binary.ply",
        "ply\nformat binary_little_endian 1.0\n" + three + face + std::string(36, '\0') + "\3abcd",
        "ends within face 0 of 1"},
       {"index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 9\n",
-       "line 5: the face has vertex 9, but there are only 3"},
-      {"zero.obj", "v 0 0 0\nf 0 1 2\n", "line 2: the face has vertex 0"},
-      {"back.obj", "v 0 0 0\nf -1 -2 -3\n", "line 2: the face has vertex -2"},
+       "line 5: the face refers to vertex 9, but there are only 3"},
+      {"zero.obj", "v 0 0 0\nf 0 1 2\n", "line 2: the face refers to vertex 0"},
+      {"back.obj", "v 0 0 0\nf -1 -2 -3\n", "line 2: the face refers to vertex -2"},
       {"short.obj", "v 0 0\n", "line 1: ends where a coordinate is expected"},
       {"garbage.obj", std::string("\x00\xff\x80\n\x01", 5), "contains neither vertices nor faces"},
-      {"not.off", "FOO\n3 1 0\n", "line 1: an OFF file"},
+      {"not.off", "FOO\n3 1 0\n", "line 1: a supported OFF file"},
       {"binary.off", "OFF BINARY\n", "binary OFF is not supported"},
       {"huge.off", "OFF\n4000000000 1 0\n", "line 2: 4000000000 vertices and 1 faces are declared"},
       {"index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n",
        "line 6: the face has vertex 7, but there are 3 vertices"},
-      {"not.stl", "hello", "is neither ascii STL"},
+      {"not.stl", "hello", "is neither ASCII STL"},
       {"cut.stl", short_stl, "declares 9 triangles in binary STL, but is 84 bytes long"},
       {"word.stl", "solid\nfacet normal 0 0 1\nouter rope\n",
        "line 3: 'rope' is not an STL keyword"},

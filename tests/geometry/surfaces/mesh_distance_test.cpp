@@ -218,7 +218,7 @@ TEST(MeshDistance, IsFiniteForCoordinatesBeyondSinglePrecision) {
 
 TEST(MeshDistance, RejectsMeshWithoutSurface) {
   EXPECT_THAT(testing_support::thrown_message([&] { MeshDistance(Mesh{}); }),
-              testing::HasSubstr("there is no triangle with a positive area"));
+              testing::HasSubstr("the mesh contains no triangle with a positive area"));
 }
 
 }  // namespace

@@ -144,7 +144,8 @@ TEST_F(BenchmarkCommand, RegeneratesHtmlReport) {
 TEST_F(BenchmarkCommand, RejectsUnknownPlanners) {
   const ProgramRun result = run("see,frontier");
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("unknown planner 'frontier'; expected all or some of see++"));
+  EXPECT_THAT(result.err,
+              HasSubstr("unknown planner 'frontier'; expected all or names from see++"));
 }
 
 TEST_F(BenchmarkCommand, GeneratesSceneOfFamilyForEachSeed) {

@@ -146,7 +146,7 @@ TEST_F(CampaignCommand, ReadsIndexFromScheduler) {
   EXPECT_EQ(last.exit_code, 0) << last.err;
   EXPECT_EQ(records("out").count("quick/short/oa/seed_2/item.json"), 1U);
   EXPECT_EQ(beyond.exit_code, 0);
-  EXPECT_THAT(beyond.err, HasSubstr("task 8 has no runs; there are 8"));
+  EXPECT_THAT(beyond.err, HasSubstr("task 8 has no runs; the total number of runs is 8"));
   EXPECT_EQ(records("out").size(), 1U);
 }
 

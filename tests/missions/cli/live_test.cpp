@@ -121,7 +121,7 @@ TEST_F(LiveCommands, AcceptSameScanTwice) {
   const std::vector<std::string> call =
       measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
   EXPECT_EQ(answer(call), answer(call));
-  EXPECT_THAT(run_skycap(command("next", call)).err, HasSubstr("known already"));
+  EXPECT_THAT(run_skycap(command("next", call)).err, HasSubstr("already known"));
 }
 
 TEST_F(LiveCommands, WarnAboutWrongPose) {
@@ -155,7 +155,7 @@ TEST_F(LiveCommands, ReportMissingInput) {
   };
   EXPECT_THAT(rejection({"plan", mission_}), HasSubstr("scene.model is missing"));
   EXPECT_THAT(rejection({"scan", mission_}), HasSubstr("scene.model is missing"));
-  EXPECT_THAT(rejection(command("finish")), HasSubstr("contains no scan yet"));
+  EXPECT_THAT(rejection(command("finish")), HasSubstr("contains no scans yet"));
   EXPECT_THAT(rejection(command("next", {"--scan", "x.ply"})), HasSubstr("--pose"));
   EXPECT_THAT(rejection(command("next", {"--refuse", "no"})), HasSubstr("no view to reject"));
   EXPECT_THAT(rejection(command("next", {"--en-route"})), HasSubstr("--en-route requires --scan"));

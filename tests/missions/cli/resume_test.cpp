@@ -164,7 +164,7 @@ TEST_F(ResumedPlan, RejectsJournalWithDifferentResults) {
   }
   const tests::ProgramRun run = run_skycap(plan("part", {"--resume"}));
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("does not match: view 1 gave other points"));
+  EXPECT_THAT(run.err, HasSubstr("does not match: view 1 has different points"));
 }
 
 }  // namespace

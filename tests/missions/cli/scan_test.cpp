@@ -337,7 +337,7 @@ TEST_F(ScanCommand, KeepsFilesCompleteOnCtrlC) {
   EXPECT_THAT(run.out, HasSubstr("interrupted"));
   EXPECT_EQ(summary()["complete"], false);
   EXPECT_THAT(tests::read_content(folder / "out/scan.ply"), HasSubstr("element vertex 0\n"));
-  EXPECT_THAT(run.err, HasSubstr("no report after Ctrl-C; skycap report writes it"));
+  EXPECT_THAT(run.err, HasSubstr("no report written after Ctrl-C; run skycap report to write it"));
 }
 
 TEST_F(ScanCommand, OmitsEmptyRawlog) {
@@ -360,7 +360,7 @@ TEST_F(ScanCommand, RejectsWithOneLineAndNoOutput) {
   EXPECT_THAT(rejected({"--format", "zip"}),
               HasSubstr("unknown point format 'zip'; expected one of: las"));
   EXPECT_THAT(rejected({"--format", "las,las7"}),
-              HasSubstr("two formats have the file name scan.las"));
+              HasSubstr("two formats use the file name scan.las"));
   EXPECT_THAT(rejected({"--sensor", "sonar"}), HasSubstr("unknown sensor sonar"));
   EXPECT_THAT(rejected({"--route", folder / "none.tum"}), HasSubstr("none.tum"));
   EXPECT_THAT(rejected({"--set", "scan.orbit.radius=0"}), HasSubstr("key scan.orbit.radius"));

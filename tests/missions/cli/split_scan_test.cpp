@@ -70,7 +70,7 @@ TEST_F(SplitScan, MeasuresSeveralPiecesPerTask) {
   EXPECT_TRUE(fs::exists(own_shard_folder("4_of_5")));
   const auto beyond = task(2, 5, {"--chunk", "3"});
   EXPECT_EQ(beyond.exit_code, 0);
-  EXPECT_THAT(beyond.err, HasSubstr("task 2 has no runs; there are 5"));
+  EXPECT_THAT(beyond.err, HasSubstr("task 2 has no runs; the total number of runs is 5"));
   const auto early = collect(5);
   EXPECT_EQ(early.exit_code, 1);
   EXPECT_THAT(early.err, HasSubstr("2 of 5 pieces are complete; missing 0, 1, 2"));

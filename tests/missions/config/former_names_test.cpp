@@ -98,7 +98,7 @@ TEST(FormerNames, AreRejectedTogetherWithCurrentNames) {
   };
   EXPECT_THAT(error_message("  coverage_distance: 0.03\n  registration_distance: 0.03\n"),
               HasSubstr("m.yaml:4: key evaluation.registration_distance is now "
-                        "evaluation.coverage_distance, which is set, too; remove one of them"));
+                        "evaluation.coverage_distance, which is also set; remove one of them"));
 }
 
 TEST(FormerNames, AreNotRewrittenWhenAmbiguous) {
@@ -106,7 +106,7 @@ TEST(FormerNames, AreNotRewrittenWhenAmbiguous) {
                 config::with_current_names(
                     "{scan: {orbit: {radius: 3}}, evaluation: {radius: 1}}\n", "m.yaml");
               }),
-              HasSubstr("write each key in a line of its own"));
+              HasSubstr("write each key on a separate line"));
 }
 
 // A summary that version 0.1 wrote, as the corpora of the readers keep it.

@@ -150,7 +150,7 @@ bool is_key_error(const std::string& message) {
   const std::string what = message.substr(digits + 2);
   const bool is_yaml_error = what.starts_with("is not valid YAML") || what.starts_with("anchors") ||
                              what.starts_with("aliases") || what.starts_with("tags") ||
-                             what.starts_with("lists and maps are nested deeper");
+                             what.starts_with("lists and maps are nested more");
   if (is_yaml_error) return true;
   if (!what.starts_with("key ")) return false;
   const std::string named = what.substr(4, what.find_first_of(" :", 4) - 4);

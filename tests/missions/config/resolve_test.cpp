@@ -187,7 +187,8 @@ TEST(Resolve, DefaultsToSkycapPlannerForFlights) {
 TEST(Resolve, ChecksDensityOnlyForSee) {
   const std::string sparse = smallest + "planner: {density: 1000, resolution_radius: 0.05, name: ";
   for (const char* name : {"see", "see++"}) {
-    EXPECT_THAT(error_message(sparse + name + "}\n"), HasSubstr("which admits no frontier"))
+    EXPECT_THAT(error_message(sparse + name + "}\n"),
+                HasSubstr("with which no point can be a frontier"))
         << name;
   }
   for (const char* name : {"skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"}) {

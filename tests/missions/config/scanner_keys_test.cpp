@@ -48,7 +48,7 @@ TEST(SensorLidar, RejectsConflictingSettings) {
       validation_error("{lidar: livox_avia}",
                        flight_mission + "scan: {mount: {rotation_deg: [0, 90, 0]}}\n"),
       HasSubstr(
-          "key scan.mount.rotation_deg: the scanner must not look up or down by more than 75"));
+          "key scan.mount.rotation_deg: the scanner must not point up or down by more than 75"));
   EXPECT_EQ(validation_error("{lidar: riegl_vux_1uav}", flight_mission), "accepted");
   EXPECT_THAT(validation_error("{lidar: riegl_vux_1uav, capture: stops}", flight_mission),
               HasSubstr("key sensor.capture: stops conflicts with a single-line LiDAR"));

@@ -91,7 +91,8 @@ TEST(VehicleReader, ReportsLineOfErrors) {
   EXPECT_THAT(error_message(base + "rotors: 4.5\n"), HasSubstr("key rotors must be an integer"));
   EXPECT_THAT(error_message(base + "gimbal_max_deg: -90\n"),
               HasSubstr("must be greater than gimbal_min_deg"));
-  EXPECT_THAT(error_message(base + "mass: 20\n"), HasSubstr("less than its mass needs to hover"));
+  EXPECT_THAT(error_message(base + "mass: 20\n"),
+              HasSubstr("less than hovering with its mass requires"));
   EXPECT_THAT(
       error_message("name: kite\nlike: dragon\n"),
       HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: generic, "));

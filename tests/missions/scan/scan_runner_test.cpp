@@ -185,7 +185,7 @@ TEST_F(ScanRunner, ResumesFromAnyCheckpointToSameBytes) {
                 scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, none,
                                {.begun = {.firings = 1}});
               }),
-              testing::HasSubstr("was interrupted after 1 firings"));
+              testing::HasSubstr("it ends after 1 firings"));
   EXPECT_THAT(testing_support::thrown_message([&] {
                 scan::CloudFile(folder / "whole.las", scan::las_format({}),
                                 scan::ReturnPosition::reported,

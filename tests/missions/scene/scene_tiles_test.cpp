@@ -166,7 +166,7 @@ TEST_F(TileScan, ArrangesTilesInRowsAndColumns) {
 TEST_F(TileScan, RejectsInvalidTilesInOneLine) {
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"[{files: 'nothing*.ply'}]", "files is nothing*.ply and matches no file"},
-      {"[{files: 'tile_?.ply', model: joined.ply}]", "or model is required"},
+      {"[{files: 'tile_?.ply', model: joined.ply}]", "conflicts with model or is missing"},
       {"[{model: joined.ply, rows: 2}]", "spacing"},
       {"[{model: joined.ply, rows: 2, spacing: -1}]", "spacing must be above 0"},
       {"[{model: joined.ply, rows: 0}]", "rows must be from 1 to 10000"},

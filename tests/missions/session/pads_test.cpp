@@ -127,9 +127,9 @@ TEST(StatedReturns, AreRejectedAtAltitudeThroughBuilding) {
   const auto low = check_return("5");
   EXPECT_EQ(low.exit_code, 1);
   EXPECT_THAT(low.out, HasSubstr(": verified, 0 of "));  // the mission itself is
-  EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-altitude) "));
+  EXPECT_THAT(low.out, HasSubstr("not verified: at 5 m (--return-altitude) "));
   EXPECT_THAT(low.out, HasSubstr(" of the scene"));
-  const std::string min = "the lowest safe return altitude is ";
+  const std::string min = "the lowest verified return altitude is ";
   ASSERT_THAT(low.out, HasSubstr(min));
   const double height = std::stod(low.out.substr(low.out.find(min) + min.size()));
   EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance, less what proofs lose
@@ -182,7 +182,7 @@ TEST(Pads, AreCheckedAgainstSceneInRouteFiles) {
   const auto steep = with("steep.obj");
   EXPECT_EQ(steep.exit_code, 1);
   EXPECT_THAT(steep.out, HasSubstr(": verified, 0 of "));
-  EXPECT_THAT(steep.out, HasSubstr("not safe, the landing point at (-75.00, 0.00, 0.00) has a "
+  EXPECT_THAT(steep.out, HasSubstr("not verified: the landing point at (-75.00, 0.00, 0.00) has a "
                                    "slope of 14.0 degrees in the scene"));
   EXPECT_EQ(with("gentle.obj").exit_code, 0);
 }

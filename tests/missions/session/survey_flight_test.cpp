@@ -210,7 +210,8 @@ TEST(FlightPackage, VerifiesReturnsAtStatedAltitude) {
   alone.write("mission.params", "1\t1\tRTL_RETURN_ALT\t40\t9\n");
   const auto cone = check(plan, {});
   EXPECT_EQ(cone.exit_code, 1);
-  EXPECT_THAT(cone.out, HasSubstr("not safe, mission.params: RTL_CONE_ANG is 45; it must be 0"));
+  EXPECT_THAT(cone.out,
+              HasSubstr("not verified: mission.params: RTL_CONE_ANG is 45; it must be 0"));
 }
 
 TEST(FlightPackage, ReportsCollidingLegsInMovedScene) {
@@ -226,7 +227,7 @@ TEST(FlightPackage, ReportsCollidingLegsInMovedScene) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.out, HasSubstr("mission.plan: leg "));
   EXPECT_THAT(run.out, HasSubstr(" of the scene at ("));
-  EXPECT_THAT(run.out, HasSubstr(": not safe, "));
+  EXPECT_THAT(run.out, HasSubstr(": not verified, "));
 }
 
 // In its package a file is held to the package's pad; items are named as the ground station does.
@@ -405,7 +406,7 @@ TEST(FlightPackage, KeepsSurveyWithoutRoute) {
   EXPECT_THAT(quiet.err, HasSubstr("m.yaml: no route: the point above the take-off point"));
   const auto run = plan("out", {});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("flight    none: the point above the take-off point"));
+  EXPECT_THAT(run.out, HasSubstr("flight    none: the end of the take-off climb"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.plan"));
   const json summary = json::parse(read_content(folder / "out/summary.json"));

@@ -74,7 +74,7 @@ TEST(Feasibility, ReportsInfeasibleSettings) {
 TEST(Feasibility, WarnsAboutImplausibleSettings) {
   const std::vector<Flaw> flaws{
       {{{box_min, "[-1, -1, 0]"}, {box_max, "[0, 1, 1]"}}, "of the surface, which no survey"},
-      {{{"planner.view_distance", "20"}}, "covers only part of what it sees"},
+      {{{"planner.view_distance", "20"}}, "covers only part of its visible surface"},
       {{{"planner.resolution_radius", "0.1"}, {"planner.spacing", "0.06"}},
        "for gapless coverage"}};
   for (const Flaw& flaw : flaws) {

@@ -246,7 +246,7 @@ TEST(PriorSurvey, UsesTargetsAsGroundTruthInSimulation) {
                                "--out " +
                                path + "/dry");
   ASSERT_EQ(plan.exit_code, 0) << plan.err;
-  EXPECT_THAT(plan.out, HasSubstr("the targets' prior data, used as ground truth"));
+  EXPECT_THAT(plan.out, HasSubstr("prior data of the targets, used as ground truth"));
   const json summary = json::parse(read_content(folder.path() / "dry" / "summary.json"));
   EXPECT_EQ(summary.at("settings").at("scene.model"), "prior");
   ASSERT_EQ(summary.at("targets").size(), 1U);

@@ -386,7 +386,7 @@ TEST(Model, HasDetailLevelsOfSameShape) {
   const auto rejected = printed("scan.ply", "fine");
   EXPECT_EQ(rejected.exit_code, 2);
   EXPECT_THAT(rejected.err,
-              HasSubstr("--detail requires a builtin model; scan.ply has the detail"));
+              HasSubstr("--detail requires a builtin model; scan.ply has a fixed level of detail"));
   EXPECT_EQ(printed("radcliffe-camera", "finest").exit_code, 2);
 }
 

@@ -88,7 +88,7 @@ TEST_F(CityGml, IgnoresRingsWithoutHeights) {
   const Prior prior = read(model(
       building("<bldg:lod2MultiSurface>" + flat + square(10, 30) + "</bldg:lod2MultiSurface>")));
   EXPECT_EQ(prior.box.min().z(), 30.0);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 rings without heights ignored")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 rings ignored (no heights")));
   EXPECT_THAT(
       [&] { read(model(building("<bldg:lod2MultiSurface>" + flat + "</bldg:lod2MultiSurface>"))); },
       ThrowsMessage<Error>(HasSubstr("only coordinates without heights")));

@@ -141,7 +141,7 @@ TEST_F(CityJson, RejectsTooManyCorners) {
       ring + R"(]]]}]},"vertices":[[0,0,0]],"CityObjects":{"a":{"type":"Building","geometry":[)" +
       instances + "]}}}";
   EXPECT_THAT([&] { parse_cityjson("city.json", text); },
-              ThrowsMessage<Error>(HasSubstr("has more than 16 million corners of polygons")));
+              ThrowsMessage<Error>(HasSubstr("has more than 16 million polygon corners")));
 }
 
 /// By what is counted in the text, before any of it is read.

@@ -81,9 +81,9 @@ TEST_F(ForeignCity, ReadsReferenceSystemNamesOfAuthorities) {
   }
   EXPECT_THAT(error_message("a.gml", testing_support::make_citygml(
                                          Cube(), "urn:adv:crs:ETRS89_UTM32*DE_DHHN2099_NH")),
-              HasSubstr("; set crs: EPSG:25832 if that is meant"));
+              HasSubstr("; set crs: EPSG:25832 if this system is intended"));
   EXPECT_THAT(error_message("a.gml", testing_support::make_citygml(Cube(), "my own")),
-              HasSubstr("'my own'; set crs to its name in PROJ"));
+              HasSubstr("'my own'; set crs to its PROJ name"));
 }
 
 /// The cube with the coordinates of each ring written in another way.

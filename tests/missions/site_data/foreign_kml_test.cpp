@@ -63,7 +63,7 @@ TEST_F(ForeignKml, ExtrudesPolygonsToGround) {
   EXPECT_EQ(open.objects[0].mesh.triangles.size(), 12U);
   EXPECT_NEAR(open.box.max().z(), 20.0, 0.1);
   EXPECT_NEAR(open.box.min().z(), -100.0, 0.1);
-  EXPECT_THAT(open.notes, Contains(HasSubstr("unknown terrain there")));
+  EXPECT_THAT(open.notes, Contains(HasSubstr("unknown terrain below some polygons")));
   const Prior on_terrain = read("a.kml", text, {}, [](const Eigen::Vector2d&) { return -3.0; });
   EXPECT_NEAR(on_terrain.box.min().z(), -3.0, 1e-6);
   EXPECT_NEAR(on_terrain.box.max().z(), 20.0, 0.1);

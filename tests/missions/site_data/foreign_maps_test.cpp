@@ -111,7 +111,7 @@ TEST_F(ForeignMap, RejectsUnreadableHeights) {
     EXPECT_THAT(
         error_message("a.geojson", building(properties), [](Source& s) { s.height = 10.0; }),
         AllOf(HasSubstr("a.geojson: way/1 has the "),
-              HasSubstr("; correct it, or exclude the object with select")))
+              HasSubstr("; correct it or exclude the object with select")))
         << properties;
   }
 }
@@ -212,10 +212,11 @@ TEST_F(ForeignMap, CountsIgnoredNonStructures) {
   const Prior prior = read("a.osm", osm(hall + others), [](Source& s) { s.height = 10.0; });
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_NEAR(prior.box.max().z(), 12.0, 1e-2);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("3 areas ignored: neither buildings")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("3 areas ignored (neither buildings")));
   EXPECT_THAT(prior.notes, Contains(HasSubstr("1 power lines and cableways ignored")));
-  EXPECT_THAT(error_message("a.osm", osm(osm_line(102, false, tag("landuse", "forest")))),
-              HasSubstr("contains no outlines and nothing else with a height (1 areas ignored"));
+  EXPECT_THAT(
+      error_message("a.osm", osm(osm_line(102, false, tag("landuse", "forest")))),
+      HasSubstr("contains no outlines and no other objects with a height (1 areas ignored"));
 }
 
 /// A closed line of 8 x 10 units as AutoCAD writes it.
@@ -298,10 +299,9 @@ TEST_F(ForeignMap, ReadsShapefileWithoutIndexButNotWithoutCrs) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "hall.shx"));
   std::filesystem::remove(folder_.path() / "hall.prj");
   const auto nowhere = [](Source& s) { s.vertical.reset(); };
-  EXPECT_THAT(
-      testing_support::thrown_message([&] { read_file(file, nowhere); }),
-      HasSubstr("missing coordinate reference system, and its coordinates (9.0000, 48.0000) may be "
-                "degrees; set crs: EPSG:4326, or place if they are metres"));
+  EXPECT_THAT(testing_support::thrown_message([&] { read_file(file, nowhere); }),
+              HasSubstr("missing coordinate reference system; the coordinates (9.0000, 48.0000) "
+                        "may be degrees; set crs: EPSG:4326, or set place if they are in metres"));
   EXPECT_NEAR(read_file(file, [](Source& s) { s.crs = "EPSG:4326"; }).box.sizes().x(), 14.93, 0.01);
   for (const char* driver : {"GPKG", "FlatGeobuf"}) {
     const auto other = folder_.path() / (std::string("a.") + (driver[0] == 'G' ? "gpkg" : "fgb"));

@@ -55,8 +55,9 @@ TEST_F(ForeignRaster, IgnoresCommonNodataHeights) {
     SCOPED_TRACE(hole);
     const Prior prior = read({.hole = hole});
     expect_hole(prior);
-    EXPECT_THAT(prior.notes,
-                Contains(HasSubstr("10 cells without ground ignored: heights such as ")));
+    EXPECT_THAT(
+        prior.notes,
+        Contains(HasSubstr("10 cells without valid ground height ignored: heights such as ")));
   }
   const Prior whole = read({});
   EXPECT_EQ(whole.grid.nodes.size(), 100U);
@@ -82,7 +83,7 @@ TEST_F(ForeignRaster, ReadsBandUnitsAndRejectsUnknownOnes) {
 TEST_F(ForeignRaster, RejectsImpossibleHeights) {
   EXPECT_THAT(testing_support::thrown_message(
                   [&] { read({.hole = -9999.0}, [](Source& s) { s.unit = 1000.0; }); }),
-              HasSubstr("heights must be from -500 to 9000 m; one is "));
+              HasSubstr("heights must be from -500 to 9000 m; one height is "));
 }
 
 TEST_F(ForeignRaster, RejectsDegreesWithoutReferenceSystem) {
@@ -94,7 +95,7 @@ TEST_F(ForeignRaster, RejectsDegreesWithoutReferenceSystem) {
   EXPECT_THAT(testing_support::thrown_message([&] {
                 read_prior(source, {.origin = flight::GeodeticPoint{48.0, 9.0, 500.0}});
               }),
-              HasSubstr("may be degrees; set crs: EPSG:4326, or place if they are metres"));
+              HasSubstr("may be degrees; set crs: EPSG:4326, or set place if they are in metres"));
 }
 
 }  // namespace

@@ -90,8 +90,7 @@ TEST_F(Las, ReadsFilesLargerThanTwoGigabytes) {
 TEST_F(Las, RejectsMissingCompressionRecord) {
   std::string bytes = make_las(cube_, 2, 3);
   bytes[104] = static_cast<char>(0x83);
-  EXPECT_THAT([&] { read(bytes); },
-              ThrowsMessage<Error>(HasSubstr("the record of its compression is missing")));
+  EXPECT_THAT([&] { read(bytes); }, ThrowsMessage<Error>(HasSubstr("the LAZ record is missing")));
 }
 
 /// The shared airborne scan of Autzen Stadium: Oregon Lambert in feet, heights in feet.

@@ -120,7 +120,7 @@ TEST_F(Map, ReadsHeightsAndStoreysFromAttributes) {
   const Eigen::AlignedBox3d flat = geometry::bounding_box(prior.objects[1].mesh);
   EXPECT_NEAR(flat.min().z(), 3.0, 1e-3);
   EXPECT_NEAR(flat.max().z(), 12.0, 1e-3);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines state storeys only")));
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines specify only a number of storeys")));
 }
 
 TEST_F(Map, ReadsOpenStreetMapBuildings) {

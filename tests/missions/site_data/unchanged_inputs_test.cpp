@@ -93,7 +93,8 @@ TEST_F(InputFiles, StayUnchangedWhenDatabaseWithLogIsRead) {
   ASSERT_GT(fs::file_size(left / "hall.gpkg-wal"), 0U);
   const Prior prior = read(left / "hall.gpkg", set_base);
   EXPECT_NEAR(prior.box.max().z(), 40.0, 0.01);
-  EXPECT_THAT(prior.notes, Contains(HasSubstr("read from a copy, with the changes of its log")));
+  EXPECT_THAT(prior.notes,
+              Contains(HasSubstr("read from a copy that includes the changes in its log")));
   // In that mode, but without a log, it is read where it is.
   fs::remove(left / "hall.gpkg-wal");
   EXPECT_NEAR(read(left / "hall.gpkg", set_base).box.max().z(), 12.0, 0.01);

@@ -42,9 +42,9 @@ TEST(ChildProcess, EndsAfterTimeout) {
     for (volatile bool goes_on = true; goes_on;) {
     }
   };
-  EXPECT_EQ(
-      error_message(loop),
-      "x.file: timeout: their library took more than 1 s, too long for an intact file of its size");
+  EXPECT_EQ(error_message(loop),
+            "x.file: timeout: their library took more than 1 s, which is too long for an intact "
+            "file of this size");
   const ChildProcess left({"x.file", "their library"}, loop);  // goes with its owner
 }
 

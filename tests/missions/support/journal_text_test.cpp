@@ -41,7 +41,7 @@ TEST(JournalIdentity, NamesChangedSettings) {
 
 // Earlier journals count what limits refuse as unreachable, and say nothing of a format.
 TEST(JournalIdentity, ReportsVersionOfJournalInOtherFormat) {
-  const std::string end = ", whose journals this version cannot continue; " + cure;
+  const std::string end = ", whose journals cannot be resumed by this version; " + cure;
   EXPECT_EQ(error_message(R"({"version": "0.1.0", "seed": 7})", make_identity(run)),
             "j: was written by version 0.1.0" + end);
   EXPECT_EQ(error_message(R"({"version": "0.1.0", "seed": 7, "format": 2})", make_identity(run)),

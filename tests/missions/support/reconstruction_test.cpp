@@ -161,7 +161,7 @@ TEST_F(MovedProgram, NamesMissingModule) {
   const support::ProgramResult result = reconstruct();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.output, testing::HasSubstr((folder_ / "libskycap_reconstruction.so") +
-                                                ": cannot load this part of the program"));
+                                                ": cannot load this program module"));
 }
 
 }  // namespace

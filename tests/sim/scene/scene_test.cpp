@@ -300,7 +300,7 @@ TEST(Scene, RejectsEmptyPartList) {
 
 TEST(Scene, RejectsMeshWithoutSurface) {
   EXPECT_THAT(testing_support::thrown_message([&] { Scene(geometry::Mesh{}, 1); }),
-              testing::HasSubstr("there is no triangle with a positive area"));
+              testing::HasSubstr("the mesh contains no triangle with a positive area"));
 }
 
 }  // namespace

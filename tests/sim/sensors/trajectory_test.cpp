@@ -57,7 +57,7 @@ TEST(Trajectory, ReportsTheInvalidPose) {
   EXPECT_THAT(testing_support::thrown_message([&] {
                 Trajectory(std::vector<StampedPose>{{.attitude = Quaterniond(0, 0, 0, 0)}});
               }),
-              testing::HasSubstr("pose 0 has an attitude of length zero"));
+              testing::HasSubstr("pose 0 has an attitude quaternion of zero length"));
 }
 
 // A Gauss-Markov process sampled every tau has correlation 1/e between neighbours; N = 40,000

@@ -118,7 +118,7 @@ TEST(SeePlanner, RejectsParametersThatAdmitNoFrontier) {
   };
   EXPECT_EQ(error_message(see::SeeConfig{}), "");
   EXPECT_EQ(see::SeeConfig{}.effective_core_threshold(), 4);  // the paper's 3.0046, rounded up
-  EXPECT_THAT(error_message({.resolution_radius = 0.01}), HasSubstr("admits no frontier"));
+  EXPECT_THAT(error_message({.resolution_radius = 0.01}), HasSubstr("no point can be a frontier"));
   EXPECT_THAT(error_message({.core_threshold = 3}), HasSubstr("core_threshold"));
   EXPECT_THAT(error_message({.spacing = 0.02}), HasSubstr("spacing"));
   EXPECT_THAT(error_message({.density = NAN}), HasSubstr("density"));

@@ -222,7 +222,7 @@ TEST(ScanVoxels, RejectsMoreVoxelsThanMemoryCanContain) {
   EXPECT_THAT(testing_support::thrown_message([&] {
                 volumetric::ScanVoxels({0.0F, 0.0F, 0.0F}, far_away, {}, 0.01, 0.1);
               }),
-              testing::HasSubstr("choose a larger planner.resolution_radius"));
+              testing::HasSubstr("raise planner.resolution_radius"));
 }
 
 TEST(VoxelWalk, PassesOneRowAlongAxisInBothDirections) {

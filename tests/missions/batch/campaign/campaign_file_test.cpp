@@ -125,7 +125,7 @@ TEST(Campaign, RejectsInvalidKeysWithLineNumber) {
               HasSubstr("c.yaml:2: key seeds is 0; it must be from 1 to 100000"));
   EXPECT_THAT(
       rejection_message("missions: [a.yaml]\nplanners: [frontier]\n"),
-      HasSubstr("c.yaml:2: key planners: unknown planner 'frontier'; expected all or some"));
+      HasSubstr("c.yaml:2: key planners: unknown planner 'frontier'; expected all or names"));
   EXPECT_THAT(rejection_message("missions: [a.yaml]\nset:\n  planner.densty: 3\n"),
               HasSubstr("c.yaml:3: key set.planner.densty is unknown"));
   EXPECT_THAT(rejection_message("missions: [a.yaml]\nvariants:\n  v: {seed: 3}\n"),
@@ -136,8 +136,10 @@ TEST(Campaign, RejectsInvalidKeysWithLineNumber) {
               HasSubstr("c.yaml:3: key variants.v must be a map"));
   EXPECT_THAT(rejection_message("missions: [a.yaml, b/a.yaml]\n"),
               HasSubstr("a.yaml and b/a.yaml have the same name"));
-  EXPECT_THAT(rejection_message("missions: ['a,b.yaml']\n"), HasSubstr("cannot be used in tables"));
-  EXPECT_THAT(rejection_message("missions: ['..']\n"), HasSubstr("cannot be used in tables"));
+  EXPECT_THAT(rejection_message("missions: ['a,b.yaml']\n"),
+              HasSubstr("must have a name that can be used in tables"));
+  EXPECT_THAT(rejection_message("missions: ['..']\n"),
+              HasSubstr("must have a name that can be used in tables"));
   EXPECT_THAT(rejection_message("missions: [a.yaml]\nname: ../../etc\n"),
               HasSubstr("c.yaml:2: key name is not a valid folder name"));
   EXPECT_THAT(rejection_message("missions: [a.yaml]\nresults: all\n"),

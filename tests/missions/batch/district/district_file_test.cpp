@@ -99,7 +99,7 @@ TEST(DistrictFile, ReportsErrorsWithRemedies) {
       {"map: a\nset: {scene: {model: x}}\n", ":2: key set.scene.model follows from the district"},
       {"map: a\nset: {limits.most_views: 3}\n", ":2: key set.limits.most_views is unknown"},
       {"map: a\nfleet: 2\n", ":2: key fleet is unknown"},
-      {"[a, b]\n", ":1: is not a map; a district is a list of 'key: value'"}};
+      {"[a, b]\n", ":1: is not a map; a district must consist of 'key: value' lines"}};
   for (const ExpectedError& one : expected_errors) {
     EXPECT_THAT(error_message(one.text),
                 AllOf(StartsWith("town/quarter.yaml:"), HasSubstr(one.program_output)))

@@ -188,7 +188,7 @@ TEST_F(District, SelectsTargetsByPositionAndAttribute) {
 
 TEST_F(District, ReportsWhySelectionIsEmpty) {
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {near: '48.0,11.0', distance: 10}\n");
-  EXPECT_THAT(run().err, HasSubstr("key targets leaves none of the 4 objects of"));
+  EXPECT_THAT(run().err, HasSubstr("key targets selects none of the 4 objects of"));
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {id: [castle]}\n");
   EXPECT_THAT(run().err, HasSubstr("castle"));
 }
@@ -197,7 +197,8 @@ TEST_F(District, RequiresTerrainOnSlope) {
   folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}, {120, 0, 3}}));
   const auto rejected = run();
   EXPECT_EQ(rejected.exit_code, 2);
-  EXPECT_THAT(rejected.err, HasSubstr("differ by 7.0 m, and the ground between them is unknown"));
+  EXPECT_THAT(rejected.err,
+              HasSubstr("differ by 7.0 m, and the ground between the targets is unknown"));
 }
 
 /// Cells of 6 m whose ground rises from 380 m in the west to 387 m in the east.

@@ -257,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(
         GroundedFlight{"not_armed", {.rejects_arming = true}, "arm (result 4): PreArm: Compass"},
         GroundedFlight{"armed", {.is_armed = true}, "is armed"},
         GroundedFlight{"px4", {.autopilot = 12}, "only ArduCopter is"},
-        GroundedFlight{"beside_the_pad", {.pad_offset = {3.0, 4.0, 0.0}}, "5.0 m beside"},
+        GroundedFlight{"beside_the_pad", {.pad_offset = {3.0, 4.0, 0.0}}, "5.0 m horizontally"},
         GroundedFlight{"flat_battery", {.battery = 0.265}, "battery at 26%"}),
     [](const auto& test) { return test.param.name; });
 

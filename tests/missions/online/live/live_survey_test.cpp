@@ -322,8 +322,8 @@ TEST(LiveSurvey, RejectsJournalOfOtherFormatNamingItsVersion) {
   records[0] = identity.dump();
   write_records(journal, records);
   EXPECT_THAT(thrown_message([&] { rehearsal.open(folder.path()); }),
-              HasSubstr("was written by version 0.1.0, whose journals this version cannot "
-                        "continue; use another folder"));
+              HasSubstr("was written by version 0.1.0, whose journals cannot be resumed by this "
+                        "version; use another folder"));
 }
 
 /// Writes the one scan of a survey's folder anew, and its digest in the journal.
@@ -357,7 +357,8 @@ TEST(LiveSurvey, RejectsInvalidStoredScans) {
     replace_scan(folder.path(), bytes);
     return thrown_message([&] { rehearsal.open(folder.path()); });
   };
-  EXPECT_THAT(error_message("float y", "float w"), HasSubstr(".ply: is not a scan of a survey"));
+  EXPECT_THAT(error_message("float y", "float w"),
+              HasSubstr(".ply: is not a scan file of a survey"));
   EXPECT_THAT(error_message("", "\xff\xff\xff\x7f"), HasSubstr(".ply: cannot be used: "));
 }
 
@@ -375,7 +376,7 @@ TEST(LiveSurvey, RejectsDifferingProposals) {
   records.back().insert(records.back().find(field) + field.size(), "1");
   write_records(journal, records);
   EXPECT_THAT(thrown_message([&] { rehearsal.open(folder.path()); }),
-              HasSubstr("differs from the one recorded"));
+              HasSubstr("differs from the recorded one"));
 }
 
 }  // namespace

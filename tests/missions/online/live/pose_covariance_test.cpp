@@ -132,7 +132,7 @@ TEST(PoseCovariance, RejectsInvalidInputInOneLine) {
     matrix(column, row) = other;
     return error_message(format_covariance(matrix, true));
   };
-  EXPECT_THAT(error_message("1 2 3"), HasSubstr("has 3 numbers; it must have the 36"));
+  EXPECT_THAT(error_message("1 2 3"), HasSubstr("has 3 numbers; it must contain a covariance"));
   EXPECT_THAT(error_message(""), HasSubstr("has 0 numbers"));
   EXPECT_THAT(with(2, 2, NAN, NAN), HasSubstr("finite"));
   EXPECT_THAT(with(2, 2, INFINITY, INFINITY), HasSubstr("finite"));

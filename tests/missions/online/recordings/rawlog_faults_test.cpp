@@ -50,7 +50,7 @@ TEST_F(Rawlog, ReportsInvalidIntrinsicsAndRangeUnits) {
                 scan.cameraParams.distortion = mrpt::img::DistortionModel::plumb_bob;
                 scan.cameraParams.dist[6] = 0.1;
               }),
-              HasSubstr("beyond k1 k2"));
+              HasSubstr("other than k1 k2"));
   EXPECT_THAT(note([](auto& scan) { scan.sensorPose.x(1e30); }), HasSubstr("its pose"));
 }
 

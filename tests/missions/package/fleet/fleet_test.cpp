@@ -133,7 +133,7 @@ TEST(Fleet, RejectsTimetablesThatViolateSeparation) {
   EXPECT_EQ(together.exit_code, 1);
   EXPECT_THAT(together.out, HasSubstr("vehicle 1, fleet-1.plan and vehicle 2, fleet-2.waypoints "
                                       "may come within "));
-  EXPECT_THAT(together.out, HasSubstr(": not safe, 2 sorties"));
+  EXPECT_THAT(together.out, HasSubstr(": not verified, 2 sorties"));
 }
 
 TEST(Fleet, RejectsTimetablesThatContradictFiles) {
@@ -188,7 +188,7 @@ TEST(Fleet, ReassignsViewsOfLostVehicle) {
   const std::string landing = std::to_string(fleet_summary()["makespan_s"].get<double>() + 10.0);
   const auto none = export_rest({"--lost", "2", "--after", landing, "--out", package() / "none"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("it had captured all of its views by then"));
+  EXPECT_THAT(none.err, HasSubstr("the vehicle has captured all of its views by this time"));
   EXPECT_THAT(export_rest({"--lost", "2"}).err, HasSubstr("requires --out"));
   EXPECT_THAT(export_rest({"--lost", "3", "--out", package() / "none"}).err, HasSubstr("--lost 3"));
   EXPECT_THAT(export_rest({"--after", "3"}).err, HasSubstr("requires --lost"));
@@ -233,12 +233,12 @@ TEST(Fleet, RejectsContradictoryKeys) {
     return thrown_message([&] { config::parse_mission(fleet_mission(flight), "m.yaml"); });
   };
   EXPECT_THAT(error_message("vehicle: m30t, vehicles: [generic, generic]"),
-              HasSubstr("key flight.vehicle must be the first of flight.vehicles"));
+              HasSubstr("key flight.vehicle must be the first vehicle in flight.vehicles"));
   EXPECT_THAT(error_message("vehicles: [generic, no_such]"), HasSubstr("key flight.vehicles: "));
   EXPECT_THAT(error_message("vehicles: [generic, generic], pads: [[-75, 0, 0]]"),
               HasSubstr("key flight.pads has 1 take-off points for 2"));
   EXPECT_THAT(error_message("vehicles: [generic, generic], pads: [[-70, 0, 0], [-75, 0, 0]]"),
-              HasSubstr("key flight.takeoff must be the first of flight.pads"));
+              HasSubstr("key flight.takeoff must be the first position in flight.pads"));
   EXPECT_THAT(error_message("vehicle: generic, separation: 8"),
               HasSubstr("key flight.separation requires flight.vehicles"));
   EXPECT_THAT(error_message("vehicle: generic, vehicles: [], pads: [[-75, 0, 0]]"),

@@ -176,7 +176,7 @@ TEST(ReplannedMission, ReportsWhyFlyThroughIsUnavailable) {
                                    "--set", "sensor.settle=1"});
   EXPECT_EQ(resting.exit_code, 2);
   EXPECT_THAT(resting.err,
-              HasSubstr("flight.style: fly-through conflicts with a sensor that must rest"));
+              HasSubstr("flight.style: fly-through conflicts with a sensor that must be at rest"));
 }
 
 TEST(ReplannedMission, ExportsSameFilesAgain) {
