@@ -54,6 +54,22 @@ std::optional<std::uint8_t> AutopilotLink::command(std::uint16_t number,
   return std::nullopt;
 }
 
+std::optional<double> AutopilotLink::parameter(const std::string& name) {
+  ParameterRequest message;
+  message.target = state_.autopilot().value();
+  std::copy_n(name.begin(), std::min(name.size(), message.parameter.size()),
+              message.parameter.begin());
+  for (int i = 0; i < max_tries; ++i) {
+    send_message(message);
+    const double end = now() + answer_patience;
+    while (now() < end) {
+      spin(listening_period);
+      if (const std::optional<double> value = state_.parameter(name)) return value;
+    }
+  }
+  return std::nullopt;
+}
+
 void AutopilotLink::send(PositionTarget target) {
   target.target = state_.autopilot().value();
   constexpr double milliseconds = 1e3;

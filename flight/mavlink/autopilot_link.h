@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "flight/mavlink/port.h"
 #include "flight/mavlink/vehicle_state.h"
@@ -29,6 +30,11 @@ class AutopilotLink {
   /// Sends a command until it is acknowledged. Returns MAV_RESULT, or std::nullopt after a timeout
   /// of some seconds. Requires that a message from the vehicle has been received.
   std::optional<std::uint8_t> command(std::uint16_t number, const std::array<float, 7>& params);
+
+  /// Asks for a parameter by its name, of at most 16 letters. Returns its value, or std::nullopt
+  /// after a timeout of some seconds: the autopilot may not have it. Requires that a message from
+  /// the vehicle has been received.
+  std::optional<double> parameter(const std::string& name);
 
   /// Sends a setpoint once. Fills in its target and time.
   void send(PositionTarget target);

@@ -71,6 +71,42 @@ struct Attitude {
   }
 };
 
+/// Name of an autopilot's parameter; zeros fill the rest.
+using ParameterName = std::array<char, 16>;
+
+struct ParameterRequest {
+  static constexpr std::uint32_t id = 20;
+  static constexpr const char* name = "PARAM_REQUEST_READ";
+  std::int16_t index = -1;  ///< -1: by name
+  Address target;
+  ParameterName parameter{};
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("param_index", self.index);
+    visit_target(visit, self.target);
+    visit("param_id", self.parameter);
+  }
+};
+
+struct ParameterValue {
+  static constexpr std::uint32_t id = 22;
+  static constexpr const char* name = "PARAM_VALUE";
+  float value = 0.0F;
+  std::uint16_t count = 0, index = 0;
+  ParameterName parameter{};
+  std::uint8_t type = 9;  ///< MAV_PARAM_TYPE; 9: a float
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("param_value", self.value);
+    visit("param_count", self.count);
+    visit("param_index", self.index);
+    visit("param_id", self.parameter);
+    visit("param_type", self.type);
+  }
+};
+
 struct GlobalPosition {
   static constexpr std::uint32_t id = 33;
   static constexpr const char* name = "GLOBAL_POSITION_INT";
@@ -209,8 +245,8 @@ struct GimbalAttitude {
 /// Returns the CRC extra byte of a message above, or std::nullopt for other messages.
 inline std::optional<std::uint8_t> guided_extra_byte(std::uint32_t id) {
   return find_crc_extra<Heartbeat, SystemStatus, Attitude, GlobalPosition, CommandLong,
-                        CommandAnswer, PositionTarget, EstimatorStatus, StatusText, GimbalAttitude>(
-      id);
+                        CommandAnswer, PositionTarget, EstimatorStatus, StatusText, GimbalAttitude,
+                        ParameterRequest, ParameterValue>(id);
 }
 
 }  // namespace skycap::flight::mavlink

@@ -22,9 +22,10 @@ std::optional<double> compute_pitch(const std::array<float, 4>& turn) {
   return std::asin(std::clamp(2.0 * (w * y - z * x) / norm, -1.0, 1.0));
 }
 
-std::string to_string(const StatusText& message) {
+template <std::size_t N>
+std::string to_string(const std::array<char, N>& letters) {
   std::string text;
-  for (const char letter : message.text) {
+  for (const char letter : letters) {
     if (letter == '\0') break;
     text += letter >= ' ' && letter <= '~' ? letter : '?';
   }
@@ -45,6 +46,11 @@ bool VehicleState::is_new(const Frame& frame) {
 std::optional<std::uint8_t> VehicleState::answer(std::uint16_t command) const {
   const auto found = answers_.find(command);
   return found == answers_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<double> VehicleState::parameter(const std::string& name) const {
+  const auto found = parameters_.find(name);
+  return found == parameters_.end() ? std::nullopt : std::optional(found->second);
 }
 
 void VehicleState::hear(const Frame& frame, double now) {
@@ -79,8 +85,13 @@ void VehicleState::hear_autopilot(const Frame& frame, double now) {
     estimator_ = estimator->flags;
   } else if (const auto answer = decode<CommandAnswer>(frame)) {
     answers_[answer->command] = answer->result;
+  } else if (const auto parameter = decode<ParameterValue>(frame)) {
+    constexpr std::size_t most_parameters = 4096;
+    if (std::isfinite(parameter->value) && parameters_.size() < most_parameters) {
+      parameters_[to_string(parameter->parameter)] = parameter->value;
+    }
   } else if (const auto text = decode<StatusText>(frame)) {
-    if (text->severity <= warning_severity) warning_ = to_string(*text);
+    if (text->severity <= warning_severity) warning_ = to_string(text->text);
   }
 }
 

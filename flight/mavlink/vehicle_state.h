@@ -59,6 +59,9 @@ class VehicleState {
   std::optional<std::uint8_t> answer(std::uint16_t command) const;
   void forget_answer(std::uint16_t command) { answers_.erase(command); }
 
+  /// The last value [its unit] of a parameter that was heard; nothing if none was.
+  std::optional<double> parameter(const std::string& name) const;
+
   /// Returns the last warning of the autopilot as printable text, or an empty string.
   const std::string& warning() const { return warning_; }
 
@@ -75,6 +78,7 @@ class VehicleState {
   std::optional<double> yaw_, body_pitch_, pitch_, battery_;
   std::optional<std::uint16_t> estimator_;
   std::map<std::uint16_t, std::uint8_t> answers_;
+  std::map<std::string, double> parameters_;
   std::string warning_;
 };
 

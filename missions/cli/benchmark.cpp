@@ -13,6 +13,8 @@
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
 #include "missions/batch/benchmark/benchmark_report.h"
+#include "missions/batch/benchmark/methods.h"
+#include "missions/batch/benchmark/other_results.h"
 #include "missions/cli/commands.h"
 #include "missions/cli/survey_batch.h"
 #include "missions/cli/write_page.h"
@@ -139,12 +141,39 @@ std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& 
   return support::json_text(json);
 }
 
+/// The results of other programs. Each is of a mission that is compared here, by a planner of
+/// another name.
+std::vector<batch::BenchmarkCell> results_of_others(const BenchmarkOptions& options,
+                                                    const std::vector<Entry>& entries) {
+  std::vector<batch::BenchmarkCell> all;
+  for (const fs::path& file : options.also) {
+    for (batch::BenchmarkCell& cell : batch::read_other_results(file)) {
+      const auto fail = [&](const std::string& what) {
+        throw Error(ErrorKind::bad_usage, file.string() + ": " + what);
+      };
+      if (std::ranges::find(entries, cell.mission, &Entry::title) == entries.end()) {
+        fail("mission '" + cell.mission + "' is not part of this benchmark; expected " +
+             entries.front().title + (entries.size() > 1 ? " or another mission given" : ""));
+      }
+      const auto is_same = [&](const batch::BenchmarkCell& other) {
+        return other.mission == cell.mission && other.planner == cell.planner;
+      };
+      if (batch::find_method(cell.planner) != nullptr || std::ranges::any_of(all, is_same)) {
+        fail("planner '" + cell.planner + "' is named twice; give it a name of its own");
+      }
+      all.push_back(std::move(cell));
+    }
+  }
+  return all;
+}
+
 class Benchmark {
  public:
   Benchmark(const BenchmarkOptions& options, const Console& console)
       : options_(options),
         console_(console),
         entries_(make_entries(options, console)),
+        others_(results_of_others(options, entries_)),
         folder_(options.out.value_or("results/benchmark")),
         runner_("benchmark", console, options.is_quiet, options.threads) {}
 
@@ -209,6 +238,7 @@ class Benchmark {
       }
       cells.push_back(std::move(cell));
     }
+    cells.insert(cells.end(), others_.begin(), others_.end());
     folder_.write("manifest.json", manifest(options_, entries_, is_whole()));
     const std::string markdown =
         batch::stage_tables(cells, "Benchmark", batch::Times::shown, folder_);
@@ -222,6 +252,7 @@ class Benchmark {
   const BenchmarkOptions& options_;
   const Console& console_;
   std::vector<Entry> entries_;
+  std::vector<batch::BenchmarkCell> others_;
   geometry::OutputFolder folder_;
   SurveyRunner runner_;
 };

@@ -12,6 +12,7 @@
 #include "flight/interpreter/interpret.h"
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/cli/check_live.h"
 #include "missions/cli/commands.h"
 #include "missions/config/resolve.h"
 #include "missions/config/setup_text.h"
@@ -210,6 +211,8 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
     if (setup.scene().priors) text += site_data::format_priors(*setup.scene().priors);
     for (const std::string& problem : found.problems) text += "  problem   " + problem + "\n";
     for (const std::string& warning : found.warnings) text += "  warning   " + warning + "\n";
+    const std::string range = range_warning(setup, scene.view_distance());
+    if (!range.empty()) text += "  warning   " + range + "\n";
     if (found.problems.empty()) {
       progress.show(setup.name + ": searching for views");
       text += expectation_text(simulation::expectation(setup.simulation, scene, setup.run));
@@ -230,7 +233,15 @@ int check(const CheckOptions& options, const Console& console) {
     console.out << config::setup_text(read_shown(config::read_live_mission, options, console));
     return 0;
   }
-  const config::MissionSetup setup = read_shown(config::read_mission, options, console);
+  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  if (setup.is_live()) {
+    if (options.route) {
+      throw Error(ErrorKind::bad_usage, options.mission.string() +
+                                            ": --route requires a mission with a scene, against "
+                                            "which the route is verified");
+    }
+    return check_live(options.mission.string(), setup, console);
+  }
   if (options.route && options.route->filename() == package::timetable_name) {
     return check_timetable(options, setup.flight(), console);
   }

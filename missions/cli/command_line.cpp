@@ -76,6 +76,12 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
                    "Planners: all (those of the paper) or names such as see++,oa,skycap")
       ->delimiter(',');
   command
+      ->add_option("--also", options->also,
+                   "Results of another program (JSON, docs/howto/compare-planners.md), shown with "
+                   "the others; repeatable")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command
       ->add_option("--scenes", options->scenes,
                    "Scene families: all, or names such as garage,church. Each family replaces the "
                    "scenes of the missions and is generated for each seed")
@@ -337,11 +343,17 @@ int report_failure(const Console& console, const std::string& message, int exit_
   return exit_code;
 }
 
-int parse_and_run(const std::vector<std::string>& arguments, const Console& console) {
+int parse_and_run(const std::vector<std::string>& arguments, Console console) {
   CLI::App app("Skycap plans and simulates aerial surveys of buildings.", "skycap");
   app.set_version_flag("--version", build_text(), "Print version, commit, compiler and build");
   app.require_subcommand(0, 1);
   app.get_formatter()->column_width(28);
+  app.fallthrough();  // verbs take the options below, too
+  std::string progress = "auto";
+  app.add_option("--progress", progress,
+                 "Progress: auto (default, one line on a terminal), plain (lines with times, for "
+                 "logs) or none")
+      ->check(CLI::IsMember({"auto", "plain", "none"}));
   Action action;
   try {
     // Allows tests to emulate processors with fewer instruction sets.
@@ -384,6 +396,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
       throw Error(ErrorKind::bad_usage,
                   "no command given; expected one of: " + commands + "; see --help");
     }
+    if (progress == "plain") console.progress = ProgressMode::plain;
+    if (progress == "none") console.progress = ProgressMode::none;
     return action();
   } catch (const CLI::Success& success) {  // --help or --version
     return app.exit(success, console.out, console.err);
@@ -410,9 +424,9 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
 int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
   PrintableBuffer buffer(*console.out.rdbuf());
   std::ostream out(&buffer);
-  const int exit_code =
-      parse_and_run(arguments, {out, console.err, console.err_is_terminal, console.stop,
-                                console.results_held, console.termination_signal});
+  const int exit_code = parse_and_run(
+      arguments, {out, console.err, console.err_is_terminal, console.stop, console.results_held,
+                  console.termination_signal, console.progress});
   if (out.flush()) return exit_code;
   return report_failure(console, "cannot write to standard output", 3);
 }

@@ -93,6 +93,7 @@ struct BenchmarkOptions {
   /// Names from sim::model_families(), or "all". A model of each family replaces the missions'
   /// scene model; each trial's seed generates a different model. Empty: the missions' own models.
   std::vector<std::string> scenes;
+  std::vector<std::filesystem::path> also;   ///< results of other programs (batch/other_results.h)
   std::size_t trials = 10;                   ///< trials per planner and mission
   std::optional<std::filesystem::path> out;  ///< output folder; default: results/benchmark
   std::vector<config::KeyOverride> overrides;

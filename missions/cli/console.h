@@ -9,8 +9,13 @@
 #include <string>
 
 #include "missions/cli/printable.h"
+#include "missions/cli/stage_clock.h"
 
 namespace skycap::missions::cli {
+
+/// How progress is shown: in one line on a terminal and otherwise not, as lines for a log, or
+/// never.
+enum class ProgressMode { automatic, plain, none };
 
 /// Interface between a command and its environment, which tests can replace.
 struct Console {
@@ -22,6 +27,7 @@ struct Console {
   std::atomic<int>* results_held = nullptr;
   const std::atomic<int>* termination_signal =
       nullptr;  ///< signal that requested the stop, or zero
+  ProgressMode progress = ProgressMode::automatic;
 };
 
 /// Prints a one-line warning. The command continues.
@@ -52,35 +58,30 @@ class PendingResultsGuard {
   std::atomic<int>* count_;
 };
 
-/// Progress line on a terminal that each call overwrites. It prints nothing if the output is not a
-/// terminal, and is cleared on destruction.
+/// One line on a terminal that each call overwrites; cleared when it goes out of scope. With plain
+/// progress, lines that stay: one at the beginning of each stage and one every ten seconds, with
+/// the time since the beginning. Nothing without either. To "N of M" and "N%" both add the rate and
+/// the remaining time of the stage, as far as it can be told: from its speed so far.
 class ProgressLine {
  public:
-  ProgressLine(const Console& console, bool is_quiet)
-      : err_(console.err), is_shown_(console.err_is_terminal && !is_quiet) {}
+  ProgressLine(const Console& console, bool is_quiet);
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() { clear(); }
 
-  void show(const std::string& text) {
-    if (!is_shown_) return;
-    err_ << "\r" << printable_line(text) << "\033[K" << std::flush;
-    has_text_ = true;
-  }
+  void show(const std::string& text);
 
   /// Returns a callback for show(). It must not outlive this object.
   std::function<void(const std::string&)> progress_callback() {
     return [this](const std::string& text) { show(text); };
   }
 
-  void clear() {
-    if (has_text_) err_ << "\r\033[K" << std::flush;
-    has_text_ = false;
-  }
+  void clear();
 
  private:
   std::ostream& err_;
-  bool is_shown_;
+  ProgressMode mode_;
+  StageClock clock_;
   bool has_text_ = false;
 };
 

@@ -160,6 +160,11 @@ Finished write_package(const LiveOptions& options, const config::MissionSetup& s
   std::string text =
       fmt::format("{}: {} after {} scans, {} points\n", setup.name,
                   session::to_string(record.stop_reason), record.views.size(), record.cloud.size());
+  if (const auto predicted = survey.visible_target().unseen_share()) {
+    text +=
+        fmt::format("  region    {:.0f}% of the surface of planner.scene_box was never in view\n",
+                    100.0 * *predicted);
+  }
   if (flight) text += package::flight_text(*flight);
   text += "  results   " + options.survey.string() + "\n";
   if (flight) text += package::pilot_text(setup.flight(), *flight);
@@ -355,6 +360,10 @@ int fly_live(const FlyOptions& options, const Console& console) {
   if (!address.is_loopback()) {
     warn(console, "MAVLink is not authenticated: anyone who can reach " + options.connect +
                       " can send commands to this vehicle");
+  }
+  if (!options.is_quiet) {
+    console.err << printable_line(options.connect + ": waiting for an autopilot") << "\n"
+                << std::flush;
   }
   const PendingResultsGuard results(console);
   online::FlightOptions flight;

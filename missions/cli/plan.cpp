@@ -31,11 +31,12 @@ std::string seconds(double time) {
   return time < 1.0 ? fmt::format("{:.1f} ms", 1e3 * time) : fmt::format("{:.2f} s", time);
 }
 
-std::string progress_text(const std::string& name, std::size_t views,
+std::string progress_text(const std::string& name, std::size_t views, std::size_t max_views,
                           const session::EvaluatedView& evaluated, double planning_time) {
-  return fmt::format("{}: view {}, {} points, {} frontiers, {} covered, planned in {}", name, views,
-                     evaluated.surveyed.points, evaluated.surveyed.step.frontiers,
-                     percent(evaluated.coverage), seconds(planning_time));
+  return fmt::format(
+      "{}: view {} of at most {}, {} points, {} frontiers, {} covered, planned in {}", name, views,
+      max_views, evaluated.surveyed.points, evaluated.surveyed.step.frontiers,
+      percent(evaluated.coverage), seconds(planning_time));
 }
 
 /// Returns a row of the --verbose table: planning times of one view by part [ms].
@@ -105,7 +106,8 @@ int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
   const auto report = [&](const session::EvaluatedView& evaluated) {
     planning_time += evaluated.surveyed.planning_time;
     if (options.is_verbose) console.err << times_row(views, evaluated) << std::flush;
-    progress.show(progress_text(setup.name, ++views, evaluated, planning_time));
+    progress.show(progress_text(setup.name, ++views, setup.survey().limits.max_views, evaluated,
+                                planning_time));
   };
   const PendingResultsGuard results(console);
   simulation::SurveyJournal journal(folder.path() / simulation::journal_name, setup.identity(),

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -8,9 +10,11 @@
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/report/cloud_page.h"
+#include "missions/report/object_map.h"
 #include "missions/site_data/file_reader.h"
 #include "missions/site_data/prior_text.h"
 #include "missions/wizard/proposal.h"
+#include "missions/wizard/target.h"
 
 namespace skycap::missions::cli {
 namespace {
@@ -27,10 +31,12 @@ struct SiteOptions {
   std::string at;                       ///< LATITUDE,LONGITUDE of a position on the target
   std::vector<std::string> attributes;  ///< KEY=VALUE attributes, all of which the target must have
   std::string crs, vertical;            ///< values of prior.crs and prior.vertical
-  std::optional<double> base, height;   ///< values of prior.base and prior.height
+  std::string base;              ///< value of prior.base, or "ground": height of the take-off point
+  std::optional<double> height;  ///< value of prior.height
   std::optional<fs::path> terrain;
   std::vector<fs::path> obstacles;
   std::string vehicle = "generic";
+  std::string sensor;           ///< preset or file; empty: the vehicle's camera
   std::optional<fs::path> out;  ///< mission file; default: site.yaml
 };
 
@@ -59,19 +65,39 @@ wizard::Pick make_pick(const SiteOptions& options) {
   return pick;
 }
 
+/// The height of outlines, and what it counts from.
+void read_base(const SiteOptions& options, wizard::Reading& import_options) {
+  if (options.base.empty()) return;
+  if (options.base == "ground") {
+    if (import_options.vertical || options.terrain) {
+      throw Error(ErrorKind::bad_usage,
+                  "--base ground conflicts with --vertical and --terrain; remove one of them");
+    }
+    import_options.base = 0.0;
+    import_options.vertical = site_data::HeightDatum::takeoff;
+    return;
+  }
+  constexpr double farthest = 1e4;
+  double base = 0.0;
+  if (!CLI::detail::lexical_cast(options.base, base) || !(std::abs(base) <= farthest)) {
+    reject("--base", options.base, "ground or a height from -10000 to 10000 m");
+  }
+  import_options.base = base;
+}
+
 wizard::SiteRequest to_site_request(const SiteOptions& options) {
-  wizard::SiteRequest request{.map = options.map,
-                              .target = make_pick(options),
-                              .import_options = {.crs = options.crs,
-                                                 .vertical = {},
-                                                 .base = options.base,
-                                                 .height = options.height},
-                              .terrain = options.terrain,
-                              .obstacles = options.obstacles,
-                              .vehicle = options.vehicle};
+  wizard::SiteRequest request{
+      .map = options.map,
+      .target = make_pick(options),
+      .import_options = {.crs = options.crs, .vertical = {}, .base = {}, .height = options.height},
+      .terrain = options.terrain,
+      .obstacles = options.obstacles,
+      .vehicle = options.vehicle,
+      .sensor = options.sensor};
   for (const site_data::HeightDatum datum : datums) {
     if (options.vertical == to_string(datum)) request.import_options.vertical = datum;
   }
+  read_base(options, request.import_options);
   return request;
 }
 
@@ -81,6 +107,61 @@ std::string make_page(const std::string& name, const evaluation::SimulationOptio
   const evaluation::SurveyScene scene(options, file.parent_path(), all_processors);
   return report::mission_page(name, options.survey, options.scene, scene.samples().points,
                               options.survey.flight.takeoff);
+}
+
+/// In single quotes, unless a POSIX shell takes it for one word anyway.
+std::string shell_word(const std::string& text) {
+  constexpr const char* plain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./:,+=@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+/// The command that was given, without a target.
+std::string make_command(const SiteOptions& options) {
+  std::string command = "skycap site " + shell_word(options.map.string());
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) command += std::string(" ") + option + " " + shell_word(value);
+  };
+  add("--crs", options.crs), add("--vertical", options.vertical), add("--base", options.base);
+  if (options.height) add("--height", fmt::format("{:g}", *options.height));
+  if (options.terrain) add("--terrain", options.terrain->string());
+  for (const fs::path& obstacle : options.obstacles) add("--obstacle", obstacle.string());
+  if (options.vehicle != SiteOptions{}.vehicle) add("--vehicle", options.vehicle);
+  add("--sensor", options.sensor);
+  if (options.out) add("--out", options.out->string());
+  return command;
+}
+
+/// Writes a page of the map's objects, from which the user chooses one, if there are several.
+/// Exit code 1: there is no mission yet.
+std::optional<int> show_objects(const SiteOptions& options, const wizard::SiteRequest& request,
+                                const fs::path& file, geometry::OutputFolder& folder,
+                                const Console& console) {
+  if (!request.target.ids.empty() || !request.target.attributes.empty() || request.target.click) {
+    return std::nullopt;
+  }
+  const std::vector<site_data::Object> objects = wizard::things_of(wizard::collect_files(request));
+  if (objects.size() <= 1) return std::nullopt;
+  const fs::path page = fs::path(file).replace_extension(".objects.html");
+  folder.write(page.filename().string(),
+               report::object_map(options.map.filename().string(), objects, make_command(options)));
+  folder.commit();
+  std::string some;
+  for (std::size_t i = 0; i < std::min<std::size_t>(5, objects.size()); ++i) {
+    some += (i == 0 ? "" : ", ") + objects[i].id;
+  }
+  console.out
+      << fmt::format(
+             "{}: contains {} objects, {}{}; no mission written\n  map       {}\n  next      "
+             "open the map and click on the target, or choose it with --at "
+             "LATITUDE,LONGITUDE, --id or --attribute\n",
+             options.map.string(), objects.size(), some, objects.size() > 5 ? ", ..." : "",
+             page.string())
+      << std::flush;
+  return 1;
 }
 
 /// Writes a first mission file and its HTML report. Existing files are not overwritten.
@@ -101,7 +182,9 @@ int propose_site(const SiteOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("reading " + options.map.filename().string());
   const site_data::ReadOnce once;
-  const std::string text = wizard::propose_mission(to_site_request(options), file);
+  const wizard::SiteRequest request = to_site_request(options);
+  if (const auto shown = show_objects(options, request, file, folder, console)) return *shown;
+  const std::string text = wizard::propose_mission(request, file);
   progress.show("drawing the map");
   const config::MissionSetup setup = config::parse_mission(text, file.string());
   const std::string page = make_page(setup.name, setup.simulation, file);
@@ -138,16 +221,17 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
                    "Target by attribute KEY=VALUE, such as a part of its address; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option("--crs", options->crs,
-                      "Coordinate reference system of the files, if they do not contain one");
+  command->add_option(
+      "--crs", options->crs,
+      "Coordinate reference system of the map, instead of its own, and of files without one");
   command
       ->add_option("--vertical", options->vertical,
                    "Vertical datum of the files, if they do not contain one: ellipsoid or geoid")
       ->check(CLI::IsMember({to_string(datums[0]), to_string(datums[1])}));
-  command
-      ->add_option("--base", options->base,
-                   "Base height of outlines in the datum of --vertical, in metres")
-      ->check(number_between(-1e4, 1e4));
+  command->add_option(
+      "--base", options->base,
+      "Base height of outlines, in --vertical, in metres; or ground: the height of the "
+      "take-off point");
   command
       ->add_option("--height", options->height,
                    "Height of outlines that contain no height, in metres")
@@ -158,6 +242,10 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
       ->type_size(1)
       ->allow_extra_args(false);
   command->add_option("--vehicle", options->vehicle, "Vehicle preset or file (default: generic)");
+  command->add_option(
+      "--sensor", options->sensor,
+      "Sensor preset (skycap presets) or LiDAR file NAME.yaml (default: the vehicle's "
+      "camera, otherwise a depth camera of 320 x 240 pixels)");
   command->add_option("--out", options->out, "Mission file (default: site.yaml)");
   run(*command, options, propose_site, console, action);
 }

@@ -276,11 +276,12 @@ survey::ViewLimits view_limits(const MissionDocument& document) {
   }
   if (document.flight.has_vehicle()) {
     const flight::Vehicle& vehicle = document.flight.options.required_vehicle();
-    if (!sensor.mount) {  // only cameras are mounted on a gimbal
-      result.min_pitch = std::max(result.min_pitch, vehicle.gimbal_min);
-      result.max_pitch = std::min(result.max_pitch, vehicle.gimbal_max);
+    constexpr double hair = 1e-5;  // tolerance, so that the pitch interval is not empty
+    if (!sensor.mount) {           // only cameras are mounted on a gimbal
+      const double margin = vehicle.gimbal_min == vehicle.gimbal_max ? hair : 0.0;
+      result.min_pitch = std::max(result.min_pitch, vehicle.gimbal_min - margin);
+      result.max_pitch = std::min(result.max_pitch, vehicle.gimbal_max + margin);
     } else if (find_scanner_kind(*sensor.scanner) == ScannerKind::rosette) {
-      constexpr double hair = 1e-5;  // tolerance, so that the pitch interval is not empty
       result.min_pitch = std::max(result.min_pitch, sensor.mount->view_pitch - hair);
       result.max_pitch = std::min(result.max_pitch, sensor.mount->view_pitch + hair);
     }

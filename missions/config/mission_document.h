@@ -19,6 +19,7 @@
 
 #include "flight/flight_options.h"
 #include "geometry/pose/prism.h"
+#include "missions/config/sensor_reader.h"
 #include "missions/evaluation/simulation_options.h"
 #include "missions/online/live/live_options.h"
 #include "missions/scan/scan_options.h"
@@ -34,13 +35,10 @@
 
 namespace skycap::missions::config {
 
-enum class SensorPreset {
-  d435,             ///< Intel RealSense D435: 848 x 480 pixels, 69.4° x 42.5°
-  high_resolution,  ///< 2400 x 1750 pixels, 60° x 40° (paper §IV-A, Radcliffe Camera)
-};
-
 struct SensorSection {
-  SensorPreset preset = SensorPreset::d435;
+  std::string preset = "d435";  ///< find_camera()
+  /// Of the preset; none if the mission describes another camera or scanner. Set by the reader.
+  std::optional<RangeInterval> useful_range;
   /// Laser scanner used instead of the camera: a preset or the path of a sensor description.
   std::optional<std::string> lidar;
   sim::SurveySensorOptions options;

@@ -274,11 +274,37 @@ void apply_sources(const ParsedValue& parsed_value, const Key& key, MissionDocum
   key.set(result, sources);
 }
 
+/// Whether the mission describes an image of its own without naming a camera.
+bool describes_camera(const MissionDocument& mission) {
+  constexpr std::array image{"sensor.width", "sensor.height", "sensor.horizontal_fov_deg",
+                             "sensor.vertical_fov_deg"};
+  return !mission.has("sensor.preset") &&
+         std::ranges::any_of(image, [&](const char* key) { return mission.has(key); });
+}
+
+/// The camera that `sensor.preset` names. The paper's two are those of the simulator to the bit.
+void apply_camera(MissionDocument& mission) {
+  SensorSection& sensor = mission.sensor;
+  SensorDescription camera;
+  try {
+    camera = find_camera(sensor.preset);
+  } catch (const Error& error) {
+    mission.reject("sensor.preset", error.what());
+  }
+  if (sensor.preset == "high_resolution") {
+    sensor.options.camera = sim::high_resolution();
+  } else if (sensor.preset != "d435") {
+    sensor.options.camera = std::get<sim::DepthCameraConfig>(camera.sensor);
+  }
+  if (!mission.has("sensor.max_range") && !mission.has("sensor.lidar") &&
+      !describes_camera(mission)) {
+    sensor.useful_range = camera.useful_range;
+  }
+}
+
 /// Applies the presets, before other keys override their values.
 void apply_presets(MissionDocument& mission) {
-  if (mission.sensor.preset == SensorPreset::high_resolution) {
-    mission.sensor.options.camera = sim::high_resolution();
-  }
+  apply_camera(mission);
   survey::see::SeeConfig& see = mission.planner.see;
   if (mission.planner.name == survey::PlannerName::see) {
     see.optimise_views = false;

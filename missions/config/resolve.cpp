@@ -65,7 +65,9 @@ sim::LidarConfig read_scanner(const MissionDocument& document) {
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,
-                description.name + " is a camera; set its values with the other keys of sensor");
+                *document.sensor.lidar +
+                    " is a camera; set sensor.preset to a camera preset, or its values with the "
+                    "other keys of sensor");
   }
   return *lidar;
 }

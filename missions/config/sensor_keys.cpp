@@ -42,12 +42,13 @@ Key lidar_key() {
 
 std::vector<Key> sensor_keys() {
   return {
-      choice_key(
-          "sensor.preset", {"d435", "high_resolution"},
-          [](auto& m) -> auto& { return m.sensor.preset; },
-          "Depth camera preset whose values the keys below override. d435: Intel RealSense D435 "
-          "(848 x 480 pixels, 69.4 x 42.5 degrees). high_resolution: camera of the paper for "
-          "buildings (2400 x 1750 pixels, 60 x 40 degrees)."),
+      text_key(
+          "sensor.preset", [](auto& m) -> auto& { return m.sensor.preset; },
+          "Camera preset (skycap presets) whose values the keys below override. d435: Intel "
+          "RealSense D435 of the paper (848 x 480 pixels, 69.4 x 42.5 degrees, no maximum range); "
+          "intel_d435: the same with its real errors and range. high_resolution: camera of the "
+          "paper for buildings (2400 x 1750 pixels, 60 x 40 degrees). LiDAR presets: "
+          "sensor.lidar."),
       lidar_key(),
       integer_key("sensor.width", "px", between(1, 32768), image(&geometry::CameraConfig::width),
                   "Image width."),

@@ -17,7 +17,14 @@ constexpr double degree = geometry::radians_per_degree;
 // Factor sqrt(2 / ln 2): full width at half maximum to 1/e^2.
 constexpr double fwhm_to_full_width = 1.69864;
 
-/// Sets a field of each channel from an optional list with one value per channel.
+constexpr std::size_t longest_name = 60;  // in a message
+
+/// The name of a preset's file for the short names of the experiments' cameras.
+std::string preset_name(const std::string& name) {
+  return name == "d435" || name == "high_resolution" ? "see_" + name : name;
+}
+
+/// The values of a list that is as long as the channels, or of none.
 void set_each(support::YamlSection& section, const std::string& key,
               std::vector<sim::Channel>& channels, double sim::Channel::*field, double unit) {
   const std::vector<double> values = section.numbers(key);
@@ -142,7 +149,8 @@ sim::LidarConfig read_lidar(support::YamlSection& root, bool is_rosette) {
   return config;
 }
 
-sim::DepthCameraConfig read_camera(support::YamlSection& root) {
+sim::DepthCameraConfig read_camera(support::YamlSection& root,
+                                   std::optional<RangeInterval>& useful_range) {
   sim::DepthCameraConfig config;
   config.camera.width = root.integer("width_px", config.camera.width);
   config.camera.height = root.integer("height_px", config.camera.height);
@@ -153,6 +161,13 @@ sim::DepthCameraConfig read_camera(support::YamlSection& root) {
     config.camera.min_range = range->number("min");
     config.camera.max_range = range->number("max");
     range->finish();
+  }
+  if (auto useful = root.section("useful_range")) {
+    useful_range = RangeInterval{useful->number("min"), useful->number("max")};
+    if (!(useful_range->min >= 0.0 && useful_range->min < useful_range->max)) {
+      useful->fail_at("max", "must be greater than min, which must be zero or more");
+    }
+    useful->finish();
   }
   if (auto noise = root.section("noise")) {
     config.noise.sigma = noise->number("sigma");
@@ -171,6 +186,18 @@ sim::DepthCameraConfig read_camera(support::YamlSection& root) {
   return config;
 }
 
+bool is_camera(const SensorDescription& description) {
+  return std::holds_alternative<sim::DepthCameraConfig>(description.sensor);
+}
+
+std::string camera_names() {
+  std::string names = "d435, high_resolution";
+  for (const std::string_view name : sensor_presets()) {
+    if (is_camera(find_sensor(std::string(name)))) names += ", " + std::string(name);
+  }
+  return names;
+}
+
 }  // namespace
 
 SensorDescription read_sensor(const std::string& text, const std::string& file) {
@@ -183,7 +210,7 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
   const Kind kind = root.choice<Kind>(
       "kind", {{"spinning", Kind::spinning}, {"rosette", Kind::rosette}, {"camera", Kind::camera}});
   if (kind == Kind::camera) {
-    description.sensor = read_camera(root);
+    description.sensor = read_camera(root, description.useful_range);
   } else {
     description.sensor = read_lidar(root, kind == Kind::rosette);
   }
@@ -203,8 +230,29 @@ std::vector<std::string_view> sensor_presets() {
 }
 
 SensorDescription find_sensor(const std::string& name_or_file) {
-  const PresetText found = preset_text("sensor", name_or_file, sensor_preset_files());
+  const std::string known = preset_name(name_or_file);
+  const PresetText found = preset_text("sensor", known, sensor_preset_files());
   return read_sensor(found.text, found.file);
+}
+
+SensorDescription find_camera(const std::string& name) {
+  const auto reject = [](const std::string& what) { throw Error(ErrorKind::bad_config, what); };
+  if (name.ends_with(".yaml")) {
+    reject(
+        "must be the name of a preset; set the values of another camera with the other keys of "
+        "sensor");
+  }
+  const std::string preset = preset_name(name);
+  const std::vector<std::string_view> known = sensor_presets();
+  if (std::ranges::find(known, preset) == known.end()) {
+    reject("unknown camera " + name.substr(0, longest_name) +
+           "; expected one of: " + camera_names());
+  }
+  SensorDescription description = find_sensor(preset);
+  if (!is_camera(description)) {
+    reject(name + " is a LiDAR; set sensor.lidar: " + name + " instead of sensor.preset");
+  }
+  return description;
 }
 
 }  // namespace skycap::missions::config

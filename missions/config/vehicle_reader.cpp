@@ -8,6 +8,7 @@
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "missions/config/preset_files.h"
+#include "missions/config/sensor_reader.h"
 #include "missions/support/yaml_section.h"
 
 namespace skycap::missions::config {
@@ -69,8 +70,8 @@ constexpr std::array mode_numbers{
 /// they are errors.
 class VehicleReader {
  public:
-  VehicleReader(support::YamlSection& root, Vehicle& vehicle, bool keeps)
-      : root_(root), vehicle_(vehicle), keeps_(keeps) {}
+  VehicleReader(support::YamlSection& root, Vehicle& vehicle, std::string& camera, bool keeps)
+      : root_(root), vehicle_(vehicle), camera_(camera), keeps_(keeps) {}
 
   void read() {
     using flight::AutopilotType;
@@ -86,6 +87,7 @@ class VehicleReader {
     if (root_.has(position_error.key)) {  // optional, because descriptions of version 0.1 lack it
       read_numbers<Vehicle>(root_, vehicle_, std::span(&position_error, 1));
     }
+    if (root_.has("camera")) camera_ = root_.text("camera");
     if (wants(root_, "rotors")) vehicle_.rotors = whole_number("rotors", 1, 100);
     if (wants(root_, "max_waypoints")) {
       vehicle_.max_waypoints = whole_number("max_waypoints", 20, 65535);
@@ -151,36 +153,63 @@ class VehicleReader {
 
   support::YamlSection& root_;
   Vehicle& vehicle_;
+  std::string& camera_;
   bool keeps_;
 };
 
-}  // namespace
+/// A vehicle and the preset of its own camera.
+struct Profile {
+  flight::Vehicle vehicle;
+  std::string camera;
+};
 
-flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
+Profile read_profile(const std::string& text, const std::string& file);
+
+Profile find_profile(const std::string& name_or_file) {
+  const PresetText found = preset_text("vehicle", name_or_file, vehicle_preset_files());
+  return read_profile(found.text, found.file);
+}
+
+Profile read_profile(const std::string& text, const std::string& file) {
   const support::YamlNode tree = support::parse_yaml(text, file);
   support::YamlSection root(tree, "", file);
-  Vehicle vehicle;
+  Profile profile;
+  Vehicle& vehicle = profile.vehicle;
   const bool has_base_vehicle = root.has("like");
   if (has_base_vehicle) {
     const std::string preset = root.text("like");
     if (preset.ends_with(".yaml")) root.fail_at("like", "must be the name of a preset");
     try {
-      vehicle = find_vehicle(preset);
+      profile = find_profile(preset);
     } catch (const Error& error) {
       root.fail_at("like", error.what());
     }
   }
-  VehicleReader(root, vehicle, has_base_vehicle).read();
+  VehicleReader(root, vehicle, profile.camera, has_base_vehicle).read();
   root.finish();
-  if (vehicle.gimbal_min >= vehicle.gimbal_max) {
-    root.fail_at("gimbal_max_deg", "must be greater than gimbal_min_deg");
+  if (vehicle.gimbal_min > vehicle.gimbal_max) {
+    root.fail_at("gimbal_max_deg",
+                 "must be at least gimbal_min_deg; equal values describe a fixed camera");
+  }
+  if (!profile.camera.empty()) {
+    try {
+      find_camera(profile.camera);
+    } catch (const Error& error) {
+      root.fail_at("camera", error.what());
+    }
   }
   try {
     const flight::Motion motion(vehicle, {.cruise_speed = vehicle.max_speed});
   } catch (const Error& error) {  // conflicting values
     root.fail_at("endurance_min", error.what());
   }
-  return vehicle;
+  return profile;
+}
+
+}  // namespace
+
+flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
+  return read_profile(text, file).vehicle;
 }
 
 std::vector<std::string_view> vehicle_presets() {
@@ -190,8 +219,11 @@ std::vector<std::string_view> vehicle_presets() {
 }
 
 flight::Vehicle find_vehicle(const std::string& name_or_file) {
-  const PresetText found = preset_text("vehicle", name_or_file, vehicle_preset_files());
-  return read_vehicle(found.text, found.file);
+  return find_profile(name_or_file).vehicle;
+}
+
+std::string find_vehicle_camera(const std::string& name_or_file) {
+  return find_profile(name_or_file).camera;
 }
 
 }  // namespace skycap::missions::config

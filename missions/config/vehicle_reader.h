@@ -23,4 +23,8 @@ std::vector<std::string_view> vehicle_presets();
 /// Error{bad_config} with a list of known names, or Error{bad_file} if the file cannot be read.
 flight::Vehicle find_vehicle(const std::string& name_or_file);
 
+/// Name of the preset of its own camera (find_camera()); empty if its description names none.
+/// Throws what find_vehicle() throws.
+std::string find_vehicle_camera(const std::string& name_or_file);
+
 }  // namespace skycap::missions::config

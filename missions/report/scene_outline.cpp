@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -40,12 +41,15 @@ Json box(const char* role, const char* name, const Eigen::AlignedBox3d& box) {
   return volume(role, prism);
 }
 
-/// Returns the triangle corners of a prior, rounded to centimetres. Empty if there are too many
-/// triangles to display.
-Json surface(const site_data::Source& source, const site_data::Prior& prior) {
+/// The corners of a prior's triangles, to a centimetre; none of too many to be shown. Objects of
+/// `drawn` are left out: they are drawn as targets.
+Json surface(const site_data::Source& source, const site_data::Prior& prior,
+             const std::set<const geometry::Mesh*>& drawn) {
   constexpr std::size_t max_triangles = 20'000;
   geometry::Mesh mesh;
-  for (const site_data::Object& object : prior.objects) geometry::append(mesh, object.mesh);
+  for (const site_data::Object& object : prior.objects) {
+    if (!drawn.contains(&object.mesh)) geometry::append(mesh, object.mesh);
+  }
   if (prior.grid.rows > 0) {
     const std::size_t cells = prior.grid.rows * prior.grid.columns;
     const auto step = static_cast<std::size_t>(
@@ -69,6 +73,17 @@ Json surface(const site_data::Source& source, const site_data::Prior& prior) {
           {"corners", corners}};
 }
 
+/// Objects with the role obstacle that are targets, too: the same file has both roles.
+std::set<const geometry::Mesh*> targets_among_obstacles(const site_data::SitePriors& site) {
+  std::set<const geometry::Mesh*> meshes;
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role != site_data::Role::obstacle) continue;
+    for (const site_data::Object& object : site.priors[i].objects) meshes.insert(&object.mesh);
+  }
+  for (const geometry::Mesh* neighbour : scene::find_neighbours(site)) meshes.erase(neighbour);
+  return meshes;
+}
+
 }  // namespace
 
 Json scene_outline(const session::SurveyOptions& survey, const scene::SceneOptions& scene,
@@ -88,8 +103,10 @@ Json scene_outline(const session::SurveyOptions& survey, const scene::SceneOptio
     volumes.push_back(box("scene", "planner.scene_box", *survey.planner.scene_box));
   }
   Json priors = Json::array();
+  std::set<const geometry::Mesh*> drawn;
+  if (scene.priors) drawn = targets_among_obstacles(*scene.priors);
   for (std::size_t i = 0; scene.priors && i < scene.priors->priors.size(); ++i) {
-    priors.push_back(surface(scene.priors->sources[i], scene.priors->priors[i]));
+    priors.push_back(surface(scene.priors->sources[i], scene.priors->priors[i], drawn));
   }
   const geometry::CameraConfig& camera = flight.capture.camera;
   Json outline{{"ground", scene.position.z()},

@@ -257,7 +257,8 @@ bool uses_native_heights(Chain& chain, const OperationFinder& finder, const Syst
     if (request.vertical) return false;
     fail("PROJ cannot transform " + result.name + " to WGS84 with full accuracy" +
          (operation.missing.empty() ? "" : ": missing " + operation.missing) +
-         "; install it, or set vertical: geoid to use EGM96 instead");
+         "; install PROJ's grid with projsync (package proj-bin, grids of cdn.proj.org), or set "
+         "vertical: geoid to use EGM96 instead");
   }
   chain.position = std::move(operation.object);
   chain.moves_height = true;

@@ -1,7 +1,12 @@
 #include "missions/wizard/mission_text.h"
 
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
 #include <fmt/format.h>
 
+#include "missions/config/sensor_reader.h"
 #include "missions/site_data/prior_text.h"
 #include "missions/support/flow_text.h"
 
@@ -67,15 +72,21 @@ std::string prior_section(const MissionValues& values) {
 
 std::string site_section(const MissionValues& values) {
   const Vector3d low = values.fence.min(), high = values.fence.max();
+  const bool counts_from_takeoff = std::ranges::any_of(values.sources, [](const Source& source) {
+    return source.vertical == site_data::HeightDatum::takeoff;
+  });
   return fmt::format(
       "site:\n  # Origin of the mission frame (x east, y north, z up): {}.\n  latitude_deg: {:.7f} "
-      " # WGS84, north\n  longitude_deg: {:.7f}  # east\n  ellipsoid_height: {:.2f}  # metres "
-      "above the WGS84 ellipsoid, not above mean sea level\n  # Views and legs stay inside this "
+      " # WGS84, north\n  longitude_deg: {:.7f}  # east\n  ellipsoid_height: {:.2f}  # {}\n  # "
+      "Views and legs stay inside this "
       "geofence; set the area in which you are allowed to fly.\n  geofence: [[{:g}, {:g}], [{:g}, "
       "{:g}], [{:g}, {:g}], [{:g}, {:g}]]\n  max_height: {:g}  # z; above the ground here\n",
       values.origin_is, values.origin.latitude_deg, values.origin.longitude_deg,
-      values.origin.height, low.x(), low.y(), high.x(), low.y(), high.x(), high.y(), low.x(),
-      high.y(), high.z());
+      values.origin.height,
+      counts_from_takeoff ? "unknown; all heights count from the take-off point. Set it before you "
+                            "use files with absolute altitudes"
+                          : "metres above the WGS84 ellipsoid, not above mean sea level",
+      low.x(), low.y(), high.x(), low.y(), high.x(), high.y(), low.x(), high.y(), high.z());
 }
 
 std::string flight_section(const MissionValues& values) {
@@ -111,23 +122,57 @@ std::string flight_section(const MissionValues& values) {
   return text;
 }
 
+/// The generic depth camera, or the image of a camera preset: photo cameras with fewer pixels.
+std::string camera_text(const MissionValues& values) {
+  constexpr int width = 320;
+  std::string text = "sensor:  # a depth camera; `skycap check` prints its resolution\n";
+  int height = 240;
+  bool is_depth_camera = false;
+  if (!values.sensor.empty()) {
+    const config::SensorDescription preset = config::find_camera(values.sensor);
+    const sim::DepthCameraConfig& camera = std::get<sim::DepthCameraConfig>(preset.sensor);
+    is_depth_camera = preset.useful_range.has_value();
+    text = fmt::format("sensor:  # {}\n  preset: {}  # values of a camera preset\n", preset.name,
+                       yaml_quoted(values.sensor));
+    height = static_cast<int>(
+        std::round(static_cast<double>(width) * camera.camera.height / camera.camera.width));
+  }
+  if (!is_depth_camera) {
+    text += fmt::format("  width: {}  # pixels{}\n  height: {}  # pixels\n", width,
+                        values.sensor.empty() ? "" : ", fewer than the camera has, to plan faster",
+                        height);
+  }
+  text += fmt::format("  max_range: {:g}  # metres\n", sensor_range(values));
+  if (!is_depth_camera) {
+    text += "  noise: {sigma: 0.02}  # metres, one standard deviation\n";
+  }
+  return text;
+}
+
+std::string sensor_section(const MissionValues& values) {
+  if (values.sensor.empty() || !is_lidar(values.sensor)) return camera_text(values);
+  const bool is_file = std::filesystem::path(values.sensor).extension() == ".yaml";
+  return fmt::format(
+      "sensor:\n  lidar: {}  # a LiDAR preset, or the path of a sensor file; it measures en "
+      "route\n",
+      is_file ? path_text(values.sensor, values.file) : yaml_quoted(values.sensor));
+}
+
 std::string planner_section(const MissionValues& values) {
   const double distance = values.registration_distance;
-  std::string text = fmt::format(
-      "sensor:  # a depth camera; `skycap check` prints its resolution\n  width: 320  # pixels\n  "
-      "height: 240  # pixels\n  max_range: {:g}  # metres\n  noise: {{sigma: 0.02}}  # metres, one "
-      "standard deviation\nplanner:\n",
-      sensor_range(values));
+  std::string text =
+      sensor_section(values) +
+      "planner:\n  preset: building  # settings of SEE and SEE++ for large structures\n";
   if (values.scene) {
     text += fmt::format(
-        "  # Region of interest: surface below this box counts as ground.\n  scene_box: {{min: {}, "
+        "  # Region of interest, from below the base of the target.\n  scene_box: {{min: {}, "
         "max: {}}}\n",
         vector_text(values.scene->min()), vector_text(values.scene->max()));
   }
   return text +
          fmt::format(
              "  view_distance: {:g}  # metres, distance of views from the surface\n  density: "
-             "{:.3g}  # required points per square metre\n  resolution_radius: {:g}  # metres, "
+             "{:.3g}  # required points per cubic metre\n  resolution_radius: {:g}  # metres, "
              "radius in which points are counted\n  spacing: {:g}  # metres, minimum spacing of "
              "stored points\nevaluation:\n  coverage_distance: {:g}  # coverage distance: a "
              "surface within it of a point is covered\nlimits:\n  max_views: 150  # the survey "
@@ -138,7 +183,13 @@ std::string planner_section(const MissionValues& values) {
 
 }  // namespace
 
-double sensor_range(const MissionValues& values) { return 4.0 * values.view_distance; }
+double sensor_range(const MissionValues& values) {
+  return values.max_range.value_or(4.0 * values.view_distance);
+}
+
+bool is_lidar(const std::string& sensor) {
+  return std::holds_alternative<sim::LidarConfig>(config::find_sensor(sensor).sensor);
+}
 
 std::string mission_text(const MissionValues& values) {
   const std::string name = values.file.stem().string();

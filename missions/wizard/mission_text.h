@@ -31,10 +31,16 @@ struct MissionValues {
   std::optional<Eigen::AlignedBox3d> scene{};  ///< box of the surface to survey; empty in a draft
   std::optional<Eigen::Vector3d> pad{};        ///< take-off point; empty in a draft
   double clearance = 0.0, registration_distance = 0.0, view_distance = 0.0;
+  std::string sensor{};  ///< preset, or file of a LiDAR; empty: a depth camera of 320 x 240 pixels
+  std::optional<double> max_range{};  ///< depth to plan with [m]; none: sensor_range()
 };
 
 /// Returns the maximum range of the proposed sensor [m].
 double sensor_range(const MissionValues& values);
+
+/// True if a preset or sensor file describes a LiDAR, false for cameras. Throws what
+/// config::find_sensor() throws.
+bool is_lidar(const std::string& sensor);
 
 std::string mission_text(const MissionValues& values);
 

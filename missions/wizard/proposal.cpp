@@ -7,6 +7,8 @@
 
 #include "geometry/error.h"
 #include "missions/config/resolve.h"
+#include "missions/config/sensor_reader.h"
+#include "missions/config/vehicle_reader.h"
 #include "missions/wizard/pad_search.h"
 #include "missions/wizard/target.h"
 
@@ -78,6 +80,49 @@ double compute_max_climb_altitude(const MissionValues& values) {
   return values.fence.max().z() - values.clearance;
 }
 
+namespace {
+
+/// The sensor that is asked for, or the vehicle's own camera.
+std::string make_sensor(const SiteRequest& request) {
+  return request.sensor.empty() ? config::find_vehicle_camera(request.vehicle) : request.sensor;
+}
+
+/// The clearance that is proposed at least, or what the vehicle's size and errors take, with half a
+/// metre to spare, to the next half metre.
+double clearance_for(const flight::Vehicle& vehicle) {
+  constexpr double margin = 0.5, unit = 0.5;
+  const flight::FlightOptions usual;
+  const double errors = vehicle.position_error + usual.tracking_error + usual.map_error;
+  return std::max(proposed_clearance, rounded_up(vehicle.radius + errors + margin, unit));
+}
+
+/// The values with a sensor, and the distance that it measures well from.
+MissionValues with_sensor(MissionValues values, const std::string& sensor) {
+  values.sensor = sensor;
+  if (sensor.empty() || is_lidar(sensor)) return values;
+  const config::SensorDescription camera = config::find_camera(sensor);
+  if (!camera.useful_range) return values;
+  values.max_range = camera.useful_range->max;
+  values.view_distance = std::min(values.view_distance, 0.9 * camera.useful_range->max);
+  return values;
+}
+
+/// Beside the target, where heights that count from the take-off point are to be read before there
+/// is one. At the height of the ground.
+Vector3d provisional_pad(const MissionValues& values) {
+  return {values.unknown.max().x() + 10.0, 0.0, 0.0};
+}
+
+/// The region of interest from below the target's base, so that no part of its foot is left out.
+AlignedBox3d from_below_base(AlignedBox3d scene, const Target& target) {
+  constexpr double below = 0.5;
+  const double base = target.box.min().z();
+  scene.min().z() = std::min(scene.min().z(), base - std::max(below, target.uncertainty));
+  return scene;
+}
+
+}  // namespace
+
 std::string propose_mission(const SiteRequest& request, const std::filesystem::path& file) {
   const std::vector<site_data::Source> files = collect_files(request);
   const Target target = find_target(files, request.target);
@@ -85,10 +130,17 @@ std::string propose_mission(const SiteRequest& request, const std::filesystem::p
                                      .vehicle = request.vehicle,
                                      .sources = select_sources(files, target.ids),
                                      .origin = target.origin,
+                                     .sees_neighbours = true,
                                      .unknown = {}},
                                     target.box, target.uncertainty, request.terrain.has_value());
+  values.clearance = clearance_for(config::find_vehicle(request.vehicle));
+  values = with_sensor(std::move(values), make_sensor(request));
+  if (request.import_options.vertical == site_data::HeightDatum::takeoff) {
+    values.pad = provisional_pad(values);
+  }
   const config::MissionSetup mission = config::parse_mission(mission_text(values), file.string());
-  values.scene = rounded_out(mission.survey().planner.scene_box.value(), 0.1);
+  values.scene =
+      rounded_out(from_below_base(mission.survey().planner.scene_box.value(), target), 0.1);
   const auto pad = PadSearch(mission.flight())
                        .find_pad_beside(values.unknown, compute_max_climb_altitude(values));
   if (!pad) {

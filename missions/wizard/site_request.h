@@ -34,7 +34,7 @@ struct Pick {
 
 /// Interpretation of the files, as specified by the `prior` keys of the same names.
 struct ImportOptions {
-  std::string crs;
+  std::string crs;  ///< of the map, whatever it says itself, and of files without one
   std::optional<site_data::HeightDatum> vertical;
   std::optional<double> base, height;  ///< base and height of extruded outlines [m]
 };
@@ -46,6 +46,8 @@ struct SiteRequest {
   std::optional<std::filesystem::path> terrain;
   std::vector<std::filesystem::path> obstacles;  ///< further files with obstacles
   std::string vehicle = "generic";
+  std::string
+      sensor;  ///< preset; LiDARs also NAME.yaml. Empty: the vehicle's camera, if it has one
 };
 
 }  // namespace skycap::missions::wizard

@@ -9,6 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/pose/prism.h"
+#include "missions/site_data/missing_values.h"
 #include "missions/site_data/site_priors.h"
 
 namespace skycap::missions::wizard {
@@ -91,6 +92,37 @@ std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pi
                   source.file.string(), ids.size(), some, ids.size() > 5 ? ", ..." : ""));
 }
 
+/// Throws one error that lists all values that the files lack.
+void require_complete(const std::vector<Source>& files) {
+  std::string text;
+  for (const Source& source : files) {
+    const site_data::MissingValues missing = site_data::missing_values(source);
+    std::string what, remedy;
+    const auto add = [](std::string& list, const std::string& item) {
+      list += (list.empty() ? "" : ", ") + item;
+    };
+    if (missing.crs && &source == &files[0]) {
+      add(what, "coordinate reference system");
+      add(remedy, "--crs such as EPSG:25832");
+    }
+    if (!missing.compute_height.empty()) {
+      add(what, "height of " + missing.compute_height);
+      add(remedy, "--height METRES");
+    }
+    if (missing.base) {
+      add(what, "base height of outlines");
+      add(remedy, "--base ground, --base METRES with --vertical, or --terrain FILE");
+    } else if (missing.vertical) {
+      add(what, "vertical datum");
+      add(remedy, "--vertical ellipsoid or geoid");
+    }
+    if (what.empty()) continue;
+    text +=
+        (text.empty() ? "" : "; ") + source.file.string() + ": missing " + what + "; set " + remedy;
+  }
+  if (!text.empty()) throw Error(ErrorKind::bad_config, text);
+}
+
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
 }  // namespace
@@ -105,6 +137,7 @@ std::vector<Source> collect_files(const SiteRequest& request) {
   const site_data::Assumptions assumed{request.import_options.crs, request.import_options.vertical,
                                        request.terrain.has_value()};
   Source map = file(request.map, Role::obstacle);
+  map.crs = request.import_options.crs;  // whatever the file says
   map.base = request.import_options.base;
   map.height = request.import_options.height;
   std::vector<Source> files{site_data::completed(map, assumed)};
@@ -114,7 +147,15 @@ std::vector<Source> collect_files(const SiteRequest& request) {
   if (request.terrain) {
     files.push_back(site_data::completed(file(*request.terrain, Role::terrain), assumed));
   }
+  require_complete(files);
   return files;
+}
+
+std::vector<Object> things_of(const std::vector<Source>& files) {
+  Source source = files[0];
+  source.role = Role::target;
+  const flight::GeodeticPoint origin = site_data::compute_centre(source);
+  return read_things(files, {}, origin).objects;
 }
 
 std::vector<Source> select_sources(const std::vector<Source>& files,
@@ -136,7 +177,9 @@ site_data::Prior read_things(const std::vector<Source>& files, const site_data::
   const auto failed = [](std::size_t, const std::string& what) {
     throw Error(ErrorKind::bad_config, what);
   };
-  return site_data::read_site_priors(sources, {.origin = origin}, failed).priors[0];
+  // Heights that count from the take-off point are those of the ground here.
+  return site_data::read_site_priors(sources, {.origin = origin, .takeoff_z = 0.0}, failed)
+      .priors[0];
 }
 
 void require_single(const std::vector<Object>& objects, const std::string& id,

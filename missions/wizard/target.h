@@ -21,10 +21,15 @@ struct Target {
   double uncertainty = 0.0;  ///< position uncertainty [m]
 };
 
-/// Returns the input files, completed with the settings that they do not contain. The map is first,
-/// as an obstacle, followed by the other obstacles and the terrain. File paths are unchanged.
-/// Throws the errors of site_data::completed().
+/// The files that the wishes name, each with what it does not say itself: the map, as an obstacle,
+/// then the other obstacles and the terrain. Files are as the wishes have them. Throws
+/// Error{bad_config} that lists all values that the files lack, and what site_data::completed()
+/// throws.
 std::vector<site_data::Source> collect_files(const SiteRequest& request);
+
+/// All objects of the first of the files about their middle, in the frame's axes. Throws what
+/// site_data::read_prior() throws.
+std::vector<site_data::Object> things_of(const std::vector<site_data::Source>& files);
 
 /// Returns the prior data of a mission: the target from the first of `files`, followed by all
 /// files.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/parallel.h"
+#include "missions/batch/benchmark/benchmark_curves.h"
 #include "missions/batch/benchmark/methods.h"
 #include "missions/batch/benchmark/paper_results.h"
 #include "missions/support/json_text.h"
@@ -344,6 +345,23 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
   return text;
 }
 
+/// Which planners' surveys ended at the limit of views: ratios to published results mean nothing
+/// then. Volumetric surveys have as many views as SEE, as published, and are not named.
+std::string cut_short_text(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+  std::string text;
+  for (const BenchmarkCell& cell : cells) {
+    const Method* method = find_method(cell.planner);
+    if (cell.mission != mission || (method != nullptr && method->is_volumetric)) continue;
+    const auto cut =
+        std::ranges::count(cell.trials, survey::StopReason::view_limit, &Trial::stop_reason);
+    if (cut == 0) continue;
+    text +=
+        fmt::format("{}{}: {} of {} surveys ended at limits.max_views", text.empty() ? "" : "; ",
+                    find_title(cell.planner), cut, cell.trials.size());
+  }
+  return text.empty() ? "" : "\n" + text + ". Ratios to the paper compare unfinished surveys.\n";
+}
+
 /// Returns a table of each planner's effort to reach the coverage levels, with the ratio to the
 /// effort of the reference planner.
 std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::string& mission,
@@ -557,7 +575,8 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
                      "\n" +
                      table_1(cells, times);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {
-    text += "\n### " + mission + "\n\n" + details(cells, mission, times);
+    text += "\n### " + mission + "\n\n" + details(cells, mission, times) +
+            cut_short_text(cells, mission);
     const std::string reach = reach_table(cells, mission, times);
     if (!reach.empty())
       text +=
@@ -594,6 +613,8 @@ std::string stage_tables(const std::vector<BenchmarkCell>& cells, const std::str
   folder.write("trials.csv", all_trials_csv(cells, times));
   folder.write("table1.csv", table_1_csv(cells, times));
   folder.write("results.json", results_json(cells));
+  folder.write("curves.csv", curves_csv(cells, times));
+  folder.write("curves.svg", curves_svg(cells, times));
   std::string markdown = report_markdown(cells, title, times);
   folder.write("report.md", markdown);
   return markdown;

@@ -54,7 +54,8 @@ FlightEnd fly_survey(const flight::FlightOptions& flight, LiveSurvey& survey,
   options.vouched = flight.clearance + ground_margin;
   flight::mavlink::AutopilotLink link(port);
   const flight::GeodeticPoint& origin = flight.site.origin;
-  if (MaybeFailure failure = prepare(link, FlightFrame(origin, pad), pad, limits, stop)) {
+  if (MaybeFailure failure =
+          prepare(link, FlightFrame(origin, pad), pad, flight.required_vehicle(), limits, stop)) {
     return {failure, false};
   }
   GuidedFlight vehicle(link, FlightFrame(origin, pad), motion, limits, stop);

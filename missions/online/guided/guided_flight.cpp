@@ -71,8 +71,14 @@ void GuidedFlight::listen() {
 
 double GuidedFlight::camera_pitch() const {
   const mavlink::VehicleState& state = link_.state();
+  if (has_fixed_camera()) return pitch_ + state.pitch().value_or(0.0);
   if (!state.gimbal_pitch()) return pitch_;
   return gimbal_.camera_pitch(*state.gimbal_pitch(), state.pitch().value_or(0.0));
+}
+
+/// Whether the camera is fixed to the airframe: the vehicle turns it, nothing tilts it.
+bool GuidedFlight::has_fixed_camera() const {
+  return motion_.vehicle().gimbal_min == motion_.vehicle().gimbal_max;
 }
 
 Vector3d GuidedFlight::position() const { return to_position(link_.state(), frame_); }
@@ -150,6 +156,10 @@ MaybeFailure GuidedFlight::take_off(const Vector3d& above) {
 
 MaybeFailure GuidedFlight::aim(const geometry::View& view) {
   yaw_ = flight::compute_yaw(view), pitch_ = flight::compute_pitch(view);
+  if (has_fixed_camera()) {
+    pitch_ = motion_.vehicle().gimbal_min;
+    return std::nullopt;
+  }
   gimbal_.begin_aim(link_.now(), pitch_);
   constexpr float by_angles = 2.0F;
   return command(flight::command::mount_control,
@@ -364,7 +374,8 @@ AimErrors GuidedFlight::errors_at(const geometry::View& view) const {
           .speed = link_.state().position()->velocity.norm(),
           .turn = turn_between(link_.state().yaw().value_or(yaw_), flight::compute_yaw(view)),
           .pitch = camera_pitch(),
-          .asked_pitch = flight::compute_pitch(view),
+          // A fixed camera tilts with the vehicle, which its pose tells.
+          .asked_pitch = has_fixed_camera() ? camera_pitch() : flight::compute_pitch(view),
           .vehicle_pitch = link_.state().pitch().value_or(0.0)};
 }
 

@@ -104,6 +104,7 @@ class GuidedFlight {
   flight::SetPoint send_on(const flight::ScriptedLeg& leg, const flight::SetPoint& point);
   void listen();
   double camera_pitch() const;
+  bool has_fixed_camera() const;
   AimErrors errors_at(const geometry::View& view) const;
   void send(const flight::SetPoint& point);
   void hold_briefly();

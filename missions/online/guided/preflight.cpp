@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "flight/export/mission_items.h"
+#include "geometry/angle.h"
 #include "missions/online/guided/link_watch.h"
 
 namespace skycap::missions::online {
@@ -104,10 +106,44 @@ MaybeFailure check_pad(const mavlink::VehicleState& state, const FlightFrame& fr
                   horizontal, off.z(), pad.x(), pad.y(), pad.z()));
 }
 
+/// Set points come ten a second: a vehicle that stops after less than half a second without one
+/// would stop all the time; one that flies on for long leaves its leg when the link fails.
+MaybeFailure check_timeout(mavlink::AutopilotLink& link) {
+  constexpr double shortest = 0.5, longest = 5.0;  // [s]
+  const std::optional<double> timeout = link.parameter("GUID_TIMEOUT");
+  if (!timeout || (*timeout >= shortest && *timeout <= longest)) return std::nullopt;
+  return rejected(
+      fmt::format("parameter GUID_TIMEOUT must be from {:g} to {:g} s; it is {:g} s; set "
+                  "it to 3 and repeat the command",
+                  shortest, longest, *timeout));
+}
+
+/// Turns the gimbal to the horizon, or as near to it as it can.
+MaybeFailure check_gimbal(mavlink::AutopilotLink& link, const flight::Vehicle& vehicle) {
+  if (vehicle.gimbal_min == vehicle.gimbal_max) return std::nullopt;  // a fixed camera
+  const char* remedy =
+      "configure the gimbal (MNT1_TYPE, and SERVOn_FUNCTION 6 to 8 of a servo gimbal), or describe "
+      "a fixed camera in the vehicle file with equal gimbal_min_deg and gimbal_max_deg";
+  if (const std::optional<double> type = link.parameter("MNT1_TYPE"); type && *type == 0.0) {
+    return rejected(std::string("the autopilot has no gimbal: parameter MNT1_TYPE is 0; ") +
+                    remedy);
+  }
+  constexpr float by_angles = 2.0F;
+  const double pitch = std::clamp(0.0, vehicle.gimbal_min, vehicle.gimbal_max);
+  const std::optional<std::uint8_t> answer = link.command(
+      flight::command::mount_control,
+      {static_cast<float>(pitch / geometry::radians_per_degree), 0, 0, 0, 0, 0, by_angles});
+  if (answer && *answer == 0) return std::nullopt;
+  const std::string how = answer ? fmt::format("rejected the command (result {})", *answer)
+                                 : std::string("did not answer the command");
+  return rejected("the autopilot " + how + " to turn the gimbal; " + remedy);
+}
+
 }  // namespace
 
 MaybeFailure prepare(mavlink::AutopilotLink& link, const FlightFrame& frame, const Vector3d& pad,
-                     const GuidedLimits& limits, const std::stop_token& stop) {
+                     const flight::Vehicle& vehicle, const GuidedLimits& limits,
+                     const std::stop_token& stop) {
   if (MaybeFailure failure = find_vehicle(link, limits.patience, stop)) return failure;
   // An autopilot that rejects the request may still send the message.
   for (const MessageRequest& request : requests) {
@@ -116,7 +152,9 @@ MaybeFailure prepare(mavlink::AutopilotLink& link, const FlightFrame& frame, con
                  {static_cast<float>(request.id), static_cast<float>(microseconds / request.rate)});
   }
   if (MaybeFailure failure = wait_for_position(link, limits.patience, stop)) return failure;
-  return check_pad(link.state(), frame, pad, limits);
+  if (MaybeFailure failure = check_pad(link.state(), frame, pad, limits)) return failure;
+  if (MaybeFailure failure = check_timeout(link)) return failure;
+  return check_gimbal(link, vehicle);
 }
 
 }  // namespace skycap::missions::online

@@ -83,6 +83,22 @@ std::string pose_text(const PoseFinding& pose) {
   return "";
 }
 
+/// What the region of interest has kept from being surveyed, where that is worth a word.
+std::string region_text(const BoxSight& visibility) {
+  constexpr double worth_a_word = 0.01;
+  std::string text;
+  if (const double outside = visibility.outside_share(); outside >= worth_a_word) {
+    text += fmt::format("; {:.0f}% of the points are outside planner.scene_box and ignored",
+                        100.0 * outside);
+  }
+  const std::optional<double> predicted = visibility.unseen_share();
+  if (predicted && *predicted >= worth_a_word) {
+    text += fmt::format("; {:.0f}% of the surface of planner.scene_box was never in view",
+                        100.0 * *predicted);
+  }
+  return text;
+}
+
 const char* state_name(const Proposal& proposal) {
   if (proposal.end) return session::to_string(*proposal.end);
   return proposal.view ? "view" : "first_scan";
@@ -113,6 +129,10 @@ std::string answer_json(const LiveSurvey& survey, const flight::FlightOptions& f
       estimator != nullptr && !survey.views().empty()) {
     json["estimated_coverage"] = estimator->predicted_coverage();
   }
+  if (const std::optional<double> predicted = survey.visibility().unseen_share()) {
+    json["outside_box"] = survey.visibility().outside_share();
+    json["unseen_box_surface"] = *predicted;
+  }
   return support::journal_line(json);
 }
 
@@ -122,7 +142,9 @@ std::string answer_text(const LiveSurvey& survey) {
       fmt::format("{} scans, {} points", survey.views().size(), survey.planner().cloud().size());
   if (survey.set_aside() > 0) scans += fmt::format(", {} scans rejected", survey.set_aside());
   if (proposal.pose) scans += pose_text(*proposal.pose);
-  if (proposal.end) return std::string(state_name(proposal)) + " after " + scans;
+  if (proposal.end) {
+    return std::string(state_name(proposal)) + " after " + scans + region_text(survey.visibility());
+  }
   if (!proposal.view) return "take the first scan from any position that sees the scene";
   const Vector3d& at = proposal.view->position;
   std::string text = fmt::format(

@@ -81,6 +81,7 @@ struct LiveSurvey::Impl {
     numbers.clear();
     recorded_scans.clear();
     set_aside = 0;
+    visibility.emplace(options.planner.scene_box, options.planner.camera);
     guide = std::make_unique<session::ConstrainedPlanner>(options, first_view, run);
     survey::SurveyCallbacks callbacks = guide->callbacks();
     if (callbacks.can_reach) {
@@ -172,6 +173,7 @@ struct LiveSurvey::Impl {
     recorded_scans.push_back(
         {static_cast<std::uint32_t>(steps->views().size()), scan.sensor_position()});
     steps->pass(scan);
+    visibility->add(scan);
     remember(scan);
     departure = scan.sensor_position();
     ++proposal.number;
@@ -214,6 +216,7 @@ struct LiveSurvey::Impl {
       const std::size_t number = steps->views().size() - 1;
       numbers.emplace(event.scan->id, ScanNumber{number});
       recorded_scans.push_back({static_cast<std::uint32_t>(number), scan.sensor_position()});
+      visibility->add(scan);
       remember(scan);
     }
     propose(event, view);
@@ -322,6 +325,7 @@ struct LiveSurvey::Impl {
   std::map<std::string, ScanNumber> numbers;          ///< Numbers of the scans by id.
   std::vector<session::RecordedScan> recorded_scans;  ///< Accepted scans.
   std::size_t set_aside = 0;
+  std::optional<BoxSight> visibility;
   std::optional<PoseCheck> poses;
   std::size_t remembered = 0;  ///< Number of points of the planner's cloud that `poses` contains.
   std::string reason;          ///< Reason for rejecting the last scan.
@@ -382,6 +386,8 @@ void LiveSurvey::reject(const std::string& reason) {
   impl_->log.append(view_rejection_text(reason));
   impl_->add_event({.scan = {}, .rejection_reason = reason, .proposal = {}}, {});
 }
+
+const BoxSight& LiveSurvey::visibility() const { return *impl_->visibility; }
 
 session::SurveyFlight* LiveSurvey::flight() { return impl_->guide->flight(); }
 

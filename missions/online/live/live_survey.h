@@ -16,6 +16,7 @@
 
 #include "geometry/points/scan.h"
 #include "geometry/pose/pose.h"
+#include "missions/online/live/box_sight.h"
 #include "missions/online/live/live_options.h"
 #include "missions/online/live/pose_check.h"
 #include "missions/session/survey_options.h"
@@ -109,6 +110,9 @@ class LiveSurvey {
   /// Rejects the proposed view and plans another one. Throws Error{bad_usage} if no view is
   /// proposed.
   void reject(const std::string& reason);
+
+  /// What the region of interest kept from being surveyed, over the scans that were used.
+  const BoxSight& visibility() const;
 
   /// Returns the path planner of the vehicle, or null for surveys without a vehicle.
   session::SurveyFlight* flight();

@@ -23,7 +23,8 @@ function facts_of(data) {
     add(shown(settings["site.latitude_deg"], "place") + " N, " + shown(settings["site.longitude_deg"], "place") + " E");
   }
   add(settings["flight.vehicle"] && settings["flight.vehicle"] !== "none" ? "vehicle " + settings["flight.vehicle"] : "no vehicle");
-  add("sensor " + (settings["sensor.lidar"] || settings["sensor.preset"] || "of the mission"));
+  const image = settings["sensor.width"] ? ", " + settings["sensor.width"] + " × " + settings["sensor.height"] + " pixels" : "";
+  add("sensor " + (settings["sensor.lidar"] || (settings["sensor.preset"] || "of the mission") + image));
   add("planner " + (settings["planner.name"] || "–"));
   return data.facts ? data.facts.map((text) => element("span", {}, text)) : facts;
 }

@@ -46,8 +46,9 @@ function holes_section(data, on_pick) {
   const rest_area = rest.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2;
   const wide = (text, area, form_path) => [text, number(form_path ? figure(data, form_path, "square_metres")
     : shown(area, "square_metres")), share(area), "", ...(has_places ? [""] : []), "", ""];
-  rows.push(wide((rest.length + surface.smaller.holes) + " smaller gaps", rest_area));
-  rows.push(wide("scattered gaps", surface.rest_m2, "surface.rest_m2"));
+  const smaller = rest.length + surface.smaller.holes;
+  if (smaller > 0) rows.push(wide(smaller + " smaller gaps", rest_area));
+  if (surface.rest_m2 > 0) rows.push(wide("scattered gaps", surface.rest_m2, "surface.rest_m2"));
   rows.push(wide("total uncovered", total));
   const headings = ["Reason", number("Area"), number("Fraction of surface"), "Centre x, y, z [m]", ...(has_places ? ["Latitude, longitude, height"] : []),
     number("Nearest view"), "Suggested viewpoint"];

@@ -1,5 +1,6 @@
 // skycap next and skycap finish as a user runs them.
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,43 @@ json page_data(const fs::path& page) {
   const std::string text = tests::read_content(page), begin = "id=\"data\">";
   const std::size_t at = text.find(begin) + begin.size();
   return json::parse(text.substr(at, text.find("</script>", at) - at));
+}
+
+// Nothing is simulated, and what the file lacks for a flight is said.
+TEST(CheckLive, SaysWhatFollowsFromTheMission) {
+  const TestFolder folder;
+  std::ofstream(folder / "barn.yaml") << live_mission;
+  const ProgramRun run = run_skycap({"check", folder / "barn.yaml"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out,
+              testing::AllOf(HasSubstr("barn.yaml: no problems found\n"),
+                             HasSubstr("160 x 120 pixels, 60 x 47 degrees, range 0 to 8 m"),
+                             HasSubstr("planner.scene_box, 2 x 2 x 1.7 m"),
+                             HasSubstr("first     any view that sees the scene"),
+                             HasSubstr("warning   site.geofence is missing")));
+  const ProgramRun far =
+      run_skycap({"check", folder / "barn.yaml", "--set", "planner.view_distance=9"});
+  EXPECT_EQ(far.exit_code, 1) << far.err;
+  EXPECT_THAT(far.out,
+              HasSubstr("the maximum range of the sensor (8 m) must be greater than the view "
+                        "distance (9 m)"));
+  EXPECT_THAT(run_skycap({"check", folder / "barn.yaml", "--route", "x.plan"}).err,
+              HasSubstr("--route requires a mission with a scene"));
+}
+
+TEST(CheckLive, WarnsBeyondTheUsefulRangeOfTheCamera) {
+  const TestFolder folder;
+  std::string text = live_mission;
+  const std::size_t begin = text.find("sensor:"), end = text.find("planner:");
+  text.replace(begin, end - begin, "sensor: {preset: intel_d435}\n");
+  std::ofstream(folder / "barn.yaml") << text;
+  const auto check = [&](const std::string& distance) {
+    return run_skycap({"check", folder / "barn.yaml", "--set", "planner.view_distance=" + distance})
+        .out;
+  };
+  EXPECT_THAT(check("4"), HasSubstr("the view distance (4 m) should be in the useful range of the "
+                                    "camera intel_d435 (0.3 to 3 m)"));
+  EXPECT_THAT(check("2"), testing::Not(HasSubstr("useful range")));
 }
 
 class LiveCommands : public testing::Test {

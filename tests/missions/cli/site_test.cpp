@@ -13,6 +13,7 @@
 
 #include "geometry/pose/prism.h"
 #include "missions/config/resolve.h"
+#include "missions/config/vehicle_reader.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/site_data/prior.h"
 #include "tests/missions/run_skycap.h"
@@ -194,8 +195,6 @@ TEST_F(Site, SelectsTargetByIdAttributeOrPosition) {
 }
 
 TEST_F(Site, ReportsMissingOptions) {
-  EXPECT_THAT(propose("").err, AllOf(HasSubstr("contains 3 objects, DEBY_0, DEBY_1, DEBY_2"),
-                                     HasSubstr("--id, --at or --attribute")));
   EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with id DEBY_7"));
   EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("contains nothing within 10 m"));
   EXPECT_THAT(propose("--at north").err, HasSubstr("--at is north; it must be LATITUDE,LONGITUDE"));
@@ -208,6 +207,106 @@ TEST_F(Site, ReportsMissingOptions) {
   EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html exists"));
   EXPECT_EQ(read_content(folder_.path() / "house.html"), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
+}
+
+// A page to choose from: no mission, and the command for each object in it.
+TEST_F(Site, ShowsTheObjectsWhereNoneIsChosen) {
+  write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}}));
+  const auto run = propose("--vehicle mavic_3e");
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("contains 3 objects, DEBY_0, DEBY_1, DEBY_2; no mission"),
+                             HasSubstr("house.objects.html")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
+  const std::string page = read_content(folder_.path() / "house.objects.html");
+  const std::string begin = "id=\"map\">";
+  const std::size_t at = page.find(begin) + begin.size();
+  const json map = json::parse(page.substr(at, page.find("</script>", at) - at));
+  EXPECT_EQ(map.at("command"), "skycap site " + path_ +
+                                   "/tile.gml --vertical ellipsoid --vehicle " + "mavic_3e --out " +
+                                   path_ + "/house.yaml");
+  ASSERT_EQ(map.at("objects").size(), 3U);
+  const json& second = map.at("objects")[1];
+  EXPECT_EQ(second.at("quoted"), "'DEBY_1'");
+  EXPECT_EQ(second.at("height"), 10.0);
+  // The roof and the floor of 10 m, in decimetres; walls are not seen from above.
+  const std::string outline = second.at("outline");
+  EXPECT_EQ(std::ranges::count(outline, 'M'), 4) << outline;
+  EXPECT_NEAR(map.at("view")[2].get<double>(), 700.0, 2.0);
+  EXPECT_EQ(page.find("http"), page.find("http-equiv"));  // nothing is loaded
+  // The command of the page is that of a mission.
+  EXPECT_EQ(propose("--vehicle mavic_3e --id DEBY_1").exit_code, 0);
+}
+
+TEST_F(Site, ListsAllThatIsMissingAtOnce) {
+  write("map.geojson", make_geojson(Cube()));
+  const auto run = run_skycap("site " + path_ + "/map.geojson --out " + path_ + "/house.yaml");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(
+      run.err,
+      HasSubstr("map.geojson: missing height of cube, base height of outlines; set --height "
+                "METRES, --base ground, --base METRES with --vertical, or --terrain FILE"));
+}
+
+TEST_F(Site, StandsOnTheGroundHereWithoutATerrain) {
+  write("map.geojson", make_geojson(Cube()));
+  const auto run = run_skycap("site " + path_ + "/map.geojson --height 12 --base ground --out " +
+                              path_ + "/house.yaml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const config::MissionSetup proposed = mission();
+  EXPECT_EQ(proposed.flight().takeoff.value().z(), 0.0);
+  const AlignedBox3d box = proposed.scene().priors->priors[0].box;
+  EXPECT_NEAR(box.min().z(), 0.0, 0.01);
+  EXPECT_NEAR(box.max().z(), 12.0, 0.01);
+  EXPECT_THAT(read_content(folder_.path() / "house.yaml"), HasSubstr("vertical: takeoff, base: 0"));
+  EXPECT_THAT(
+      run_skycap("site " + path_ + "/map.geojson --height 12 --base ground --vertical geoid").err,
+      HasSubstr("--base ground conflicts with --vertical"));
+}
+
+// An authority's name that PROJ does not know is overruled.
+TEST_F(Site, TakesTheReferenceSystemOfTheUser) {
+  write("tile.gml", tile(in_a_row, "urn:adv:crs:ETRS89_UTM32*DE_DHHN2099_NH*GCG2099"));
+  EXPECT_EQ(propose("--id DEBY_1").exit_code, 2);
+  const auto run = propose("--id DEBY_1 --crs EPSG:25832");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NEAR(mission().flight().site.origin.latitude_deg, 48.76315751, 2e-7);
+}
+
+// Neighbours hide walls from the simulated sensor, and nothing of the target is left out.
+TEST_F(Site, ProposesWhatCheckFindsNoFaultWith) {
+  ASSERT_EQ(propose("--id DEBY_1 --vehicle mavic_3e").exit_code, 0);
+  const config::MissionSetup proposed = mission();
+  EXPECT_TRUE(proposed.scene().neighbours);
+  EXPECT_LE(proposed.survey().planner.scene_box->min().z(), -0.5);
+  EXPECT_EQ(proposed.text("planner.preset"), "building");
+  // The vehicle's own camera, with fewer pixels.
+  EXPECT_EQ(proposed.text("sensor.preset"), "dji_mavic_3e_wide");
+  EXPECT_NEAR(proposed.sensor().camera.camera.horizontal_fov, 1.227, 1e-3);
+  EXPECT_EQ(proposed.sensor().camera.camera.width, 320);
+  const auto check = run_skycap("check " + path_ + "/house.yaml");
+  EXPECT_EQ(check.exit_code, 0) << check.out;
+  EXPECT_EQ(check.out.find("warning"), std::string::npos) << check.out;
+}
+
+// Without RTK a vehicle may be farther off than the usual clearance allows for.
+TEST_F(Site, KeepsEveryVehicleFarEnoughAway) {
+  for (const std::string_view vehicle : config::vehicle_presets()) {
+    remove_proposal();
+    const auto run = propose("--id DEBY_1 --vehicle " + std::string(vehicle));
+    ASSERT_EQ(run.exit_code, 0) << vehicle << ": " << run.err;
+    EXPECT_GE(mission().flight().budget().margin, 0.5 - 1e-9) << vehicle;
+  }
+}
+
+TEST_F(Site, TakesTheSensorOfTheUser) {
+  ASSERT_EQ(propose("--id DEBY_1 --vehicle m350_rtk --sensor dji_zenmuse_l2").exit_code, 0);
+  EXPECT_EQ(mission().lidar, "dji_zenmuse_l2");
+  remove_proposal();
+  ASSERT_EQ(propose("--id DEBY_1 --vehicle generic_ardupilot --sensor intel_d435").exit_code, 0);
+  EXPECT_EQ(mission().sensor().camera.camera.width, 848);
+  EXPECT_LE(mission().survey().planner.view_distance, 3.0);
+  remove_proposal();
+  EXPECT_THAT(propose("--id DEBY_1 --sensor d345").err, HasSubstr("unknown sensor d345"));
 }
 
 // What a file says of itself holds, whatever is said of those that do not.

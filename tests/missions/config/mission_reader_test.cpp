@@ -51,6 +51,27 @@ TEST(MissionReader, AppliesPresetsFirst) {
   EXPECT_FALSE(mission.planner.see.optimise_views);
 }
 
+TEST(MissionReader, TakesAnyCameraPreset) {
+  const config::SensorSection real = parsed("sensor: {preset: intel_d435, height: 240}\n").sensor;
+  EXPECT_EQ(real.options.camera.camera.max_range, 10.0);
+  EXPECT_EQ(real.options.camera.camera.height, 240);
+  EXPECT_GT(real.options.camera.stereo.baseline, 0.0);
+  EXPECT_EQ(real.options.camera.noise.sigma, 0.0);
+  EXPECT_EQ(
+      error_message(smallest + "sensor: {preset: velodyne_vlp16}\n"),
+      "m.yaml:3: key sensor.preset velodyne_vlp16 is a LiDAR; set sensor.lidar: velodyne_vlp16 "
+      "instead of sensor.preset");
+}
+
+// Whoever describes another sensor is not told of the preset's range.
+TEST(MissionReader, KnowsTheUsefulRangeOfTheNamedCamera) {
+  EXPECT_TRUE(parsed("").sensor.useful_range);
+  EXPECT_TRUE(parsed("sensor: {preset: d435, width: 320}\n").sensor.useful_range);
+  EXPECT_FALSE(parsed("sensor: {width: 320}\n").sensor.useful_range);
+  EXPECT_FALSE(parsed("sensor: {preset: d435, max_range: 8}\n").sensor.useful_range);
+  EXPECT_FALSE(parsed("sensor: {preset: high_resolution}\n").sensor.useful_range);
+}
+
 TEST(MissionReader, AppliesOverridesAndNamesTheirOrigin) {
   const config::MissionDocument mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
   EXPECT_EQ(mission.seed, 8U);

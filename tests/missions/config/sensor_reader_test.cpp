@@ -30,7 +30,7 @@ double pulses_per_second(const char* preset) {
 }
 
 TEST(SensorPresets, AreValid) {
-  EXPECT_EQ(config::sensor_presets().size(), 15U);
+  EXPECT_EQ(config::sensor_presets().size(), 19U);
   for (const std::string_view preset : config::sensor_presets()) {
     EXPECT_FALSE(config::find_sensor(std::string(preset)).name.empty()) << preset;
   }
@@ -86,6 +86,34 @@ TEST(SensorPresets, MatchSimulatorCameras) {
   // sigma_z = s z^2 / (f B): 3.8 mm at 1 m.
   const sim::StereoErrors stereo = camera("intel_d435").stereo;
   EXPECT_NEAR(stereo.disparity_sigma_px / (stereo.focal_length_px * stereo.baseline), 3.8e-3, 5e-5);
+}
+
+// One list for plan and scan: each kind names the key of the other.
+TEST(SensorPresets, AreOneListForPlanAndScan) {
+  EXPECT_EQ(config::find_camera("d435").name, config::find_sensor("see_d435").name);
+  EXPECT_EQ(config::find_sensor("high_resolution").name,
+            "High-resolution sensor of the SEE++ experiments");
+  EXPECT_EQ(
+      std::get<DepthCameraConfig>(config::find_camera("dji_mavic_3e_wide").sensor).camera.width,
+      5280);
+  const auto error_message = [](const std::string& name) {
+    return testing_support::thrown_message([&] { config::find_camera(name); });
+  };
+  EXPECT_EQ(error_message("dji_zenmuse_l2"),
+            "dji_zenmuse_l2 is a LiDAR; set sensor.lidar: dji_zenmuse_l2 instead of sensor.preset");
+  EXPECT_THAT(error_message("d345"),
+              HasSubstr("unknown camera d345; expected one of: d435, high_res"));
+  EXPECT_THAT(error_message("mine.yaml"), HasSubstr("must be the name of a preset"));
+}
+
+TEST(SensorPresets, RealDepthCamerasStateTheirUsefulRange) {
+  for (const char* name : {"d435", "intel_d435"}) {
+    const auto useful = config::find_camera(name).useful_range;
+    ASSERT_TRUE(useful) << name;
+    EXPECT_EQ(useful->min, 0.3);
+    EXPECT_EQ(useful->max, 3.0);
+  }
+  EXPECT_FALSE(config::find_camera("high_resolution").useful_range);
 }
 
 void expect_message(const std::string& text, const char* message) {

@@ -77,6 +77,14 @@ TEST(VehicleReader, InheritsUnsetValuesFromBaseVehicle) {
   EXPECT_EQ(vehicle.battery_wh, base_vehicle.battery_wh);
 }
 
+TEST(VehicleReader, ReadsFixedCamerasAndTheNamesOfOwnOnes) {
+  const flight::Vehicle fixed = config::read_vehicle(
+      "name: mine\nlike: generic_ardupilot\ngimbal_min_deg: -15\ngimbal_max_deg: -15\n", "m.yaml");
+  EXPECT_EQ(fixed.gimbal_min, fixed.gimbal_max);
+  EXPECT_EQ(config::find_vehicle_camera("mavic_3e"), "dji_mavic_3e_wide");
+  EXPECT_EQ(config::find_vehicle_camera("generic"), "");
+}
+
 TEST(VehicleReader, ReportsLineOfErrors) {
   const std::string base = "name: kite\nlike: generic\n";
   EXPECT_THAT(error_message(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss is unknown"));
@@ -89,8 +97,10 @@ TEST(VehicleReader, ReportsLineOfErrors) {
   EXPECT_THAT(error_message(base + "mode: {law: straight}\n"),
               HasSubstr("it must be one of s_curve"));
   EXPECT_THAT(error_message(base + "rotors: 4.5\n"), HasSubstr("key rotors must be an integer"));
-  EXPECT_THAT(error_message(base + "gimbal_max_deg: -90\n"),
-              HasSubstr("must be greater than gimbal_min_deg"));
+  EXPECT_THAT(error_message(base + "gimbal_max_deg: -90\ngimbal_min_deg: -89\n"),
+              HasSubstr("must be at least gimbal_min_deg"));
+  EXPECT_THAT(error_message(base + "camera: ouster_os1_64\n"),
+              HasSubstr("kite.yaml:3: key camera: ouster_os1_64 is a LiDAR"));
   EXPECT_THAT(error_message(base + "mass: 20\n"),
               HasSubstr("less than hovering with its mass requires"));
   EXPECT_THAT(

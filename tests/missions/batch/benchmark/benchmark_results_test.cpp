@@ -7,9 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "missions/batch/benchmark/benchmark_curves.h"
 #include "missions/batch/benchmark/benchmark_report.h"
+#include "missions/batch/benchmark/other_results.h"
 #include "missions/batch/benchmark/paper_results.h"
 #include "tests/support/complaint.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
 namespace {
@@ -223,6 +226,92 @@ TEST(TrialJson, RejectsInvalidTrials) {
     corrupted[name] = "x";
     EXPECT_THAT(error_message(corrupted.dump()), HasSubstr("is not a trial: ")) << name;
   }
+}
+
+TEST(Report, SaysHowManySurveysWereCutShort) {
+  batch::Trial cut = trial(0.2, 0.4, 0.8);
+  cut.stop_reason = survey::StopReason::view_limit;
+  const std::vector<batch::BenchmarkCell> cells{{"bunny", "see++", {cut, trial(0.2, 0.4, 0.8)}},
+                                                {"bunny", "see", {trial(0.2, 0.4, 0.8)}},
+                                                {"bunny", "oa", {cut}}};
+  const std::string report = batch::report_markdown(cells);
+  EXPECT_THAT(report, HasSubstr("\nSEE++: 1 of 2 surveys ended at limits.max_views. Ratios to the "
+                                "paper compare unfinished surveys.\n"));
+}
+
+std::string other_complaint(const testing_support::TemporaryFolder& folder,
+                            const std::string& json) {
+  const std::filesystem::path file = folder.file("mine.json", json);
+  return testing_support::thrown_message([&] { batch::read_other_results(file); });
+}
+
+TEST(OtherResults, AreTrialsLikeThoseOfThisProgram) {
+  const testing_support::TemporaryFolder folder;
+  const std::filesystem::path file =
+      folder.file("mine.json",
+                  R"([{"planner": "mine", "mission": "vase", "more": 1, "trials": [
+        {"seed": 7, "coverage_after": [0.25, 0.5], "distance_after_m": [0, 3],
+         "planning_time_after_s": [0.1, 0.3], "coverage_visible": 0.625},
+        {"coverage_after": [0.75], "distance_after_m": [0], "stop_reason": "view_limit"}]}])");
+  const std::vector<batch::BenchmarkCell> cells = batch::read_other_results(file);
+  ASSERT_EQ(cells.size(), 1U);
+  EXPECT_EQ(cells[0].planner, "mine");
+  ASSERT_EQ(cells[0].trials.size(), 2U);
+  const batch::Trial& first = cells[0].trials[0];
+  EXPECT_EQ(first.seed, 7U);
+  EXPECT_EQ(first.views, 2U);
+  EXPECT_EQ(first.coverage.all, 0.5);
+  EXPECT_EQ(first.coverage.visible, 0.625);
+  EXPECT_EQ(first.distance, 3.0);
+  EXPECT_EQ(first.planning_time, 0.3);
+  EXPECT_EQ(cells[0].trials[1].stop_reason, survey::StopReason::view_limit);
+  const nlohmann::json results = nlohmann::json::parse(batch::results_json(cells));
+  EXPECT_EQ(results.at("results")[0].at("title"), "mine");
+  EXPECT_EQ(results.at("results")[0].at("coverage").at("mean"), 0.625);
+}
+
+TEST(OtherResults, NameWhatIsWrong) {
+  const testing_support::TemporaryFolder folder;
+  const std::string head = R"({"planner": "mine", "mission": "vase", "trials": [)";
+  EXPECT_THAT(other_complaint(folder, "{"), HasSubstr("mine.json: is not valid JSON"));
+  EXPECT_THAT(other_complaint(folder, "{}"), HasSubstr("mine.json: missing mission"));
+  EXPECT_THAT(other_complaint(folder, head + "]}"), HasSubstr("missing trials"));
+  EXPECT_THAT(other_complaint(folder, head + "{}]}"), HasSubstr("trial 1: missing coverage_after"));
+  const auto trial = [&](const std::string& fields) {
+    return other_complaint(folder, head + "{" + fields + "}]}");
+  };
+  EXPECT_THAT(trial(R"("coverage_after": [0.5, 1.5], "distance_after_m": [0, 1])"),
+              HasSubstr("trial 1: coverage_after must be a number from 0 to 1"));
+  EXPECT_THAT(trial(R"("coverage_after": [0.5, 0.6], "distance_after_m": [0])"),
+              HasSubstr("distance_after_m has 1 numbers; it must have 2"));
+  EXPECT_THAT(trial(R"("coverage_after": [0.5, 0.6], "distance_after_m": [2, 1])"),
+              HasSubstr("distance_after_m must not decrease"));
+  EXPECT_THAT(trial(R"("coverage_after": [0.5], "distance_after_m": [0], "stop_reason": "tired")"),
+              HasSubstr("trial 1: stop_reason: "));
+}
+
+TEST(Curves, AreLinesForSpreadsheetsAndADrawing) {
+  const std::vector<batch::BenchmarkCell> cells{
+      {"vase", "see++", {trial(0.2, 0.4, 0.8), trial(0.4, 0.4, 0.6)}},
+      {"vase", "a<b", {trial(0.5, 0.5, 0.9)}}};
+  const std::string csv = batch::curves_csv(cells);
+  EXPECT_THAT(csv, testing::StartsWith("mission,planner,axis,x,coverage,standard_deviation\n"
+                                       "vase,see++,views,1,0.3,"));
+  EXPECT_THAT(csv, HasSubstr("vase,a<b,distance_m,3,0.9,0\n"));
+  EXPECT_THAT(csv, HasSubstr(",planning_time_s,"));
+  EXPECT_THAT(batch::curves_csv(cells, batch::Times::left_out),
+              testing::Not(HasSubstr("planning_time_s")));
+  const std::string svg = batch::curves_svg(cells);
+  // Three diagrams of two curves, and two lines of the legend; nobody has flown.
+  std::size_t curves = 0;
+  for (std::size_t at = svg.find("class=\"curve\""); at != std::string::npos;
+       at = svg.find("class=\"curve\"", at + 1)) {
+    ++curves;
+  }
+  EXPECT_EQ(curves, 8U);
+  EXPECT_THAT(svg, HasSubstr("a&lt;b</text>"));
+  EXPECT_THAT(svg, testing::Not(HasSubstr("flight time")));
+  EXPECT_THAT(svg, testing::Not(HasSubstr("nan")));
 }
 
 }  // namespace

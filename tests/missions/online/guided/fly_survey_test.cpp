@@ -2,6 +2,8 @@
 #include "missions/online/guided/fly_survey.h"
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <functional>
 #include <future>
 #include <memory>
@@ -11,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/evaluation/survey_scene.h"
@@ -258,8 +261,58 @@ INSTANTIATE_TEST_SUITE_P(
         GroundedFlight{"armed", {.is_armed = true}, "is armed"},
         GroundedFlight{"px4", {.autopilot = 12}, "only ArduCopter is"},
         GroundedFlight{"beside_the_pad", {.pad_offset = {3.0, 4.0, 0.0}}, "5.0 m horizontally"},
+        GroundedFlight{"no_gimbal", {.has_no_gimbal = true}, "parameter MNT1_TYPE is 0; configure"},
+        GroundedFlight{"no_gimbal_and_no_parameters",
+                       {.has_no_gimbal = true, .answers_parameters = false},
+                       "rejected the command (result 4) to turn the gimbal; configure"},
+        GroundedFlight{"short_timeout",
+                       {.guided_timeout = 0.2F},
+                       "GUID_TIMEOUT must be from 0.5 to 5 s; it is 0.2 s"},
         GroundedFlight{"flat_battery", {.battery = 0.265}, "battery at 26%"}),
     [](const auto& test) { return test.param.name; });
+
+/// The same vehicle with its camera bolted on, 20 degrees down.
+class FlySurveyWithFixedCamera : public testing::Test {
+ protected:
+  FlySurveyWithFixedCamera() {
+    std::ofstream(folder_.path() / "bolted.yaml")
+        << "name: bolted\nlike: generic_ardupilot\ngimbal_min_deg: -20\ngimbal_max_deg: -20\n";
+    std::string text = online::short_mission(tests::flight_mission());
+    const std::string vehicle = "vehicle: generic";
+    text.replace(text.find(vehicle), vehicle.size(),
+                 "vehicle: " + (folder_.path() / "bolted.yaml").string());
+    rehearsal_ = std::make_unique<online::Rehearsal>(text);
+  }
+
+  const tests::TestFolder folder_;
+  std::unique_ptr<online::Rehearsal> rehearsal_;
+};
+
+TEST_F(FlySurveyWithFixedCamera, TurnsTheVehicleAlone) {
+  online::LiveSurvey survey = rehearsal_->open(folder_.path() / "survey");
+  // Its autopilot has no gimbal, and the wind tilts it.
+  TestAutopilot autopilot(rehearsal_->setup().flight(), survey.flight()->pad(),
+                          {.wind_pitch = 0.05, .has_no_gimbal = true});
+  SteppedPort port(autopilot);
+  std::vector<double> asked, actual_view;
+  const Sensor sensor = [&](const geometry::View& requested, const geometry::View& at,
+                            std::size_t) {
+    asked.push_back(std::asin(requested.direction.z()));
+    actual_view.push_back(std::asin(at.direction.z()));
+    return rehearsal_->scan(survey);
+  };
+  FlightOptions options;
+  options.launch = done_at_once;
+  const FlightEnd end = fly_survey(rehearsal_->setup().flight(), survey, port, sensor, options, {});
+  ASSERT_FALSE(end.failure) << end.failure->what;
+  EXPECT_TRUE(end.has_landed);
+  ASSERT_GT(asked.size(), 3U);
+  const double pitch = -20.0 * geometry::radians_per_degree;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    EXPECT_NEAR(asked[i], pitch, 1e-4) << i;
+    EXPECT_NEAR(actual_view[i], pitch + 0.05, 0.01) << i;  // as the vehicle reports its own pitch
+  }
+}
 
 TEST_F(FlySurvey, LandsOnPadAfterOffsetTakeOff) {
   const FlightEnd end = fly({.pad_offset = {1.0, -1.0, 0.0}});

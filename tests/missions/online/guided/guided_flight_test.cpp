@@ -69,7 +69,9 @@ struct Flight {
   MaybeFailure fly(flight::mavlink::Port& port, std::stop_token stop) {
     const flight::GeodeticPoint origin = options().site.origin;
     link = std::make_unique<flight::mavlink::AutopilotLink>(port);
-    if (MaybeFailure failure = prepare(*link, {origin, pad}, pad, limits, stop)) return failure;
+    if (MaybeFailure failure = prepare(*link, {origin, pad}, pad, motion.vehicle(), limits, stop)) {
+      return failure;
+    }
     vehicle = std::make_unique<GuidedFlight>(*link, FlightFrame(origin, pad), motion, limits, stop);
     if (MaybeFailure failure = vehicle->take_off(path().front())) return failure;
     has_climbed = true;
@@ -257,8 +259,10 @@ geometry::View view_at_the_end(double pitch) {
 MaybeFailure aimed(Flight& flight, SteppedPort& port, double pitch) {
   const flight::GeodeticPoint origin = options().site.origin;
   flight.link = std::make_unique<flight::mavlink::AutopilotLink>(port);
-  if (MaybeFailure failure = prepare(*flight.link, {origin, pad}, pad, flight.limits, {}))
+  if (MaybeFailure failure =
+          prepare(*flight.link, {origin, pad}, pad, flight.motion.vehicle(), flight.limits, {})) {
     return failure;
+  }
   flight.vehicle = std::make_unique<GuidedFlight>(*flight.link, FlightFrame(origin, pad),
                                                   flight.motion, flight.limits, std::stop_token());
   if (MaybeFailure failure = flight.vehicle->take_off(path()[0])) return failure;

@@ -58,6 +58,7 @@ void TestAutopilot::hear(std::span<const std::uint8_t> bytes) {
   while (const auto frame = reader_.next()) {
     if (const auto command = mavlink::decode<mavlink::CommandLong>(*frame)) obey(*command);
     if (const auto target = mavlink::decode<mavlink::PositionTarget>(*frame)) aim_at(*target);
+    if (const auto request = mavlink::decode<mavlink::ParameterRequest>(*frame)) tell(*request);
   }
 }
 
@@ -82,12 +83,27 @@ void TestAutopilot::obey(const mavlink::CommandLong& command) {
       target_ = {climb_->to};
     }
   } else if (command.command == flight::command::mount_control) {
-    target_pitch_ = command.params[0] * geometry::radians_per_degree;
+    is_accepted = !faults_.has_no_gimbal;
+    if (is_accepted) target_pitch_ = command.params[0] * geometry::radians_per_degree;
   }
   mavlink::CommandAnswer answer;
   answer.command = command.command;
   answer.result = is_accepted ? 0 : 4;
   send_frame(answer);
+}
+
+void TestAutopilot::tell(const mavlink::ParameterRequest& request) {
+  const std::string name(request.parameter.data(), request.parameter.size());
+  mavlink::ParameterValue answer;
+  answer.parameter = request.parameter;
+  if (name.starts_with("MNT1_TYPE")) {
+    answer.value = faults_.has_no_gimbal ? 0.0F : 1.0F;
+  } else if (name.starts_with("GUID_TIMEOUT")) {
+    answer.value = faults_.guided_timeout;
+  } else {
+    return;
+  }
+  if (faults_.answers_parameters) send_frame(answer);
 }
 
 void TestAutopilot::aim_at(const mavlink::PositionTarget& target) {

@@ -39,6 +39,9 @@ struct Faults {
   double wind_pitch = 0.0;                      ///< that it leans against the wind with [rad]
   bool gimbal_against_vehicle = false;          ///< what its gimbal reports, as servo gimbals do
   bool gimbal_stuck = false;                    ///< at the horizon
+  bool has_no_gimbal = false;                   ///< as ArduCopter comes: MNT1_TYPE is 0
+  bool answers_parameters = true;
+  float guided_timeout = 3.0F;  ///< its parameter GUID_TIMEOUT [s]
   bool rejects_arming = false;
   bool is_armed = false;
   std::uint8_t autopilot = 3;
@@ -74,6 +77,7 @@ class TestAutopilot {
   flight::SetPoint shaped(const flight::SetPoint& target_point);
   double vehicle_pitch() const;
   void obey(const flight::mavlink::CommandLong& command);
+  void tell(const flight::mavlink::ParameterRequest& request);
   void aim_at(const flight::mavlink::PositionTarget& target);
   void speak();
   bool is_past(const std::optional<double>& moment) const;
