@@ -217,6 +217,14 @@ PassRules make_fly_through_rules(const FlightOptions& options) {
                   .exposure = 0.0,
                   .period = 0.0};
   if (options.capture.scans_in_flight()) return rules;
+  if (const std::optional<PhotoShutter>& photo = options.capture.photo) {
+    // The trigger's limit is the period, which depends on the distances between the photos.
+    const PhotoSpeeds speeds = photo_speeds(*photo, 0.0, options.cruise_speed);
+    rules.speed = std::min({speeds.blur, speeds.rolling_shutter, speeds.vehicle});
+    rules.exposure = photo->exposure + photo->readout;
+    rules.period = photo->min_interval;
+    return rules;
+  }
   const geometry::Shutter& shutter = options.capture.shutter;
   rules.speed = sharp_speed(options.required_vehicle(), geometry::Camera(options.capture.camera),
                             shutter, distance);
@@ -237,6 +245,7 @@ RouteOptions FlightOptions::route(const Vector3d& pad) const {
   options.order_is_free = order == VisitOrder::shortest;
   options.style = style;
   if (style == FlightStyle::pass) options.passing = make_fly_through_rules(*this);
+  options.photo = capture.photo;
   // The air moves in the direction opposite to the wind's origin.
   options.conditions.wind = -wind_speed * Eigen::Vector2d(std::sin(wind_from), std::cos(wind_from));
   options.conditions.temperature_c = temperature;
@@ -250,11 +259,16 @@ RouteOptions FlightOptions::route(const Vector3d& pad) const {
 
 double FlightOptions::rest_before() const {
   if (capture.scans_in_flight()) return 0.0;
-  return std::max(hold, capture.settle);
+  const double rest = std::max(hold, capture.settle);
+  if (!capture.photo) return rest;
+  // Even neighbouring photos are min_interval apart: rest_after(), settling and this rest.
+  const double settling = has_vehicle() ? required_vehicle().mode.settle_time : 0.0;
+  return std::max(rest, capture.photo->min_interval - rest_after() - settling);
 }
 
 double FlightOptions::rest_after() const {
   if (capture.scans_in_flight()) return 0.0;
+  if (capture.photo) return std::max(hold_after, capture.photo->exposure + capture.photo->readout);
   const geometry::Shutter& shutter = capture.shutter;
   return std::max(hold_after, shutter.exposure + shutter.readout);
 }
@@ -276,6 +290,7 @@ FlightFacts FlightOptions::facts() const {
   facts.rally = rally;
   facts.cruise_speed = cruise_speed;
   facts.hold = hold;
+  facts.photo = capture.photo;
   Obstacles rules = this->rules();
   facts.no_fly = std::move(rules.no_fly);
   facts.fence = std::move(rules.fence);

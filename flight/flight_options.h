@@ -22,6 +22,7 @@
 #include "flight/interpreter/flight_facts.h"
 #include "flight/motion/flight_style.h"
 #include "flight/motion/image_motion_bounds.h"
+#include "flight/motion/photo_speed.h"
 #include "flight/motion/vehicle.h"
 #include "flight/route/landing_surface.h"
 #include "flight/route/route.h"
@@ -50,9 +51,10 @@ struct CaptureOptions {
   /// sensor cannot prove space free.
   std::optional<SweepRays> rays;
   geometry::Shutter shutter{.exposure = 0.01, .readout = 0.0};
-  double settle = 0.0;        ///< Rest time before an exposure [s].
-  bool is_moving = false;     ///< The sensor also measures on legs.
-  double frame_period = 1.0;  ///< Interval between en-route scans [s].
+  std::optional<PhotoShutter> photo;  ///< of a photo camera, which measures no depth
+  double settle = 0.0;                ///< Rest time before an exposure [s].
+  bool is_moving = false;             ///< The sensor also measures on legs.
+  double frame_period = 1.0;          ///< between the scans that are taken on the way [s]
 
   /// Returns true if a laser scanner measures continuously, so that the vehicle need not hold at
   /// views.

@@ -24,6 +24,8 @@ using Eigen::Vector3d;
 struct FormatRecord {
   FormatInfo info;
   bool supports_curves = false;
+  bool captures_images = false;
+  bool holds_photo_runs = false;
   std::string (*write)(const FlightPlan& plan);
   Problems (*validate)(const std::string& content);
   /// Returns positions in the local frame [m], in file order.
@@ -81,6 +83,8 @@ std::vector<std::string> make_litchi_notes(const FlightPlan&) {
 /// source file with its writer, reader and checks.
 const std::array<FormatRecord, 9> records{{
     {.info = {Format::plan, "plan", ".plan", "above take-off; home above mean sea level"},
+     .captures_images = true,
+     .holds_photo_runs = true,
      .write = write_plan,
      .validate = [](const std::string& content) { return validate_plan(content); },
      .read_positions =
@@ -91,6 +95,8 @@ const std::array<FormatRecord, 9> records{{
          },
      .notes = make_plan_notes},
     {.info = {Format::waypoints, "waypoints", ".waypoints", "above take-off"},
+     .captures_images = true,
+     .holds_photo_runs = true,
      .write = write_waypoints,
      .validate = [](const std::string& content) { return validate_waypoints(content); },
      .read_positions =
@@ -100,6 +106,8 @@ const std::array<FormatRecord, 9> records{{
            });
          }},
     {.info = {Format::kmz, "kmz", ".kmz", "above take-off"},
+     .captures_images = true,
+     .holds_photo_runs = true,
      .write = write_kmz,
      .validate = validate_kmz,
      .read_positions =
@@ -123,6 +131,7 @@ const std::array<FormatRecord, 9> records{{
            return geodetic_positions(content, site, pad, read_geojson);
          }},
     {.info = {Format::litchi, "litchi", ".litchi.csv", "above take-off"},
+     .captures_images = true,
      .write = write_litchi,
      .validate = validate_litchi,
      .read_positions =
@@ -182,6 +191,14 @@ Format format_named(const std::string& name) {
 }
 
 bool supports_curves(Format format) { return find_record(format).supports_curves; }
+
+bool captures_images(Format format) { return find_record(format).captures_images; }
+
+bool holds_photo_runs(Format format) { return find_record(format).holds_photo_runs; }
+
+std::vector<FlightPlan> split_glb(const FlightPlan& plan, Format format) {
+  return format == Format::litchi ? litchi_parts(plan) : std::vector{plan};
+}
 
 std::string write(const FlightPlan& plan, Format format) { return find_record(format).write(plan); }
 

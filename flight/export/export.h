@@ -32,6 +32,16 @@ Format format_named(const std::string& name);
 /// verified.
 bool supports_curves(Format format);
 
+/// Whether files of this format capture an image at each view.
+bool captures_images(Format format);
+
+/// Whether files of this format can trigger a camera at even distances (photo_runs.h).
+bool holds_photo_runs(Format format);
+
+/// The plan as files of this format hold it: one plan, or several to be flown one after the other
+/// in one flight, each from the last waypoint of the one before.
+std::vector<FlightPlan> split_glb(const FlightPlan& plan, Format format);
+
 /// Returns the file content, the notes on omitted data, or the problems of the content.
 std::string write(const FlightPlan& plan, Format format);
 std::vector<std::string> make_notes(const FlightPlan& plan, Format format);

@@ -41,6 +41,7 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
       name, site,         route.vehicle, route.options.conditions, route.options.takeoff,
       {},   rules.no_fly, rules.fence,   route.clearance,          route.returns};
   plan.priors = rules.priors;
+  plan.photo = route.options.photo;
   plan.waypoints.push_back(corner(sortie.out.points.front(), sortie.out.clearance));
   if (corners == Corners::rounded && sortie.fly_through) {
     for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
@@ -117,9 +118,13 @@ std::vector<StopTime> stop_times(const FlightPlan& plan) {
     const Waypoint& waypoint = plan.waypoints[i];
     now = times.back().departure;
     const Curve* path_curve = waypoint.path_curve();
-    const double leg = path_curve == nullptr
-                           ? motion.leg_time(waypoint.position - plan.waypoints[i - 1].position)
-                           : duration(*path_curve) + plan.vehicle.mode.settle_time;
+    const Vector3d straight = waypoint.position - plan.waypoints[i - 1].position;
+    double leg = 0.0;
+    if (path_curve != nullptr) {
+      leg = duration(*path_curve) + plan.vehicle.mode.settle_time;
+    } else {
+      leg = waypoint.run ? run_time(plan, *waypoint.run, straight) : motion.leg_time(straight);
+    }
     double aimed = now + leg;
     if (waypoint.is_capture_point && last_capture_point != nullptr) {
       const double turn =
@@ -131,6 +136,12 @@ std::vector<StopTime> stop_times(const FlightPlan& plan) {
     times.push_back({now + leg, aimed, capture, capture + waypoint.hold_after});
   }
   return times;
+}
+
+double run_time(const FlightPlan& plan, const PhotoRun& run, const Vector3d& path_curve) {
+  Conditions conditions = plan.conditions;
+  conditions.cruise_speed = std::min(conditions.cruise_speed, run.speed);
+  return Motion(plan.vehicle, conditions).leg_time(path_curve);
 }
 
 double flight_time(const FlightPlan& plan) {

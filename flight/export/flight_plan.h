@@ -10,9 +10,19 @@
 
 #include "flight/clearance/obstacles.h"
 #include "flight/export/geodesy.h"
+#include "flight/motion/photo_speed.h"
 #include "flight/route/route.h"
 
 namespace skycap::flight {
+
+/// Photos that are taken without a stop on a straight leg, at even distances: at `spacing`, 2
+/// `spacing` and so on from its start, and none at its end.
+struct PhotoRun {
+  double spacing = 0.0;     ///< [m]
+  double speed = 0.0;       ///< that the leg is flown at, at most [m/s]
+  std::uint32_t first = 0;  ///< index in FlightPlan::passed
+  std::uint32_t count = 0;  ///< of photos
+};
 
 /// Point at which the vehicle stops.
 struct Waypoint {
@@ -28,6 +38,7 @@ struct Waypoint {
   Curve curve;             ///< Curve from the previous stop. Empty: straight leg.
   /// Fly-through alternative to `curve`, past the waypoints of a sortie.
   std::optional<FlyThrough> fly_through{};
+  std::optional<PhotoRun> run{};  ///< photos taken on the straight leg that ends here
 
   /// Returns the curve of the leg that ends here, or null for a straight leg.
   const Curve* path_curve() const {
@@ -48,8 +59,9 @@ struct FlightPlan {
   double clearance = 0.0;          ///< Clearance at which the legs are verified [m].
   std::optional<Returns> returns;  ///< Returns of the complete mission that contains the sortie.
   /// Obstacles that apply to the climb, too.
-  std::vector<std::shared_ptr<const PriorObstacle>> priors{};
-  std::vector<Waypoint> passed{};  ///< Waypoints without a stop, one per fly-through view.
+  std::vector<std::shared_ptr<const PriorObstacle>> priors{};  ///< in the way of the climb, too
+  std::vector<Waypoint> passed{};  ///< stations that are not stopped at, one for each passed view
+  std::optional<PhotoShutter> photo{};  ///< of a mission with a photo camera
 
   /// Returns the verified returns. Throws Error{bad_config} without returns.
   const Returns& verified_returns() const;
@@ -84,6 +96,9 @@ struct StopTime {
 };
 std::vector<StopTime> stop_times(const FlightPlan& plan);
 
+/// How long the leg `path_curve` takes with the photos of a run, from rest to rest [s].
+double run_time(const FlightPlan& plan, const PhotoRun& run, const Eigen::Vector3d& path_curve);
+
 /// Returns the time from leaving the pad until the motors stop [s].
 double flight_time(const FlightPlan& plan);
 
@@ -102,6 +117,7 @@ struct FilePoint {
   double hold = 0.0;         ///< Total hold time [s].
   double hold_before = 0.0;  ///< Hold time before the first capture, if the format has it [s].
   int captures = 0;
+  double photo_spacing = 0.0;  ///< of photos without a stop on the leg that begins here [m]
   double speed = unspecified;  ///< Speed towards the point, if the format has it [m/s].
   double curve = 0.0;  ///< Distance from the point at which the vehicle may start to turn [m].
   HeightDatum datum = HeightDatum::ellipsoid;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "flight/export/map_files.h"
@@ -118,12 +119,31 @@ struct LitchiParser {
 
 }  // namespace
 
+std::vector<FlightPlan> litchi_parts(const FlightPlan& plan) {
+  std::vector<FlightPlan> parts;
+  for (std::size_t first = 0; parts.empty() || first + 1 < plan.waypoints.size();) {
+    const std::size_t end = std::min(first + max_waypoints, plan.waypoints.size());
+    FlightPlan part = plan;
+    part.waypoints.assign(plan.waypoints.begin() + static_cast<std::ptrdiff_t>(first),
+                          plan.waypoints.begin() + static_cast<std::ptrdiff_t>(end));
+    if (first > 0) {
+      Waypoint& start = part.waypoints.front();
+      start.is_capture_point = false;
+      start.captures = 0;
+      start.hold = corner_hold;
+      start.hold_after = 0.0;
+    }
+    parts.push_back(std::move(part));
+    first = end - 1;
+  }
+  return parts;
+}
+
 std::string write_litchi(const FlightPlan& plan) {
   if (plan.waypoints.size() > max_waypoints) {
-    throw Error(
-        ErrorKind::bad_config,
-        "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
-            " waypoints; the limit of Litchi is 99. Use a vehicle with a lower max_waypoints");
+    throw Error(ErrorKind::bad_config,
+                "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
+                    " waypoints; the limit of Litchi is 99: divide the plan with parts_of()");
   }
   const LocalFrame frame(plan.site.origin);
   const double pad_height = frame.to_geodetic(plan.pad).height;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "flight/export/flight_plan.h"
 #include "flight/export/text.h"
@@ -27,6 +28,9 @@ RouteFile read_geojson(const std::string& text);
 /// mission-wide settings: the user must set heading mode "Custom" and path mode "Straight Lines".
 /// Throws Error{bad_config} if the format cannot hold that many waypoints or captures.
 std::string write_litchi(const FlightPlan& plan);
+/// The plan in parts of at most 99 waypoints. Each begins where the one before ends, with a stop
+/// that captures nothing.
+std::vector<FlightPlan> litchi_parts(const FlightPlan& plan);
 Problems validate_litchi(const std::string& text);
 RouteFile read_litchi(const std::string& text);
 

@@ -96,13 +96,29 @@ class ItemWriter {
     const double yaw_deg =
         std::fmod(std::round(capture_point.yaw * degrees_per_radian * 1e4) / 1e4, 360.0);
     const double pitch_deg = std::round(capture_point.pitch * degrees_per_radian * 1e4) / 1e4;
+    if (capture_point.run) add_trigger(capture_point.run->spacing, capture_point.run->speed);
     add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: aim by these angles.
     if (is_ardupilot()) add(command::condition_yaw, {yaw_deg, 0, 0, 0, 0, 0, 0});
     add_stop(i, is_ardupilot() ? unspecified : yaw_deg);
-    for (int capture = 0; capture < capture_point.captures; ++capture) {
+    if (capture_point.run) add_trigger(0.0, plan_.conditions.cruise_speed);
+    for (int capture = 0; capture < capture_point.captures; ++capture) add_shot();
+    add_delay(capture_point.hold_after);
+  }
+
+  /// Of a photo camera ArduPilot triggers the shutter, which all of its camera drivers can do;
+  /// IMAGE_START_CAPTURE is for cameras that speak MAVLink.
+  void add_shot() {
+    if (plan_.photo && is_ardupilot()) {
+      add(command::digicam_control, {0, 0, 0, 0, 1, 0, 0});
+    } else {
       add(command::start_capture, {0, 0, 1, static_cast<double>(++captures_), 0, 0, 0});
     }
-    add_delay(capture_point.hold_after);
+  }
+
+  /// Photos at that distance from here on, none at once; 0 ends them.
+  void add_trigger(double spacing, double speed) {
+    add(command::change_speed, {1, speed, -1, 0, 0, 0, 0});
+    add(command::camera_trigger_distance, {std::round(spacing * 1e3) / 1e3, 0, 0, 0, 0, 0, 0});
   }
 
   const FlightPlan& plan_;

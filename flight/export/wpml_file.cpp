@@ -151,6 +151,9 @@ class WpmlChecker {
       require_number(mark, "waypointSpeed", 0.01, 15);
       check_turn(mark);
     }
+    if (is_template_ && child_text(mark, "useGlobalSpeed") == "0") {
+      require_number(mark, "waypointSpeed", 0.01, 15);
+    }
     const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
     require_one_of(heading, "waypointHeadingMode",
                    {"followWayline", "manually", "fixed", "smoothTransition", "towardPOI"});
@@ -183,6 +186,10 @@ class WpmlChecker {
     require_one_of(group, "actionGroupMode", {"sequence"});
     require_one_of(group.child("wpml:actionTrigger"), "actionTriggerType",
                    {"reachPoint", "betweenAdjacentPoints", "multipleTiming", "multipleDistance"});
+    const std::string trigger = child_text(group.child("wpml:actionTrigger"), "actionTriggerType");
+    if (trigger == "multipleTiming" || trigger == "multipleDistance") {
+      require_number(group.child("wpml:actionTrigger"), "actionTriggerParam", 0.01, 10000);
+    }
     for (const pugi::xml_node action : group.children("wpml:action")) {
       const std::string function = child_text(action, "actionActuatorFunc");
       const pugi::xml_node param = action.child("wpml:actionActuatorFuncParam");
@@ -193,17 +200,50 @@ class WpmlChecker {
         point.pitch_deg = require_number(param, "gimbalPitchRotateAngle", -120, 60);
       } else if (function == "takePhoto") {
         require_number(param, "payloadPositionIndex", 0, 2);
+        check_lens(param);
         if (std::isnan(point.pitch_deg))
           add_problem("has a takePhoto without a gimbalRotate before it");
+        if (trigger == "multipleDistance") {
+          point.photo_spacing =
+              to_number(child_text(group.child("wpml:actionTrigger"), "actionTriggerParam"))
+                  .value_or(0.0);
+        } else {
+          ++point.captures;
+        }
+      } else if (function == "orientedShoot") {
+        require_number(param, "payloadPositionIndex", 0, 2);
+        point.pitch_deg = require_number(param, "gimbalPitchRotateAngle", -120, 60);
+        require_number(param, "gimbalYawRotateAngle", -180, 180);
+        require_number(param, "aircraftHeading", -180, 180);
+        require_one_of(param, "accurateFrameValid", {"0", "1"});
+        check_action_id(child_text(param, "actionUUID"));
         ++point.captures;
+        check_lens(param);
       } else if (function != "rotateYaw") {
         add_problem("has wpml:actionActuatorFunc \"" + function + "\", which is not supported");
       }
     }
   }
 
+  /// Aircraft ignore kinds of images that are spelt otherwise.
+  void check_lens(pugi::xml_node param) {
+    const std::string kinds = child_text(param, "payloadLensIndex");
+    if (kinds.empty()) return;
+    for (const std::string& kind : split(kinds, ',')) {
+      if (!std::set<std::string>{"visable", "wide", "zoom", "ir", "narrow_band"}.contains(kind)) {
+        add_problem("has wpml:payloadLensIndex \"" + kinds + "\", which is not one of its values");
+      }
+    }
+  }
+
+  void check_action_id(const std::string& id) {
+    if (id.empty()) return add_problem("has an orientedShoot without wpml:actionUUID");
+    if (!action_ids_.insert(id).second) add_problem("uses wpml:actionUUID " + id + " twice");
+  }
+
   std::string file_;
   bool is_template_, is_strict_;
+  std::set<std::string> action_ids_;
   pugi::xml_document document_;
   std::set<double> group_ids_;
   HeightDatum datum_ = HeightDatum::ellipsoid;
@@ -241,7 +281,7 @@ bool agree(const WpmlChecker& edited, const WpmlChecker& executed) {
     if (std::abs(a.latitude_deg - b.latitude_deg) > same_degrees ||
         std::abs(a.longitude_deg - b.longitude_deg) > same_degrees ||
         std::abs(height - b.height) > same_height || (a.datum != b.datum && !are_both) ||
-        a.captures != b.captures) {
+        a.captures != b.captures || a.photo_spacing != b.photo_spacing) {
       return false;
     }
   }

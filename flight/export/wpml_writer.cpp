@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <string>
 
 #include <pugixml.hpp>
 
@@ -21,6 +23,34 @@ void add(pugi::xml_node parent, const std::string& name, const std::string& valu
 }
 pugi::xml_node add(pugi::xml_node parent, const std::string& name) {
   return parent.append_child(("wpml:" + name).c_str());
+}
+
+int wpml_payload(const FlightPlan& plan) {
+  return plan.photo && plan.photo->payload != 0 ? plan.photo->payload : plan.vehicle.wpml.payload;
+}
+
+/// Whether it takes part in orientedShoot: M30 series, Mavic 3E and 3T, Matrice 3D and 4 series, by
+/// the table of that action.
+bool has_oriented_shoot(const Vehicle& vehicle) {
+  constexpr int m30 = 67, mavic_3 = 77, matrice_3d = 91, matrice_4 = 99, mavic_3m = 68;
+  const int drone = vehicle.wpml.drone;
+  return vehicle.wpml.payload != mavic_3m &&
+         (drone == m30 || drone == mavic_3 || drone == matrice_3d || drone == matrice_4);
+}
+
+/// An identifier that the aircraft writes into the photo: 32 hexadecimal digits of the FNV-1a hash
+/// of the plan's name and the view, the same for the same plan.
+std::string action_uuid(const std::string& name, std::uint32_t view) {
+  constexpr std::uint64_t basis = 14695981039346656037ULL, prime = 1099511628211ULL;
+  std::string id;
+  for (const char* salt : {"a", "b"}) {
+    std::uint64_t hash = basis;
+    for (const char c : salt + name + "/" + std::to_string(view)) {
+      hash = (hash ^ static_cast<unsigned char>(c)) * prime;
+    }
+    for (int shift = 60; shift >= 0; shift -= 4) id += "0123456789abcdef"[(hash >> shift) & 15U];
+  }
+  return id;
 }
 
 /// Writes either file. Both share most of their elements.
@@ -48,7 +78,7 @@ class WpmlWriter {
     if (is_template_) {
       pugi::xml_node payload = add(folder, "payloadParam");
       add(payload, "payloadPositionIndex", "0");
-      add(payload, "imageFormat", "visable");  // Spelling of the format.
+      add(payload, "imageFormat", plan_.photo ? plan_.photo->image_format : "visable");
     }
     return xml_text(document);
   }
@@ -81,7 +111,7 @@ class WpmlWriter {
     add(drone, "droneEnumValue", std::to_string(plan_.vehicle.wpml.drone));
     add(drone, "droneSubEnumValue", std::to_string(plan_.vehicle.wpml.drone_variant));
     pugi::xml_node payload = add(config, "payloadInfo");
-    add(payload, "payloadEnumValue", std::to_string(plan_.vehicle.wpml.payload));
+    add(payload, "payloadEnumValue", std::to_string(wpml_payload(plan_)));
     add(payload, "payloadSubEnumValue", "0");
     add(payload, "payloadPositionIndex", "0");
   }
@@ -131,12 +161,13 @@ class WpmlWriter {
       add(mark, "useGlobalHeight", "0");
       add(mark, "ellipsoidHeight", fixed(height(waypoint), 3));
       add(mark, "height", fixed(height(waypoint), 3));
-      add(mark, "useGlobalSpeed", "1");
+      add(mark, "useGlobalSpeed", run_from(index) == nullptr ? "1" : "0");
+      if (run_from(index) != nullptr) add(mark, "waypointSpeed", speed_from(index));
       add(mark, "useGlobalHeadingParam", "0");
       add(mark, "useGlobalTurnParam", "1");
     } else {
       add(mark, "executeHeight", fixed(height(waypoint), 3));
-      add(mark, "waypointSpeed", speed());
+      add(mark, "waypointSpeed", speed_from(index));
     }
     add_heading(mark, index);
     if (!is_template_) {
@@ -146,6 +177,19 @@ class WpmlWriter {
     }
     add(mark, "useStraightLine", "1");
     add_actions(mark, index);
+    if (const PhotoRun* run = run_from(index)) add_run(mark, index, *run);
+  }
+
+  /// The photos without a stop on the leg that begins at a waypoint; nullptr if there are none.
+  const PhotoRun* run_from(std::size_t index) const {
+    if (index + 1 == plan_.waypoints.size() || !plan_.waypoints[index + 1].run) return nullptr;
+    return &*plan_.waypoints[index + 1].run;
+  }
+
+  /// Of the leg that begins at a waypoint.
+  std::string speed_from(std::size_t index) const {
+    const PhotoRun* run = run_from(index);
+    return run == nullptr ? speed() : fixed(std::min(run->speed, 15.0), 2);
   }
 
   /// At a corner, uses the heading of the next waypoint with captures.
@@ -164,11 +208,7 @@ class WpmlWriter {
   void add_actions(pugi::xml_node mark, std::size_t index) {
     const Waypoint& waypoint = plan_.waypoints[index];
     const std::string number = std::to_string(index);
-    pugi::xml_node group = add(mark, "actionGroup");
-    add(group, "actionGroupId", number);
-    add(group, "actionGroupStartIndex", number);
-    add(group, "actionGroupEndIndex", number);
-    add(group, "actionGroupMode", "sequence");
+    pugi::xml_node group = add_group(mark, number, number);
     add(add(group, "actionTrigger"), "actionTriggerType", "reachPoint");
     int id = 0;
     const auto action = [&](const char* function) {
@@ -180,12 +220,77 @@ class WpmlWriter {
     if (waypoint.is_capture_point) add_gimbal(action("gimbalRotate"), waypoint);
     add(action("hover"), "hoverTime", fixed(waypoint.hold, 2));
     for (int capture = 0; capture < waypoint.captures; ++capture) {
-      pugi::xml_node photo = action("takePhoto");
-      add(photo, "payloadPositionIndex", "0");
-      add(photo, "fileSuffix", "view_" + std::to_string(waypoint.view_index));
-      add(photo, "useGlobalPayloadLensIndex", "1");
+      if (plan_.photo && has_oriented_shoot(plan_.vehicle)) {
+        add_oriented_shoot(action("orientedShoot"), waypoint);
+      } else {
+        add_photo(action("takePhoto"), "view_" + std::to_string(waypoint.view_index));
+      }
     }
     if (waypoint.hold_after > 0.0) add(action("hover"), "hoverTime", fixed(waypoint.hold_after, 2));
+  }
+
+  pugi::xml_node add_group(pugi::xml_node mark, const std::string& first, const std::string& last) {
+    pugi::xml_node group = add(mark, "actionGroup");
+    add(group, "actionGroupId", std::to_string(groups_++));
+    add(group, "actionGroupStartIndex", first);
+    add(group, "actionGroupEndIndex", last);
+    add(group, "actionGroupMode", "sequence");
+    return group;
+  }
+
+  void add_photo(pugi::xml_node photo, const std::string& suffix) {
+    add(photo, "payloadPositionIndex", "0");
+    add(photo, "fileSuffix", suffix);
+    add_lens(photo);
+  }
+
+  /// Files without a photo camera leave the lens to the template's payloadParam.
+  void add_lens(pugi::xml_node photo) {
+    if (plan_.photo) add(photo, "payloadLensIndex", plan_.photo->image_format);
+    add(photo, "useGlobalPayloadLensIndex", plan_.photo ? "0" : "1");
+  }
+
+  /// The camera is aimed already. What the format needs of a photo to be repeated, and that does
+  /// not exist, is left at the values that DJI's remote controllers write.
+  void add_oriented_shoot(pugi::xml_node shoot, const Waypoint& waypoint) {
+    const std::string yaw =
+        fixed(std::remainder(waypoint.yaw, 2.0 * std::numbers::pi) * degrees_per_radian, 4);
+    const std::string id = action_uuid(plan_.name, waypoint.view_index);
+    add(shoot, "gimbalPitchRotateAngle", fixed(waypoint.pitch * degrees_per_radian, 4));
+    add(shoot, "gimbalYawRotateAngle", yaw);  // must be the heading
+    add(shoot, "focusX", "480");              // the middle of an image of 960 x 720
+    add(shoot, "focusY", "360");
+    add(shoot, "focusRegionWidth", "480");
+    add(shoot, "focusRegionHeight", "360");
+    add(shoot, "focalLength", "24");  // 35 mm equivalent of the wide camera, so no zoom
+    add(shoot, "aircraftHeading", yaw);
+    add(shoot, "accurateFrameValid", "0");  // repeats the pose, does not search for an object
+    add(shoot, "payloadPositionIndex", "0");
+    add_lens(shoot);
+    add(shoot, "targetAngle", "0");
+    add(shoot, "actionUUID", id);
+    add(shoot, "imageWidth", "960");
+    add(shoot, "imageHeight", "720");
+    add(shoot, "AFPos", "0");
+    add(shoot, "gimbalPort", "0");
+    add(shoot, "orientedCameraType", std::to_string(wpml_payload(plan_)));
+    add(shoot, "orientedFilePath", id);
+    add(shoot, "orientedFileMD5", "");
+    add(shoot, "orientedFileSize", "0");
+    add(shoot, "orientedFileSuffix", "view_" + std::to_string(waypoint.view_index));
+    add(shoot, "orientedPhotoMode", "normalPhoto");
+  }
+
+  /// Vehicle and gimbal keep the aim of the run's first photo.
+  void add_run(pugi::xml_node mark, std::size_t index, const PhotoRun& run) {
+    pugi::xml_node group = add_group(mark, std::to_string(index), std::to_string(index + 1));
+    pugi::xml_node trigger = add(group, "actionTrigger");
+    add(trigger, "actionTriggerType", "multipleDistance");
+    add(trigger, "actionTriggerParam", fixed(run.spacing, 3));
+    pugi::xml_node action = add(group, "action");
+    add(action, "actionId", "0");
+    add(action, "actionActuatorFunc", "takePhoto");
+    add_photo(add(action, "actionActuatorFuncParam"), "run_" + std::to_string(index));
   }
 
   static void add_gimbal(pugi::xml_node gimbal, const Waypoint& waypoint) {
@@ -207,6 +312,7 @@ class WpmlWriter {
   LocalFrame frame_;
   GeodeticPoint pad_;
   double max_height_ = 0.0;
+  std::size_t groups_ = 0;  ///< that are written
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ constexpr std::array<CommandRow, 36> table{{
      "it points the vehicle and the gimbal at a position"},
     {203, "DO_DIGICAM_CONTROL", Meaning::trigger_photo, both, ""},
     {205, "DO_MOUNT_CONTROL", Meaning::aim_by_mount, both, ""},
-    {206, "DO_SET_CAM_TRIGG_DIST", Meaning::no_motion, both, ""},
+    {206, "DO_SET_CAM_TRIGG_DIST", Meaning::space_photos, both, ""},
     {207, "DO_FENCE_ENABLE", Meaning::hold_fence, ardupilot, ""},
     {222, "DO_GUIDED_LIMITS", Meaning::rejected, both, "it transfers control to another computer"},
     {400, "COMPONENT_ARM_DISARM", Meaning::rejected, both, "it may stop the motors"},

@@ -19,6 +19,7 @@ enum class Meaning {
   aim_by_gimbal,  ///< Gimbal by DO_GIMBAL_MANAGER_PITCHYAW.
   take_photo,     ///< IMAGE_START_CAPTURE.
   trigger_photo,  ///< DO_DIGICAM_CONTROL.
+  space_photos,   ///< DO_SET_CAM_TRIGG_DIST
   jump,           ///< Unrolled by the interpreter.
   hold_fence,     ///< Enables the fence.
   no_motion,      ///< Affects neither motion nor camera aim.

@@ -8,6 +8,7 @@
 
 #include "flight/clearance/obstacles.h"
 #include "flight/export/flight_plan.h"
+#include "flight/motion/photo_speed.h"
 #include "flight/motion/vehicle.h"
 #include "geometry/pose/pose.h"
 
@@ -26,7 +27,8 @@ struct FlightFacts {
   double hold = 0.0;          ///< Rest time before a photo [s].
   std::vector<Prism> no_fly;
   std::optional<Prism> fence;
-  std::vector<geometry::View> views;  ///< Required views. Empty: unknown and not checked.
+  std::vector<geometry::View> views;    ///< Required views. Empty: unknown and not checked.
+  std::optional<PhotoShutter> photo{};  ///< of a mission with a photo camera
 };
 
 /// Returns the facts of the flight that a file is written for.

@@ -57,8 +57,9 @@ InterpretedRoute interpret_litchi(const RouteFile& file, const FlightFacts& fact
     if (point.captures == 0) continue;
     route.stops.push_back(
         {positions[i], name(i), point.hold_before, point.yaw_deg, point.pitch_deg, point.captures});
+    route.stops.back().hold_after = point.hold - point.hold_before;
   }
-  for (const std::string& problem : check_photographs(route.stops, facts)) {
+  for (const std::string& problem : check_photographs(route, facts)) {
     route.problems.push_back(problem);
   }
   return route;

@@ -58,6 +58,16 @@ RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
   return result;
 }
 
+void append_passes(InterpretedRoute& route, double spacing, double yaw_deg, double pitch_deg) {
+  const InterpretedSegment& leg = route.segments.back();
+  const Eigen::Vector3d distance = leg.to - leg.start.to;
+  const double length = distance.norm();
+  for (int i = 1; i * spacing < length - 0.5 * spacing; ++i) {
+    route.is_fly_through.push_back({leg.start.to + i * spacing / length * distance, leg.to_item,
+                                    yaw_deg, pitch_deg, leg.speed, spacing, route.stops.size()});
+  }
+}
+
 double length(const InterpretedRoute& route) {
   double sum = 0.0;
   for (const InterpretedSegment& segment : route.segments) {

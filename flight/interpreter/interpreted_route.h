@@ -37,11 +37,24 @@ struct InterpretedStop {
       unspecified;  ///< Clockwise from north. `unspecified`: not specified in the file.
   double pitch_deg = unspecified;  ///< Gimbal pitch, 0 at the horizon.
   int captures = 0;
+  double hold_after = 0.0;  ///< at rest after the first photograph [s]
+};
+
+/// A photograph that is taken without a stop, on a straight leg.
+struct FlownPass {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  std::string item;                ///< that the leg leads to
+  double yaw_deg = unspecified;    ///< as of a stop
+  double pitch_deg = unspecified;  ///< as of a stop
+  double speed = unspecified;      ///< Ground speed, if specified in the file [m/s].
+  double spacing = 0.0;            ///< from the photograph before it or the start of the leg [m]
+  std::size_t stops_before = 0;    ///< index in InterpretedRoute::stops of the next stop
 };
 
 struct InterpretedRoute {
   std::vector<InterpretedSegment> segments;  ///< In flight order.
   std::vector<InterpretedStop> stops;        ///< Stops with photos.
+  std::vector<FlownPass> is_fly_through;     ///< photographs without a stop
   Problems problems;                         ///< Unsafe or unknown behaviour, per item.
 };
 
@@ -54,6 +67,11 @@ struct RouteVerification {
 /// pad are verified in `pad_space`, which should not contain the ground there.
 RouteVerification verify(const InterpretedRoute& route, const FreeSpace& space,
                          const FreeSpace& pad_space, double clearance, double up_to);
+
+/// Adds the photographs of a trigger at even distances on the straight leg that ends the route so
+/// far: one at each multiple of `spacing` (positive) from its start, none within half of that from
+/// its end, where the vehicle stops.
+void append_passes(InterpretedRoute& route, double spacing, double yaw_deg, double pitch_deg);
 
 /// Returns the length of the pieces that are not above the pad [m].
 double length(const InterpretedRoute& route);

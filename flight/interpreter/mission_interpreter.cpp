@@ -27,7 +27,9 @@ constexpr double default_speed_ardupilot = 10.0, default_speed_px4 = 5.0;
 /// MAV_MOUNT_MODE_MAVLINK_TARGETING.
 constexpr double aims_by_angles = 2.0;
 
-constexpr double longest_wait = 600.0;  // Longer waits are assumed to be mistakes [s].
+constexpr double min_photo_spacing = 0.1;  // [m]
+
+constexpr double longest_wait = 600.0;  // more is taken for a mistake [s]
 
 /// Execution of the items of a file.
 class MissionFlight {
@@ -54,7 +56,7 @@ class MissionFlight {
     if (has_taken_off_) pad = pad_;
     for (const std::string& problem : check_home(file_, pad, facts_)) add(problem);
     for (const std::string& problem : check_rally(file_, facts_)) add(problem);
-    for (const std::string& problem : check_photographs(route_.stops, facts_)) add(problem);
+    for (const std::string& problem : check_photographs(route_, facts_)) add(problem);
     for (const std::string& problem : check_fence(file_, route_, facts_)) add(problem);
     return std::move(route_);
   }
@@ -147,6 +149,8 @@ class MissionFlight {
       case Meaning::take_photo:
       case Meaning::trigger_photo:
         return photograph(item, row.meaning);
+      case Meaning::space_photos:
+        return space_photos(item);
       case Meaning::hold_fence:
         if (item.params[0] != 1.0) add_problem(item, "disables the fence");
         return;
@@ -226,6 +230,14 @@ class MissionFlight {
   void fly_straight(const Vector3d& to, const MissionItem& item) {
     route_.segments.push_back({departure_, to, item_label(*last_), item_label(item)});
     route_.segments.back().speed = speed_;
+    if (photo_spacing_ == 0.0) return;
+    if (departure_.length() > 0.0) {
+      return add_problem(item,
+                         "is flown to with a camera trigger from a position that is not exact");
+    }
+    append_passes(route_, photo_spacing_,
+                  autopilot_ == AutopilotType::ardupilot ? next_yaw_deg_ : item.params[3],
+                  pitch_deg_);
   }
 
   /// Returns the acceptance radius. ArduCopter has one radius for all waypoints, which it observes
@@ -283,6 +295,7 @@ class MissionFlight {
                     " s; it must be above 0 and at most 600 (other values set a time of day)");
     }
     if (departure_.length() == 0.0) hold_ += seconds;
+    if (shoots_) route_.stops.back().hold_after += seconds;
     route_.segments.back().hold += seconds;
   }
 
@@ -349,6 +362,20 @@ class MissionFlight {
     route_.stops.push_back({position_, item_label(*last_), hold_, yaw_deg_, pitch_deg_, 1});
   }
 
+  /// Sensors that measure depth have no such trigger.
+  void space_photos(const MissionItem& item) {
+    if (!facts_.photo) return;
+    const double spacing = item.params[0];
+    if (spacing != 0.0 && !(spacing >= min_photo_spacing)) {
+      return add_problem(item, "triggers the camera every " + fixed(spacing, 2) +
+                                   " m; it must be 0 or at least 0.1 m");
+    }
+    if (item.params[2] != 0.0 && spacing > 0.0) {
+      return add_problem(item, "captures an image at once; set parameter 3 to 0");
+    }
+    photo_spacing_ = spacing;
+  }
+
   const MavlinkMission& file_;
   const AutopilotType autopilot_;
   const FlightFacts& facts_;
@@ -367,6 +394,7 @@ class MissionFlight {
   /// Possible start positions of the next leg.
   Segment departure_{Vector3d::Zero(), Vector3d::Zero()};
   double hold_ = 0.0;
+  double photo_spacing_ = 0.0;  ///< of the camera's trigger; zero: none
   double speed_ = unspecified;
   double yaw_deg_ = unspecified, next_yaw_deg_ = unspecified, pitch_deg_ = unspecified;
 };

@@ -6,8 +6,12 @@
 
 namespace skycap::flight {
 
-/// Returns the problems per item: holds that are too short, directions outside the gimbal range,
-/// and photos that match no view of the mission, if its views are known.
-Problems check_photographs(const std::vector<InterpretedStop>& stops, const FlightFacts& facts);
+/// Holds that are too short, directions that the gimbal does not have, photographs that follow one
+/// another faster or are taken at a higher speed than the photo camera allows, and, where the
+/// mission's views are known, photographs that are none of them, by item.
+Problems check_photographs(const InterpretedRoute& route, const FlightFacts& facts);
+
+/// Views of the mission that the file takes no photograph of, by their positions.
+Problems missing_photographs(const InterpretedRoute& route, const FlightFacts& facts);
 
 }  // namespace skycap::flight

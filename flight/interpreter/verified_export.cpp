@@ -6,6 +6,7 @@
 #include "flight/interpreter/flight_facts.h"
 #include "flight/interpreter/interpret.h"
 #include "flight/interpreter/interpreted_route.h"
+#include "flight/interpreter/photographs.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 
@@ -38,8 +39,10 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
   geometry::write_file(temporary, write(plan, format));
   const std::string content = geometry::read_file(temporary);
   reject(validate(content, format));
-  const InterpretedRoute route = interpret(content, format, make_flight_facts(plan));
+  const FlightFacts facts = make_flight_facts(plan);
+  const InterpretedRoute route = interpret(content, format, facts);
   reject(route.problems);
+  if (captures_images(format)) reject(missing_photographs(route, facts));
   const double clearance = std::max(0.0, plan.clearance - rounding_bound);
   const RouteVerification verification =
       verify(route, space, space_over_pad(plan), clearance, plan.clearance + reported_surplus);

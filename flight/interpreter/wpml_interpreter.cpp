@@ -42,7 +42,6 @@ constexpr std::array template_rules{
 
 constexpr std::array template_waypoint_rules{
     OnlyValue{"useGlobalHeight", "0", "overrides the height of the mission"},
-    OnlyValue{"useGlobalSpeed", "1", "overrides the speed of the mission"},
     OnlyValue{"useGlobalTurnParam", "1", "overrides the turn mode of the mission"},
     OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
 
@@ -56,6 +55,9 @@ constexpr std::array gimbal_rules{
     OnlyValue{"gimbalRotateMode", "absoluteAngle", "sets a relative instead of an absolute pitch"},
     OnlyValue{"gimbalRollRotateEnable", "0", "rolls the gimbal"},
     OnlyValue{"gimbalYawRotateEnable", "0", "turns the gimbal away from the heading"}};
+
+constexpr std::array oriented_rules{OnlyValue{
+    "accurateFrameValid", "0", "turns the camera towards an object that it searches for"}};
 
 /// Elements that are supported below each of these. All others are rejected.
 constexpr std::array<std::string_view, 16> config_elements{"flyToWaylineMode",
@@ -148,6 +150,7 @@ class WpmlFlight {
                                    waypoint(index - 1),
                                    waypoint(index)});
         route_.segments.back().speed = speed;
+        if (photo_spacing_ > 0.0) append_passes(route_, photo_spacing_, yaw_deg_, pitch_deg_);
       }
       speed = child_number(mark, "waypointSpeed");
       check_waypoint(mark, index);
@@ -155,7 +158,7 @@ class WpmlFlight {
       ++index;
     }
     descend(positions.back(), pad, waypoint(index - 1));
-    for (const std::string& problem : check_photographs(route_.stops, facts_)) {
+    for (const std::string& problem : check_photographs(route_, facts_)) {
       route_.problems.push_back(problem);
     }
     return std::move(route_);
@@ -298,22 +301,52 @@ class WpmlFlight {
     double yaw_deg = is_set ? child_number(heading, "waypointHeadingAngle") : unspecified;
     double hold = 0.0;
     int captures = 0;
+    photo_spacing_ = 0.0;
     for (const pugi::xml_node group : mark.children("wpml:actionGroup")) {
       check_group(group, index);
+      const pugi::xml_node trigger = group.child("wpml:actionTrigger");
+      const bool is_run = is_photo_run(child_text(trigger, "actionTriggerType"));
+      if (is_run) photo_spacing_ = child_number(trigger, "actionTriggerParam");
       for (const pugi::xml_node action : group.children("wpml:action")) {
         const std::string function = child_text(action, "actionActuatorFunc");
         const pugi::xml_node param = action.child("wpml:actionActuatorFuncParam");
         if (function == "hover") {
           hold += child_number(param, "hoverTime");
           route_.segments.back().hold += child_number(param, "hoverTime");
+          if (captures > 0) route_.stops.back().hold_after += child_number(param, "hoverTime");
+        }
+        if (is_run && function != "takePhoto") {
+          add_problem("has wpml:actionActuatorFunc " + function +
+                          " at even distances; it must be takePhoto",
+                      who);
         }
         if (function == "rotateYaw") yaw_deg = child_number(param, "aircraftHeading");
         if (function == "gimbalRotate") aim(param, who);
-        if (function != "takePhoto") continue;
+        if (function == "orientedShoot") yaw_deg = orient(param, who);
+        if (is_run || (function != "takePhoto" && function != "orientedShoot")) continue;
         if (captures++ == 0) route_.stops.push_back({position, who, hold, yaw_deg, pitch_deg_, 0});
         ++route_.stops.back().captures;
       }
     }
+    yaw_deg_ = yaw_deg;
+  }
+
+  /// Aims as the action says; returns the heading [deg].
+  double orient(pugi::xml_node param, const std::string& who) {
+    check_values(param, oriented_rules, who);
+    pitch_deg_ = child_number(param, "gimbalPitchRotateAngle");
+    const double heading = child_number(param, "aircraftHeading");
+    const double gimbal = child_number(param, "gimbalYawRotateAngle");
+    if (!(std::abs(std::remainder(heading - gimbal, 360.0)) <= rounding)) {
+      add_problem("has wpml:gimbalYawRotateAngle " + fixed(gimbal, 2) +
+                      " but wpml:aircraftHeading " + fixed(heading, 2) + "; they must be equal",
+                  who);
+    }
+    return heading;
+  }
+
+  bool is_photo_run(const std::string& trigger) const {
+    return facts_.photo && trigger == "multipleDistance";
   }
 
   void aim(pugi::xml_node param, const std::string& who) {
@@ -324,17 +357,21 @@ class WpmlFlight {
 
   void check_group(pugi::xml_node group, std::size_t index) {
     check_values(group, group_rules, waypoint(index));
-    for (const char* end : {"actionGroupStartIndex", "actionGroupEndIndex"}) {
-      if (child_text(group, end) == std::to_string(index)) continue;
+    const std::string trigger = child_text(group.child("wpml:actionTrigger"), "actionTriggerType");
+    const bool is_run = is_photo_run(trigger);
+    if (!is_run && trigger != "reachPoint") {
+      add_problem("has wpml:actionTriggerType " + trigger + "; it must be reachPoint" +
+                      (facts_.photo ? " or multipleDistance" : ""),
+                  waypoint(index));
+    }
+    const auto require = [&](const char* end, std::size_t expected) {
+      if (child_text(group, end) == std::to_string(expected)) return;
       add_problem("has wpml:" + std::string(end) + " " + child_text(group, end) +
                       ": its actions run at other waypoints",
                   waypoint(index));
-    }
-    const std::string trigger = child_text(group.child("wpml:actionTrigger"), "actionTriggerType");
-    if (trigger != "reachPoint") {
-      add_problem("has wpml:actionTriggerType " + trigger + "; it must be reachPoint",
-                  waypoint(index));
-    }
+    };
+    require("actionGroupStartIndex", index);
+    require("actionGroupEndIndex", is_run ? index + 1 : index);
   }
 
   std::string file_;
@@ -344,6 +381,8 @@ class WpmlFlight {
   pugi::xml_node config_, folder_;
   InterpretedRoute route_;
   double pitch_deg_ = unspecified;
+  double yaw_deg_ = unspecified;  ///< at the waypoint before
+  double photo_spacing_ = 0.0;    ///< on the leg from there; zero: no photos [m]
 };
 
 /// Checks that the pad in the file, if any, is that of the mission.

@@ -13,6 +13,7 @@
 #include "flight/clearance/clearance.h"
 #include "flight/motion/fly_through.h"
 #include "flight/motion/motion.h"
+#include "flight/motion/photo_speed.h"
 #include "flight/motion/smoothing.h"
 #include "flight/motion/vehicle.h"
 #include "flight/paths/path.h"
@@ -78,9 +79,9 @@ struct RouteOptions {
   PadLimits ground_limits;                       ///< Limits for that ground.
   bool order_is_free = false;                    ///< The planner may reorder the waypoints.
   FlightStyle style = FlightStyle::stop;         ///< Leg style in file formats that support curves.
-  PassRules passing;                             ///< Rules of the style FlightStyle::pass.
-  /// Requires a verified return from every point of the route. If empty, the pilot must check the
-  /// returns.
+  PassRules passing;                             ///< in the style that passes views
+  std::optional<PhotoShutter> photo;             ///< of a mission with a photo camera
+  /// From every point of the route there is a proven way home; without: the pilot answers for that.
   std::optional<ReturnOptions> returns;
 
   void validate() const;  ///< Throws Error{bad_config} naming the first value outside its interval.

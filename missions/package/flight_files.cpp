@@ -10,6 +10,7 @@
 #include "flight/clearance/clearance.h"
 #include "flight/clearance/interruptible_space.h"
 #include "flight/export/parameters.h"
+#include "flight/export/photo_runs.h"
 #include "flight/interpreter/verified_export.h"
 #include "geometry/error.h"
 #include "missions/package/fleet/timetable_file.h"
@@ -158,50 +159,97 @@ class RouteFiles {
 
   void stage_sortie(Format format, std::size_t sortie) {
     const std::string number = route_.sorties.size() > 1 ? "-" + std::to_string(sortie + 1) : "";
-    const std::string name = stem_ + number + flight::format_info(format).extension;
-    const std::filesystem::path file = folder_.stage(name);
+    std::vector<std::string> notes;
+    std::vector<std::string> names{stem_ + number + flight::format_info(format).extension};
+    const auto written_before = static_cast<std::ptrdiff_t>(files_.written.size());
     try {
-      write_sortie(format, sortie, number, name, file);
+      const flight::FlightPlan plan = plan_for(format, sortie, number, notes);
+      const std::vector<flight::FlightPlan> parts = flight::split_glb(plan, format);
+      if (parts.size() > 1) names = names_of_parts(format, sortie, parts.size());
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const flight::ExportResult result =
+            export_flight(parts[i], format, space_, folder_.stage(names[i]));
+        files_.written.push_back({names[i], flight::format_info(format).heights,
+                                  result.min_clearance, sortie, flight_time(parts[i])});
+        notes.insert(notes.end(), result.notes.begin(), result.notes.end());
+      }
+      if (parts.size() > 1) {
+        notes.push_back(names.front() + " to " + names.back() +
+                        " are one flight: set finish action \"None\" and start each file where the "
+                        "one before ends");
+      }
+      for (const std::string& note : notes) add_note(note);
     } catch (const Error& error) {
-      folder_.drop(name);
+      files_.written.erase(files_.written.begin() + written_before, files_.written.end());
+      // The files have temporary names until all are written.
+      std::string reason = error.what();
+      for (const std::string& name : names) {
+        const std::string file = folder_.staged(name).string();
+        const std::size_t name_begin = file.empty() ? std::string::npos : reason.find(file);
+        if (name_begin != std::string::npos) reason.replace(name_begin, file.size(), name);
+        if (!file.empty()) folder_.drop(name);
+      }
       if (error.kind() == ErrorKind::bad_file) {  // Write errors are not specific to the mission.
         for (const FlightFile& written : files_.written) folder_.drop(written.name);
         throw;
       }
-      // Files have temporary names until all are written.
-      std::string reason = error.what();
-      const std::size_t name_begin = reason.find(file.string());
-      if (name_begin != std::string::npos) reason.replace(name_begin, file.string().size(), name);
       leave_out(format, reason, error.kind());
     }
   }
 
-  /// Adds notes and files to the lists only after the file is verified.
-  void write_sortie(Format format, std::size_t sortie, const std::string& number,
-                    const std::string& name, const std::filesystem::path& file) {
-    const flight::FormatInfo& info = flight::format_info(format);
-    std::vector<std::string> notes;
-    const bool supports_curves = flight::supports_curves(format);
-    if (!supports_curves && options_.style != flight::FlightStyle::stop) {
-      const bool is_fly_through = options_.style == flight::FlightStyle::pass;
-      notes.push_back(stem_ + info.extension + " stops " +
-                      (is_fly_through ? "at every view and " : "") +
-                      "in every corner, because the format cannot define curves");
+  std::vector<std::string> names_of_parts(Format format, std::size_t sortie,
+                                          std::size_t parts) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < parts; ++i) {
+      names.push_back(stem_ + "-" + std::to_string(sortie + 1) + "-" + std::to_string(i + 1) +
+                      flight::format_info(format).extension);
     }
+    return names;
+  }
+
+  /// Returns the plan of a sortie for the format, with its returns; adds its parameters.
+  flight::FlightPlan plan_for(Format format, std::size_t sortie, const std::string& number,
+                              std::vector<std::string>& notes) {
+    const bool supports_curves = flight::supports_curves(format);
     const auto corners = supports_curves ? flight::Corners::rounded : flight::Corners::stopped_in;
     flight::FlightPlan plan = adapt_to_autopilot(
         flight_plan(route_, sortie, name_ + number, options_.site, rules_, corners), format,
         options_, notes);
+    if (!supports_curves) plan = with_runs(std::move(plan), format, notes);
     verify_autopilot_returns(plan, space_,
                              options_.max_return_altitude(plan.pad.z(), plan.pad.z()));
     if (has_parameters(format) && plan.returns) {
       parameters_[flight::parameters_name(plan.vehicle.autopilot, stem_)] =
           checked_parameters(plan);
     }
-    const flight::ExportResult result = export_flight(plan, format, space_, file);
-    files_.written.push_back({name, info.heights, result.min_clearance, sortie, flight_time(plan)});
-    for (const std::string& note : notes) add_note(note);
-    for (const std::string& note : result.notes) add_note(note);
+    return plan;
+  }
+
+  /// Returns the plan with photo runs: evenly spaced photos without a stop, in a format without
+  /// curves.
+  flight::FlightPlan with_runs(flight::FlightPlan plan, Format format,
+                               std::vector<std::string>& notes) const {
+    const std::string name = stem_ + flight::format_info(format).extension;
+    const bool is_fly_through = options_.style == flight::FlightStyle::pass;
+    if (flight::holds_photo_runs(format) && plan.photo) {
+      flight::FlightPlan faster = flight::with_photo_runs(plan);
+      const std::size_t photos = flight::photos_in_runs(faster);
+      const auto minutes = [](const flight::FlightPlan& of) {
+        return flight::fixed(flight_time(of) / 60.0, 1) + " min";
+      };
+      if (photos > 0) {
+        notes.push_back(plan.name + ": " + name +
+                        (is_fly_through ? " takes " : " could take (flight.style: fly-through) ") +
+                        std::to_string(photos) + " photos without a stop, in " + minutes(faster) +
+                        " instead of " + minutes(plan));
+      }
+      if (photos > 0 && is_fly_through) return faster;
+    }
+    if (options_.style != flight::FlightStyle::stop) {
+      notes.push_back(name + " stops " + (is_fly_through ? "at every view and " : "") +
+                      "in every corner, because the format cannot define curves");
+    }
+    return plan;
   }
 
   const std::string& name_;  ///< Name of the mission.
@@ -292,7 +340,7 @@ bool is_flight_file(std::string_view name, Format format) {
   const std::string stem = stem_in(name);
   if (!name.starts_with(stem)) return false;
   name.remove_prefix(stem.size());
-  if (name.starts_with('-')) {
+  while (name.starts_with('-')) {  // the sortie, and its part
     name.remove_prefix(std::min(name.size(), name.find_first_not_of("0123456789", 1)));
   }
   return name == flight::format_info(format).extension;

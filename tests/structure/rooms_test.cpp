@@ -46,12 +46,14 @@ Modules architecture() {
     modules[module_name] = std::move(others);
   };
   add("sim/scene", {});
+  add("sim/photos", {"sim/scene"});
   add("sim/models/masonry", {"sim/scene"});
   add("sim/models/families", {"sim/models/masonry", "sim/scene"});
   add("sim/models", {"sim/models/masonry", "sim/models/families", "sim/scene"});
   add("sim/sensors", {"sim/scene"});
 
   add("survey", {});
+  add("survey/photo", {"survey"});
   add("survey/see", {"survey"});
   add("survey/surfel/raster", {"survey"});
   add("survey/surfel", {"survey", "survey/surfel/raster"});
@@ -109,6 +111,7 @@ Modules architecture() {
   add_library({"support"}, {"geometry"}, {});
   add_library({"site_data/formats", "site_data"}, {"flight"}, {"support"});
   add_library({"scene"}, {"sim", "flight"}, {"site_data", "support"});
+  add_library({"photos"}, {"survey", "flight"}, {"support"});
   add_library({"session"}, {"survey", "flight"}, {"support"});
   add_library({"evaluation"}, {"sim", "survey", "flight"},
               {"scene", "session", "site_data", "support"});
@@ -120,10 +123,10 @@ Modules architecture() {
   add_library(
       {"config"}, {"sim", "survey", "flight"},
       {"online", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  add_library(
-      {"package/fleet", "package/replan", "package/verification", "package"},
-      {"sim", "survey", "flight"},
-      {"config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"package/fleet", "package/replan", "package/verification", "package"},
+              {"sim", "survey", "flight"},
+              {"config", "photos", "scan", "simulation", "evaluation", "session", "scene",
+               "site_data", "support"});
   add_library({"wizard"}, {"flight"}, {"config", "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
@@ -135,8 +138,8 @@ Modules architecture() {
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
-              {"report", "batch", "wizard", "package", "config", "online", "scan", "simulation",
-               "evaluation", "session", "scene", "site_data", "support"});
+              {"report", "batch", "wizard", "package", "photos", "config", "online", "scan",
+               "simulation", "evaluation", "session", "scene", "site_data", "support"});
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});

@@ -18,17 +18,13 @@ Obstacles sample_site() {
 
 namespace {
 
-/// Plans for stations that look at the middle of the building.
-FlightPlan plan_for(const Vehicle& vehicle, const std::vector<Eigen::Vector3d>& positions,
-                    FlightStyle style) {
+/// Plans for these stations.
+FlightPlan plan_for(const Vehicle& vehicle, const std::vector<CapturePoint>& capture_points,
+                    FlightStyle style, const std::optional<PhotoShutter>& photo = {}) {
   const Obstacles obstacles = sample_site();
   const KnownSpace space(obstacles), pad_space(without_ground(obstacles));
-  std::vector<CapturePoint> capture_points;
-  for (const Eigen::Vector3d& position : positions) {
-    capture_points.push_back({geometry::look_at(position, {0, 0, 7}), 2.0, 2,
-                              static_cast<std::uint32_t>(capture_points.size() + 10)});
-  }
   RouteOptions options;
+  options.photo = photo;
   options.takeoff = {-30, -25, 0};
   options.style = style;
   options.passing = {.speed = 3.0, .max_cut = 0.5, .exposure = 0.001, .period = 1.0};
@@ -42,15 +38,36 @@ FlightPlan plan_for(const Vehicle& vehicle, const std::vector<Eigen::Vector3d>& 
   return flight_plan(route, 0, "sample", site, obstacles, Corners::rounded);
 }
 
+/// Stations that look at the middle of the building.
+std::vector<CapturePoint> stations_at(const std::vector<Eigen::Vector3d>& positions) {
+  std::vector<CapturePoint> capture_points;
+  for (const Eigen::Vector3d& position : positions) {
+    capture_points.push_back({geometry::look_at(position, {0, 0, 7}), 2.0, 2,
+                              static_cast<std::uint32_t>(capture_points.size() + 10)});
+  }
+  return capture_points;
+}
+
 }  // namespace
 
+FlightPlan photo_row_plan(const Vehicle& vehicle) {
+  std::vector<CapturePoint> capture_points;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    capture_points.push_back({{{3.0 * i - 7.5, -16.0, 8.0}, Eigen::Vector3d::UnitY()}, 1.0, 1, i});
+  }
+  return plan_for(vehicle, capture_points, FlightStyle::stop,
+                  PhotoShutter{.gsd = 0.005, .exposure = 0.001, .min_interval = 0.7});
+}
+
 FlightPlan sample_plan(const Vehicle& vehicle) {
-  return plan_for(vehicle, {{-16, -12.5, 7.25}, {14, -16, 8}, {16, 14, 9.5}, {-14, 16, 18}},
+  return plan_for(vehicle,
+                  stations_at({{-16, -12.5, 7.25}, {14, -16, 8}, {16, 14, 9.5}, {-14, 16, 18}}),
                   FlightStyle::stop);
 }
 
 FlightPlan corner_plan(FlightStyle style) {
-  return plan_for(vehicle_profile("generic"), {{0, -14, 8}, {0, 14, 8}, {-14, 0, 8}}, style);
+  return plan_for(vehicle_profile("generic"), stations_at({{0, -14, 8}, {0, 14, 8}, {-14, 0, 8}}),
+                  style);
 }
 
 }  // namespace skycap::flight

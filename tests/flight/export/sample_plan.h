@@ -15,6 +15,10 @@ Obstacles sample_site();
 /// Four stations around the building, near Oxford's meridian, planned for that vehicle at 2 m.
 FlightPlan sample_plan(const Vehicle& vehicle);
 
+/// Six photos of the building's south side, one every 3 m along a row at a height of 8 m, with a
+/// camera whose motion blur limits the speed to 2.5 m/s. Stops at all of them.
+FlightPlan photo_row_plan(const Vehicle& vehicle);
+
 /// From one side of that building to the other and back: legs with corners, flown in that style.
 FlightPlan corner_plan(FlightStyle style);
 

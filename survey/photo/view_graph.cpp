@@ -1,0 +1,223 @@
+#include "survey/photo/view_graph.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "geometry/parallel.h"
+
+namespace skycap::survey::photo {
+namespace {
+
+using Eigen::Vector3f;
+
+/// A set of samples, one bit each.
+using Bits = std::vector<std::uint64_t>;
+
+Bits to_bits(std::span<const std::uint32_t> observed, std::size_t samples) {
+  Bits bits((samples + 63) / 64, 0);
+  for (const std::uint32_t s : observed) bits[s / 64] |= std::uint64_t{1} << (s % 64);
+  return bits;
+}
+
+std::size_t count_shared(const Bits& a, const Bits& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    count += static_cast<std::size_t>(std::popcount(a[i] & b[i]));
+  return count;
+}
+
+/// A photo with what it observes.
+struct VisibleTarget {
+  const geometry::View* view;
+  std::span<const std::uint32_t> observed;
+  Bits bits;
+};
+
+std::vector<VisibleTarget> sights_of(std::span<const geometry::View> photos,
+                                     const IndexLists& observed, std::size_t samples,
+                                     unsigned threads) {
+  std::vector<VisibleTarget> visible_targets(photos.size());
+  geometry::parallel_for(photos.size(), threads, [&](std::size_t i) {
+    visible_targets[i] = {&photos[i], observed[i], to_bits(observed[i], samples)};
+  });
+  return visible_targets;
+}
+
+/// The pair, if it shares enough.
+std::optional<PhotoPair> pair_of(const VisibleTarget& a, const VisibleTarget& b,
+                                 const TargetSamples& samples, double min_shared) {
+  const std::size_t smaller = std::min(a.observed.size(), b.observed.size());
+  if (smaller == 0) return std::nullopt;
+  const std::size_t shared = count_shared(a.bits, b.bits);
+  const double fraction = static_cast<double>(shared) / static_cast<double>(smaller);
+  if (shared == 0 || fraction < min_shared) return std::nullopt;
+  double parallax = 0.0, distance_a = 0.0, distance_b = 0.0;
+  for (const std::uint32_t s : a.observed) {
+    if ((b.bits[s / 64] >> (s % 64) & 1U) == 0) continue;
+    const Vector3f to_a = a.view->position.cast<float>() - samples.points[s];
+    const Vector3f to_b = b.view->position.cast<float>() - samples.points[s];
+    const double l_a = to_a.norm(), l_b = to_b.norm();
+    parallax += std::acos(std::clamp(to_a.dot(to_b) / (l_a * l_b), -1.0, 1.0));
+    distance_a += l_a;
+    distance_b += l_b;
+  }
+  PhotoPair pair;
+  pair.shared = fraction;
+  pair.parallax = parallax / static_cast<double>(shared);
+  pair.scale = std::max(distance_a, distance_b) / std::min(distance_a, distance_b);
+  return pair;
+}
+
+bool keeps(const PhotoPair& pair, const EdgeRule& rule) {
+  return pair.shared >= rule.min_shared && pair.parallax <= rule.max_parallax &&
+         pair.scale <= rule.max_scale;
+}
+
+/// Sets that are joined: union-find with the lowest member as root.
+class Parts {
+ public:
+  explicit Parts(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0U); }
+  std::uint32_t root(std::uint32_t i) {
+    while (root_[i] != i) i = root_[i] = root_[root_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t ra = root(a), rb = root(b);
+    root_[std::max(ra, rb)] = std::min(ra, rb);
+  }
+  std::uint32_t add() {
+    root_.push_back(static_cast<std::uint32_t>(root_.size()));
+    return root_.back();
+  }
+
+ private:
+  std::vector<std::uint32_t> root_;
+};
+
+}  // namespace
+
+std::vector<PhotoPair> shared_pairs(std::span<const geometry::View> photos,
+                                    const IndexLists& observed, const TargetSamples& samples,
+                                    double min_shared, unsigned threads) {
+  const std::vector<VisibleTarget> visible_targets =
+      sights_of(photos, observed, samples.size(), threads);
+  std::vector<std::vector<PhotoPair>> of_first(photos.size());
+  geometry::parallel_for(photos.size(), threads, [&](std::size_t i) {
+    for (std::size_t j = i + 1; j < photos.size(); ++j) {
+      if (auto pair = pair_of(visible_targets[i], visible_targets[j], samples, min_shared)) {
+        pair->first = static_cast<std::uint32_t>(i);
+        pair->second = static_cast<std::uint32_t>(j);
+        of_first[i].push_back(*pair);
+      }
+    }
+  });
+  std::vector<PhotoPair> pairs;
+  for (const auto& some : of_first) pairs.insert(pairs.end(), some.begin(), some.end());
+  return pairs;
+}
+
+std::size_t ViewGraph::min_degree() const {
+  return degree.empty() ? 0 : *std::ranges::min_element(degree);
+}
+
+ViewGraph view_graph(std::span<const geometry::View> photos, const IndexLists& observed,
+                     const TargetSamples& samples, const EdgeRule& rule, unsigned threads) {
+  ViewGraph graph;
+  graph.photos = photos.size();
+  graph.degree.assign(photos.size(), 0);
+  Parts parts(photos.size());
+  for (const PhotoPair& pair : shared_pairs(photos, observed, samples, rule.min_shared, threads)) {
+    if (!keeps(pair, rule)) continue;
+    graph.edges.push_back(pair);
+    ++graph.degree[pair.first];
+    ++graph.degree[pair.second];
+    parts.join(pair.first, pair.second);
+  }
+  std::vector<std::uint32_t> roots;
+  for (std::uint32_t i = 0; i < photos.size(); ++i) {
+    const std::uint32_t root = parts.root(i);
+    const auto known = std::ranges::find(roots, root);
+    graph.part.push_back(static_cast<std::uint32_t>(known - roots.begin()));
+    if (known == roots.end()) roots.push_back(root), graph.parts.push_back(0);
+    ++graph.parts[graph.part.back()];
+  }
+  std::ranges::sort(graph.parts, std::greater());
+  return graph;
+}
+
+std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> photos,
+                                             const IndexLists& observed,
+                                             std::span<const geometry::View> candidates,
+                                             const IndexLists& observed_by_candidates,
+                                             const TargetSamples& samples, const EdgeRule& rule,
+                                             std::size_t degree_wanted, double same_position,
+                                             std::size_t max_photos, unsigned threads) {
+  const ViewGraph graph = view_graph(photos, observed, samples, rule, threads);
+  Parts parts(photos.size());
+  std::vector<std::uint32_t> degree = graph.degree;
+  for (const PhotoPair& edge : graph.edges) parts.join(edge.first, edge.second);
+
+  const std::vector<VisibleTarget> own = sights_of(photos, observed, samples.size(), threads);
+  const std::vector<VisibleTarget> others =
+      sights_of(candidates, observed_by_candidates, samples.size(), threads);
+  std::vector<char> is_open(candidates.size(), 1);
+  std::vector<std::vector<std::uint32_t>> edges(candidates.size());  // to photos and added ones
+  const auto close_near = [&](const Eigen::Vector3d& position) {
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if ((candidates[c].position - position).norm() < same_position) is_open[c] = 0;
+    }
+  };
+  const auto connects = [&](const VisibleTarget& a, const VisibleTarget& b) {
+    const auto pair = pair_of(a, b, samples, rule.min_shared);
+    return pair && keeps(*pair, rule);
+  };
+  for (const geometry::View& photo : photos) close_near(photo.position);
+  geometry::parallel_for(candidates.size(), threads, [&](std::size_t c) {
+    if (is_open[c] == 0) return;
+    for (std::uint32_t i = 0; i < own.size(); ++i) {
+      if (connects(own[i], others[c])) edges[c].push_back(i);
+    }
+  });
+
+  const auto is_done = [&] {
+    std::set<std::uint32_t> roots;
+    for (std::uint32_t i = 0; i < degree.size(); ++i) roots.insert(parts.root(i));
+    return roots.size() <= 1 &&
+           std::ranges::all_of(degree, [&](std::uint32_t d) { return d >= degree_wanted; });
+  };
+  std::vector<std::uint32_t> added;
+  while (added.size() < max_photos && !is_done()) {
+    int best = 0;
+    std::uint32_t choice = 0;
+    for (std::uint32_t c = 0; c < candidates.size(); ++c) {
+      if (is_open[c] == 0 || edges[c].size() < degree_wanted) continue;
+      std::set<std::uint32_t> joined;
+      int raised = 0;
+      for (const std::uint32_t i : edges[c]) {
+        joined.insert(parts.root(i));
+        if (degree[i] < degree_wanted) ++raised;
+      }
+      const int worth = 10 * (static_cast<int>(joined.size()) - 1) + raised;
+      if (worth > best) best = worth, choice = c;
+    }
+    if (best == 0) break;
+    const std::uint32_t number = parts.add();
+    degree.push_back(static_cast<std::uint32_t>(edges[choice].size()));
+    for (const std::uint32_t i : edges[choice]) {
+      ++degree[i];
+      parts.join(i, number);
+    }
+    added.push_back(choice);
+    close_near(candidates[choice].position);
+    geometry::parallel_for(candidates.size(), threads, [&](std::size_t c) {
+      if (is_open[c] != 0 && connects(others[choice], others[c])) edges[c].push_back(number);
+    });
+  }
+  return added;
+}
+
+}  // namespace skycap::survey::photo
