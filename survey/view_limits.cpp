@@ -27,10 +27,10 @@ void ViewLimits::validate() const {
       min_standoff >= 0.0 && std::isfinite(min_standoff),
       "stand_off is " + std::to_string(min_standoff) + "; it must be zero or more metres");
   require_limit(!min_height || !max_height || *min_height < *max_height,
-                "least_height must be less than most_height; otherwise no airspace is left");
+                "max_height must be greater than the minimum height; otherwise no airspace remains");
   require_limit(
       min_pitch < max_pitch && std::abs(min_pitch) < 1.5708 && std::abs(max_pitch) < 1.5708,
-      "least_pitch must be below most_pitch; both must be between -pi/2 and pi/2");
+      "max_pitch must be above the minimum pitch; both must be between -pi/2 and pi/2");
   require_limit(geofence.empty() || geofence.size() >= 3,
                 "geofence has " + std::to_string(geofence.size()) +
                     " corners; at least three corners are required");

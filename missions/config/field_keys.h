@@ -26,8 +26,9 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     {"noise.sigma", "sensor.noise.sigma"},
     // survey::ViewLimits
     {"stand_off", "limits.stand_off"},
-    {"least_height", "site.max_height"},
-    {"least_pitch", "limits.max_pitch_deg"},
+    {"max_height", "site.max_height"},
+    {"min_height", "site.min_height"},
+    {"max_pitch", "limits.max_pitch_deg"},
     {"geofence", "site.geofence"},
     {"no_fly", "site.no_fly"},
     // shared by several planners
@@ -51,13 +52,13 @@ inline constexpr auto field_keys = std::to_array<FieldKey>({
     // survey::surfel::SurfelConfig
     {"coverage_radius", "evaluation.coverage_distance"},
     {"view_price", "planner.goal"},
-    {"stop.wanted_coverage", "planner.target_coverage"},
-    {"stop.least_gain", "planner.min_gain"},
-    {"stop.most_length", "limits.max_distance"},
-    {"stop.most_time", "limits.max_minutes"},
+    {"stop.target_coverage", "planner.target_coverage"},
+    {"stop.min_gain", "planner.min_gain"},
+    {"stop.max_length", "limits.max_distance"},
+    {"stop.max_time", "limits.max_minutes"},
     {"stop.speed", "limits.speed"},
     {"stop.time_per_view", "limits.time_per_view"},
-    {"place_error", "scan.navigation.horizontal_sigma"},
+    {"position_error", "scan.navigation.horizontal_sigma"},
     {"angle_error", "scan.navigation.tilt_sigma_deg"},
     {"frame_spacing", "sensor.frame_period"},
     // survey::volumetric::VolumetricConfig

@@ -19,7 +19,7 @@ void ReconstructionConfig::validate() const {
   require(
       neighbours >= 4 && neighbours <= 1000,
       "reconstruction.neighbours is " + std::to_string(neighbours) + "; it must be from 4 to 1000");
-  require(min_density >= 0.0 && min_density < 1.0, "reconstruction.least_density is " +
+  require(min_density >= 0.0 && min_density < 1.0, "reconstruction.min_density is " +
                                                        std::to_string(min_density) +
                                                        "; it must be at least 0 and below 1");
 }

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double sky = 0.75;           ///< grey of what no surface is in
+constexpr double sky_grey = 0.75;           ///< grey of what no surface is in
 constexpr double ground_level = 0.75;  ///< albedo of the ground, relative to the scene's
 
 /// A random number in [-1, 1) for a corner of the grid.
@@ -77,7 +77,7 @@ class Photographer {
         return ground_level * lit(from + to_ground * direction, Vector3d::UnitZ());
       }
     }
-    if (!hit) return sky;
+    if (!hit) return sky_grey;
     const Vector3d normal = hit->normal.dot(direction) > 0.0 ? -hit->normal : hit->normal;
     return lit(from + distance * direction, normal);
   }

@@ -61,7 +61,7 @@ void SeeConfig::validate() const {
   require(max_attempts >= 1, "max_attempts", max_attempts, "at least 1");
   require(std::isfinite(frontier_spacing) && frontier_spacing >= 0.0, "frontier_spacing",
           frontier_spacing, "zero or a positive number of metres");
-  require(!min_height || std::isfinite(*min_height), "least_height", min_height.value_or(0.0),
+  require(!min_height || std::isfinite(*min_height), "min_height", min_height.value_or(0.0),
           "a finite height");
   cap.validate();
 

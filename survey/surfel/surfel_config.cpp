@@ -26,12 +26,12 @@ void SurfelConfig::validate() const {
   require_optional(resolution, "resolution");
   require(max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi, "max_incidence",
           max_incidence, "above 0 and at most pi/2 radians");
-  require(stop.target_coverage > 0.0 && stop.target_coverage <= 1.0, "stop.wanted_coverage",
+  require(stop.target_coverage > 0.0 && stop.target_coverage <= 1.0, "stop.target_coverage",
           stop.target_coverage, "above 0 and at most 1");
-  require(stop.min_gain >= 0.0 && stop.min_gain < 1.0, "stop.least_gain", stop.min_gain,
+  require(stop.min_gain >= 0.0 && stop.min_gain < 1.0, "stop.min_gain", stop.min_gain,
           "at least 0 and below 1");
-  require_optional(stop.max_length, "stop.most_length");
-  require(!stop.max_time || is_positive(*stop.max_time), "stop.most_time",
+  require_optional(stop.max_length, "stop.max_length");
+  require(!stop.max_time || is_positive(*stop.max_time), "stop.max_time",
           stop.max_time.value_or(0.0), "a positive number of seconds");
   require(is_positive(stop.speed), "stop.speed", stop.speed,
           "a positive number of metres per second");
@@ -39,7 +39,7 @@ void SurfelConfig::validate() const {
           stop.time_per_view, "zero or more seconds");
   require(continuation_steps >= 1 && continuation_steps <= 5, "continuation_steps",
           continuation_steps, "between 1 and 5");
-  require(position_error >= 0.0 && std::isfinite(position_error), "place_error", position_error,
+  require(position_error >= 0.0 && std::isfinite(position_error), "position_error", position_error,
           "zero or more metres");
   require(angle_error >= 0.0 && std::isfinite(angle_error), "angle_error", angle_error,
           "zero or more radians");

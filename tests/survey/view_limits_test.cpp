@@ -91,7 +91,7 @@ TEST(ViewLimits, ReportTheInvalidField) {
     return "accepted";
   };
   EXPECT_THAT(validation_error({.min_standoff = -1.0}), HasSubstr("stand_off"));
-  EXPECT_THAT(validation_error({.min_height = 3.0, .max_height = 2.0}), HasSubstr("least_height"));
+  EXPECT_THAT(validation_error({.min_height = 3.0, .max_height = 2.0}), HasSubstr("max_height"));
   EXPECT_THAT(validation_error({.geofence = {{0, 0}, {1, 0}}}), HasSubstr("geofence"));
   EXPECT_THAT(validation_error({.no_fly = {{"", {{0, 0}, {1, 0}, {1, 1}}, 1, 0}}}),
               HasSubstr("no_fly"));

@@ -75,7 +75,7 @@ TEST(FieldKeys, AddKeyAndLineToErrorMessages) {
         "m.yaml");
   });
   EXPECT_THAT(message, HasSubstr("m.yaml:6: key planner.min_gain is 1; it must be"));
-  EXPECT_THAT(message, Not(HasSubstr("stop.least_gain")));
+  EXPECT_THAT(message, Not(HasSubstr("stop.min_gain")));
 }
 
 }  // namespace

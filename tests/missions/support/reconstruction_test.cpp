@@ -101,7 +101,7 @@ TEST(Reconstruct, RejectsUnusableInput) {
       testing::HasSubstr("reconstruction.spacing is -1.0"));
   EXPECT_THAT(
       testing_support::thrown_message([&] { support::reconstruct(few, {}, {.min_density = 1.0}); }),
-      testing::HasSubstr("reconstruction.least_density is 1.0"));
+      testing::HasSubstr("reconstruction.min_density is 1.0"));
 }
 
 class ReconstructCommand : public testing::Test {

@@ -351,7 +351,7 @@ TEST(SurfelConfig, ReportsTheInvalidField) {
   EXPECT_THAT(validation_error([](surfel::SurfelConfig& c) { c.view_distance = -1.0; }),
               HasSubstr("view_distance"));
   EXPECT_THAT(validation_error([](surfel::SurfelConfig& c) { c.stop.target_coverage = 97.0; }),
-              HasSubstr("wanted_coverage"));
+              HasSubstr("target_coverage"));
   EXPECT_THAT(validation_error([](surfel::SurfelConfig& c) { c.continuation_steps = 9; }),
               HasSubstr("continuation_steps"));
   EXPECT_THAT(validation_error([](surfel::SurfelConfig& c) { c.max_incidence = 2.0; }),
