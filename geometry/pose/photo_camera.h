@@ -41,11 +41,10 @@ struct PhotoCameraConfig {
   /// Image kinds of the payload, as DJI's WPML spells them ("visable").
   std::vector<std::string> formats;
 
-  /// Throws Error{bad_config} naming the first field that is out of its interval; if the pixel
-  /// pitches of both sides differ by more than 2% (the size of another crop of the sensor), if the
-  /// field of view and the focal length differ by more than 1%, or if the focal length evidently is
-  /// the 35 mm equivalent: between 20 and 30 mm with a crop factor of 1.9 or more, and no field of
-  /// view that confirms it.
+  /// Throws Error{bad_config} naming the first field that is out of its interval. The pixel pitches
+  /// of both sides must agree within 2%: sizes of different crops of the sensor do not. Field of
+  /// view and focal length must agree within 1%. Without a field of view, 20 to 30 mm at a crop
+  /// factor of 1.9 or more are rejected as the 35 mm equivalent.
   void validate() const;
 };
 

@@ -48,17 +48,23 @@ std::optional<double> crossing(const Facet& facet, const Ray& ray) {
   return distance;
 }
 
-/// Whether the ray meets a child's box. Boxes are widened by the rounding of the quotients.
-bool meets(const FacetNode& node, int lane, const Ray& ray) {
-  double begin = 0.0, end = ray.end;
+using Lanes = Eigen::Array<double, FacetNode::lanes, 1>;
+
+/// Which children's boxes the ray meets. The quotients' rounding is made up for; a child that is
+/// not there has a box at infinity, which no ray of finite length meets.
+Eigen::Array<bool, FacetNode::lanes, 1> meets(const FacetNode& node, const Ray& ray) {
+  Lanes begin = Lanes::Zero(), end = Lanes::Constant(ray.end);
   for (int axis = 0; axis < 3; ++axis) {
-    const double a = (node.low[axis][lane] - ray.from[axis]) * ray.inverse[axis];
-    const double b = (node.high[axis][lane] - ray.from[axis]) * ray.inverse[axis];
-    begin = std::max(begin, std::min(a, b));
-    end = std::min(end, std::max(a, b));
+    const bool is_up = ray.inverse[axis] >= 0.0;
+    const Eigen::Map<const Eigen::Array<float, FacetNode::lanes, 1>> entry(is_up ? node.low[axis]
+                                                                                 : node.high[axis]);
+    const Eigen::Map<const Eigen::Array<float, FacetNode::lanes, 1>> leaving(
+        is_up ? node.high[axis] : node.low[axis]);
+    begin = begin.max((entry.cast<double>() - ray.from[axis]) * ray.inverse[axis]);
+    end = end.min((leaving.cast<double>() - ray.from[axis]) * ray.inverse[axis]);
   }
   constexpr double rounding = 1e-12;
-  return begin <= end + rounding * std::abs(end);
+  return begin <= end * (1.0 + rounding);
 }
 
 }  // namespace
@@ -75,8 +81,9 @@ struct SightLines::Impl {
     waiting[count++] = 0;
     while (count > 0) {
       const FacetNode& node = tree.nodes[waiting[--count]];
+      const auto is_met = meets(node, ray);
       for (int lane = 0; lane < FacetNode::lanes; ++lane) {
-        if (!std::isfinite(node.low[0][lane]) || !meets(node, lane, ray)) continue;
+        if (!is_met[lane]) continue;
         const std::uint32_t child = node.child[lane];
         if ((child & FacetNode::is_facet) == 0) {
           waiting[count++] = child;

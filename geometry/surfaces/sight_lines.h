@@ -23,7 +23,7 @@ class SightLines {
   ~SightLines();
 
   /// Distance from `origin` [m] to the first triangle along `direction` (unit) that is nearer than
-  /// `max_distance`; nothing if there is none.
+  /// `max_distance`; nothing without one.
   std::optional<double> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                   double max_distance) const;
 

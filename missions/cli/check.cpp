@@ -14,6 +14,8 @@
 #include "geometry/surfaces/mesh.h"
 #include "missions/cli/check_live.h"
 #include "missions/cli/commands.h"
+#include "missions/config/mission_document.h"
+#include "missions/config/photo_rules.h"
 #include "missions/config/resolve.h"
 #include "missions/config/setup_text.h"
 #include "missions/evaluation/survey_scene.h"
@@ -26,6 +28,7 @@
 #include "missions/simulation/expectation.h"
 #include "missions/simulation/feasibility.h"
 #include "missions/site_data/prior_text.h"
+#include "missions/site_data/site_priors.h"
 #include "missions/support/number_text.h"
 #include "survey/planners/planner_names.h"
 #include "survey/see/see_config.h"
@@ -226,6 +229,19 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
   }
 }
 
+/// Says what photos of a mission are planned for; skycap plan does the rest in seconds.
+int check_photos(const CheckOptions& options, const config::MissionSetup& setup,
+                 const Console& console) {
+  const config::PhotoSetup photo = config::photo_setup(*setup.document);
+  console.out << fmt::format(
+                     "{}: no problems found\n  photos    {}, GSD {:.4g} mm at {:.4g} m, {} stereo "
+                     "partners\n",
+                     options.mission.string(), photo.options.camera.name, 1e3 * photo.options.gsd,
+                     setup.survey().planner.view_distance, photo.options.rule.min_partners)
+              << site_data::format_priors(*setup.scene().priors) << std::flush;
+  return 0;
+}
+
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
@@ -244,6 +260,12 @@ int check(const CheckOptions& options, const Console& console) {
   }
   if (options.route && options.route->filename() == package::timetable_name) {
     return check_timetable(options, setup.flight(), console);
+  }
+  if (setup.document->is_photo()) {
+    if (!options.route) return check_photos(options, setup, console);
+    const geometry::Mesh targets =
+        site_data::make_surfaces(*setup.scene().priors, site_data::Role::target);
+    return check_route_file(options, setup.flight(), targets, console);
   }
   ProgressLine progress(console, false);
   progress.show(setup.name + ": loading scene");

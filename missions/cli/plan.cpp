@@ -13,12 +13,17 @@
 #include "missions/cli/printable.h"
 #include "missions/cli/survey_batch.h"
 #include "missions/cli/write_page.h"
+#include "missions/config/mission_document.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/package/pilot_text.h"
 #include "missions/package/target_coverage.h"
+#include "missions/photo/photo_files.h"
+#include "missions/photo/photo_mission.h"
+#include "missions/photo/photo_report.h"
+#include "missions/photo/photo_site.h"
 #include "missions/simulation/feasibility.h"
 #include "missions/simulation/survey_runner.h"
 
@@ -183,12 +188,43 @@ int plan_trials(const PlanOptions& options, const config::MissionSetup& mission,
   return trials.size() == options.trials ? 0 : 1;
 }
 
+/// A mission with a photo camera: nothing is measured, and nothing of a scene is known.
+int plan_photos(const PlanOptions& options, const config::MissionSetup& setup,
+                geometry::OutputFolder& folder, const Console& console) {
+  if (options.trials > 0) {
+    throw Error(ErrorKind::bad_usage,
+                "--trials requires a sensor that measures depth; plan photos without it");
+  }
+  ProgressLine progress(console, options.is_quiet);
+  const auto report = [&](const std::string& what) { progress.show(setup.name + ": " + what); };
+  const photo::PhotoAirspace airspace(setup, setup.run.threads);
+  photo::PhotoMission mission = photo::plan_photo_mission(setup, airspace, console.stop, report);
+  report("writing " + folder.path().string());
+  photo::stage_photo_mission(setup, airspace, mission, folder);
+  folder.commit();
+  progress.clear();
+  if (options.is_quiet) return 0;
+  console.out << photo::plan_text(setup, mission);
+  if (mission.flight) console.out << package::flight_text(*mission.flight, options.is_verbose);
+  console.out << "  results   " << folder.path().string() << "\n";
+  if (mission.flight) console.out << package::pilot_text(setup.flight(), *mission.flight);
+  console.out << photo::warnings_text(mission) << std::flush;
+  return 0;
+}
+
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
   const config::MissionSetup setup = read_shown(config::read_mission, options, console);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / setup.name));
+  if (setup.document->is_photo()) {
+    try {
+      return plan_photos(options, setup, folder, console);
+    } catch (const Error& error) {
+      throw Error(error.kind(), options.mission.string() + ": " + error.what());
+    }
+  }
   if (options.trials > 0) return plan_trials(options, setup, folder, console);
   ProgressLine progress(console, options.is_quiet);
   progress.show(setup.name + ": loading scene");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "missions/config/mission_keys.h"
+#include "missions/config/photo_rules.h"
 #include "missions/site_data/site_priors.h"
 
 namespace skycap::missions::config {
@@ -29,12 +30,19 @@ bool decides_what_is_attainable(std::string_view path) {
 
 }  // namespace
 
+bool applies(const Key& key, const MissionDocument& document) {
+  const bool is_of_photos = key.path.starts_with("photo.") || key.path == "sensor.photo_camera" ||
+                            key.path == "flight.free_space";
+  if (!document.is_photo()) return !is_of_photos;
+  return is_of_photos || key_of_photos_instead(key.path).empty();
+}
+
 std::vector<support::Setting> survey_settings(
     const MissionDocument& document, const std::optional<std::uint32_t>& vehicle_checksum) {
   std::vector<support::Setting> settings;
   for (const Key& key : mission_keys()) {
     if (key.path == "name" || key.path == "seed" || key.path == "threads" ||
-        key.path.starts_with("paper.")) {
+        key.path.starts_with("paper.") || !applies(key, document)) {
       continue;
     }
     const auto value = key.get(document);
@@ -58,7 +66,7 @@ std::vector<support::Setting> survey_settings(
 std::string attainable_inputs(const MissionDocument& document) {
   std::string inputs;
   for (const Key& key : mission_keys()) {
-    if (!decides_what_is_attainable(key.path)) continue;
+    if (!decides_what_is_attainable(key.path) || !applies(key, document)) continue;
     const auto value = key.get(document);
     inputs += "\n" + key.path + " " + (value ? to_text(*value) : "-");
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "missions/config/key.h"
 #include "missions/config/mission_document.h"
 #include "missions/support/identity.h"
 
@@ -20,5 +21,9 @@ std::vector<support::Setting> survey_settings(const MissionDocument& document,
 /// Returns the keys and prior-data checksums that determine visible surface and attainable
 /// coverage. Each entry begins with a line feed.
 std::string attainable_inputs(const MissionDocument& document);
+
+/// Whether a key can mean anything in a document: those of photos need a photo camera, which
+/// excludes those of depth sensors that resolve() refuses beside it.
+bool applies(const Key& key, const MissionDocument& document);
 
 }  // namespace skycap::missions::config

@@ -18,6 +18,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/flight_options.h"
+#include "geometry/pose/photo_camera.h"
 #include "geometry/pose/prism.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/evaluation/simulation_options.h"
@@ -27,6 +28,7 @@
 #include "missions/session/initial_pattern_flight.h"
 #include "missions/site_data/source.h"
 #include "sim/sensors/survey_sensor.h"
+#include "survey/photo/photo_planner.h"
 #include "survey/planners/planner_names.h"
 #include "survey/see/see_config.h"
 #include "survey/surfel/surfel_config.h"
@@ -41,9 +43,39 @@ struct SensorSection {
   std::optional<RangeInterval> useful_range;
   /// Laser scanner used instead of the camera: a preset or the path of a sensor description.
   std::optional<std::string> lidar;
+  /// Instead of the camera: a photo camera's preset, or the path of a description.
+  std::optional<std::string> photo_camera;
+  std::optional<geometry::PhotoCameraConfig> photo;  ///< what it names; resolve() reads it
   sim::SurveySensorOptions options;
   /// Field of view of a rosette scanner in flight. Cached by resolve(), as it is costly to compute.
   std::optional<sim::RosetteField> rosette;
+};
+
+/// How sure the shape of a target is that photos are planned for.
+enum class PhotoPass {
+  coarse,  ///< an outline: photos for a first model, by which the second flight is planned
+  final_pass,
+};
+
+/// Photos of a mission with a photo camera.
+struct PhotoSection {
+  std::optional<double> gsd;  ///< ground sampling distance, head-on [m]
+  std::optional<int> min_partners;
+  survey::photo::StereoRule rule;  ///< incidence and parallax
+  survey::photo::PosesGiven poses = survey::photo::PosesGiven::known;
+  std::optional<std::vector<std::string>> patterns;  ///< by name; nothing: all but nadir
+  std::optional<std::string> pattern;                ///< that is flown as it is
+  double forward_overlap = 0.8;
+  double side_overlap = 0.7;
+  double target_share = 1.0;
+  int max_photos = 2000;
+  PhotoPass pass = PhotoPass::final_pass;
+};
+
+/// Where a mission with a photo camera, which measures no free space, may fly.
+enum class FreeSpaceRule {
+  measured,  ///< outside of the unknown boxes
+  assumed,   ///< beyond the clearance from prior data; the pilot must check the airspace
 };
 
 enum class PlannerPreset {
@@ -119,6 +151,7 @@ struct FlightSection {
   /// Lower and upper corners of further such boxes, alternating.
   std::vector<Eigen::Vector3d> extra_unknown_boxes;
   session::InitialPattern initial_pattern = session::InitialPattern::none;
+  FreeSpaceRule free_space = FreeSpaceRule::measured;
 
   bool has_vehicle() const { return options.vehicle_name != "none"; }
 };
@@ -140,6 +173,7 @@ struct MissionDocument {
   std::string name;  ///< mission name, used for the results folder
   scene::SceneOptions scene;
   SensorSection sensor;
+  PhotoSection photo;
   PlannerSection planner;
   StartSection start;
   LimitsSection limits;
@@ -155,6 +189,9 @@ struct MissionDocument {
   unsigned threads = 0;  ///< 0: one per processor
 
   bool has(std::string_view key) const;
+
+  /// Whether photos are planned, for a target that prior data knows.
+  bool is_photo() const { return sensor.photo_camera.has_value(); }
 
   /// Throws Error{bad_config} with the one-line message "FILE:LINE: key KEY WHAT". Line 1 is
   /// reported for keys that are not in the file.

@@ -1,5 +1,5 @@
-/// Sensor and vehicle descriptions compiled into the program: sim/sensors/presets/*.yaml and
-/// flight/motion/presets/*.yaml.
+/// The texts of the descriptions that come with the program: sim/sensors/presets/*.yaml,
+/// flight/motion/presets/*.yaml and survey/photo/presets/*.yaml.
 #pragma once
 
 #include <filesystem>
@@ -17,6 +17,7 @@ struct PresetFile {
 /// Return the presets in alphabetical order.
 std::span<const PresetFile> sensor_preset_files();
 std::span<const PresetFile> vehicle_preset_files();
+std::span<const PresetFile> photo_camera_preset_files();
 
 struct PresetText {
   std::string text;

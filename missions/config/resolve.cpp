@@ -14,6 +14,8 @@
 #include "missions/config/key_texts.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/mission_rules.h"
+#include "missions/config/photo_camera_reader.h"
+#include "missions/config/photo_rules.h"
 #include "missions/config/preset_files.h"
 #include "missions/config/prior_sources.h"
 #include "missions/config/sensor_reader.h"
@@ -285,6 +287,12 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
     document.planner.goal = PlannerGoal::minutes;
   }
   complete_scanner(document, profiles);
+  check_photo(document);
+  if (profiles.photo_camera) {
+    std::string& name = *document.sensor.photo_camera;
+    name = vehicle_name(document, name);  // a path is kept whole, as a vehicle's
+    complete_photo(document, *profiles.photo_camera);
+  }
   check_scene(document);
   check_start(document);
   check_sensor(document);
@@ -297,7 +305,7 @@ void complete_with_priors(MissionDocument& document,
   make_sources_absolute(document);
   document.scene.priors = std::move(priors);
   document.scene.truth = truth_role(document);
-  if (document.scene.priors) check_truth(document);
+  if (document.scene.priors && !document.is_photo()) check_truth(document);
   derive_scene_box(document);
   derive_scanner_flight(document);
   check_flight(document);
@@ -305,7 +313,7 @@ void complete_with_priors(MissionDocument& document,
   derive_building_preset(document);
   derive_ground_clearance(document);
   check_view_limits(document);
-  check_planner(document);
+  if (!document.is_photo()) check_planner(document);
 }
 
 survey::SurveyLimits survey_limits(const MissionDocument& document) {
@@ -323,6 +331,18 @@ scan::ScanFlightOptions scan_options(const MissionDocument& document) {
   if (is_georeferenced(document)) options.site = make_site(document);
   options.pad = document.flight.options.takeoff.value_or(Vector3d::Zero());
   return options;
+}
+
+/// Adds targets to what is in the way of a flight: photos are planned for surfaces that are known,
+/// and nothing measures them on the flight.
+void keep_off_targets(const MissionDocument& document, flight::FlightOptions& flight) {
+  if (!document.flight.has_vehicle() || !document.scene.priors) return;
+  const site_data::SitePriors& site = *document.scene.priors;
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role != site_data::Role::target) continue;
+    flight.airspace.priors.push_back(std::make_shared<const flight::PriorObstacle>(
+        site_data::make_obstacle(site.sources[i], site.priors[i])));
+  }
 }
 
 /// Returns the options of all modules for a completed document.
@@ -348,6 +368,7 @@ MissionSetup make_setup(const MissionDocument& document,
                      document.paper.distance};
   setup.run = {document.seed, document.threads};
   setup.settings = survey_settings(document, vehicle_checksum);
+  if (document.is_photo()) keep_off_targets(document, simulation.survey.flight);
   return setup;
 }
 
@@ -362,6 +383,7 @@ struct MissionSetup::Source {
 };
 
 Profiles read_profiles(const MissionDocument& document) {
+  check_photo(document);
   Profiles profiles;
   const flight::FlightOptions& flight = document.flight.options;
   if (document.flight.has_vehicle()) {
@@ -380,6 +402,14 @@ Profiles read_profiles(const MissionDocument& document) {
   MissionDocument led = document;  // reports conflicts of fleet keys before those of the sensor
   led.flight.options.fleet.vehicles = profiles.fleet;
   lead_fleet(led);
+  if (document.is_photo()) {
+    try {
+      profiles.photo_camera =
+          find_photo_camera(named_from(find_folder(document), *document.sensor.photo_camera));
+    } catch (const Error& error) {
+      document.reject("sensor.photo_camera", error.what());
+    }
+  }
   if (!document.sensor.lidar) return profiles;
   for (const auto& [path, location] : document.locations) {
     if (path.starts_with("sensor.") && path != "sensor.lidar" && path != "sensor.capture" &&
@@ -458,7 +488,7 @@ std::string MissionSetup::text(std::string_view key) const {
 MissionSetup read_mission(const std::filesystem::path& file,
                           const std::vector<KeyOverride>& overrides, const Report& report) {
   MissionDocument document = read_mission_document(file, overrides);
-  if (document.scene.model.empty() && !truth_role(document)) {
+  if (document.scene.model.empty() && !truth_role(document) && !document.is_photo()) {
     document.reject(
         "scene.model",
         std::string("is missing; set a model, for example builtin:teapot") +
@@ -474,6 +504,10 @@ MissionSetup read_mission(const std::filesystem::path& file,
 MissionSetup read_live_mission(const std::filesystem::path& file,
                                const std::vector<KeyOverride>& overrides, const Report& report) {
   MissionDocument document = read_mission_document(file, overrides);
+  if (document.is_photo()) {
+    document.reject("sensor.photo_camera",
+                    "photos are planned before the flight, not live; use skycap plan");
+  }
   if (document.scene.model.empty()) check_live(document);
   return resolve(std::move(document), report);
 }

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/pose/photo_camera.h"
 #include "missions/config/mission_reader.h"
 #include "missions/config/mission_setup.h"
 #include "missions/site_data/site_priors.h"
@@ -30,6 +31,7 @@ struct Profiles {
   std::vector<flight::Vehicle> fleet;
   std::vector<flight::Vehicle> substitutes;  ///< vehicles of other autopilots, see FlightOptions
   std::optional<sim::LidarConfig> scanner;
+  std::optional<geometry::PhotoCameraConfig> photo_camera;
 };
 
 /// Reads the vehicle and scanner descriptions named in the document. Throws Error{bad_config}
@@ -65,8 +67,8 @@ MissionSetup resolve(MissionDocument document, const Report& report = {});
 /// options are preserved.
 MissionSetup with_keys(const MissionSetup& setup, const std::vector<KeyOverride>& changes);
 
-/// Reads and resolves a mission file. Throws the errors of read_mission_document() and resolve().
-/// Also throws Error{bad_config} if the mission has no scene, as required for live surveys only.
+/// read_mission_document() and resolve(); throws what they throw, and Error{bad_config} if the
+/// mission has neither a scene nor a photo camera: it is for live surveys.
 MissionSetup read_mission(const std::filesystem::path& file,
                           const std::vector<KeyOverride>& overrides = {},
                           const Report& report = {});

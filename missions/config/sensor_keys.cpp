@@ -38,6 +38,17 @@ Key lidar_key() {
                "requires a vehicle. Only capture and frame_period of the section sensor apply."));
 }
 
+/// The key `sensor.photo_camera`, whose camera takes the depth camera's place.
+Key photo_camera_key() {
+  return otherwise(
+      "-", text_key(
+               "sensor.photo_camera", [](auto& m) -> auto& { return m.sensor.photo_camera; },
+               "Photo camera instead of a depth camera: a preset of survey/photo/presets, or the "
+               "path of a camera file (NAME.yaml), relative to the mission file. Photos are "
+               "planned for photogrammetry (section photo) of targets that prior data contains "
+               "(prior with role: target). No other key of the section sensor applies."));
+}
+
 }  // namespace
 
 std::vector<Key> sensor_keys() {
@@ -50,6 +61,7 @@ std::vector<Key> sensor_keys() {
           "paper for buildings (2400 x 1750 pixels, 60 x 40 degrees). LiDAR presets: "
           "sensor.lidar."),
       lidar_key(),
+      photo_camera_key(),
       integer_key("sensor.width", "px", between(1, 32768), image(&geometry::CameraConfig::width),
                   "Image width."),
       integer_key("sensor.height", "px", between(1, 32768), image(&geometry::CameraConfig::height),

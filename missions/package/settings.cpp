@@ -6,6 +6,7 @@
 
 #include "geometry/error.h"
 #include "missions/config/former_names.h"
+#include "missions/config/key_texts.h"
 #include "missions/config/mission_document.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/resolve.h"
@@ -46,6 +47,7 @@ Json settings_json(const config::MissionSetup& setup) {
     const bool is_camera_key = key.path.starts_with("sensor.") && key.path != "sensor.lidar" &&
                                !(is_flight_key && setup.sensor().mount);
     if (is_camera_key && document.sensor.lidar) continue;
+    if (!config::applies(key, document)) continue;
     if (const auto value = key.get(document)) values[key.path] = config::setting_json(*value);
   }
   return values;

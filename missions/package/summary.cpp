@@ -7,6 +7,7 @@
 
 #include "missions/evaluation/reliability.h"
 #include "missions/package/fleet_report.h"
+#include "missions/package/flight_report.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
@@ -151,7 +152,9 @@ Json survey_flight_summary(const session::FlightRecord& flight_record) {
           {"free_volume_m3", flight_record.measured->free_volume()}};
 }
 
-Json flight_summary(const session::FlightRecord& flight_record, const SurveyMission& flight) {
+}  // namespace
+
+Json route_json(const SurveyMission& flight, const Eigen::Vector3d& pad) {
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
   Json files = Json::array();
@@ -169,8 +172,7 @@ Json flight_summary(const session::FlightRecord& flight_record, const SurveyMiss
             {"tracking_error", clearance.tracking_error},
             {"map_error", clearance.map_error},
             {"margin", clearance.margin}}},
-          {"pad", to_json(flight_record.pad)},
-          {"survey", survey_flight_summary(flight_record)},
+          {"pad", to_json(pad)},
           {"route",
            {{"stations", route.capture_points.size()},
             {"order", order_json(route)},
@@ -189,6 +191,19 @@ Json flight_summary(const session::FlightRecord& flight_record, const SurveyMiss
           {"pictures", image_motion_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
+}
+
+namespace {
+
+/// The same with the survey's own flight, before the route.
+Json flight_summary(const session::FlightRecord& flight_record, const SurveyMission& flight) {
+  const Json route = route_json(flight, flight_record.pad);
+  Json summary = Json::object();
+  for (const auto& [key, value] : route.items()) {
+    if (key == "route") summary["survey"] = survey_flight_summary(flight_record);
+    summary[key] = value;
+  }
+  return summary;
 }
 
 Json view_summary(std::size_t number, const session::EvaluatedView& evaluated) {

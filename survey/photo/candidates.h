@@ -41,7 +41,7 @@ struct CandidateOptions {
 /// 0.35 d, round by round, until there are enough photos or no sample is left. Where the limits of
 /// height and gimbal do not allow the direction, its elevation is changed at the same distance;
 /// where the position is not free, the distance is shortened by 0.8 up to four times, never below
-/// stand-off and nearest focus. Photos whose sample is obstructed are left out.
+/// stand-off and nearest focus. Photos whose sample is obstructed are skipped.
 std::vector<geometry::View> candidate_photos(const Observer& observer, const PhotoSpace& space,
                                              const CandidateOptions& options);
 

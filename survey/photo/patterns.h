@@ -22,7 +22,7 @@ enum class Pattern { nadir, oblique, dome, facade };
 
 /// "nadir", "oblique", "dome" or "facade".
 const char* to_string(Pattern pattern);
-/// The pattern of that name; nothing if there is none.
+/// The pattern of that name; nothing for other names.
 std::optional<Pattern> pattern_named(std::string_view name);
 
 struct PatternOptions {
@@ -42,9 +42,9 @@ struct PatternPhotos {
 /// along image height and width; a photo straight down has its top to the north.
 ///
 /// * nadir: at the target's top plus d over its box plus 0.15 d; rows run north.
-/// * oblique: nadir, and for each cardinal direction a grid at the top plus d sin 45 that looks
-///   there, 45 degrees down, its forward spacing stretched by 1 / cos 45, shifted back by its
-///   height above the middle of the target.
+/// * oblique: the nadir grid, and for each cardinal direction a grid at the top plus d sin 45. Its
+///   photos look there, 45 degrees down. Its forward spacing is stretched by 1 / cos 45. It is
+///   shifted back by its height above the middle of the target.
 /// * dome: level orbits at 0.4 and 0.9 of the height, then orbits at elevations of 30 to 75 degrees
 ///   by 15 that look at the middle; azimuth steps of 15 degrees / cos(elevation); radius 0.75 of
 ///   the half diagonal of the box on the map plus d.

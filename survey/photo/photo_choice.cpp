@@ -40,10 +40,18 @@ struct PhotoChoice::Impl {
         samples(given.samples->size()),
         gains(given.observers.items.size(), 0.0F),
         is_current(given.samples->size(), 0),
+        seen(given.observers.items.size()),
+        is_open(given.candidates.size(), 1),
         blocked(given.candidates.size(), 0),
         is_chosen(given.candidates.size(), 0),
         near(given.candidates.size()) {
     find_near();
+    geometry::parallel_for_each(samples.size(), problem.threads, [&](std::size_t s) {
+      std::uint32_t entry = problem.observers.begin[s];
+      for (const std::uint32_t c : problem.observers[s]) {
+        seen[entry++] = observation_of(problem.candidates[c].position, c, *problem.samples, s);
+      }
+    });
   }
 
   void find_near() {
@@ -56,36 +64,45 @@ struct PhotoChoice::Impl {
     });
   }
 
+  /// Whether no photo adds to the sample's worth.
   bool is_full(const SampleState& state) const {
-    return state.partners >= problem.rule.min_partners && state.h >= 1.0F;
+    return !state.observations.empty() && state.partners >= problem.rule.min_partners &&
+           (!counts_h || state.h >= 1.0F);
   }
 
-  float worth(const SampleState& state) const {
-    if (state.observations.empty()) return 0.0F;
-    return static_cast<float>(std::min(problem.rule.min_partners, state.partners) + 1) +
-           weight_of_h * std::min(1.0F, state.h);
-  }
-
-  /// What a candidate adds to a sample's worth.
-  float gain(std::uint32_t candidate, std::size_t sample) const {
-    const SampleState& state = samples[sample];
-    const Observation seen =
-        observation_of(problem.candidates[candidate].position, candidate, *problem.samples, sample);
+  /// What an observation adds to a sample's worth.
+  float gain(const Observation& added, const SampleState& state) const {
+    const int enough = problem.rule.min_partners;
+    if (state.observations.empty()) return 1.0F;
     int own = 0, max = state.partners;
-    float h = state.h;
     for (const Partnered& other : state.observations) {
-      h += pairs.reconstructability(seen, other.seen);
-      if (!pairs.are_partners(seen, other.seen)) continue;
+      if (!pairs.are_partners(added, other.seen)) continue;
       ++own;
       max = std::max(max, other.partners + 1);
     }
-    max = std::min(std::max(max, own), problem.rule.min_partners);
-    return static_cast<float>(max + 1) + weight_of_h * std::min(1.0F, h) - worth(state);
+    const int more = std::min(std::max(max, own), enough) - std::min(state.partners, enough);
+    if (!counts_h || state.h >= 1.0F) return static_cast<float>(more);
+    float h = 0.0F;
+    for (const Partnered& other : state.observations) {
+      h += pairs.reconstructability(added, other.seen);
+    }
+    return static_cast<float>(more) + weight_of_h * (std::min(1.0F, state.h + h) - state.h);
   }
 
   void count_satisfied(const SampleState& state, int sign) {
     const bool is = !state.observations.empty() && state.partners >= problem.rule.min_partners;
     if (is) satisfied += static_cast<std::size_t>(sign);
+  }
+
+  /// h of a sample by all its observations.
+  float sum_of_pairs(const SampleState& state) const {
+    float h = 0.0F;
+    for (std::size_t i = 0; i < state.observations.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        h += pairs.reconstructability(state.observations[i].seen, state.observations[j].seen);
+      }
+    }
+    return h;
   }
 
   void add_to_sample(std::uint32_t candidate, std::size_t sample) {
@@ -94,7 +111,7 @@ struct PhotoChoice::Impl {
     Partnered added{observation_of(problem.candidates[candidate].position, candidate,
                                    *problem.samples, sample)};
     for (Partnered& other : state.observations) {
-      state.h += pairs.reconstructability(added.seen, other.seen);
+      if (counts_h) state.h += pairs.reconstructability(added.seen, other.seen);
       if (!pairs.are_partners(added.seen, other.seen)) continue;
       ++added.partners;
       state.partners = std::max(state.partners, ++other.partners);
@@ -117,12 +134,7 @@ struct PhotoChoice::Impl {
       if (pairs.are_partners(removed, other.seen)) --other.partners;
       state.partners = std::max(state.partners, other.partners);
     }
-    state.h = 0.0F;
-    for (std::size_t i = 0; i < state.observations.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        state.h += pairs.reconstructability(state.observations[i].seen, state.observations[j].seen);
-      }
-    }
+    if (counts_h) state.h = sum_of_pairs(state);
     count_satisfied(state, 1);
     is_current[sample] = 0;
   }
@@ -159,8 +171,10 @@ struct PhotoChoice::Impl {
         const auto candidates = problem.observers[sample];
         const bool full = is_full(samples[sample]);
         for (std::size_t k = 0; k < candidates.size(); ++k) {
+          const std::uint32_t c = candidates[k];
+          if (is_open[c] == 0) continue;
           gains[first + k] =
-              full || is_chosen[candidates[k]] != 0 ? 0.0F : gain(candidates[k], sample);
+              full || is_chosen[c] != 0 ? 0.0F : gain(seen[first + k], samples[sample]);
         }
         is_current[sample] = 1;
       }
@@ -178,15 +192,34 @@ struct PhotoChoice::Impl {
     const std::uint32_t first = problem.observers.begin[sample];
     const auto candidates = problem.observers[sample];
     for (std::size_t k = 0; k < candidates.size(); ++k) {
-      totals[candidates[k]] += weight * gains[first + k];
+      const std::uint32_t c = candidates[k];
+      if (is_open[c] != 0) totals[c] += weight * gains[first + k];
     }
   }
 
+  /// Considers the `kept` candidates of the greatest total only.
+  void keep_best(std::span<const float> factors, std::size_t kept) {
+    if (kept >= totals.size()) return;
+    std::vector<std::uint32_t> order(totals.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto value = [&](std::uint32_t c) {
+      return blocked[c] == 0 ? totals[c] * factors[c] : -1.0;
+    };
+    const auto is_better = [&](std::uint32_t a, std::uint32_t b) {
+      return value(a) != value(b) ? value(a) > value(b) : a < b;
+    };
+    const auto end = order.begin() + static_cast<std::ptrdiff_t>(kept);
+    std::ranges::nth_element(order, end, is_better);
+    is_open.assign(totals.size(), 0);
+    for (auto c = order.begin(); c != end; ++c) is_open[*c] = 1;
+  }
+
   /// Adds photos of the greatest `totals`, each times the factor of its candidate, while
-  /// `may_go_on()`; samples count with their weights.
+  /// `may_go_on()`; samples count with their weights. Only the `kept` candidates of the greatest
+  /// total at the beginning are considered.
   template <typename GoesOn>
-  void fill(std::span<const float> weights, std::span<const float> factors, double min_gain,
-            GoesOn may_go_on, const std::function<void()>& added) {
+  void fill(std::span<const float> weights, std::span<const float> factors, std::size_t kept,
+            double min_gain, GoesOn may_go_on, const std::function<void()>& added) {
     std::vector<std::uint32_t> all;
     for (std::uint32_t s = 0; s < samples.size(); ++s) {
       if (weights[s] > 0.0F && !is_full(samples[s])) all.push_back(s);
@@ -194,13 +227,14 @@ struct PhotoChoice::Impl {
     update_gains(all);
     totals.assign(problem.candidates.size(), 0.0);
     for (const std::uint32_t s : all) sum_gains(s, weights[s]);
+    keep_best(factors, kept);
     std::vector<std::uint32_t> changed;
     while (may_go_on()) {
       double best = min_gain;
       std::uint32_t choice = std::numeric_limits<std::uint32_t>::max();
       for (std::uint32_t c = 0; c < totals.size(); ++c) {
         const double value = factors.empty() ? totals[c] : totals[c] * factors[c];
-        if (blocked[c] == 0 && value > best) best = value, choice = c;
+        if (blocked[c] == 0 && is_open[c] != 0 && value > best) best = value, choice = c;
       }
       if (choice == std::numeric_limits<std::uint32_t>::max()) return;
       changed.clear();
@@ -235,25 +269,28 @@ struct PhotoChoice::Impl {
     return result;
   }
 
-  void repair_once(geometry::RandomNumbers& random);
+  void repair_once(geometry::RandomNumbers& random, std::size_t enough);
 
   const PhotoChoiceProblem& problem;
   StereoPairs pairs;
   std::vector<SampleState> samples;
-  std::vector<float> gains;      ///< of each entry of problem.observers
-  std::vector<char> is_current;  ///< of each sample's gains
-  std::vector<double> totals;    ///< weighted gain of each candidate
-  std::vector<int> blocked;      ///< chosen photos at the same position
+  std::vector<float> gains;       ///< of each entry of problem.observers
+  std::vector<char> is_current;   ///< of each sample's gains
+  std::vector<Observation> seen;  ///< of each entry of problem.observers
+  std::vector<char> is_open;      ///< candidates that are considered at present
+  bool counts_h = true;           ///< whether h is part of the worth at present
+  std::vector<double> totals;     ///< weighted gain of each candidate
+  std::vector<int> blocked;       ///< chosen photos at the same position
   std::vector<char> is_chosen;
   std::vector<std::vector<std::uint32_t>> near;  ///< candidates at the same position
   std::vector<std::uint32_t> chosen;
   std::size_t satisfied = 0;
 };
 
-void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random) {
+void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random, std::size_t enough) {
   constexpr double min_share = 0.06, max_share = 0.18, weight_of_others = 0.15, noise = 0.15;
+  constexpr std::size_t kept_candidates = 300;
   const std::vector<std::uint32_t> before = chosen;
-  const std::size_t satisfied_before = satisfied;
   const std::uint32_t centre = chosen[random() % chosen.size()];
   const double share = random.between(min_share, max_share);
   const auto count = static_cast<std::size_t>(
@@ -261,7 +298,8 @@ void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random) {
   const std::uint64_t noise_seed = random();
 
   const std::vector<std::uint32_t> removed = neighbourhood(centre, count);
-  std::vector<float> weights(samples.size(), static_cast<float>(weight_of_others));
+  // Samples that none of the removed photos observes change little and cost much.
+  std::vector<float> weights(samples.size(), 0.0F);
   std::vector<std::uint32_t> touched;
   for (const std::uint32_t c : removed) {
     for (const std::uint32_t s : problem.observed[c]) touched.push_back(s);
@@ -275,14 +313,17 @@ void PhotoChoice::Impl::repair_once(geometry::RandomNumbers& random) {
   for (std::size_t i = 0; i < touched.size(); ++i) was_satisfied[i] = has_enough(touched[i]);
   for (const std::uint32_t c : removed) remove(c);
   for (std::size_t i = 0; i < touched.size(); ++i) {
-    if (was_satisfied[i] != 0 && !has_enough(touched[i])) weights[touched[i]] = 1.0F;
+    const bool is_lost = was_satisfied[i] != 0 && !has_enough(touched[i]);
+    weights[touched[i]] = is_lost ? 1.0F : static_cast<float>(weight_of_others);
   }
   geometry::RandomNumbers draws(noise_seed);
   std::vector<float> factors(problem.candidates.size());
   for (float& factor : factors) factor = static_cast<float>(1.0 + noise * draws.uniform());
-  fill(weights, factors, 1e-6,
-       [&] { return satisfied < satisfied_before && chosen.size() < before.size(); }, {});
-  if (satisfied >= satisfied_before && chosen.size() <= before.size()) return;
+  std::ranges::fill(is_open, 1);
+  is_current.assign(samples.size(), 0);  // of the candidates that were considered before
+  fill(weights, factors, kept_candidates, 1e-6,
+       [&] { return satisfied < enough && chosen.size() < before.size(); }, {});
+  if (satisfied >= enough && chosen.size() <= before.size()) return;
   std::vector<std::uint32_t> refilled(
       chosen.begin() + static_cast<std::ptrdiff_t>(before.size() - removed.size()), chosen.end());
   for (const std::uint32_t c : refilled) remove(c);
@@ -362,8 +403,9 @@ double PhotoChoice::reconstructability(std::size_t sample) const {
 
 void PhotoChoice::greedy(const Limits& limits, const std::function<void()>& added) {
   const std::vector<float> weights(impl_->samples.size(), 1.0F);
+  const std::size_t problem_size = impl_->problem.candidates.size();
   impl_->fill(
-      weights, {}, limits.min_gain,
+      weights, {}, problem_size, limits.min_gain,
       [&] {
         return impl_->chosen.size() < limits.max_photos &&
                impl_->satisfied < limits.enough_satisfied;
@@ -373,15 +415,23 @@ void PhotoChoice::greedy(const Limits& limits, const std::function<void()>& adde
 
 void PhotoChoice::destroy_and_repair(const Repair& options, const std::stop_token& stop) {
   geometry::RandomNumbers random(options.seed, 2);
+  impl_->counts_h = false;
+  const std::size_t enough = impl_->satisfied;
   for (std::size_t round = 0; round < options.rounds && !stop.stop_requested(); ++round) {
-    if (impl_->chosen.empty()) return;
-    impl_->repair_once(random);
+    if (impl_->chosen.empty()) break;
+    impl_->repair_once(random, enough);
   }
+  impl_->counts_h = true;
+  geometry::parallel_for_each(impl_->samples.size(), impl_->problem.threads, [&](std::size_t s) {
+    impl_->samples[s].h = impl_->sum_of_pairs(impl_->samples[s]);
+  });
+  std::ranges::fill(impl_->is_open, 1);
+  std::ranges::fill(impl_->is_current, 0);
 }
 
 CoverBound cover_bound(const PhotoChoiceProblem& problem, std::span<const std::uint32_t> samples,
                        int observations, std::size_t upper_bound) {
-  constexpr int rounds = 600, patience = 20;
+  constexpr int rounds = 2000, patience = 40;
   const std::size_t candidates = problem.candidates.size();
   double max = 0.0;
   for (const std::uint32_t s : samples) {
@@ -400,7 +450,7 @@ CoverBound cover_bound(const PhotoChoiceProblem& problem, std::span<const std::u
       for (const std::uint32_t c : problem.observers[samples[i]]) reduced[c] -= prices[i];
     }
     for (const double cost : reduced) bound += std::min(0.0, cost);
-    if (bound > best + 1e-4 * best) {
+    if (bound > best + 1e-5 * best) {
       best = bound;
       idle = 0;
     } else {

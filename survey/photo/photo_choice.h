@@ -1,8 +1,7 @@
 /// Choice of the fewest photos by which each sample has enough stereo partners.
 ///
-/// Greedy choice on a saturating count, and destroy-and-repair search after it (Shaw, "Using
-/// constraint programming and local search methods to solve vehicle routing problems", 1998,
-/// applied to covering).
+/// Greedy choice on a saturating count, then destroy-and-repair search. Source: Shaw, "Using
+/// constraint programming and local search methods to solve vehicle routing problems", 1998.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +18,7 @@
 
 namespace skycap::survey::photo {
 
-/// What photos are chosen from, and for which samples. Must outlive what is made from it.
+/// Candidates and the samples that they are chosen for. Must outlive what is made from it.
 struct PhotoChoiceProblem {
   std::vector<geometry::View> candidates;
   const TargetSamples* samples = nullptr;
@@ -69,16 +68,17 @@ class PhotoChoice {
     std::size_t enough_satisfied = SIZE_MAX;  ///< samples
   };
   /// Adds the photo of the greatest gain, again and again. Photos nearer than 0.05 d to a chosen
-  /// one are left out. `added` is told after each.
+  /// one are skipped. `added` is told after each.
   void greedy(const Limits& limits, const std::function<void()>& added = {});
 
   struct Repair {
     std::size_t rounds = 900;
     std::uint64_t seed = 1;
   };
-  /// Repeats: removes the 6 to 18% of the photos nearest to one of them (distance + 0.5 d times the
-  /// difference of directions), and refills greedily for the samples that have lost satisfaction.
-  /// Keeps the result if no fewer samples are satisfied by no more photos. Ends early after a stop.
+  /// Repeats: removes the 6 to 18% of the photos nearest to one of them, by distance + 0.5 d times
+  /// the difference of directions. Then refills greedily for the samples that have lost
+  /// satisfaction. Keeps the result if no fewer samples are satisfied than before the search, by no
+  /// more photos. Ends early after a stop.
   void destroy_and_repair(const Repair& options, const std::stop_token& stop = {});
 
  private:

@@ -329,7 +329,7 @@ class Planner {
     throw Error(ErrorKind::bad_config,
                 "photo.poses: unknown requires photos that register to one another, but " + what +
                     ", or a photo registers to fewer than 3 others; raise photo.max_photos or "
-                    "photo.gsd, set photo.apron, or set photo.poses: known (RTK or PPK)");
+                    "photo.gsd, or set photo.poses: known (RTK or PPK)");
   }
 
   PhotoFigures evaluated(const std::vector<geometry::View>& views, const Observer& evaluator) {

@@ -45,7 +45,7 @@ struct PhotoPlanOptions {
   void validate() const;
 };
 
-/// What belongs to one run of the planner.
+/// Values of one run of the planner.
 struct PhotoPlanRun {
   std::uint64_t seed = 1;
   unsigned threads = 1;  ///< zero: all processors; does not change the plan
@@ -101,7 +101,7 @@ enum class MissingReason {
   incidence,     ///< positions that see it do so at too large an angle of incidence
   gimbal,        ///< the gimbal cannot look there
   height,        ///< positions that see it are below the minimum height
-  not_taken,     ///< attainable, but given up: a limit, or too little gain for another photo
+  not_taken,     ///< attainable, but discarded: a limit, or too little gain for another photo
 };
 inline constexpr std::size_t missing_reasons = 6;
 /// "occluded", "min_standoff" and so on, as the enumerators are called.

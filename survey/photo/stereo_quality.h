@@ -16,7 +16,7 @@
 
 namespace skycap::survey::photo {
 
-/// What counts as an observation, and as a stereo pair.
+/// Conditions of an observation, and of a stereo pair.
 struct StereoRule {
   double view_distance = 10.0;  ///< d, at which a surface that faces the camera has the GSD [m]
   double nearest_focus = 1.0;   ///< minimum distance of an observation [m]

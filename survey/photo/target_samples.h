@@ -31,7 +31,7 @@ struct TargetSamples {
   std::vector<Eigen::Vector3f> normals;  ///< unit, towards the side with more free directions
   std::vector<std::uint32_t> triangles;  ///< of the target
   double area_each = 0.0;                ///< surface that a sample stands for [m^2]
-  std::size_t inner = 0;                 ///< samples of inner surface, which are left out
+  std::size_t inner = 0;                 ///< samples of inner surface, which are skipped
   std::size_t size() const { return points.size(); }
   double area() const { return area_each * static_cast<double>(size()); }
   double inner_area() const { return area_each * static_cast<double>(inner); }

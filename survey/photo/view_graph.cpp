@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "geometry/parallel.h"
 
@@ -189,12 +191,38 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
     return roots.size() <= 1 &&
            std::ranges::all_of(degree, [&](std::uint32_t d) { return d >= degree_wanted; });
   };
+  // Where one photo alone cannot join two parts: the one that comes nearest to another part.
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<Eigen::Vector3d> positions;  // of photos and added ones
+  for (const geometry::View& photo : photos) positions.push_back(photo.position);
+  const auto distance_to_others = [&](const Eigen::Vector3d& position, std::uint32_t part) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < positions.size(); ++i) {
+      if (parts.root(i) != part) nearest = std::min(nearest, (positions[i] - position).norm());
+    }
+    return nearest;
+  };
+  const auto step_towards_another_part = [&] {
+    std::uint32_t choice = none;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t c = 0; c < candidates.size(); ++c) {
+      if (is_open[c] == 0 || edges[c].empty()) continue;
+      const std::uint32_t part = parts.root(edges[c].front());
+      const double distance = distance_to_others(candidates[c].position, part);
+      // No nearer than the photo that it is joined to is no step.
+      if (distance < nearest && distance < distance_to_others(positions[edges[c].front()], part)) {
+        nearest = distance;
+        choice = c;
+      }
+    }
+    return choice;
+  };
   std::vector<std::uint32_t> added;
   while (added.size() < max_photos && !is_done()) {
-    int best = 0;
-    std::uint32_t choice = 0;
+    std::pair<int, std::size_t> best{0, 0};  // worth, then edges
+    std::uint32_t choice = none;
     for (std::uint32_t c = 0; c < candidates.size(); ++c) {
-      if (is_open[c] == 0 || edges[c].size() < degree_wanted) continue;
+      if (is_open[c] == 0 || edges[c].empty()) continue;
       std::set<std::uint32_t> joined;
       int raised = 0;
       for (const std::uint32_t i : edges[c]) {
@@ -202,9 +230,13 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
         if (degree[i] < degree_wanted) ++raised;
       }
       const int worth = 10 * (static_cast<int>(joined.size()) - 1) + raised;
-      if (worth > best) best = worth, choice = c;
+      if (worth > 0 && std::pair(worth, edges[c].size()) > best) {
+        best = {worth, edges[c].size()};
+        choice = c;
+      }
     }
-    if (best == 0) break;
+    if (choice == none) choice = step_towards_another_part();
+    if (choice == none) break;
     const std::uint32_t number = parts.add();
     degree.push_back(static_cast<std::uint32_t>(edges[choice].size()));
     for (const std::uint32_t i : edges[choice]) {
@@ -212,6 +244,7 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
       parts.join(i, number);
     }
     added.push_back(choice);
+    positions.push_back(candidates[choice].position);
     close_near(candidates[choice].position);
     geometry::parallel_for(candidates.size(), threads, [&](std::size_t c) {
       if (is_open[c] != 0 && connects(others[choice], others[c])) edges[c].push_back(number);

@@ -50,8 +50,9 @@ ViewGraph view_graph(std::span<const geometry::View> photos, const IndexLists& o
 
 /// Candidates that join the parts of a graph and raise degrees below `degree_wanted`: again and
 /// again the one that joins most parts (worth 10 each) and raises most low degrees (worth 1 each),
-/// never nearer than `same_position` to a photo. Ends when the graph is connected, when no
-/// candidate helps, or at `max_photos`. Indices of `candidates`.
+/// never nearer than `same_position` to a photo. Where no photo alone helps, the one that comes
+/// nearest to another part. Ends when the graph is connected, when no candidate helps, or at
+/// `max_photos`. Indices of `candidates`.
 std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> photos,
                                              const IndexLists& observed,
                                              std::span<const geometry::View> candidates,

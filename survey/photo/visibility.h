@@ -35,10 +35,10 @@ IndexLists transposed(const IndexLists& lists, std::size_t count);
 Observation observation_of(const Eigen::Vector3d& position, std::uint32_t photo,
                            const TargetSamples& samples, std::size_t sample);
 
-/// Decides observations: a photo observes a sample that projects into the image less a border of
-/// 1.5% on each side, at an angle of incidence within the limit, from a distance of at least the
-/// nearest focus and less than twice the view distance, and with a clear line of sight for 99.9% of
-/// it. Keeps references.
+/// Decides observations. A photo observes a sample that projects into the image less a border of
+/// 1.5% on each side. The angle of incidence must be within its limit, and the distance at least
+/// the nearest focus and less than twice the view distance. The line of sight must be clear
+/// for 99.9% of its length. Keeps references.
 class Observer {
  public:
   Observer(const geometry::PhotoCamera& camera, const StereoRule& rule,

@@ -127,6 +127,9 @@ Modules architecture() {
               {"sim", "survey", "flight"},
               {"config", "photos", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
+  add_library({"photo"}, {"sim", "survey", "flight"},
+              {"package", "photos", "config", "scan", "simulation", "evaluation", "session",
+               "scene", "site_data", "support"});
   add_library({"wizard"}, {"flight"}, {"config", "site_data", "support"});
   add_library({"report"}, {"sim", "survey", "flight"},
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
@@ -138,8 +141,8 @@ Modules architecture() {
               {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
                "site_data", "support"});
   add_library({"cli", "cli/clouds"}, {"sim", "survey", "flight"},
-              {"report", "batch", "wizard", "package", "photos", "config", "online", "scan",
-               "simulation", "evaluation", "session", "scene", "site_data", "support"});
+              {"report", "batch", "photo", "wizard", "package", "photos", "config", "online",
+               "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/clearance", "flight/route", "missions/api"});

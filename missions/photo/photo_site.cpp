@@ -1,0 +1,95 @@
+#include "missions/photo/photo_site.h"
+
+#include "geometry/error.h"
+#include "missions/site_data/site_priors.h"
+
+namespace skycap::missions::photo {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using site_data::Role;
+
+/// Obstacles farther from a target than this many view distances hide nothing of it.
+constexpr double surroundings_reach = 3.0;
+
+geometry::Mesh targets_of(const config::MissionSetup& setup) {
+  geometry::Mesh targets = make_surfaces(*setup.scene().priors, Role::target);
+  if (targets.triangles.empty()) {
+    throw Error(ErrorKind::bad_config,
+                "prior data with role: target has no surface; photos require a mesh, a city model "
+                "or an outline with its height");
+  }
+  return targets;
+}
+
+geometry::Mesh make_surroundings(const config::MissionSetup& setup, const geometry::Mesh& targets) {
+  AlignedBox3d near = geometry::bounding_box(targets);
+  const double reach = surroundings_reach * setup.survey().planner.view_distance;
+  near.min().array() -= reach;
+  near.max().array() += reach;
+  geometry::Mesh around = make_surfaces(*setup.scene().priors, Role::obstacle, near);
+  append(around, make_surfaces(*setup.scene().priors, Role::terrain, near));
+  return around;
+}
+
+geometry::Mesh walls_of(const config::MissionSetup& setup) {
+  geometry::Mesh walls = targets_of(setup);
+  AlignedBox3d near = geometry::bounding_box(walls);
+  const double reach = surroundings_reach * setup.survey().planner.view_distance;
+  near.min().array() -= reach;
+  near.max().array() += reach;
+  append(walls, make_surfaces(*setup.scene().priors, Role::obstacle, near));
+  return walls;
+}
+
+flight::MeasuredSpaceConfig space_config(const config::MissionSetup& setup) {
+  flight::MeasuredSpaceConfig config = setup.flight().measured_space();
+  if (setup.document->flight.free_space == config::FreeSpaceRule::measured) return config;
+  // An empty region would be all of space. A voxel in the ground, where no flight can be, stands
+  // for none.
+  const Vector3d centre = setup.flight().unknown_box.center();
+  constexpr double depth = 3.0;
+  const Vector3d buried(centre.x(), centre.y(), setup.flight().airspace.ground_height - depth);
+  config.region = AlignedBox3d(buried, buried + Vector3d::Constant(config.voxel));
+  config.beside.clear();
+  return config;
+}
+
+}  // namespace
+
+PhotoAirspace::PhotoAirspace(const config::MissionSetup& setup, unsigned threads)
+    : setup_(setup),
+      walls_(walls_of(setup), threads),
+      measured_(space_config(setup)),
+      rules_(setup.flight().rules()),
+      space_({&measured_, &rules_}) {}
+
+bool PhotoAirspace::is_free(const Vector3d& position) const {
+  const double min_standoff = setup_.survey().planner.limits.min_standoff;
+  constexpr double rounding = 1e-6;
+  if (walls_.distance(position) < min_standoff - rounding) return false;
+  if (!setup_.flight().has_vehicle()) return true;
+  // A little more than legs are verified at, so that a path to the position can end there.
+  constexpr double margin = 0.01;
+  return space_.is_free({position, position}, setup_.flight().budget().total() + margin);
+}
+
+survey::photo::PhotoSite photo_site(const config::MissionSetup& setup,
+                                    const PhotoAirspace& airspace) {
+  survey::photo::PhotoSite site;
+  site.target = targets_of(setup);
+  site.surroundings = make_surroundings(setup, site.target);
+  const flight::FlightOptions& flight = setup.flight();
+  site.ground = [&flight](const Eigen::Vector2d& position) { return flight.ground_at(position); };
+  const AlignedBox3d box = geometry::bounding_box(site.target);
+  const survey::ViewLimits& limits = setup.survey().planner.limits;
+  site.foot = site.ground(box.center().head<2>());
+  site.min_height = limits.min_height.value_or(site.foot);
+  site.space.limits = limits;
+  site.space.min_standoff = limits.min_standoff;
+  site.space.is_free = [&airspace](const Vector3d& position) { return airspace.is_free(position); };
+  return site;
+}
+
+}  // namespace skycap::missions::photo

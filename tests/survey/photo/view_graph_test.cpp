@@ -1,0 +1,78 @@
+#include "survey/photo/view_graph.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/survey/photo/test_scenes.h"
+
+namespace skycap::survey::photo {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::View;
+using testing::ElementsAre;
+
+/// Photos that face a long wall from 8 m, at these places along it.
+class PhotosOfAWall : public testing::Test {
+ protected:
+  PhotosOfAWall() : target_(wall(60.0, 2.0, 4.0)), sights_(target_, 1) {
+    SampleOptions options;
+    options.count = 3000;
+    options.free_length = 12.0;
+    samples_ = sample_target(target_, sights_, options);
+    rule_.view_distance = 8.0;
+  }
+
+  static std::vector<View> photos_at(const std::vector<double>& positions) {
+    std::vector<View> photos;
+    for (const double x : positions) photos.push_back({{x, -8.0, 4.0}, {0.0, 1.0, 0.0}});
+    return photos;
+  }
+  IndexLists observed(const std::vector<View>& photos) const {
+    return observed_samples(Observer(camera_, rule_, sights_, samples_), photos, 1);
+  }
+
+  geometry::PhotoCamera camera_{test_camera()};
+  geometry::Mesh target_;
+  geometry::SightLines sights_;
+  TargetSamples samples_;
+  StereoRule rule_;
+};
+
+TEST_F(PhotosOfAWall, ConnectWhereTheyShareHalf) {
+  // A footprint is 11.3 m wide, less its border 10.9 m: 4 m apart they share 63%, 8 m apart
+  // 27%.
+  const std::vector<View> photos = photos_at({10, 14, 18, 40, 44, 55});
+  const ViewGraph graph = view_graph(photos, observed(photos), samples_, {}, 2);
+  EXPECT_THAT(graph.part, ElementsAre(0, 0, 0, 1, 1, 2));
+  EXPECT_THAT(graph.parts, ElementsAre(3, 2, 1));
+  EXPECT_THAT(graph.degree, ElementsAre(1, 2, 1, 1, 1, 0));
+  EXPECT_FALSE(graph.is_connected(0));
+}
+
+TEST_F(PhotosOfAWall, DoNotConnectAtTooMuchParallax) {
+  const std::vector<View> photos = photos_at({10, 14});
+  EdgeRule rule;
+  rule.max_parallax = 30.0 * geometry::radians_per_degree;
+  EXPECT_EQ(view_graph(photos, observed(photos), samples_, rule, 1).edges.size(), 1U);
+  rule.max_parallax = 20.0 * geometry::radians_per_degree;
+  EXPECT_EQ(view_graph(photos, observed(photos), samples_, rule, 1).edges.size(), 0U);
+}
+
+TEST_F(PhotosOfAWall, AreConnectedByPhotosBetweenThem) {
+  const std::vector<View> photos = photos_at({10, 14, 18, 30, 34, 38});
+  std::vector<double> positions;
+  for (double x = 5.5; x < 55.0; x += 1.0) positions.push_back(x);
+  const std::vector<View> candidates = photos_at(positions);
+  const std::vector<std::uint32_t> added = connecting_photos(
+      photos, observed(photos), candidates, observed(candidates), samples_, {}, 3, 0.4, 100, 2);
+  std::vector<View> all = photos;
+  for (const std::uint32_t c : added) all.push_back(candidates[c]);
+  const ViewGraph graph = view_graph(all, observed(all), samples_, {}, 1);
+  EXPECT_TRUE(graph.is_connected(3));
+  EXPECT_FALSE(view_graph(photos, observed(photos), samples_, {}, 1).is_connected(0));
+  EXPECT_LE(added.size(), 12U);
+}
+
+}  // namespace
+}  // namespace skycap::survey::photo
