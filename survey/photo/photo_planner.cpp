@@ -427,6 +427,21 @@ class Planner {
     return bars == 1 ? bar : std::nullopt;
   }
 
+  /// As many samples satisfied as by all candidates, with few of them: by a greedy choice, and the
+  /// search after it.
+  PhotoChoice pruned_choice(const PhotoChoiceProblem& own) const {
+    PhotoChoice all(own);
+    for (std::uint32_t c = 0; c < own.candidates.size(); ++c) all.add(c);
+    PhotoChoice pruned(own);
+    PhotoChoice::Limits limits;
+    limits.min_gain = 1e-3;
+    limits.enough_satisfied = all.satisfied();
+    pruned.greedy(limits);
+    constexpr std::size_t part_of_rounds = 3;  // a contestant, not the plan
+    pruned.destroy_and_repair({options_.repair_rounds / part_of_rounds, run_.seed}, run_.stop);
+    return pruned;
+  }
+
   void compare_patterns(const Observer& observer, const Observer& evaluator) {
     for (const Pattern pattern : options_.patterns) {
       report(std::string("evaluating the pattern ") + to_string(pattern));
@@ -437,9 +452,7 @@ class Planner {
       result.figures = evaluated(photos.views, evaluator);
       const PhotoChoiceProblem own =
           photo_choice_problem(photos.views, observer, false, run_.threads);
-      PhotoChoice pruned(own);
-      for (std::uint32_t c = 0; c < photos.views.size(); ++c) pruned.add(c);
-      pruned.destroy_and_repair({options_.repair_rounds, run_.seed}, run_.stop);
+      PhotoChoice pruned = pruned_choice(own);
       for (const std::uint32_t c : pruned.chosen()) {
         result.pruned_views.push_back(own.candidates[c]);
       }
