@@ -196,7 +196,7 @@ bool captures_images(Format format) { return find_record(format).captures_images
 
 bool holds_photo_runs(Format format) { return find_record(format).holds_photo_runs; }
 
-std::vector<FlightPlan> split_glb(const FlightPlan& plan, Format format) {
+std::vector<FlightPlan> split_plan(const FlightPlan& plan, Format format) {
   return format == Format::litchi ? litchi_parts(plan) : std::vector{plan};
 }
 

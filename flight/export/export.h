@@ -40,7 +40,7 @@ bool holds_photo_runs(Format format);
 
 /// The plan as files of this format hold it: one plan, or several to be flown one after the other
 /// in one flight, each from the last waypoint of the one before.
-std::vector<FlightPlan> split_glb(const FlightPlan& plan, Format format);
+std::vector<FlightPlan> split_plan(const FlightPlan& plan, Format format);
 
 /// Returns the file content, the notes on omitted data, or the problems of the content.
 std::string write(const FlightPlan& plan, Format format);

@@ -120,7 +120,7 @@ class WpmlChecker {
     require_one_of(config.child("wpml:droneInfo"), "droneEnumValue",
                    {"60", "67", "77", "89", "91", "99", "100", "103"});
     require_number(config.child("wpml:droneInfo"), "droneSubEnumValue", 0, 3);
-    require_number(config.child("wpml:payloadInfo"), "payloadEnumValue", 0, 65534);
+    require_number(config.child("wpml:payloadInfo"), "payloadEnumValue", 0, 99999);
     require_number(config.child("wpml:payloadInfo"), "payloadPositionIndex", 0, 2);
   }
 
@@ -219,6 +219,10 @@ class WpmlChecker {
         check_action_id(child_text(param, "actionUUID"));
         ++point.captures;
         check_lens(param);
+      } else if (function == "recordPointCloud") {
+        require_number(param, "payloadPositionIndex", 0, 2);
+        require_one_of(param, "recordPointCloudOperate",
+                       {"startRecord", "pauseRecord", "resumeRecord", "stopRecord"});
       } else if (function != "rotateYaw") {
         add_problem("has wpml:actionActuatorFunc \"" + function + "\", which is not supported");
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <string>
 
@@ -10,6 +11,7 @@
 
 #include "flight/export/kml_document.h"
 #include "flight/export/parameters.h"
+#include "flight/export/scanner_commands.h"
 #include "flight/export/text.h"
 #include "geometry/angle.h"
 
@@ -63,6 +65,8 @@ class WpmlWriter {
         pad_(frame_.to_geodetic(plan.pad)) {
     for (const Waypoint& waypoint : plan.waypoints)
       max_height_ = std::max(max_height_, height(waypoint));
+    is_commanded_ = !commanded_scanner(plan.vehicle.wpml.payload).empty();
+    recorded_ = recorded_waypoints(plan);
   }
 
   std::string write() {
@@ -79,6 +83,7 @@ class WpmlWriter {
       pugi::xml_node payload = add(folder, "payloadParam");
       add(payload, "payloadPositionIndex", "0");
       add(payload, "imageFormat", plan_.photo ? plan_.photo->image_format : "visable");
+      if (is_commanded_) add_scanner(payload);
     }
     return xml_text(document);
   }
@@ -89,6 +94,16 @@ class WpmlWriter {
   }
   std::string speed() const {
     return fixed(std::clamp(plan_.conditions.cruise_speed, 0.1, 15.0), 2);
+  }
+
+  /// Non-repeating, and as many echoes as the format has words for at the full rate: the L1 has no
+  /// third one there.
+  void add_scanner(pugi::xml_node payload) const {
+    const bool has_third = plan_.vehicle.wpml.payload != zenmuse_l1;
+    add(payload, "returnMode", has_third ? "tripleReturn" : "dualReturn");
+    add(payload, "samplingRate", "240000");
+    add(payload, "scanningMode", "nonRepetitive");
+    add(payload, "modelColoringEnable", "1");
   }
 
   void add_config(pugi::xml_node root) {
@@ -192,12 +207,24 @@ class WpmlWriter {
     return run == nullptr ? speed() : fixed(std::min(run->speed, 15.0), 2);
   }
 
-  /// At a corner, uses the heading of the next waypoint with captures.
+  /// A corner keeps the heading of the station to come; with a scanner, which measures meanwhile,
+  /// that of the station before, so that the vehicle turns on the last piece of a leg as planned.
+  double heading(std::size_t index) const {
+    const auto is_capture_point = [](const Waypoint& waypoint) {
+      return waypoint.is_capture_point;
+    };
+    const auto here = plan_.waypoints.begin() + static_cast<std::ptrdiff_t>(index);
+    if (is_commanded_) {
+      const auto before = std::find_if(std::make_reverse_iterator(here + 1), plan_.waypoints.rend(),
+                                       is_capture_point);
+      if (before != plan_.waypoints.rend()) return before->yaw;
+    }
+    const auto capture_point = std::find_if(here, plan_.waypoints.end(), is_capture_point);
+    return capture_point == plan_.waypoints.end() ? 0.0 : capture_point->yaw;
+  }
+
   void add_heading(pugi::xml_node mark, std::size_t index) {
-    auto capture_point = std::find_if(
-        plan_.waypoints.begin() + static_cast<std::ptrdiff_t>(index), plan_.waypoints.end(),
-        [](const Waypoint& waypoint) { return waypoint.is_capture_point; });
-    const double yaw = capture_point == plan_.waypoints.end() ? 0.0 : capture_point->yaw;
+    const double yaw = heading(index);
     pugi::xml_node heading = add(mark, "waypointHeadingParam");
     add(heading, "waypointHeadingMode", "smoothTransition");
     add(heading, "waypointHeadingAngle",
@@ -217,8 +244,19 @@ class WpmlWriter {
       add(node, "actionActuatorFunc", function);
       return add(node, "actionActuatorFuncParam");
     };
-    if (waypoint.is_capture_point) add_gimbal(action("gimbalRotate"), waypoint);
+    const bool is_start = is_commanded_ && index == recorded_.first;
+    const bool is_stop = is_commanded_ && index == recorded_.last;
+    if (is_start) {
+      add_gimbal(action("gimbalRotate"), first_station());
+    } else if (waypoint.is_capture_point && has_gimbal(waypoint)) {
+      add_gimbal(action("gimbalRotate"), waypoint);
+    }
     add(action("hover"), "hoverTime", fixed(waypoint.hold, 2));
+    if (is_start || is_stop) {
+      pugi::xml_node record = action("recordPointCloud");
+      add(record, "payloadPositionIndex", "0");
+      add(record, "recordPointCloudOperate", is_start ? "startRecord" : "stopRecord");
+    }
     for (int capture = 0; capture < waypoint.captures; ++capture) {
       if (plan_.photo && has_oriented_shoot(plan_.vehicle)) {
         add_oriented_shoot(action("orientedShoot"), waypoint);
@@ -293,6 +331,17 @@ class WpmlWriter {
     add_photo(add(action, "actionActuatorFuncParam"), "run_" + std::to_string(index));
   }
 
+  /// A scanner that is not of DJI is fixed to the airframe.
+  bool has_gimbal(const Waypoint& waypoint) const {
+    return plan_.vehicle.wpml.payload != psdk_payload || waypoint.captures > 0;
+  }
+
+  const Waypoint& first_station() const {
+    const auto capture_point = std::ranges::find_if(
+        plan_.waypoints, [](const Waypoint& waypoint) { return waypoint.is_capture_point; });
+    return capture_point == plan_.waypoints.end() ? plan_.waypoints.front() : *capture_point;
+  }
+
   static void add_gimbal(pugi::xml_node gimbal, const Waypoint& waypoint) {
     add(gimbal, "gimbalHeadingYawBase", "north");
     add(gimbal, "gimbalRotateMode", "absoluteAngle");
@@ -312,7 +361,9 @@ class WpmlWriter {
   LocalFrame frame_;
   GeodeticPoint pad_;
   double max_height_ = 0.0;
-  std::size_t groups_ = 0;  ///< that are written
+  std::size_t groups_ = 0;     ///< that are written
+  bool is_commanded_ = false;  ///< whether it carries a scanner that files command
+  RecordedWaypoints recorded_;
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flight/export/scanner_commands.h"
+
 namespace skycap::flight {
 
 FlightFacts make_flight_facts(const FlightPlan& plan) {
@@ -18,6 +20,10 @@ FlightFacts make_flight_facts(const FlightPlan& plan) {
   facts.fence = plan.fence;
   bool is_first = true;
   for (const Waypoint& waypoint : plan.waypoints) {
+    const bool is_scanned = !commanded_scanner(plan.vehicle.wpml.payload).empty();
+    if (waypoint.is_capture_point && waypoint.captures == 0 && is_scanned) {
+      facts.views.push_back({waypoint.position, compute_direction({waypoint.yaw, waypoint.pitch})});
+    }
     if (!waypoint.is_capture_point || waypoint.captures == 0) continue;
     facts.hold = is_first ? waypoint.hold : std::min(facts.hold, waypoint.hold);
     is_first = false;

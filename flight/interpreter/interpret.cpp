@@ -1,9 +1,11 @@
 #include "flight/interpreter/interpret.h"
 
 #include "flight/export/map_files.h"
+#include "flight/export/trajectory_file.h"
 #include "flight/interpreter/mission_interpreter.h"
 #include "flight/interpreter/photographs.h"
 #include "flight/interpreter/wpml_interpreter.h"
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/pose/world.h"
@@ -83,6 +85,21 @@ InterpretedRoute interpret(const std::string& content, Format format, const Flig
     geometry::require_valid_position(segment.to, segment.to_item);
   }
   return route;
+}
+
+std::vector<InterpretedStop> captures_of(const std::string& content, Format format,
+                                         const InterpretedRoute& route) {
+  if (format != Format::csv && format != Format::ned_csv) return route.stops;
+  const Naming name{"point "};
+  std::vector<InterpretedStop> captures;
+  const std::vector<TimedState> states = read_trajectory_csv(content);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!states[i].is_capture) continue;
+    captures.push_back({states[i].position, name(i), 0.0,
+                        geometry::degrees_per_radian * states[i].yaw,
+                        geometry::degrees_per_radian * states[i].pitch, 1});
+  }
+  return captures;
 }
 
 InterpretedRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "flight/export/export.h"
 #include "flight/interpreter/flight_facts.h"
@@ -15,7 +16,12 @@ namespace skycap::flight {
 /// of the format.
 InterpretedRoute interpret(const std::string& content, Format format, const FlightFacts& facts);
 
-/// Interprets a file. Errors include its name.
+/// Where a file that is flown like that captures images: the stops of missions, and the rows of a
+/// trajectory that are marked so. Empty for KML, GeoJSON and TUM, which command no camera.
+std::vector<InterpretedStop> captures_of(const std::string& content, Format format,
+                                         const InterpretedRoute& route);
+
+/// interpret() of a file. Errors name it.
 InterpretedRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts);
 
 }  // namespace skycap::flight

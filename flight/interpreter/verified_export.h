@@ -7,6 +7,7 @@
 
 #include "flight/clearance/clearance.h"
 #include "flight/export/export.h"
+#include "flight/interpreter/interpreted_route.h"
 
 namespace skycap::flight {
 
@@ -15,6 +16,7 @@ struct ExportResult {
   /// Verified clearance of the rounded file content [m], see LegVerification.
   double min_clearance = 0.0;
   std::vector<std::string> notes;
+  std::vector<InterpretedStop> captures;  ///< where the file captures images, as read back
 };
 
 /// Writes the file under a temporary name, reads it back and interprets it like its target. The

@@ -8,8 +8,10 @@
 
 #include <pugixml.hpp>
 
+#include "flight/export/scanner_commands.h"
 #include "flight/interpreter/pad_column.h"
 #include "flight/interpreter/photographs.h"
+#include "flight/interpreter/recording.h"
 #include "geometry/error.h"
 #include "geometry/text_parts.h"
 
@@ -151,14 +153,21 @@ class WpmlFlight {
                                    waypoint(index)});
         route_.segments.back().speed = speed;
         if (photo_spacing_ > 0.0) append_passes(route_, photo_spacing_, yaw_deg_, pitch_deg_);
+        legs_.push_back({positions[index - 1], positions[index], waypoint(index - 1),
+                         waypoint(index), speed, is_recording_, heading_deg_, heading_of(mark),
+                         pitch_deg_});
       }
       speed = child_number(mark, "waypointSpeed");
       check_waypoint(mark, index);
+      heading_deg_ = heading_of(mark);
       act(mark, positions[index], index);
       ++index;
     }
     descend(positions.back(), pad, waypoint(index - 1));
     for (const std::string& problem : check_photographs(route_, facts_)) {
+      route_.problems.push_back(problem);
+    }
+    for (const std::string& problem : check_recording(legs_, facts_)) {
       route_.problems.push_back(problem);
     }
     return std::move(route_);
@@ -249,10 +258,19 @@ class WpmlFlight {
       }
     }
     if (!facts_.vehicle || facts_.vehicle->autopilot != AutopilotType::dji) return;
+    check_payload(facts_.vehicle->wpml.payload);
     const std::string drone = child_text(config_.child("wpml:droneInfo"), "droneEnumValue");
     if (drone == std::to_string(facts_.vehicle->wpml.drone)) return;
     add_problem("requires the aircraft with droneEnumValue " + drone + "; \"" +
                 facts_.vehicle->name + "\" has " + std::to_string(facts_.vehicle->wpml.drone));
+  }
+
+  /// A camera may be another one than the vehicle's preset says; a scanner is what is flown for.
+  void check_payload(int right) {
+    const std::string payload = child_text(config_.child("wpml:payloadInfo"), "payloadEnumValue");
+    if (commanded_scanner(right).empty() || payload == std::to_string(right)) return;
+    add_problem("is for the payload with payloadEnumValue " + payload + "; the " +
+                commanded_scanner(right) + " is " + std::to_string(right));
   }
 
   // Adds the climb of flyToWaylineMode "safely": up, level, then down to the first waypoint if it
@@ -292,13 +310,19 @@ class WpmlFlight {
     }
   }
 
-  /// Adds the actions at a waypoint in their order.
-  void act(pugi::xml_node mark, const Vector3d& position, std::size_t index) {
-    const std::string who = waypoint(index);
+  /// Heading on arrival at a waypoint; unspecified where the file leaves it to the aircraft [deg].
+  static double heading_of(pugi::xml_node mark) {
     const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
     const bool is_set = child_text(heading, "waypointHeadingMode") == "smoothTransition" &&
                         child_text(mark, "useGlobalHeadingParam") != "1";
-    double yaw_deg = is_set ? child_number(heading, "waypointHeadingAngle") : unspecified;
+    return is_set ? to_number(child_text(heading, "waypointHeadingAngle")).value_or(unspecified)
+                  : unspecified;
+  }
+
+  /// Adds the actions at a waypoint in their order.
+  void act(pugi::xml_node mark, const Vector3d& position, std::size_t index) {
+    const std::string who = waypoint(index);
+    double yaw_deg = heading_of(mark);
     double hold = 0.0;
     int captures = 0;
     photo_spacing_ = 0.0;
@@ -322,6 +346,10 @@ class WpmlFlight {
         }
         if (function == "rotateYaw") yaw_deg = child_number(param, "aircraftHeading");
         if (function == "gimbalRotate") aim(param, who);
+        if (function == "recordPointCloud") {
+          const std::string operation = child_text(param, "recordPointCloudOperate");
+          is_recording_ = operation == "startRecord" || operation == "resumeRecord";
+        }
         if (function == "orientedShoot") yaw_deg = orient(param, who);
         if (is_run || (function != "takePhoto" && function != "orientedShoot")) continue;
         if (captures++ == 0) route_.stops.push_back({position, who, hold, yaw_deg, pitch_deg_, 0});
@@ -381,8 +409,11 @@ class WpmlFlight {
   pugi::xml_node config_, folder_;
   InterpretedRoute route_;
   double pitch_deg_ = unspecified;
-  double yaw_deg_ = unspecified;  ///< at the waypoint before
-  double photo_spacing_ = 0.0;    ///< on the leg from there; zero: no photos [m]
+  double yaw_deg_ = unspecified;      ///< at the waypoint before
+  double photo_spacing_ = 0.0;        ///< on the leg from there; zero: no photos [m]
+  double heading_deg_ = unspecified;  ///< at the waypoint before
+  bool is_recording_ = false;         ///< a point cloud
+  std::vector<ScannedLeg> legs_;
 };
 
 /// Checks that the pad in the file, if any, is that of the mission.

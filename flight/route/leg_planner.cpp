@@ -50,7 +50,7 @@ std::optional<VerifiedPath> LegPlanner::verified(std::vector<Vector3d> path) con
 }
 
 std::optional<VerifiedPath> LegPlanner::leg(const Vector3d& from, const Vector3d& to) {
-  if (returns_ && !returns_->no_return_reason(to).empty()) return std::nullopt;
+  if (returns_ && returns_->no_return_reason(to)) return std::nullopt;
   const Path& found = path(from, to);
   if (found.status != PathStatus::found) return std::nullopt;
   return verified(with_returns(found.points));

@@ -17,6 +17,9 @@ std::vector<Vector3d> reversed(const std::vector<Vector3d>& approach_path) {
   return {approach_path.rbegin(), approach_path.rend()};
 }
 
+constexpr const char* out_of_range_remedy =
+    "move flight.takeoff nearer to it or lower flight.reserve";
+
 /// Returns true if the survey flew from `from` to the waypoint.
 bool is_executed(const Vector3d& from, const CapturePoint& to) {
   return !to.approach_path.empty() && to.approach_path.front() == from &&
@@ -36,14 +39,21 @@ RouteLegs::RouteLegs(const Vehicle& vehicle, const FreeSpace& space, const Route
       takeoff_cost_(costs_.takeoff_cost(options.takeoff_climb)),
       landing_cost_(costs_.landing_cost(options.takeoff_climb)) {}
 
-void RouteLegs::reject(const CapturePoint& capture_point, const std::string& reason) {
-  unreached_.push_back({capture_point, reason});
+void RouteLegs::reject(const CapturePoint& capture_point, const std::string& reason,
+                       const std::string& remedy) {
+  unreached_.push_back({capture_point, reason + "; " + remedy});
 }
 
 std::vector<CapturePoint> RouteLegs::allowed(std::vector<CapturePoint> capture_points) {
   std::erase_if(capture_points, [&](const CapturePoint& capture_point) {
     const std::string reason = rejection_reason(capture_point);
-    if (!reason.empty()) reject(capture_point, reason);
+    if (!reason.empty()) {
+      reject(capture_point, reason,
+             can_aim(motion_.vehicle(), capture_point.view)
+                 ? "lower flight.clearance"
+                 : "set limits.max_pitch_deg and limits.min_pitch_deg to what the gimbal reaches, "
+                   "and plan the mission again");
+    }
     return !reason.empty();
   });
   if (options_.returns) keep_with_return(capture_points);
@@ -68,9 +78,9 @@ void RouteLegs::keep_with_return(std::vector<CapturePoint>& capture_points) {
     top = std::max(top, capture_point.view.position.z());
   planner_.require_returns(planning_rtl_profile(options_, top), home_);
   std::erase_if(capture_points, [&](const CapturePoint& capture_point) {
-    const std::string reason = returns()->no_return_reason(capture_point.view.position);
-    if (!reason.empty()) reject(capture_point, "no verified return: " + reason);
-    return !reason.empty();
+    const NoReturn none = returns()->no_return_reason(capture_point.view.position);
+    if (none) reject(capture_point, "no verified return: " + none.reason, none.remedy);
+    return bool{none};
   });
 }
 
@@ -115,7 +125,8 @@ void RouteLegs::admit(const std::vector<CapturePoint>& allowed) {
   for (const CapturePoint& capture_point : allowed) {
     paths.push_back(path_from_home(capture_point));
     if (!paths.back().empty()) continue;
-    reject(capture_point, "no path to it with a clearance of " + length_text(clearance_));
+    reject(capture_point, "no path to it with a clearance of " + length_text(clearance_),
+           "lower flight.clearance or move flight.takeoff");
   }
   for (std::size_t i = 0; i < allowed.size(); ++i) {
     if (paths[i].empty()) continue;
@@ -124,7 +135,7 @@ void RouteLegs::admit(const std::vector<CapturePoint>& allowed) {
         ends ? range_error(allowed[i], *ends)
              : "the path to it cannot be verified with a clearance of " + length_text(clearance_);
     if (!reason.empty()) {
-      reject(allowed[i], reason);
+      reject(allowed[i], reason, ends ? out_of_range_remedy : "lower flight.clearance");
       continue;
     }
     capture_points_.push_back(allowed[i]);
@@ -161,7 +172,7 @@ bool RouteLegs::drop_out_of_range() {
   for (std::size_t i = 0; i < capture_points_.size(); ++i) {
     const std::string reason = range_error(capture_points_[i], ends_[i]);
     if (!reason.empty()) {
-      reject(capture_points_[i], reason);
+      reject(capture_points_[i], reason, out_of_range_remedy);
       continue;
     }
     capture_points.push_back(capture_points_[i]);

@@ -82,7 +82,8 @@ class RouteLegs {
     bool has_returns = false;
   };
 
-  void reject(const CapturePoint& capture_point, const std::string& reason);
+  void reject(const CapturePoint& capture_point, const std::string& reason,
+              const std::string& remedy);
   std::string rejection_reason(const CapturePoint& capture_point) const;
   void keep_with_return(std::vector<CapturePoint>& capture_points);
   std::optional<Ends> ends_along(std::vector<Eigen::Vector3d> approach_path) const;

@@ -28,27 +28,51 @@ bool has_returns(const FreeSpace& space, const CurveSegment& segment, const RtlP
   });
 }
 
+constexpr const char* over_remedy = "raise site.max_height or move flight.takeoff";
+
+/// What a user can change so that a failed return can be verified.
+std::string remedy_for(const ReturnVerification& failed) {
+  switch (failed.segment.part) {
+    case ReturnPart::level_as_it_is:
+      return "move flight.takeoff more than 54 m away from it (over ground): from there the "
+             "vehicle climbs before it returns, and needs no level return";
+    case ReturnPart::climb:
+      return failed.closest.kind == ObstacleKind::unknown_space
+                 ? "survey the space above it as well (raise site.max_height, lower "
+                   "planner.min_gain) or lower the top of flight.unknown_box to what can stand "
+                   "there"
+                 : "raise planner.view_distance, so that views keep away from overhangs";
+    case ReturnPart::level:
+      return over_remedy;
+    case ReturnPart::descent:
+    case ReturnPart::landing:
+      break;
+  }
+  return "move flight.takeoff";
+}
+
 }  // namespace
 
-std::string ReturnPaths::no_return_reason(const Vector3d& position) const {
+NoReturn ReturnPaths::no_return_reason(const Vector3d& position) const {
   const double asked = return_clearance(clearance_);
   const ReturnVerification here =
       verify_returns(space_, {position, position}, rtl_profile(), asked);
-  if (!here.is_verified) return describe(here, space_);
+  if (!here.is_verified) return {describe(here, space_), remedy_for(here)};
   const std::vector<Vector3d> over = returnable_.path_over(position, home_);
   for (std::size_t i = 1; i < over.size(); ++i) {
     const Segment leg{over[i - 1], over[i]};
     const LegVerification verification = verify(space_, leg, clearance_, clearance_);
     if (!verification.is_verified) {
-      return "the return vertically up and horizontally to the take-off point comes within " +
-             length_text(verification.closest.distance) + " of " +
-             space_.name(verification.closest) + " at " +
-             position_text(verification.closest.on_leg);
+      return {"the return vertically up and horizontally to the take-off point comes within " +
+                  length_text(verification.closest.distance) + " of " +
+                  space_.name(verification.closest) + " at " +
+                  position_text(verification.closest.on_leg),
+              over_remedy};
     }
     const ReturnVerification returns = verify_returns(space_, leg, rtl_profile(), asked);
-    if (!returns.is_verified) return describe(returns, space_);
+    if (!returns.is_verified) return {describe(returns, space_), remedy_for(returns)};
   }
-  return "";
+  return {};
 }
 
 std::vector<Vector3d> ReturnPaths::with_returns(std::vector<Vector3d> path,

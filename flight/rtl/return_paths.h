@@ -13,6 +13,14 @@
 
 namespace skycap::flight {
 
+/// Why there is no verified return from a position.
+struct NoReturn {
+  std::string reason;  ///< what is in the way, and where; empty: there is a return
+  std::string remedy;  ///< what the user can change, as a command
+
+  explicit operator bool() const { return !reason.empty(); }
+};
+
 /// Keeps a reference to `space`.
 class ReturnPaths {
  public:
@@ -26,7 +34,7 @@ class ReturnPaths {
 
   /// Returns the obstacle of a return from `position`, or of the path straight up and across to the
   /// pad, which is the fallback of with_returns(). Empty if both are free.
-  std::string no_return_reason(const Eigen::Vector3d& position) const;
+  NoReturn no_return_reason(const Eigen::Vector3d& position) const;
 
   /// Returns `path` if every point of it has a verified return, otherwise a short path that
   /// satisfies this. Both ends must have a return, see no_return_reason().

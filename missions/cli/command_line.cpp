@@ -266,6 +266,16 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
       ->check(CLI::Range(0, 1024));
   command->add_flag("--json", options->is_json, "Print the result as JSON");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
+  command->add_option("--density", options->density,
+                      "Folder for the density of all points: raster (GeoTIFF), histograms, shares");
+  command
+      ->add_option("--density-cell", options->density_cell,
+                   "Cell of the raster and radius around surface, in metres (default: 0.5)")
+      ->check(number_between(0.01, 100.0));
+  command
+      ->add_option("--min-density", options->min_density,
+                   "Required points per square metre (default: 100)")
+      ->check(number_between(0.0, 1e9));
   run(*command, options, evaluate, console, action);
 }
 

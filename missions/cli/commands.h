@@ -201,6 +201,10 @@ struct EvaluateOptions {
   std::optional<std::filesystem::path> out;  ///< output folder for the pieces and their results
   TaskOptions task;                          ///< scheduler options of the pieces
   unsigned threads = 0;                      ///< number of threads; zero: one per processor
+  /// Output of the density of a cloud, computed from all points. Empty: not computed.
+  std::optional<std::filesystem::path> density;
+  double density_cell = 0.5;   ///< Cell size of the raster, and radius around surface points [m].
+  double min_density = 100.0;  ///< Required density [points per m^2].
   bool is_json = false;
   bool is_quiet = false;
 };

@@ -20,6 +20,7 @@
 #include "missions/package/package.h"
 #include "missions/package/pilot_text.h"
 #include "missions/package/target_coverage.h"
+#include "missions/package/written_mission.h"
 #include "missions/photo/photo_files.h"
 #include "missions/photo/photo_mission.h"
 #include "missions/photo/photo_report.h"
@@ -89,6 +90,7 @@ std::string summary_text(const std::string& name, const PlanOptions& options,
   text += "\n" + package::target_text(package::target_coverage(
                      simulation.scene, simulation.evaluation.registration_distance,
                      record.cloud.positions));
+  if (flight && flight->written) text += package::written_text(*flight->written);
   if (simulation.scene.model == "prior") {
     text += "  scene     prior data of the targets, used as ground truth\n";
   }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flight/export/scanner_commands.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/record_log.h"
@@ -61,9 +62,10 @@ std::optional<std::uint32_t> compute_vehicle_checksum(const MissionDocument& doc
 }
 
 /// Reads the scanner named by `sensor.lidar`.
-sim::LidarConfig read_scanner(const MissionDocument& document) {
+sim::LidarConfig read_scanner(const MissionDocument& document, int& wpml_payload) {
   const SensorDescription description =
       find_sensor(named_from(find_folder(document), *document.sensor.lidar));
+  wpml_payload = description.wpml_payload;
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,
@@ -372,6 +374,13 @@ MissionSetup make_setup(const MissionDocument& document,
   return setup;
 }
 
+/// The vehicles carry the scanner instead of their own camera.
+void carry(int payload, Profiles& profiles) {
+  if (profiles.vehicle) profiles.vehicle->wpml.payload = payload;
+  for (flight::Vehicle& vehicle : profiles.fleet) vehicle.wpml.payload = payload;
+  for (flight::Vehicle& vehicle : profiles.substitutes) vehicle.wpml.payload = payload;
+}
+
 }  // namespace
 
 /// Inputs of resolve(), stored to resolve the mission again with other keys.
@@ -418,7 +427,9 @@ Profiles read_profiles(const MissionDocument& document) {
     }
   }
   try {
-    profiles.scanner = read_scanner(document);
+    int payload = 0;
+    profiles.scanner = read_scanner(document, payload);
+    carry(payload != 0 ? payload : flight::psdk_payload, profiles);
     find_scanner_kind(*profiles.scanner);
   } catch (const Error& error) {
     document.reject("sensor.lidar", error.what());

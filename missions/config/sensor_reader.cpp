@@ -214,6 +214,8 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
   } else {
     description.sensor = read_lidar(root, kind == Kind::rosette);
   }
+  constexpr int max_payload = 99999;
+  description.wpml_payload = root.integer("wpml_payload", 0, 0, max_payload);
   root.finish();
   try {
     std::visit([](const auto& config) { config.validate(); }, description.sensor);

@@ -23,6 +23,7 @@ struct SensorDescription {
   std::variant<sim::LidarConfig, sim::DepthCameraConfig> sensor;
   std::optional<RangeInterval> useful_range;  ///< of a camera that states one
   std::string text;                           ///< contents of the description file
+  int wpml_payload = 0;                       ///< DJI payload number of a scanner, or 0.
 };
 
 /// Parses a sensor description. `file` is the file name in messages. Throws Error{bad_config} with

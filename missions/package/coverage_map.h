@@ -28,6 +28,7 @@ geometry::AttributedCloud coverage_map(std::span<const survey::surfel::Estimated
 struct TrueCoverage {
   geometry::SurfaceSamples samples;
   std::vector<std::uint8_t> is_covered, is_visible, is_attainable;
+  double area = 0.0;  ///< of the surface [m^2]
 };
 
 /// Writes the samples as PLY with normals, the marks `covered`, `visible` and `attainable`, and

@@ -66,10 +66,6 @@ std::string fleet_text(const FleetMission& fleet, bool is_verbose) {
         fmt::format("  {:9} take-off at {:.0f} s, landing at {:.0f} s: {}\n",
                     fmt::format("vehicle {}", row.vehicle + 1), row.start, row.landing, row.file);
   }
-  for (const flight::Unreached& missed : fleet.unreached) {
-    text += fmt::format("  skipped   view {} (by the fleet): {}\n", missed.capture_point.view_index,
-                        missed.reason);
-  }
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "flight/clearance/interruptible_space.h"
 #include "flight/export/parameters.h"
 #include "flight/export/photo_runs.h"
+#include "flight/export/scanner_commands.h"
 #include "flight/interpreter/verified_export.h"
 #include "geometry/error.h"
 #include "missions/package/fleet/timetable_file.h"
@@ -164,13 +165,14 @@ class RouteFiles {
     const auto written_before = static_cast<std::ptrdiff_t>(files_.written.size());
     try {
       const flight::FlightPlan plan = plan_for(format, sortie, number, notes);
-      const std::vector<flight::FlightPlan> parts = flight::split_glb(plan, format);
+      const std::vector<flight::FlightPlan> parts = flight::split_plan(plan, format);
       if (parts.size() > 1) names = names_of_parts(format, sortie, parts.size());
       for (std::size_t i = 0; i < parts.size(); ++i) {
         const flight::ExportResult result =
             export_flight(parts[i], format, space_, folder_.stage(names[i]));
         files_.written.push_back({names[i], flight::format_info(format).heights,
-                                  result.min_clearance, sortie, flight_time(parts[i])});
+                                  result.min_clearance, sortie, flight_time(parts[i]), format,
+                                  result.captures});
         notes.insert(notes.end(), result.notes.begin(), result.notes.end());
       }
       if (parts.size() > 1) {
@@ -216,6 +218,14 @@ class RouteFiles {
         flight_plan(route_, sortie, name_ + number, options_.site, rules_, corners), format,
         options_, notes);
     if (!supports_curves) plan = with_runs(std::move(plan), format, notes);
+    if (options_.capture.is_scanner) {
+      const geometry::ScannerMount mount =
+          options_.capture.mount.value_or(geometry::ScannerMount{});
+      plan = flight::with_scanner_commands(
+          std::move(plan), format,
+          {mount.view_azimuth, mount.view_pitch, options_.capture.scans_in_flight()},
+          route_.sorties[sortie].energy_left, notes);
+    }
     verify_autopilot_returns(plan, space_,
                              options_.max_return_altitude(plan.pad.z(), plan.pad.z()));
     if (has_parameters(format) && plan.returns) {

@@ -14,6 +14,7 @@
 #include "flight/clearance/clearance.h"
 #include "flight/export/export.h"
 #include "flight/flight_options.h"
+#include "flight/interpreter/interpreted_route.h"
 #include "flight/route/route.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/pose/pose.h"
@@ -58,6 +59,8 @@ struct FlightFile {
   double min_clearance = 0.0;  ///< Verified minimum clearance [m], see flight::LegVerification.
   std::size_t sortie = 0;      ///< Index of the sortie in the route.
   double duration = 0.0;       ///< Duration with the autopilot that the file is written for [s].
+  flight::Format format = flight::Format::plan;
+  std::vector<flight::InterpretedStop> captures{};  ///< as read back, see flight::captures_of()
 };
 
 struct FlightFiles {
@@ -100,19 +103,17 @@ struct ReplannedMission {
 };
 
 struct FleetMission;
+struct WrittenMission;
 
 /// Route and files of a finished survey.
 struct SurveyMission {
   flight::Route route;  ///< Verified route, without stations if planning failed.
   FlightFiles files;
-  /// Limits on motion blur and skew of the images.
-  std::optional<flight::ImageMotionBounds> image_motion{};
+  std::optional<flight::ImageMotionBounds> image_motion{};  ///< how sharp they are
   std::string failure;  ///< Reason why planning failed; empty after success.
-  std::optional<ReplannedMission> replanned{};  ///< Result of replanning, if it was enabled.
-  std::optional<ReflightCoverage>
-      again{};  ///< Coverage of a scanner's mission along the survey's paths.
-  /// Division of the route among several vehicles; null without a fleet.
-  std::shared_ptr<const FleetMission> fleet{};
+  std::optional<ReplannedMission> replanned{};      ///< Result of replanning, if it was enabled.
+  std::shared_ptr<const WrittenMission> written{};  ///< what the files cover, if simulated
+  std::shared_ptr<const FleetMission> fleet{};  ///< the same by several vehicles, if there are any
 };
 
 /// Returns true for names of route files (in any format or in `format`). The first overload also

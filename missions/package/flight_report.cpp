@@ -102,14 +102,9 @@ std::string flight_text(const SurveyMission& flight, bool is_verbose) {
       clearance.tracking_error, clearance.map_error, clearance.margin);
   text += fly_through_text(route);
   if (flight.replanned) text += replanned_text(*flight.replanned);
-  if (flight.again) text += "  coverage  " + again_text(*flight.again) + "\n";
   text += landing_surfaces_text(route.options.landing_surfaces);
   text += return_text(flight);
   text += image_motion_text(flight);
-  for (const flight::Unreached& missed : route.unreached) {
-    text +=
-        fmt::format("  skipped   view {}: {}\n", missed.capture_point.view_index, missed.reason);
-  }
   std::string files;
   for (const FlightFile& file : flight.files.written) {
     files += " " + file.name;

@@ -20,12 +20,14 @@
 #include "missions/evaluation/coverage.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
+#include "missions/package/field_sheet.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/former_fields.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/replanned_mission.h"
 #include "missions/package/settings.h"
+#include "missions/package/written_mission.h"
 #include "missions/session/en_route_frames.h"
 #include "missions/simulation/measurement.h"
 #include "missions/simulation/survey_journal.h"
@@ -110,13 +112,7 @@ void plan_route(const evaluation::SimulationOptions& simulation, const session::
                                            first.reason);
   }
   if (flight.route.capture_points.empty()) return;
-  if (!record.surface) {
-    const bool is_fly_through = options.style == flight::FlightStyle::pass;
-    if ((scans_in_flight || is_fly_through) && coverage.fly_again) {
-      flight.again = simulate_reflight(coverage, session::measured_views(options, flight.route));
-    }
-    return;
-  }
+  if (!record.surface) return;
   flight.replanned = replan_mission(simulation.survey, choice_options(simulation.sensor, run),
                                     record, coverage, std::move(flight.route), stop);
   flight.route = std::move(flight.replanned->choice.route);
@@ -173,6 +169,23 @@ void stage_coverage(const session::SurveyRecord& record, const CoverageFigures& 
     geometry::write_cloud(folder.stage(coverage_name), make_columns(coverage_map(patches)));
   }
   if (coverage.truth) write_true_coverage(folder.stage(true_coverage_name), *coverage.truth);
+}
+
+/// For the crew: on the true surface of a simulated survey, else on the cloud.
+std::string sheet_of(const config::MissionSetup& setup, const session::SurveyRecord& record,
+                     const CoverageFigures& coverage, const SurveyMission& flight) {
+  const geometry::CameraConfig& camera = setup.flight().capture.camera;
+  FieldSheetSite site{
+      .mission = setup.name,
+      .sensor = setup.lidar.value_or("camera of " + std::to_string(camera.width) + " x " +
+                                     std::to_string(camera.height) + " pixels"),
+      .survey_coverage = coverage.all,
+      .surface = record.cloud.positions};
+  if (coverage.truth) {
+    site.surface = coverage.truth->samples.points;
+    site.is_covered = coverage.truth->is_covered;
+  }
+  return field_sheet(site, setup.flight(), flight);
 }
 
 }  // namespace
@@ -245,17 +258,18 @@ CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
       if (marks) figures.attainable_coverage = evaluation::marked_share(*marks);
       is_attainable = marks.value_or(is_attainable);
     }
-    figures.fly_again = [&options, &scene, seed = record.seed,
-                         threads](const std::vector<session::ViewInFlight>& views) {
-      return simulation::reflight_coverage(options, scene, views, seed, threads);
+    figures.fly_again = [&options, &scene, seed = record.seed, threads](
+                            const std::vector<session::ViewInFlight>& views,
+                            const simulation::VisitScan& visit, const std::stop_token& asked) {
+      return simulation::reflight_coverage(options, scene, views, seed, threads, visit, asked);
     };
   }
+  const double area = geometry::surface_area(scene.model());
   if (!record.estimate) {
-    figures.patches = true_patches(scene.samples(), geometry::surface_area(scene.model()),
-                                   record.is_covered, is_visible);
+    figures.patches = true_patches(scene.samples(), area, record.is_covered, is_visible);
   }
   figures.truth = {scene.samples(), record.is_covered, std::move(is_visible),
-                   std::move(is_attainable)};
+                   std::move(is_attainable), area};
   return figures;
 }
 
@@ -274,7 +288,8 @@ std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
                                            geometry::OutputFolder& folder, std::stop_token stop) {
   folder.replace([](std::string_view name) {
     return name == free_space_name || name == coverage_name || name == true_coverage_name ||
-           name == fly_test_name || name == report_name || is_flight_file(name);
+           name == fly_test_name || name == report_name || name == field_sheet_name ||
+           is_flight_file(name);
   });
   std::vector<Eigen::Vector3f> normals;
   std::optional<SurveyMission> flight;
@@ -283,12 +298,16 @@ std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
       flight = planned_mission(setup.simulation, setup.run, record, coverage, stop);
       if (flight) {
         stage_mission(setup.name, setup.flight(), setup.run.threads, record, *flight, folder, stop);
+        flight->written = written_mission(setup.simulation, coverage, *flight, stop);
       }
     } else {
       const double radius = 2.0 * setup.survey().planner.resolution_radius;
       normals = cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
     }
   });
+  if (flight && flight->failure.empty() && !flight->route.sorties.empty()) {
+    folder.write(field_sheet_name, sheet_of(setup, record, coverage, *flight));
+  }
   const std::filesystem::path cloud_file = folder.stage("cloud.ply");
   geometry::parallel_for(2, threads, [&](std::size_t part) {
     if (part == 0) {

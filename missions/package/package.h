@@ -33,10 +33,12 @@ struct CoverageFigures {
   /// Ground-truth surface for the map and the holes of a survey whose planner has no surface
   /// estimate; see true_patches().
   std::vector<survey::surfel::EstimatedPatch> patches = {};
-  std::optional<TrueCoverage> truth = {};  ///< Ground-truth coverage of a simulated survey.
-  /// Computes the coverage of a simulated re-flight. Null if a re-flight cannot be simulated or if
-  /// the survey was interrupted.
-  std::function<simulation::CoveredAgain(const std::vector<session::ViewInFlight>&)> fly_again = {};
+  std::optional<TrueCoverage> truth = {};  ///< of a simulated survey
+  /// What views cover when they are flown again, see reflight_coverage(); null where that
+  /// cannot be simulated, or the survey was interrupted.
+  std::function<simulation::CoveredAgain(const std::vector<session::ViewInFlight>&,
+                                         const simulation::VisitScan&, const std::stop_token&)>
+      fly_again = {};
 };
 
 /// Computes the coverage of a simulated survey. The visible and attainable fractions are left empty

@@ -1,6 +1,6 @@
 #include "missions/package/pilot_text.h"
 
-#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -155,82 +155,127 @@ std::vector<std::string> pilot_steps(const Part& part) {
   return steps;
 }
 
-std::string part_text(const Part& part, const std::string& whom) {
-  std::string text = "To do before the flight, " + whom + ":\n";
-  std::size_t number = 0;
-  for (const std::string& step : pilot_steps(part)) {
-    text += fmt::format("  {}. {}\n", ++number, step);
+/// The parts of a mission that have a route, with what to call them.
+std::vector<std::pair<std::string, Part>> make_parts(const flight::FlightOptions& options,
+                                                     const SurveyMission& flight) {
+  if (!flight.fleet) {
+    return {{flight.route.vehicle.name, {options, flight.route, flight.files}}};
   }
-  return text;
+  std::vector<std::pair<std::string, Part>> parts;
+  for (std::size_t v = 0; v < flight.fleet->members.size(); ++v) {
+    const FleetMember& member = flight.fleet->members[v];
+    if (member.route.sorties.empty()) continue;
+    parts.push_back({fmt::format("vehicle {} ({})", v + 1, member.route.vehicle.name),
+                     {member.flight, member.route, member.files}});
+  }
+  return parts;
 }
 
-/// Lists the limits of the verification that the pilot must check.
-std::string limits_text(const flight::FlightOptions& options, const SurveyMission& flight) {
-  std::string text =
-      "Not verified; the pilot must check: moving obstacles, landings other than at the take-off "
-      "point";
+using Warnings = std::vector<std::string>;
+
+/// Warns about pads with unknown slope.
+void add_slope(const flight::Route& route, const std::string& whose, Warnings& warnings) {
+  const std::size_t rally = route.options.returns ? route.options.returns->rally.size() : 0;
+  const std::size_t known = route.options.landing_surfaces.size();
+  if (known > rally) return;
+  std::string what = "the take-off pad" + whose + " is";
+  if (rally > 0) {
+    what = fmt::format("{} of {} landing points{} (take-off point, rally points) is",
+                       1 + rally - known, 1 + rally, whose);
+  }
+  warnings.push_back("slope of " + what + " unknown. Inspect the pad and set flight.pad_slope_deg");
+}
+
+/// Warns if the flight time is a range, with its maximum.
+void add_time(const flight::Route& route, const std::string& whose, Warnings& warnings) {
+  const double longest = route.options.conditions.longest_flight;
+  if (longest == 1.0 || route.sorties.empty()) return;
+  warnings.push_back(fmt::format(
+      "flight time{} {:.1f} to {:.1f} min: PX4 took up to {:.1f} times the estimated time in its "
+      "simulator; {} planned for the longer time, one battery each",
+      whose, route.duration / 60.0, longest * route.duration / 60.0, longest,
+      support::counted(route.sorties.size(), "sortie")));
+}
+
+/// Views that the files lack, and what can be done.
+void add_skipped(const std::vector<flight::Unreached>& unreached, const std::string& whose,
+                 Warnings& warnings) {
+  for (const flight::Unreached& missed : unreached) {
+    warnings.push_back(fmt::format("view {} is not in the route files{}: {}",
+                                   missed.capture_point.view_index, whose, missed.reason));
+  }
+}
+
+void add_images(const SurveyMission& flight, Warnings& warnings) {
+  if (!flight.image_motion || flight.image_motion->is_sharp()) return;
+  warnings.push_back(fmt::format(
+      "image motion of more than one pixel at {:.1f} m. Shorten sensor.exposure or sensor.readout, "
+      "or raise the view distance",
+      flight.image_motion->distance));
+}
+
+bool has_route(const SurveyMission& flight) {
+  return flight.failure.empty() && !flight.route.sorties.empty();
+}
+
+}  // namespace
+
+std::vector<PilotSteps> pilot_steps(const flight::FlightOptions& options,
+                                    const SurveyMission& flight) {
+  std::vector<PilotSteps> all;
+  if (!has_route(flight)) return all;
+  for (const auto& [whom, part] : make_parts(options, flight)) {
+    all.push_back({whom, pilot_steps(part)});
+  }
+  return all;
+}
+
+std::string unverified_text(const flight::FlightOptions& options, const SurveyMission& flight) {
+  std::string text = "moving obstacles, landings other than at the take-off point";
   const bool has_rally =
       flight.route.options.returns && !flight.route.options.returns->rally.empty();
   if (has_rally) text += " and the rally points";
   if (!options.airspace.geofence.empty()) text += ", returns from outside the geofence";
   text += fmt::format(", the climb to {:.1f} m above take-off", flight.route.options.takeoff_climb);
   if (has_rally) text += ", the airspace above the rally points";
-  return text + ", unobserved airspace outside flight.unknown_box.\n";
+  return text + ", unobserved airspace outside flight.unknown_box";
 }
 
-/// Warns about pads with unknown slope.
-std::string slope_warning(const flight::Route& route, const std::string& whose) {
-  const std::size_t rally = route.options.returns ? route.options.returns->rally.size() : 0;
-  const std::size_t known = route.options.landing_surfaces.size();
-  if (known > rally) return "";
-  std::string what = "the take-off pad" + whose + " is";
-  if (rally > 0) {
-    what = fmt::format("{} of {} landing points{} (take-off point, rally points) is",
-                       1 + rally - known, 1 + rally, whose);
-  }
-  return "Warning: slope of " + what + " unknown. Inspect the pad and set flight.pad_slope_deg.\n";
-}
-
-/// Warns if the flight time is a range, with its maximum.
-std::string time_warning(const flight::Route& route, const std::string& whose) {
-  const double longest = route.options.conditions.longest_flight;
-  if (longest == 1.0 || route.sorties.empty()) return "";
-  return fmt::format(
-      "Warning: flight time{} {:.1f} to {:.1f} min: PX4 took up to {:.1f} times the estimated time "
-      "in its simulator; {} planned for the longer time, one battery each.\n",
-      whose, route.duration / 60.0, longest * route.duration / 60.0, longest,
-      support::counted(route.sorties.size(), "sortie"));
-}
-
-std::string images_warning(const SurveyMission& flight) {
-  if (!flight.image_motion || flight.image_motion->is_sharp()) return "";
-  return fmt::format(
-      "Warning: image motion of more than one pixel at {:.1f} m. Shorten sensor.exposure or "
-      "sensor.readout, or raise the view distance.\n",
-      flight.image_motion->distance);
-}
-
-}  // namespace
-
-std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight) {
-  if (!flight.failure.empty() || flight.route.sorties.empty()) return "";
-  std::string text, warnings;
-  if (flight.fleet) {
+std::vector<std::string> pilot_warnings(const SurveyMission& flight) {
+  Warnings warnings;
+  add_skipped(flight.route.unreached, "", warnings);
+  if (!flight.fleet) {
+    add_slope(flight.route, "", warnings);
+    add_time(flight.route, "", warnings);
+  } else {
     for (std::size_t v = 0; v < flight.fleet->members.size(); ++v) {
       const FleetMember& member = flight.fleet->members[v];
       if (member.route.sorties.empty()) continue;
-      const std::string name = fmt::format("vehicle {}", v + 1);
-      text += part_text({member.flight, member.route, member.files},
-                        name + " (" + member.route.vehicle.name + ")");
-      warnings += slope_warning(member.route, " of " + name);
-      warnings += time_warning(member.route, " of " + name);
+      const std::string whose = fmt::format(" of vehicle {}", v + 1);
+      add_slope(member.route, whose, warnings);
+      add_time(member.route, whose, warnings);
     }
-    text += "To do, all vehicles: start each sortie at its time in timetable.csv.\n";
-  } else {
-    text += part_text({options, flight.route, flight.files}, flight.route.vehicle.name);
-    warnings += slope_warning(flight.route, "") + time_warning(flight.route, "");
+    add_skipped(flight.fleet->unreached, " of the fleet", warnings);
   }
-  return text + limits_text(options, flight) + warnings + images_warning(flight);
+  add_images(flight, warnings);
+  return warnings;
+}
+
+std::string pilot_text(const flight::FlightOptions& options, const SurveyMission& flight) {
+  if (!has_route(flight)) return "";
+  std::string text;
+  for (const PilotSteps& part : pilot_steps(options, flight)) {
+    text += "To do before the flight, " + part.whom + ":\n";
+    for (std::size_t i = 0; i < part.steps.size(); ++i) {
+      text += fmt::format("  {}. {}\n", i + 1, part.steps[i]);
+    }
+  }
+  if (flight.fleet) {
+    text += "To do, all vehicles: start each sortie at its time in timetable.csv.\n";
+  }
+  text += "Not verified; the pilot must check: " + unverified_text(options, flight) + ".\n";
+  for (const std::string& warning : pilot_warnings(flight)) text += "Warning: " + warning + ".\n";
+  return text;
 }
 
 }  // namespace skycap::missions::package

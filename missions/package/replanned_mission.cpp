@@ -57,7 +57,11 @@ std::vector<geometry::View> collect_all_views(const session::SurveyRecord& recor
 
 ReflightCoverage simulate_reflight(const CoverageFigures& coverage,
                                    const std::vector<session::ViewInFlight>& views) {
-  const simulation::CoveredAgain covered = coverage.fly_again(views);
+  return simulate_reflight(coverage, coverage.fly_again(views, {}, {}));
+}
+
+ReflightCoverage simulate_reflight(const CoverageFigures& coverage,
+                                   const simulation::CoveredAgain& covered) {
   ReflightCoverage again{evaluation::marked_share(covered.stored), {}, {}};
   if (coverage.truth && !coverage.truth->is_visible.empty()) {
     again.visible = evaluation::covered_share(covered.stored, coverage.truth->is_visible);

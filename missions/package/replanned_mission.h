@@ -34,6 +34,9 @@ ReplannedMission replan_mission(const session::SurveyOptions& options, const Cho
 /// `coverage.fly_again` must be set.
 ReflightCoverage simulate_reflight(const CoverageFigures& coverage,
                                    const std::vector<session::ViewInFlight>& views);
+/// The same where it is known which samples are covered.
+ReflightCoverage simulate_reflight(const CoverageFigures& coverage,
+                                   const simulation::CoveredAgain& covered);
 
 /// Returns the coverage of a simulated re-flight for the summary (JSON) and for printing (text).
 nlohmann::ordered_json again_json(const ReflightCoverage& again);

@@ -14,7 +14,9 @@
 #include "missions/package/replanned_mission.h"
 #include "missions/package/route_json.h"
 #include "missions/package/settings.h"
+#include "missions/package/surface_json.h"
 #include "missions/package/target_coverage.h"
+#include "missions/package/written_mission.h"
 #include "missions/site_data/site_priors.h"
 #include "missions/support/json_text.h"
 #include "missions/version.h"
@@ -77,41 +79,8 @@ Json estimate_summary(const session::SurveyRecord& record, const CoverageFigures
 Json surface_summary(const session::SurveyRecord& record, const CoverageFigures& coverage) {
   const auto patches = known_surface(record, coverage);
   if (patches.empty()) return {};
-  const MissingSurface missing = missing_surface(patches, collect_views(record));
-  Json holes = Json::array();
-  for (const Hole& hole : missing.holes) {
-    holes.push_back({{"reason", to_string(hole.reason)},
-                     {"area_m2", hole.area},
-                     {"centre", to_json(hole.centre)},
-                     {"normal", to_json(hole.normal)},
-                     {"radius_m", hole.radius},
-                     {"pieces", hole.hole_patches},
-                     {"nearest_view", hole.nearest_view},
-                     {"view_distance_m", hole.view_distance}});
-  }
-  return {{"known_by", record.estimate ? "planner" : "simulator"},
-          {"area_m2", missing.area},
-          {"link_m", missing.link},
-          {"least_hole_m2", missing.min_hole_area},
-          {"holes", holes},
-          {"smaller", {{"holes", missing.smaller}, {"area_m2", missing.smaller_area}}},
-          {"rest_m2", missing.rest}};
-}
-
-Json to_json(const CoveredPart& part) {
-  return {{"name", part.name}, {"area_m2", part.area}, {"coverage", part.covered}};
-}
-
-Json targets_summary(const std::vector<TargetCoverage>& targets) {
-  Json list = Json::array();
-  for (const TargetCoverage& target : targets) {
-    Json json = to_json(target.object);
-    json["within_m"] = target.radius;
-    json["kinds"] = Json::array();
-    for (const CoveredPart& kind : target.kinds) json["kinds"].push_back(to_json(kind));
-    list.push_back(std::move(json));
-  }
-  return list;
+  return missing_json(missing_surface(patches, collect_views(record)),
+                      record.estimate ? "planner" : "simulator");
 }
 
 bool has_target(const scene::SceneOptions& scene) {
@@ -264,7 +233,7 @@ std::string summary_json(const config::MissionSetup& setup, const session::Surve
       {"estimate", estimate_summary(record, coverage, setup.survey().planner.resolution_radius)},
       {"surface", surface_summary(record, coverage)}};
   if (has_target(setup.scene())) {
-    summary["targets"] = targets_summary(target_coverage(
+    summary["targets"] = targets_json(target_coverage(
         setup.scene(), setup.evaluation().registration_distance, record.cloud.positions));
   }
   if (flight && flight->failure.empty()) {
@@ -272,7 +241,7 @@ std::string summary_json(const config::MissionSetup& setup, const session::Surve
     summary["min_clearance_m"] = flight->route.min_clearance;
     summary["flight"] = flight_summary(*record.flight_record, *flight);
     if (flight->replanned) summary["flight"]["replanned"] = replanned_json(*flight->replanned);
-    if (flight->again) summary["flight"]["reflight"] = again_json(*flight->again);
+    if (flight->written) summary["flight"]["written"] = written_json(*flight->written);
     if (flight->fleet) {
       summary["flight"]["fleet"] =
           fleet_json(*flight->fleet, setup.text("flight.fleet_goal"), setup.flight().fleet.rule());

@@ -42,51 +42,72 @@ CoveredPart make_part(const std::string& name, const site_data::SurfacePoints& p
           all > 0 ? static_cast<double>(covered) / static_cast<double>(all) : 0.0};
 }
 
-TargetCoverage compute_target_coverage(const site_data::Object& object,
-                                       const site_data::SurfacePoints& points,
-                                       std::span<const Eigen::Vector3f> measured, double radius) {
-  evaluation::CoverageMeter meter(points.positions, radius);
-  meter.add(measured);
-  const auto& is_covered = meter.is_covered();
-  TargetCoverage coverage{.radius = radius};
-  coverage.object = make_part(object.id, points, is_covered, [](SurfaceKind) { return true; });
-  for (const auto& [kind, name] : reported_kinds) {
-    const auto is_meant = [kind = kind](SurfaceKind other) { return other == kind; };
-    CoveredPart part = make_part(name, points, is_covered, is_meant);
-    if (part.area > 0.0) coverage.kinds.push_back(std::move(part));
-  }
-  return coverage;
-}
-
 std::string to_string(const CoveredPart& part) {
   return fmt::format("{:.2f}% of {:.4g} m^2", 100.0 * part.covered, part.area);
 }
 
 }  // namespace
 
-std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
-                                            double registration_distance,
-                                            std::span<const Eigen::Vector3f> measured) {
-  std::vector<TargetCoverage> targets;
-  if (!scene.priors) return targets;
+struct TargetMeter::Target {
+  const site_data::Object* object;
+  site_data::SurfacePoints points;
+  double radius;
+  evaluation::CoverageMeter meter;
+
+  TargetCoverage coverage() const {
+    const auto& is_covered = meter.is_covered();
+    TargetCoverage coverage{.radius = radius};
+    coverage.object = make_part(object->id, points, is_covered, [](SurfaceKind) { return true; });
+    for (const auto& [kind, name] : reported_kinds) {
+      const auto is_meant = [kind = kind](SurfaceKind other) { return other == kind; };
+      CoveredPart part = make_part(name, points, is_covered, is_meant);
+      if (part.area > 0.0) coverage.kinds.push_back(std::move(part));
+    }
+    return coverage;
+  }
+};
+
+TargetMeter::TargetMeter(const scene::SceneOptions& scene, double registration_distance) {
+  if (!scene.priors) return;
   const site_data::SitePriors& site = *scene.priors;
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     if (site.sources[i].role != site_data::Role::target) continue;
     const double radius = registration_distance + site.priors[i].uncertainty;
     for (const site_data::Object& object : site.priors[i].objects) {
-      const site_data::SurfacePoints points =
+      site_data::SurfacePoints points =
           site_data::spread_over(object, max_points, radius / points_per_radius);
       if (points.positions.empty()) continue;
-      targets.push_back(compute_target_coverage(object, points, measured, radius));
+      evaluation::CoverageMeter meter(points.positions, radius);
+      targets_.push_back({&object, std::move(points), radius, std::move(meter)});
     }
   }
-  return targets;
 }
 
-std::string target_text(const std::vector<TargetCoverage>& targets) {
+TargetMeter::TargetMeter(TargetMeter&&) noexcept = default;
+TargetMeter::~TargetMeter() = default;
+
+void TargetMeter::add(std::span<const Eigen::Vector3f> measured) {
+  for (Target& target : targets_) target.meter.add(measured);
+}
+
+std::vector<TargetCoverage> TargetMeter::coverage() const {
+  std::vector<TargetCoverage> all;
+  for (const Target& target : targets_) all.push_back(target.coverage());
+  return all;
+}
+
+std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
+                                            double registration_distance,
+                                            std::span<const Eigen::Vector3f> measured) {
+  TargetMeter meter(scene, registration_distance);
+  meter.add(measured);
+  return meter.coverage();
+}
+
+std::string target_text(const std::vector<TargetCoverage>& targets, const std::string& label) {
   std::string text;
   for (const TargetCoverage& target : targets) {
-    text += fmt::format("  target    {}: {}", target.object.name, to_string(target.object));
+    text += fmt::format("  {:<9} {}: {}", label, target.object.name, to_string(target.object));
     for (const CoveredPart& kind : target.kinds) text += ", " + kind.name + " " + to_string(kind);
     text += fmt::format("; within {:.2f} m of the map's surface\n", target.radius);
   }

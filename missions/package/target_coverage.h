@@ -27,12 +27,30 @@ struct TargetCoverage {
   double radius = 0.0;
 };
 
-/// Computes the coverage of each target object that has a surface, in mission order.
+/// Takes in measurements in any pieces.
+class TargetMeter {
+ public:
+  /// Of each object of the targets that has a surface to be seen, in the order of the mission.
+  /// Keeps references to the scene's prior data.
+  TargetMeter(const scene::SceneOptions& scene, double registration_distance);
+  TargetMeter(TargetMeter&&) noexcept;
+  ~TargetMeter();
+
+  void add(std::span<const Eigen::Vector3f> measured);
+  std::vector<TargetCoverage> coverage() const;
+
+ private:
+  struct Target;
+  std::vector<Target> targets_;
+};
+
+/// The same of a cloud that is at hand.
 std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
                                             double registration_distance,
                                             std::span<const Eigen::Vector3f> measured);
 
-/// Returns one line per target, or an empty string without targets.
-std::string target_text(const std::vector<TargetCoverage>& targets);
+/// A line for each, which begins with the label; empty without any.
+std::string target_text(const std::vector<TargetCoverage>& targets,
+                        const std::string& label = "target");
 
 }  // namespace skycap::missions::package

@@ -15,6 +15,7 @@
 #include "geometry/io/json.h"
 #include "geometry/parallel.h"
 #include "missions/package/coverage_map.h"
+#include "missions/package/field_sheet.h"
 #include "missions/package/fleet/timetable_file.h"
 #include "missions/package/former_fields.h"
 #include "missions/package/package.h"
@@ -37,8 +38,9 @@ geometry::AttributedCloud cloud_if_there(const fs::path& file) {
 
 /// Returns the files in the folder other than the summary.
 Json collect_files(const Json& summary, const ResultFinder& results) {
-  std::vector<std::string> names = {"cloud.ply", "coverage.ply",   "true_coverage.ply",
-                                    "views.csv", "trajectory.tum", package::free_space_name};
+  std::vector<std::string> names = {
+      "cloud.ply",      "coverage.ply",           "true_coverage.ply",      "views.csv",
+      "trajectory.tum", package::free_space_name, package::field_sheet_name};
   const auto add_all = [&](const Json::json_pointer& pointer, const char* field) {
     if (!summary.contains(pointer) || !summary[pointer].is_array()) return;
     for (const Json& entry : summary[pointer]) {

@@ -38,7 +38,23 @@ Light coverage(const std::string& name, const std::string& figure, const Json& v
                       100.0 * fair_coverage)};
 }
 
+/// Of the route files that cover least.
+void add_written_coverage(const Json& summary, std::vector<Light>& lights) {
+  const Json written = at(summary, "/flight/written");
+  if (!written.is_array() || written.empty()) return;
+  std::size_t min = 0;
+  const char* field = "coverage";
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    if (written[i].value("coverage_visible", Json()).is_number()) field = "coverage_visible";
+    if (written[i].at(field).get<double>() < written[min].at(field).get<double>()) min = i;
+  }
+  lights.push_back(coverage("Coverage of the route files (simulated re-flight)",
+                            fmt::format("flight.written.{}.{}", min, field),
+                            written[min].at(field)));
+}
+
 void add_coverage(const Json& summary, std::vector<Light>& lights) {
+  add_written_coverage(summary, lights);
   if (const Json estimated = at(summary, "/estimate/estimated_coverage"); estimated.is_number()) {
     lights.push_back(
         coverage("Coverage (planner estimate)", "estimate.estimated_coverage", estimated));

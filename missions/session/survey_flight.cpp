@@ -131,7 +131,7 @@ bool SurveyFlight::may_be_at(const Vector3d& location) const try {
   if (impl_->is_crowded && !impl_->space.is_free({location, location}, impl_->legs.clearance())) {
     return false;
   }
-  return !impl_->legs.returns() || impl_->legs.returns()->no_return_reason(location).empty();
+  return !impl_->legs.returns() || !impl_->legs.returns()->no_return_reason(location);
 } catch (const Interrupted&) {
   throw survey::Interrupted();
 }

@@ -31,7 +31,8 @@ std::vector<Eigen::Vector3f> Measurement::measure(const geometry::View& view, st
 CoveredAgain reflight_coverage(const evaluation::SimulationOptions& options,
                                const evaluation::SurveyScene& scene,
                                const std::vector<session::ViewInFlight>& views, std::uint64_t seed,
-                               unsigned threads) {
+                               unsigned threads, const VisitScan& visit,
+                               const std::stop_token& stop) {
   MountedSensor sensor(options, seed ^ reflight_stream);
   const double near = options.evaluation.registration_distance;
   evaluation::CoverageMeter stored(scene.samples().points, near),
@@ -40,10 +41,16 @@ CoveredAgain reflight_coverage(const evaluation::SimulationOptions& options,
   const Eigen::AlignedBox3d box = options.scene_box();
   const bool keeps_all = options.sensor.scans_in_flight();
   geometry::Scan scan;
-  for (std::size_t i = 0; i < views.size(); ++i) {
+  for (std::size_t i = 0; i < views.size() && !stop.stop_requested(); ++i) {
     scan = sensor.scan(scene.scene(), views[i], i, threads, std::move(scan));
     measured.add(scan.points);
-    if (!keeps_all) stored.add(cloud.store(scan.points, box));
+    if (keeps_all) {
+      if (visit) visit(scan.points, scan.points);
+      continue;
+    }
+    const std::vector<Eigen::Vector3f> kept = cloud.store(scan.points, box);
+    stored.add(kept);
+    if (visit) visit(kept, scan.points);
   }
   return {keeps_all ? measured.is_covered() : stored.is_covered(), measured.is_covered()};
 }

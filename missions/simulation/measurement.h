@@ -4,6 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -49,12 +52,19 @@ struct CoveredAgain {
   std::vector<std::uint8_t> measured;  ///< Coverage by all points, as in a recording.
 };
 
-/// Computes the coverage of a simulated re-flight of `views`, starting with an empty cloud. The
-/// noise differs from that of the survey with this seed. For continuously measuring scanners,
-/// `views` are the scans.
+/// The points of a scan that is taken again: those stored at the mission's spacing (of a scanner
+/// that measures in flight all), and all of them.
+using VisitScan = std::function<void(std::span<const Eigen::Vector3f> stored,
+                                     std::span<const Eigen::Vector3f> measured)>;
+
+/// What the views cover when they are flown again: from an empty cloud, and with other noise than
+/// the survey of that seed had. Of a scanner that measures in flight the views are its scans.
+/// `visit`, where it is not empty, gets the points of each scan, in their order. Once `stop` is
+/// requested no further views are flown, and the result is of no use.
 CoveredAgain reflight_coverage(const evaluation::SimulationOptions& options,
                                const evaluation::SurveyScene& scene,
                                const std::vector<session::ViewInFlight>& views, std::uint64_t seed,
-                               unsigned threads);
+                               unsigned threads, const VisitScan& visit = {},
+                               const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::simulation

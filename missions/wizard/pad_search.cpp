@@ -17,6 +17,10 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+/// Farther from home than this DJI's vehicles climb before they return (flight/return_path/
+/// return_law.h): the manuals' 50 m, and 4 m for their own measure and for rounding [m].
+constexpr double climbs_beyond = 54.0;
+
 flight::Obstacles without_fence(flight::Obstacles rules) {
   rules.fence.reset();
   return rules;
@@ -30,13 +34,24 @@ PadSearch::PadSearch(flight::FlightOptions flight, std::vector<AlignedBox3d> unk
       space_(without_fence(flight_.rules())),
       pad_space_(without_ground(without_fence(flight_.rules()))) {}
 
-std::optional<Vector3d> PadSearch::find_pad_beside(const AlignedBox3d& unknown, double top) const {
+std::optional<Vector3d> PadSearch::find_pad_beside(const AlignedBox3d& unknown, double top,
+                                                   std::optional<double> view_reach) const {
+  constexpr double farthest = 100.0, farthest_of_dji = 200.0;
   const bool is_dji = flight_.required_vehicle().autopilot == flight::AutopilotType::dji;
-  const double clearance = flight_.clearance;
-  const double first = 2.0 * clearance + 1.0 + (is_dji ? flight::dji_lands_at_once : 0.0);
+  if (is_dji && view_reach) {
+    const double first = *view_reach + climbs_beyond;
+    if (const auto pad = between(unknown, top, first, farthest_of_dji)) return pad;
+  }
+  const double margin = 2.0 * flight_.clearance + 1.0;
+  return between(unknown, top, margin + (is_dji ? flight::dji_lands_at_once : 0.0), farthest);
+}
+
+/// Whose distance from the unknown box is in that interval.
+std::optional<Vector3d> PadSearch::between(const AlignedBox3d& unknown, double top, double first,
+                                           double farthest) const {
   constexpr int directions = 16;
-  constexpr double step = 5.0, farthest = 100.0;
-  const double required_room = 3.0 * clearance;
+  constexpr double step = 5.0;
+  const double required_room = 3.0 * flight_.clearance;
   const Vector2d middle = unknown.center().head<2>();
   const Vector2d corner = 0.5 * std::numbers::sqrt2 * unknown.sizes().head<2>();
   for (int steps = 0; first + steps * step <= farthest; ++steps) {

@@ -19,12 +19,14 @@ class PadSearch {
   /// climbs keep clear of them.
   explicit PadSearch(flight::FlightOptions flight, std::vector<Eigen::AlignedBox3d> unknown = {});
 
-  /// Returns a pad on the ground outside an unknown box. The space above and near it is clear of
-  /// known obstacles up to the height `top` (z) [m]. The nearest distance with enough space is
-  /// selected, and there the position with the most space. Returns nullopt if no such position is
-  /// within 100 m.
-  std::optional<Eigen::Vector3d> find_pad_beside(const Eigen::AlignedBox3d& unknown,
-                                                 double top) const;
+  /// On the ground beside an unknown box, with nothing known over it or near it up to `top` (z): as
+  /// near as there is room, and there where most of it is. Views may be up to `view_reach` beside
+  /// the box. For DJI's vehicles first where all of them are so far away that the vehicle climbs
+  /// before it returns: nearer, each view also needs a free return at its own height. Nothing if
+  /// nowhere within 100 m, and of such places within 200 m, is room.
+  /// Without a `view_reach` that is not asked for.
+  std::optional<Eigen::Vector3d> find_pad_beside(const Eigen::AlignedBox3d& unknown, double top,
+                                                 std::optional<double> view_reach = {}) const;
 
   /// Returns the position on the ground below a map position, or nullopt if the terrain has no data
   /// there.
@@ -36,6 +38,8 @@ class PadSearch {
   double climb_clearance(const Eigen::Vector3d& pad, double top, double up_to) const;
 
  private:
+  std::optional<Eigen::Vector3d> between(const Eigen::AlignedBox3d& unknown, double top,
+                                         double first, double farthest) const;
   bool comes_near_unknown(const flight::Segment& climb) const;
 
   flight::FlightOptions flight_;

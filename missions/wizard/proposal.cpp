@@ -142,7 +142,8 @@ std::string propose_mission(const SiteRequest& request, const std::filesystem::p
   values.scene =
       rounded_out(from_below_base(mission.survey().planner.scene_box.value(), target), 0.1);
   const auto pad = PadSearch(mission.flight())
-                       .find_pad_beside(values.unknown, compute_max_climb_altitude(values));
+                       .find_pad_beside(values.unknown, compute_max_climb_altitude(values),
+                                        values.view_distance);
   if (!pad) {
     throw Error(ErrorKind::bad_config, request.map.string() +
                                            ": no free, level and even take-off point within 100 m "

@@ -15,6 +15,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/output_folder.h"
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
 #include "geometry/surfaces/mesh.h"
@@ -23,6 +24,7 @@
 #include "missions/config/resolve.h"
 #include "missions/evaluation/accuracy.h"
 #include "missions/evaluation/cloud_evaluator.h"
+#include "missions/evaluation/surface_density.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/evaluation/tally_file.h"
 #include "missions/scene/scene_source.h"
@@ -41,8 +43,91 @@ struct Truth {
   geometry::Mesh surroundings{};
   double registration_distance;
   std::size_t samples;
-  /// Visibility of each sample, if a mission defines the views.
-  std::vector<std::uint8_t> is_visible{};
+  std::vector<std::uint8_t> is_visible{};  ///< for each sample, if a mission says from where
+  std::optional<flight::Site> site{};      ///< if a mission says where on the Earth it is
+};
+
+constexpr const char* density_raster_name = "density.tif";
+constexpr const char* density_name = "density.json";
+
+/// How densely the cloud covers the model, and the ground beside it.
+class Density {
+ public:
+  Density(const EvaluateOptions& options, const Truth& truth)
+      : options_(options),
+        truth_(truth),
+        meter_(evaluation::density_places(truth.model, truth.surroundings,
+                                          options.density_cell / places_per_cell, margin),
+               options.density_cell, options.threads),
+        raster_(make_plan(truth.model), options.density_cell) {}
+
+  void add(std::span<const Eigen::Vector3f> points) {
+    meter_.add(points);
+    raster_.add(points);
+  }
+
+  /// The files, and what is printed of them.
+  std::string write() const {
+    geometry::OutputFolder folder(*options_.density);
+    folder.write(density_raster_name, raster_.geotiff(truth_.site));
+    folder.write(density_name, support::json_text(json()));
+    folder.commit();
+    std::string text;
+    for (const evaluation::SurfaceClass of : evaluation::surface_classes) {
+      const auto figures = meter_.figures(options_.min_density, of);
+      if (!figures) continue;
+      text += fmt::format(
+          "  {:<9} {:.2f}% of {:.4g} m^2 with at least {:g} points per m^2; mean "
+          "{:.4g}, median {:.4g}, 5% below {:.4g}\n",
+          evaluation::to_string(of), 100.0 * figures->share, figures->area, options_.min_density,
+          figures->mean, figures->median, figures->percentile_5);
+    }
+    return text + fmt::format("  density   {}, {}\n",
+                              (folder.path() / density_raster_name).string(),
+                              (folder.path() / density_name).string());
+  }
+
+ private:
+  static constexpr double places_per_cell = 4.0, margin = 5.0;
+
+  static Eigen::AlignedBox2d make_plan(const geometry::Mesh& model) {
+    const Eigen::AlignedBox3d box = geometry::bounding_box(model);
+    return {box.min().head<2>().array() - margin, box.max().head<2>().array() + margin};
+  }
+
+  static nlohmann::ordered_json figures_json(const evaluation::DensityFigures& figures) {
+    return {{"area_m2", figures.area},
+            {"share_with_min_density", figures.share},
+            {"mean", figures.mean},
+            {"median", figures.median},
+            {"percentile_5", figures.percentile_5},
+            {"histogram", figures.histogram}};
+  }
+
+  nlohmann::ordered_json json() const {
+    nlohmann::ordered_json classes = nlohmann::ordered_json::object();
+    for (const evaluation::SurfaceClass of : evaluation::surface_classes) {
+      const auto figures = meter_.figures(options_.min_density, of);
+      if (figures) classes[evaluation::to_string(of)] = figures_json(*figures);
+    }
+    return {{"cloud", options_.cloud.string()},
+            {"model", options_.model},
+            {"min_density", options_.min_density},
+            {"radius_m", options_.density_cell},
+            {"histogram_from", evaluation::density_bins},
+            {"all", figures_json(meter_.figures(options_.min_density).value())},
+            {"classes", classes},
+            {"raster",
+             {{"file", density_raster_name},
+              {"cell_m", options_.density_cell},
+              {"columns", raster_.columns()},
+              {"rows", raster_.rows()}}}};
+  }
+
+  const EvaluateOptions& options_;
+  const Truth& truth_;
+  evaluation::DensityMeter meter_;
+  evaluation::DensityRaster raster_;
 };
 
 bool is_mission_file(const fs::path& file) {
@@ -51,7 +136,8 @@ bool is_mission_file(const fs::path& file) {
 
 /// Evaluates a cloud in pieces, because laser scans may exceed memory.
 evaluation::CloudEvaluation evaluate_cloud(const EvaluateOptions& options, const Truth& truth,
-                                           ProgressLine& progress, const Console& console) {
+                                           ProgressLine& progress, const Console& console,
+                                           Density* density) {
   const fs::path& file = options.cloud;
   evaluation::CloudEvaluator evaluator(truth.model, truth.samples, truth.registration_distance,
                                        options.threads, truth.surroundings);
@@ -59,6 +145,7 @@ evaluation::CloudEvaluation evaluate_cloud(const EvaluateOptions& options, const
     if (console.stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
     progress.show(fmt::format("{}: {:.0f} %", file.string(), 100.0 * share));
     evaluator.add(chunk);
+    if (density != nullptr) density->add(chunk);
   };
   const std::size_t skipped = geometry::read_positions(file, add_points);
   progress.clear();
@@ -99,13 +186,19 @@ Truth make_truth(const EvaluateOptions& options, bool wants_visible, const confi
     const auto surroundings = [&](const geometry::Mesh& model) {
       return scene::make_surroundings(setup.scene(), geometry::bounding_box(model));
     };
+    const std::optional<flight::Site> site =
+        setup.flight().is_georeferenced ? std::optional(setup.flight().site) : std::nullopt;
     if (!wants_visible) {
       const geometry::Mesh model = evaluation::placed_model(setup.scene(), file.parent_path());
-      return {model, surroundings(model), distance, setup.evaluation().samples};
+      return {model, surroundings(model), distance, setup.evaluation().samples, {}, site};
     }
     const evaluation::SurveyScene scene(setup.simulation, file.parent_path(), setup.run.threads);
-    return {scene.model(), surroundings(scene.model()), distance, setup.evaluation().samples,
-            scene.visible(setup.run.threads, stop)};
+    return {scene.model(),
+            surroundings(scene.model()),
+            distance,
+            setup.evaluation().samples,
+            scene.visible(setup.run.threads, stop),
+            site};
   }
   if (!options.distance) {
     throw Error(ErrorKind::bad_usage,
@@ -301,6 +394,9 @@ int evaluate_shards(const EvaluateOptions& options, const Console& console) {
 }  // namespace
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
+  if (options.density && (options.shards > 0 || options.cloud.empty())) {
+    throw Error(ErrorKind::bad_usage, "--density requires --cloud and conflicts with --pieces");
+  }
   if (options.shards > 0) return evaluate_shards(options, console);
   if (options.task.is_set() || options.out) {
     throw Error(ErrorKind::bad_usage,
@@ -311,10 +407,17 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
   const Truth truth = make_truth(options, true, progress.progress_callback(), console.stop);
   const bool is_mesh = !options.mesh.empty();
   progress.show("reading " + (is_mesh ? options.mesh : options.cloud).string());
+  std::optional<Density> density;
+  if (options.density) density.emplace(options, truth);
   const evaluation::CloudEvaluation evaluated =
-      is_mesh ? evaluate_mesh(options, truth) : evaluate_cloud(options, truth, progress, console);
+      is_mesh ? evaluate_mesh(options, truth)
+              : evaluate_cloud(options, truth, progress, console, density ? &*density : nullptr);
   progress.clear();
   print_evaluation(options, truth, evaluated, console.out);
+  if (density) {
+    const std::string text = density->write();
+    if (!options.is_json) console.out << text;
+  }
   return 0;
 }
 

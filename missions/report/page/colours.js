@@ -100,13 +100,13 @@ function gather_around(cells, cell, positions, list) {
 /// Densities are of the neighbours within so many spacings.
 const density_reach = 2.5;
 
-/// Neighbours of each point within `radius`, itself included, over the disc's area and the share of
-/// the cloud's points that the page has: points per square metre of surface.
-function densities(cloud, radius) {
+/// Neighbours of each point within `radius`, itself included, over the disc's area and the share that
+/// the page has of all points, `all` of them: points per square metre of surface.
+function densities(cloud, radius, all) {
   const { count, positions } = cloud, result = new Float32Array(count), reach = radius * radius;
   if (!(radius > 0)) return result;  // of a single place
   const cells = cells_of_points(positions, count, radius);
-  const scale = cloud.of / count / (Math.PI * radius * radius);
+  const scale = all / count / (Math.PI * radius * radius);
   const list = new Float32Array(3 * count);
   for (let cell = 0; cell < cells.count; ++cell) {
     const end = 3 * gather_around(cells, cell, positions, list);

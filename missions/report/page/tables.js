@@ -24,6 +24,35 @@ const reason_colour = Object.fromEntries(states.map((state) => [state.key, state
 /// all after so many.
 const fewest_holes = 12, least_hole = 0.01, most_holes = 40;
 
+/// What the route files cover, by their formats, beside the survey; and the largest gaps of each.
+function written_parts(data) {
+  const { written } = data.summary.flight;
+  if (!written || !written.length) return [];
+  const number = (content) => ({ number: content });
+  const rows = [["Survey", number(figure(data, "views", "count")), number(figure(data, "coverage", "share")),
+    number(figure(data, "coverage_visible", "share"))]];
+  const parts = [];
+  written.forEach((part, i) => {
+    const path = "flight.written." + i + ".";
+    const names = written.length === 1 ? "Route files" : part.files.join(", ");
+    rows.push([names, number(part.views + " of " + part.planned_views), number(figure(data, path + "coverage", "share")),
+      number(figure(data, path + "coverage_visible", "share"))]);
+    for (const [k, target] of part.targets.entries()) {
+      rows.push([names + ", " + target.name, "", number(figure(data, path + "targets." + k + ".coverage", "share")), ""]);
+    }
+    const holes = part.surface.holes.slice(0, fewest_holes);
+    if (!holes.length) return;
+    const gaps = table(["Reason", number("Area"), "Centre x, y, z [m]"], holes.map((hole, k) => [
+      element("span", {}, swatch(reason_colour[hole.reason]), reason_text[hole.reason]),
+      number(figure(data, path + "surface.holes." + k + ".area_m2", "square_metres")), places_text(hole.centre)]));
+    parts.push(element("details", {}, element("summary", {}, "Uncovered by " + (written.length === 1 ? "the route files"
+      : part.files.join(", "))), gaps));
+  });
+  return [element("h3", {}, "Coverage of the route files"),
+    element("p", {}, "What each file captures, as read back, flown again in the simulator from an empty cloud."),
+    table(["", number("Views"), number("Coverage"), number("Coverage of visible surface")], rows), ...parts];
+}
+
 /// What is missing, piece by piece; the column of areas sums to the missing share.
 function holes_section(data, on_pick) {
   const surface = data.summary.surface;
@@ -175,7 +204,7 @@ function flight_section(data) {
       number(f(path + "energy_wh", "watt_hours")), number(f(path + "energy_left_wh", "watt_hours")),
       number(f(path + "min_clearance_m", "metres"))];
   })));
-  section.append(...passage_parts(data), ...anew_parts(data), ...fleet_parts(data));
+  section.append(...written_parts(data), ...passage_parts(data), ...anew_parts(data), ...fleet_parts(data));
   const terms = [["Vehicle radius", "vehicle_radius"], ["Position error", "position_error"],
     ["Tracking error", "tracking_error"], ["Map error", "map_error"], ["Margin", "margin"], ["Total", "total"]];
   section.append(element("h3", {}, "Clearance budget"),
@@ -189,7 +218,7 @@ function flight_section(data) {
   }
   const missed = flight.route.skipped_views || [], listed = 8;
   if (missed.length) {
-    const why = table(["View", "Reason"], missed.map((one) => [String(one.view), one.reason]));
+    const why = table(["View", "Reason and remedy"], missed.map((one) => [String(one.view), one.reason]));
     section.append(element("h3", {}, "Views not in the mission"), missed.length <= listed ? why
       : element("details", {}, element("summary", {}, "All " + missed.length), why));
   }

@@ -343,7 +343,9 @@ function painter_of(mode, cloud, legend, data) {
     return (i) => (cloud.incidence[i] === data.scales.no_incidence ? unknown : paint(i));
   }
   if (mode === "density") {
-    if (!cloud.density) cloud.density = densities(cloud, density_reach * cloud.spacing);
+    // The preview of a scan is a share of its points.
+    const all = data.kind === "scan" ? Math.max(data.summary.points || 0, cloud.of) : cloud.of;
+    if (!cloud.density) cloud.density = densities(cloud, density_reach * cloud.spacing, all);
     return ramp("points per m²", (i) => cloud.density[i], 0, quantile(cloud.density, 0.99), "count");
   }
   if (mode === "file") {

@@ -252,7 +252,7 @@ TEST(LitchiParts, HoldTheWholeFlightInFilesOf99Waypoints) {
     plan.waypoints.back().position.x() += 0.2 * i;
   }
   plan.waypoints.push_back(end);
-  const std::vector<FlightPlan> parts = split_glb(plan, Format::litchi);
+  const std::vector<FlightPlan> parts = split_plan(plan, Format::litchi);
   ASSERT_EQ(parts.size(), 3U);
   std::size_t photos = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -1,0 +1,319 @@
+#include "missions/evaluation/surface_density.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "flight/export/utm.h"
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+
+namespace skycap::missions::evaluation {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr double max_places = 1e6;
+constexpr std::uint64_t places_seed = 3;  ///< other places than those that coverage is asked at
+
+/// Steeper than 45 degrees is a wall.
+SurfaceClass read_class(const Vector3f& normal) {
+  constexpr float level = 0.70710678F;
+  if (std::abs(normal.z()) <= level) return SurfaceClass::wall;
+  return normal.z() > 0.0F ? SurfaceClass::roof : SurfaceClass::underside;
+}
+
+geometry::SurfaceSamples spread(const geometry::Mesh& mesh, double spacing,
+                                double& area_per_point) {
+  const double area = geometry::surface_area(mesh);
+  const double count = std::clamp(std::ceil(area / (spacing * spacing)), 1.0, max_places);
+  area_per_point = area / count;
+  return geometry::sample_surface(mesh, static_cast<std::size_t>(count), places_seed);
+}
+
+DensityFigures compute_figures(std::vector<std::pair<double, double>> densities_and_areas,
+                               double asked) {
+  DensityFigures figures;
+  std::ranges::sort(densities_and_areas);
+  for (const auto& [density, area] : densities_and_areas) figures.area += area;
+  double below = 0.0;
+  bool has_twentieth = false, has_half = false;
+  for (const auto& [density, area] : densities_and_areas) {
+    figures.mean += density * area / figures.area;
+    if (density >= asked) figures.share += area / figures.area;
+    const auto bin = std::ranges::upper_bound(density_bins, density) - density_bins.begin() - 1;
+    figures.histogram[static_cast<std::size_t>(bin)] += area / figures.area;
+    below += area / figures.area;
+    if (!std::exchange(has_twentieth, has_twentieth || below >= 0.05) && has_twentieth) {
+      figures.percentile_5 = density;
+    }
+    if (!std::exchange(has_half, has_half || below >= 0.5) && has_half) figures.median = density;
+  }
+  return figures;
+}
+
+/// Little-endian bytes of a TIFF file with one image file directory.
+class Tiff {
+ public:
+  enum Type : std::uint16_t { ascii = 2, u16 = 3, u32 = 4, f64 = 12 };
+
+  template <typename Number>
+  void add(std::uint16_t tag, Type type, const std::vector<Number>& values) {
+    std::string bytes;
+    for (const Number value : values) append(bytes, value);
+    entries_.push_back({tag, type, static_cast<std::uint32_t>(values.size()), std::move(bytes)});
+  }
+
+  /// `image` follows the directory and what does not fit into it.
+  std::string bytes(std::uint16_t strip_offset_tag, const std::string& image) {
+    constexpr std::uint32_t head = 8, entry_size = 12;
+    add<std::uint32_t>(strip_offset_tag, u32, {0});
+    std::ranges::sort(entries_, {}, &Entry::tag);
+    const auto count = static_cast<std::uint32_t>(entries_.size());
+    const std::uint32_t begin = head + 2 + entry_size * count + 4;
+    std::uint32_t extra = 0;
+    for (const Entry& entry : entries_) {
+      if (entry.bytes.size() > 4) extra += static_cast<std::uint32_t>(entry.bytes.size());
+    }
+    std::string file = "II*";
+    file.push_back('\0');
+    append(file, head);
+    append(file, static_cast<std::uint16_t>(count));
+    std::uint32_t offset = begin;
+    std::string rest;
+    for (Entry& entry : entries_) {
+      if (entry.tag == strip_offset_tag) {
+        entry.bytes.clear();
+        append(entry.bytes, begin + extra);
+      }
+      append(file, entry.tag);
+      append(file, static_cast<std::uint16_t>(entry.type));
+      append(file, entry.count);
+      if (entry.bytes.size() > 4) {
+        append(file, offset);
+        offset += static_cast<std::uint32_t>(entry.bytes.size());
+        rest += entry.bytes;
+      } else {
+        entry.bytes.resize(4, '\0');
+        file += entry.bytes;
+      }
+    }
+    append(file, std::uint32_t{0});
+    return file + rest + image;
+  }
+
+  template <typename Number>
+  static void append(std::string& bytes, Number value) {
+    static_assert(std::endian::native == std::endian::little);
+    std::array<char, sizeof(Number)> raw{};
+    std::memcpy(raw.data(), &value, sizeof(Number));
+    bytes.append(raw.data(), raw.size());
+  }
+
+ private:
+  struct Entry {
+    std::uint16_t tag;
+    Type type;
+    std::uint32_t count;
+    std::string bytes;
+  };
+  std::vector<Entry> entries_;
+};
+
+/// Row by row, the matrix that leads from columns and rows to coordinates.
+std::vector<double> model_transformation(const Vector2d& origin, const Vector2d& per_column,
+                                         const Vector2d& per_row) {
+  return {per_column.x(),
+          per_row.x(),
+          0.0,
+          origin.x(),
+          per_column.y(),
+          per_row.y(),
+          0.0,
+          origin.y(),
+          0.0,
+          0.0,
+          0.0,
+          0.0,
+          0.0,
+          0.0,
+          0.0,
+          1.0};
+}
+
+}  // namespace
+
+const char* to_string(SurfaceClass of) {
+  switch (of) {
+    case SurfaceClass::roof:
+      return "roof";
+    case SurfaceClass::wall:
+      return "wall";
+    case SurfaceClass::underside:
+      return "underside";
+    case SurfaceClass::ground:
+      break;
+  }
+  return "ground";
+}
+
+DensityPlaces density_places(const geometry::Mesh& model, const geometry::Mesh& surroundings,
+                             double spacing, double margin) {
+  DensityPlaces positions;
+  double area = 0.0;
+  const geometry::SurfaceSamples own = spread(model, spacing, area);
+  positions.positions = own.points;
+  for (const Vector3f& normal : own.normals) positions.classes.push_back(read_class(normal));
+  positions.areas.assign(own.points.size(), area);
+  if (surroundings.triangles.empty()) return positions;
+  Eigen::AlignedBox3d box = geometry::bounding_box(model);
+  box.min().array() -= margin;
+  box.max().array() += margin;
+  const geometry::SurfaceSamples others = spread(surroundings, spacing, area);
+  for (std::size_t i = 0; i < others.points.size(); ++i) {
+    const bool is_level = read_class(others.normals[i]) == SurfaceClass::roof;
+    if (!is_level || !box.contains(others.points[i].cast<double>())) continue;
+    positions.positions.push_back(others.points[i]);
+    positions.classes.push_back(SurfaceClass::ground);
+    positions.areas.push_back(area);
+  }
+  return positions;
+}
+
+DensityMeter::DensityMeter(DensityPlaces positions, double radius, unsigned threads)
+    : positions_(std::move(positions)),
+      radius_(radius),
+      threads_(threads),
+      grid_(radius),
+      areas_(positions_.positions.size(), 0.0),
+      counts_(positions_.positions.size(), 0) {
+  for (const Vector3f& position : positions_.positions) grid_.insert(position);
+  std::vector<geometry::Neighbour> near;
+  for (std::size_t i = 0; i < areas_.size(); ++i) {
+    near.clear();
+    grid_.find_within(positions_.positions[i], radius_, near);
+    std::ranges::sort(near, {}, &geometry::Neighbour::index);  // sums in the same order everywhere
+    for (const geometry::Neighbour& other : near) areas_[i] += positions_.areas[other.index];
+  }
+}
+
+void DensityMeter::add(std::span<const Vector3f> points) {
+  constexpr std::size_t portion = 1 << 14;
+  const std::size_t portions = (points.size() + portion - 1) / portion;
+  geometry::parallel_for(portions, threads_, [&](std::size_t number) {
+    std::vector<geometry::Neighbour> near;
+    const std::size_t begin = number * portion, end = std::min(begin + portion, points.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!points[i].allFinite()) continue;
+      near.clear();
+      grid_.find_within(points[i], radius_, near);
+      for (const geometry::Neighbour& position : near) {
+        std::atomic_ref(counts_[position.index]).fetch_add(1, std::memory_order_relaxed);
+      }
+    }
+  });
+}
+
+std::vector<double> DensityMeter::densities() const {
+  std::vector<double> densities;
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    densities.push_back(static_cast<double>(counts_[i]) / areas_[i]);
+  }
+  return densities;
+}
+
+std::optional<DensityFigures> DensityMeter::figures(double asked) const {
+  const std::vector<double> all = densities();
+  std::vector<std::pair<double, double>> chosen;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (positions_.classes[i] != SurfaceClass::ground)
+      chosen.emplace_back(all[i], positions_.areas[i]);
+  }
+  if (chosen.empty()) return std::nullopt;
+  return compute_figures(std::move(chosen), asked);
+}
+
+std::optional<DensityFigures> DensityMeter::figures(double asked, SurfaceClass of) const {
+  const std::vector<double> all = densities();
+  std::vector<std::pair<double, double>> chosen;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (positions_.classes[i] == of) chosen.emplace_back(all[i], positions_.areas[i]);
+  }
+  if (chosen.empty()) return std::nullopt;
+  return compute_figures(std::move(chosen), asked);
+}
+
+DensityRaster::DensityRaster(const Eigen::AlignedBox2d& box, double cell)
+    : north_west_(box.min().x(), box.max().y()), cell_(cell), columns_(0), rows_(0) {
+  constexpr double max_cells = 1e8;
+  const Vector2d cells = (box.sizes() / cell).array().ceil();
+  if (!(cells.minCoeff() >= 1.0) || !(cells.prod() <= max_cells)) {
+    throw Error(ErrorKind::bad_config,
+                "the density raster would have " + std::to_string(cells.x()) + " x " +
+                    std::to_string(cells.y()) + " cells; it must have 1 to 100 million");
+  }
+  columns_ = static_cast<std::size_t>(cells.x());
+  rows_ = static_cast<std::size_t>(cells.y());
+  counts_.assign(columns_ * rows_, 0);
+}
+
+void DensityRaster::add(std::span<const Vector3f> points) {
+  for (const Vector3f& point : points) {
+    const double column = std::floor((double{point.x()} - north_west_.x()) / cell_);
+    const double row = std::floor((north_west_.y() - double{point.y()}) / cell_);
+    const bool is_inside = column >= 0.0 && row >= 0.0 && column < static_cast<double>(columns_) &&
+                           row < static_cast<double>(rows_);  // not of NaN
+    if (!is_inside) continue;
+    ++counts_[static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column)];
+  }
+}
+
+std::string DensityRaster::geotiff(const std::optional<flight::Site>& site) const {
+  const auto width = static_cast<double>(columns_), height = static_cast<double>(rows_);
+  std::string image;
+  image.reserve(4 * counts_.size());
+  for (const std::uint32_t count : counts_) {
+    Tiff::append(image, static_cast<float>(count / (cell_ * cell_)));
+  }
+  Vector2d origin = north_west_, per_column(cell_, 0.0), per_row(0.0, -cell_);
+  // GeoTIFF keys: version 1.1.0; each key's number, where its value is (0: here), count, value.
+  std::vector<std::uint16_t> keys{1, 1, 0, 1, 1025, 0, 1, 1};  // a cell's value is of its area
+  if (site) {
+    const flight::UtmProjection utm(*site);
+    const auto to_map = [&](double column, double row) -> Vector2d {
+      const Vector2d local = north_west_ + column * per_column + row * per_row;
+      return utm.to_map_exactly({local.x(), local.y(), 0.0}).head<2>();
+    };
+    origin = to_map(0.0, 0.0);
+    const Vector2d east = (to_map(width, 0.0) - origin) / width;
+    const Vector2d south = (to_map(0.0, height) - origin) / height;
+    per_column = east, per_row = south;
+    keys = {1,    1, 0, 3, 1024, 0, 1, 1,
+            1025, 0, 1, 1, 3072, 0, 1, static_cast<std::uint16_t>(utm.epsg())};
+  }
+  Tiff tiff;
+  const auto u32 = [](std::size_t number) {
+    return std::vector<std::uint32_t>{static_cast<std::uint32_t>(number)};
+  };
+  const auto u16 = [](std::uint16_t number) { return std::vector<std::uint16_t>{number}; };
+  tiff.add(256, Tiff::u32, u32(columns_));      // ImageWidth
+  tiff.add(257, Tiff::u32, u32(rows_));         // ImageLength
+  tiff.add(258, Tiff::u16, u16(32));            // BitsPerSample
+  tiff.add(259, Tiff::u16, u16(1));             // Compression: none
+  tiff.add(262, Tiff::u16, u16(1));             // PhotometricInterpretation: black is zero
+  tiff.add(277, Tiff::u16, u16(1));             // SamplesPerPixel
+  tiff.add(278, Tiff::u32, u32(rows_));         // RowsPerStrip
+  tiff.add(279, Tiff::u32, u32(image.size()));  // StripByteCounts
+  tiff.add(284, Tiff::u16, u16(1));             // PlanarConfiguration
+  tiff.add(339, Tiff::u16, u16(3));             // SampleFormat: floating point
+  tiff.add(34264, Tiff::f64, model_transformation(origin, per_column, per_row));
+  tiff.add(34735, Tiff::u16, keys);  // GeoKeyDirectory
+  return tiff.bytes(273, image);     // StripOffsets
+}
+
+}  // namespace skycap::missions::evaluation
