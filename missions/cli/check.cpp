@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -193,7 +194,7 @@ std::string expectation_text(const simulation::Expectation& expected) {
                                 : fmt::format("{} to {}", expected.min_views, expected.max_views);
   return fmt::format(
       "  expected  {} views (oracle: {}), {} minutes of flight, {} MB\n  time      {} s on this "
-      "machine, estimated from the first view\n",
+      "machine for plan, estimated from loading and the first view\n",
       views, expected.known_views, range_text(expected.min_minutes, expected.max_minutes),
       rough_text(1e-6 * expected.memory), range_text(expected.min_time, expected.max_time));
 }
@@ -202,6 +203,7 @@ std::string expectation_text(const simulation::Expectation& expected) {
 int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
                  ProgressLine& progress, const Console& console) {
   const std::string file = options.mission.string();
+  const auto begun = std::chrono::steady_clock::now();
   try {
     const evaluation::SurveyScene scene(setup.simulation, options.mission.parent_path(),
                                         setup.run.threads);
@@ -218,7 +220,14 @@ int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
     if (!range.empty()) text += "  warning   " + range + "\n";
     if (found.problems.empty()) {
       progress.show(setup.name + ": searching for views");
-      text += expectation_text(simulation::expectation(setup.simulation, scene, setup.run));
+      // plan begins with the same steps as check.
+      const double loading =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+      simulation::Expectation expected =
+          simulation::expectation(setup.simulation, scene, setup.run);
+      expected.min_time += loading;
+      expected.max_time += loading;
+      text += expectation_text(expected);
     }
     progress.clear();
     console.out << text << std::flush;

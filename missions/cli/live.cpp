@@ -5,6 +5,7 @@
 
 #include <CLI/App.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -133,10 +134,13 @@ void show_survey(const LiveOptions& options, const config::MissionSetup& setup,
   const online::Proposal& proposal = survey.proposal();
   try {
     session::SurveyRecord so_far = survey.so_far();
-    const std::string summary = package::summary_json(setup, so_far, {so_far.coverage(), {}, {}});
+    nlohmann::ordered_json summary = nlohmann::ordered_json::parse(
+        package::summary_json(setup, so_far, {so_far.coverage(), {}, {}}));
+    if (const auto predicted = survey.visible_target().unseen_share())
+      summary["unseen_box_surface"] = *predicted;
     geometry::write_file(
         options.survey / package::report_name,
-        report::live_page(summary, setup.survey(), setup.scene(), std::move(so_far),
+        report::live_page(summary.dump(), setup.survey(), setup.scene(), std::move(so_far),
                           {proposal.view, proposal.path.points}));
   } catch (const Error& error) {  // report errors must not end a survey
     warn(console, "no report: " + std::string(error.what()));

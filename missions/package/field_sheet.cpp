@@ -73,7 +73,7 @@ std::string escaped(std::string_view text) {
   return html;
 }
 
-std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+std::string percent_text(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
 /// A route of the mission: the one vehicle's, or one of the fleet's.
 struct LoggedSortie {
@@ -272,10 +272,10 @@ std::string figures(const FieldSheetSite& site, const SurveyMission& mission) {
   const std::string time = longest == 1.0
                                ? fmt::format("{:.0f} min", minutes)
                                : fmt::format("{:.0f} to {:.0f} min", minutes, longest * minutes);
-  std::string coverage = percent(site.survey_coverage), of = "of the surface, by the survey";
+  std::string coverage = percent_text(site.survey_coverage), of = "of the surface, by the survey";
   if (mission.written) {
     const WrittenCoverage& part = mission.written->parts.front();
-    coverage = percent(part.again.visible.value_or(part.again.all));
+    coverage = percent_text(part.again.visible.value_or(part.again.all));
     of = fmt::format("of the {}surface, by the files; {} of {} views",
                      part.again.visible ? "visible " : "", part.views, mission.written->planned);
   }

@@ -66,7 +66,7 @@ std::optional<geometry::View> capture_of(const geometry::View& view,
 }
 
 /// One or more formats and what their files measure.
-struct Part {
+struct WrittenPart {
   std::vector<std::string> files;
   std::size_t views = 0;
   std::vector<ViewInFlight> measured;
@@ -82,9 +82,9 @@ std::size_t random_capture_points(const flight::Route& route, const FlightFiles&
   return count;
 }
 
-Part make_part(const flight::FlightOptions& options, const flight::Route& route,
+WrittenPart make_part(const flight::FlightOptions& options, const flight::Route& route,
                const FlightFiles& files, flight::Format format) {
-  Part part{{}, 0, written_views(options, route, files, format)};
+  WrittenPart part{{}, 0, written_views(options, route, files, format)};
   for (const FlightFile& file : files.written) {
     if (file.format == format) part.files.push_back(file.name);
   }
@@ -93,8 +93,8 @@ Part make_part(const flight::FlightOptions& options, const flight::Route& route,
   return part;
 }
 
-void add(Part part, std::vector<Part>& parts) {
-  const auto same = std::ranges::find_if(parts, [&](const Part& other) {
+void add(WrittenPart part, std::vector<WrittenPart>& parts) {
+  const auto same = std::ranges::find_if(parts, [&](const WrittenPart& other) {
     return std::ranges::equal(part.measured, other.measured, is_same);
   });
   if (same == parts.end()) {
@@ -105,11 +105,11 @@ void add(Part part, std::vector<Part>& parts) {
 }
 
 /// All vehicles' files, each in the format that its own autopilot flies, or else in its first one.
-Part fleet_part(const FleetMission& fleet) {
-  Part all;
+WrittenPart fleet_part(const FleetMission& fleet) {
+  WrittenPart all;
   for (const FleetMember& member : fleet.members) {
     if (member.files.written.empty()) continue;
-    Part part =
+    WrittenPart part =
         make_part(member.flight, member.route, member.files, member.files.written.front().format);
     all.files.insert(all.files.end(), part.files.begin(), part.files.end());
     all.views += part.views;
@@ -122,8 +122,8 @@ Part fleet_part(const FleetMission& fleet) {
   return all;
 }
 
-std::vector<Part> make_parts(const flight::FlightOptions& options, const SurveyMission& mission) {
-  std::vector<Part> parts;
+std::vector<WrittenPart> make_parts(const flight::FlightOptions& options, const SurveyMission& mission) {
+  std::vector<WrittenPart> parts;
   for (const flight::FormatInfo& info : flight::formats()) {
     const bool is_written = std::ranges::find(mission.files.written, info.format,
                                               &FlightFile::format) != mission.files.written.end();
@@ -134,7 +134,7 @@ std::vector<Part> make_parts(const flight::FlightOptions& options, const SurveyM
 }
 
 WrittenCoverage compute_target_coverage(const evaluation::SimulationOptions& simulation,
-                                        const CoverageFigures& coverage, Part part,
+                                        const CoverageFigures& coverage, WrittenPart part,
                                         const std::stop_token& stop) {
   TargetMeter targets(simulation.scene, simulation.evaluation.registration_distance);
   const simulation::CoveredAgain covered = coverage.fly_again(
@@ -199,7 +199,7 @@ std::shared_ptr<const WrittenMission> written_mission(
   if (!coverage.fly_again || !coverage.truth || mission.files.written.empty()) return nullptr;
   auto written = std::make_shared<WrittenMission>();
   written->planned = mission.route.capture_points.size() + mission.route.unreached.size();
-  for (Part& part : make_parts(simulation.survey.flight, mission)) {
+  for (WrittenPart& part : make_parts(simulation.survey.flight, mission)) {
     written->parts.push_back(compute_target_coverage(simulation, coverage, std::move(part), stop));
     if (stop.stop_requested()) return nullptr;
   }

@@ -27,7 +27,7 @@ path.chosen{fill:#1b6fc4}
 )";
 
 constexpr const char* script =
-    R"(const map = JSON.parse(document.getElementById("map").textContent);
+    R"js(const map = JSON.parse(document.getElementById("map").textContent);
 const svg = document.querySelector("svg"), shown = document.getElementById("command");
 const about = document.getElementById("about");
 let chosen = null;
@@ -36,48 +36,37 @@ for (const object of map.objects) {
   path.setAttribute("d", object.outline);
   const title = document.createElementNS(svg.namespaceURI, "title");
   title.textContent = object.id + " (" + object.height + " m high)";
-path.append(title);
-path.addEventListener(
-    "click", () = > {
-      if (chosen) chosen.classList.remove("chosen");
-      chosen = path;
-      path.classList.add("chosen");
-      shown.textContent = map.command + " --id " + object.quoted;
-      about.textContent = object.id + ", " + object.height + " m high" +
-                          object.attributes.map((each) = > ", " + each).join("");
-    });
-svg.append(path);
+  path.append(title);
+  path.addEventListener("click", () => {
+    if (chosen) chosen.classList.remove("chosen");
+    chosen = path;
+    path.classList.add("chosen");
+    shown.textContent = map.command + " --id " + object.quoted;
+    about.textContent = object.id + ", " + object.height + " m high" +
+        object.attributes.map((each) => ", " + each).join("");
+  });
+  svg.append(path);
 }
-const[x, y, width, height] = map.view;
+const [x, y, width, height] = map.view;
 let view = {x, y, width, height};
-const show = () = > svg.setAttribute("viewBox",
-                                     [ view.x, view.y, view.width, view.height ].join(" "));
+const show = () => svg.setAttribute("viewBox", [view.x, view.y, view.width, view.height].join(" "));
 show();
-svg.addEventListener("wheel",
-                     (event) = >
-                               {
-                                 event.preventDefault();
-                                 const scale = event.deltaY > 0 ? 1.25 : 0.8;
-                                 const at = new DOMPoint(event.clientX, event.clientY)
-                                                .matrixTransform(svg.getScreenCTM().inverse());
-                                 view = {
-                                   x : at.x - (at.x - view.x) * scale,
-                                   y : at.y - (at.y - view.y) * scale,
-                                   width : view.width * scale,
-                                   height : view.height * scale
-                                 };
-                                 show();
-                               },
-                     {passive : false});
-svg.addEventListener(
-    "pointermove", (event) = > {
-      if (event.buttons != = 1) return;
-      const metres = 1 / svg.getScreenCTM().a;
-      view.x -= event.movementX * metres;
-      view.y -= event.movementY * metres;
-      show();
-    });
-)";
+svg.addEventListener("wheel", (event) => {
+  event.preventDefault();
+  const scale = event.deltaY > 0 ? 1.25 : 0.8;
+  const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+  view = {x: at.x - (at.x - view.x) * scale, y: at.y - (at.y - view.y) * scale,
+          width: view.width * scale, height: view.height * scale};
+  show();
+}, {passive: false});
+svg.addEventListener("pointermove", (event) => {
+  if (event.buttons !== 1) return;
+  const metres = 1 / svg.getScreenCTM().a;
+  view.x -= event.movementX * metres;
+  view.y -= event.movementY * metres;
+  show();
+});
+)js";
 
 /// Text in single quotes for a POSIX shell.
 std::string shell_quoted(const std::string& text) {

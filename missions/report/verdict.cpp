@@ -67,6 +67,17 @@ void add_coverage(const Json& summary, std::vector<Light>& lights) {
   }
 }
 
+/// Of live surveys: coverage is of what the region of interest is known to hold, and nobody knows
+/// what holds the part that no scan had in view.
+void add_region(const Json& summary, std::vector<Light>& lights) {
+  constexpr double much = 0.5;
+  const Json predicted = at(summary, "/unseen_box_surface");
+  if (!predicted.is_number()) return;
+  lights.push_back({"Surface of planner.scene_box never in view", "unseen_box_surface", "share",
+                    predicted, predicted.get<double>() <= much ? "green" : "amber",
+                    fmt::format("green: at most {:.0f}%, otherwise amber", 100.0 * much)});
+}
+
 void add_flight(const Json& summary, std::vector<Light>& lights) {
   const Json flight = at(summary, "/flight");
   if (!flight.is_object()) return;
@@ -129,6 +140,7 @@ Json verdict(const Json& summary) {
                   .lights = {},
                   .else_light = is_interrupted ? "red" : "amber"};
   add_coverage(summary, verdict.lights);
+  add_region(summary, verdict.lights);
   if (const Json views = at(summary, "/views"); views.is_number()) {
     verdict.lights.push_back({"Views", "views", "count", views});
   }

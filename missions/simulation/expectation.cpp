@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "geometry/surfaces/mesh.h"
+#include "missions/evaluation/coverage.h"
+#include "missions/evaluation/downsampled_cloud.h"
 #include "missions/simulation/omniscient.h"
 #include "sim/sensors/survey_sensor.h"
 #include "survey/planners/planner_names.h"
@@ -75,16 +77,36 @@ double estimate_memory(const survey::PlannerOptions& planner, const evaluation::
          a_pixel * pixels + a_point * points;
 }
 
-/// Returns the time to measure and plan the first view [s].
-double estimate_view_time(const evaluation::SimulationOptions& options,
+/// Seconds of parts of a survey's first view.
+struct ViewTimes {
+  double measured = 0.0;   ///< the scan
+  double planned = 0.0;    ///< the next view
+  double evaluated = 0.0;  ///< which surface the scan covers
+};
+
+double seconds_since(std::chrono::steady_clock::time_point begun) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+ViewTimes times_of_a_view(const evaluation::SimulationOptions& options,
                           const evaluation::SurveyScene& scene, const session::RunOptions& run) {
   const auto planner = survey::make_planner(
       options.survey.planner,
       {.seed = run.seed, .threads = run.threads, .sphere = scene.view_sphere()});
   const sim::SurveySensor sensor(options.sensor, run.seed);
+  ViewTimes times;
   const auto begun = std::chrono::steady_clock::now();
-  planner->next_view(sensor.scan(scene.scene(), scene.first_view(run.seed), 0, run.threads));
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const geometry::Scan scan =
+      sensor.scan(scene.scene(), scene.first_view(run.seed), 0, run.threads);
+  times.measured = seconds_since(begun);
+  planner->next_view(scan);
+  times.planned = seconds_since(begun) - times.measured;
+  evaluation::CoverageMeter meter(scene.samples().points, options.evaluation.registration_distance);
+  evaluation::DownsampledCloud cloud(options.survey.planner.spacing);
+  const auto kept = std::chrono::steady_clock::now();
+  meter.add(cloud.store(scan.points, options.scene_box()));
+  times.evaluated = seconds_since(kept);
+  return times;
 }
 
 }  // namespace
@@ -101,15 +123,20 @@ Expectation expectation(const evaluation::SimulationOptions& options,
   const double max = is_volumetric ? limit : std::min(limit, std::round(share.max * count));
   const double minutes =
       asked.limits.max_time.value_or(std::numeric_limits<double>::max()) / seconds_per_minute;
-  const double time = estimate_view_time(options, scene, run);
+  const ViewTimes times = times_of_a_view(options, scene, run);
+  const double view = times.measured + times.planned + times.evaluated;
+  // The attainable coverage takes scans that nothing is planned from, fewer if they cover it all.
+  constexpr double fewest = 0.5;
+  const double attainable =
+      (times.measured + times.evaluated) * static_cast<double>(options.evaluation.attainable_views);
   return {.known_views = known.size(),
           .min_views = static_cast<std::size_t>(min),
           .max_views = static_cast<std::size_t>(max),
           .min_minutes = std::min(minutes, estimate_minutes(asked, known, min)),
           .max_minutes = std::min(minutes, estimate_minutes(asked, known, max)),
           .memory = estimate_memory(asked.planner, scene, max),
-          .min_time = time * min,
-          .max_time = time * max};
+          .min_time = view * min + fewest * attainable,
+          .max_time = view * max + attainable};
 }
 
 }  // namespace skycap::missions::simulation

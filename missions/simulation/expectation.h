@@ -19,11 +19,11 @@ struct Expectation {
   std::size_t max_views = 0;
   double min_minutes = 0.0;  ///< Min flight time from speeds, paths and stops [min].
   double max_minutes = 0.0;
-  /// Memory of the whole program from the numbers of triangles, pixels and points [bytes].
-  double memory = 0.0;
-  /// Min computation time [s]: the time of the first view on this machine times `min_views`.
+  double memory = 0.0;  ///< of the whole program [byte], by triangles, pixels and points
+  /// Of this machine [s]: the views, by the time of the first one, and the attainable coverage. The
+  /// latter is kept and takes no time when the same scene is planned again.
   double min_time = 0.0;
-  double max_time = 0.0;  ///< Max computation time [s].
+  double max_time = 0.0;
 };
 
 /// Predicts the cost of a feasible mission. Takes a few seconds: it evaluates surface samples from

@@ -9,7 +9,7 @@ MissingValues missing_values(const Source& source) {
   const SharedContents shared = read_contents(source, {});
   const FileContents& contents = *shared;
   MissingValues missing;
-  const bool is_in_frame = source.position || contents.is_local_frame;
+  const bool is_in_frame = source.pose || contents.is_local_frame;
   missing.crs = !is_in_frame && contents.crs.empty() && source.crs.empty();
   if (contents.is_outlines) {
     for (const FileObject& object : contents.objects) {
@@ -20,7 +20,7 @@ MissingValues missing_values(const Source& source) {
         missing.compute_height = one_line(object.id);
     }
   }
-  if (missing.crs || source.position || source.base_on_terrain || source.vertical ||
+  if (missing.crs || source.pose || source.base_on_terrain || source.vertical ||
       contents.vertical || (contents.crs.empty() && source.crs.empty())) {
     return missing;
   }

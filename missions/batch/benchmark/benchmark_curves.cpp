@@ -12,7 +12,7 @@
 namespace skycap::missions::batch {
 namespace {
 
-constexpr std::size_t curve_points = 100;
+constexpr std::size_t points_a_curve = 100;
 
 struct Axis {
   CurveAxis axis;
@@ -40,7 +40,7 @@ std::vector<CurvePoint> curve_of(const BenchmarkCell& cell, const Axis& axis) {
   if (cell.trials.empty()) return {};
   const auto is_timed = [](const Trial& trial) { return trial.planning_time > 0.0; };
   if (axis.is_logarithmic && !std::ranges::all_of(cell.trials, is_timed)) return {};
-  return coverage_curve(cell.trials, axis.axis, curve_points);
+  return coverage_curve(cell.trials, axis.axis, points_a_curve);
 }
 
 std::string xml_text(const std::string& text) {
@@ -175,7 +175,7 @@ std::vector<std::string> missions_of(const std::vector<BenchmarkCell>& cells) {
   return missions;
 }
 
-std::string find_title(const std::string& planner) {
+std::string planner_title(const std::string& planner) {
   const Method* method = find_method(planner);
   return method ? method->title : planner;
 }
@@ -191,7 +191,7 @@ std::vector<Line> split_lines(const std::vector<BenchmarkCell>& cells, const std
     if (cell.mission != mission) continue;
     const auto number = static_cast<std::size_t>(known - planners.begin());
     lines.push_back(
-        {find_title(cell.planner), colours[number % colours.size()], curve_of(cell, axis)});
+        {planner_title(cell.planner), colours[number % colours.size()], curve_of(cell, axis)});
   }
   return lines;
 }

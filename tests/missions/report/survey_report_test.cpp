@@ -280,6 +280,8 @@ TEST(Verdict, AssignsLightsByThresholds) {
   EXPECT_EQ(light(0.9499), "amber");
   EXPECT_EQ(light(0.8499), "red");
   EXPECT_EQ(verdict({{"stop_reason", "view_limit"}})["light"], "amber");
+  EXPECT_EQ(verdict({{"unseen_box_surface", 0.7}})["lights"][0]["light"], "amber");
+  EXPECT_EQ(verdict({{"unseen_box_surface", 0.2}})["lights"][0]["light"], "green");
   const Json route = {{"min_clearance_m", 1.9}, {"sorties", Json::array()}, {"skipped_views", {1}}};
   const Json lights =
       verdict({{"flight", {{"clearance_m", {{"total", 2.0}}}, {"route", route}}}})["lights"];

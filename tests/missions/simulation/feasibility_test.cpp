@@ -120,6 +120,13 @@ TEST(Expectation, PredictsViewsWithinFactorOfTwo) {
   EXPECT_GT(expected.max_time, 0.0);
   EXPECT_GT(expected.memory, 1e7);
 
+  // So many views of the attainable coverage take longer than the survey, on any machine.
+  const config::MissionSetup long_one = config::parse_mission(
+      quick_mission(), "m.yaml",
+      overrides({{"planner.name", "skycap"}, {"evaluation.attainable_views", "10000"}}));
+  EXPECT_GT(simulation::expectation(long_one.simulation, scene, {.threads = 2}).max_time,
+            3.0 * expected.max_time);
+
   const config::MissionSetup limited =
       config::parse_mission(quick_mission(), "m.yaml",
                             overrides({{"limits.max_views", "3"}, {"limits.max_minutes", "1"}}));
