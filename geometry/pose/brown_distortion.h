@@ -15,7 +15,7 @@ namespace skycap::geometry {
 Eigen::Vector2d distort(const BrownDistortion& intrinsics, const Eigen::Vector2d& slope);
 
 /// The slope that appears at `distorted`: inverse of distort() within 1e-12, by fixed-point
-/// iteration. Exact only where the lens maps slopes one to one; elsewhere the last iterate.
+/// iteration. Exact only where distort() maps slopes one to one; elsewhere the last iterate.
 Eigen::Vector2d undistort(const BrownDistortion& intrinsics, const Eigen::Vector2d& distorted);
 
 }  // namespace skycap::geometry

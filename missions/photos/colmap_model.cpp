@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "flight/export/text.h"
@@ -103,48 +104,45 @@ std::string colmap_priors(const PhotoPlan& plan, const PoseSigmas& sigmas,
 std::string colmap_script(const PhotoPlan& plan, const PoseSigmas& sigmas) {
   // Three standard deviations in each axis.
   const std::string max_error = fixed(3.0 * std::sqrt(3.0) * sigmas.position, 3);
-  return "#!/bin/sh\n"
-         "# Reconstructs the photos of the plan with COLMAP 3.8 or later.\n"
-         "#\n"
-         "#   sh reconstruct.sh IMAGES [known | unknown]\n"
-         "#\n"
-         "# IMAGES is the folder of the photos, with the names of images.txt. known (default): "
-         "the\n"
-         "# planned poses are used as they are; only for simulated photos, or after images.txt "
-         "has\n"
-         "# been replaced by measured poses. unknown: COLMAP estimates the poses, and the model "
-         "is\n"
-         "# aligned with the positions in priors.txt.\n"
-         "set -eu\n"
-         "images=$1\n"
-         "poses=${2:-known}\n"
-         "here=$(cd \"$(dirname \"$0\")\" && pwd)\n"
-         "database=$here/database.db\n"
-         "rm -f \"$database\"\n"
-         "colmap feature_extractor --database_path \"$database\" --image_path \"$images\" \\\n"
-         "  --ImageReader.single_camera 1 --ImageReader.camera_model " +
-         colmap_camera_model(plan.camera) +
-         " \\\n"
-         "  --ImageReader.camera_params " +
-         colmap_camera_parameters(plan.camera) +
-         " \\\n"
-         "  --SiftExtraction.use_gpu 0\n"
-         "colmap matches_importer --database_path \"$database\" --match_type pairs \\\n"
-         "  --match_list_path \"$here/pairs.txt\" --SiftMatching.use_gpu 0\n"
-         "mkdir -p \"$here/sparse\"\n"
-         "if [ \"$poses\" = known ]; then\n"
-         "  colmap point_triangulator --database_path \"$database\" --image_path \"$images\" \\\n"
-         "    --input_path \"$here\" --output_path \"$here/sparse\"\n"
-         "else\n"
-         "  colmap mapper --database_path \"$database\" --image_path \"$images\" \\\n"
-         "    --output_path \"$here/sparse\" --Mapper.ba_refine_focal_length 0 \\\n"
-         "    --Mapper.ba_refine_extra_params 0\n"
-         "  mkdir -p \"$here/aligned\"\n"
-         "  colmap model_aligner --input_path \"$here/sparse/0\" --output_path \"$here/aligned\" "
-         "\\\n"
-         "    --ref_images_path \"$here/priors.txt\" --ref_is_gps 0 \\\n"
-         "    --robust_alignment_max_error " +
-         max_error + "\nfi\n";
+  const std::vector<std::string> lines{
+      "#!/bin/sh",
+      "# Reconstructs the photos of the plan with COLMAP 3.8 or later.",
+      "#",
+      "#   sh reconstruct.sh IMAGES [known | unknown]",
+      "#",
+      "# IMAGES: folder of the photos, with the names of images.txt.",
+      "# known (default): COLMAP uses the poses of images.txt. Use it for simulated photos,",
+      "# or replace images.txt by the measured poses first.",
+      "# unknown: COLMAP estimates the poses, and aligns the model with priors.txt.",
+      "set -eu",
+      "images=$1",
+      "poses=${2:-known}",
+      "here=$(cd \"$(dirname \"$0\")\" && pwd)",
+      "database=$here/database.db",
+      "rm -f \"$database\"",
+      "colmap feature_extractor --database_path \"$database\" --image_path \"$images\" \\",
+      "  --ImageReader.single_camera 1 \\",
+      "  --ImageReader.camera_model " + colmap_camera_model(plan.camera) + " \\",
+      "  --ImageReader.camera_params " + colmap_camera_parameters(plan.camera) + " \\",
+      "  --SiftExtraction.use_gpu 0",
+      "colmap matches_importer --database_path \"$database\" --match_type pairs \\",
+      "  --match_list_path \"$here/pairs.txt\" --SiftMatching.use_gpu 0",
+      "mkdir -p \"$here/sparse\"",
+      "if [ \"$poses\" = known ]; then",
+      "  colmap point_triangulator --database_path \"$database\" --image_path \"$images\" \\",
+      "    --input_path \"$here\" --output_path \"$here/sparse\"",
+      "else",
+      "  colmap mapper --database_path \"$database\" --image_path \"$images\" \\",
+      "    --output_path \"$here/sparse\" \\",
+      "    --Mapper.ba_refine_focal_length 0 --Mapper.ba_refine_extra_params 0",
+      "  mkdir -p \"$here/aligned\"",
+      "  colmap model_aligner --input_path \"$here/sparse/0\" --output_path \"$here/aligned\" \\",
+      "    --ref_images_path \"$here/priors.txt\" --ref_is_gps 0 \\",
+      "    --robust_alignment_max_error " + max_error,
+      "fi"};
+  std::string script;
+  for (const std::string& line : lines) script += line + "\n";
+  return script;
 }
 
 void write_colmap(const PhotoPlan& plan, std::span<const survey::photo::PhotoPair> pairs,

@@ -39,8 +39,8 @@ struct ControlObservation {
 using Blocked = std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)>;
 
 /// The photos that show a point, in the order of the plan: in the image less a border of 1.5% on
-/// each side, at most twice the view distance away, and not hidden. Pixels include the lens's
-/// distortion.
+/// each side, at most twice the view distance away, and not hidden. Pixels include the distortion
+/// of the camera.
 std::vector<ControlObservation> observations_of(const ControlPoint& point,
                                                 const survey::photo::PhotoPlan& plan,
                                                 const Blocked& is_blocked);

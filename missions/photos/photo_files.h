@@ -1,4 +1,4 @@
-/// What a mission with a photo camera hands to its flight, and the files beside its route files.
+/// Files of a mission with a photo camera beside its route files, and the camera of its flight.
 #pragma once
 
 #include <filesystem>

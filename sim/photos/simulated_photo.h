@@ -1,8 +1,9 @@
 /// Photos of a textured scene: what a photo camera at a planned pose takes.
 ///
-/// Pixels are exact: a ray through the lens model for each sample of a pixel. The texture is solid,
-/// so that a surface point has the same albedo in every photo. It uses neither trigonometric nor
-/// exponential functions: the same scene and seed give the same bytes everywhere.
+/// Pixels are exact: a ray through the camera model, distortion included, for each sample of a
+/// pixel. The texture is solid, so that a surface point has the same albedo in every photo. It uses
+/// neither trigonometric nor exponential functions: the same scene and seed give the same bytes
+/// everywhere.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +53,7 @@ struct PhotoOptions {
   void validate() const;
 };
 
-/// The photo of a view, with the lens's distortion. Throws what options.validate() and
+/// The photo of a view, with the camera's distortion. Throws what options.validate() and
 /// PhotoCamera throw.
 GreyImage simulate_photo(const Scene& scene, const geometry::PhotoCamera& camera,
                          const geometry::View& view, const PhotoOptions& options);
