@@ -65,7 +65,7 @@ void PriorObstacleConfig::validate() const {
     return box.min().allFinite() && box.max().allFinite() && !box.isEmpty();
   };
   if (!std::ranges::all_of(columns, is_sound)) {
-    reject(ErrorKind::bad_geometry, "has a column that is not finite, or empty");
+    reject(ErrorKind::bad_geometry, "has a column that is empty or not finite");
   }
 }
 

@@ -87,8 +87,8 @@ InterpretedRoute interpret(const std::string& content, Format format, const Flig
   return route;
 }
 
-std::vector<InterpretedStop> captures_of(const std::string& content, Format format,
-                                         const InterpretedRoute& route) {
+std::vector<InterpretedStop> list_captures(const std::string& content, Format format,
+                                           const InterpretedRoute& route) {
   if (format != Format::csv && format != Format::ned_csv) return route.stops;
   const Naming name{"point "};
   std::vector<InterpretedStop> captures;

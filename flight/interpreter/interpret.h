@@ -18,8 +18,8 @@ InterpretedRoute interpret(const std::string& content, Format format, const Flig
 
 /// Where a file that is flown like that captures images: the stops of missions, and the rows of a
 /// trajectory that are marked so. Empty for KML, GeoJSON and TUM, which command no camera.
-std::vector<InterpretedStop> captures_of(const std::string& content, Format format,
-                                         const InterpretedRoute& route);
+std::vector<InterpretedStop> list_captures(const std::string& content, Format format,
+                                           const InterpretedRoute& route);
 
 /// interpret() of a file. Errors name it.
 InterpretedRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts);

@@ -37,12 +37,12 @@ struct Photograph {
   bool is_at_rest() const { return speed == 0.0; }
 };
 
-Photograph photograph_of(const InterpretedStop& stop) {
+Photograph make_photograph(const InterpretedStop& stop) {
   return {stop.position,      stop.item, stop.yaw_deg, stop.pitch_deg,
           position_tolerance, 0.0,       stop.hold,    stop.hold_after};
 }
 
-Photograph photograph_of(const FlownPass& pass) {
+Photograph make_photograph(const FlownPass& pass) {
   return {pass.position,
           pass.item,
           pass.yaw_deg,
@@ -52,14 +52,14 @@ Photograph photograph_of(const FlownPass& pass) {
 }
 
 /// All of a route, in the order taken.
-std::vector<Photograph> photographs_of(const InterpretedRoute& route) {
+std::vector<Photograph> list_photographs(const InterpretedRoute& route) {
   std::vector<Photograph> photographs;
   auto pass = route.is_fly_through.begin();
   for (std::size_t i = 0; i <= route.stops.size(); ++i) {
     for (; pass != route.is_fly_through.end() && pass->stops_before <= i; ++pass) {
-      photographs.push_back(photograph_of(*pass));
+      photographs.push_back(make_photograph(*pass));
     }
-    if (i < route.stops.size()) photographs.push_back(photograph_of(route.stops[i]));
+    if (i < route.stops.size()) photographs.push_back(make_photograph(route.stops[i]));
   }
   return photographs;
 }
@@ -128,7 +128,7 @@ std::string compare(const Photograph& photograph, const Photograph* previous,
 Problems check_photographs(const InterpretedRoute& route, const FlightFacts& facts) {
   Problems problems;
   const Photograph* previous = nullptr;
-  const std::vector<Photograph> photographs = photographs_of(route);
+  const std::vector<Photograph> photographs = list_photographs(route);
   for (const Photograph& photograph : photographs) {
     const auto add_problem = [&](const std::string& what) {
       if (!what.empty()) problems.push_back(photograph.item + " " + what);
@@ -154,7 +154,7 @@ Problems check_photographs(const InterpretedRoute& route, const FlightFacts& fac
 
 Problems missing_photographs(const InterpretedRoute& route, const FlightFacts& facts) {
   Problems problems;
-  const std::vector<Photograph> photographs = photographs_of(route);
+  const std::vector<Photograph> photographs = list_photographs(route);
   for (const geometry::View& view : facts.views) {
     const bool is_taken = std::ranges::any_of(photographs, [&](const Photograph& photograph) {
       return (view.position - photograph.position).norm() <= photograph.tolerance &&

@@ -14,10 +14,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double direction_tolerance_deg = 1.0;
-constexpr double position_tolerance = 2.0 * rounding_bound;
-constexpr double speed_tolerance = 0.011;  ///< WPML has two decimals [m/s]
+constexpr double recording_tolerance = 2.0 * rounding_bound;
+constexpr double cruise_speed_tolerance = 0.011;  ///< WPML has two decimals [m/s]
 
-bool is_at(const Vector3d& a, const Vector3d& b) { return (a - b).norm() <= position_tolerance; }
+bool is_at(const Vector3d& a, const Vector3d& b) { return (a - b).norm() <= recording_tolerance; }
 
 bool is_turned(double angle_deg, double expected_deg) {
   return !(std::abs(std::remainder(angle_deg - expected_deg, 360.0)) <= direction_tolerance_deg);
@@ -79,7 +79,7 @@ Problems check_recording(std::span<const ScannedLeg> legs, const FlightFacts& fa
   for (const ScannedLeg& leg : without_calibration(legs)) {
     const std::string who = "the leg from " + leg.from_item + " to " + leg.to_item + " ";
     if (!leg.is_recorded) problems.push_back(who + "is not recorded by the " + name);
-    if (!(std::abs(leg.speed - facts.cruise_speed) <= speed_tolerance)) {
+    if (!(std::abs(leg.speed - facts.cruise_speed) <= cruise_speed_tolerance)) {
       problems.push_back(who + "is flown at " + fixed(leg.speed, 2) +
                          " m/s; the mission's legs are flown at " + fixed(facts.cruise_speed, 2) +
                          " m/s");

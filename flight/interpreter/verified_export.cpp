@@ -52,7 +52,7 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
   if (failure) {
     throw Error(ErrorKind::bad_file, path.string() + " cannot be written: " + failure.message());
   }
-  return {verification.clearance, make_notes(plan, format), captures_of(content, format, route)};
+  return {verification.clearance, make_notes(plan, format), list_captures(content, format, route)};
 }
 
 }  // namespace skycap::flight

@@ -154,12 +154,12 @@ class WpmlFlight {
         route_.segments.back().speed = speed;
         if (photo_spacing_ > 0.0) append_passes(route_, photo_spacing_, yaw_deg_, pitch_deg_);
         legs_.push_back({positions[index - 1], positions[index], waypoint(index - 1),
-                         waypoint(index), speed, is_recording_, heading_deg_, heading_of(mark),
+                         waypoint(index), speed, is_recording_, heading_deg_, read_heading(mark),
                          pitch_deg_});
       }
       speed = child_number(mark, "waypointSpeed");
       check_waypoint(mark, index);
-      heading_deg_ = heading_of(mark);
+      heading_deg_ = read_heading(mark);
       act(mark, positions[index], index);
       ++index;
     }
@@ -311,7 +311,7 @@ class WpmlFlight {
   }
 
   /// Heading on arrival at a waypoint; unspecified where the file leaves it to the aircraft [deg].
-  static double heading_of(pugi::xml_node mark) {
+  static double read_heading(pugi::xml_node mark) {
     const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
     const bool is_set = child_text(heading, "waypointHeadingMode") == "smoothTransition" &&
                         child_text(mark, "useGlobalHeadingParam") != "1";
@@ -322,7 +322,7 @@ class WpmlFlight {
   /// Adds the actions at a waypoint in their order.
   void act(pugi::xml_node mark, const Vector3d& position, std::size_t index) {
     const std::string who = waypoint(index);
-    double yaw_deg = heading_of(mark);
+    double yaw_deg = read_heading(mark);
     double hold = 0.0;
     int captures = 0;
     photo_spacing_ = 0.0;

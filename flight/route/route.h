@@ -81,7 +81,8 @@ struct RouteOptions {
   FlightStyle style = FlightStyle::stop;         ///< Leg style in file formats that support curves.
   PassRules passing;                             ///< in the style that passes views
   std::optional<PhotoShutter> photo;             ///< of a mission with a photo camera
-  /// From every point of the route there is a proven way home; without: the pilot answers for that.
+  /// Options of verified returns from every point of the route. Empty: the pilot must check
+  /// returns.
   std::optional<ReturnOptions> returns;
 
   void validate() const;  ///< Throws Error{bad_config} naming the first value outside its interval.

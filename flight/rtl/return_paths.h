@@ -13,9 +13,9 @@
 
 namespace skycap::flight {
 
-/// Why there is no verified return from a position.
+/// Reason for a missing verified return, with its remedy.
 struct NoReturn {
-  std::string reason;  ///< what is in the way, and where; empty: there is a return
+  std::string reason;  ///< Obstacle and position. Empty: a return exists.
   std::string remedy;  ///< what the user can change, as a command
 
   explicit operator bool() const { return !reason.empty(); }

@@ -32,12 +32,12 @@ class LiveCheck {
 
   std::string text(const std::string& file) const {
     std::string text = file + (has_problems() ? ": cannot be surveyed\n" : ": no problems found\n");
-    text += "  survey    live: scans come from a sensor, there is no scene to simulate\n";
+    text += "  survey    live: scans come from a sensor; no scene is simulated\n";
     text += fmt::format("  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m\n",
                         survey::find_title(planner_.name).word, planner_.view_distance,
                         planner_.spacing);
     text += sensor_text() + region_text() + limits_text() + first_view_text();
-    if (setup_.scene().priors) text += site_data::to_string(*setup_.scene().priors);
+    if (setup_.scene().priors) text += site_data::format_priors(*setup_.scene().priors);
     for (const std::string& problem : problems_) text += "  problem   " + problem + "\n";
     for (const std::string& warning : warnings_) text += "  warning   " + warning + "\n";
     return text;

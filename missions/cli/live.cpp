@@ -136,7 +136,7 @@ void show_survey(const LiveOptions& options, const config::MissionSetup& setup,
     session::SurveyRecord so_far = survey.so_far();
     nlohmann::ordered_json summary = nlohmann::ordered_json::parse(
         package::summary_json(setup, so_far, {so_far.coverage(), {}, {}}));
-    if (const auto predicted = survey.visible_target().unseen_share())
+    if (const auto predicted = survey.visibility().unseen_share())
       summary["unseen_box_surface"] = *predicted;
     geometry::write_file(
         options.survey / package::report_name,
@@ -164,7 +164,7 @@ Finished write_package(const LiveOptions& options, const config::MissionSetup& s
   std::string text =
       fmt::format("{}: {} after {} scans, {} points\n", setup.name,
                   session::to_string(record.stop_reason), record.views.size(), record.cloud.size());
-  if (const auto predicted = survey.visible_target().unseen_share()) {
+  if (const auto predicted = survey.visibility().unseen_share()) {
     text +=
         fmt::format("  region    {:.0f}% of the surface of planner.scene_box was never in view\n",
                     100.0 * *predicted);

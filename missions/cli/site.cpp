@@ -66,7 +66,7 @@ wizard::Pick make_pick(const SiteOptions& options) {
 }
 
 /// The height of outlines, and what it counts from.
-void read_base(const SiteOptions& options, wizard::Reading& import_options) {
+void read_base(const SiteOptions& options, wizard::ImportOptions& import_options) {
   if (options.base.empty()) return;
   if (options.base == "ground") {
     if (import_options.vertical || options.terrain) {
@@ -143,7 +143,8 @@ std::optional<int> show_objects(const SiteOptions& options, const wizard::SiteRe
   if (!request.target.ids.empty() || !request.target.attributes.empty() || request.target.click) {
     return std::nullopt;
   }
-  const std::vector<site_data::Object> objects = wizard::things_of(wizard::collect_files(request));
+  const std::vector<site_data::Object> objects =
+      wizard::list_things(wizard::collect_files(request));
   if (objects.size() <= 1) return std::nullopt;
   const fs::path page = fs::path(file).replace_extension(".objects.html");
   folder.write(page.filename().string(),

@@ -34,7 +34,7 @@ bool applies(const Key& key, const MissionDocument& document) {
   const bool is_of_photos = key.path.starts_with("photo.") || key.path == "sensor.photo_camera" ||
                             key.path == "flight.free_space";
   if (!document.is_photo()) return !is_of_photos;
-  return is_of_photos || key_of_photos_instead(key.path).empty();
+  return is_of_photos || find_replacing_photo_key(key.path).empty();
 }
 
 std::vector<support::Setting> survey_settings(

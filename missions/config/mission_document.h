@@ -39,7 +39,7 @@ namespace skycap::missions::config {
 
 struct SensorSection {
   std::string preset = "d435";  ///< find_camera()
-  /// Of the preset; none if the mission describes another camera or scanner. Set by the reader.
+  /// Useful range of the camera preset. Empty for other cameras and scanners. Set by the reader.
   std::optional<RangeInterval> useful_range;
   /// Laser scanner used instead of the camera: a preset or the path of a sensor description.
   std::optional<std::string> lidar;

@@ -45,7 +45,7 @@ void check_without_camera(const MissionDocument& document) {
 
 void check_other_sensors(const MissionDocument& document) {
   for (const auto& [key, position] : document.locations) {
-    const std::string_view instead = key_of_photos_instead(key);
+    const std::string_view instead = find_replacing_photo_key(key);
     if (instead.empty()) continue;
     const std::string what =
         "is for sensors that measure depth and conflicts with "
@@ -57,7 +57,7 @@ void check_other_sensors(const MissionDocument& document) {
 
 }  // namespace
 
-std::string_view key_of_photos_instead(std::string_view key) {
+std::string_view find_replacing_photo_key(std::string_view key) {
   struct Replacement {
     std::string_view key, by;
   };

@@ -21,7 +21,7 @@ struct PhotoSetup {
 
 /// The key that replaces a key of depth sensing where there is a photo camera, "-" if none does;
 /// empty for keys that apply to photo cameras as well.
-std::string_view key_of_photos_instead(std::string_view key);
+std::string_view find_replacing_photo_key(std::string_view key);
 
 /// Checks the keys of photos against the others. Throws Error{bad_config} as
 /// MissionDocument::reject() if keys of depth sensing are given beside a photo camera, naming the

@@ -76,14 +76,14 @@ std::string escaped(std::string_view text) {
 std::string percent_text(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
 /// A route of the mission: the one vehicle's, or one of the fleet's.
-struct LoggedSortie {
+struct VehicleRoute {
   const flight::Route* route;
   const FlightFiles* files;
 };
 
-std::vector<LoggedSortie> flown_of(const SurveyMission& mission) {
+std::vector<VehicleRoute> list_routes(const SurveyMission& mission) {
   if (!mission.fleet) return {{&mission.route, &mission.files}};
-  std::vector<LoggedSortie> all;
+  std::vector<VehicleRoute> all;
   for (const FleetMember& member : mission.fleet->members) {
     if (!member.route.sorties.empty()) all.push_back({&member.route, &member.files});
   }
@@ -96,10 +96,10 @@ class Map {
   Map(const FieldSheetSite& site, const flight::FlightOptions& options,
       const SurveyMission& mission)
       : site_(site), options_(options), mission_(mission) {
-    for (const LoggedSortie& flight_record : flown_of(mission)) {
-      box_.extend(Vector2d(flight_record.route->options.takeoff.head<2>()));
-      for (const flight::Sortie& sortie : flight_record.route->sorties) {
-        for (const Vector3d& point : sortie_points(*flight_record.route, sortie)) {
+    for (const VehicleRoute& vehicle_route : list_routes(mission)) {
+      box_.extend(Vector2d(vehicle_route.route->options.takeoff.head<2>()));
+      for (const flight::Sortie& sortie : vehicle_route.route->sorties) {
+        for (const Vector3d& point : sortie_points(*vehicle_route.route, sortie)) {
           box_.extend(Vector2d(point.head<2>()));
         }
       }
@@ -127,11 +127,11 @@ class Map {
     }
     add_surface();
     std::size_t colour = 0;
-    for (const LoggedSortie& flight_record : flown_of(mission_)) {
-      for (const flight::Sortie& sortie : flight_record.route->sorties) {
-        add_sortie(*flight_record.route, sortie, sortie_colours[colour++ % sortie_colours.size()]);
+    for (const VehicleRoute& vehicle_route : list_routes(mission_)) {
+      for (const flight::Sortie& sortie : vehicle_route.route->sorties) {
+        add_sortie(*vehicle_route.route, sortie, sortie_colours[colour++ % sortie_colours.size()]);
       }
-      add_mark(flight_record.route->options.takeoff, "take-off");
+      add_mark(vehicle_route.route->options.takeoff, "take-off");
     }
     for (std::size_t i = 0; i < options_.rally.size(); ++i) {
       add_mark(options_.rally[i], fmt::format("rally {}", i + 1));
@@ -248,26 +248,26 @@ std::string figure(const std::string& value, const std::string& name) {
 }
 
 /// "6 sorties" or "2 vehicles, 6 sorties".
-std::string batteries_text(const std::vector<LoggedSortie>& all) {
+std::string batteries_text(const std::vector<VehicleRoute>& all) {
   std::size_t sorties = 0;
-  for (const LoggedSortie& flight_record : all) sorties += flight_record.route->sorties.size();
+  for (const VehicleRoute& vehicle_route : all) sorties += vehicle_route.route->sorties.size();
   return support::counted(sorties, "sortie") + ", one battery each" +
          (all.size() > 1 ? fmt::format(", {} vehicles", all.size()) : "");
 }
 
 std::string figures(const FieldSheetSite& site, const SurveyMission& mission) {
-  const std::vector<LoggedSortie> all = flown_of(mission);
+  const std::vector<VehicleRoute> all = list_routes(mission);
   double minutes = 0.0, longest = 1.0;
   std::size_t sorties = 0, views = 0;
   std::string altitudes;
-  for (const LoggedSortie& flight_record : all) {
-    minutes += flight_record.route->duration / 60.0;
-    longest = std::max(longest, flight_record.route->options.conditions.longest_flight);
-    sorties += flight_record.route->sorties.size();
-    views += flight_record.route->capture_points.size();
-    if (!flight_record.route->returns) continue;
+  for (const VehicleRoute& vehicle_route : all) {
+    minutes += vehicle_route.route->duration / 60.0;
+    longest = std::max(longest, vehicle_route.route->options.conditions.longest_flight);
+    sorties += vehicle_route.route->sorties.size();
+    views += vehicle_route.route->capture_points.size();
+    if (!vehicle_route.route->returns) continue;
     altitudes += (altitudes.empty() ? "" : " / ") +
-                 flight::return_altitude_text(flight_record.route->returns->height) + " m";
+                 flight::return_altitude_text(vehicle_route.route->returns->height) + " m";
   }
   const std::string time = longest == 1.0
                                ? fmt::format("{:.0f} min", minutes)
@@ -305,15 +305,15 @@ std::string sorties_table(const SurveyMission& mission) {
       "<table><tr><th>Sortie, files</th><th>Views</th><th>min</th><th>m</th><th>Wh</th><th>Wh left"
       "</th><th>battery</th></tr>\n";
   std::size_t number = 0, all = 0;
-  for (const LoggedSortie& flight_record : flown_of(mission)) {
-    all += flight_record.route->sorties.size();
-    for (std::size_t i = 0; i < flight_record.route->sorties.size() && number < max_sorties; ++i) {
-      const flight::Sortie& sortie = flight_record.route->sorties[i];
+  for (const VehicleRoute& vehicle_route : list_routes(mission)) {
+    all += vehicle_route.route->sorties.size();
+    for (std::size_t i = 0; i < vehicle_route.route->sorties.size() && number < max_sorties; ++i) {
+      const flight::Sortie& sortie = vehicle_route.route->sorties[i];
       constexpr double joules = 3600.0;
       html += fmt::format(
           "<tr><td>{}: {}</td><td>{}</td><td>{:.1f}</td><td>{:.0f}</td><td>{:.0f}</td><td>{:.0f}"
           "</td><td>&emsp;&emsp;</td></tr>\n",
-          ++number, escaped(files_text(*flight_record.files, i)), sortie.last - sortie.first + 1,
+          ++number, escaped(files_text(*vehicle_route.files, i)), sortie.last - sortie.first + 1,
           sortie.duration / 60.0, sortie.length, sortie.energy / joules,
           sortie.energy_left / joules);
     }
@@ -393,8 +393,8 @@ std::string field_sheet(const FieldSheetSite& site, const flight::FlightOptions&
                      "<span></span> Observer <span></span></div></div>\n";
   html += Map(shown, options, mission).svg() + figures(site, mission);
   html += "<div class=\"columns\"><div>\n<h2>Take-off and landing</h2>\n";
-  for (const LoggedSortie& flight_record : flown_of(mission)) {
-    html += "<p>" + escaped(pad_text(options, *flight_record.route)) + "</p>\n";
+  for (const VehicleRoute& vehicle_route : list_routes(mission)) {
+    html += "<p>" + escaped(pad_text(options, *vehicle_route.route)) + "</p>\n";
   }
   for (const PilotSteps& part : pilot_steps(options, mission)) {
     html += "<h2>Before the flight: " + escaped(part.whom) + "</h2>\n" + list("ol", "", part.steps);

@@ -60,7 +60,7 @@ struct FlightFile {
   std::size_t sortie = 0;      ///< Index of the sortie in the route.
   double duration = 0.0;       ///< Duration with the autopilot that the file is written for [s].
   flight::Format format = flight::Format::plan;
-  std::vector<flight::InterpretedStop> captures{};  ///< as read back, see flight::captures_of()
+  std::vector<flight::InterpretedStop> captures{};  ///< as read back, see flight::list_captures()
 };
 
 struct FlightFiles {

@@ -33,9 +33,9 @@ struct CoverageFigures {
   /// Ground-truth surface for the map and the holes of a survey whose planner has no surface
   /// estimate; see true_patches().
   std::vector<survey::surfel::EstimatedPatch> patches = {};
-  std::optional<TrueCoverage> truth = {};  ///< of a simulated survey
-  /// What views cover when they are flown again, see reflight_coverage(); null where that
-  /// cannot be simulated, or the survey was interrupted.
+  std::optional<TrueCoverage> truth = {};  ///< Only for simulated surveys.
+  /// Computes the coverage of views in a simulated re-flight, see reflight_coverage(). Null if it
+  /// cannot be simulated or if the survey was interrupted.
   std::function<simulation::CoveredAgain(const std::vector<session::ViewInFlight>&,
                                          const simulation::VisitScan&, const std::stop_token&)>
       fly_again = {};

@@ -9,21 +9,20 @@
 
 namespace skycap::missions::package {
 
-/// What is to be done before the flight of one vehicle, in this order.
+/// Ordered steps before the flight of one vehicle.
 struct PilotSteps {
-  std::string whom;  ///< the vehicle
+  std::string whom;  ///< Name of the vehicle.
   std::vector<std::string> steps;
 };
 
-/// For the vehicle's own autopilot and for no other, by vehicle of a fleet. Empty if there is no
-/// route.
+/// Returns the steps for the vehicle's autopilot, per vehicle of a fleet. Empty without a route.
 std::vector<PilotSteps> pilot_steps(const flight::FlightOptions& options,
                                     const SurveyMission& flight);
 
-/// What was not verified, and the pilot must check.
+/// Returns the list of items that were not verified and that the pilot must check.
 std::string unverified_text(const flight::FlightOptions& options, const SurveyMission& flight);
 
-/// Warnings, without the word and the full stop.
+/// Returns the warnings, without the prefix "Warning" and the full stop.
 std::vector<std::string> pilot_warnings(const SurveyMission& flight);
 
 /// Returns numbered steps for the autopilot of the vehicle, or of each vehicle of a fleet. These

@@ -30,7 +30,7 @@ struct TargetCoverage {
 /// Takes in measurements in any pieces.
 class TargetMeter {
  public:
-  /// Of each object of the targets that has a surface to be seen, in the order of the mission.
+  /// Measures each target object with visible surface, in the order of the mission.
   /// Keeps references to the scene's prior data.
   TargetMeter(const scene::SceneOptions& scene, double registration_distance);
   TargetMeter(TargetMeter&&) noexcept;

@@ -50,8 +50,8 @@ geometry::View to_view(const flight::InterpretedStop& capture) {
 
 /// The capture that is meant to be of this view: the one nearest in direction of those that are
 /// where it is.
-std::optional<geometry::View> capture_of(const geometry::View& view,
-                                         const std::vector<flight::InterpretedStop>& captures) {
+std::optional<geometry::View> make_capture(const geometry::View& view,
+                                           const std::vector<flight::InterpretedStop>& captures) {
   std::optional<geometry::View> nearest;
   double turned = same_direction;
   for (const flight::InterpretedStop& capture : captures) {
@@ -72,8 +72,8 @@ struct WrittenPart {
   std::vector<ViewInFlight> measured;
 };
 
-std::size_t random_capture_points(const flight::Route& route, const FlightFiles& files,
-                                  flight::Format format) {
+std::size_t count_capture_points(const flight::Route& route, const FlightFiles& files,
+                                 flight::Format format) {
   std::size_t count = 0;
   for (const FlightFile& file : files.written) {
     if (file.format != format) continue;
@@ -83,12 +83,12 @@ std::size_t random_capture_points(const flight::Route& route, const FlightFiles&
 }
 
 WrittenPart make_part(const flight::FlightOptions& options, const flight::Route& route,
-               const FlightFiles& files, flight::Format format) {
+                      const FlightFiles& files, flight::Format format) {
   WrittenPart part{{}, 0, written_views(options, route, files, format)};
   for (const FlightFile& file : files.written) {
     if (file.format == format) part.files.push_back(file.name);
   }
-  part.views = options.capture.scans_in_flight() ? random_capture_points(route, files, format)
+  part.views = options.capture.scans_in_flight() ? count_capture_points(route, files, format)
                                                  : part.measured.size();
   return part;
 }
@@ -122,7 +122,8 @@ WrittenPart fleet_part(const FleetMission& fleet) {
   return all;
 }
 
-std::vector<WrittenPart> make_parts(const flight::FlightOptions& options, const SurveyMission& mission) {
+std::vector<WrittenPart> written_parts(const flight::FlightOptions& options,
+                                       const SurveyMission& mission) {
   std::vector<WrittenPart> parts;
   for (const flight::FormatInfo& info : flight::formats()) {
     const bool is_written = std::ranges::find(mission.files.written, info.format,
@@ -186,7 +187,7 @@ std::vector<ViewInFlight> written_views(const flight::FlightOptions& options,
   std::vector<ViewInFlight> views = session::measured_views(options, flight_record);
   if (options.capture.is_scanner || !commands_camera(format)) return views;
   std::erase_if(views, [&](ViewInFlight& view) {
-    const std::optional<geometry::View> captured = capture_of(view.view, captures);
+    const std::optional<geometry::View> captured = make_capture(view.view, captures);
     if (captured) view.view = *captured;
     return !captured;
   });
@@ -199,7 +200,7 @@ std::shared_ptr<const WrittenMission> written_mission(
   if (!coverage.fly_again || !coverage.truth || mission.files.written.empty()) return nullptr;
   auto written = std::make_shared<WrittenMission>();
   written->planned = mission.route.capture_points.size() + mission.route.unreached.size();
-  for (WrittenPart& part : make_parts(simulation.survey.flight, mission)) {
+  for (WrittenPart& part : written_parts(simulation.survey.flight, mission)) {
     written->parts.push_back(compute_target_coverage(simulation, coverage, std::move(part), stop));
     if (stop.stop_requested()) return nullptr;
   }

@@ -59,8 +59,8 @@ survey::photo::FreePosition less_unreached(const PhotoAirspace& airspace,
 std::string name_of_photo(std::size_t number) { return fmt::format("photo_{:04}", number + 1); }
 
 /// A photo with the figures that the plan has of it.
-survey::photo::PlannedPhoto photo_of(const survey::photo::PhotoPlanResult& result, std::size_t view,
-                                     std::size_t number) {
+survey::photo::PlannedPhoto make_photo(const survey::photo::PhotoPlanResult& result,
+                                       std::size_t view, std::size_t number) {
   survey::photo::PlannedPhoto photo;
   photo.name = name_of_photo(number);
   photo.view = result.views[view];
@@ -83,7 +83,7 @@ std::vector<survey::photo::PlannedPhoto> flown_photos(const config::MissionSetup
     for (std::size_t i = 0; i < plan.waypoints.size(); ++i) {
       const flight::Waypoint& waypoint = plan.waypoints[i];
       if (!waypoint.is_capture_point || waypoint.captures == 0) continue;
-      photos.push_back(photo_of(mission.result, waypoint.view_index, photos.size()));
+      photos.push_back(make_photo(mission.result, waypoint.view_index, photos.size()));
       photos.back().time = times[i].capture;
       photos.back().sortie = static_cast<std::uint32_t>(sortie);
     }
@@ -102,7 +102,7 @@ std::vector<survey::photo::PlannedPhoto> toured_photos(
   }
   if (!result.views.empty()) order.insert(order.begin(), 0);
   std::vector<survey::photo::PlannedPhoto> photos;
-  for (const std::uint32_t view : order) photos.push_back(photo_of(result, view, photos.size()));
+  for (const std::uint32_t view : order) photos.push_back(make_photo(result, view, photos.size()));
   return photos;
 }
 

@@ -13,7 +13,7 @@ using site_data::Role;
 /// Obstacles farther from a target than this many view distances hide nothing of it.
 constexpr double surroundings_reach = 3.0;
 
-geometry::Mesh targets_of(const config::MissionSetup& setup) {
+geometry::Mesh select_targets(const config::MissionSetup& setup) {
   geometry::Mesh targets = make_surfaces(*setup.scene().priors, Role::target);
   if (targets.triangles.empty()) {
     throw Error(ErrorKind::bad_config,
@@ -33,8 +33,8 @@ geometry::Mesh make_surroundings(const config::MissionSetup& setup, const geomet
   return around;
 }
 
-geometry::Mesh walls_of(const config::MissionSetup& setup) {
-  geometry::Mesh walls = targets_of(setup);
+geometry::Mesh make_walls(const config::MissionSetup& setup) {
+  geometry::Mesh walls = select_targets(setup);
   AlignedBox3d near = geometry::bounding_box(walls);
   const double reach = surroundings_reach * setup.survey().planner.view_distance;
   near.min().array() -= reach;
@@ -52,7 +52,7 @@ flight::MeasuredSpaceConfig space_config(const config::MissionSetup& setup) {
   constexpr double depth = 3.0;
   const Vector3d buried(centre.x(), centre.y(), setup.flight().airspace.ground_height - depth);
   config.region = AlignedBox3d(buried, buried + Vector3d::Constant(config.voxel));
-  config.beside.clear();
+  config.extra_boxes.clear();
   return config;
 }
 
@@ -60,7 +60,7 @@ flight::MeasuredSpaceConfig space_config(const config::MissionSetup& setup) {
 
 PhotoAirspace::PhotoAirspace(const config::MissionSetup& setup, unsigned threads)
     : setup_(setup),
-      walls_(walls_of(setup), threads),
+      walls_(make_walls(setup), threads),
       measured_(space_config(setup)),
       rules_(setup.flight().rules()),
       space_({&measured_, &rules_}) {}
@@ -78,7 +78,7 @@ bool PhotoAirspace::is_free(const Vector3d& position) const {
 survey::photo::PhotoSite photo_site(const config::MissionSetup& setup,
                                     const PhotoAirspace& airspace) {
   survey::photo::PhotoSite site;
-  site.target = targets_of(setup);
+  site.target = select_targets(setup);
   site.surroundings = make_surroundings(setup, site.target);
   const flight::FlightOptions& flight = setup.flight();
   site.ground = [&flight](const Eigen::Vector2d& position) { return flight.ground_at(position); };

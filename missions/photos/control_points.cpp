@@ -65,8 +65,8 @@ std::vector<ControlPoint> read_control_points(const std::string& text,
   return points;
 }
 
-std::vector<ControlObservation> observations_of(const ControlPoint& point, const PhotoPlan& plan,
-                                                const Blocked& is_blocked) {
+std::vector<ControlObservation> find_observations(const ControlPoint& point, const PhotoPlan& plan,
+                                                  const Blocked& is_blocked) {
   const geometry::PhotoCamera camera(plan.camera);
   const Eigen::Vector2d size(camera.width(), camera.height());
   std::vector<ControlObservation> observations;
@@ -95,7 +95,7 @@ std::string control_table(const std::vector<ControlPoint>& points, const PhotoPl
   const geometry::PhotoCamera camera(plan.camera);
   std::string text = "point,photo,pixel_x,pixel_y,distance_m,gsd_m\n";
   for (const ControlPoint& point : points) {
-    std::vector<ControlObservation> observations = observations_of(point, plan, is_blocked);
+    std::vector<ControlObservation> observations = find_observations(point, plan, is_blocked);
     std::ranges::stable_sort(observations, {}, &ControlObservation::distance);
     for (const ControlObservation& observation : observations) {
       text += point.name + "," + image_name(plan.photos[observation.photo]) + "," +
@@ -111,7 +111,7 @@ std::vector<std::string> control_warnings(const std::vector<ControlPoint>& point
                                           const PhotoPlan& plan, const Blocked& is_blocked) {
   std::vector<std::string> warnings;
   for (const ControlPoint& point : points) {
-    const std::size_t photos = observations_of(point, plan, is_blocked).size();
+    const std::size_t photos = find_observations(point, plan, is_blocked).size();
     if (photos >= min_control_photos) continue;
     warnings.push_back("Warning: control point \"" + point.name + "\" is in " +
                        std::to_string(photos) + " photos; it must be in at least " +

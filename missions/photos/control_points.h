@@ -41,9 +41,9 @@ using Blocked = std::function<bool(const Eigen::Vector3d& from, const Eigen::Vec
 /// The photos that show a point, in the order of the plan: in the image less a border of 1.5% on
 /// each side, at most twice the view distance away, and not hidden. Pixels include the distortion
 /// of the camera.
-std::vector<ControlObservation> observations_of(const ControlPoint& point,
-                                                const survey::photo::PhotoPlan& plan,
-                                                const Blocked& is_blocked);
+std::vector<ControlObservation> find_observations(const ControlPoint& point,
+                                                  const survey::photo::PhotoPlan& plan,
+                                                  const Blocked& is_blocked);
 
 /// CSV: point, photo, pixel_x, pixel_y, distance_m, gsd_m; nearest photos first within a point.
 std::string control_table(const std::vector<ControlPoint>& points,

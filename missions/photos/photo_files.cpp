@@ -31,7 +31,7 @@ std::optional<int> wpml_payload(std::string_view camera) {
   return std::nullopt;
 }
 
-flight::PhotoShutter shutter_of(const geometry::PhotoCameraConfig& camera, double gsd) {
+flight::PhotoShutter make_photo_shutter(const geometry::PhotoCameraConfig& camera, double gsd) {
   flight::PhotoShutter shutter{.gsd = gsd,
                                .exposure = camera.exposure,
                                .readout = camera.readout,

@@ -21,7 +21,7 @@ std::optional<int> wpml_payload(std::string_view camera);
 
 /// The camera as far as the flight depends on it, for photos with that ground sampling distance
 /// [m].
-flight::PhotoShutter shutter_of(const geometry::PhotoCameraConfig& camera, double gsd);
+flight::PhotoShutter make_photo_shutter(const geometry::PhotoCameraConfig& camera, double gsd);
 
 inline constexpr const char* photo_table_name = "photos.csv";
 inline constexpr const char* odm_file_name = "geo.txt";

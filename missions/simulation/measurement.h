@@ -57,10 +57,10 @@ struct CoveredAgain {
 using VisitScan = std::function<void(std::span<const Eigen::Vector3f> stored,
                                      std::span<const Eigen::Vector3f> measured)>;
 
-/// What the views cover when they are flown again: from an empty cloud, and with other noise than
-/// the survey of that seed had. Of a scanner that measures in flight the views are its scans.
-/// `visit`, where it is not empty, gets the points of each scan, in their order. Once `stop` is
-/// requested no further views are flown, and the result is of no use.
+/// Returns the coverage of the views in a simulated re-flight. It starts from an empty cloud, with
+/// noise different from that of the survey with the same seed. For a scanner that measures in
+/// flight, the views are its scans. `visit`, if not empty, receives the points of each scan in
+/// order. After a stop request, the result is incomplete.
 CoveredAgain reflight_coverage(const evaluation::SimulationOptions& options,
                                const evaluation::SurveyScene& scene,
                                const std::vector<session::ViewInFlight>& views, std::uint64_t seed,

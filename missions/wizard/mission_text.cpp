@@ -83,8 +83,8 @@ std::string site_section(const MissionValues& values) {
       "{:g}], [{:g}, {:g}], [{:g}, {:g}]]\n  max_height: {:g}  # z; above the ground here\n",
       values.origin_is, values.origin.latitude_deg, values.origin.longitude_deg,
       values.origin.height,
-      counts_from_takeoff ? "unknown; all heights count from the take-off point. Set it before you "
-                            "use files with absolute altitudes"
+      counts_from_takeoff ? "unknown; all heights are relative to the take-off point. Set it "
+                            "before you use files with absolute altitudes"
                           : "metres above the WGS84 ellipsoid, not above mean sea level",
       low.x(), low.y(), high.x(), low.y(), high.x(), high.y(), low.x(), high.y(), high.z());
 }

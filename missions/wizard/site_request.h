@@ -34,7 +34,7 @@ struct Pick {
 
 /// Interpretation of the files, as specified by the `prior` keys of the same names.
 struct ImportOptions {
-  std::string crs;  ///< of the map, whatever it says itself, and of files without one
+  std::string crs;  ///< Overrides the CRS of the map; applies to files without one.
   std::optional<site_data::HeightDatum> vertical;
   std::optional<double> base, height;  ///< base and height of extruded outlines [m]
 };

@@ -151,7 +151,7 @@ std::vector<Source> collect_files(const SiteRequest& request) {
   return files;
 }
 
-std::vector<Object> things_of(const std::vector<Source>& files) {
+std::vector<Object> list_things(const std::vector<Source>& files) {
   Source source = files[0];
   source.role = Role::target;
   const flight::GeodeticPoint origin = site_data::compute_centre(source);

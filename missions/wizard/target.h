@@ -29,7 +29,7 @@ std::vector<site_data::Source> collect_files(const SiteRequest& request);
 
 /// All objects of the first of the files about their middle, in the frame's axes. Throws what
 /// site_data::read_prior() throws.
-std::vector<site_data::Object> things_of(const std::vector<site_data::Source>& files);
+std::vector<site_data::Object> list_things(const std::vector<site_data::Source>& files);
 
 /// Returns the prior data of a mission: the target from the first of `files`, followed by all
 /// files.

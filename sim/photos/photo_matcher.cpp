@@ -15,14 +15,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// A photo as the matcher uses it.
-struct Shot {
+struct MatchedPhoto {
   const GreyImage* image;
   Vector3d position;
   Eigen::Matrix3d camera_from_world;
 };
 
 /// How one photo sees a sample.
-struct VisibleTarget {
+struct PhotoObservation {
   std::size_t capture;
   Vector3d ray;     ///< unit, from the sample to the camera
   double distance;  ///< [m]
@@ -38,42 +38,41 @@ class Matcher {
           const geometry::PhotoCamera& camera, const MatchOptions& options)
       : camera_(camera), options_(options) {
     for (std::size_t i = 0; i < views.size(); ++i) {
-      pulses_.push_back(
+      photos_.push_back(
           {&images[i], views[i].position, geometry::camera_pose(views[i]).linear().transpose()});
     }
   }
 
-  std::vector<VisibleTarget> visible_targets(const MatchSample& sample,
+  std::vector<PhotoObservation> observations(const MatchSample& sample,
                                              std::span<const geometry::View> views,
                                              const auto& is_visible) const {
-    std::vector<VisibleTarget> found;
+    std::vector<PhotoObservation> found;
     const double min_cosine = std::cos(options_.max_incidence);
-    for (std::size_t i = 0; i < pulses_.size(); ++i) {
-      const Vector3d to_camera = pulses_[i].position - sample.point;
+    for (std::size_t i = 0; i < photos_.size(); ++i) {
+      const Vector3d to_camera = photos_[i].position - sample.point;
       const double distance = to_camera.norm();
       const double cosine = sample.normal.dot(to_camera) / distance;
-      if (cosine < min_cosine || !pixel_of(pulses_[i], sample.point)) continue;
+      if (cosine < min_cosine || !project(photos_[i], sample.point)) continue;
       if (!is_visible(views[i], sample)) continue;
       found.push_back({i, to_camera / distance, distance, cosine});
     }
-    std::ranges::stable_sort(found, {}, [](const VisibleTarget& visible_target) {
-      return visible_target.distance / visible_target.cosine;
+    std::ranges::stable_sort(found, {}, [](const PhotoObservation& observation) {
+      return observation.distance / observation.cosine;
     });
     return found;
   }
 
   std::uint8_t right_depths(const MatchSample& sample,
-                            const std::vector<VisibleTarget>& visible_targets) const {
+                            const std::vector<PhotoObservation>& observations) const {
     std::uint8_t right = 0;
-    for (std::size_t i = 0; i < std::min(options_.references, visible_targets.size()); ++i) {
-      if (is_right(sample, visible_targets[i], partners_of(visible_targets[i], visible_targets)))
-        ++right;
+    for (std::size_t i = 0; i < std::min(options_.references, observations.size()); ++i) {
+      if (is_right(sample, observations[i], find_partners(observations[i], observations))) ++right;
     }
     return right;
   }
 
  private:
-  std::optional<Vector2d> pixel_of(const Shot& capture, const Vector3d& point) const {
+  std::optional<Vector2d> project(const MatchedPhoto& capture, const Vector3d& point) const {
     const Vector3d local = capture.camera_from_world * (point - capture.position);
     if (!(local.z() > 0.0)) return std::nullopt;
     Vector2d slope = local.head<2>() / local.z();
@@ -95,30 +94,30 @@ class Matcher {
            v * ((1.0 - u) * image.at(column, row + 1) + u * image.at(column + 1, row + 1));
   }
 
-  std::vector<VisibleTarget> partners_of(const VisibleTarget& reference,
-                                         const std::vector<VisibleTarget>& visible_targets) const {
-    std::vector<VisibleTarget> partners;
-    for (const VisibleTarget& other : visible_targets) {
+  std::vector<PhotoObservation> find_partners(
+      const PhotoObservation& reference, const std::vector<PhotoObservation>& observations) const {
+    std::vector<PhotoObservation> partners;
+    for (const PhotoObservation& other : observations) {
       if (other.capture == reference.capture) continue;
-      const double parallax = parallax_of(reference, other);
+      const double parallax = compute_parallax(reference, other);
       const double scale = std::max(reference.distance, other.distance) /
                            std::min(reference.distance, other.distance);
       if (parallax < options_.min_parallax || parallax > options_.max_parallax) continue;
       if (scale < options_.max_scale) partners.push_back(other);
     }
-    std::ranges::stable_sort(partners, {}, [&](const VisibleTarget& other) {
-      return std::abs(parallax_of(reference, other) - options_.ideal_parallax);
+    std::ranges::stable_sort(partners, {}, [&](const PhotoObservation& other) {
+      return std::abs(compute_parallax(reference, other) - options_.ideal_parallax);
     });
     if (partners.size() > options_.partners) partners.resize(options_.partners);
     return partners;
   }
 
-  static double parallax_of(const VisibleTarget& a, const VisibleTarget& b) {
+  static double compute_parallax(const PhotoObservation& a, const PhotoObservation& b) {
     return std::atan2(a.ray.cross(b.ray).norm(), a.ray.dot(b.ray));
   }
 
   /// The slopes of the rays through the patch's pixels in the reference photo, as directions.
-  std::vector<Vector3d> patch_rays(const Shot& capture, const Vector2d& centre) const {
+  std::vector<Vector3d> patch_rays(const MatchedPhoto& capture, const Vector2d& centre) const {
     std::vector<Vector3d> rays;
     for (int dv = -options_.patch_radius; dv <= options_.patch_radius; ++dv) {
       for (int du = -options_.patch_radius; du <= options_.patch_radius; ++du) {
@@ -134,7 +133,7 @@ class Matcher {
     return rays;
   }
 
-  Patch reference_patch(const Shot& capture, const Vector2d& centre) const {
+  Patch reference_patch(const MatchedPhoto& capture, const Vector2d& centre) const {
     const double r = options_.patch_radius;
     if (centre.x() < r || centre.y() < r || centre.x() > camera_.width() - 1.0 - r ||
         centre.y() > camera_.height() - 1.0 - r) {
@@ -150,7 +149,7 @@ class Matcher {
   }
 
   /// What a partner shows of the patch if it is on the plane through `point`.
-  Patch partner_patch(const Shot& capture, const Vector3d& origin,
+  Patch partner_patch(const MatchedPhoto& capture, const Vector3d& origin,
                       const std::vector<Vector3d>& rays, const Vector3d& point,
                       const Vector3d& normal) const {
     Patch patch;
@@ -158,7 +157,7 @@ class Matcher {
     for (const Vector3d& ray : rays) {
       const double slope = normal.dot(ray);
       if (!(slope * offset > 0.0)) return {};  // the plane is parallel to the ray, or behind
-      const auto pixel = pixel_of(capture, origin + offset / slope * ray);
+      const auto pixel = project(capture, origin + offset / slope * ray);
       if (!pixel) return {};
       patch.push_back(grey_at(*capture.image, *pixel));
     }
@@ -181,11 +180,11 @@ class Matcher {
     return ab / std::sqrt(aa * bb);
   }
 
-  bool is_right(const MatchSample& sample, const VisibleTarget& reference,
-                const std::vector<VisibleTarget>& partners) const {
+  bool is_right(const MatchSample& sample, const PhotoObservation& reference,
+                const std::vector<PhotoObservation>& partners) const {
     if (partners.empty()) return false;
-    const Shot& capture = pulses_[reference.capture];
-    const auto centre = pixel_of(capture, sample.point);
+    const MatchedPhoto& capture = photos_[reference.capture];
+    const auto centre = project(capture, sample.point);
     if (!centre) return false;
     const Patch own = reference_patch(capture, *centre);
     if (own.empty()) return false;
@@ -193,7 +192,7 @@ class Matcher {
     const double gsd = reference.distance / camera_.focal_length_px();
     // A step moves the point by at most half a pixel in any partner.
     double max_move = 0.0;  // of the image in pixels, by depth [px/m]
-    for (const VisibleTarget& partner : partners) {
+    for (const PhotoObservation& partner : partners) {
       max_move = std::max(max_move, camera_.focal_length_px() *
                                         reference.ray.cross(partner.ray).norm() / partner.distance);
     }
@@ -212,10 +211,10 @@ class Matcher {
   /// Mean of the three best correlations, or of fewer if there are fewer partners.
   double score(const Patch& own, const Vector3d& origin, const std::vector<Vector3d>& rays,
                const Vector3d& point, const Vector3d& normal,
-               const std::vector<VisibleTarget>& partners) const {
+               const std::vector<PhotoObservation>& partners) const {
     std::array<double, 3> best{-1.0, -1.0, -1.0};
-    for (const VisibleTarget& partner : partners) {
-      const Patch other = partner_patch(pulses_[partner.capture], origin, rays, point, normal);
+    for (const PhotoObservation& partner : partners) {
+      const Patch other = partner_patch(photos_[partner.capture], origin, rays, point, normal);
       if (other.empty()) continue;
       double value = correlation(own, other);
       for (double& kept : best) {
@@ -230,7 +229,7 @@ class Matcher {
 
   const geometry::PhotoCamera& camera_;
   const MatchOptions& options_;
-  std::vector<Shot> pulses_;
+  std::vector<MatchedPhoto> photos_;
 };
 
 }  // namespace
@@ -244,7 +243,7 @@ std::vector<std::uint8_t> right_depths(
   std::vector<std::uint8_t> right(samples.size(), 0);
   geometry::parallel_for(samples.size(), options.threads, [&](std::size_t i) {
     right[i] =
-        matcher.right_depths(samples[i], matcher.visible_targets(samples[i], views, is_visible));
+        matcher.right_depths(samples[i], matcher.observations(samples[i], views, is_visible));
   });
   return right;
 }

@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 constexpr std::size_t directions_each = 3;
 
 /// The photo of a sample from the wanted direction, as near to distance d as the space allows.
-std::optional<geometry::View> photo_of(const Observer& observer, const PhotoSpace& space,
-                                       const Vector3d& target, const Vector3d& towards) {
+std::optional<geometry::View> make_photo(const Observer& observer, const PhotoSpace& space,
+                                         const Vector3d& target, const Vector3d& towards) {
   constexpr int max_shortenings = 4;
   constexpr double shortening = 0.8, almost_all = 0.999;
   const double nearest = std::max(space.min_standoff, observer.rule().nearest_focus);
@@ -85,7 +85,7 @@ std::vector<geometry::View> candidate_photos(const Observer& observer, const Pho
                                             geometry::ShortRandomNumbers(options.seed + sample));
       for (std::size_t k = 0; k < directions_each; ++k) {
         found[i][k] =
-            photo_of(observer, space, samples.points[sample].cast<double>(), directions[k]);
+            make_photo(observer, space, samples.points[sample].cast<double>(), directions[k]);
       }
     });
     for (const auto& views : found) {

@@ -49,7 +49,7 @@ struct PhotoChoice::Impl {
     geometry::parallel_for_each(samples.size(), problem.threads, [&](std::size_t s) {
       std::uint32_t entry = problem.observers.begin[s];
       for (const std::uint32_t c : problem.observers[s]) {
-        seen[entry++] = observation_of(problem.candidates[c].position, c, *problem.samples, s);
+        seen[entry++] = make_observation(problem.candidates[c].position, c, *problem.samples, s);
       }
     });
   }
@@ -108,8 +108,8 @@ struct PhotoChoice::Impl {
   void add_to_sample(std::uint32_t candidate, std::size_t sample) {
     SampleState& state = samples[sample];
     count_satisfied(state, -1);
-    Partnered added{observation_of(problem.candidates[candidate].position, candidate,
-                                   *problem.samples, sample)};
+    Partnered added{make_observation(problem.candidates[candidate].position, candidate,
+                                     *problem.samples, sample)};
     for (Partnered& other : state.observations) {
       if (counts_h) state.h += pairs.reconstructability(added.seen, other.seen);
       if (!pairs.are_partners(added.seen, other.seen)) continue;

@@ -167,7 +167,7 @@ class Planner {
             site_.min_height};
   }
 
-  PatternPhotos photos_of(Pattern pattern) const {
+  PatternPhotos make_photos(Pattern pattern) const {
     return pattern_photos(pattern, camera_, site_.target, pattern_options(), site_.space);
   }
 
@@ -175,12 +175,12 @@ class Planner {
   PhotoChoiceProblem make_problem(const Observer& observer) {
     std::vector<geometry::View> candidates;
     if (options_.flown_pattern) {
-      candidates = photos_of(*options_.flown_pattern).views;
+      candidates = make_photos(*options_.flown_pattern).views;
     } else {
       candidates = candidate_photos(observer, site_.space,
                                     {candidates_for(chosen_on_.size()), run_.seed, run_.threads});
       for (const Pattern pattern : options_.patterns) {
-        const PatternPhotos photos = photos_of(pattern);
+        const PatternPhotos photos = make_photos(pattern);
         candidates.insert(candidates.end(), photos.views.begin(), photos.views.end());
       }
     }
@@ -223,7 +223,7 @@ class Planner {
     for (std::size_t i = 0; i < photos.size(); ++i) {
       if (!evaluator.observes(photos[i], sample)) continue;
       const Observation added =
-          observation_of(photos[i].view.position, same[i], evaluator.samples(), sample);
+          make_observation(photos[i].view.position, same[i], evaluator.samples(), sample);
       const auto is_same = [&](const Observation& o) { return o.photo == added.photo; };
       if (std::ranges::any_of(seen, is_same)) continue;
       int own = 0;
@@ -445,7 +445,7 @@ class Planner {
   void compare_patterns(const Observer& observer, const Observer& evaluator) {
     for (const Pattern pattern : options_.patterns) {
       report(std::string("evaluating the pattern ") + to_string(pattern));
-      PatternPhotos photos = photos_of(pattern);
+      PatternPhotos photos = make_photos(pattern);
       PatternResult result;
       result.pattern = pattern;
       result.dropped = photos.dropped;

@@ -33,25 +33,25 @@ std::size_t count_shared(const Bits& a, const Bits& b) {
 }
 
 /// A photo with what it observes.
-struct VisibleTarget {
+struct PhotoNode {
   const geometry::View* view;
   std::span<const std::uint32_t> observed;
   Bits bits;
 };
 
-std::vector<VisibleTarget> sights_of(std::span<const geometry::View> photos,
-                                     const IndexLists& observed, std::size_t samples,
-                                     unsigned threads) {
-  std::vector<VisibleTarget> visible_targets(photos.size());
+std::vector<PhotoNode> make_nodes(std::span<const geometry::View> photos,
+                                  const IndexLists& observed, std::size_t samples,
+                                  unsigned threads) {
+  std::vector<PhotoNode> nodes(photos.size());
   geometry::parallel_for(photos.size(), threads, [&](std::size_t i) {
-    visible_targets[i] = {&photos[i], observed[i], to_bits(observed[i], samples)};
+    nodes[i] = {&photos[i], observed[i], to_bits(observed[i], samples)};
   });
-  return visible_targets;
+  return nodes;
 }
 
 /// The pair, if it shares enough.
-std::optional<PhotoPair> pair_of(const VisibleTarget& a, const VisibleTarget& b,
-                                 const TargetSamples& samples, double min_shared) {
+std::optional<PhotoPair> make_pair_of_photos(const PhotoNode& a, const PhotoNode& b,
+                                             const TargetSamples& samples, double min_shared) {
   const std::size_t smaller = std::min(a.observed.size(), b.observed.size());
   if (smaller == 0) return std::nullopt;
   const std::size_t shared = count_shared(a.bits, b.bits);
@@ -105,12 +105,11 @@ class Parts {
 std::vector<PhotoPair> shared_pairs(std::span<const geometry::View> photos,
                                     const IndexLists& observed, const TargetSamples& samples,
                                     double min_shared, unsigned threads) {
-  const std::vector<VisibleTarget> visible_targets =
-      sights_of(photos, observed, samples.size(), threads);
+  const std::vector<PhotoNode> nodes = make_nodes(photos, observed, samples.size(), threads);
   std::vector<std::vector<PhotoPair>> of_first(photos.size());
   geometry::parallel_for(photos.size(), threads, [&](std::size_t i) {
     for (std::size_t j = i + 1; j < photos.size(); ++j) {
-      if (auto pair = pair_of(visible_targets[i], visible_targets[j], samples, min_shared)) {
+      if (auto pair = make_pair_of_photos(nodes[i], nodes[j], samples, min_shared)) {
         pair->first = static_cast<std::uint32_t>(i);
         pair->second = static_cast<std::uint32_t>(j);
         of_first[i].push_back(*pair);
@@ -163,9 +162,9 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
   std::vector<std::uint32_t> degree = graph.degree;
   for (const PhotoPair& edge : graph.edges) parts.join(edge.first, edge.second);
 
-  const std::vector<VisibleTarget> own = sights_of(photos, observed, samples.size(), threads);
-  const std::vector<VisibleTarget> others =
-      sights_of(candidates, observed_by_candidates, samples.size(), threads);
+  const std::vector<PhotoNode> own = make_nodes(photos, observed, samples.size(), threads);
+  const std::vector<PhotoNode> others =
+      make_nodes(candidates, observed_by_candidates, samples.size(), threads);
   std::vector<char> is_open(candidates.size(), 1);
   std::vector<std::vector<std::uint32_t>> edges(candidates.size());  // to photos and added ones
   const auto close_near = [&](const Eigen::Vector3d& position) {
@@ -173,8 +172,8 @@ std::vector<std::uint32_t> connecting_photos(std::span<const geometry::View> pho
       if ((candidates[c].position - position).norm() < same_position) is_open[c] = 0;
     }
   };
-  const auto connects = [&](const VisibleTarget& a, const VisibleTarget& b) {
-    const auto pair = pair_of(a, b, samples, rule.min_shared);
+  const auto connects = [&](const PhotoNode& a, const PhotoNode& b) {
+    const auto pair = make_pair_of_photos(a, b, samples, rule.min_shared);
     return pair && keeps(*pair, rule);
   };
   for (const geometry::View& photo : photos) close_near(photo.position);

@@ -23,8 +23,8 @@ IndexLists transposed(const IndexLists& lists, std::size_t count) {
   return result;
 }
 
-Observation observation_of(const Vector3d& position, std::uint32_t photo,
-                           const TargetSamples& samples, std::size_t sample) {
+Observation make_observation(const Vector3d& position, std::uint32_t photo,
+                             const TargetSamples& samples, std::size_t sample) {
   const Vector3f line = position.cast<float>() - samples.points[sample];
   const float distance = line.norm();
   const Vector3f ray = line / distance;
@@ -56,7 +56,7 @@ bool Observer::is_in_image(const Photo& photo, std::size_t sample) const {
 }
 
 bool Observer::has_line_of_sight(const Photo& photo, std::size_t sample) const {
-  const Observation seen = observation_of(photo.view.position, 0, samples_, sample);
+  const Observation seen = make_observation(photo.view.position, 0, samples_, sample);
   if (seen.cosine < min_cosine_ || seen.distance < static_cast<float>(rule_.nearest_focus) ||
       seen.distance >= static_cast<float>(rule_.max_distance())) {
     return false;

@@ -32,8 +32,8 @@ struct IndexLists {
 IndexLists transposed(const IndexLists& lists, std::size_t count);
 
 /// A sample as a photo at `position` sees it, whether or not it observes it.
-Observation observation_of(const Eigen::Vector3d& position, std::uint32_t photo,
-                           const TargetSamples& samples, std::size_t sample);
+Observation make_observation(const Eigen::Vector3d& position, std::uint32_t photo,
+                             const TargetSamples& samples, std::size_t sample);
 
 /// Decides observations. A photo observes a sample that projects into the image less a border of
 /// 1.5% on each side. The angle of incidence must be within its limit, and the distance at least

@@ -91,7 +91,7 @@ struct Options {
   bool has_patterns = true;
 };
 
-Options make_model_options(int argc, char** argv) {
+Options make_options(int argc, char** argv) {
   Options options;
   for (int i = 1; i < argc; ++i) {
     const std::string_view name = argv[i];
@@ -127,7 +127,7 @@ class Bench {
   explicit Bench(const Options& options)
       : options_(options),
         camera_(make_camera(options.width)),
-        target_(find_jump_target(options)),
+        target_(find_target(options)),
         scene_(target_, options.threads),
         sight_lines_(target_, options.threads) {}
 
@@ -168,7 +168,7 @@ class Bench {
   }
 
  private:
-  static geometry::Mesh find_jump_target(const Options& options) {
+  static geometry::Mesh find_target(const Options& options) {
     if (!options.model.empty()) return model(options.model);
     if (options.scene == "courtyard") return courtyard();
     geometry::Mesh hut;
@@ -275,7 +275,7 @@ class Bench {
 
 int main(int argc, char** argv) {
   try {
-    Bench(make_model_options(argc, argv)).run();
+    Bench(make_options(argc, argv)).run();
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "photo_benchmark: %s\n", error.what());

@@ -42,10 +42,10 @@ class TrialReader {
     trial.distance = trial.distance_after.back();
     trial.planning_time = trial.planning_time_after.back();
     if (json_.contains("coverage_visible")) {
-      trial.coverage.visible = scan_number(json_["coverage_visible"], "coverage_visible", 0.0, 1.0);
+      trial.coverage.visible = read_number(json_["coverage_visible"], "coverage_visible", 0.0, 1.0);
     }
     if (json_.contains("points")) {
-      trial.points = static_cast<std::size_t>(scan_number(json_["points"], "points", 0.0, 1e15));
+      trial.points = static_cast<std::size_t>(read_number(json_["points"], "points", 0.0, 1e15));
     }
     if (json_.contains("stop_reason")) trial.stop_reason = stop_reason();
     return trial;
@@ -56,7 +56,7 @@ class TrialReader {
     throw Error(ErrorKind::bad_file, where_ + ": " + what);
   }
 
-  double scan_number(const Json& json, const std::string& field, double min, double max) const {
+  double read_number(const Json& json, const std::string& field, double min, double max) const {
     const double number = json.is_number() ? json.get<double>() : std::nan("");
     if (!(number >= min && number <= max)) {
       fail(fmt::format("{} must be a number from {:g} to {:g}", field, min, max));
@@ -69,7 +69,7 @@ class TrialReader {
       fail("missing " + field + "; expected a list with a number for each view");
     }
     std::vector<double> numbers;
-    for (const Json& item : json_[field]) numbers.push_back(scan_number(item, field, min, max));
+    for (const Json& item : json_[field]) numbers.push_back(read_number(item, field, min, max));
     if (rises && !std::ranges::is_sorted(numbers)) fail(field + " must not decrease");
     return numbers;
   }

@@ -53,12 +53,12 @@ double BoxSight::outside_share() const {
 
 std::optional<double> BoxSight::unseen_share() const {
   if (!box_ || scans_ == 0) return std::nullopt;
-  double all = 0.0, predicted = 0.0;
+  double all = 0.0, unobserved = 0.0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     all += areas_[i];
-    if (is_seen_[i] == 0) predicted += areas_[i];
+    if (is_seen_[i] == 0) unobserved += areas_[i];
   }
-  return predicted / all;
+  return unobserved / all;
 }
 
 }  // namespace skycap::missions::online

@@ -111,7 +111,7 @@ class LiveSurvey {
   /// proposed.
   void reject(const std::string& reason);
 
-  /// What the region of interest kept from being surveyed, over the scans that were used.
+  /// Returns the part of the region of interest that the scans used have observed.
   const BoxSight& visibility() const;
 
   /// Returns the path planner of the vehicle, or null for surveys without a vehicle.

@@ -49,7 +49,7 @@ function written_parts(data) {
       : part.files.join(", "))), gaps));
   });
   return [element("h3", {}, "Coverage of the route files"),
-    element("p", {}, "What each file captures, as read back, flown again in the simulator from an empty cloud."),
+    element("p", {}, "Coverage of each route file as read back, in a simulated re-flight from an empty cloud."),
     table(["", number("Views"), number("Coverage"), number("Coverage of visible surface")], rows), ...parts];
 }
 

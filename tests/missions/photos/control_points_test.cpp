@@ -53,7 +53,7 @@ TEST(ControlPoints, AreWhereThePhotoShowsThem) {
   const survey::photo::PhotoPlan plan = test_plan();
   const double focal = geometry::PhotoCamera(plan.camera).focal_length_px();
   const ControlPoint point{"P", {3.0, 2.0, 0.0}};
-  const auto observations = observations_of(point, plan, nothing_is_blocked);
+  const auto observations = find_observations(point, plan, nothing_is_blocked);
   ASSERT_FALSE(observations.empty());
   EXPECT_EQ(observations[0].photo, 0U);
   const Vector2d expected = Vector2d(2640, 1978) + focal / 18.0 * Vector2d(3.0, -2.0);
@@ -66,7 +66,7 @@ TEST(ControlPoints, AreHiddenByWhatIsInTheWay) {
   const ControlPoint point{"P", {0.0, 0.0, 2.0}};
   const auto photos = [&](const Blocked& is_blocked) {
     std::vector<std::uint32_t> found;
-    for (const auto& observation : observations_of(point, plan, is_blocked)) {
+    for (const auto& observation : find_observations(point, plan, is_blocked)) {
       found.push_back(observation.photo);
     }
     return found;
@@ -75,7 +75,7 @@ TEST(ControlPoints, AreHiddenByWhatIsInTheWay) {
   EXPECT_THAT(photos([](const Vector3d& from, const Vector3d&) { return from.z() < 5.0; }),
               ElementsAre(0, 2));
   const ControlPoint far{"far", {0.0, 0.0, -40.0}};
-  EXPECT_THAT(observations_of(far, plan, nothing_is_blocked), IsEmpty());
+  EXPECT_THAT(find_observations(far, plan, nothing_is_blocked), IsEmpty());
   EXPECT_THAT(control_warnings({point, far}, plan, nothing_is_blocked),
               ElementsAre(HasSubstr("\"far\" is in 0 photos")));
   const std::string table = control_table({point}, plan, nothing_is_blocked);
@@ -86,7 +86,7 @@ TEST(ControlPoints, AreMovedByTheLens) {
   survey::photo::PhotoPlan plan = test_plan();
   plan.camera.distortion = geometry::BrownDistortion{.k1 = -0.1};
   const geometry::PhotoCamera camera(plan.camera);
-  const auto seen = observations_of({"P", {3.0, 2.0, 0.0}}, plan, nothing_is_blocked);
+  const auto seen = find_observations({"P", {3.0, 2.0, 0.0}}, plan, nothing_is_blocked);
   const Vector2d slope = geometry::distort(*plan.camera.distortion, Vector2d(3.0, -2.0) / 18.0);
   EXPECT_NEAR((seen.at(0).pixel - Vector2d(2640, 1978) - camera.focal_length_px() * slope).norm(),
               0.0, 1e-6);

@@ -24,14 +24,14 @@ TEST(WpmlPayload, IsThatOfTheCamera) {
 
 TEST(PhotoShutter, FollowsFromTheDataSheet) {
   geometry::PhotoCameraConfig camera = mavic_3e();
-  const flight::PhotoShutter shutter = shutter_of(camera, 0.005);
+  const flight::PhotoShutter shutter = make_photo_shutter(camera, 0.005);
   EXPECT_EQ(shutter.gsd, 0.005);
   EXPECT_EQ(shutter.exposure, 0.001);
   EXPECT_EQ(shutter.min_interval, 0.7);
   EXPECT_EQ(shutter.payload, 66);
   EXPECT_EQ(shutter.image_format, "visable");
   camera.formats = {"wide"};
-  EXPECT_EQ(shutter_of(camera, 0.005).image_format, "wide");
+  EXPECT_EQ(make_photo_shutter(camera, 0.005).image_format, "wide");
 }
 
 TEST(PhotoFiles, AreStagedInThePackage) {

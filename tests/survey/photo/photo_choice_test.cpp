@@ -51,7 +51,8 @@ int partners_by_definition(const RandomCase& known, const std::vector<std::uint3
   for (const std::uint32_t c : chosen) {
     const auto observed = known.problem.observed[c];
     if (std::ranges::find(observed, sample) == observed.end()) continue;
-    seen.push_back(observation_of(known.problem.candidates[c].position, c, known.samples, sample));
+    seen.push_back(
+        make_observation(known.problem.candidates[c].position, c, known.samples, sample));
   }
   return stereo_partners(seen, pairs);
 }

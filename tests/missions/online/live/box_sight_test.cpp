@@ -31,39 +31,39 @@ geometry::Scan scan_from(const Vector3d& position, const Vector3d& direction) {
 // From the middle of a cube each of six views sees one face, edge to edge.
 TEST(BoxSight, CountsWhatWasNeverInView) {
   const AlignedBox3d cube(Vector3d::Constant(-1.0), Vector3d::Constant(1.0));
-  BoxSight visible_target(cube, square_camera());
-  EXPECT_FALSE(visible_target.unseen_share());
+  BoxSight visibility(cube, square_camera());
+  EXPECT_FALSE(visibility.unseen_share());
   int faces = 0;
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0)}) {
     for (const double sign : {-1.0, 1.0}) {
-      visible_target.add(scan_from(Vector3d::Zero(), sign * axis));
+      visibility.add(scan_from(Vector3d::Zero(), sign * axis));
       ++faces;
-      EXPECT_NEAR(visible_target.unseen_share().value(), 1.0 - faces / 6.0, 1e-9);
+      EXPECT_NEAR(visibility.unseen_share().value(), 1.0 - faces / 6.0, 1e-9);
     }
   }
 }
 
 TEST(BoxSight, KnowsTheRangeOfTheSensor) {
   const AlignedBox3d cube(Vector3d::Constant(-1.0), Vector3d::Constant(1.0));
-  BoxSight visible_target(cube, square_camera(0.9));
-  visible_target.add(scan_from(Vector3d::Zero(), Vector3d::UnitX()));
-  EXPECT_EQ(visible_target.unseen_share(), 1.0);
+  BoxSight visibility(cube, square_camera(0.9));
+  visibility.add(scan_from(Vector3d::Zero(), Vector3d::UnitX()));
+  EXPECT_EQ(visibility.unseen_share(), 1.0);
 }
 
 TEST(BoxSight, CountsPointsOutside) {
-  BoxSight visible_target(AlignedBox3d(Vector3d::Zero(), Vector3d::Ones()), square_camera());
-  EXPECT_EQ(visible_target.outside_share(), 0.0);
+  BoxSight visibility(AlignedBox3d(Vector3d::Zero(), Vector3d::Ones()), square_camera());
+  EXPECT_EQ(visibility.outside_share(), 0.0);
   geometry::Scan scan = scan_from({0.5, -3.0, 0.5}, Vector3d::UnitY());
   scan.points = {{0.5F, 0.5F, 0.5F}, {0.5F, 2.0F, 0.5F}, {0.5F, 1.0F, 0.5F}, {-1.0F, 0.0F, 0.0F}};
-  visible_target.add(scan);
-  EXPECT_EQ(visible_target.outside_share(), 0.5);
+  visibility.add(scan);
+  EXPECT_EQ(visibility.outside_share(), 0.5);
 }
 
 TEST(BoxSight, SaysNothingWithoutABox) {
-  BoxSight visible_target({}, square_camera());
-  visible_target.add(scan_from(Vector3d::Zero(), Vector3d::UnitX()));
-  EXPECT_FALSE(visible_target.unseen_share());
-  EXPECT_EQ(visible_target.outside_share(), 0.0);
+  BoxSight visibility({}, square_camera());
+  visibility.add(scan_from(Vector3d::Zero(), Vector3d::UnitX()));
+  EXPECT_FALSE(visibility.unseen_share());
+  EXPECT_EQ(visibility.outside_share(), 0.0);
 }
 
 }  // namespace
