@@ -204,6 +204,7 @@ int plan_photos(const PlanOptions& options, const config::MissionSetup& setup,
   report("writing " + folder.path().string());
   photo::stage_photo_mission(setup, airspace, mission, folder);
   folder.commit();
+  photo::write_colmap_model(setup, mission, folder.path() / "colmap");
   progress.clear();
   if (options.is_quiet) return 0;
   console.out << photo::plan_text(setup, mission);

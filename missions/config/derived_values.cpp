@@ -7,6 +7,8 @@
 #include "flight/motion/motion.h"
 #include "flight/route/route.h"
 #include "geometry/pose/camera.h"
+#include "missions/config/photo_rules.h"
+#include "missions/config/photo_shutter.h"
 #include "missions/site_data/site_priors.h"
 #include "missions/site_data/surface_points.h"
 #include "sim/sensors/scanner_field.h"
@@ -98,6 +100,10 @@ flight::CaptureOptions capture_options(const MissionDocument& document) {
                                  .is_moving = sensor.is_moving(),
                                  .frame_period = sensor.frame_period};
   if (sensor.mount) capture.rays = make_sweep_rays(document);
+  if (document.is_photo()) {
+    const survey::photo::PhotoPlanOptions photo = photo_setup(document).options;
+    capture.photo = make_photo_shutter(photo.camera, photo.gsd);
+  }
   return capture;
 }
 

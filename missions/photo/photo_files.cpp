@@ -11,6 +11,8 @@
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/package/settings.h"
+#include "missions/photos/colmap_model.h"
+#include "missions/photos/photo_files.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"
 #include "missions/version.h"
@@ -22,10 +24,9 @@ using support::to_json;
 using Json = nlohmann::ordered_json;
 using survey::photo::PhotoFigures;
 
-constexpr const char* photos_name = "photos.csv";
-
-/// Of a camera on a gimbal whose heading is the vehicle's compass: an estimate [degrees].
-constexpr double angle_sigma_deg = 1.0;
+/// Estimated standard deviation of the angles of a camera on a gimbal, with a compass heading
+/// [rad].
+constexpr double angle_sigma = geometry::radians_per_degree;
 
 /// Counts and shares of surface samples.
 Json figures_json(const PhotoFigures& figures) {
@@ -133,32 +134,14 @@ Json photo_json(const PhotoMission& mission) {
 
 }  // namespace
 
-std::string photos_csv(const config::MissionSetup& setup, const survey::photo::PhotoPlan& plan) {
-  using support::exact_text;
+photos::PoseSigmas pose_sigmas(const config::MissionSetup& setup) {
   const flight::FlightOptions& options = setup.flight();
-  std::optional<flight::LocalFrame> frame;
-  if (options.is_georeferenced) frame.emplace(options.site.origin);
-  std::string csv =
-      "name,event,time_s,x,y,z,latitude,longitude,ellipsoid_height,yaw_deg,pitch_deg,roll_deg,"
-      "sigma_xyz_m,sigma_ypr_deg,gsd_m,sortie\n";
-  for (std::size_t i = 0; i < plan.photos.size(); ++i) {
-    const survey::photo::PlannedPhoto& photo = plan.photos[i];
-    csv += photo.name + "," + std::to_string(i) + "," + exact_text(photo.time);
-    for (int axis = 0; axis < 3; ++axis) csv += "," + exact_text(photo.view.position[axis]);
-    if (frame) {
-      const flight::GeodeticPoint position = frame->to_geodetic(photo.view.position);
-      csv += "," + exact_text(position.latitude_deg) + "," + exact_text(position.longitude_deg) +
-             "," + exact_text(position.height);
-    } else {
-      csv += ",,,";
-    }
-    csv += "," + exact_text(geometry::degrees_per_radian * photo.yaw) + "," +
-           exact_text(geometry::degrees_per_radian * photo.pitch) + ",0," +
-           exact_text(options.has_vehicle() ? options.position_error : 0.0) + "," +
-           exact_text(angle_sigma_deg) + "," + exact_text(photo.gsd) + "," +
-           std::to_string(photo.sortie) + "\n";
-  }
-  return csv;
+  return {.position = options.has_vehicle() ? options.position_error : 0.0, .angle = angle_sigma};
+}
+
+void write_colmap_model(const config::MissionSetup& setup, const PhotoMission& mission,
+                        const std::filesystem::path& folder) {
+  photos::write_colmap(mission.plan, mission.pairs, pose_sigmas(setup), folder);
 }
 
 std::string summary_json(const config::MissionSetup& setup, const PhotoMission& mission) {
@@ -203,7 +186,10 @@ void stage_photo_mission(const config::MissionSetup& setup, const PhotoAirspace&
         setup.name, setup.flight(), mission.flight->route, airspace.measured(),
         package::package_formats(setup.flight().required_vehicle().autopilot), folder);
   }
-  folder.write(photos_name, photos_csv(setup, mission.plan));
+  const flight::FlightOptions& options = setup.flight();
+  photos::stage_photo_tables(mission.plan,
+                             options.is_georeferenced ? std::optional(options.site) : std::nullopt,
+                             pose_sigmas(setup), folder);
   folder.write(package::summary_name, summary_json(setup, mission));
 }
 

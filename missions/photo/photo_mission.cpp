@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -104,6 +106,28 @@ std::vector<survey::photo::PlannedPhoto> toured_photos(
   std::vector<survey::photo::PlannedPhoto> photos;
   for (const std::uint32_t view : order) photos.push_back(make_photo(result, view, photos.size()));
   return photos;
+}
+
+/// Returns the edges of the view graph with indices of plan.photos instead of result.views.
+std::vector<survey::photo::PhotoPair> pairs_in_flight_order(const PhotoMission& mission) {
+  const std::vector<View>& views = mission.result.views;
+  std::vector<std::optional<std::uint32_t>> photo_of_view(views.size());
+  for (std::uint32_t i = 0; i < mission.plan.photos.size(); ++i) {
+    const View& own = mission.plan.photos[i].view;
+    const auto view = std::ranges::find_if(views, [&](const View& other) {
+      return other.position == own.position && other.direction == own.direction;
+    });
+    if (view != views.end()) photo_of_view[static_cast<std::size_t>(view - views.begin())] = i;
+  }
+  std::vector<survey::photo::PhotoPair> pairs;
+  for (survey::photo::PhotoPair pair : mission.result.graph.edges) {
+    const auto first = photo_of_view[pair.first], second = photo_of_view[pair.second];
+    if (!first || !second) continue;
+    pair.first = std::min(*first, *second);
+    pair.second = std::max(*first, *second);
+    pairs.push_back(pair);
+  }
+  return pairs;
 }
 
 void plan_route(const config::MissionSetup& setup, const PhotoAirspace& airspace,
@@ -215,6 +239,7 @@ PhotoMission plan_photo_mission(const config::MissionSetup& setup, const PhotoAi
   mission.plan.view_distance = mission.result.view_distance;
   mission.plan.photos =
       mission.flight ? flown_photos(setup, mission) : toured_photos(mission.result);
+  mission.pairs = pairs_in_flight_order(mission);
   add_warnings(setup, mission);
   return mission;
 }

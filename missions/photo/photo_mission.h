@@ -31,9 +31,11 @@ struct PatternTours {
 
 struct PhotoMission {
   survey::photo::PhotoPlanResult result;
-  survey::photo::PhotoPlan plan;       ///< the photos that are flown to, in the order of the flight
-  PhotoTour tour;                      ///< of the plan
-  std::vector<PatternTours> patterns;  ///< of result.patterns
+  survey::photo::PhotoPlan plan;  ///< the photos that are flown to, in the order of the flight
+  /// Pairs of plan.photos that register to each other (edges of the view graph).
+  std::vector<survey::photo::PhotoPair> pairs;
+  PhotoTour tour;                                ///< of the plan
+  std::vector<PatternTours> patterns;            ///< of result.patterns
   std::optional<package::SurveyMission> flight;  ///< with a vehicle
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   std::vector<std::string> warnings;  ///< sentences for the user; the first thing to be read

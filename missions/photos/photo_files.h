@@ -1,27 +1,13 @@
-/// Files of a mission with a photo camera beside its route files, and the camera of its flight.
+/// Tables of planned photos for people and for photogrammetry programs.
 #pragma once
 
-#include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 
-#include "flight/motion/photo_speed.h"
 #include "geometry/io/output_folder.h"
-#include "missions/photos/colmap_model.h"
 #include "missions/photos/photo_table.h"
 
 namespace skycap::missions::photos {
-
-/// payloadEnumValue of DJI's WPML for a camera by the name of its preset, such as
-/// "zenmuse_p1_35"; nothing for cameras of other makers. Source: DJI Cloud API documentation,
-/// "Product Support" and "Common Elements".
-std::optional<int> wpml_payload(std::string_view camera);
-
-/// The camera as far as the flight depends on it, for photos with that ground sampling distance
-/// [m].
-flight::PhotoShutter make_photo_shutter(const geometry::PhotoCameraConfig& camera, double gsd);
 
 inline constexpr const char* photo_table_name = "photos.csv";
 inline constexpr const char* odm_file_name = "geo.txt";
