@@ -187,7 +187,7 @@ class WpmlChecker {
     require_one_of(group.child("wpml:actionTrigger"), "actionTriggerType",
                    {"reachPoint", "betweenAdjacentPoints", "multipleTiming", "multipleDistance"});
     const std::string trigger = child_text(group.child("wpml:actionTrigger"), "actionTriggerType");
-    if (trigger == "multipleTiming" || trigger == "multipleDistance") {
+    if (trigger == "multipleDistance") {
       require_number(group.child("wpml:actionTrigger"), "actionTriggerParam", 0.01, 10000);
     }
     for (const pugi::xml_node action : group.children("wpml:action")) {
