@@ -26,20 +26,20 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// What fits on the page besides the map; the rest is counted.
-constexpr std::size_t max_sorties = 8, max_holes = 5, max_warnings = 5, max_dots = 2500;
+constexpr std::size_t max_sorties = 8, max_holes = 5, max_warnings = 3, max_dots = 2500;
 
-constexpr double map_width = 186.0, map_height = 92.0;  ///< [mm]
+constexpr double map_width = 186.0, map_height = 80.0;  ///< [mm]
 
 constexpr std::array sortie_colours{"#0b5fa5", "#b3500a", "#1d7a3a", "#8a1f7a",
                                     "#a80f2c", "#4a4a8c", "#6b6b00", "#007a7a"};
 
 constexpr const char* style = R"(@page { size: A4; margin: 10mm 12mm; }
 * { box-sizing: border-box; }
-body { font: 8.6pt/1.28 Arial, Helvetica, sans-serif; color: #000; margin: 0 auto; width: 186mm; }
+body { font: 8pt/1.22 Arial, Helvetica, sans-serif; color: #000; margin: 0 auto; width: 186mm; }
 h1 { font-size: 13pt; margin: 0 0 1mm; } h2 { font-size: 9.4pt; margin: 2mm 0 0.6mm; border-bottom: 0.3mm solid #000; }
 .top { display: flex; justify-content: space-between; align-items: baseline; }
 .fill { font-size: 8.6pt; } .fill span { display: inline-block; border-bottom: 0.2mm solid #000; width: 30mm; }
-svg { display: block; width: 186mm; height: 92mm; border: 0.3mm solid #000; }
+svg { display: block; width: 186mm; height: 80mm; border: 0.3mm solid #000; }
 .figures { display: grid; grid-template-columns: repeat(4, 1fr); gap: 1mm; margin: 1.5mm 0; }
 .figures div { border: 0.3mm solid #000; padding: 0.8mm 1.4mm; } .figures b { display: block; font-size: 12pt; }
 .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 0 5mm; }
@@ -399,13 +399,13 @@ std::string field_sheet(const FieldSheetSite& site, const flight::FlightOptions&
   for (const PilotSteps& part : pilot_steps(options, mission)) {
     html += "<h2>Before the flight: " + escaped(part.whom) + "</h2>\n" + list("ol", "", part.steps);
   }
+  if (auto warnings = pilot_warnings(mission); !warnings.empty()) {
+    html += "<h2>Warnings</h2>\n" + list("ul", "", shortened(std::move(warnings), max_warnings));
+  }
   html += "</div><div>\n<h2>Check</h2>\n" +
           list("ul", " class=\"check\"", checks(options, mission, site));
   if (const auto items = missing_items(mission); !items.empty()) {
     html += "<h2>What will be missing</h2>\n" + list("ul", "", items);
-  }
-  if (auto warnings = pilot_warnings(mission); !warnings.empty()) {
-    html += "<h2>Warnings</h2>\n" + list("ul", "", shortened(std::move(warnings), max_warnings));
   }
   html += "</div></div>\n<h2>Sorties and batteries</h2>\n" + sorties_table(mission);
   return html +
