@@ -59,7 +59,7 @@ class VehicleState {
   std::optional<std::uint8_t> answer(std::uint16_t command) const;
   void forget_answer(std::uint16_t command) { answers_.erase(command); }
 
-  /// The last value [its unit] of a parameter that was heard; nothing if none was.
+  /// Returns the last value of a parameter, in its unit; std::nullopt if none was received.
   std::optional<double> parameter(const std::string& name) const;
 
   /// Returns the last warning of the autopilot as printable text, or an empty string.

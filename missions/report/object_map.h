@@ -10,7 +10,7 @@ namespace skycap::missions::report {
 
 /// The page as one HTML file that loads nothing. `command` is the command without the target,
 /// quoted for a shell; a click appends " --id 'NAME'". North is up. Objects without an area are
-/// left out. O(triangles).
+/// omitted. O(triangles).
 std::string object_map(const std::string& title, const std::vector<site_data::Object>& objects,
                        const std::string& command);
 

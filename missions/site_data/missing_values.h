@@ -1,4 +1,4 @@
-/// What is missing before a file of prior data can be read.
+/// Missing values of a file of prior data.
 #pragma once
 
 #include <string>

@@ -134,10 +134,16 @@ std::vector<Source> collect_files(const SiteRequest& request) {
     source.role = role;
     return source;
   };
-  const site_data::Assumptions assumed{request.import_options.crs, request.import_options.vertical,
-                                       request.terrain.has_value()};
+  // Heights that count from the take-off point are those of the map's outlines alone.
+  const bool counts_from_takeoff =
+      request.import_options.vertical == site_data::HeightDatum::takeoff;
+  const site_data::Assumptions assumed{
+      request.import_options.crs,
+      counts_from_takeoff ? std::nullopt : request.import_options.vertical,
+      request.terrain.has_value()};
   Source map = file(request.map, Role::obstacle);
-  map.crs = request.import_options.crs;  // whatever the file says
+  map.crs = request.import_options.crs;  // instead of the file's own
+  if (counts_from_takeoff) map.vertical = request.import_options.vertical;
   map.base = request.import_options.base;
   map.height = request.import_options.height;
   std::vector<Source> files{site_data::completed(map, assumed)};

@@ -131,11 +131,9 @@ BenchmarkCell cell_in(const Json& json, const std::string& where) {
 }  // namespace
 
 std::vector<BenchmarkCell> read_other_results(const std::filesystem::path& file) {
-  Json json;
-  try {
-    json = geometry::parse_json<Json>(geometry::read_file(file, geometry::largest_json));
-  } catch (const nlohmann::json::exception& failure) {
-    throw Error(ErrorKind::bad_file, file.string() + ": is not valid JSON: " + failure.what());
+  Json json = geometry::parse_json<Json>(geometry::read_file(file, geometry::largest_json));
+  if (json.is_discarded()) {
+    throw Error(ErrorKind::bad_file, file.string() + ": is not valid JSON; correct it");
   }
   std::vector<BenchmarkCell> cells;
   if (!json.is_array()) json = Json::array({json});

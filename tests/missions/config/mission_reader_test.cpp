@@ -59,7 +59,7 @@ TEST(MissionReader, TakesAnyCameraPreset) {
   EXPECT_EQ(real.options.camera.noise.sigma, 0.0);
   EXPECT_EQ(
       error_message(smallest + "sensor: {preset: velodyne_vlp16}\n"),
-      "m.yaml:3: key sensor.preset velodyne_vlp16 is a LiDAR; set sensor.lidar: velodyne_vlp16 "
+      "m.yaml:3: key sensor.preset: velodyne_vlp16 is a LiDAR; set sensor.lidar: velodyne_vlp16 "
       "instead of sensor.preset");
 }
 

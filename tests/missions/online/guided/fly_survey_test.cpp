@@ -281,6 +281,7 @@ class FlySurveyWithFixedCamera : public testing::Test {
     const std::string vehicle = "vehicle: generic";
     text.replace(text.find(vehicle), vehicle.size(),
                  "vehicle: " + (folder_.path() / "bolted.yaml").string());
+    text += "start: {position: [-30, 0, 10], direction: [0.9396926, 0, -0.3420201]}\n";
     rehearsal_ = std::make_unique<online::Rehearsal>(text);
   }
 
