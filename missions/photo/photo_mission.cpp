@@ -108,7 +108,7 @@ std::vector<survey::photo::PlannedPhoto> toured_photos(
   return photos;
 }
 
-/// Returns the edges of the view graph with indices of plan.photos instead of result.views.
+/// Returns result.matching_pairs with indices of plan.photos instead of result.views.
 std::vector<survey::photo::PhotoPair> pairs_in_flight_order(const PhotoMission& mission) {
   const std::vector<View>& views = mission.result.views;
   std::vector<std::optional<std::uint32_t>> photo_of_view(views.size());
@@ -120,7 +120,7 @@ std::vector<survey::photo::PhotoPair> pairs_in_flight_order(const PhotoMission& 
     if (view != views.end()) photo_of_view[static_cast<std::size_t>(view - views.begin())] = i;
   }
   std::vector<survey::photo::PhotoPair> pairs;
-  for (survey::photo::PhotoPair pair : mission.result.graph.edges) {
+  for (survey::photo::PhotoPair pair : mission.result.matching_pairs) {
     const auto first = photo_of_view[pair.first], second = photo_of_view[pair.second];
     if (!first || !second) continue;
     pair.first = std::min(*first, *second);

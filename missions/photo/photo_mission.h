@@ -32,7 +32,7 @@ struct PatternTours {
 struct PhotoMission {
   survey::photo::PhotoPlanResult result;
   survey::photo::PhotoPlan plan;  ///< the photos that are flown to, in the order of the flight
-  /// Pairs of plan.photos that register to each other (edges of the view graph).
+  /// Pairs of plan.photos to be matched, see PhotoPlanResult::matching_pairs.
   std::vector<survey::photo::PhotoPair> pairs;
   PhotoTour tour;                                ///< of the plan
   std::vector<PatternTours> patterns;            ///< of result.patterns

@@ -307,6 +307,9 @@ class Planner {
       observed = observed_samples(observer, result_.views, run_.threads);
     }
     result_.graph = view_graph(result_.views, observed, chosen_on_, rule, run_.threads);
+    constexpr double min_shared_to_match = 0.2;
+    result_.matching_pairs =
+        shared_pairs(result_.views, observed, chosen_on_, min_shared_to_match, run_.threads);
     warn_of_graph(min_degree);
   }
 

@@ -129,6 +129,8 @@ struct PhotoPlanResult {
   std::vector<CurvePoint> curve;
   CoverBound bound;  ///< of photos without those that connect
   ViewGraph graph;
+  /// Pairs of views that share at least a fifth of the smaller sample set, for matching.
+  std::vector<PhotoPair> matching_pairs;
   std::vector<PatternResult> patterns;
   std::vector<std::string> warnings;  ///< sentences for the user
 };
