@@ -127,7 +127,7 @@ FlightPlan with_scanner_commands(FlightPlan plan, Format format, const ScannerAi
     throw Error(ErrorKind::bad_config,
                 extension + " files cannot command the " + name +
                     (format == Format::kmz ? " at stops; set sensor.capture: moving"
-                                           : "; export kmz for a vehicle of DJI"));
+                                           : "; export kmz for a DJI vehicle"));
   }
   aim_at(plan, aim);
   calibrate(plan, energy_left, notes);

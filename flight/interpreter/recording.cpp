@@ -57,7 +57,7 @@ Problems check_looks(const ScannedLeg& leg, double yaw_from_deg, double yaw_deg,
                      const std::string& name) {
   Problems problems;
   const auto add_problem = [&](const std::string& what, double is_deg, double right_deg) {
-    problems.push_back(what + " of " + fixed(is_deg, 1) + " degrees; the " + name + " looks to " +
+    problems.push_back(what + " of " + fixed(is_deg, 1) + " degrees; the " + name + " requires " +
                        fixed(right_deg, 1) + " degrees");
   };
   if (is_turned(leg.pitch_deg, pitch_deg))

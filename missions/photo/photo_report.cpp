@@ -24,7 +24,7 @@ std::string split_words(MissingReason reason) {
     case MissingReason::height:
       return "seen only from below the minimum height";
     case MissingReason::not_taken:
-      return "attainable, at too many photos for its area";
+      return "attainable, but requires too many photos for its area";
   }
   return "";
 }

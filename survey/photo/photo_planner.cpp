@@ -128,7 +128,7 @@ class Planner {
                   "photo.gsd (" + length_text(options_.gsd) + ") requires a view distance of " +
                       length_text(d) + ", which is below limits.stand_off (" +
                       length_text(min_standoff) + "): at " + length_text(min_standoff) +
-                      " this camera has " + length_text(camera_.gsd(min_standoff)) +
+                      " this camera has a GSD of " + length_text(camera_.gsd(min_standoff)) +
                       "; raise photo.gsd or lower limits.stand_off");
     }
     if (d < rule_.nearest_focus) {
@@ -318,7 +318,7 @@ class Planner {
       parts += (parts.empty() ? "" : ", ") + std::to_string(photos);
     }
     const std::string what = "the photos form " + std::to_string(result_.graph.parts.size()) +
-                             " parts that share too little to be registered to one another (" +
+                             " parts that overlap too little to be registered to one another (" +
                              parts + " photos)";
     if (!is_unknown) {
       result_.warnings.push_back(what +

@@ -77,7 +77,7 @@ class TrialReader {
   void require_length(const std::string& field, const std::vector<double>& numbers,
                       std::size_t views) const {
     if (numbers.size() == views) return;
-    fail(fmt::format("{} has {} numbers; it must have {}, as coverage_after", field, numbers.size(),
+    fail(fmt::format("{} has {} numbers; expected {}, as in coverage_after", field, numbers.size(),
                      views));
   }
 

@@ -134,7 +134,7 @@ TEST_F(PhotosOfABox, FlyAPatternAsItIs) {
 
 TEST_F(PhotosOfABox, AreRejectedBelowStandOff) {
   options_.gsd = geometry::PhotoCamera(test_camera()).gsd(2.0);
-  EXPECT_THAT(message(), HasSubstr("below limits.stand_off (3 m): at 3 m this camera has 0.8 mm"));
+  EXPECT_THAT(message(), HasSubstr("below limits.stand_off (3 m): at 3 m this camera has a GSD of 0.8 mm"));
 }
 
 TEST_F(PhotosOfABox, AreRejectedBelowTheNearestFocus) {
