@@ -1,4 +1,4 @@
-/// The results of a photo mission on disk.
+/// Result files of a photo mission.
 #pragma once
 
 #include <string>
@@ -9,17 +9,18 @@
 
 namespace skycap::missions::photo {
 
-/// photos.csv: a line for each photo in the order of the flight. Mission frame (x east, y north, z
-/// up) in metres, angles in degrees, times since the take-off of the sortie; latitude, longitude
-/// and ellipsoid height are empty without a georeference.
+/// Returns the text of photos.csv, with a line for each photo in flight order. Positions are in the
+/// mission frame (x east, y north, z up) in metres, angles in degrees. Times are since the take-off
+/// of the sortie. Latitude, longitude and ellipsoid height are empty without a georeference.
 std::string photos_csv(const config::MissionSetup& setup, const survey::photo::PhotoPlan& plan);
 
-/// summary.json with the section `photo`, as docs/reference/results.md describes it.
+/// Returns the text of summary.json with the section `photo`, as documented in
+/// docs/reference/results.md.
 std::string summary_json(const config::MissionSetup& setup, const PhotoMission& mission);
 
-/// Stages summary.json, photos.csv and, with a vehicle, the route files and free_space.bin, in
-/// which they are verified again by skycap export; the caller commits. Files and their notes are
-/// kept in `mission`.
+/// Stages summary.json, photos.csv and, with a vehicle, the route files and free_space.bin. `skycap
+/// export` verifies routes against free_space.bin. The caller commits the folder. Stores the files
+/// and their notes in `mission`.
 void stage_photo_mission(const config::MissionSetup& setup, const PhotoAirspace& airspace,
                          PhotoMission& mission, geometry::OutputFolder& folder);
 

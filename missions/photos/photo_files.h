@@ -1,4 +1,4 @@
-/// Files of a mission with a photo camera beside its route files, and the camera of its flight.
+/// Additional files of a mission with a photo camera, and the camera data for its flight.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +14,13 @@
 
 namespace skycap::missions::photos {
 
-/// payloadEnumValue of DJI's WPML for a camera by the name of its preset, such as
-/// "zenmuse_p1_35"; nothing for cameras of other makers. Source: DJI Cloud API documentation,
-/// "Product Support" and "Common Elements".
+/// Returns the payloadEnumValue of DJI's WPML for a camera preset such as "zenmuse_p1_35", or
+/// nullopt for cameras of other makers. Source: DJI Cloud API documentation, "Product Support" and
+/// "Common Elements".
 std::optional<int> wpml_payload(std::string_view camera);
 
-/// The camera as far as the flight depends on it, for photos with that ground sampling distance
-/// [m].
+/// Returns the camera data that the flight depends on, for photos with ground sampling distance
+/// `gsd` [m].
 flight::PhotoShutter make_photo_shutter(const geometry::PhotoCameraConfig& camera, double gsd);
 
 inline constexpr const char* photo_table_name = "photos.csv";
