@@ -1,11 +1,11 @@
-// The keys of `photo`: photos for photogrammetry.
+// Keys of the section `photo`: photos for photogrammetry.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
 
 namespace skycap::missions::config {
 namespace {
 
-/// The field of the section that `member` points to.
+/// Returns access to the field of the section that `member` points to.
 auto photo(auto member) {
   return [member](auto& m) -> auto& { return m.photo.*member; };
 }
@@ -13,7 +13,7 @@ auto rule(auto member) {
   return [member](auto& m) -> auto& { return m.photo.rule.*member; };
 }
 
-/// The key `photo.patterns`, whose empty list means none.
+/// Returns the key `photo.patterns`. An empty list means no patterns.
 Key patterns_key() {
   return otherwise(
       "facade, dome, oblique",
@@ -23,7 +23,7 @@ Key patterns_key() {
           "nadir, oblique, dome, facade. [] for none."));
 }
 
-/// The key `photo.pattern`, which replaces the choice of photos.
+/// Returns the key `photo.pattern`, which replaces the selection of photos.
 Key pattern_key() {
   Key key = text_key("photo.pattern", photo(&PhotoSection::pattern),
                      "Flight pattern that replaces the choice of photos: nadir, oblique, dome or "

@@ -24,10 +24,10 @@ using survey::photo::PhotoFigures;
 
 constexpr const char* photos_name = "photos.csv";
 
-/// Of a camera on a gimbal whose heading is the vehicle's compass: an estimate [degrees].
+/// Estimated angle error of a gimbal camera whose heading is from the vehicle's compass [degrees].
 constexpr double angle_sigma_deg = 1.0;
 
-/// Counts and shares of surface samples.
+/// Returns counts and fractions of surface samples.
 Json figures_json(const PhotoFigures& figures) {
   const auto share = [&](std::size_t count) {
     return Json{{"samples", count},

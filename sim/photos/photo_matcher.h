@@ -29,7 +29,7 @@ struct MatchSample {
 
 struct MatchOptions {
   std::size_t references =
-      6;                     ///< photos of a sample whose depth is measured, nearest head-on first
+      6;  ///< Measured photos per sample, in ascending order of distance / cosine.
   std::size_t partners = 6;  ///< Photos with which each reference photo is compared.
   double max_incidence =
       75.0 * geometry::radians_per_degree;  ///< Maximum angle of incidence [rad].

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One trial of a file, with the words that messages name it by.
+/// Trial in a file, with its description for messages.
 class TrialReader {
  public:
   TrialReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
