@@ -25,8 +25,8 @@ class RunFinder {
  public:
   explicit RunFinder(const FlightPlan& plan) : plan_(plan), times_(stop_times(plan)) {}
 
-  /// Returns the index of the last waypoint of the longest run that starts at `first`, and the run.
-  /// The run has no photos if none is possible.
+  /// Longest run from a waypoint, and the index of its last waypoint. The run has no photos if none
+  /// is possible.
   struct Found {
     std::size_t last = 0;
     PhotoRun run;

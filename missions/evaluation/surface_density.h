@@ -35,7 +35,8 @@ struct DensityPlaces {
 
 /// Samples a model and its surroundings with about one position per square of side `spacing` [m],
 /// at most one million each. Surroundings are sampled only within `margin` [m] of the model's
-/// bounding box and where the surface is level and faces up. These samples have the class ground.
+/// bounding box, and only surface that faces up with a slope below 45 degrees. These samples have
+/// the class ground.
 DensityPlaces density_places(const geometry::Mesh& model, const geometry::Mesh& surroundings,
                              double spacing, double margin);
 

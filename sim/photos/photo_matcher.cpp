@@ -29,7 +29,7 @@ struct PhotoObservation {
   double cosine;    ///< Cosine of the angle of incidence.
 };
 
-/// Returns the grey values of a patch, or nothing if a part of it is outside the image.
+/// Grey values of a patch. Empty if a part of it is outside the image.
 using Patch = std::vector<double>;
 
 class Matcher {

@@ -100,7 +100,7 @@ class PatternMaker {
   }
 
  private:
-  /// Adds rows from `low` upwards. The last row is at `high` or less than one spacing above it.
+  /// Returns rows from `low` upwards. The last row is at `high` or less than one spacing above it.
   static std::vector<double> row_from(double low, double high, double spacing) {
     const auto steps = static_cast<int>(std::ceil((high - low) / spacing - 1e-9));
     std::vector<double> positions;

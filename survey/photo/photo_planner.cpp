@@ -278,7 +278,7 @@ class Planner {
     result_.bound = cover_bound(problem, satisfied, rule_.min_partners + 1, choice.chosen().size());
   }
 
-  /// Returns the selected photos, most useful first.
+  /// Stores the selected photos, most useful first.
   void set_views(const PhotoChoiceProblem& problem, const PhotoChoice& choice) {
     const PhotoChoiceProblem part = with_candidates(problem, choice.chosen());
     if (options_.flown_pattern) {
