@@ -48,7 +48,8 @@ TEST(ControlPoints, NameTheLineThatIsWrong) {
               HasSubstr("line 2 has a latitude"));
 }
 
-// Under the first photo, which looks straight down with its top to the north: by hand.
+// Calculated by hand for a point below the first photo, which faces straight down with its top to
+// the north.
 TEST(ControlPoints, AreWhereThePhotoShowsThem) {
   const survey::photo::PhotoPlan plan = test_plan();
   const double focal = geometry::PhotoCamera(plan.camera).focal_length_px();
