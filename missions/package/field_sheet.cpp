@@ -319,7 +319,7 @@ std::string sorties_table(const SurveyMission& mission) {
     }
   }
   html += "</table>\n";
-  if (all > number) html += fmt::format("<p>{} more: summary.json</p>\n", all - number);
+  if (all > number) html += fmt::format("<p>{} more: see summary.json</p>\n", all - number);
   return html;
 }
 

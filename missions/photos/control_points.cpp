@@ -62,7 +62,7 @@ std::vector<ControlPoint> read_control_points(const std::string& text,
     point.position = is_local ? values : frame->to_local({values.x(), values.y(), values.z()});
     points.push_back(std::move(point));
   }
-  if (points.empty()) fail(lines.size(), "is the last one, without any point");
+  if (points.empty()) fail(lines.size(), "is the last line, and the file contains no points");
   return points;
 }
 
@@ -114,9 +114,10 @@ std::vector<std::string> control_warnings(const std::vector<ControlPoint>& point
   for (const ControlPoint& point : points) {
     const std::size_t photos = find_observations(point, plan, is_blocked).size();
     if (photos >= min_control_photos) continue;
-    warnings.push_back("Warning: control point \"" + point.name + "\" is in " +
-                       std::to_string(photos) + " photos; it must be in at least " +
-                       std::to_string(min_control_photos) + ". Move it to where photos overlap.");
+    warnings.push_back("Warning: control point \"" + point.name + "\" is visible in " +
+                       std::to_string(photos) + " photos; at least " +
+                       std::to_string(min_control_photos) +
+                       " are required. Move it to an area where photos overlap.");
   }
   return warnings;
 }
