@@ -78,7 +78,7 @@ TEST(ControlPoints, AreHiddenByWhatIsInTheWay) {
   const ControlPoint far{"far", {0.0, 0.0, -40.0}};
   EXPECT_THAT(find_observations(far, plan, nothing_is_blocked), IsEmpty());
   EXPECT_THAT(control_warnings({point, far}, plan, nothing_is_blocked),
-              ElementsAre(HasSubstr("\"far\" is in 0 photos")));
+              ElementsAre(HasSubstr("\"far\" is visible in 0 photos")));
   const std::string table = control_table({point}, plan, nothing_is_blocked);
   EXPECT_THAT(table, HasSubstr("P,photo_0004.jpg,2640.0,1978.0,16.000,"));
 }
